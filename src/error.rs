@@ -1,0 +1,174 @@
+//! The one error type: what is wrong, where, which value, what is allowed.
+
+use std::path::PathBuf;
+
+use crate::solution::Solution;
+
+/// Everything that can go wrong between a file and a certified answer.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A vector whose length does not fit the rest of the problem.
+    #[error("{name} has length {found}, but there are {expected} {of}")]
+    Length {
+        /// Which vector.
+        name: &'static str,
+        /// Its length.
+        found: usize,
+        /// The length that fits.
+        expected: usize,
+        /// What the fitting length counts.
+        of: &'static str,
+    },
+    /// A matrix whose shape does not fit the rest of the problem.
+    #[error("{name} is {} x {}, but it must be {} x {}", found.0, found.1, expected.0, expected.1)]
+    Shape {
+        /// Which matrix.
+        name: &'static str,
+        /// Rows and columns that it has.
+        found: (usize, usize),
+        /// Rows and columns that fit.
+        expected: (usize, usize),
+    },
+    /// An entry outside its matrix.
+    #[error("entry ({row}, {column}) lies outside a matrix of {rows} rows and {columns} columns (indices from 0)")]
+    IndexOutOfRange {
+        /// Row of the entry, from 0.
+        row: usize,
+        /// Column of the entry, from 0.
+        column: usize,
+        /// Rows of the matrix.
+        rows: usize,
+        /// Columns of the matrix.
+        columns: usize,
+    },
+    /// A number that is not finite where it must be.
+    #[error("{name} has the value {value} at {at} (indices from 0); it must be {allowed}")]
+    NotFinite {
+        /// Which vector or matrix.
+        name: &'static str,
+        /// Where in it.
+        at: String,
+        /// The value.
+        value: f64,
+        /// What is allowed there.
+        allowed: &'static str,
+    },
+    /// A stiffness given with both triangles that differ.
+    #[error(
+        "the stiffness is not symmetric: entry ({row}, {column}) is {value:e}, entry ({column}, {row}) is {mirrored:e} \
+         (indices from 0); give both triangles alike, or declare one"
+    )]
+    NotSymmetric {
+        /// Row, from 0.
+        row: usize,
+        /// Column, from 0.
+        column: usize,
+        /// Entry (row, column).
+        value: f64,
+        /// Entry (column, row).
+        mirrored: f64,
+    },
+    /// A stiffness with a negative eigenvalue: the problem has no unique minimum.
+    #[error("the stiffness is not positive semidefinite ({evidence}): the problem is not convex")]
+    NotConvex {
+        /// What shows it.
+        evidence: String,
+    },
+    /// Contact rows that no displacement satisfies together.
+    #[error("infeasible: {reason}")]
+    Infeasible {
+        /// Which rows, and by how much they overlap.
+        reason: String,
+        /// Contact rows that contradict each other, from 0.
+        rows: Vec<usize>,
+    },
+    /// The load moves the body away without end.
+    #[error("unbounded: the load drives a motion that neither supports nor obstacle stop: {motion}")]
+    Unbounded {
+        /// The motion in words.
+        motion: String,
+        /// The escape direction d, one entry per dof: `K d = 0`, `B d <= 0`, `f'd > 0`.
+        direction: Vec<f64>,
+    },
+    /// A motion that nothing resists and no load drives: the answer is not unique.
+    #[error("a rigid-body motion is held by neither supports nor obstacle: {motion}")]
+    UnderHeld {
+        /// The motion in words.
+        motion: String,
+        /// The free direction, one entry per dof.
+        direction: Vec<f64>,
+    },
+    /// An answer was found, but it does not meet the tolerance.
+    #[error("not certified: {condition} is {value:.3e}, above the tolerance {tolerance:.1e} ({})", solution.method)]
+    NotCertified {
+        /// The best answer, with its certificate.
+        solution: Box<Solution>,
+        /// The worst condition.
+        condition: &'static str,
+        /// Its value.
+        value: f64,
+        /// What was asked for.
+        tolerance: f64,
+    },
+    /// A setting outside its range.
+    #[error("{name} is {value}; it must be {allowed}")]
+    Setting {
+        /// Which setting.
+        name: &'static str,
+        /// The value given.
+        value: f64,
+        /// The range.
+        allowed: &'static str,
+    },
+    /// A library step that failed for a reason of its own.
+    #[error("{step} failed: {reason}")]
+    Numerical {
+        /// Which step.
+        step: &'static str,
+        /// Why.
+        reason: String,
+    },
+    /// A scene whose JSON does not have the right form.
+    #[error("{source_name}:{line}:{column}: at `{path}`: {message}")]
+    SceneSyntax {
+        /// The file, or `scene` where it came as text.
+        source_name: String,
+        /// Line, from 1.
+        line: usize,
+        /// Column, from 1.
+        column: usize,
+        /// JSON path of the field.
+        path: String,
+        /// What is wrong, and what is allowed.
+        message: String,
+    },
+    /// A scene whose values do not describe a problem.
+    #[error("scene, at `{path}`: {message}")]
+    Scene {
+        /// JSON path of the value.
+        path: String,
+        /// What is wrong, and what is allowed.
+        message: String,
+    },
+    /// A Matrix Market file that does not have the right form.
+    #[error("{}:{line}: {message}", file.display())]
+    MatrixMarket {
+        /// The file.
+        file: PathBuf,
+        /// Line, from 1.
+        line: usize,
+        /// What is wrong, and what is allowed.
+        message: String,
+    },
+    /// A file or folder that cannot be read or written.
+    #[error("cannot {action} {}: {source}", path.display())]
+    File {
+        /// `read` or `write`.
+        action: &'static str,
+        /// Which one.
+        path: PathBuf,
+        /// The system's reason.
+        source: std::io::Error,
+    },
+}

@@ -1,0 +1,113 @@
+//! The contact problem as a convex QP, checked once, and the certificate of an answer to it.
+
+mod certificate;
+
+use crate::error::Error;
+use crate::sparse::{SparseMatrix, SymmetricMatrix};
+
+/// Frictionless unilateral contact as a convex quadratic program:
+///
+/// ```text
+/// minimise 1/2 u'K u - f'u   subject to   B u - g <= 0
+/// K u - f - B' lambda = 0,  B u - g <= 0,  lambda <= 0,  lambda_i (B u - g)_i = 0
+/// ```
+///
+/// Checked once, when it is built: shapes, finite values, symmetry. Whether K is positive semidefinite, and whether
+/// supports and obstacle hold the body, is found out when it is solved.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContactProblem {
+    stiffness: SymmetricMatrix,
+    load: Vec<f64>,
+    contact: SparseMatrix,
+    gap: Vec<f64>,
+}
+
+impl ContactProblem {
+    /// The problem of stiffness K (n x n, N/m), load f (n, N), contact rows B (m x n) and initial gaps g (m, m).
+    ///
+    /// A row of B is positive towards the obstacle. A gap is negative where the obstacle starts inside the body and
+    /// `f64::INFINITY` where there is none.
+    ///
+    /// # Errors
+    /// [`Error::Length`] and [`Error::Shape`] for sizes that do not fit, [`Error::NotFinite`] for a load that is not
+    /// finite or a gap that is NaN or minus infinity, [`Error::NotConvex`] for a negative diagonal entry of K.
+    pub fn new(
+        stiffness: SymmetricMatrix,
+        load: Vec<f64>,
+        contact: SparseMatrix,
+        gap: Vec<f64>,
+    ) -> Result<Self, Error> {
+        let dofs = stiffness.dim();
+        if load.len() != dofs {
+            return Err(Error::Length { name: "load vector", found: load.len(), expected: dofs, of: "dofs" });
+        }
+        if contact.columns() != dofs {
+            let (found, expected) = ((contact.rows(), contact.columns()), (contact.rows(), dofs));
+            return Err(Error::Shape { name: "contact matrix", found, expected });
+        }
+        let (found, expected) = (gap.len(), contact.rows());
+        if found != expected {
+            return Err(Error::Length { name: "gap vector", found, expected, of: "contact rows" });
+        }
+        let bad = |name, (index, &value): (usize, &f64), allowed| {
+            Err(Error::NotFinite { name, at: format!("entry {index}"), value, allowed })
+        };
+        if let Some(entry) = load.iter().enumerate().find(|entry| !entry.1.is_finite()) {
+            return bad("load vector", entry, "finite");
+        }
+        if let Some(entry) = gap.iter().enumerate().find(|entry| entry.1.is_nan() || *entry.1 == f64::NEG_INFINITY) {
+            return bad("gap vector", entry, "finite, or +inf for a row without obstacle");
+        }
+        if let Some((dof, value)) = stiffness.diagonal().iter().enumerate().find(|entry| *entry.1 < 0.0) {
+            return Err(Error::NotConvex { evidence: format!("diagonal entry {dof} is {value:e}, indices from 0") });
+        }
+        Ok(ContactProblem { stiffness, load, contact, gap })
+    }
+
+    /// Number of dofs n.
+    pub fn dofs(&self) -> usize {
+        self.load.len()
+    }
+
+    /// Number of contact rows m.
+    pub fn rows(&self) -> usize {
+        self.gap.len()
+    }
+
+    /// The stiffness K (n x n), in N/m.
+    pub fn stiffness(&self) -> &SymmetricMatrix {
+        &self.stiffness
+    }
+
+    /// The external load f, length n, in N.
+    pub fn load(&self) -> &[f64] {
+        &self.load
+    }
+
+    /// The contact rows B (m x n), dimensionless, positive towards the obstacle.
+    pub fn contact(&self) -> &SparseMatrix {
+        &self.contact
+    }
+
+    /// The initial gaps g, length m, in m; negative where the obstacle starts inside the body.
+    pub fn gap(&self) -> &[f64] {
+        &self.gap
+    }
+
+    /// The same body and obstacle with other gaps.
+    ///
+    /// # Errors
+    /// As [`ContactProblem::new`].
+    pub fn with_gap(&self, gap: Vec<f64>) -> Result<Self, Error> {
+        Self::new(self.stiffness.clone(), self.load.clone(), self.contact.clone(), gap)
+    }
+
+    /// The violation B u - g of each row, length m: positive is penetration; `-inf` where there is no obstacle.
+    pub fn violation(&self, displacement: &[f64]) -> Vec<f64> {
+        let mut violation = self.contact.mul(displacement);
+        for (value, gap) in violation.iter_mut().zip(&self.gap) {
+            *value -= gap;
+        }
+        violation
+    }
+}

@@ -1,0 +1,178 @@
+//! What an answer consists of: plain data, no logic of the solvers.
+
+use std::fmt;
+
+/// The contact indicator C of the formulation: which of `rows` contact rows are closed.
+///
+/// Stored as bits, so that a method can keep its whole history of sets.
+#[derive(Clone, PartialEq, Eq, Hash, Default)]
+pub struct ContactSet {
+    rows: usize,
+    bits: Vec<u64>,
+}
+
+impl ContactSet {
+    /// The set of `rows` rows in which none is closed.
+    pub fn open(rows: usize) -> Self {
+        ContactSet { rows, bits: vec![0; rows.div_ceil(64)] }
+    }
+
+    /// The set of `rows` rows in which all are closed.
+    pub fn closed(rows: usize) -> Self {
+        Self::from_fn(rows, |_| true)
+    }
+
+    /// The set of `rows` rows in which row `i` is closed when `closed(i)` says so.
+    pub fn from_fn(rows: usize, mut closed: impl FnMut(usize) -> bool) -> Self {
+        let mut set = Self::open(rows);
+        for row in 0..rows {
+            set.set(row, closed(row));
+        }
+        set
+    }
+
+    /// Number of contact rows, closed or open.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Number of closed rows.
+    pub fn count(&self) -> usize {
+        self.bits.iter().map(|word| word.count_ones() as usize).sum()
+    }
+
+    /// Is row `row` closed? Rows beyond the last are open.
+    pub fn contains(&self, row: usize) -> bool {
+        row < self.rows && self.bits[row / 64] >> (row % 64) & 1 == 1
+    }
+
+    /// Closes (`true`) or opens (`false`) row `row`; rows beyond the last are left alone.
+    pub fn set(&mut self, row: usize, closed: bool) {
+        if row < self.rows {
+            let mask = 1 << (row % 64);
+            if closed {
+                self.bits[row / 64] |= mask;
+            } else {
+                self.bits[row / 64] &= !mask;
+            }
+        }
+    }
+
+    /// The closed rows in increasing order.
+    pub fn iter(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.rows).filter(|&row| self.contains(row))
+    }
+}
+
+impl fmt::Debug for ContactSet {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:?} of {}", self.iter().collect::<Vec<_>>(), self.rows)
+    }
+}
+
+/// How far an answer (u, lambda) is from the conditions that define the solution, each relative and dimensionless.
+///
+/// Recomputed from the original problem by [`ContactProblem::certify`](crate::ContactProblem::certify), whatever the
+/// method claims. With `fs` the largest of `|f|` and `|B' lambda|`, `us` the largest of `|B u|` and of the gaps that
+/// closed rows have, `ls` the largest `|lambda|`, and `es` the largest of `u'Ku / 2`, `|f'u|` and `|g' lambda|`:
+///
+/// | field | formula |
+/// |---|---|
+/// | `stationarity` | `max abs(K u - f - B' lambda) / fs` |
+/// | `penetration` | `max (B u - g)_+ / us` |
+/// | `adhesion` | `max (lambda)_+ / ls` |
+/// | `complementarity` | `max abs(lambda (B u - g)) / (ls us)` |
+/// | `duality_gap` | `abs(u'Ku - f'u - lambda'g) / es` |
+/// | `energy_error_bound` | an upper bound on `norm_K(u - u*) / norm_K(u)`, infinite where K is not positive definite |
+///
+/// The residual counts only as far as it exceeds what rounding `u` to double precision alone produces.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Certificate {
+    /// Relative imbalance of forces.
+    pub stationarity: f64,
+    /// Relative penetration into the obstacle.
+    pub penetration: f64,
+    /// Relative wrong-signed multiplier: an obstacle that pulls.
+    pub adhesion: f64,
+    /// Relative product of force and open distance.
+    pub complementarity: f64,
+    /// Relative difference of the primal and the dual energy.
+    pub duality_gap: f64,
+    /// Upper bound on the relative error of the displacement in the energy norm; infinite where none is known.
+    pub energy_error_bound: f64,
+}
+
+impl Certificate {
+    /// The conditions with their names, in the order of the fields, without the energy bound.
+    pub fn conditions(&self) -> [(&'static str, f64); 5] {
+        [
+            ("stationarity", self.stationarity),
+            ("penetration", self.penetration),
+            ("adhesion", self.adhesion),
+            ("complementarity", self.complementarity),
+            ("duality_gap", self.duality_gap),
+        ]
+    }
+
+    /// The condition that is worst, and its value; a value that is not a number is the worst of all.
+    pub fn worst(&self) -> (&'static str, f64) {
+        let rank = |value: f64| if value.is_nan() { f64::INFINITY } else { value };
+        self.conditions().into_iter().max_by(|a, b| rank(a.1).total_cmp(&rank(b.1))).unwrap_or(("stationarity", 0.0))
+    }
+
+    /// Do all conditions hold to `tolerance`, and does the energy bound, where there is one, agree?
+    ///
+    /// The square of the energy bound is a duality gap (of a repaired feasible pair), so it is the square that is held
+    /// against the tolerance.
+    pub fn meets(&self, tolerance: f64) -> bool {
+        let bound = self.energy_error_bound;
+        self.conditions().iter().all(|&(_, value)| value <= tolerance)
+            && (bound.is_infinite() || bound * bound <= tolerance)
+    }
+}
+
+/// Wall-clock seconds that an answer cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Seconds {
+    /// Symbolic and numeric factorisations.
+    pub factor: f64,
+    /// Everything from the checked problem to the certified answer, factorisations included.
+    pub solve: f64,
+}
+
+/// One iteration of a method: the set that it worked with and what it found there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Iteration {
+    /// The closed rows in this iteration.
+    pub contact_set: ContactSet,
+    /// The penalty, in multiples of the local stiffness; zero where the method has none.
+    pub penalty: f64,
+}
+
+/// The answer to a contact problem.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solution {
+    /// Displacement u, one entry per dof, in the problem's unit of length.
+    pub displacement: Vec<f64>,
+    /// Contact multiplier lambda, one entry per contact row, in the problem's unit of force, `<= 0` in compression.
+    pub multiplier: Vec<f64>,
+    /// The closed rows.
+    pub contact_set: ContactSet,
+    /// `qp`, `active-set` or `penalty`, with a suffix where a variant ran.
+    pub method: String,
+    /// Iterations of the method itself (linear solves of a loop, or interior-point steps).
+    pub iterations: usize,
+    /// The contact sets on the way, in order; for the QP the sets of its polish.
+    pub history: Vec<Iteration>,
+    /// How far the answer can be trusted.
+    pub certificate: Certificate,
+    /// What it cost.
+    pub seconds: Seconds,
+}
+
+impl Solution {
+    /// Total contact force `-sum(lambda)`, `>= 0`, in the problem's unit of force.
+    pub fn contact_force(&self) -> f64 {
+        -self.multiplier.iter().sum::<f64>()
+    }
+}

@@ -1,0 +1,153 @@
+//! Sparse Cholesky factorisation A = L L' on faer: analysed once, factorised as often as the values change.
+
+use std::sync::Arc;
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::solvers::LltError;
+use faer::sparse::linalg::cholesky as fc;
+use faer::sparse::{FaerError, SparseColMatRef, SymbolicSparseColMatRef};
+use faer::{Conj, MatMut, Par, Side};
+
+use super::{SparseMatrix, SymmetricMatrix};
+use crate::error::Error;
+
+/// Fill-reducing ordering and structure of the factor, for all matrices of one sparsity pattern.
+#[derive(Clone, Debug)]
+pub struct Analysis {
+    symbolic: Arc<fc::SymbolicCholesky<usize>>,
+}
+
+/// The factor L of a positive definite matrix.
+#[derive(Clone, Debug)]
+pub struct Cholesky {
+    analysis: Analysis,
+    values: Vec<f64>,
+}
+
+/// Why a factorisation did not end with a factor.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FactorError {
+    /// A pivot was not positive: the matrix is not positive definite.
+    NotPositiveDefinite,
+    /// Memory or index range was not enough, or the analysis failed.
+    Failed(String),
+}
+
+impl From<FactorError> for Error {
+    fn from(error: FactorError) -> Self {
+        match error {
+            FactorError::NotPositiveDefinite => {
+                Error::NotConvex { evidence: "a Cholesky pivot is not positive".into() }
+            }
+            FactorError::Failed(reason) => Error::Numerical { step: "sparse Cholesky factorisation", reason },
+        }
+    }
+}
+
+impl From<FaerError> for FactorError {
+    fn from(error: FaerError) -> Self {
+        FactorError::Failed(format!("{error:?}"))
+    }
+}
+
+fn structure(matrix: &SparseMatrix) -> SymbolicSparseColMatRef<'_, usize> {
+    SymbolicSparseColMatRef::new_checked(
+        matrix.rows(),
+        matrix.columns(),
+        matrix.column_starts(),
+        None,
+        matrix.row_indices(),
+    )
+}
+
+fn memory(request: faer::dyn_stack::StackReq) -> Result<MemBuffer, FactorError> {
+    MemBuffer::try_new(request).map_err(|_| FactorError::Failed("out of memory".into()))
+}
+
+impl Analysis {
+    /// Orders (approximate minimum degree) and analyses the pattern of `matrix`.
+    ///
+    /// # Errors
+    /// [`FactorError::Failed`] when memory or the index range does not suffice.
+    pub fn of(matrix: &SymmetricMatrix) -> Result<Self, FactorError> {
+        let symbolic = fc::factorize_symbolic_cholesky(
+            structure(matrix.lower()),
+            Side::Lower,
+            fc::SymmetricOrdering::Amd,
+            fc::CholeskySymbolicParams::default(),
+        )?;
+        Ok(Analysis { symbolic: Arc::new(symbolic) })
+    }
+
+    /// Factorises `matrix`, whose pattern must be the analysed one.
+    ///
+    /// # Errors
+    /// [`FactorError::NotPositiveDefinite`] for a pivot that is not positive.
+    pub fn factor(&self, matrix: &SymmetricMatrix) -> Result<Cholesky, FactorError> {
+        let size = self.symbolic.len_val();
+        let mut values = Vec::new();
+        values.try_reserve_exact(size).map_err(|_| FactorError::Failed("out of memory".into()))?;
+        values.resize(size, 0.0);
+        let mut buffer = memory(self.symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default()))?;
+        let lower = matrix.lower();
+        self.symbolic
+            .factorize_numeric_llt(
+                &mut values,
+                SparseColMatRef::new(structure(lower), lower.values()),
+                Side::Lower,
+                Default::default(),
+                Par::Seq,
+                MemStack::new(&mut buffer),
+                Default::default(),
+            )
+            .map_err(|LltError::NonPositivePivot { .. }| FactorError::NotPositiveDefinite)?;
+        if values.iter().all(|value| value.is_finite()) {
+            Ok(Cholesky { analysis: self.clone(), values })
+        } else {
+            Err(FactorError::NotPositiveDefinite)
+        }
+    }
+}
+
+impl Cholesky {
+    /// Analyses and factorises `matrix`.
+    ///
+    /// # Errors
+    /// As [`Analysis::of`] and [`Analysis::factor`].
+    pub fn of(matrix: &SymmetricMatrix) -> Result<Self, FactorError> {
+        Analysis::of(matrix)?.factor(matrix)
+    }
+
+    /// The solution x of A x = b, length `dim`.
+    pub fn solve(&self, b: &[f64]) -> Vec<f64> {
+        let mut x = b.to_vec();
+        let symbolic = &*self.analysis.symbolic;
+        let mut buffer = MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
+        let rows = x.len();
+        fc::LltRef::new(symbolic, &self.values).solve_in_place_with_conj(
+            Conj::No,
+            MatMut::from_column_major_slice_mut(&mut x, rows, 1),
+            Par::Seq,
+            MemStack::new(&mut buffer),
+        );
+        x
+    }
+
+    /// The smallest pivot, min over j of L_jj^2: small against the diagonal of A when A is close to singular.
+    pub fn smallest_pivot(&self) -> f64 {
+        let symbolic = &*self.analysis.symbolic;
+        let diagonal: Box<dyn Iterator<Item = f64>> = match symbolic.raw() {
+            fc::SymbolicCholeskyRaw::Simplicial(inner) => {
+                Box::new(inner.col_ptr()[..inner.ncols()].iter().map(|&start| self.values[start]))
+            }
+            fc::SymbolicCholeskyRaw::Supernodal(inner) => {
+                let factor = fc::supernodal::SupernodalLltRef::new(inner, &self.values);
+                Box::new((0..inner.n_supernodes()).flat_map(move |node| {
+                    let block = factor.supernode(node).val();
+                    (0..block.ncols()).map(move |j| block[(j, j)])
+                }))
+            }
+        };
+        diagonal.map(|pivot| pivot * pivot).fold(f64::INFINITY, f64::min)
+    }
+}

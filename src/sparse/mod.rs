@@ -1,0 +1,188 @@
+//! Sparse matrices in compressed columns, and their Cholesky factorisation.
+
+mod augmented;
+mod cholesky;
+mod symmetric;
+
+pub use augmented::AugmentedMatrix;
+pub use cholesky::{Analysis, Cholesky, FactorError};
+pub use symmetric::SymmetricMatrix;
+
+use crate::error::Error;
+
+/// A real matrix in compressed columns: rows sorted within each column, no duplicates, all values finite.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SparseMatrix {
+    rows: usize,
+    column_starts: Vec<usize>,
+    row_indices: Vec<usize>,
+    values: Vec<f64>,
+}
+
+impl SparseMatrix {
+    /// The matrix of `rows` x `columns` with the given entries `(row, column, value)`, indices from 0, in any order;
+    /// entries of the same place are added.
+    ///
+    /// # Errors
+    /// [`Error::IndexOutOfRange`] for an entry outside, [`Error::NotFinite`] for a value that is not finite.
+    pub fn from_triplets(rows: usize, columns: usize, triplets: &[(usize, usize, f64)]) -> Result<Self, Error> {
+        let mut starts = vec![0_usize; columns + 1];
+        for &(row, column, value) in triplets {
+            if row >= rows || column >= columns {
+                return Err(Error::IndexOutOfRange { row, column, rows, columns });
+            }
+            if !value.is_finite() {
+                let at = format!("({row}, {column})");
+                return Err(Error::NotFinite { name: "matrix", at, value, allowed: "finite" });
+            }
+            starts[column + 1] += 1;
+        }
+        for column in 0..columns {
+            starts[column + 1] += starts[column];
+        }
+        let mut place = starts.clone();
+        let mut entries = vec![(0_usize, 0.0_f64); triplets.len()];
+        for &(row, column, value) in triplets {
+            entries[place[column]] = (row, value);
+            place[column] += 1;
+        }
+        let mut matrix = SparseMatrix {
+            rows,
+            column_starts: Vec::with_capacity(columns + 1),
+            row_indices: Vec::with_capacity(triplets.len()),
+            values: Vec::with_capacity(triplets.len()),
+        };
+        matrix.column_starts.push(0);
+        for column in 0..columns {
+            let start = matrix.row_indices.len();
+            let of_column = &mut entries[starts[column]..starts[column + 1]];
+            of_column.sort_by_key(|entry| entry.0);
+            for &(row, value) in of_column.iter() {
+                match matrix.row_indices[start..].last() {
+                    Some(&last) if last == row => *matrix.values.last_mut().expect("an entry was pushed") += value,
+                    _ => {
+                        matrix.row_indices.push(row);
+                        matrix.values.push(value);
+                    }
+                }
+            }
+            matrix.column_starts.push(matrix.row_indices.len());
+        }
+        Ok(matrix)
+    }
+
+    /// The matrix with given compressed columns, trusted to be sorted and in range.
+    pub(crate) fn from_parts(
+        rows: usize,
+        column_starts: Vec<usize>,
+        row_indices: Vec<usize>,
+        values: Vec<f64>,
+    ) -> Self {
+        SparseMatrix { rows, column_starts, row_indices, values }
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Number of columns.
+    pub fn columns(&self) -> usize {
+        self.column_starts.len() - 1
+    }
+
+    /// Number of stored entries.
+    pub fn entries(&self) -> usize {
+        self.values.len()
+    }
+
+    /// Start of each column in [`row_indices`](Self::row_indices) and [`values`](Self::values), length `columns + 1`.
+    pub fn column_starts(&self) -> &[usize] {
+        &self.column_starts
+    }
+
+    /// Row of each entry, column by column.
+    pub fn row_indices(&self) -> &[usize] {
+        &self.row_indices
+    }
+
+    /// Value of each entry, column by column.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// The entries `(row, value)` of one column.
+    pub fn column(&self, column: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let range = self.column_starts[column]..self.column_starts[column + 1];
+        self.row_indices[range.clone()].iter().copied().zip(self.values[range].iter().copied())
+    }
+
+    /// All entries `(row, column, value)`, column by column.
+    pub fn triplets(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
+        (0..self.columns()).flat_map(move |column| self.column(column).map(move |(row, value)| (row, column, value)))
+    }
+
+    /// The product A x, length `rows`; `x` has length `columns`.
+    pub fn mul(&self, x: &[f64]) -> Vec<f64> {
+        let mut y = vec![0.0; self.rows];
+        for (row, column, value) in self.triplets() {
+            y[row] += value * x[column];
+        }
+        y
+    }
+
+    /// The product A' y, length `columns`; `y` has length `rows`.
+    pub fn mul_transposed(&self, y: &[f64]) -> Vec<f64> {
+        (0..self.columns()).map(|column| self.column(column).map(|(row, value)| value * y[row]).sum()).collect()
+    }
+
+    /// The matrix with every entry replaced by its magnitude.
+    pub fn abs(&self) -> Self {
+        SparseMatrix { values: self.values.iter().map(|value| value.abs()).collect(), ..self.clone() }
+    }
+
+    /// The transposed matrix: its columns are the rows of this one.
+    pub fn transposed(&self) -> Self {
+        let mut starts = vec![0_usize; self.rows + 1];
+        for &row in &self.row_indices {
+            starts[row + 1] += 1;
+        }
+        for row in 0..self.rows {
+            starts[row + 1] += starts[row];
+        }
+        let mut place = starts.clone();
+        let mut row_indices = vec![0; self.entries()];
+        let mut values = vec![0.0; self.entries()];
+        for (row, column, value) in self.triplets() {
+            row_indices[place[row]] = column;
+            values[place[row]] = value;
+            place[row] += 1;
+        }
+        SparseMatrix { rows: self.columns(), column_starts: starts, row_indices, values }
+    }
+
+    /// The matrix diag(left) A diag(right).
+    pub fn scaled(&self, left: &[f64], right: &[f64]) -> Self {
+        let values = self.triplets().map(|(row, column, value)| left[row] * value * right[column]).collect();
+        SparseMatrix { values, ..self.clone() }
+    }
+
+    /// The rows listed in `kept` (increasing), as a matrix of `kept.len()` rows.
+    pub fn select_rows(&self, kept: &[usize]) -> Self {
+        let mut new_row = vec![usize::MAX; self.rows];
+        for (new, &old) in kept.iter().enumerate() {
+            new_row[old] = new;
+        }
+        let mut selected = SparseMatrix::from_parts(kept.len(), vec![0], Vec::new(), Vec::new());
+        for column in 0..self.columns() {
+            for (row, value) in self.column(column) {
+                if new_row[row] != usize::MAX {
+                    selected.row_indices.push(new_row[row]);
+                    selected.values.push(value);
+                }
+            }
+            selected.column_starts.push(selected.row_indices.len());
+        }
+        selected
+    }
+}
