@@ -3,10 +3,15 @@
 #![deny(missing_docs)]
 
 pub mod error;
+pub mod method;
 pub mod problem;
 pub mod solution;
+pub mod solve;
 pub mod sparse;
+pub mod transform;
 
 pub use error::Error;
 pub use problem::ContactProblem;
 pub use solution::{Certificate, ContactSet, Solution};
+pub use solve::{Method, Settings, solve, solve_qp};
+pub use sparse::{SparseMatrix, SymmetricMatrix};

@@ -3,7 +3,7 @@
 use super::ContactProblem;
 use crate::error::Error;
 use crate::solution::Certificate;
-use crate::sparse::{Cholesky, FactorError, SymmetricMatrix};
+use crate::sparse::{Cholesky, Equilibration, FactorError, SymmetricMatrix, ldexp};
 
 /// Rounding u to double precision and summing a sparse row leaves a residual of about this many units in the last
 /// place of its largest term; below it a residual says nothing about the answer.
@@ -12,14 +12,17 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// Sweeps over the violated rows when a displacement is repaired to a feasible one.
 const REPAIR_SWEEPS: usize = 50;
 
+/// A displacement below this share of force over stiffness is zero but for rounding.
+const NOTHING: f64 = 1e-3;
+
 /// A pivot of the stiffness, scaled to a unit diagonal, below which its energy norm is not trusted.
 const SMALLEST_PIVOT: f64 = 1e-14;
 
-/// The energy norm of a positive definite stiffness and its dual, from one factorisation of K with unit diagonal.
+/// The energy norm of a positive definite stiffness and its dual, from one factorisation of K with a diagonal near one.
 #[derive(Clone, Debug)]
 pub struct EnergyNorm {
     cholesky: Cholesky,
-    scale: Vec<f64>,
+    equilibration: Equilibration,
 }
 
 impl EnergyNorm {
@@ -28,13 +31,12 @@ impl EnergyNorm {
     /// # Errors
     /// [`Error::Numerical`] when the factorisation fails for another reason, as memory.
     pub fn of(stiffness: &SymmetricMatrix) -> Result<Option<Self>, Error> {
-        let diagonal = stiffness.diagonal();
-        if diagonal.iter().any(|&value| value <= 0.0) {
+        if stiffness.diagonal().iter().any(|&value| value <= 0.0) {
             return Ok(None);
         }
-        let scale: Vec<f64> = diagonal.iter().map(|value| 1.0 / value.sqrt()).collect();
-        match Cholesky::of(&stiffness.scaled(&scale)) {
-            Ok(cholesky) if cholesky.smallest_pivot() > SMALLEST_PIVOT => Ok(Some(EnergyNorm { cholesky, scale })),
+        let equilibration = Equilibration::of(stiffness);
+        match Cholesky::of(&equilibration.apply(stiffness)) {
+            Ok(cholesky) if cholesky.smallest_pivot() > SMALLEST_PIVOT => Ok(Some(Self { cholesky, equilibration })),
             Ok(_) | Err(FactorError::NotPositiveDefinite) => Ok(None),
             Err(error) => Err(error.into()),
         }
@@ -42,8 +44,10 @@ impl EnergyNorm {
 
     /// The displacement K^-1 f of the body without obstacle.
     pub fn free_displacement(&self, load: &[f64]) -> Vec<f64> {
-        let scaled: Vec<f64> = load.iter().zip(&self.scale).map(|(f, d)| f * d).collect();
-        self.cholesky.solve(&scaled).iter().zip(&self.scale).map(|(u, d)| u * d).collect()
+        let scale = |values: &[f64], factor: i32| -> Vec<f64> {
+            values.iter().zip(&self.equilibration.diagonal).map(|(&value, &d)| ldexp(value, d + factor)).collect()
+        };
+        scale(&self.cholesky.solve(&scale(load, 0)), self.equilibration.factor)
     }
 
     /// `sqrt(r' K^-1 r)`: the energy norm of the displacement that the force r causes.
@@ -109,10 +113,17 @@ impl ContactProblem {
 
         let force_scale = largest(self.load.iter().copied()).max(largest(contact.iter().copied()));
         let closed_gaps = bound_rows().filter(|&row| lambda[row] != 0.0 || violation[row] > 0.0);
-        let length_scale = largest(self.contact.mul(u)).max(largest(closed_gaps.map(|row| self.gap[row])));
+        // Where the displacement is zero but for rounding, errors are measured by what the forces do to the largest
+        // stiffness of the body.
+        let stiffness_scale = largest(self.stiffness.diagonal());
+        let static_reach = if stiffness_scale > 0.0 { NOTHING * force_scale / stiffness_scale } else { 0.0 };
+        let length_scale =
+            largest(self.contact.mul(u)).max(largest(closed_gaps.map(|row| self.gap[row]))).max(static_reach);
         let multiplier_scale = largest(lambda.iter().copied());
         let work_of_gap: f64 = bound_rows().map(|row| self.gap[row] * lambda[row]).sum();
-        let energy_scale = (dot(u, &elastic) / 2.0).abs().max(dot(&self.load, u).abs()).max(work_of_gap.abs());
+        let static_energy = NOTHING * force_scale * static_reach / 2.0;
+        let strain_energy = (dot(u, &elastic) / 2.0).max(static_energy);
+        let energy_scale = strain_energy.max(dot(&self.load, u).abs()).max(work_of_gap.abs());
         let gap_of_energies = dot(u, &residual) + products.iter().sum::<f64>();
 
         Ok(Certificate {
@@ -122,7 +133,9 @@ impl ContactProblem {
             complementarity: relative(largest(products.iter().copied()), multiplier_scale * length_scale),
             duality_gap: relative(gap_of_energies.abs(), energy_scale),
             energy_error_bound: match norm {
-                Some(norm) => self.energy_error_bound(norm, u, lambda, &elastic),
+                Some(norm) => {
+                    relative(self.energy_error_bound(norm, u, lambda, &elastic), (2.0 * strain_energy).sqrt())
+                }
                 None => f64::INFINITY,
             },
         })
@@ -136,7 +149,7 @@ impl ContactProblem {
         (0..self.dofs()).map(|dof| ROUNDING * (elastic[dof] + self.load[dof].abs() + contact[dof])).collect()
     }
 
-    /// An upper bound on `norm_K(u - u*) / norm_K(u)`.
+    /// An upper bound on `norm_K(u - u*)`.
     ///
     /// With v feasible, mu <= 0 and r = f + B' mu - K v: `J(v) - D(mu) = 1/2 r'K^-1 r + mu'(B v - g)`, and the left side
     /// is at least `1/2 norm_K(v - u*)^2`. The pair (v, mu) is the answer repaired: penetrating rows pushed back,
@@ -159,7 +172,7 @@ impl ContactProblem {
             .sum();
         let distance = (norm.of_force(&residual).powi(2) + 2.0 * slack_work).sqrt();
         let moved = dot(&repair, &elastic_repair).max(0.0).sqrt();
-        relative(distance + moved, dot(u, elastic).max(0.0).sqrt())
+        distance + moved
     }
 
     /// A change of u that removes all penetration, by projections row after row; `None` where rows contradict.

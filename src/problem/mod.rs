@@ -2,6 +2,8 @@
 
 mod certificate;
 
+pub use certificate::EnergyNorm;
+
 use crate::error::Error;
 use crate::sparse::{SparseMatrix, SymmetricMatrix};
 

@@ -2,10 +2,12 @@
 
 mod augmented;
 mod cholesky;
+mod power_of_two;
 mod symmetric;
 
 pub use augmented::AugmentedMatrix;
 pub use cholesky::{Analysis, Cholesky, FactorError};
+pub use power_of_two::{Equilibration, exponent, ldexp};
 pub use symmetric::SymmetricMatrix;
 
 use crate::error::Error;

@@ -135,11 +135,6 @@ impl SymmetricMatrix {
         }
         y
     }
-
-    /// The matrix diag(d) A diag(d).
-    pub fn scaled(&self, d: &[f64]) -> Self {
-        SymmetricMatrix { lower: self.lower.scaled(d, d) }
-    }
 }
 
 fn square(matrix: &SparseMatrix) -> Result<(), Error> {

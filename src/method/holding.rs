@@ -1,0 +1,160 @@
+//! Does a set of closed rows hold the body? If not: along which direction is it free, and does the load drive it?
+
+use super::{ScaledProblem, largest};
+use crate::error::Error;
+use crate::solution::ContactSet;
+use crate::sparse::{Cholesky, FactorError, SymmetricMatrix};
+
+/// A factorisation whose smallest pivot is above this (the diagonal is near one) is that of a held body; below it the
+/// smallest eigenvalue is looked at, because a singular matrix can pass a Cholesky factorisation by rounding.
+const SAFE_PIVOT: f64 = 1e-9;
+
+/// `norm(M x)` of a null vector x is rounding: this many units in the last place of the terms that cancel.
+const NULL_ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// Shifts with which a singular matrix is made definite, smallest first.
+const SHIFTS: [f64; 3] = [1e-12, 1e-10, 1e-8];
+
+/// Steps of inverse iteration: each gains several digits, since eigenvalues differ by many orders of magnitude.
+const STEPS: usize = 5;
+
+/// Work of the load on a free motion below this, relative to the load, is rounding.
+pub(super) const WORK_TOLERANCE: f64 = 1e-9;
+
+/// A row this close to the obstacle, on displacements of order one, has no play.
+pub(super) const PLAY: f64 = 1e-9;
+
+/// The answer to whether the closed rows hold the body.
+#[derive(Debug)]
+pub enum Holding {
+    /// They do; the factorisation of K + w B_C'B_C.
+    Held(Cholesky),
+    /// They do not.
+    Free(FreeMotion),
+}
+
+/// A direction d with K d = 0 and B_C d = 0, largest entry one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FreeMotion {
+    /// The direction, one entry per dof.
+    pub direction: Vec<f64>,
+    /// Does the load do work on it? Then `f'd > 0`.
+    pub driven: bool,
+}
+
+impl FreeMotion {
+    /// The error that this motion is when no row stops it.
+    pub fn into_error(self) -> Error {
+        let mut entries: Vec<(usize, f64)> = self.direction.iter().copied().enumerate().collect();
+        entries.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+        let named: Vec<String> = entries.iter().take(3).filter(|e| e.1 != 0.0).map(|e| e.0.to_string()).collect();
+        let motion = format!("most of it at dof {} (indices from 0)", named.join(", "));
+        match self.driven {
+            true => Error::Unbounded { motion, direction: self.direction },
+            false => Error::UnderHeld { motion, direction: self.direction },
+        }
+    }
+}
+
+impl ScaledProblem<'_> {
+    /// Is K positive semidefinite to the largest of the shifts?
+    ///
+    /// # Errors
+    /// [`Error::NotConvex`] if not, [`Error::Numerical`] for want of memory.
+    pub(super) fn check_convex(&self) -> Result<(), Error> {
+        let nothing_closed = ContactSet::open(self.problem.rows());
+        self.factor(&self.matrix(&nothing_closed, 0.0, SHIFTS[SHIFTS.len() - 1])).map(|_| ()).map_err(Error::from)
+    }
+
+    /// Factorises K + weight B_C'B_C and finds out whether it is definite.
+    ///
+    /// # Errors
+    /// [`Error::NotConvex`] where K has a negative eigenvalue, [`Error::Numerical`] for want of memory.
+    pub fn hold(&self, closed: &ContactSet, weight: f64) -> Result<Holding, Error> {
+        let matrix = self.matrix(closed, weight, 0.0);
+        match self.factor(&matrix) {
+            Ok(cholesky) if self.definite || cholesky.smallest_pivot() > SAFE_PIVOT => Ok(Holding::Held(cholesky)),
+            Ok(cholesky) => {
+                let softest = inverse_iteration(&cholesky, &seed(self.problem.dofs()));
+                if is_null(&matrix, &softest) {
+                    self.free_motion(closed, weight).map(Holding::Free)
+                } else {
+                    Ok(Holding::Held(cholesky))
+                }
+            }
+            Err(FactorError::NotPositiveDefinite) => self.free_motion(closed, weight).map(Holding::Free),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// The projection of the load onto the null space, or, where the load does no work there, any null vector.
+    fn free_motion(&self, closed: &ContactSet, weight: f64) -> Result<FreeMotion, Error> {
+        for shift in SHIFTS {
+            let cholesky = match self.factor(&self.matrix(closed, weight, shift)) {
+                Ok(cholesky) => cholesky,
+                Err(FactorError::NotPositiveDefinite) => continue,
+                Err(error) => return Err(error.into()),
+            };
+            let load = self.problem.load();
+            let mut projected = load.to_vec();
+            for _ in 0..STEPS {
+                projected = cholesky.solve(&projected);
+                projected.iter_mut().for_each(|value| *value *= shift);
+            }
+            let driven = largest(&projected) > WORK_TOLERANCE * largest(load);
+            let mut direction =
+                if driven { projected } else { inverse_iteration(&cholesky, &seed(self.problem.dofs())) };
+            let size = largest(&direction);
+            direction.iter_mut().for_each(|value| *value /= size);
+            return Ok(FreeMotion { direction, driven });
+        }
+        Err(Error::NotConvex { evidence: "a Cholesky pivot is negative".into() })
+    }
+
+    /// The open rows that stop a motion first, when it starts from `displacement`; a motion that the load does not
+    /// drive may go either way. `None` where no row stops it.
+    pub(super) fn stopping_rows(
+        &self,
+        motion: &FreeMotion,
+        displacement: &[f64],
+        closed: &ContactSet,
+    ) -> Option<ContactSet> {
+        let approach = self.problem.contact().mul(&motion.direction);
+        let violation = self.problem.violation(displacement);
+        let ways: &[f64] = if motion.driven { &[1.0] } else { &[1.0, -1.0] };
+        for way in ways {
+            let time = |row: usize| match approach[row] * way {
+                speed if speed > WORK_TOLERANCE && !closed.contains(row) => Some((-violation[row]).max(0.0) / speed),
+                _ => None,
+            };
+            let first = (0..self.problem.rows()).filter_map(time).fold(f64::INFINITY, f64::min);
+            if first.is_finite() {
+                let mut stopped = closed.clone();
+                (0..self.problem.rows())
+                    .filter(|&row| time(row).is_some_and(|t| t <= first * (1.0 + WORK_TOLERANCE)))
+                    .for_each(|row| stopped.set(row, true));
+                return Some(stopped);
+            }
+        }
+        None
+    }
+}
+
+/// A start vector without symmetry, the same in every run.
+fn seed(dofs: usize) -> Vec<f64> {
+    (0..dofs).map(|i| 0.5 + (i as f64 * 0.618_033_988_749_895).fract()).collect()
+}
+
+fn inverse_iteration(cholesky: &Cholesky, start: &[f64]) -> Vec<f64> {
+    let mut x = start.to_vec();
+    for _ in 0..STEPS {
+        x = cholesky.solve(&x);
+        let size = largest(&x);
+        x.iter_mut().for_each(|value| *value /= size);
+    }
+    x
+}
+
+fn is_null(matrix: &SymmetricMatrix, x: &[f64]) -> bool {
+    largest(&matrix.mul(x)) <= NULL_ROUNDING * largest(&matrix.mul_abs(x))
+}

@@ -1,0 +1,158 @@
+//! The QP by Clarabel's interior-point method. The only place that names clarabel, and that knows z = -lambda.
+
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
+
+use super::{ScaledProblem, largest};
+use crate::error::Error;
+use crate::problem::ContactProblem;
+use crate::solution::ContactSet;
+use crate::sparse::{SparseMatrix, exponent, ldexp};
+
+/// A gap this many times the displacement is out of reach: the row is left out, where it would only spoil the scale.
+const OUT_OF_REACH: f64 = 1e12;
+
+/// The answer is computed again in other units while its size is off by more than 2 to this power.
+const UNIT_EXPONENT: i32 = 6;
+
+/// Below 2 to minus this power a displacement is nothing but the tolerance.
+const NOTHING_EXPONENT: i32 = 60;
+
+/// Times that the unit is corrected.
+const UNIT_CORRECTIONS: usize = 4;
+
+/// A Farkas vector y counts when `B'y` is this small beside y, and `g'y` this negative beside its terms.
+const FARKAS_TOLERANCE: f64 = 1e-7;
+
+/// Rows whose weight in a Farkas vector is below this share of the largest take no part in the contradiction.
+const FARKAS_SHARE: f64 = 1e-3;
+
+/// What the interior-point method ended with.
+#[derive(Clone, Debug)]
+pub struct InteriorPoint {
+    /// Displacement v, one entry per dof.
+    pub displacement: Vec<f64>,
+    /// Multiplier -z, one entry per row, `<= 0`.
+    pub multiplier: Vec<f64>,
+    /// Rows with `z / z_scale > s / s_scale`.
+    pub contact_set: ContactSet,
+    /// Interior-point steps, over all units that were tried.
+    pub iterations: usize,
+}
+
+impl InteriorPoint {
+    /// No displacement and no closed row: what there is to say where nothing was found or no row is there to close.
+    pub fn nothing_found(problem: &ContactProblem) -> Self {
+        InteriorPoint {
+            displacement: vec![0.0; problem.dofs()],
+            multiplier: vec![0.0; problem.rows()],
+            contact_set: ContactSet::open(problem.rows()),
+            iterations: 0,
+        }
+    }
+}
+
+/// Solves the QP to `tolerance`, relative to data of order one.
+///
+/// An ending without full accuracy is no error here: the set is settled and the answer certified later. A problem that
+/// is reported as unbounded returns with no closed row, for the loop that follows to find the motion.
+///
+/// # Errors
+/// [`Error::Infeasible`] with the rows of a verified Farkas vector, [`Error::Numerical`] if the solver refuses its input.
+pub fn solve(scaled: &ScaledProblem, tolerance: f64) -> Result<InteriorPoint, Error> {
+    let problem = scaled.problem;
+    let mut unit = 0;
+    let mut iterations = 0;
+    for _ in 0..UNIT_CORRECTIONS {
+        let mut found = solve_in_unit(problem, tolerance, unit)?;
+        iterations += found.iterations;
+        found.iterations = iterations;
+        let size = exponent(largest(&found.displacement)) - unit;
+        if size.abs() <= UNIT_EXPONENT || size < -NOTHING_EXPONENT {
+            return Ok(found);
+        }
+        unit += size;
+    }
+    let mut found = solve_in_unit(problem, tolerance, unit)?;
+    found.iterations += iterations;
+    Ok(found)
+}
+
+/// Are the rows contradictory? Decided by Clarabel, believed when its Farkas vector is verified.
+///
+/// # Errors
+/// [`Error::Infeasible`] if so.
+pub fn check_feasible(scaled: &ScaledProblem, tolerance: f64) -> Result<(), Error> {
+    solve_in_unit(scaled.problem, tolerance, 0).map(|_| ())
+}
+
+fn solve_in_unit(problem: &ContactProblem, tolerance: f64, unit: i32) -> Result<InteriorPoint, Error> {
+    let gap: Vec<f64> = problem.gap().iter().map(|&g| ldexp(g, -unit)).collect();
+    let rows: Vec<usize> = (0..gap.len()).filter(|&row| gap[row] < OUT_OF_REACH).collect();
+    let near_gap: Vec<f64> = rows.iter().map(|&row| gap[row]).collect();
+    let q: Vec<f64> = problem.load().iter().map(|&f| -ldexp(f, -unit)).collect();
+    let near_rows = problem.contact().select_rows(&rows);
+
+    let settings = DefaultSettings::<f64> {
+        verbose: false,
+        tol_gap_abs: tolerance,
+        tol_gap_rel: tolerance,
+        tol_feas: tolerance,
+        max_threads: 1,
+        ..DefaultSettings::default()
+    };
+    let cones = [SupportedConeT::NonnegativeConeT(rows.len())];
+    let (p, a) = (csc(&problem.stiffness().upper()), csc(&near_rows));
+    let mut solver = DefaultSolver::new(&p, &q, &a, &near_gap, &cones, settings)
+        .map_err(|error| Error::Numerical { step: "Clarabel's set-up", reason: error.to_string() })?;
+    solver.solve();
+    let answer = &solver.solution;
+    let iterations = answer.iterations as usize;
+
+    match answer.status {
+        SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
+            verify_farkas(&near_rows, &near_gap, &answer.z).map_or(Ok(()), |contradicting| {
+                let named: Vec<usize> = contradicting.iter().map(|&row| rows[row]).collect();
+                let reason = format!("no displacement satisfies all contact rows; those that contradict are {named:?}");
+                Err(Error::Infeasible { reason, rows: named })
+            })?;
+        }
+        SolverStatus::DualInfeasible | SolverStatus::AlmostDualInfeasible => {}
+        _ => {
+            let mut multiplier = vec![0.0; problem.rows()];
+            let mut contact_set = ContactSet::open(problem.rows());
+            let (z_scale, s_scale) = (largest(&answer.z), largest(&answer.s).min(1.0));
+            for (near, &row) in rows.iter().enumerate() {
+                let (z, s) = (answer.z[near], answer.s[near]);
+                multiplier[row] = -ldexp(z.max(0.0), unit);
+                contact_set.set(row, z * s_scale > s * z_scale);
+            }
+            let displacement = answer.x.iter().map(|&x| ldexp(x, unit)).collect::<Vec<_>>();
+            if displacement.iter().chain(&multiplier).all(|value| value.is_finite()) {
+                return Ok(InteriorPoint { displacement, multiplier, contact_set, iterations });
+            }
+        }
+    }
+    Ok(InteriorPoint { iterations, ..InteriorPoint::nothing_found(problem) })
+}
+
+/// The rows of a vector y >= 0 with B'y = 0 and g'y < 0: together they cannot be satisfied. `None` if y is no such vector.
+fn verify_farkas(rows: &SparseMatrix, gap: &[f64], y: &[f64]) -> Option<Vec<usize>> {
+    let y: Vec<f64> = y.iter().map(|value| value.max(0.0)).collect();
+    let size = largest(&y);
+    let balance = largest(&rows.mul_transposed(&y));
+    let (work, terms) =
+        y.iter().zip(gap).fold((0.0, 0.0), |(sum, terms), (y, g)| (sum + y * g, f64::max(terms, (y * g).abs())));
+    let proves = size > 0.0 && balance <= FARKAS_TOLERANCE * size && work < -FARKAS_TOLERANCE * terms;
+    proves.then(|| (0..y.len()).filter(|&row| y[row] > FARKAS_SHARE * size).collect())
+}
+
+fn csc(matrix: &SparseMatrix) -> CscMatrix<f64> {
+    CscMatrix::new(
+        matrix.rows(),
+        matrix.columns(),
+        matrix.column_starts().to_vec(),
+        matrix.row_indices().to_vec(),
+        matrix.values().to_vec(),
+    )
+}

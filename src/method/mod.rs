@@ -1,0 +1,133 @@
+//! The methods: each takes a scaled problem and returns displacement, multiplier, contact set and history.
+//!
+//! Nothing here knows what a body is: the words are those of the QP.
+
+pub mod active_set;
+mod holding;
+pub mod interior_point;
+pub mod penalty;
+
+use std::cell::Cell;
+use std::time::Instant;
+
+pub use holding::{FreeMotion, Holding};
+
+use crate::error::Error;
+use crate::problem::ContactProblem;
+use crate::solution::{ContactSet, Iteration};
+use crate::sparse::{AugmentedMatrix, Cholesky, FactorError, SymmetricMatrix};
+
+/// Differences below this, relative to the largest displacement or multiplier, are rounding: the sign of a weakly
+/// active row is compared with it, or such a row would close and open for ever.
+pub(crate) const SIGN_TOLERANCE: f64 = 1e-12;
+
+/// A scaled problem with its pattern analysed: what every method works on.
+#[derive(Debug)]
+pub struct ScaledProblem<'a> {
+    /// The data, dimensionless and of order one.
+    pub problem: &'a ContactProblem,
+    /// Is K positive definite by itself?
+    pub definite: bool,
+    augmented: AugmentedMatrix,
+    factor_seconds: Cell<f64>,
+}
+
+impl<'a> ScaledProblem<'a> {
+    /// Analyses the pattern of K + B'B.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] when memory does not suffice.
+    pub fn new(problem: &'a ContactProblem, definite: bool) -> Result<Self, Error> {
+        let clock = Instant::now();
+        let augmented = AugmentedMatrix::new(problem.stiffness(), problem.contact())?;
+        let factor_seconds = Cell::new(clock.elapsed().as_secs_f64());
+        Ok(ScaledProblem { problem, definite, augmented, factor_seconds })
+    }
+
+    /// Seconds spent in analysis and factorisations so far.
+    pub fn factor_seconds(&self) -> f64 {
+        self.factor_seconds.get()
+    }
+
+    /// The matrix K + shift I + weight B_C' B_C of the closed rows C.
+    fn matrix(&self, closed: &ContactSet, weight: f64, shift: f64) -> SymmetricMatrix {
+        self.augmented.matrix(|row| if closed.contains(row) { weight } else { 0.0 }, shift)
+    }
+
+    fn factor(&self, matrix: &SymmetricMatrix) -> Result<Cholesky, FactorError> {
+        let clock = Instant::now();
+        let factor = self.augmented.factor(matrix);
+        self.factor_seconds.set(self.factor_seconds.get() + clock.elapsed().as_secs_f64());
+        factor
+    }
+
+    /// Where a loop starts: from C = 0 where K is definite; otherwise all rows are taken for springs, which hold the
+    /// body, and those in compression are closed.
+    ///
+    /// # Errors
+    /// [`Error::Unbounded`] and [`Error::UnderHeld`] for a motion that not even all rows together hold,
+    /// [`Error::NotConvex`].
+    pub fn start(&self) -> Result<ContactSet, Error> {
+        let rows = self.problem.rows();
+        if self.definite {
+            return Ok(ContactSet::open(rows));
+        }
+        self.check_convex()?;
+        match self.hold(&ContactSet::closed(rows), 1.0)? {
+            Holding::Held(cholesky) => {
+                let pull = self.problem.contact().mul_transposed(self.problem.gap());
+                let force: Vec<f64> = self.problem.load().iter().zip(&pull).map(|(f, g)| f + g).collect();
+                let violation = self.problem.violation(&cholesky.solve(&force));
+                Ok(ContactSet::from_fn(rows, |row| violation[row] > 0.0))
+            }
+            Holding::Free(motion) => Err(motion.into_error()),
+        }
+    }
+
+    /// Is the answer the only one? It is where K and the rows under pressure hold the body; where they leave a motion,
+    /// the open rows would have to stop it both ways without play.
+    ///
+    /// # Errors
+    /// [`Error::UnderHeld`] with a motion that changes neither force nor energy.
+    pub fn check_unique(&self, outcome: &Outcome) -> Result<(), Error> {
+        if self.definite {
+            return Ok(());
+        }
+        let strongest = SIGN_TOLERANCE * largest(&outcome.multiplier);
+        let pressed = ContactSet::from_fn(self.problem.rows(), |row| outcome.multiplier[row] < -strongest);
+        match self.hold(&pressed, 1.0)? {
+            Holding::Held(_) => Ok(()),
+            Holding::Free(motion) if motion.driven => Ok(()),
+            Holding::Free(motion) => {
+                let violation = self.problem.violation(&outcome.displacement);
+                let approach = self.problem.contact().mul(&motion.direction);
+                let stopped = |way: f64| {
+                    (0..self.problem.rows())
+                        .any(|row| approach[row] * way > holding::WORK_TOLERANCE && violation[row] > -holding::PLAY)
+                };
+                if stopped(1.0) && stopped(-1.0) { Ok(()) } else { Err(motion.into_error()) }
+            }
+        }
+    }
+}
+
+/// What a method found, in scaled quantities.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// Displacement v, one entry per dof.
+    pub displacement: Vec<f64>,
+    /// Multiplier, one entry per row, `<= 0`.
+    pub multiplier: Vec<f64>,
+    /// The closed rows.
+    pub contact_set: ContactSet,
+    /// Iterations of the method.
+    pub iterations: usize,
+    /// The sets on the way.
+    pub history: Vec<Iteration>,
+    /// Empty, or the variant that ended the loop, to be appended to the method's name.
+    pub variant: &'static str,
+}
+
+pub(crate) fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |largest, value| value.abs().max(largest))
+}

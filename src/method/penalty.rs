@@ -1,0 +1,116 @@
+//! The penalty loop: `G = eps C (u - g)`, with eps ten times larger from rung to rung.
+//!
+//! ```text
+//! for eps = eps0, 10 eps0, ...:
+//!     repeat: solve (K + eps C) u = f + eps C g;  C <- heaviside(u - g)     until C repeats
+//!     stop when norm(C (u - g)) < threshold
+//! ```
+//!
+//! The relative error of the multiplier is k/(k + eps) and a rounding part that grows with eps. Both are equal near
+//! eps = 1e8 k; there the ladder ends. The rounding part comes from forming u - g by cancellation, so each solve is
+//! for the change against the last displacement, in which u - g is small.
+
+use std::collections::HashSet;
+
+use super::{Holding, Outcome, ScaledProblem, largest};
+use crate::error::Error;
+use crate::solution::{ContactSet, Iteration};
+use crate::sparse::Cholesky;
+
+/// The ladder of penalties, in multiples of the local stiffness, and where it may end early.
+#[derive(Clone, Copy, Debug)]
+pub struct Ladder {
+    /// First penalty.
+    pub first: f64,
+    /// Last penalty.
+    pub last: f64,
+    /// Penetration, relative to the largest displacement of a contact row, at which the ladder ends.
+    pub threshold: f64,
+}
+
+/// Factor from rung to rung.
+const RUNG: f64 = 10.0;
+
+/// Solves on the last rung after the set has settled: in the second the shift is the displacement itself.
+const FINAL_SOLVES: usize = 2;
+
+/// Climbs the ladder from the set `start`.
+///
+/// # Errors
+/// [`Error::Unbounded`] and [`Error::UnderHeld`] for a free motion that no row stops, [`Error::NotConvex`],
+/// [`Error::Numerical`].
+pub fn solve(
+    scaled: &ScaledProblem,
+    start: ContactSet,
+    ladder: Ladder,
+    max_iterations: usize,
+) -> Result<Outcome, Error> {
+    let problem = scaled.problem;
+    let mut closed = start;
+    let mut state =
+        State { displacement: vec![0.0; problem.dofs()], violation: vec![f64::NEG_INFINITY; problem.rows()] };
+    let mut history = Vec::new();
+    let mut penalty = ladder.first;
+    let mut settled;
+    loop {
+        let mut seen = HashSet::new();
+        settled = false;
+        while !settled && seen.insert(closed.clone()) && history.len() < max_iterations {
+            let cholesky = match scaled.hold(&closed, penalty)? {
+                Holding::Held(cholesky) => cholesky,
+                Holding::Free(motion) => match scaled.stopping_rows(&motion, &state.displacement, &closed) {
+                    Some(stopped) => {
+                        closed = stopped;
+                        continue;
+                    }
+                    None => return Err(motion.into_error()),
+                },
+            };
+            history.push(Iteration { contact_set: closed.clone(), penalty });
+            state.advance(scaled, &cholesky, &closed, penalty);
+            let next = ContactSet::from_fn(problem.rows(), |row| state.violation[row] > 0.0);
+            settled = next == closed;
+            if settled {
+                (0..FINAL_SOLVES).for_each(|_| state.advance(scaled, &cholesky, &closed, penalty));
+            }
+            closed = next;
+        }
+        let penetration = closed.iter().map(|row| state.violation[row]).fold(0.0, f64::max);
+        let reach = largest(&problem.contact().mul(&state.displacement));
+        let small = settled && penetration <= ladder.threshold * reach;
+        if small || penalty * RUNG > ladder.last || history.len() >= max_iterations {
+            break;
+        }
+        penalty *= RUNG;
+    }
+    let multiplier = (0..problem.rows())
+        .map(|row| if closed.contains(row) { -penalty * state.violation[row].max(0.0) } else { 0.0 })
+        .collect();
+    let (iterations, variant) = (history.len(), if settled { "" } else { "-unsettled" });
+    Ok(Outcome { displacement: state.displacement, multiplier, contact_set: closed, iterations, history, variant })
+}
+
+/// A displacement with the violation B u - g of each row, kept to the relative precision of the change that made it.
+struct State {
+    displacement: Vec<f64>,
+    violation: Vec<f64>,
+}
+
+impl State {
+    /// Solves (K + eps B_C'B_C) v = (f - K u) + eps B_C'(g - B u) and moves u to u + v.
+    fn advance(&mut self, scaled: &ScaledProblem, cholesky: &Cholesky, closed: &ContactSet, penalty: f64) {
+        let problem = scaled.problem;
+        let distance: Vec<f64> = problem.violation(&self.displacement).iter().map(|violation| -violation).collect();
+        let pull: Vec<f64> = distance
+            .iter()
+            .enumerate()
+            .map(|(row, &distance)| if closed.contains(row) { penalty * distance } else { 0.0 })
+            .collect();
+        let (elastic, spring) = (problem.stiffness().mul(&self.displacement), problem.contact().mul_transposed(&pull));
+        let force: Vec<f64> = (0..problem.dofs()).map(|dof| problem.load()[dof] - elastic[dof] + spring[dof]).collect();
+        let change = cholesky.solve(&force);
+        self.violation =
+            problem.contact().mul(&change).iter().zip(&distance).map(|(moved, distance)| moved - distance).collect();
+        self.displacement.iter_mut().zip(&change).for_each(|(u, v)| *u += v);
+    }
+}

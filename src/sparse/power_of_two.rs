@@ -1,0 +1,63 @@
+//! Exact scaling: exponents of two as integers, so that no intermediate product rounds or overflows.
+
+use super::SymmetricMatrix;
+
+/// `floor(log2 |x|)` for a finite x other than zero; zero for x = 0.
+pub fn exponent(x: f64) -> i32 {
+    const DENORMAL_SHIFT: i32 = 64;
+    if x == 0.0 || !x.is_finite() {
+        return 0;
+    }
+    let biased = |value: f64| ((value.to_bits() >> 52) & 0x7ff) as i32;
+    match biased(x) {
+        0 => biased(x * 2.0_f64.powi(DENORMAL_SHIFT)) - 1023 - DENORMAL_SHIFT,
+        bits => bits - 1023,
+    }
+}
+
+/// `x 2^e`, exact unless the result itself leaves the range of double precision.
+pub fn ldexp(x: f64, e: i32) -> f64 {
+    const STEP: i32 = 1000;
+    let mut result = x;
+    let mut rest = e.clamp(-4 * STEP, 4 * STEP);
+    while rest != 0 {
+        let step = rest.clamp(-STEP, STEP);
+        result *= 2.0_f64.powi(step);
+        rest -= step;
+    }
+    result
+}
+
+/// The exponents of a dimensionless diagonal D and a factor c for which `c D A D` has a diagonal between 1 and 4.
+///
+/// `1 / c` is the size of the largest diagonal entry; D levels the contrast between the entries. Multiplying A by a
+/// power of two changes c alone, so that the scaled matrix stays the same bit by bit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Equilibration {
+    /// Exponent of each diagonal entry of D.
+    pub diagonal: Vec<i32>,
+    /// Exponent of c.
+    pub factor: i32,
+}
+
+impl Equilibration {
+    /// The equilibration of a matrix with non-negative diagonal; a row with a zero diagonal gets the scale of the
+    /// largest.
+    pub fn of(matrix: &SymmetricMatrix) -> Self {
+        let diagonal = matrix.diagonal();
+        let largest = exponent(diagonal.iter().copied().fold(0.0, f64::max));
+        let level = |&value: &f64| if value > 0.0 { -(exponent(value) - largest).div_euclid(2) } else { 0 };
+        Equilibration { diagonal: diagonal.iter().map(level).collect(), factor: -largest }
+    }
+
+    /// The matrix `c D A D`.
+    pub fn apply(&self, matrix: &SymmetricMatrix) -> SymmetricMatrix {
+        let scale = &self.diagonal;
+        let lower = matrix.lower();
+        let values = lower
+            .triplets()
+            .map(|(row, column, value)| ldexp(value, self.factor + scale[row] + scale[column]))
+            .collect();
+        SymmetricMatrix::from_sorted_lower(super::SparseMatrix { values, ..lower.clone() })
+    }
+}
