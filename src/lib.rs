@@ -3,6 +3,7 @@
 #![deny(missing_docs)]
 
 pub mod error;
+pub mod matrix_market;
 pub mod method;
 pub mod problem;
 pub mod solution;

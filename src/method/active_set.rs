@@ -118,7 +118,7 @@ pub fn solve(scaled: &ScaledProblem, start: ContactSet, max_iterations: usize) -
         (true, Rule::Pivoting { single: true, .. }) => "-single-pivoting",
     };
     let iterations = history.len();
-    Ok(Outcome { displacement, multiplier, contact_set: closed, iterations, history, variant })
+    Ok(Outcome { displacement, multiplier, contact_set: closed, iterations, history, settled, variant })
 }
 
 /// How the next set is made from the rows that are wrong in this one.

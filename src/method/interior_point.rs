@@ -21,6 +21,9 @@ const NOTHING_EXPONENT: i32 = 60;
 /// Times that the unit is corrected.
 const UNIT_CORRECTIONS: usize = 4;
 
+/// Steps after which more do not help: on ill-conditioned data the residuals stall, and the barrier falls on.
+const MAX_STEPS: u32 = 50;
+
 /// A Farkas vector y counts when `B'y` is this small beside y, and `g'y` this negative beside its terms.
 const FARKAS_TOLERANCE: f64 = 1e-7;
 
@@ -61,21 +64,30 @@ impl InteriorPoint {
 /// [`Error::Infeasible`] with the rows of a verified Farkas vector, [`Error::Numerical`] if the solver refuses its input.
 pub fn solve(scaled: &ScaledProblem, tolerance: f64) -> Result<InteriorPoint, Error> {
     let problem = scaled.problem;
-    let mut unit = 0;
+    let mut unit = Unit { displacement: 0, force: exponent(largest(problem.load())) };
     let mut iterations = 0;
-    for _ in 0..UNIT_CORRECTIONS {
+    for attempt in 0.. {
         let mut found = solve_in_unit(problem, tolerance, unit)?;
         iterations += found.iterations;
         found.iterations = iterations;
-        let size = exponent(largest(&found.displacement)) - unit;
-        if size.abs() <= UNIT_EXPONENT || size < -NOTHING_EXPONENT {
+        let size = largest(&found.displacement);
+        let displacement = exponent(size) - unit.displacement;
+        let force = exponent(largest(&found.multiplier).max(largest(problem.load()))) - unit.force;
+        let fits = displacement.abs().max(force.abs()) <= UNIT_EXPONENT;
+        if fits || size == 0.0 || displacement < -NOTHING_EXPONENT || attempt == UNIT_CORRECTIONS {
             return Ok(found);
         }
-        unit += size;
+        unit = Unit { displacement: unit.displacement + displacement, force: unit.force + force };
     }
-    let mut found = solve_in_unit(problem, tolerance, unit)?;
-    found.iterations += iterations;
-    Ok(found)
+    unreachable!("the loop returns after {UNIT_CORRECTIONS} corrections")
+}
+
+/// Units in which the answer is of order one, as exponents of two: where a fine mesh makes the stiffness large beside
+/// the forces, multipliers of order one in the scaled problem would need a displacement far beyond the gap.
+#[derive(Clone, Copy, Debug)]
+struct Unit {
+    displacement: i32,
+    force: i32,
 }
 
 /// Are the rows contradictory? Decided by Clarabel, believed when its Farkas vector is verified.
@@ -83,14 +95,15 @@ pub fn solve(scaled: &ScaledProblem, tolerance: f64) -> Result<InteriorPoint, Er
 /// # Errors
 /// [`Error::Infeasible`] if so.
 pub fn check_feasible(scaled: &ScaledProblem, tolerance: f64) -> Result<(), Error> {
-    solve_in_unit(scaled.problem, tolerance, 0).map(|_| ())
+    let unit = Unit { displacement: 0, force: exponent(largest(scaled.problem.load())) };
+    solve_in_unit(scaled.problem, tolerance, unit).map(|_| ())
 }
 
-fn solve_in_unit(problem: &ContactProblem, tolerance: f64, unit: i32) -> Result<InteriorPoint, Error> {
-    let gap: Vec<f64> = problem.gap().iter().map(|&g| ldexp(g, -unit)).collect();
+fn solve_in_unit(problem: &ContactProblem, tolerance: f64, unit: Unit) -> Result<InteriorPoint, Error> {
+    let gap: Vec<f64> = problem.gap().iter().map(|&g| ldexp(g, -unit.displacement)).collect();
     let rows: Vec<usize> = (0..gap.len()).filter(|&row| gap[row] < OUT_OF_REACH).collect();
     let near_gap: Vec<f64> = rows.iter().map(|&row| gap[row]).collect();
-    let q: Vec<f64> = problem.load().iter().map(|&f| -ldexp(f, -unit)).collect();
+    let q: Vec<f64> = problem.load().iter().map(|&f| -ldexp(f, -unit.force)).collect();
     let near_rows = problem.contact().select_rows(&rows);
 
     let settings = DefaultSettings::<f64> {
@@ -98,11 +111,13 @@ fn solve_in_unit(problem: &ContactProblem, tolerance: f64, unit: i32) -> Result<
         tol_gap_abs: tolerance,
         tol_gap_rel: tolerance,
         tol_feas: tolerance,
+        max_iter: MAX_STEPS,
         max_threads: 1,
         ..DefaultSettings::default()
     };
     let cones = [SupportedConeT::NonnegativeConeT(rows.len())];
-    let (p, a) = (csc(&problem.stiffness().upper()), csc(&near_rows));
+    let (mut p, a) = (csc(&problem.stiffness().upper()), csc(&near_rows));
+    p.nzval.iter_mut().for_each(|value| *value = ldexp(*value, unit.displacement - unit.force));
     let mut solver = DefaultSolver::new(&p, &q, &a, &near_gap, &cones, settings)
         .map_err(|error| Error::Numerical { step: "Clarabel's set-up", reason: error.to_string() })?;
     solver.solve();
@@ -124,10 +139,10 @@ fn solve_in_unit(problem: &ContactProblem, tolerance: f64, unit: i32) -> Result<
             let (z_scale, s_scale) = (largest(&answer.z), largest(&answer.s).min(1.0));
             for (near, &row) in rows.iter().enumerate() {
                 let (z, s) = (answer.z[near], answer.s[near]);
-                multiplier[row] = -ldexp(z.max(0.0), unit);
+                multiplier[row] = -ldexp(z.max(0.0), unit.force);
                 contact_set.set(row, z * s_scale > s * z_scale);
             }
-            let displacement = answer.x.iter().map(|&x| ldexp(x, unit)).collect::<Vec<_>>();
+            let displacement = answer.x.iter().map(|&x| ldexp(x, unit.displacement)).collect::<Vec<_>>();
             if displacement.iter().chain(&multiplier).all(|value| value.is_finite()) {
                 return Ok(InteriorPoint { displacement, multiplier, contact_set, iterations });
             }

@@ -124,6 +124,8 @@ pub struct Outcome {
     pub iterations: usize,
     /// The sets on the way.
     pub history: Vec<Iteration>,
+    /// Did the loop end because the set was settled?
+    pub settled: bool,
     /// Empty, or the variant that ended the loop, to be appended to the method's name.
     pub variant: &'static str,
 }

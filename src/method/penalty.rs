@@ -17,6 +17,9 @@ use crate::error::Error;
 use crate::solution::{ContactSet, Iteration};
 use crate::sparse::Cholesky;
 
+/// The penalty at which the two parts of the error meet: one over the square root of the machine precision.
+pub const BEST_PENALTY: f64 = 1e8;
+
 /// The ladder of penalties, in multiples of the local stiffness, and where it may end early.
 #[derive(Clone, Copy, Debug)]
 pub struct Ladder {
@@ -87,7 +90,8 @@ pub fn solve(
         .map(|row| if closed.contains(row) { -penalty * state.violation[row].max(0.0) } else { 0.0 })
         .collect();
     let (iterations, variant) = (history.len(), if settled { "" } else { "-unsettled" });
-    Ok(Outcome { displacement: state.displacement, multiplier, contact_set: closed, iterations, history, variant })
+    let displacement = state.displacement;
+    Ok(Outcome { displacement, multiplier, contact_set: closed, iterations, history, settled, variant })
 }
 
 /// A displacement with the violation B u - g of each row, kept to the relative precision of the change that made it.

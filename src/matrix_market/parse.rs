@@ -1,0 +1,111 @@
+//! Reading the text of a Matrix Market file; every fault has its line.
+
+use std::path::Path;
+
+use crate::error::Error;
+
+/// More rows or columns than this are refused before anything is allocated.
+const LARGEST_DIMENSION: usize = 100_000_000;
+
+/// The content of a file: shape, entries (indices from 0), and whether only one triangle is stored.
+#[derive(Debug)]
+pub(super) struct Content {
+    pub rows: usize,
+    pub columns: usize,
+    pub symmetric: bool,
+    pub entries: Vec<(usize, usize, f64)>,
+}
+
+/// Parses `text`; `file` is named in errors.
+pub(super) fn parse(file: &Path, text: &str) -> Result<Content, Error> {
+    let fault = |line: usize, message: String| Error::MatrixMarket { file: file.to_path_buf(), line, message };
+    let mut lines = text.lines().enumerate().map(|(index, line)| (index + 1, line.trim()));
+    let (_, header) = lines.next().ok_or_else(|| fault(1, "the file is empty".into()))?;
+    let words: Vec<String> = header.split_whitespace().map(str::to_lowercase).collect();
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    let ["%%matrixmarket", "matrix", layout, field, symmetry] = words[..] else {
+        let expected = "%%MatrixMarket matrix coordinate|array real|integer general|symmetric";
+        return Err(fault(1, format!("the first line is `{header}`; it must be `{expected}`")));
+    };
+    let is_array = match layout {
+        "coordinate" => false,
+        "array" => true,
+        other => return Err(fault(1, format!("the layout is `{other}`; it must be `coordinate` or `array`"))),
+    };
+    if !["real", "integer", "double"].contains(&field) {
+        return Err(fault(1, format!("the field is `{field}`; it must be `real` or `integer`")));
+    }
+    let symmetric = match symmetry {
+        "general" => false,
+        "symmetric" => true,
+        other => return Err(fault(1, format!("the symmetry is `{other}`; it must be `general` or `symmetric`"))),
+    };
+
+    let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('%'));
+    let (line, sizes) = lines.next().ok_or_else(|| fault(1, "the line with the sizes is missing".into()))?;
+    let wanted = if is_array { 2 } else { 3 };
+    let numbers: Option<Vec<usize>> = sizes.split_whitespace().map(|word| word.parse().ok()).collect();
+    let numbers = numbers.filter(|numbers| numbers.len() == wanted).ok_or_else(|| {
+        let names = if is_array { "rows and columns" } else { "rows, columns and entries" };
+        fault(line, format!("the sizes are `{sizes}`; they must be {wanted} whole numbers ({names})"))
+    })?;
+    let (rows, columns) = (numbers[0], numbers[1]);
+    if rows.max(columns) > LARGEST_DIMENSION {
+        return Err(fault(line, format!("{rows} x {columns} is too large; at most {LARGEST_DIMENSION} each way")));
+    }
+    if symmetric && rows != columns {
+        return Err(fault(line, format!("a symmetric matrix must be square, not {rows} x {columns}")));
+    }
+
+    let mut entries = Vec::new();
+    if is_array {
+        let mut places =
+            (0..columns).flat_map(|column| (if symmetric { column } else { 0 }..rows).map(move |row| (row, column)));
+        for (line, word) in lines {
+            let value = number(word).ok_or_else(|| fault(line, format!("`{word}` is not a number")))?;
+            let Some((row, column)) = places.next() else {
+                return Err(fault(line, format!("there are more values than the {rows} x {columns} announced")));
+            };
+            entries.push((row, column, value));
+        }
+        if let Some((row, column)) = places.next() {
+            let message = format!("the file ends before the value of ({}, {})", row + 1, column + 1);
+            return Err(fault(text.lines().count(), message));
+        }
+    } else {
+        let announced = numbers[2];
+        for (line, content) in lines {
+            let words: Vec<&str> = content.split_whitespace().collect();
+            let entry = match words[..] {
+                [row, column, value] => row.parse().ok().zip(column.parse().ok()).zip(number(value)),
+                _ => None,
+            };
+            let Some(((row, column), value)): Option<((usize, usize), f64)> = entry else {
+                return Err(fault(line, format!("`{content}` is not an entry; it must be `row column value`")));
+            };
+            if row == 0 || column == 0 || row > rows || column > columns {
+                let message = format!("entry ({row}, {column}) lies outside {rows} x {columns} (indices from 1)");
+                return Err(fault(line, message));
+            }
+            if symmetric && row < column {
+                let message = format!(
+                    "entry ({row}, {column}) lies above the diagonal; a symmetric file holds the lower triangle"
+                );
+                return Err(fault(line, message));
+            }
+            if entries.len() == announced {
+                return Err(fault(line, format!("there are more entries than the {announced} announced")));
+            }
+            entries.push((row - 1, column - 1, value));
+        }
+        if entries.len() < announced {
+            let message = format!("the file ends after {} of {announced} entries", entries.len());
+            return Err(fault(text.lines().count(), message));
+        }
+    }
+    Ok(Content { rows, columns, symmetric, entries })
+}
+
+fn number(word: &str) -> Option<f64> {
+    word.parse().ok()
+}
