@@ -121,6 +121,26 @@ pub fn solve(scaled: &ScaledProblem, start: ContactSet, max_iterations: usize) -
     Ok(Outcome { displacement, multiplier, contact_set: closed, iterations, history, settled, variant })
 }
 
+/// Balance of forces with the rows of `closed` held at their gaps, pushing or pulling, and all others free.
+///
+/// # Errors
+/// [`Error::Unbounded`] and [`Error::UnderHeld`] where they do not hold the body, [`Error::Infeasible`] where they
+/// contradict each other.
+pub fn with_contact_set(scaled: &ScaledProblem, closed: &ContactSet) -> Result<Equilibrium, Error> {
+    match scaled.hold(closed, WEIGHT)? {
+        Holding::Held(cholesky) => {
+            let balance = equilibrium(scaled.problem, &cholesky, closed);
+            let reason = "the closed rows contradict each other".to_string();
+            if balance.consistent {
+                Ok(balance)
+            } else {
+                Err(Error::Infeasible { reason, rows: closed.iter().collect() })
+            }
+        }
+        Holding::Free(motion) => Err(motion.into_error()),
+    }
+}
+
 /// How the next set is made from the rows that are wrong in this one.
 #[derive(Clone, Copy, Debug)]
 enum Rule {

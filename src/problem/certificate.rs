@@ -99,12 +99,9 @@ impl ContactProblem {
         let elastic = self.stiffness.mul(u);
         let contact = self.contact.mul_transposed(lambda);
         let rounding = self.rounding(u, lambda);
-        let residual: Vec<f64> = (0..self.dofs())
-            .map(|dof| {
-                let force = elastic[dof] - self.load[dof] - contact[dof];
-                if force.abs() <= rounding[dof] { 0.0 } else { force }
-            })
-            .collect();
+        let residual: Vec<f64> = (0..self.dofs()).map(|dof| elastic[dof] - self.load[dof] - contact[dof]).collect();
+        let excess: Vec<f64> =
+            residual.iter().zip(&rounding).map(|(&r, &limit)| if r.abs() <= limit { 0.0 } else { r }).collect();
         let violation = self.violation(u);
         let bound_rows = || (0..self.rows()).filter(|&row| self.gap[row].is_finite());
         // lambda (B u - g) = lambda B u - lambda g; a row without obstacle carries no multiplier.
@@ -124,10 +121,11 @@ impl ContactProblem {
         let static_energy = NOTHING * force_scale * static_reach / 2.0;
         let strain_energy = (dot(u, &elastic) / 2.0).max(static_energy);
         let energy_scale = strain_energy.max(dot(&self.load, u).abs()).max(work_of_gap.abs());
-        let gap_of_energies = dot(u, &residual) + products.iter().sum::<f64>();
+        let gap_of_energies = dot(u, &excess) + products.iter().sum::<f64>();
 
         Ok(Certificate {
-            stationarity: relative(largest(residual.iter().copied()), force_scale),
+            stationarity: relative(largest(residual), force_scale),
+            stationarity_excess: relative(largest(excess), force_scale),
             penetration: relative(largest(violation.iter().map(|value| value.max(0.0))), length_scale),
             adhesion: relative(largest(lambda.iter().map(|value| value.max(0.0))), multiplier_scale),
             complementarity: relative(largest(products.iter().copied()), multiplier_scale * length_scale),

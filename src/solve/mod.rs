@@ -72,6 +72,22 @@ pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, 
     Err(Error::NotCertified { solution: Box::new(solution), condition, value, tolerance: settings.tolerance })
 }
 
+/// Displacement and multiplier of the body with the rows of `closed` held at their gaps and all others free: one
+/// iteration of the active-set loop. The multiplier has either sign.
+///
+/// # Errors
+/// As [`solve`], without [`Error::NotCertified`]; [`Error::Infeasible`] where the rows of the set contradict each other.
+pub fn with_contact_set(problem: &ContactProblem, closed: &ContactSet) -> Result<(Vec<f64>, Vec<f64>), Error> {
+    let selection = RowSelection::of(problem)?;
+    let norm = EnergyNorm::of(problem.stiffness())?;
+    let scaling = Scaling::of(selection.problem(), reference_displacement(selection.problem(), norm.as_ref()))?;
+    let scaled = ScaledProblem::new(scaling.problem(), norm.is_some())?;
+    let held = active_set::with_contact_set(&scaled, &selection.restrict_set(closed))
+        .map_err(|error| expand_error(error, &selection, &scaling))?;
+    let displacement = scaling.expand_displacement(&held.displacement);
+    Ok((displacement, selection.expand_multiplier(&scaling.expand_multiplier(&held.multiplier))))
+}
+
 fn run(scaled: &ScaledProblem, settings: &Settings) -> Result<Outcome, Error> {
     let start = scaled.start()?;
     let outcome = match settings.method {

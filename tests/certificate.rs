@@ -1,0 +1,153 @@
+//! GOAL: a wrong answer is told from a right one by the numbers of its certificate alone.
+//! CONDITIONS: the exact answer of a small problem, with one fault planted at a time.
+
+mod oracles;
+
+use oracles::{Dense, Draws, random};
+use signorini::{Certificate, ContactProblem, Settings, SparseMatrix, SymmetricMatrix, solve, solve_qp};
+
+const TOLERANCE: f64 = 1e-9;
+
+fn two_springs() -> (ContactProblem, Vec<f64>, Vec<f64>) {
+    let dense = Dense::new(&[&[3.0, -1.0], &[-1.0, 1.0]], &[0.5, 3.0], &[&[0.0, 1.0], &[1.0, 0.0]], &[1.0, 2.0]);
+    (dense.problem().unwrap(), vec![0.5, 1.0], vec![-2.5, 0.0])
+}
+
+fn certify(u: &[f64], lambda: &[f64]) -> Certificate {
+    two_springs().0.certify(u, lambda).unwrap()
+}
+
+#[test]
+fn exact_answer_is_certified() {
+    let (problem, u, lambda) = two_springs();
+    let certificate = problem.certify(&u, &lambda).unwrap();
+    assert!(certificate.meets(1e-14), "{certificate:?}");
+    assert!(certificate.energy_error_bound < 1e-15);
+}
+
+#[test]
+fn flipped_sign_of_the_contact_force_is_adhesion_and_imbalance() {
+    let certificate = certify(&[0.5, 1.0], &[2.5, 0.0]);
+    assert!((certificate.adhesion - 1.0).abs() < 1e-15, "{certificate:?}");
+    assert!(certificate.stationarity > 1.0 && !certificate.meets(TOLERANCE));
+}
+
+#[test]
+fn wrong_signed_force_in_balance_with_a_wrong_load_is_caught_by_its_sign_alone() {
+    // u_2 = 4 balances lambda = 0.5: K u = f + B' lambda, and the row is closed at gap 4. Only the sign is wrong.
+    let dense = Dense::new(&[&[3.0, -1.0], &[-1.0, 1.0]], &[0.5, 3.0], &[&[0.0, 1.0]], &[2.25 + 3.0]);
+    let problem = dense.problem().unwrap();
+    let u = [5.75 / 3.0, 5.25];
+    let lambda = [-u[0] + u[1] - 3.0];
+    let certificate = problem.certify(&u, &lambda).unwrap();
+    assert!(certificate.stationarity < 1e-15 && certificate.penetration == 0.0, "{certificate:?}");
+    assert!(certificate.complementarity < 1e-15, "{certificate:?}");
+    assert!(certificate.adhesion > 0.9 && !certificate.meets(TOLERANCE), "{certificate:?}");
+}
+
+#[test]
+fn lost_factor_two_is_caught() {
+    for (u, lambda) in [([0.5, 1.0], [-5.0, 0.0]), ([0.25, 0.5], [-2.5, 0.0]), ([1.0, 2.0], [-2.5, 0.0])] {
+        let certificate = certify(&u, &lambda);
+        assert!(!certificate.meets(1e-2), "{u:?} {lambda:?}: {certificate:?}");
+        assert!(certificate.energy_error_bound > 0.1, "{certificate:?}");
+    }
+}
+
+#[test]
+fn swapped_rows_are_caught() {
+    let certificate = certify(&[0.5, 1.0], &[0.0, -2.5]);
+    assert!(certificate.complementarity > 0.5 && certificate.stationarity > 0.5, "{certificate:?}");
+}
+
+#[test]
+fn penetration_is_measured_against_the_displacement() {
+    let certificate = certify(&[0.5, 1.001], &[-2.5, 0.0]);
+    assert!((certificate.penetration / (0.001 / 1.001) - 1.0).abs() < 1e-9, "{certificate:?}");
+}
+
+#[test]
+fn force_over_an_open_gap_is_complementarity() {
+    // The row is open by 0.5 and carries the force that balances u = (1/3, 0.5).
+    let certificate = certify(&[1.0 / 3.0, 0.5], &[-(3.0 + 1.0 / 3.0 - 0.5), 0.0]);
+    assert!(certificate.stationarity < 1e-15 && certificate.adhesion == 0.0, "{certificate:?}");
+    assert!(certificate.complementarity > 0.4, "{certificate:?}");
+}
+
+/// The bound is never below the true error, and follows it down: perturbed answers of random problems.
+#[test]
+fn energy_bound_holds_for_perturbed_answers() {
+    let mut draws = Draws::new(4);
+    for case in 0..300 {
+        let dense = random(&mut draws, 5, 4);
+        let problem = dense.problem().unwrap();
+        let exact = solve_qp(&problem).unwrap();
+        let reference = dense.enumerate().displacement;
+        let norm = |v: &nalgebra::DVector<f64>| v.dot(&(&dense.stiffness * v)).max(0.0).sqrt();
+        let size = 10.0_f64.powi(-(case % 8));
+        let shaken = |values: &[f64], draws: &mut Draws| -> Vec<f64> {
+            values.iter().map(|value| value + size * draws.signed()).collect()
+        };
+        let (u, lambda) = (shaken(&exact.displacement, &mut draws), shaken(&exact.multiplier, &mut draws));
+        let bound = problem.certify(&u, &lambda).unwrap().energy_error_bound;
+        let u = nalgebra::DVector::from_row_slice(&u);
+        let error = norm(&(&u - &reference)) / norm(&u);
+        assert!(error <= bound * (1.0 + 1e-6) + 1e-13, "case {case}: error {error:e} above the bound {bound:e}");
+    }
+}
+
+#[test]
+fn answer_moved_by_ten_tolerances_is_refused() {
+    let (problem, u, lambda) = two_springs();
+    for entry in 0..2 {
+        let mut moved = u.clone();
+        moved[entry] *= 1.0 + 10.0 * TOLERANCE;
+        assert!(!problem.certify(&moved, &lambda).unwrap().meets(TOLERANCE), "u[{entry}]");
+    }
+    assert!(!problem.certify(&u, &[lambda[0] * (1.0 + 10.0 * TOLERANCE), 0.0]).unwrap().meets(TOLERANCE));
+}
+
+#[test]
+fn not_certified_answers_come_back_with_their_numbers() {
+    let mut settings = Settings::default();
+    settings.polish = false;
+    settings.interior_point_tolerance = 1e-2;
+    match solve(&two_springs().0, &settings) {
+        Err(signorini::Error::NotCertified { solution, value, tolerance, .. }) => {
+            assert_eq!(solution.method, "qp-unpolished");
+            assert!(value > tolerance && (solution.displacement[1] - 1.0).abs() < 0.1);
+        }
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn vectors_of_the_wrong_length_and_numbers_that_are_none_are_refused_in_one_sentence() {
+    let (problem, u, lambda) = two_springs();
+    let message = |result: Result<Certificate, signorini::Error>| result.unwrap_err().to_string();
+    assert_eq!(message(problem.certify(&u[1..], &lambda)), "displacement has length 1, but there are 2 dofs");
+    assert_eq!(message(problem.certify(&u, &[])), "multiplier has length 0, but there are 2 contact rows");
+    assert!(!problem.certify(&[f64::NAN, 1.0], &lambda).unwrap().meets(TOLERANCE));
+    assert!(!problem.certify(&u, &[f64::NAN, 0.0]).unwrap().meets(TOLERANCE));
+    assert!(!problem.certify(&u, &[f64::NEG_INFINITY, 0.0]).unwrap().meets(TOLERANCE));
+}
+
+#[test]
+fn problems_that_do_not_fit_together_are_refused_in_one_sentence() {
+    let stiffness =
+        || SymmetricMatrix::from_lower(SparseMatrix::from_triplets(2, 2, &[(0, 0, 1.0), (1, 1, 1.0)]).unwrap());
+    let contact = |columns| SparseMatrix::from_triplets(1, columns, &[(0, 0, 1.0)]).unwrap();
+    let message = |load: Vec<f64>, columns, gap: Vec<f64>| {
+        ContactProblem::new(stiffness().unwrap(), load, contact(columns), gap).unwrap_err().to_string()
+    };
+    assert_eq!(message(vec![0.0; 3], 2, vec![0.0]), "load vector has length 3, but there are 2 dofs");
+    assert_eq!(message(vec![0.0; 2], 3, vec![0.0]), "contact matrix is 1 x 3, but it must be 1 x 2");
+    assert_eq!(message(vec![0.0; 2], 2, vec![0.0; 7]), "gap vector has length 7, but there are 1 contact rows");
+    assert!(message(vec![0.0, f64::NAN], 2, vec![0.0]).contains("load vector has the value NaN at entry 1"));
+    assert!(message(vec![0.0; 2], 2, vec![f64::NEG_INFINITY]).contains("gap vector has the value -inf at entry 0"));
+    let one_triangle = SparseMatrix::from_triplets(2, 2, &[(0, 0, 2.0), (1, 0, 1.0), (1, 1, 2.0)]).unwrap();
+    let message = SymmetricMatrix::from_full(&one_triangle).unwrap_err().to_string();
+    assert!(message.contains("entry (1, 0) is 1e0, entry (0, 1) is 0e0"), "{message}");
+    let outside = SparseMatrix::from_triplets(2, 2, &[(2, 0, 1.0)]).unwrap_err().to_string();
+    assert!(outside.contains("entry (2, 0) lies outside a matrix of 2 rows"), "{outside}");
+}
