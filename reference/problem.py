@@ -63,7 +63,7 @@ class Answer:
     @property
     def force(self) -> float:
         """Total contact force -sum(lambda), in N, >= 0."""
-        return -float(self.multiplier.sum())
+        return 0.0 - float(self.multiplier.sum())
 
 
 def problem_of(stiffness, load, contact, gap) -> Problem:

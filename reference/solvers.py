@@ -98,7 +98,7 @@ def by_osqp(data: Problem) -> Raw:
         u=data.gap,
         **OSQP_SETTINGS,
     )
-    result = solver.solve()
+    result = solver.solve(raise_error=False)
     return Raw(Answer(result.x, -result.y), result.info.status)
 
 
