@@ -61,7 +61,9 @@ def without_obstacle_on_one_half() -> Problem:
 
 
 RAW_CASES = (
-    Case("two springs", raw_problems.two_springs, expected=(force(6.25), displacement(0, 0.0125), displacement(1, 0.05))),
+    Case(
+        "two springs", raw_problems.two_springs, expected=(force(6.25), displacement(0, 0.0125), displacement(1, 0.05))
+    ),
     # b = 0.4 is node 80 of 200, which carries the first, half reaction.
     Case("string", raw_problems.string_over_obstacle, expected=(force(0.2), pressed_from(79), displacement(99, -0.08))),
     Case("string, weak rows", raw_problems.string_with_weak_nodes, expected=(force(55 / 256), pressed_from(100))),
@@ -74,10 +76,18 @@ RAW_CASES = (
     Case("membrane", raw_problems.membrane_over_obstacle),
     Case("membrane, 19600 dofs", lambda: raw_problems.membrane_over_obstacle(140)),
     Case("two-sided bounds", raw_problems.bounded_quadratic),
-    Case("floating rod", raw_problems.floating_rod, expected=(force(5.0), displacement(0, 0.015), displacement(20, 0.01))),
-    Case("cycling, any start", raw_problems.cycling_from_any_start, expected=(displacement(1, 4 / 19), displacement(2, 11 / 19))),
+    Case(
+        "floating rod", raw_problems.floating_rod, expected=(force(5.0), displacement(0, 0.015), displacement(20, 0.01))
+    ),
+    Case(
+        "cycling, any start",
+        raw_problems.cycling_from_any_start,
+        expected=(displacement(1, 4 / 19), displacement(2, 11 / 19)),
+    ),
     Case("cycling, all open", raw_problems.cycling_from_all_open, expected=(displacement(2, 0.6), force(2.4))),
-    Case("weakly active", raw_problems.weakly_active, expected=(displacement(0, 1.0), displacement(1, 6.0), force(0.0))),
+    Case(
+        "weakly active", raw_problems.weakly_active, expected=(displacement(0, 1.0), displacement(1, 6.0), force(0.0))
+    ),
     Case("elastic block", lambda: elastic_block.indentation(-0.05)),
 )
 
@@ -85,7 +95,12 @@ GAPS = tuple(round(-0.01 * step, 2) for step in range(1, 11))
 
 SCENE_CASES = (
     *(
-        Case(f"indentation {gap:.2f}", scene="indentation.json", gap=gap, twin=lambda gap=gap: elastic_block.indentation(gap))
+        Case(
+            f"indentation {gap:.2f}",
+            scene="indentation.json",
+            gap=gap,
+            twin=lambda gap=gap: elastic_block.indentation(gap),
+        )
         for gap in GAPS
     ),
     Case("inclined plane", scene="inclined.json"),

@@ -17,9 +17,7 @@ CORNERS = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
 def plane_strain(young: float, poisson: float) -> np.ndarray:
     """Elasticity matrix, 3 x 3, for (eps_xx, eps_yy, gamma_xy), in Pa."""
     factor = young / ((1.0 + poisson) * (1.0 - 2.0 * poisson))
-    return factor * np.array(
-        [[1.0 - poisson, poisson, 0.0], [poisson, 1.0 - poisson, 0.0], [0.0, 0.0, 0.5 - poisson]]
-    )
+    return factor * np.array([[1.0 - poisson, poisson, 0.0], [poisson, 1.0 - poisson, 0.0], [0.0, 0.0, 0.5 - poisson]])
 
 
 def rectangle_stiffness(a: float, b: float, elasticity: np.ndarray) -> np.ndarray:
@@ -49,6 +47,8 @@ def indentation(gap=-0.01, columns=40, layers=20, width=1.0, height=0.5, young=1
 
     free = np.arange(2 * (columns + 1), size)
     normals = 2 * node[-1] + 1 - free[0]
-    contact = sparse.csr_matrix((np.ones(columns + 1), (np.arange(columns + 1), normals)), shape=(columns + 1, free.size))
+    contact = sparse.csr_matrix(
+        (np.ones(columns + 1), (np.arange(columns + 1), normals)), shape=(columns + 1, free.size)
+    )
     x = np.linspace(0.0, width, columns + 1)
     return problem_of(full[free][:, free], np.zeros(free.size), contact, gap + (x - width / 2.0) ** 2 / (2.0 * radius))

@@ -51,7 +51,9 @@ def kkt(problem: Problem, answer: Answer) -> Kkt:
     """The relative violations of an answer."""
     u, multiplier = answer.displacement, answer.multiplier
     if u.shape != (problem.dofs,) or multiplier.shape != (problem.rows,):
-        raise ValueError(f"u {u.shape} and lambda {multiplier.shape} do not fit {problem.dofs} dofs, {problem.rows} rows")
+        raise ValueError(
+            f"u {u.shape} and lambda {multiplier.shape} do not fit {problem.dofs} dofs, {problem.rows} rows"
+        )
     elastic, reaction = problem.stiffness @ u, problem.contact.T @ multiplier
     violation = -problem.slack(u)
     # A row without obstacle has an infinite gap: it enters only if it carries a multiplier.

@@ -23,7 +23,9 @@ class Cycled(Exception):
 def enumerate_contact_sets(problem: Problem) -> Answer:
     """The solution among the points of all 2^rows contact sets: the one that violates its signs least."""
     if problem.rows > ENUMERATED_ROWS:
-        raise ValueError(f"{problem.rows} rows have too many contact sets; at most {ENUMERATED_ROWS} rows are enumerated")
+        raise ValueError(
+            f"{problem.rows} rows have too many contact sets; at most {ENUMERATED_ROWS} rows are enumerated"
+        )
     least, best = np.inf, None
     for size in range(problem.rows + 1):
         for rows in combinations(range(problem.rows), size):
@@ -36,7 +38,7 @@ def enumerate_contact_sets(problem: Problem) -> Answer:
 
 
 def active_set_loop(problem: Problem) -> Answer:
-    """The classical loop C <- heaviside((I-C)(B u - g) - lambda) from C = 0, or from all rows closed on a floating body.
+    """The classical loop C <- heaviside((I-C)(B u - g) - lambda) from C = 0; on a floating body from all rows closed.
 
     Raises `Cycled` where the plain loop does not end: it has no safeguard.
     """

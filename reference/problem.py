@@ -79,7 +79,10 @@ def read_problem(directory) -> Problem:
     """Reads K.mtx, f.mtx, B.mtx and g.mtx of a problem directory."""
     folder = Path(directory)
     return problem_of(
-        io.mmread(folder / "K.mtx"), read_vector(folder / "f.mtx"), io.mmread(folder / "B.mtx"), read_vector(folder / "g.mtx")
+        io.mmread(folder / "K.mtx"),
+        read_vector(folder / "f.mtx"),
+        io.mmread(folder / "B.mtx"),
+        read_vector(folder / "g.mtx"),
     )
 
 
@@ -109,6 +112,11 @@ def write_answer(answer: Answer, directory) -> None:
 
 def read_vector(path) -> np.ndarray:
     """A Matrix Market vector, in array or coordinate format, as a flat array."""
+    with open(path) as file:
+        size = next((line for line in file if line.strip() and not line.startswith("%")), "").split()
+    if size[:1] == ["0"]:
+        # scipy's reader ends the process with a division by zero on an array without rows.
+        return np.zeros(0)
     matrix = io.mmread(path)
     return np.asarray(matrix.todense() if sparse.issparse(matrix) else matrix, float).ravel()
 

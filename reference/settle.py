@@ -15,7 +15,7 @@ from scipy.sparse.linalg import splu
 
 from kkt import length_scale, multiplier_scale, reject
 from problem import Answer, Problem
-from scaling import largest, scaled, scales_of, unscaled
+from scaling import scaled, scales_of, unscaled
 
 SIGN_TOLERANCE = 1e-11
 """Relative size below which a slack or a multiplier has no sign: weakly active rows cycle by rounding otherwise."""

@@ -13,7 +13,7 @@ import numpy as np
 
 from compare import weak_rows
 from kkt import kkt, multiplier_scale
-from problem import Answer, Problem
+from problem import Problem
 from settle import Settled
 
 RESULTS = Path(__file__).with_name("results.json")
@@ -28,7 +28,7 @@ SMALL = 4
 """Problems up to so many dofs are stored with their data."""
 
 STORED_TOLERANCE = 1e-8
-"""Between a stored result and today's, relative to the largest value: other versions of the libraries round differently."""
+"""Between a stored result and today's, relative to the largest value: other machines round differently."""
 
 
 def record(problem: Problem, settled: Settled, solver: str) -> dict:

@@ -5,6 +5,7 @@ Only here a solver's sign is known: its multiplier z >= 0 of B u <= g is z = -la
 
 import warnings
 from dataclasses import dataclass
+from functools import partial
 
 import cvxpy
 import numpy as np
@@ -19,10 +20,10 @@ INTERIOR_POINT_TOLERANCES = (1e-13, 1e-12, 1e-10, 1e-8)
 iterate: measured on the indented block, 1e-12 leaves 3e-10 in u, 1e-13 leaves 3e-3."""
 
 FIRST_ORDER_TOLERANCE = 1e-12
-"""Absolute and relative, on dimensionless data, where multipliers of a fine mesh are small: 1e-9 leaves 3e-5 in them."""
+"""Absolute and relative, on dimensionless data. Multipliers of a fine mesh are small there: 1e-9 leaves 3e-5 off."""
 
 FIRST_ORDER_ITERATIONS = 20_000
-"""Ten times what the problems here need; at the limit the last iterate is judged as any other."""
+"""The problems here need up to 2,200; at the limit the last iterate is judged as any other."""
 
 OSQP_SETTINGS = dict(
     eps_abs=FIRST_ORDER_TOLERANCE,
@@ -50,7 +51,7 @@ def cvxpy_clarabel(problem: Problem) -> Raw:
     """cvxpy with Clarabel: interior point."""
     for tolerance in INTERIOR_POINT_TOLERANCES:
         tolerances = dict.fromkeys(("tol_gap_abs", "tol_gap_rel", "tol_feas"), tolerance)
-        raw = dimensionless(problem, lambda data: by_cvxpy(data, "CLARABEL", accept_unknown=True, **tolerances))
+        raw = dimensionless(problem, partial(by_cvxpy, solver="CLARABEL", accept_unknown=True, **tolerances))
         if raw.status == cvxpy.OPTIMAL:
             break
     return raw
@@ -58,7 +59,7 @@ def cvxpy_clarabel(problem: Problem) -> Raw:
 
 def cvxpy_osqp(problem: Problem) -> Raw:
     """cvxpy with OSQP: alternating directions."""
-    return dimensionless(problem, lambda data: by_cvxpy(data, "OSQP", **OSQP_SETTINGS))
+    return dimensionless(problem, partial(by_cvxpy, solver="OSQP", **OSQP_SETTINGS))
 
 
 def osqp_direct(problem: Problem) -> Raw:

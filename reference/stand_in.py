@@ -118,7 +118,7 @@ def main(arguments: list[str]) -> int:
     if os.environ.get("STAND_IN_FAULT") == "refused":
         print("the body is not held", file=sys.stderr)
         return 3
-    options = dict(zip(arguments[2::2], arguments[3::2]))
+    options = dict(zip(arguments[2::2], arguments[3::2], strict=True))
     return solve(Path(arguments[1]), options["--method"], Path(options["--out"]))
 
 

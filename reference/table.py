@@ -12,7 +12,8 @@ HEADING = (
 LEGEND = """\
 closed    rows in contact; weak: rows that touch without force, where closed or open is a matter of rounding
 force     -sum(lambda), in the unit of the problem
-|du|/|u|  largest difference to any settled answer of the independent solvers, relative to the largest value; |dl| of lambda
+|du|/|u|  largest difference to any settled answer of the independent solvers, relative to the largest value
+|dl|/|l|  the same of lambda
 station. to dual gap: violations recomputed from the problem directory, relative"""
 
 
@@ -23,7 +24,11 @@ def line(verdict: Verdict) -> str:
         figures = " " * 84
     else:
         conditions = (
-            numbers.stationarity, numbers.penetration, numbers.adhesion, numbers.complementarity, numbers.duality_gap
+            numbers.stationarity,
+            numbers.penetration,
+            numbers.adhesion,
+            numbers.complementarity,
+            numbers.duality_gap,
         )
         measured = ((apart.displacement, apart.multiplier) if apart else (None, None)) + conditions
         shown = " ".join(f"{value:8.1e}" if value is not None else " " * 8 for value in measured)

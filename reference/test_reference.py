@@ -32,7 +32,9 @@ def random_problem(random, dofs: int, rows: int):
     inside = random.standard_normal(dofs)
     stiffness = factor @ factor.T + 0.1 * np.identity(dofs)
     stiffness = 0.5 * (stiffness + stiffness.T)
-    return problem_of(stiffness, random.standard_normal(dofs), contact, contact @ inside + random.uniform(0.0, 1.0, rows))
+    return problem_of(
+        stiffness, random.standard_normal(dofs), contact, contact @ inside + random.uniform(0.0, 1.0, rows)
+    )
 
 
 class Generators(unittest.TestCase):
@@ -212,6 +214,13 @@ class Files(unittest.TestCase):
             read = read_answer(folder)
         np.testing.assert_array_equal(read.displacement, answer.displacement)
         np.testing.assert_array_equal(read.multiplier, answer.multiplier)
+
+    def test_a_problem_without_contact_rows_comes_back(self):
+        problem = problem_of(np.identity(2), [1.0, 0.0], np.zeros((0, 2)), [])
+        with tempfile.TemporaryDirectory() as folder:
+            write_problem(problem, folder)
+            read = read_problem(folder)
+        self.assertEqual((read.dofs, read.rows), (2, 0))
 
     def test_vectors_that_do_not_fit_are_refused(self):
         with self.assertRaises(ValueError):

@@ -106,9 +106,9 @@ class WrongProgram(WithProgram):
 class Command(WithProgram):
     def run_main(self, *arguments: str) -> tuple[int, str]:
         """Exit code and output of the command."""
-        with mock.patch.object(sys, "argv", ["validate.py", *arguments]), contextlib.redirect_stdout(io.StringIO()) as out:
-            with contextlib.redirect_stderr(out):
-                return validate.main(), out.getvalue()
+        arguments = mock.patch.object(sys, "argv", ["validate.py", *arguments])
+        with arguments, contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(out):
+            return validate.main(), out.getvalue()
 
     def test_exit_code_and_last_line_count_the_checks(self):
         code, text = self.run_main("--signorini", str(self.program), "--cases", "two springs")
@@ -164,7 +164,9 @@ class Parts(unittest.TestCase):
             self.assertEqual(len(vtu_faults(Path(name), run)), 1)
 
     def test_the_table_has_a_line_for_answers_and_for_failures(self):
-        right = validate.judge("case", "answer", self.problem, self.settled.answer, [self.settled.answer], validate.EXACT)
+        right = validate.judge(
+            "case", "answer", self.problem, self.settled.answer, [self.settled.answer], validate.EXACT
+        )
         self.assertTrue(table.line(right).endswith("pass"))
         self.assertIn("FAIL: no reason", table.line(validate.broken("case", "answer", "no reason")))
 

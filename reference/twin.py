@@ -24,5 +24,7 @@ def twin_faults(problem: Problem, answer: Answer, twin: Problem) -> list[str]:
         faults.append(f"lambda differs by {multipliers:.1e} from the one assembled here")
     sorted_apart = np.sort(answer.displacement) - np.sort(own.displacement)
     if not largest(sorted_apart) <= TWIN_TOLERANCE * largest(own.displacement):
-        faults.append(f"sorted u differs by {largest(sorted_apart) / largest(own.displacement):.1e} from the one assembled here")
+        faults.append(
+            f"sorted u differs by {largest(sorted_apart) / largest(own.displacement):.1e} from the one assembled here"
+        )
     return faults

@@ -39,7 +39,9 @@ def independent(case: Case, problem: Problem) -> tuple[dict[str, Settled], list[
             verdicts.append(broken(case.name, name, f"{type(error).__name__}: {error}"))
     references = [result.answer for result in settled.values()]
     for name, result in settled.items():
-        verdicts.append(judge(case.name, name, problem, raw[name].answer, references, RAW, False, note=raw[name].status))
+        verdicts.append(
+            judge(case.name, name, problem, raw[name].answer, references, RAW, False, note=raw[name].status)
+        )
         note = f"{result.exchanged} rows exchanged" if result.exchanged else ""
         verdicts.append(judge(case.name, name + ", settled", problem, result.answer, references, EXACT, note=note))
     return settled, verdicts
@@ -100,7 +102,9 @@ def pictured(case: Case, scene: Path, program: Path, folder: Path, problem: Prob
         return broken(case.name, "signorini scene, .vtu", str(error))
 
 
-def run_case(case: Case, program: Path | None, examples: Path, folder: Path, stored: dict) -> tuple[list[Verdict], dict]:
+def run_case(
+    case: Case, program: Path | None, examples: Path, folder: Path, stored: dict
+) -> tuple[list[Verdict], dict]:
     """All verdicts on a case, and what is to be stored of it."""
     directory, scene = folder / "problem", None
     if case.scene:
@@ -136,7 +140,9 @@ def main() -> int:
     parser = argparse.ArgumentParser(description="Check signorini against cvxpy (Clarabel, OSQP) and OSQP.")
     parser.add_argument("--signorini", type=Path, default=ROOT / "target/release/signorini", help="the program")
     parser.add_argument("--examples", type=Path, default=ROOT / "examples", help="folder of the scenes")
-    parser.add_argument("--cases", nargs="+", metavar="NAME", default=["*"], help="names or patterns of the cases to run")
+    parser.add_argument(
+        "--cases", nargs="+", metavar="NAME", default=["*"], help="names or patterns of the cases to run"
+    )
     parser.add_argument("--without-program", action="store_true", help="only the problems made here, only the solvers")
     parser.add_argument("--write-snapshot", action="store_true", help="write reference/results.json if all cases pass")
     options = parser.parse_args()
@@ -155,7 +161,9 @@ def main() -> int:
     print(table.HEADING)
     for case in chosen:
         with tempfile.TemporaryDirectory() as folder:
-            found, entry = run_case(case, program, options.examples, Path(folder), None if options.write_snapshot else stored)
+            found, entry = run_case(
+                case, program, options.examples, Path(folder), None if options.write_snapshot else stored
+            )
         table.show(found)
         verdicts += found
         if entry:
