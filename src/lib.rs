@@ -5,10 +5,12 @@
 pub mod error;
 pub mod matrix_market;
 pub mod method;
+pub mod output;
 pub mod problem;
 pub mod solution;
 pub mod solve;
 pub mod sparse;
+pub mod study;
 pub mod transform;
 
 pub use error::Error;

@@ -1,0 +1,182 @@
+//! Answers as text and as JSON.
+
+use serde_json::{Value, json};
+
+use crate::study::{Agreement, Summary};
+
+/// The unit names of a report; empty for a raw problem, whose units are the user's own.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct UnitNames {
+    /// Unit of length.
+    pub length: String,
+    /// Unit of force.
+    pub force: String,
+    /// Unit of stress and pressure.
+    pub stress: String,
+}
+
+/// A number with its unit.
+fn quantity(value: f64, unit: &str) -> String {
+    format!("{value:.6e} {unit}").trim_end().to_string()
+}
+
+fn plural(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
+/// The report of one answer, in lines of at most 100 characters.
+pub fn solve_text(title: &str, summary: &Summary, units: &UnitNames) -> String {
+    let Summary { contact, model, seconds, .. } = summary;
+    let mesh = match (model.nodes, model.elements) {
+        (Some(nodes), Some(elements)) => format!("{nodes} nodes, {elements} elements, "),
+        _ => String::new(),
+    };
+    let mut text = format!("{title}\n");
+    let mut line = |name: &str, content: String| text += &format!("  {name:<14}{content}\n");
+    line("model", format!("{mesh}{} dofs, {}", model.dofs, plural(model.contact_rows, "contact row")));
+    line("method", format!("{}, {}", summary.method, plural(summary.iterations, "iteration")));
+    line(
+        "contact",
+        format!("{}, force {}", plural(contact.count, "closed row"), quantity(contact.force, &units.force)),
+    );
+    if let (Some(pressure), Some(width)) = (contact.pressure_max, contact.width) {
+        let (pressure, width) = (quantity(pressure, &units.stress), quantity(width, &units.length));
+        line("", format!("peak pressure {pressure}, width {width}"));
+    }
+    if let Some(balance) = contact.force_balance {
+        line("", format!("loads, reactions and contact forces balance to {balance:.1e}"));
+    }
+    let verdict = if summary.is_certified() { "certified to" } else { "NOT certified to" };
+    line("certificate", format!("{verdict} {:.1e}, each relative:", summary.tolerance));
+    for (name, formula, value) in conditions(summary) {
+        line("", format!("{name:<18}{formula:<38}{value}"));
+    }
+    line(
+        "seconds",
+        format!(
+            "assemble {:.3}, factor {:.3}, solve {:.3}, total {:.3}",
+            seconds.assemble, seconds.factor, seconds.solve, seconds.total
+        ),
+    );
+    text
+}
+
+fn conditions(summary: &Summary) -> [(&'static str, &'static str, String); 6] {
+    let certificate = &summary.certificate;
+    let number = |value: f64| if value == 0.0 { "0".to_string() } else { format!("{value:.1e}") };
+    let bound = match certificate.energy_error_bound {
+        bound if bound.is_finite() => number(bound),
+        _ => "none: K is not positive definite".to_string(),
+    };
+    [
+        ("stationarity", "|K u - f - B' lambda|", number(certificate.stationarity)),
+        ("penetration", "max (B u - g)", number(certificate.penetration)),
+        ("adhesion", "max lambda", number(certificate.adhesion)),
+        ("complementarity", "|lambda (B u - g)|", number(certificate.complementarity)),
+        ("duality gap", "u'K u - f'u - lambda'g", number(certificate.duality_gap)),
+        ("energy error", "|u - u*|_K / |u|_K is at most", bound),
+    ]
+}
+
+/// The table of a comparison, and the line that says whether the methods agree.
+pub fn compare_text(title: &str, summaries: &[Summary; 3], agreement: &Agreement, units: &UnitNames) -> String {
+    let zero = |value: f64| if value == 0.0 { "0".to_string() } else { format!("{value:.1e}") };
+    let in_unit = |name: &str, unit: &str| if unit.is_empty() { name.to_string() } else { format!("{name} [{unit}]") };
+    let [qp, active_set, penalty] = summaries;
+    let rows = [
+        (qp, "reference".to_string(), "reference".to_string()),
+        (active_set, zero(agreement.active_set.displacement), zero(agreement.active_set.multiplier)),
+        (penalty, zero(agreement.penalty.displacement), zero(agreement.penalty.multiplier)),
+    ];
+    let mut table = vec![vec![
+        "method".to_string(),
+        "iterations".to_string(),
+        "contact".to_string(),
+        in_unit("force", &units.force),
+        in_unit("peak pressure", &units.stress),
+        "max |du|".to_string(),
+        "max |dlambda|".to_string(),
+        "seconds".to_string(),
+    ]];
+    for (summary, displacement, multiplier) in rows {
+        table.push(vec![
+            summary.method.clone(),
+            summary.iterations.to_string(),
+            summary.contact.count.to_string(),
+            format!("{:.9e}", summary.contact.force),
+            summary.contact.pressure_max.map_or("-".to_string(), |pressure| format!("{pressure:.6e}")),
+            displacement,
+            multiplier,
+            format!("{:.4}", summary.seconds.factor + summary.seconds.solve),
+        ]);
+    }
+    let mut text = format!("{title}\n{} dofs, {}\n\n", qp.model.dofs, plural(qp.model.contact_rows, "contact row"));
+    text += &columns(&table);
+    text += "\n";
+    let mut table = vec![
+        ["certificate", "stationarity", "penetration", "adhesion", "complementarity", "duality gap", "energy error <="]
+            .map(String::from)
+            .to_vec(),
+    ];
+    for summary in summaries {
+        let mut row = vec![summary.method.clone()];
+        row.extend(conditions(summary).into_iter().map(|(_, _, value)| value));
+        table.push(row);
+    }
+    text += &columns(&table);
+    text += &format!("\n{}\n", verdict(summaries, agreement));
+    text
+}
+
+fn verdict(summaries: &[Summary; 3], agreement: &Agreement) -> String {
+    let [qp, active_set, penalty] = summaries;
+    let exact = match (agreement.exact_methods, qp.is_certified() && active_set.is_certified()) {
+        (true, _) => format!("The QP and the active set agree, both certified to {:.1e}", qp.tolerance),
+        (false, true) => "The QP and the active set DISAGREE, though both are certified".to_string(),
+        (false, false) => format!("The QP and the active set are NOT both certified to {:.1e}", qp.tolerance),
+    };
+    let certified = if penalty.is_certified() { "certified" } else { "not certified" };
+    let distance = match (agreement.penalty_within_its_bound, penalty.certificate.energy_error_bound) {
+        (true, bound) if bound.is_finite() => {
+            format!("{:.1e} from the QP in energy, within its stated {bound:.1e}", agreement.penalty.energy)
+        }
+        (true, _) => "which states no bound, because K is not positive definite".to_string(),
+        (false, bound) => {
+            format!("{:.1e} from the QP in energy, BEYOND its stated {bound:.1e}", agreement.penalty.energy)
+        }
+    };
+    format!("{exact}; the penalty answer is {certified}, {distance}.")
+}
+
+/// A table with the first column on the left and the others on the right.
+pub(crate) fn columns(table: &[Vec<String>]) -> String {
+    let count = table.iter().map(Vec::len).max().unwrap_or(0);
+    let width = |column: usize| table.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max();
+    let widths: Vec<usize> = (0..count).map(|column| width(column).unwrap_or(0)).collect();
+    let mut text = String::new();
+    for row in table {
+        let cells: Vec<String> = row
+            .iter()
+            .zip(&widths)
+            .enumerate()
+            .map(
+                |(column, (cell, &width))| {
+                    if column == 0 { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
+                },
+            )
+            .collect();
+        text += cells.join("  ").trim_end();
+        text += "\n";
+    }
+    text
+}
+
+/// The JSON object of one answer.
+pub fn solve_json(summary: &Summary) -> Value {
+    json!(summary)
+}
+
+/// The JSON object of a comparison.
+pub fn compare_json(summaries: &[Summary; 3], agreement: &Agreement) -> Value {
+    json!({ "methods": summaries, "agreement": agreement })
+}

@@ -1,0 +1,120 @@
+//! One problem by three methods: do they agree?
+
+use serde::Serialize;
+
+use crate::error::Error;
+use crate::problem::ContactProblem;
+use crate::solution::Solution;
+use crate::solve::{Method, Settings, solve};
+
+/// Two exact methods agree in the displacement to this share of its largest entry: both end with a linear solve, whose
+/// rounding the condition of the stiffness may enlarge a millionfold.
+pub const DISPLACEMENT_AGREEMENT: f64 = 1e-8;
+
+/// As [`DISPLACEMENT_AGREEMENT`], for the multipliers, which are differences of larger forces.
+pub const MULTIPLIER_AGREEMENT: f64 = 1e-7;
+
+/// Rows whose multiplier and distance are both below this, relative, are weakly active: they may be in the set or not.
+pub const WEAK: f64 = 1e-9;
+
+/// Rounding of an energy norm that is recomputed.
+const NORM_ROUNDING: f64 = 1e-12;
+
+/// What one method answered.
+#[derive(Clone, Debug)]
+pub struct MethodAnswer {
+    /// The answer, certified or not.
+    pub solution: Solution,
+    /// Is it certified?
+    pub certified: bool,
+}
+
+/// How far an answer is from that of the QP.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Difference {
+    /// Largest difference of displacements, relative to the largest displacement.
+    pub displacement: f64,
+    /// Largest difference of multipliers, relative to the largest multiplier.
+    pub multiplier: f64,
+    /// Rows that one answer closes and the other does not, weakly active ones left out.
+    pub rows: usize,
+    /// Energy norm of the difference of displacements, relative to that of the answer.
+    pub energy: f64,
+}
+
+/// Do the methods agree?
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Agreement {
+    /// QP and active set: certified both, same contact set, displacement to 1e-8, multiplier to 1e-7.
+    pub exact_methods: bool,
+    /// Is the penalty answer as close to the QP answer as its own certificate states?
+    pub penalty_within_its_bound: bool,
+    /// Active set against QP.
+    pub active_set: Difference,
+    /// Penalty against QP.
+    pub penalty: Difference,
+}
+
+/// Answers of the QP, the active-set loop and the penalty loop, in this order, and their agreement.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    /// The three answers.
+    pub answers: [MethodAnswer; 3],
+    /// Their agreement.
+    pub agreement: Agreement,
+}
+
+/// Solves `problem` by all three methods.
+///
+/// # Errors
+/// As [`solve`], but an answer that is not certified is an answer here.
+pub fn compare(problem: &ContactProblem, settings: &Settings) -> Result<Comparison, Error> {
+    let answer = |method| {
+        let mut settings = *settings;
+        settings.method = method;
+        match solve(problem, &settings) {
+            Ok(solution) => Ok(MethodAnswer { solution, certified: true }),
+            Err(Error::NotCertified { solution, .. }) => Ok(MethodAnswer { solution: *solution, certified: false }),
+            Err(error) => Err(error),
+        }
+    };
+    let [qp, active_set, penalty] = [answer(Method::Qp)?, answer(Method::ActiveSet)?, answer(Method::Penalty)?];
+    let to_active_set = difference(problem, &active_set.solution, &qp.solution);
+    let to_penalty = difference(problem, &penalty.solution, &qp.solution);
+    let agreement = Agreement {
+        exact_methods: qp.certified
+            && active_set.certified
+            && to_active_set.rows == 0
+            && to_active_set.displacement <= DISPLACEMENT_AGREEMENT
+            && to_active_set.multiplier <= MULTIPLIER_AGREEMENT,
+        penalty_within_its_bound: to_penalty.energy
+            <= penalty.solution.certificate.energy_error_bound
+                + qp.solution.certificate.energy_error_bound
+                + NORM_ROUNDING,
+        active_set: to_active_set,
+        penalty: to_penalty,
+    };
+    Ok(Comparison { answers: [qp, active_set, penalty], agreement })
+}
+
+fn difference(problem: &ContactProblem, answer: &Solution, reference: &Solution) -> Difference {
+    let largest = |values: &[f64]| values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    let minus = |a: &[f64], b: &[f64]| -> Vec<f64> { a.iter().zip(b).map(|(a, b)| a - b).collect() };
+    let relative = |value: f64, scale: f64| if value == 0.0 { 0.0 } else { value / scale };
+    let energy_norm = |u: &[f64]| {
+        let force = problem.stiffness().mul(u);
+        u.iter().zip(&force).map(|(u, f)| u * f).sum::<f64>().max(0.0).sqrt()
+    };
+    let (u, lambda) = (&reference.displacement, &reference.multiplier);
+    let moved = minus(&answer.displacement, u);
+    let violation = problem.violation(u);
+    let (reach, strongest) = (largest(&problem.contact().mul(u)), largest(lambda));
+    let is_weak = |row: usize| lambda[row].abs() <= WEAK * strongest && violation[row].abs() <= WEAK * reach;
+    let differs = |row: usize| answer.contact_set.contains(row) != reference.contact_set.contains(row);
+    Difference {
+        displacement: relative(largest(&moved), largest(u)),
+        multiplier: relative(largest(&minus(&answer.multiplier, lambda)), strongest),
+        rows: (0..problem.rows()).filter(|&row| differs(row) && !is_weak(row)).count(),
+        energy: relative(energy_norm(&moved), energy_norm(&answer.displacement)),
+    }
+}

@@ -1,0 +1,172 @@
+//! The numbers of one answer, named as in the JSON that the command line prints.
+
+use serde::Serialize;
+
+use crate::problem::ContactProblem;
+use crate::solution::{Certificate, Iteration, Solution};
+
+/// One answer in numbers.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// `certified` or `not_certified`.
+    pub status: &'static str,
+    /// Relative tolerance that the certificate was held against.
+    pub tolerance: f64,
+    /// `qp`, `active-set` or `penalty`, with a suffix where a variant ran.
+    pub method: String,
+    /// Iterations of the method.
+    pub iterations: usize,
+    /// Closed rows and forces.
+    pub contact: ContactSummary,
+    /// The recomputed conditions.
+    pub certificate: CertificateSummary,
+    /// Sizes of the model.
+    pub model: ModelSize,
+    /// What it cost.
+    pub seconds: SecondsSummary,
+    /// Iteration by iteration: number of closed rows, and the penalty where there is one.
+    pub history: Vec<HistoryEntry>,
+}
+
+/// One iteration in numbers.
+#[derive(Clone, Debug, Serialize)]
+pub struct HistoryEntry {
+    /// Closed rows.
+    pub closed: usize,
+    /// Penalty in multiples of the local stiffness.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub penalty: Option<f64>,
+}
+
+/// Closed rows and forces of an answer.
+#[derive(Clone, Debug, Serialize)]
+pub struct ContactSummary {
+    /// Number of closed rows.
+    pub count: usize,
+    /// Total contact force `-sum(lambda)`.
+    pub force: f64,
+    /// Largest contact pressure; only a scene has areas to divide by.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pressure_max: Option<f64>,
+    /// Length of the boundary that closed rows stand for; only in a scene.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub width: Option<f64>,
+    /// Imbalance of loads, reactions and contact forces, relative; only in a scene.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub force_balance: Option<f64>,
+}
+
+/// A certificate; a bound that is not known is null.
+#[derive(Clone, Debug, Serialize)]
+#[allow(missing_docs)]
+pub struct CertificateSummary {
+    pub stationarity: f64,
+    pub stationarity_excess: f64,
+    pub penetration: f64,
+    pub adhesion: f64,
+    pub complementarity: f64,
+    pub duality_gap: f64,
+    pub energy_error_bound: f64,
+}
+
+/// Sizes of the model that was solved.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct ModelSize {
+    /// Unknown displacements.
+    pub dofs: usize,
+    /// Contact rows.
+    pub contact_rows: usize,
+    /// Unknowns that the method worked on.
+    pub condensed_dofs: usize,
+    /// Entries of the stiffness, both triangles.
+    pub stiffness_entries: usize,
+    /// Nodes of the mesh; only in a scene.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub nodes: Option<usize>,
+    /// Elements of the mesh; only in a scene.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub elements: Option<usize>,
+}
+
+/// Wall-clock seconds.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct SecondsSummary {
+    /// Reading, meshing and assembly.
+    pub assemble: f64,
+    /// Factorisations, the analysis of the pattern included.
+    pub factor: f64,
+    /// The solve without its factorisations.
+    pub solve: f64,
+    /// All of it.
+    pub total: f64,
+}
+
+impl ModelSize {
+    /// Sizes of a problem without a mesh.
+    pub fn of(problem: &ContactProblem) -> Self {
+        ModelSize {
+            dofs: problem.dofs(),
+            contact_rows: problem.rows(),
+            condensed_dofs: problem.dofs(),
+            stiffness_entries: 2 * problem.stiffness().lower().entries() - problem.dofs(),
+            ..ModelSize::default()
+        }
+    }
+}
+
+impl From<&Certificate> for CertificateSummary {
+    fn from(certificate: &Certificate) -> Self {
+        CertificateSummary {
+            stationarity: certificate.stationarity,
+            stationarity_excess: certificate.stationarity_excess,
+            penetration: certificate.penetration,
+            adhesion: certificate.adhesion,
+            complementarity: certificate.complementarity,
+            duality_gap: certificate.duality_gap,
+            energy_error_bound: certificate.energy_error_bound,
+        }
+    }
+}
+
+/// `certified` or `not_certified`, as the certificate meets the tolerance.
+pub(crate) fn status(certificate: &Certificate, tolerance: f64) -> &'static str {
+    if certificate.meets(tolerance) { "certified" } else { "not_certified" }
+}
+
+impl Summary {
+    /// The numbers of `solution` to a raw problem; a scene adds what it knows to `contact` and `model`.
+    pub fn new(solution: &Solution, model: ModelSize, tolerance: f64, assemble_seconds: f64) -> Self {
+        let entry = |step: &Iteration| HistoryEntry {
+            closed: step.contact_set.count(),
+            penalty: (step.penalty > 0.0).then_some(step.penalty),
+        };
+        let seconds = solution.seconds;
+        Summary {
+            status: status(&solution.certificate, tolerance),
+            tolerance,
+            method: solution.method.clone(),
+            iterations: solution.iterations,
+            contact: ContactSummary {
+                count: solution.contact_set.count(),
+                force: solution.contact_force(),
+                pressure_max: None,
+                width: None,
+                force_balance: None,
+            },
+            certificate: (&solution.certificate).into(),
+            model,
+            seconds: SecondsSummary {
+                assemble: assemble_seconds,
+                factor: seconds.factor,
+                solve: (seconds.solve - seconds.factor).max(0.0),
+                total: assemble_seconds + seconds.solve,
+            },
+            history: solution.history.iter().map(entry).collect(),
+        }
+    }
+
+    /// Does the answer meet its tolerance?
+    pub fn is_certified(&self) -> bool {
+        self.status == "certified"
+    }
+}
