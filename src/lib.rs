@@ -2,8 +2,15 @@
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 
+pub mod analytical;
+pub mod assembly;
+pub mod body;
+pub mod element;
 pub mod error;
+pub mod material;
+pub mod mesh;
 pub mod problem;
+pub mod recovery;
 pub mod solution;
 pub mod sparse;
 
