@@ -11,9 +11,11 @@ pub mod material;
 pub mod mesh;
 pub mod problem;
 pub mod recovery;
+pub mod scene;
 pub mod solution;
 pub mod sparse;
 
 pub use error::Error;
 pub use problem::ContactProblem;
+pub use scene::{Model, Scene};
 pub use solution::{Certificate, ContactSet, Solution};
