@@ -129,6 +129,12 @@ pub enum Error {
         /// Why.
         reason: String,
     },
+    /// Nodes and elements that make no mesh.
+    #[error("mesh: {message}")]
+    Mesh {
+        /// Which node or element, what is wrong with it, and what is allowed.
+        message: String,
+    },
     /// A scene whose JSON does not have the right form.
     #[error("{source_name}:{line}:{column}: at `{path}`: {message}")]
     SceneSyntax {

@@ -9,7 +9,7 @@ const FLOORS: [&[&str]; 10] = [
     &["analytical", "solution"],
     &["error"],
     &["sparse", "mesh", "element", "material"],
-    &["problem"],
+    &["problem", "body"],
     &["transform", "method", "assembly", "recovery"],
     &["solve"],
     &["scene", "matrix_market"],

@@ -1,0 +1,98 @@
+//! The command line: arguments in, text or JSON out, and one exit code for each kind of ending.
+
+mod export;
+mod input;
+mod options;
+mod solve;
+mod verify;
+
+use std::ffi::OsString;
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::error::Error;
+use crate::scene::Scene;
+use options::{Arguments, Command, Format};
+
+/// How a command ended, as an exit code; a usage error is 2, from the argument parser.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Ending {
+    Certified = 0,
+    BadInput = 1,
+    NoSolution = 3,
+    NotCertified = 4,
+}
+
+/// What a command leaves: the text for standard output, and how it ended.
+struct Outcome {
+    text: String,
+    ending: Ending,
+}
+
+/// Runs the program with `arguments`, the first of which is its name.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(help) => {
+            // A closed pipe leaves nobody to tell.
+            let _ = help.print();
+            return ExitCode::from(help.exit_code() as u8);
+        }
+    };
+    let format = arguments.command.format();
+    let outcome = match arguments.command {
+        Command::Solve(options) => solve::run(&options),
+        Command::Export(options) => export::run(&options),
+        Command::Verify(options) => verify::run(&options),
+        Command::Schema => Ok(Outcome::certified(format!("{:#}\n", Scene::json_schema()))),
+    };
+    let outcome = outcome.unwrap_or_else(|error| {
+        // Nor is there somebody to tell when standard error is closed.
+        let _ = writeln!(io::stderr(), "error: {error}");
+        let ending = ending_of(&error);
+        let text = match format {
+            Format::Json => format!("{:#}\n", failure_json(&error)),
+            Format::Text => String::new(),
+        };
+        Outcome { text, ending }
+    });
+    match io::stdout().write_all(outcome.text.as_bytes()).and_then(|()| io::stdout().flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            let _ = writeln!(io::stderr(), "error: cannot write to standard output: {error}");
+            ExitCode::from(Ending::BadInput as u8)
+        }
+        _ => ExitCode::from(outcome.ending as u8),
+    }
+}
+
+impl Outcome {
+    fn certified(text: String) -> Self {
+        Outcome { text, ending: Ending::Certified }
+    }
+
+    /// Certified or not, with that exit code.
+    fn judged(text: String, certified: bool) -> Self {
+        Outcome { text, ending: if certified { Ending::Certified } else { Ending::NotCertified } }
+    }
+}
+
+fn ending_of(error: &Error) -> Ending {
+    match error {
+        Error::Infeasible { .. } | Error::Unbounded { .. } | Error::UnderHeld { .. } => Ending::NoSolution,
+        Error::NotCertified { .. } => Ending::NotCertified,
+        _ => Ending::BadInput,
+    }
+}
+
+fn failure_json(error: &Error) -> serde_json::Value {
+    let status = match error {
+        Error::Infeasible { .. } => "infeasible",
+        Error::Unbounded { .. } => "unbounded",
+        Error::UnderHeld { .. } => "under_held",
+        Error::NotConvex { .. } => "not_convex",
+        _ => "bad_input",
+    };
+    serde_json::json!({ "status": status, "message": error.to_string() })
+}

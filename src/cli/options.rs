@@ -1,0 +1,123 @@
+//! The arguments. Types of the argument parser stop here.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+use crate::solve;
+
+/// Frictionless contact of elastic bodies with obstacles: a convex QP, cross-checked and certified.
+#[derive(Debug, Parser)]
+#[command(name = "signorini", version, arg_required_else_help = true)]
+#[command(after_help = "Exit codes: 0 certified, 1 bad input or file, 2 usage, 3 infeasible, unbounded or under-held, \
+                        4 not certified, 130 interrupted.")]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Solve a scene or a problem directory and certify the answer
+    Solve(Solve),
+    /// Write the problem of a scene as Matrix Market files
+    Export(Export),
+    /// Certify an answer that came from elsewhere
+    Verify(Verify),
+    /// Print the JSON Schema of a scene
+    Schema,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Format {
+    /// For reading
+    Text,
+    /// One object, for other programs
+    Json,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum MethodName {
+    /// The program chooses
+    Auto,
+    /// Convex QP by an interior-point method, its contact set settled by active-set steps
+    Qp,
+    /// Active-set loop with Lagrange multipliers
+    ActiveSet,
+    /// Penalty loop
+    Penalty,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Solve {
+    /// Scene (a JSON file) or problem directory (with K.mtx, f.mtx, B.mtx, g.mtx)
+    pub input: PathBuf,
+    /// Method that finds the contact set
+    #[arg(long, value_enum, default_value_t = MethodName::Auto)]
+    pub method: MethodName,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// What every solving command takes.
+#[derive(Debug, Args)]
+pub(super) struct Common {
+    /// Relative tolerance of the certificate
+    #[arg(long, default_value_t = 1e-9, value_name = "T")]
+    pub tolerance: f64,
+    /// Folder for pictures, fields and answers
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Form of the report
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub format: Format,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Export {
+    /// Scene (a JSON file)
+    pub scene: PathBuf,
+    /// Folder for K.mtx, f.mtx, B.mtx and g.mtx; made if missing
+    pub directory: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Verify {
+    /// Problem directory (with K.mtx, f.mtx, B.mtx, g.mtx)
+    pub directory: PathBuf,
+    /// Displacement u of the free dofs
+    #[arg(long, value_name = "u.mtx")]
+    pub displacement: PathBuf,
+    /// Contact multiplier lambda of the contact rows, negative in compression
+    #[arg(long, value_name = "lambda.mtx")]
+    pub multiplier: PathBuf,
+    /// Relative tolerance of the certificate
+    #[arg(long, default_value_t = 1e-9, value_name = "T")]
+    pub tolerance: f64,
+    /// Form of the report
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub format: Format,
+}
+
+impl Command {
+    /// The form in which this command reports.
+    pub fn format(&self) -> Format {
+        match self {
+            Command::Solve(options) => options.common.format,
+            Command::Verify(options) => options.format,
+            Command::Export(_) | Command::Schema => Format::Text,
+        }
+    }
+}
+
+impl MethodName {
+    /// The method of the library.
+    pub fn method(self) -> solve::Method {
+        match self {
+            MethodName::Auto => solve::Method::Auto,
+            MethodName::Qp => solve::Method::Qp,
+            MethodName::ActiveSet => solve::Method::ActiveSet,
+            MethodName::Penalty => solve::Method::Penalty,
+        }
+    }
+}

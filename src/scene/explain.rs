@@ -1,0 +1,70 @@
+//! Errors of the solvers in the words of the scene: rigid motions by name, rows by node and obstacle.
+
+use super::motion::{RigidMotions, advice};
+use super::{Model, number, point};
+use crate::error::Error;
+
+/// More nodes than this are counted, not listed.
+const LISTED_NODES: usize = 3;
+
+impl Model {
+    /// Rewrites an error of a solver into the words of this scene; other errors come back as they are.
+    ///
+    /// [`Error::Unbounded`] and [`Error::UnderHeld`] name the rigid motion; [`Error::Infeasible`] names nodes,
+    /// coordinates and obstacles.
+    pub fn explain(&self, error: Error) -> Error {
+        match error {
+            Error::Unbounded { motion, direction } => {
+                let motion = self.name_of(&direction).unwrap_or(motion);
+                Error::Unbounded { motion, direction }
+            }
+            Error::UnderHeld { motion, direction } => {
+                let named = self.name_of(&direction).map(|name| format!("{name}: {}", advice(!self.rows().is_empty())));
+                Error::UnderHeld { motion: named.unwrap_or(motion), direction }
+            }
+            Error::Infeasible { reason, rows } => {
+                let reason = self.describe_rows(&rows).unwrap_or(reason);
+                Error::Infeasible { reason, rows }
+            }
+            other => other,
+        }
+    }
+
+    fn name_of(&self, direction: &[f64]) -> Option<String> {
+        let parts = self.parts();
+        let motion = parts.dofs.expand_motion(direction).ok()?;
+        RigidMotions::of(parts).name_of(parts.body.mesh().nodes(), &motion)
+    }
+
+    fn describe_rows(&self, rows: &[usize]) -> Option<String> {
+        let mut by_node: Vec<(usize, Vec<usize>)> = Vec::new();
+        for &row in rows {
+            let node = self.rows().get(row)?.node;
+            match by_node.iter_mut().find(|entry| entry.0 == node) {
+                Some(entry) => entry.1.push(row),
+                None => by_node.push((node, vec![row])),
+            }
+        }
+        let mut parts: Vec<String> =
+            by_node.iter().take(LISTED_NODES).map(|(node, rows)| self.describe_node(*node, rows)).collect();
+        if by_node.len() > LISTED_NODES {
+            parts.push(format!("{} more nodes", by_node.len() - LISTED_NODES));
+        }
+        (!parts.is_empty()).then(|| parts.join("; "))
+    }
+
+    fn describe_node(&self, node: usize, rows: &[usize]) -> String {
+        let obstacle = |row: &usize| {
+            let row = &self.rows()[*row];
+            format!("obstacles[{}] (gap {})", row.obstacle, number(row.gap))
+        };
+        let at = point(self.mesh().nodes()[node]);
+        let names: Vec<String> = rows.iter().map(obstacle).collect();
+        let supported = [0, 1].iter().all(|axis| self.parts().dofs.number(2 * node + axis).is_none());
+        match names.as_slice() {
+            [one] if supported => format!("node {node} at {at} is supported inside {one}"),
+            [one] => format!("node {node} at {at} cannot leave {one}"),
+            _ => format!("node {node} at {at} has no room between {}", names.join(" and ")),
+        }
+    }
+}

@@ -1,0 +1,67 @@
+//! Scenes: a JSON text becomes a checked model of bodies, supports, loads and obstacles.
+//!
+//! ```
+//! let text = r#"{
+//!     "body": {"rectangle": {"x": {"points": [0, 1], "divisions": [4]}, "y": {"points": [0, 1], "divisions": [4]}}},
+//!     "material": {"young": 1e7, "poisson": 0.3},
+//!     "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}],
+//!     "obstacles": [{"boundary": "top", "approach": "+y", "shape": {"plane": {"point": [0, 1], "normal": [0, 1]}}}],
+//!     "gap": -0.01
+//! }"#;
+//! let model = signorini::Scene::from_json(text, "scene")?.build()?;
+//! assert_eq!(model.problem().dofs(), 40);
+//! assert_eq!(model.problem().gap(), [-0.01; 5]);
+//! # Ok::<(), signorini::Error>(())
+//! ```
+
+mod build;
+mod explain;
+mod model;
+mod motion;
+mod obstacle;
+mod parse;
+mod rows;
+mod schema;
+mod warning;
+
+pub use model::Model;
+pub use obstacle::Obstacle;
+pub use rows::ContactRow;
+pub use schema::{
+    Approach, AxisSpec, BodySpec, CircleSpec, ElementSpec, ForceSpec, LoadSpec, MaterialSpec, ObstacleSpec,
+    ParabolaSpec, Place, PlaneModel, PlaneSpec, RectangleSpec, Rule, Scene, ShapeSpec, SupportSpec, TableSpec,
+    TractionSpec, Units, WedgeSpec,
+};
+pub use warning::Warning;
+
+use crate::error::Error;
+
+/// A point named in a scene must lie on a node, and a table must reach a candidate, to within this times the body's
+/// size: above the rounding of written decimals, far below any cell.
+const PLACE_TOLERANCE: f64 = 1e-9;
+
+/// Lengths below this times the body's size are rounding of coordinates.
+const ROUNDING: f64 = 1e-12;
+
+fn wrong(path: impl Into<String>, message: impl Into<String>) -> Error {
+    Error::Scene { path: path.into(), message: message.into() }
+}
+
+fn finite(path: impl Into<String>, value: f64) -> Result<(), Error> {
+    if value.is_finite() { Ok(()) } else { Err(wrong(path, format!("{value} is not finite"))) }
+}
+
+fn finite_pair(path: &str, pair: [f64; 2]) -> Result<(), Error> {
+    finite(format!("{path}[0]"), pair[0])?;
+    finite(format!("{path}[1]"), pair[1])
+}
+
+/// A number as a reader writes it: plain in the middle, with an exponent at the extremes.
+fn number(value: f64) -> String {
+    let size = value.abs();
+    if size == 0.0 || (1e-4..1e7).contains(&size) { format!("{value}") } else { format!("{value:e}") }
+}
+
+fn point([x, y]: [f64; 2]) -> String {
+    format!("({}, {})", number(x), number(y))
+}

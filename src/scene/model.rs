@@ -1,0 +1,237 @@
+//! The model: a scene discretised, its contact problem, and the way back from an answer to the body.
+
+use std::sync::Arc;
+
+use super::motion::RigidMotions;
+use super::rows::{self, ContactRow};
+use super::{Obstacle, Units, Warning};
+use crate::assembly::{DofMap, internal_force, stiffness};
+use crate::body::ElasticBody;
+use crate::error::Error;
+use crate::mesh::Mesh;
+use crate::problem::ContactProblem;
+use crate::recovery::{self, StressField};
+use crate::sparse::SymmetricMatrix;
+
+/// What a change of the gap leaves alone.
+#[derive(Debug)]
+pub(super) struct Parts {
+    pub title: String,
+    pub units: Units,
+    pub body: ElasticBody,
+    pub dofs: DofMap,
+    /// External load at all nodes, length `2 * n_nodes`.
+    pub load: Vec<f64>,
+    pub obstacles: Vec<Obstacle>,
+    pub warnings: Vec<Warning>,
+}
+
+/// A discretised scene: mesh, contact problem, and what its rows and dofs mean.
+///
+/// Nodal vectors have length `2 * n_nodes` and the order `[x_0, y_0, x_1, y_1, ...]`. `displacement` arguments are those
+/// of a solution: one entry per free dof.
+#[derive(Clone, Debug)]
+pub struct Model {
+    parts: Arc<Parts>,
+    gap: f64,
+    rows: Vec<ContactRow>,
+    warnings: Vec<Warning>,
+    problem: ContactProblem,
+}
+
+impl Model {
+    /// Rows first, since they tell whether the body is held, before anything expensive is built.
+    pub(super) fn new(parts: Parts, gap: f64) -> Result<Self, Error> {
+        let built = rows::build(&parts, gap)?;
+        RigidMotions::of(&parts).check_held(&parts, &built.rows)?;
+        // Prescribed displacements go to the right-hand side as the forces that they alone would cause.
+        let mut load = parts.load.clone();
+        if (0..parts.dofs.nodal_count()).any(|dof| parts.dofs.prescribed(dof).is_some_and(|value| value != 0.0)) {
+            let lifted = parts.dofs.expand(&vec![0.0; parts.dofs.free().len()])?;
+            let forces = internal_force(&parts.body, &lifted)?;
+            load.iter_mut().zip(forces).for_each(|(load, force)| *load -= force);
+        }
+        let stiffness = stiffness(&parts.body, &parts.dofs)?;
+        let load = parts.dofs.restrict(&load)?;
+        Self::with_rows(Arc::new(parts), gap, built, stiffness, load)
+    }
+
+    fn with_rows(
+        parts: Arc<Parts>,
+        gap: f64,
+        built: rows::Rows,
+        stiffness: SymmetricMatrix,
+        load: Vec<f64>,
+    ) -> Result<Self, Error> {
+        let problem = ContactProblem::new(stiffness, load, built.contact, built.gap)?;
+        let warnings = parts.warnings.iter().cloned().chain(built.warnings).collect();
+        Ok(Model { parts, gap, rows: built.rows, warnings, problem })
+    }
+
+    /// The same scene with another scene-wide gap: only the contact rows are built again.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for a gap that is not finite or puts a node so deep that it has no closest point,
+    /// [`Error::UnderHeld`] where the new rows leave a rigid motion free.
+    pub fn with_gap(&self, gap: f64) -> Result<Self, Error> {
+        let built = rows::build(&self.parts, gap)?;
+        RigidMotions::of(&self.parts).check_held(&self.parts, &built.rows)?;
+        let (stiffness, load) = (self.problem.stiffness().clone(), self.problem.load().to_vec());
+        Self::with_rows(self.parts.clone(), gap, built, stiffness, load)
+    }
+
+    pub(super) fn parts(&self) -> &Parts {
+        &self.parts
+    }
+
+    /// What the scene shows.
+    pub fn title(&self) -> &str {
+        &self.parts.title
+    }
+
+    /// Names of the units.
+    pub fn units(&self) -> &Units {
+        &self.parts.units
+    }
+
+    /// The scene-wide gap: the shift of every obstacle along its approach direction.
+    pub fn gap(&self) -> f64 {
+        self.gap
+    }
+
+    /// The body: mesh, material, thickness.
+    pub fn body(&self) -> &ElasticBody {
+        &self.parts.body
+    }
+
+    /// The mesh.
+    pub fn mesh(&self) -> &Mesh {
+        self.parts.body.mesh()
+    }
+
+    /// Free and supported dofs.
+    pub fn dofs(&self) -> &DofMap {
+        &self.parts.dofs
+    }
+
+    /// The obstacles in the order of the scene.
+    pub fn obstacles(&self) -> &[Obstacle] {
+        &self.parts.obstacles
+    }
+
+    /// The surface of obstacle `obstacle` at this model's gap, as [`Obstacle::outline`]; empty where there is no such
+    /// obstacle.
+    pub fn obstacle_outline(&self, obstacle: usize, segments: usize) -> Vec<[f64; 2]> {
+        self.parts.obstacles.get(obstacle).map_or_else(Vec::new, |obstacle| obstacle.outline(self.gap, segments))
+    }
+
+    /// The contact rows, in the order of the rows of [`problem`](Self::problem): obstacle by obstacle, each in the order of
+    /// its boundary.
+    pub fn rows(&self) -> &[ContactRow] {
+        &self.rows
+    }
+
+    /// What a reader of the answer should know.
+    pub fn warnings(&self) -> &[Warning] {
+        &self.warnings
+    }
+
+    /// The contact problem in the free dofs.
+    pub fn problem(&self) -> &ContactProblem {
+        &self.problem
+    }
+
+    /// Nodal displacements, in length, from those of the free dofs; supports have their prescribed values.
+    ///
+    /// # Errors
+    /// [`Error::Length`] where `displacement` does not have one entry per free dof.
+    pub fn nodal_displacement(&self, displacement: &[f64]) -> Result<Vec<f64>, Error> {
+        self.parts.dofs.expand(displacement)
+    }
+
+    /// Contact pressure of each row, `-lambda / tributary area`, in force per area, `>= 0` in compression.
+    ///
+    /// # Errors
+    /// [`Error::Length`] where `multiplier` does not have one entry per contact row.
+    pub fn pressure(&self, multiplier: &[f64]) -> Result<Vec<f64>, Error> {
+        self.check_multiplier(multiplier)?;
+        Ok(self.rows.iter().zip(multiplier).map(|(row, lambda)| -lambda / row.tributary_area).collect())
+    }
+
+    /// Nodal contact forces on the body, `lambda n`, in force.
+    ///
+    /// # Errors
+    /// As [`Model::pressure`].
+    pub fn contact_forces(&self, multiplier: &[f64]) -> Result<Vec<f64>, Error> {
+        self.check_multiplier(multiplier)?;
+        let mut forces = vec![0.0; self.parts.dofs.nodal_count()];
+        for (row, lambda) in self.rows.iter().zip(multiplier) {
+            forces[2 * row.node] += lambda * row.normal[0];
+            forces[2 * row.node + 1] += lambda * row.normal[1];
+        }
+        Ok(forces)
+    }
+
+    /// Nodal support reactions on the body, in force; zero at free dofs.
+    ///
+    /// What the stress in the elements asks for at the supported dofs, less load and contact force there. The multiplier
+    /// enters because a contact row may press on a supported dof.
+    ///
+    /// # Errors
+    /// [`Error::Length`] where `displacement` or `multiplier` do not fit.
+    pub fn reactions(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Vec<f64>, Error> {
+        let contact = self.contact_forces(multiplier)?;
+        let mut reactions = internal_force(self.body(), &self.nodal_displacement(displacement)?)?;
+        for (dof, reaction) in reactions.iter_mut().enumerate() {
+            let supported = self.parts.dofs.number(dof).is_none();
+            *reaction = if supported { *reaction - self.parts.load[dof] - contact[dof] } else { 0.0 };
+        }
+        Ok(reactions)
+    }
+
+    /// External loads at all nodes, in force, length `2 * n_nodes`.
+    pub fn nodal_load(&self) -> &[f64] {
+        &self.parts.load
+    }
+
+    /// The imbalance of loads, support reactions and contact forces on the whole body: the largest of the two resultant
+    /// forces and the resultant moment over half the body's size, relative to the sum of all force magnitudes.
+    ///
+    /// # Errors
+    /// As [`Model::reactions`].
+    pub fn force_balance(&self, displacement: &[f64], multiplier: &[f64]) -> Result<f64, Error> {
+        let reactions = self.reactions(displacement, multiplier)?;
+        let contact = self.contact_forces(multiplier)?;
+        let (low, high) = self.mesh().extent();
+        let arm = self.mesh().size() / 2.0;
+        let (mut resultant, mut magnitude) = ([0.0; 3], 0.0);
+        for (node, at) in self.mesh().nodes().iter().enumerate() {
+            let [x, y] = [0, 1].map(|axis| (at[axis] - low[axis] - (high[axis] - low[axis]) / 2.0) / arm);
+            for forces in [&self.parts.load, &reactions, &contact] {
+                let (fx, fy) = (forces[2 * node], forces[2 * node + 1]);
+                resultant[0] += fx;
+                resultant[1] += fy;
+                resultant[2] += x * fy - y * fx;
+                magnitude += fx.hypot(fy);
+            }
+        }
+        let largest = resultant.iter().fold(0.0_f64, |largest, part| largest.max(part.abs()));
+        Ok(if magnitude == 0.0 { 0.0 } else { largest / magnitude })
+    }
+
+    /// The stress in the displaced body, per element and per node.
+    ///
+    /// # Errors
+    /// As [`Model::nodal_displacement`].
+    pub fn stress(&self, displacement: &[f64]) -> Result<StressField, Error> {
+        recovery::stress(self.body(), &self.nodal_displacement(displacement)?)
+    }
+
+    fn check_multiplier(&self, multiplier: &[f64]) -> Result<(), Error> {
+        let (found, expected) = (multiplier.len(), self.rows.len());
+        if found != expected {
+            return Err(Error::Length { name: "multiplier", found, expected, of: "contact rows" });
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,40 @@
+//! A circle, the half that faces the body: h(s) = R - sqrt(R^2 - s^2).
+
+use super::frame::Local;
+use super::surface::{Foot, Surface};
+
+/// A circle with its apex at the origin and its centre at (0, R).
+#[derive(Debug)]
+pub(super) struct Circle {
+    pub radius: f64,
+}
+
+impl Surface for Circle {
+    fn height(&self, along: f64) -> Option<f64> {
+        let rest = (self.radius - along) * (self.radius + along);
+        // s^2/(R + sqrt(R^2 - s^2)) is R - sqrt(R^2 - s^2) without the cancellation.
+        (along.abs() <= self.radius).then(|| along * (along / (self.radius + rest.max(0.0).sqrt())))
+    }
+
+    /// Distance to the centre less the radius; a node behind the centre has no closest point on the facing half.
+    fn closest(&self, [along, towards]: Local, tolerance: f64) -> Result<Option<Foot>, &'static str> {
+        let (r, rest) = (self.radius, self.radius - towards);
+        let to_centre = along.hypot(rest);
+        if rest <= 0.0 && to_centre >= r {
+            return Ok(None);
+        }
+        if along.abs() <= tolerance {
+            return Ok(Some(Foot { normal: [0.0, 1.0], distance: -towards }));
+        }
+        if rest <= 0.0 {
+            return Err("lies deeper in the circle than its centre");
+        }
+        // (s^2 + q^2 - 2 R q)/(d + R) is d - R without the cancellation.
+        let distance = (along * along + towards * towards - 2.0 * r * towards) / (to_centre + r);
+        Ok(Some(Foot { normal: [-along / to_centre, rest / to_centre], distance }))
+    }
+
+    fn range(&self) -> (f64, f64) {
+        (-self.radius, self.radius)
+    }
+}

@@ -1,0 +1,129 @@
+//! A polyline over the coordinate along it, extended by a ray at either end: wedge and table.
+
+use super::frame::Local;
+use super::surface::{Foot, Surface};
+
+/// Knots increasing along the surface, and the slopes of the rays before the first and after the last.
+#[derive(Debug)]
+pub(super) struct Polyline {
+    knots: Vec<Local>,
+    end_slopes: [f64; 2],
+    range: (f64, f64),
+}
+
+/// The closest point of one piece.
+struct Candidate {
+    distance: f64,
+    normal: Local,
+    anchor: Local,
+    /// The knot that is closest, where it is an end of the piece.
+    knot: Option<usize>,
+}
+
+impl Polyline {
+    /// Two rays of slope `slope` away from the origin.
+    pub fn wedge(slope: f64) -> Self {
+        Polyline { knots: vec![[0.0, 0.0]], end_slopes: [-slope, slope], range: (f64::NEG_INFINITY, f64::INFINITY) }
+    }
+
+    /// The polyline through `knots` (at least two, increasing); it reaches from the first to the last, or `beyond`.
+    pub fn table(knots: Vec<Local>, beyond: f64) -> Option<Self> {
+        let ([first, second, ..], [.., last_but_one, last]) = (knots.as_slice(), knots.as_slice()) else {
+            return None;
+        };
+        let slope = |a: &Local, b: &Local| (b[1] - a[1]) / (b[0] - a[0]);
+        let end_slopes = [slope(first, second), slope(last_but_one, last)];
+        let range = (first[0] - beyond, last[0] + beyond);
+        Some(Polyline { knots, end_slopes, range })
+    }
+
+    /// Pieces from left to right: ray, segments, ray. Each has an anchor, a unit tangent and the extent along it.
+    fn pieces(&self) -> impl Iterator<Item = (Local, Local, f64, f64)> + '_ {
+        let tangent = |step: Local| {
+            let length = step[0].hypot(step[1]);
+            ([step[0] / length, step[1] / length], length)
+        };
+        let rays = move |knot: Option<&Local>, slope: f64, low: f64, high: f64| {
+            knot.map(|&knot| (knot, tangent([1.0, slope]).0, low, high))
+        };
+        let segments = self.knots.windows(2).map(move |ends| {
+            let (direction, length) = tangent([ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]]);
+            (ends[0], direction, 0.0, length)
+        });
+        let before = rays(self.knots.first(), self.end_slopes[0], f64::NEG_INFINITY, 0.0);
+        let after = rays(self.knots.last(), self.end_slopes[1], 0.0, f64::INFINITY);
+        before.into_iter().chain(segments).chain(after)
+    }
+}
+
+impl Surface for Polyline {
+    fn height(&self, along: f64) -> Option<f64> {
+        if !(self.range.0..=self.range.1).contains(&along) {
+            return None;
+        }
+        let after = self.knots.partition_point(|knot| knot[0] <= along);
+        let ray = |knot: &Local, slope: f64| knot[1] + slope * (along - knot[0]);
+        match (after.checked_sub(1).and_then(|before| self.knots.get(before)), self.knots.get(after)) {
+            (Some(left), Some(right)) => {
+                let fraction = (along - left[0]) / (right[0] - left[0]);
+                Some(left[1] + fraction * (right[1] - left[1]))
+            }
+            (Some(last), None) if along == last[0] => Some(last[1]),
+            (Some(last), None) => Some(ray(last, self.end_slopes[1])),
+            (None, Some(first)) => Some(ray(first, self.end_slopes[0])),
+            (None, None) => None,
+        }
+    }
+
+    fn closest(&self, node: Local, tolerance: f64) -> Result<Option<Foot>, &'static str> {
+        let candidates: Vec<Candidate> = self
+            .pieces()
+            .enumerate()
+            .map(|(piece, (anchor, tangent, low, high))| {
+                let to_node = [node[0] - anchor[0], node[1] - anchor[1]];
+                let free = to_node[0] * tangent[0] + to_node[1] * tangent[1];
+                let at = free.clamp(low, high);
+                let distance = (to_node[0] - at * tangent[0]).hypot(to_node[1] - at * tangent[1]);
+                // Piece i ends at knot i and starts at knot i - 1.
+                let knot = if at == high { Some(piece) } else { piece.checked_sub(1).filter(|_| at == low) };
+                Candidate { distance, normal: [-tangent[1], tangent[0]], anchor, knot }
+            })
+            .collect();
+        let Some(nearest) = candidates.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)) else {
+            return Ok(None);
+        };
+        let along_normal = |normal: Local, to: Local| normal[0] * (to[0] - node[0]) + normal[1] * (to[1] - node[1]);
+        let bisector = |normals: &mut dyn Iterator<Item = Local>| {
+            let sum = normals.fold([0.0; 2], |sum: Local, normal| [sum[0] + normal[0], sum[1] + normal[1]]);
+            let length = sum[0].hypot(sum[1]);
+            [sum[0] / length, sum[1] / length]
+        };
+        if let Some((knot, index)) = nearest.knot.and_then(|index| Some((*self.knots.get(index)?, index))) {
+            // The pieces on both sides of a knot have the numbers `index` and `index + 1`.
+            if nearest.distance <= tolerance {
+                let normal = bisector(&mut candidates.iter().skip(index).take(2).map(|piece| piece.normal));
+                return Ok(Some(Foot { normal, distance: along_normal(normal, knot) }));
+            }
+            let inside = self.height(node[0].clamp(self.range.0, self.range.1)).is_some_and(|h| node[1] > h);
+            let sense = if inside { -1.0 } else { 1.0 };
+            let normal = [0, 1].map(|axis| sense * (knot[axis] - node[axis]) / nearest.distance);
+            return Ok(Some(Foot { normal, distance: sense * nearest.distance }));
+        }
+        let distance = along_normal(nearest.normal, nearest.anchor);
+        let mut ties = candidates
+            .iter()
+            .filter(|other| other.knot.is_none() && other.distance - nearest.distance <= tolerance)
+            .map(|other| other.normal);
+        let normal = bisector(&mut ties);
+        let cosine = normal[0] * nearest.normal[0] + normal[1] * nearest.normal[1];
+        Ok(Some(Foot { normal, distance: distance / cosine }))
+    }
+
+    fn range(&self) -> (f64, f64) {
+        self.range
+    }
+
+    fn corners(&self) -> Vec<f64> {
+        self.knots.iter().map(|knot| knot[0]).collect()
+    }
+}

@@ -1,0 +1,38 @@
+//! What every obstacle surface can tell, in its own frame.
+
+use std::fmt::Debug;
+
+use super::frame::Local;
+
+/// The way from a node to the surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::scene) struct Foot {
+    /// Unit normal at the foot, into the obstacle.
+    pub normal: Local,
+    /// Signed distance along it; negative inside.
+    pub distance: f64,
+}
+
+/// A surface as a graph over the coordinate along it: the obstacle lies at and above its height.
+pub(in crate::scene) trait Surface: Debug + Send + Sync {
+    /// The height towards the obstacle, or `None` beyond the surface's reach.
+    fn height(&self, along: f64) -> Option<f64>;
+
+    /// The foot closest to `node`, or `None` where no part of the surface faces it; lengths below `tolerance` are rounding.
+    ///
+    /// A node behind a vertex or on an axis, equally close to both sides, goes straight back.
+    ///
+    /// # Errors
+    /// A predicate of the node, where it lies so deep that no closest point makes sense.
+    fn closest(&self, node: Local, tolerance: f64) -> Result<Option<Foot>, &'static str>;
+
+    /// The reach, along the surface.
+    fn range(&self) -> (f64, f64) {
+        (f64::NEG_INFINITY, f64::INFINITY)
+    }
+
+    /// Where the surface has corners, along it.
+    fn corners(&self) -> Vec<f64> {
+        Vec::new()
+    }
+}

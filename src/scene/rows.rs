@@ -1,0 +1,74 @@
+//! Contact rows: B u <= g in the free dofs, from the candidates of every obstacle.
+
+use super::model::Parts;
+use super::{ROUNDING, Warning, finite, point, wrong};
+use crate::error::Error;
+use crate::sparse::SparseMatrix;
+
+/// One contact row: `normal . u <= gap` at a node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactRow {
+    /// The node.
+    pub node: usize,
+    /// The obstacle, from 0 in the order of the scene.
+    pub obstacle: usize,
+    /// Unit vector [x, y] into the obstacle.
+    pub normal: [f64; 2],
+    /// Signed distance of the undeformed node to the obstacle along `normal`, in length; negative inside.
+    ///
+    /// The gap of the problem is this less what prescribed displacements of the node take up.
+    pub gap: f64,
+    /// Integral of the node's shape function along the candidate boundary times the thickness, in area.
+    pub tributary_area: f64,
+}
+
+/// The rows of all obstacles, and the matrix B and the vector g that they make in the free dofs.
+pub(super) struct Rows {
+    pub rows: Vec<ContactRow>,
+    pub contact: SparseMatrix,
+    pub gap: Vec<f64>,
+    pub warnings: Vec<Warning>,
+}
+
+/// Builds the rows with all obstacles shifted by `scene_gap`.
+///
+/// A row whose dofs are all supported holds or fails by itself: it is left out where it holds, and stays as an empty row
+/// with a negative gap where it fails.
+pub(super) fn build(parts: &Parts, scene_gap: f64) -> Result<Rows, Error> {
+    finite("gap", scene_gap)?;
+    let (mesh, dofs) = (parts.body.mesh(), &parts.dofs);
+    let rounding = ROUNDING * mesh.size();
+    let (mut rows, mut gap, mut entries, mut warnings) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    for (index, obstacle) in parts.obstacles.iter().enumerate() {
+        let mut reached = false;
+        for &(node, tributary_area) in obstacle.candidates() {
+            let at = mesh.nodes()[node];
+            let way = obstacle.row(at, scene_gap).map_err(|reason| {
+                let message = format!("node {node} at {} {reason}; move the obstacle away from it", point(at));
+                wrong(format!("obstacles[{index}]"), message)
+            })?;
+            let Some(way) = way else { continue };
+            reached = true;
+            let (mut remaining, mut free) = (way.distance, false);
+            for (axis, &component) in way.normal.iter().enumerate().filter(|entry| *entry.1 != 0.0) {
+                let dof = 2 * node + axis;
+                match dofs.number(dof) {
+                    Some(column) => {
+                        entries.push((rows.len(), column, component));
+                        free = true;
+                    }
+                    None => remaining -= component * dofs.prescribed(dof).unwrap_or(0.0),
+                }
+            }
+            if free || remaining < -rounding {
+                rows.push(ContactRow { node, obstacle: index, normal: way.normal, gap: way.distance, tributary_area });
+                gap.push(remaining);
+            }
+        }
+        if !reached {
+            warnings.push(Warning::NoContactRow { obstacle: index });
+        }
+    }
+    let contact = SparseMatrix::from_triplets(rows.len(), dofs.free().len(), &entries)?;
+    Ok(Rows { rows, contact, gap, warnings })
+}

@@ -1,0 +1,25 @@
+//! Warnings: what can be solved but may mislead, and what to do next.
+
+/// Something about a scene that a reader of its answer should know.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Warning {
+    /// Linear elements lock when the material keeps its volume.
+    #[error(
+        "Poisson's ratio {poisson} in plane strain locks linear elements: pressures can come out several times too \
+         large; take a ratio of at most 0.49, or compare with a finer mesh before using them"
+    )]
+    NearlyIncompressible {
+        /// The ratio.
+        poisson: f64,
+    },
+    /// No node of the candidate boundary faces the obstacle.
+    #[error(
+        "obstacles[{obstacle}] faces no node of its boundary: the body is solved without it; check its place, \
+         its approach direction and its radius"
+    )]
+    NoContactRow {
+        /// Which obstacle, from 0.
+        obstacle: usize,
+    },
+}
