@@ -3,6 +3,7 @@
 #![deny(missing_docs)]
 
 pub mod error;
+pub mod output;
 pub mod problem;
 pub mod solution;
 pub mod sparse;
