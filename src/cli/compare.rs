@@ -1,0 +1,33 @@
+//! `signorini compare`: three methods, one problem.
+
+use super::input::{Content, Input};
+use super::options::{Compare, Format};
+use super::solve::settings;
+use super::{Outcome, warn};
+use crate::error::Error;
+use crate::output::{compare_json, compare_text, gallery, write_files};
+use crate::solve::Method;
+use crate::study::{Summary, compare};
+
+pub(super) fn run(options: &Compare) -> Result<Outcome, Error> {
+    let common = &options.common;
+    let input = Input::read(&options.input)?;
+    warn(&input.warnings());
+    let comparison = compare(input.problem(), &settings(Method::Auto, common)).map_err(|error| input.explain(error))?;
+    let [qp, active_set, penalty] = &comparison.answers;
+    let summary = |solution| input.summary(solution, common.tolerance);
+    let summaries: [Summary; 3] = [summary(&qp.solution)?, summary(&active_set.solution)?, summary(&penalty.solution)?];
+    let json = format!("{:#}\n", compare_json(&summaries, &comparison.agreement));
+    if let Some(folder) = &common.out {
+        match &input.content {
+            Content::Scene(model) => gallery::write_compare(folder, model, &comparison)?,
+            Content::Directory(_) => gallery::write_answer(folder, &qp.solution)?,
+        }
+        write_files(folder, &[("report.json", json.clone())])?;
+    }
+    let text = match common.format {
+        Format::Text => compare_text(&input.title, &summaries, &comparison.agreement, &input.units),
+        Format::Json => json,
+    };
+    Ok(Outcome::judged(text, comparison.agreement.exact_methods))
+}

@@ -1,0 +1,21 @@
+//! `signorini export`: the problem of a scene as Matrix Market files.
+
+use super::Outcome;
+use super::options::Export;
+use crate::error::Error;
+use crate::matrix_market;
+use crate::output::write_files;
+use crate::scene::Scene;
+
+pub(super) fn run(options: &Export) -> Result<Outcome, Error> {
+    let model = Scene::read(&options.scene)?.build()?;
+    let problem = model.problem();
+    write_files(&options.directory, &matrix_market::problem_files(problem))?;
+    let text = format!(
+        "{}: K.mtx, f.mtx, B.mtx, g.mtx with {} dofs and {} contact rows\n",
+        options.directory.display(),
+        problem.dofs(),
+        problem.rows()
+    );
+    Ok(Outcome::certified(text))
+}

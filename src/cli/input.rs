@@ -1,0 +1,79 @@
+//! A scene or a problem directory: what is the same of both for the commands.
+
+use std::path::Path;
+use std::time::Instant;
+
+use crate::error::Error;
+use crate::matrix_market;
+use crate::output::UnitNames;
+use crate::problem::ContactProblem;
+use crate::scene::{Model, Scene};
+use crate::solution::Solution;
+use crate::study::{ModelSize, Summary, scene_summary};
+
+/// What there is to solve.
+pub(super) struct Input {
+    pub title: String,
+    pub units: UnitNames,
+    pub assemble_seconds: f64,
+    pub content: Content,
+}
+
+pub(super) enum Content {
+    Scene(Box<Model>),
+    Directory(ContactProblem),
+}
+
+impl Input {
+    /// Reads a problem directory, if `path` is one, or else a scene.
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        let clock = Instant::now();
+        let (title, units, content) = if path.is_dir() {
+            let title = format!("Problem directory {}", path.display());
+            (title, UnitNames::default(), Content::Directory(matrix_market::read_problem(path)?))
+        } else {
+            let model = Scene::read(path)?.build()?;
+            let title = if model.title().is_empty() { path.display().to_string() } else { model.title().to_string() };
+            (title, unit_names(&model), Content::Scene(Box::new(model)))
+        };
+        Ok(Input { title, units, assemble_seconds: clock.elapsed().as_secs_f64(), content })
+    }
+
+    pub fn problem(&self) -> &ContactProblem {
+        match &self.content {
+            Content::Scene(model) => model.problem(),
+            Content::Directory(problem) => problem,
+        }
+    }
+
+    /// The numbers of an answer, with what only a scene can tell.
+    pub fn summary(&self, solution: &Solution, tolerance: f64) -> Result<Summary, Error> {
+        match &self.content {
+            Content::Scene(model) => scene_summary(model, solution, tolerance, self.assemble_seconds),
+            Content::Directory(problem) => {
+                Ok(Summary::new(solution, ModelSize::of(problem), tolerance, self.assemble_seconds))
+            }
+        }
+    }
+
+    /// An error in the words of the scene.
+    pub fn explain(&self, error: Error) -> Error {
+        match &self.content {
+            Content::Scene(model) => model.explain(error),
+            Content::Directory(_) => error,
+        }
+    }
+
+    /// The warnings of the scene, one line each.
+    pub fn warnings(&self) -> String {
+        match &self.content {
+            Content::Scene(model) => model.warnings().iter().map(|warning| format!("warning: {warning}\n")).collect(),
+            Content::Directory(_) => String::new(),
+        }
+    }
+}
+
+pub(super) fn unit_names(model: &Model) -> UnitNames {
+    let units = model.units();
+    UnitNames { length: units.length.clone(), force: units.force.clone(), stress: units.pressure() }
+}

@@ -1,0 +1,41 @@
+//! `signorini solve`: one answer.
+
+use super::input::{Content, Input};
+use super::options::{Common, Format, Solve};
+use super::{Outcome, warn};
+use crate::error::Error;
+use crate::output::{gallery, solve_json, solve_text, write_files};
+use crate::solve::{Method, Settings, solve};
+
+pub(super) fn settings(method: Method, common: &Common) -> Settings {
+    let mut settings = Settings::with_method(method);
+    settings.tolerance = common.tolerance;
+    settings
+}
+
+pub(super) fn run(options: &Solve) -> Result<Outcome, Error> {
+    let common = &options.common;
+    let input = Input::read(&options.input)?;
+    warn(&input.warnings());
+    let solution = match solve(input.problem(), &settings(options.method.method(), common)) {
+        Ok(solution) => solution,
+        Err(Error::NotCertified { solution, condition, value, tolerance }) => {
+            warn(&format!("not certified: {condition} is {value:.3e}, above the tolerance {tolerance:.1e}\n"));
+            *solution
+        }
+        Err(error) => return Err(input.explain(error)),
+    };
+    let summary = input.summary(&solution, common.tolerance)?;
+    if let Some(folder) = &common.out {
+        match &input.content {
+            Content::Scene(model) => gallery::write_solve(folder, model, &solution)?,
+            Content::Directory(_) => gallery::write_answer(folder, &solution)?,
+        }
+        write_files(folder, &[("report.json", format!("{:#}\n", solve_json(&summary)))])?;
+    }
+    let text = match common.format {
+        Format::Text => solve_text(&input.title, &summary, &input.units),
+        Format::Json => format!("{:#}\n", solve_json(&summary)),
+    };
+    Ok(Outcome::judged(text, summary.is_certified()))
+}

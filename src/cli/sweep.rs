@@ -1,0 +1,29 @@
+//! `signorini sweep`: one scene at several gaps.
+
+use super::input::unit_names;
+use super::options::{Format, Sweep};
+use super::solve::settings;
+use super::{Outcome, warn};
+use crate::error::Error;
+use crate::output::{gallery, sweep_json, sweep_text, write_files};
+use crate::scene::Scene;
+use crate::solve::Method;
+use crate::study::{even_gaps, sweep};
+
+pub(super) fn run(options: &Sweep) -> Result<Outcome, Error> {
+    let common = &options.common;
+    let model = Scene::read(&options.scene)?.build()?;
+    model.warnings().iter().for_each(|warning| warn(&format!("warning: {warning}\n")));
+    let gaps = even_gaps(options.gaps.first, options.gaps.last, options.gaps.count);
+    let points = sweep(&model, &gaps, &settings(Method::Auto, common))?;
+    let json = format!("{:#}\n", sweep_json(&points));
+    if let Some(folder) = &common.out {
+        gallery::write_sweep(folder, &points)?;
+        write_files(folder, &[("report.json", json.clone())])?;
+    }
+    let text = match common.format {
+        Format::Text => sweep_text(model.title(), &points, &unit_names(&model)),
+        Format::Json => json,
+    };
+    Ok(Outcome::judged(text, points.iter().all(|point| point.summary.is_certified())))
+}

@@ -1,0 +1,21 @@
+//! `signorini verify`: the certificate of an answer that came from elsewhere.
+
+use super::Outcome;
+use super::options::{Format, Verify};
+use crate::error::Error;
+use crate::matrix_market::{read_problem, read_vector};
+use crate::output::{verify_json, verify_text};
+use crate::study::{ModelSize, Verification};
+
+pub(super) fn run(options: &Verify) -> Result<Outcome, Error> {
+    let problem = read_problem(&options.directory)?;
+    let displacement = read_vector(&options.displacement)?;
+    let multiplier = read_vector(&options.multiplier)?;
+    let certificate = problem.certify(&displacement, &multiplier)?;
+    let verification = Verification::new(&certificate, &multiplier, ModelSize::of(&problem), options.tolerance);
+    let text = match options.format {
+        Format::Text => verify_text(&options.directory.display().to_string(), &verification),
+        Format::Json => format!("{:#}\n", verify_json(&verification)),
+    };
+    Ok(Outcome::judged(text, verification.is_certified()))
+}

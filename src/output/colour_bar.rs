@@ -1,0 +1,97 @@
+//! The levels at which a field is painted, and the bar that explains them.
+
+use super::{
+    axes::{Axis, LINE, NORMAL, SMALL},
+    colour::{Colour, FAINT, INK, NO_VALUE, field_colour},
+    drawing::{Anchor, Drawing, Paint},
+    ticks::{Quantity, Scale},
+    typeface,
+};
+
+/// Bands that a colour range has at least: enough to look smooth, few enough to follow a band with the eye.
+const BANDS: f64 = 30.0;
+const HEIGHT: f64 = 18.0;
+const TICK: f64 = 5.0;
+const GAP: f64 = 4.0;
+
+/// Room that a bar needs from its top to the end of its label.
+pub(crate) const ROOM: f64 = HEIGHT + TICK + GAP + SMALL * LINE + NORMAL * LINE;
+
+/// A range of values with its bands of colour, whose edges include the ticks of the bar.
+pub(crate) struct ColourRange {
+    axis: Axis,
+    /// The lower edge of every band after the first.
+    edges: Vec<f64>,
+}
+
+impl ColourRange {
+    /// The range of `quantity` between `limits`, for a bar of `length` pixels.
+    pub fn new(quantity: &Quantity, limits: [f64; 2], length: f64) -> Self {
+        let axis = Axis::horizontal(quantity, Scale::Linear, limits, length);
+        let ticks = &axis.ticks.positions;
+        let span = limits[1] - limits[0];
+        let step = match ticks.as_slice() {
+            [first, second, ..] => second - first,
+            _ => span,
+        };
+        let parts = (BANDS * step / span).ceil().max(1.0);
+        let (origin, width) = (ticks.first().copied().unwrap_or(limits[0]), step / parts);
+        let first = ((limits[0] - origin) / width).floor();
+        let edges = (1..=3 * BANDS as usize).map(|k| origin + (first + k as f64) * width);
+        let slack = 1e-6 * width;
+        let edges = edges.filter(|edge| (limits[0] + slack..limits[1] - slack).contains(edge)).collect();
+        ColourRange { axis, edges }
+    }
+
+    /// Every band as the level above which it is painted over the lower ones, with its colour; the first is everything.
+    pub fn bands(&self) -> Vec<(f64, Colour)> {
+        let [low, high] = self.axis.range;
+        let lower = std::iter::once(low).chain(self.edges.iter().copied());
+        let upper = self.edges.iter().copied().chain(std::iter::once(high));
+        let colours = lower.zip(upper).map(|(lower, upper)| {
+            let middle = Scale::Linear.fraction(0.5 * lower + 0.5 * upper, [low, high]);
+            field_colour(middle)
+        });
+        std::iter::once(f64::NEG_INFINITY).chain(self.edges.iter().copied()).zip(colours).collect()
+    }
+
+    /// Draws the bar with its left end at `corner`; `beyond` says whether values lie below and above the limits,
+    /// `missing` whether some are no numbers.
+    pub fn draw(&self, drawing: &mut Drawing, [x, y]: [f64; 2], length: f64, beyond: [bool; 2], missing: bool) {
+        let range = self.axis.range;
+        let at = |value: f64| x + length * Scale::Linear.fraction(value, range);
+        let bands = self.bands();
+        for (k, &(level, colour)) in bands.iter().enumerate() {
+            // Each reaches to the end, so that no seam shows between neighbours.
+            let from = if k == 0 { x } else { at(level) };
+            drawing.rect([from, y], [x + length - from, HEIGHT], &Paint::fill(colour));
+        }
+        let mut outline = vec![[x, y], [x + length, y]];
+        if beyond[1] {
+            let tip = [[x + length, y], [x + length + 0.7 * HEIGHT, y + 0.5 * HEIGHT], [x + length, y + HEIGHT]];
+            drawing.polygon(&tip, &Paint::fill(bands[bands.len() - 1].1));
+            outline.push(tip[1]);
+        }
+        outline.extend([[x + length, y + HEIGHT], [x, y + HEIGHT]]);
+        if beyond[0] {
+            let tip = [[x, y], [x - 0.7 * HEIGHT, y + 0.5 * HEIGHT], [x, y + HEIGHT]];
+            drawing.polygon(&tip, &Paint::fill(bands[0].1));
+            outline.push(tip[1]);
+        }
+        drawing.polygon(&outline, &Paint::stroke(FAINT, 1.0));
+        let bottom = y + HEIGHT;
+        for (&position, label) in self.axis.ticks.positions.iter().zip(&self.axis.ticks.labels) {
+            drawing.line([at(position), bottom], [at(position), bottom + TICK], &Paint::stroke(INK, 1.2));
+            drawing.text([at(position), bottom + TICK + GAP + 0.75 * SMALL], label, SMALL, Anchor::Middle);
+        }
+        let label = if missing { format!("{}; grey: no value", self.axis.label) } else { self.axis.label.clone() };
+        let (label, size) = typeface::fitted(&label, NORMAL, false, length + 60.0);
+        let baseline = bottom + TICK + GAP + SMALL * LINE + 0.8 * NORMAL;
+        drawing.text([x + 0.5 * length, baseline], &label, size, Anchor::Middle);
+    }
+}
+
+/// The colour under a field, which shows where it has no value.
+pub(crate) fn missing_paint() -> Paint {
+    Paint::fill(NO_VALUE)
+}

@@ -1,0 +1,48 @@
+//! Writing files so that nothing is ever half written.
+
+use std::{
+    io::{self, Write},
+    path::{Path, PathBuf},
+};
+
+use super::Drawing;
+use crate::Error;
+
+/// Writes `contents` to `path` as a whole or not at all, and makes its folder where that is missing.
+///
+/// The contents go to a new file beside their place, which is synced and then takes the place of `path` in one step.
+///
+/// # Errors
+/// [`Error::File`] where the system refuses; an older file at `path` is then untouched, and nothing is left beside it.
+pub fn write_atomically(path: &Path, contents: &[u8]) -> Result<(), Error> {
+    write(path, contents).map_err(|source| Error::File { action: "write", path: path.to_owned(), source })
+}
+
+fn write(path: &Path, contents: &[u8]) -> io::Result<()> {
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    std::fs::create_dir_all(folder)?;
+    let mut builder = tempfile::Builder::new();
+    // A temporary file is private by default; what takes its place is an ordinary file, as the umask wants it.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let mut file = builder.prefix(".signorini-").tempfile_in(folder)?;
+    file.write_all(contents)?;
+    file.as_file().sync_all()?;
+    file.persist(path).map(drop).map_err(|error| error.error)
+}
+
+/// Writes a drawing as `stem.svg` and `stem.png` into `folder`, and tells both paths.
+///
+/// # Errors
+/// [`Error::File`] where the system refuses, [`Error::Numerical`] where the rasteriser fails (then neither file is
+/// written).
+pub fn write_picture(folder: &Path, stem: &str, drawing: &Drawing) -> Result<[PathBuf; 2], Error> {
+    let png = drawing.png(1.0)?;
+    let paths = ["svg", "png"].map(|extension| folder.join(format!("{stem}.{extension}")));
+    write_atomically(&paths[0], drawing.svg().as_bytes())?;
+    write_atomically(&paths[1], &png)?;
+    Ok(paths)
+}

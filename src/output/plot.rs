@@ -1,0 +1,204 @@
+//! Line plots: named series on linear or logarithmic axes, one panel or several side by side.
+
+use super::{
+    axes::{Axis, Frame, LARGE, LINE, MARGIN, NORMAL, ROOM_BELOW, TITLE, draw_heading},
+    colour::{GRID, WHITE},
+    drawing::{Anchor, Drawing, Paint},
+    legend::{self, Entry},
+    style::{self, Style},
+    ticks::{Quantity, Scale},
+    typeface,
+};
+
+/// Width of a picture with one panel, and of one with several.
+const WIDTH: [f64; 2] = [1200.0, 1400.0];
+const HEIGHT: f64 = 520.0;
+/// Markers closer than this many pixels would hide the line.
+const MARKER_DISTANCE: f64 = 16.0;
+/// Space between a legend and the frame.
+const INSET: f64 = 14.0;
+
+/// One line of a plot.
+#[derive(Clone, Debug, Default)]
+pub struct Series {
+    /// Its name in the legend.
+    pub name: String,
+    /// Its points `[x, y]` in the order in which they are joined; the line is interrupted where a coordinate is not
+    /// finite, or not positive on a logarithmic axis.
+    pub points: Vec<[f64; 2]>,
+}
+
+impl Series {
+    /// A named line through points `[x, y]`.
+    pub fn new(name: impl Into<String>, points: Vec<[f64; 2]>) -> Self {
+        Series { name: name.into(), points }
+    }
+}
+
+/// One panel: axes and the lines in them.
+#[derive(Clone, Debug, Default)]
+pub struct Plot {
+    /// A heading over the panel; empty for none.
+    pub title: String,
+    /// What the horizontal axis shows.
+    pub x: Quantity,
+    /// What the vertical axis shows.
+    pub y: Quantity,
+    /// Scales of the horizontal and the vertical axis.
+    pub scales: [Scale; 2],
+    /// The lines. A legend names them where there are several.
+    pub series: Vec<Series>,
+    /// Draws the lines from wide and pale to thin and dark, so that lines that coincide can all be seen.
+    pub nested: bool,
+}
+
+impl Plot {
+    /// Linear axes with the given lines.
+    pub fn new(x: Quantity, y: Quantity, series: Vec<Series>) -> Self {
+        Plot { x, y, series, ..Plot::default() }
+    }
+
+    fn shows(&self, [x, y]: [f64; 2]) -> bool {
+        self.scales[0].shows(x) && self.scales[1].shows(y)
+    }
+
+    fn values(&self, axis: usize) -> impl Iterator<Item = f64> + '_ {
+        let points = self.series.iter().flat_map(|series| &series.points);
+        points.filter(|&&point| self.shows(point)).map(move |point| point[axis])
+    }
+
+    fn is_empty(&self) -> bool {
+        self.values(0).next().is_none()
+    }
+
+    /// The legend: nothing for a single line, whose axis says what it is.
+    fn entries(&self) -> Vec<Entry<'_>> {
+        if self.series.len() < 2 {
+            return Vec::new();
+        }
+        let named = self.series.iter().enumerate().filter(|(_, series)| !series.name.trim().is_empty());
+        let entry = |(index, series): (usize, &Series)| {
+            let style = Style::new(index, self.nested);
+            let has_points = series.points.iter().any(|&point| self.shows(point));
+            let name = if has_points { series.name.clone() } else { format!("{} (no data)", series.name) };
+            Entry { name, key_width: style::KEY, key: Box::new(move |drawing, centre| style.key(drawing, centre)) }
+        };
+        named.map(entry).collect()
+    }
+
+    fn axes(&self, size: [f64; 2]) -> [Axis; 2] {
+        let [x, y] = [0, 1].map(|axis| self.scales[axis].range(self.values(axis), [0.03, 0.06][axis]));
+        [Axis::horizontal(&self.x, self.scales[0], x, size[0]), Axis::vertical(&self.y, self.scales[1], y, size[1])]
+    }
+
+    fn draw(&self, drawing: &mut Drawing, frame: &Frame) {
+        frame.draw_grid(drawing);
+        for (index, series) in self.series.iter().enumerate() {
+            let places: Vec<[f64; 2]> = series.points.iter().map(|&point| frame.place(point)).collect();
+            let every = (MARKER_DISTANCE * places.len() as f64 / frame.size[0]).ceil() as usize;
+            Style::new(index, self.nested).draw(drawing, &places, every);
+        }
+        if self.is_empty() {
+            let middle = [frame.corner[0] + 0.5 * frame.size[0], frame.corner[1] + 0.5 * frame.size[1]];
+            drawing.text(middle, "no data", NORMAL, Anchor::Middle);
+        }
+        frame.draw_axes(drawing, true);
+        let (title, size) = typeface::fitted(&self.title, LARGE, false, frame.size[0]);
+        drawing.text([frame.corner[0] + 0.5 * frame.size[0], frame.corner[1] - 12.0], &title, size, Anchor::Middle);
+    }
+
+    /// The upper left corner of a box of `size` within the frame that covers no line; none where there is no such place.
+    fn free_place(&self, frame: &Frame, size: [f64; 2]) -> Option<[f64; 2]> {
+        let room = [0, 1].map(|axis| frame.size[axis] - size[axis] - 2.0 * INSET);
+        if room[0] < 0.0 || room[1] < 0.0 {
+            return None;
+        }
+        let mut taken: Vec<[f64; 2]> = Vec::new();
+        for series in &self.series {
+            let places: Vec<[f64; 2]> = series.points.iter().map(|&point| frame.place(point)).collect();
+            taken.extend(places.iter().filter(|place| place[0].is_finite()));
+            for pair in places.windows(2) {
+                let step = [pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]];
+                let length = step[0].hypot(step[1]);
+                let parts = if length.is_finite() { (length / 6.0).ceil() as usize } else { 0 };
+                taken.extend(
+                    (1..parts).map(|k| [0, 1].map(|axis| pair[0][axis] + step[axis] * k as f64 / parts as f64)),
+                );
+            }
+        }
+        // Corners first: upper right, upper left, lower right, lower left; then the middles of the sides.
+        let shares = [[1.0, 0.0], [0.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.0], [0.5, 1.0], [1.0, 0.5], [0.0, 0.5]];
+        let corners = shares.map(|share| [0, 1].map(|axis| frame.corner[axis] + INSET + share[axis] * room[axis]));
+        let free = |corner: &[f64; 2]| {
+            let inside = |place: &[f64; 2]| {
+                (0..2).all(|axis| (-INSET..size[axis] + INSET).contains(&(place[axis] - corner[axis])))
+            };
+            !taken.iter().any(inside)
+        };
+        corners.into_iter().find(free)
+    }
+}
+
+/// Draws the plots side by side under one title.
+///
+/// A legend stands where it covers no line, below the axes where there is no such place. Values that cannot be shown
+/// (not finite, or not positive on a logarithmic axis) interrupt their line; a plot without any says `no data`.
+///
+/// ```
+/// use signorini::output::{Plot, Quantity, Series, line_plots};
+///
+/// let force = Series::new("force", vec![[-0.01, 1.0e4], [-0.02, 2.5e4]]);
+/// let plot = Plot::new(Quantity::new("gap", "m"), Quantity::new("contact force", "N/m"), vec![force]);
+/// assert!(line_plots("Indentation", &[plot]).svg().contains("contact force (10³ N/m)"));
+/// ```
+pub fn line_plots(title: &str, plots: &[Plot]) -> Drawing {
+    let width = if plots.len() < 2 { WIDTH[0] } else { WIDTH[1] };
+    let title = typeface::wrapped(title, TITLE, true, width - 2.0 * MARGIN);
+    let heading = if plots.iter().any(|plot| !plot.title.trim().is_empty()) { LARGE * LINE + 14.0 } else { 14.0 };
+    let top = MARGIN + TITLE * LINE * title.len() as f64 + heading;
+    let column = (width - 2.0 * MARGIN) / plots.len().max(1) as f64;
+    let panels: Vec<(&Plot, Frame)> = plots
+        .iter()
+        .enumerate()
+        .map(|(k, plot)| {
+            // The room for the tick labels depends on the ticks, and those only on the height.
+            let [x, y] = plot.axes([column, HEIGHT]);
+            let room = y.room_left() + if k > 0 { 26.0 } else { 0.0 };
+            let across = (column - room - x.overhang().max(12.0)).max(120.0);
+            let [x, y] = plot.axes([across, HEIGHT]);
+            let corner = [MARGIN + column * k as f64 + room, top];
+            (plot, Frame { corner, size: [across, HEIGHT], x, y })
+        })
+        .collect();
+    let mut below = 0.0f64;
+    let mut legends = Vec::new();
+    for (plot, frame) in &panels {
+        let entries = plot.entries();
+        let [across, down] = legend::column_size(&entries);
+        let place = plot.free_place(frame, [across + 2.0 * INSET, down + INSET]);
+        if place.is_none() && !entries.is_empty() {
+            below = below.max(legend::rows_height(&entries, frame.size[0]) + 12.0);
+        }
+        legends.push((entries, place));
+    }
+    let under = top + HEIGHT + ROOM_BELOW + 12.0;
+    let mut drawing = Drawing::new(width, under - 12.0 + below + MARGIN);
+    draw_heading(&mut drawing, &title, 0.5 * width, MARGIN);
+    for ((plot, frame), (entries, place)) in panels.iter().zip(&legends) {
+        plot.draw(&mut drawing, frame);
+        match place {
+            _ if entries.is_empty() => {}
+            Some([x, y]) => {
+                let [across, down] = legend::column_size(entries);
+                let paint = Paint::fill(WHITE).with_stroke(GRID, 1.2);
+                drawing.rect([*x, *y], [across + 2.0 * INSET, down + INSET], &paint);
+                legend::draw_column(&mut drawing, entries, [x + INSET, y + 0.5 * INSET], across + 1.0);
+            }
+            None => {
+                let middle = frame.corner[0] + 0.5 * frame.size[0];
+                legend::draw_rows(&mut drawing, entries, [middle, under], frame.size[0]);
+            }
+        }
+    }
+    drawing
+}

@@ -1,0 +1,149 @@
+//! `.vtu` files (ASCII XML, unstructured grid) for ParaView.
+
+use std::fmt::Write;
+
+use super::typeface::escape;
+use crate::Error;
+
+/// Named values, one entry per point or per cell.
+#[derive(Clone, Copy, Debug)]
+pub enum Array<'a> {
+    /// One number per entry.
+    Scalars(&'a str, &'a [f64]),
+    /// A plane vector per entry, order `[x0, y0, x1, ...]`; written with a third component that is zero.
+    Vectors(&'a str, &'a [f64]),
+    /// A flag per entry, written as 0 or 1.
+    Flags(&'a str, &'a [bool]),
+}
+
+/// A plane mesh with its data, as plain data.
+#[derive(Clone, Copy, Debug)]
+pub struct Unstructured<'a> {
+    /// Coordinates of the nodes.
+    pub nodes: &'a [[f64; 2]],
+    /// The corner nodes of every triangle or quadrilateral in order around it, indices from 0.
+    pub elements: &'a [Vec<usize>],
+    /// Values at the nodes.
+    pub point_data: &'a [Array<'a>],
+    /// Values in the elements.
+    pub cell_data: &'a [Array<'a>],
+}
+
+impl Unstructured<'_> {
+    /// The text of the `.vtu` file; every number reads back as the same number.
+    ///
+    /// # Errors
+    /// [`Error::Length`] where an array does not fit the nodes or the elements, [`Error::NotFinite`] for a coordinate or value
+    /// that ASCII readers would stop at, [`Error::Setting`] for an element that is neither a triangle nor a
+    /// quadrilateral, or that names a node that does not exist.
+    pub fn to_vtu(&self) -> Result<String, Error> {
+        let mut text = String::from(
+            "<?xml version=\"1.0\"?>\n\
+             <VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\">\n<UnstructuredGrid>\n",
+        );
+        let (points, cells) = (self.nodes.len(), self.elements.len());
+        let _ = writeln!(text, "<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">");
+        text.push_str("<Points>\n");
+        let coordinates: Vec<f64> = self.nodes.iter().flatten().copied().collect();
+        vectors(&mut text, "Points", &coordinates)?;
+        text.push_str("</Points>\n");
+        self.write_cells(&mut text)?;
+        write_data(&mut text, "PointData", self.point_data, points, "nodes")?;
+        write_data(&mut text, "CellData", self.cell_data, cells, "elements")?;
+        text.push_str("</Piece>\n</UnstructuredGrid>\n</VTKFile>\n");
+        Ok(text)
+    }
+
+    fn write_cells(&self, text: &mut String) -> Result<(), Error> {
+        let (mut connectivity, mut offsets, mut types) = (String::new(), String::new(), String::new());
+        let mut end = 0;
+        for element in self.elements {
+            let kind = match element.len() {
+                3 => 5,
+                4 => 9,
+                corners => {
+                    let name = "number of corners of an element in a .vtu file";
+                    return Err(Error::Setting { name, value: corners as f64, allowed: "3 or 4" });
+                }
+            };
+            if let Some(&node) = element.iter().find(|&&node| node >= self.nodes.len()) {
+                let allowed = "smaller than the number of nodes (indices from 0)";
+                return Err(Error::Setting { name: "node index in a .vtu file", value: node as f64, allowed });
+            }
+            end += element.len();
+            let corners: Vec<String> = element.iter().map(usize::to_string).collect();
+            let _ = writeln!(connectivity, "{}", corners.join(" "));
+            let _ = writeln!(offsets, "{end}");
+            let _ = writeln!(types, "{kind}");
+        }
+        text.push_str("<Cells>\n");
+        for (kind, name, data) in
+            [("Int64", "connectivity", connectivity), ("Int64", "offsets", offsets), ("UInt8", "types", types)]
+        {
+            let _ = write!(text, "<DataArray type=\"{kind}\" Name=\"{name}\" format=\"ascii\">\n{data}</DataArray>\n");
+        }
+        text.push_str("</Cells>\n");
+        Ok(())
+    }
+}
+
+fn write_data(text: &mut String, tag: &str, arrays: &[Array], expected: usize, of: &'static str) -> Result<(), Error> {
+    let _ = writeln!(text, "<{tag}>");
+    for array in arrays {
+        let (found, expected) = match array {
+            Array::Scalars(_, values) => (values.len(), expected),
+            Array::Vectors(_, values) => (values.len(), 2 * expected),
+            Array::Flags(_, values) => (values.len(), expected),
+        };
+        if found != expected {
+            return Err(Error::Length { name: "an array of a .vtu file", found, expected, of });
+        }
+        match array {
+            Array::Scalars(name, values) => {
+                let lines = values
+                    .iter()
+                    .enumerate()
+                    .map(|(k, &value)| finite(name, k, value))
+                    .collect::<Result<Vec<_>, _>>()?;
+                write_array(text, "Float64", name, 1, &lines);
+            }
+            Array::Vectors(name, values) => vectors(text, name, values)?,
+            Array::Flags(name, values) => {
+                let lines: Vec<String> = values.iter().map(|&flag| u8::from(flag).to_string()).collect();
+                write_array(text, "UInt8", name, 1, &lines);
+            }
+        }
+    }
+    let _ = writeln!(text, "</{tag}>");
+    Ok(())
+}
+
+fn vectors(text: &mut String, name: &str, values: &[f64]) -> Result<(), Error> {
+    let line = |(k, pair): (usize, &[f64])| {
+        let parts = pair.iter().map(|&value| finite(name, k, value)).collect::<Result<Vec<_>, _>>()?;
+        Ok(parts.join(" ") + " 0")
+    };
+    let lines = values.chunks_exact(2).enumerate().map(line).collect::<Result<Vec<_>, Error>>()?;
+    write_array(text, "Float64", name, 3, &lines);
+    Ok(())
+}
+
+fn write_array(text: &mut String, kind: &str, name: &str, components: usize, lines: &[String]) {
+    let name = escape(name);
+    let components = if components > 1 { format!(" NumberOfComponents=\"{components}\"") } else { String::new() };
+    let _ = writeln!(text, "<DataArray type=\"{kind}\" Name=\"{name}\"{components} format=\"ascii\">");
+    for line in lines {
+        text.push_str(line);
+        text.push('\n');
+    }
+    text.push_str("</DataArray>\n");
+}
+
+/// The shortest text that reads back as `value`.
+fn finite(name: &str, entry: usize, value: f64) -> Result<String, Error> {
+    if value.is_finite() {
+        return Ok(format!("{value:e}"));
+    }
+    let at = format!("entry {entry} of `{name}`");
+    Err(Error::NotFinite { name: "an array of a .vtu file", at, value, allowed: "finite" })
+}
