@@ -1,9 +1,11 @@
 //! The command line: arguments in, text or JSON out, and one exit code for each kind of ending.
 
+mod compare;
 mod export;
 mod input;
 mod options;
 mod solve;
+mod sweep;
 mod verify;
 
 use std::ffi::OsString;
@@ -44,13 +46,14 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let format = arguments.command.format();
     let outcome = match arguments.command {
         Command::Solve(options) => solve::run(&options),
+        Command::Compare(options) => compare::run(&options),
+        Command::Sweep(options) => sweep::run(&options),
         Command::Export(options) => export::run(&options),
         Command::Verify(options) => verify::run(&options),
         Command::Schema => Ok(Outcome::certified(format!("{:#}\n", Scene::json_schema()))),
     };
     let outcome = outcome.unwrap_or_else(|error| {
-        // Nor is there somebody to tell when standard error is closed.
-        let _ = writeln!(io::stderr(), "error: {error}");
+        warn(&format!("error: {error}\n"));
         let ending = ending_of(&error);
         let text = match format {
             Format::Json => format!("{:#}\n", failure_json(&error)),
@@ -60,11 +63,16 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     });
     match io::stdout().write_all(outcome.text.as_bytes()).and_then(|()| io::stdout().flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            let _ = writeln!(io::stderr(), "error: cannot write to standard output: {error}");
+            warn(&format!("error: cannot write to standard output: {error}\n"));
             ExitCode::from(Ending::BadInput as u8)
         }
         _ => ExitCode::from(outcome.ending as u8),
     }
+}
+
+/// Writes to standard error; where that is closed there is nobody to tell.
+fn warn(text: &str) {
+    let _ = io::stderr().write_all(text.as_bytes());
 }
 
 impl Outcome {

@@ -9,8 +9,10 @@ use crate::solve;
 /// Frictionless contact of elastic bodies with obstacles: a convex QP, cross-checked and certified.
 #[derive(Debug, Parser)]
 #[command(name = "signorini", version, arg_required_else_help = true)]
-#[command(after_help = "Exit codes: 0 certified, 1 bad input or file, 2 usage, 3 infeasible, unbounded or under-held, \
-                        4 not certified, 130 interrupted.")]
+#[command(
+    after_help = "Exit codes: 0 certified, 1 bad input or file, 2 usage, 3 infeasible, unbounded or under-held, \
+                        4 not certified, 130 interrupted."
+)]
 pub(super) struct Arguments {
     #[command(subcommand)]
     pub command: Command,
@@ -20,6 +22,10 @@ pub(super) struct Arguments {
 pub(super) enum Command {
     /// Solve a scene or a problem directory and certify the answer
     Solve(Solve),
+    /// Solve by all three methods and say whether they agree
+    Compare(Compare),
+    /// Solve a scene at several gaps
+    Sweep(Sweep),
     /// Write the problem of a scene as Matrix Market files
     Export(Export),
     /// Certify an answer that came from elsewhere
@@ -57,6 +63,51 @@ pub(super) struct Solve {
     pub method: MethodName,
     #[command(flatten)]
     pub common: Common,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Compare {
+    /// Scene (a JSON file) or problem directory (with K.mtx, f.mtx, B.mtx, g.mtx)
+    pub input: PathBuf,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Sweep {
+    /// Scene (a JSON file)
+    pub scene: PathBuf,
+    /// Gaps from the first to the last, and their number, as -0.01:-0.10:10
+    #[arg(long, value_name = "FIRST:LAST:COUNT", allow_hyphen_values = true, value_parser = parse_gaps)]
+    pub gaps: Gaps,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// The gaps of a sweep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Gaps {
+    pub first: f64,
+    pub last: f64,
+    pub count: usize,
+}
+
+/// A sweep keeps every answer: more than this would not fit.
+const MOST_GAPS: usize = 10_000;
+
+fn parse_gaps(text: &str) -> Result<Gaps, String> {
+    let form = "it must be FIRST:LAST:COUNT, as -0.01:-0.10:10";
+    let parts: Vec<&str> = text.split(':').collect();
+    let [first, last, count] = parts[..] else { return Err(form.to_string()) };
+    let number = |part: &str| match part.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => Err(format!("`{part}` is not a finite number; {form}")),
+    };
+    let count = match count.parse() {
+        Ok(count) if (1..=MOST_GAPS).contains(&count) => count,
+        _ => return Err(format!("`{count}` is not a whole number from 1 to {MOST_GAPS}; {form}")),
+    };
+    Ok(Gaps { first: number(first)?, last: number(last)?, count })
 }
 
 /// What every solving command takes.
@@ -103,7 +154,9 @@ impl Command {
     /// The form in which this command reports.
     pub fn format(&self) -> Format {
         match self {
-            Command::Solve(options) => options.common.format,
+            Command::Solve(Solve { common, .. })
+            | Command::Compare(Compare { common, .. })
+            | Command::Sweep(Sweep { common, .. }) => common.format,
             Command::Verify(options) => options.format,
             Command::Export(_) | Command::Schema => Format::Text,
         }

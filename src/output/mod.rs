@@ -1,8 +1,8 @@
-//! What a reader keeps of an answer: pictures (SVG and PNG) and `.vtu` files for ParaView.
+//! Answers shown: reports as text and JSON, pictures (SVG and PNG), `.vtu` files for ParaView, problem files.
 //!
-//! Everything here takes plain data (nodes, elements, values, labels) and knows nothing of scenes, meshes or methods.
-//! A picture is a [`Drawing`]: its SVG text is the truth, the PNG is that text rasterised with an embedded typeface, so
-//! that both show the same on every machine.
+//! Pictures and `.vtu` files take plain data (nodes, elements, values, labels) and know nothing of scenes, meshes or
+//! methods; [`gallery`] alone fills them from a model and its answer. A picture is a [`Drawing`]: its SVG text is the
+//! truth, the PNG is that text rasterised with an embedded typeface, so that both show the same on every machine.
 
 mod axes;
 pub mod body;
@@ -11,11 +11,13 @@ mod colour_bar;
 mod contour;
 pub mod drawing;
 pub mod file;
+pub mod gallery;
 mod legend;
 mod obstacle;
 mod paint;
 mod panels;
 pub mod plot;
+mod report;
 mod style;
 pub mod ticks;
 mod typeface;
@@ -24,7 +26,10 @@ pub mod vtu;
 pub use body::{ContactPicture, ObstacleLine, common_limits, common_window};
 pub use colour::Colour;
 pub use drawing::{Anchor, Drawing, Paint};
-pub use file::{write_atomically, write_picture};
+pub use file::{write_atomically, write_files, write_picture};
 pub use plot::{Plot, Series, line_plots};
+pub use report::{
+    UnitNames, compare_json, compare_text, solve_json, solve_text, sweep_json, sweep_text, verify_json, verify_text,
+};
 pub use ticks::{Quantity, Scale};
 pub use vtu::{Array, Unstructured};

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::study::{Agreement, Summary};
+use crate::study::{Agreement, CertificateSummary, Summary, SweepPoint, Verification};
 
 /// The unit names of a report; empty for a raw problem, whose units are the user's own.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -32,7 +32,7 @@ pub fn solve_text(title: &str, summary: &Summary, units: &UnitNames) -> String {
         _ => String::new(),
     };
     let mut text = format!("{title}\n");
-    let mut line = |name: &str, content: String| text += &format!("  {name:<14}{content}\n");
+    let mut line = |name: &str, content: String| text += &entry(name, &content);
     line("model", format!("{mesh}{} dofs, {}", model.dofs, plural(model.contact_rows, "contact row")));
     line("method", format!("{}, {}", summary.method, plural(summary.iterations, "iteration")));
     line(
@@ -46,14 +46,10 @@ pub fn solve_text(title: &str, summary: &Summary, units: &UnitNames) -> String {
     if let Some(balance) = contact.force_balance {
         line("", format!("loads, reactions and contact forces balance to {balance:.1e}"));
     }
-    let verdict = if summary.is_certified() { "certified to" } else { "NOT certified to" };
-    line("certificate", format!("{verdict} {:.1e}, each relative:", summary.tolerance));
-    for (name, formula, value) in conditions(summary) {
-        line("", format!("{name:<18}{formula:<38}{value}"));
-    }
-    line(
+    text += &certificate_text(&summary.certificate, summary.is_certified(), summary.tolerance);
+    text += &entry(
         "seconds",
-        format!(
+        &format!(
             "assemble {:.3}, factor {:.3}, solve {:.3}, total {:.3}",
             seconds.assemble, seconds.factor, seconds.solve, seconds.total
         ),
@@ -61,8 +57,62 @@ pub fn solve_text(title: &str, summary: &Summary, units: &UnitNames) -> String {
     text
 }
 
-fn conditions(summary: &Summary) -> [(&'static str, &'static str, String); 6] {
-    let certificate = &summary.certificate;
+fn entry(name: &str, content: &str) -> String {
+    format!("  {name:<14}{content}\n")
+}
+
+fn certificate_text(certificate: &CertificateSummary, certified: bool, tolerance: f64) -> String {
+    let verdict = if certified { "certified to" } else { "NOT certified to" };
+    let mut text = entry("certificate", &format!("{verdict} {tolerance:.1e}, each relative:"));
+    for (name, formula, value) in conditions(certificate) {
+        text += &entry("", &format!("{name:<18}{formula:<38}{value}"));
+    }
+    text
+}
+
+/// The report of a verification.
+pub fn verify_text(title: &str, verification: &Verification) -> String {
+    let Verification { model, contact, .. } = verification;
+    let mut text = format!("{title}\n");
+    text += &entry("model", &format!("{} dofs, {}", model.dofs, plural(model.contact_rows, "contact row")));
+    text += &entry("contact", &format!("{} under force {:.6e}", plural(contact.count, "row"), contact.force));
+    text + &certificate_text(&verification.certificate, verification.is_certified(), verification.tolerance)
+}
+
+/// The table of a sweep.
+pub fn sweep_text(title: &str, points: &[SweepPoint], units: &UnitNames) -> String {
+    let header = [
+        in_unit("gap", &units.length),
+        "iterations".to_string(),
+        "contact".to_string(),
+        in_unit("force", &units.force),
+        in_unit("peak pressure", &units.stress),
+        in_unit("width", &units.length),
+        "energy error <=".to_string(),
+        "status".to_string(),
+    ];
+    let row = |point: &SweepPoint| {
+        let Summary { contact, certificate, .. } = &point.summary;
+        vec![
+            format!("{:.6}", point.gap),
+            point.summary.iterations.to_string(),
+            contact.count.to_string(),
+            format!("{:.9e}", contact.force),
+            format!("{:.6e}", contact.pressure_max.unwrap_or(0.0)),
+            format!("{:.6}", contact.width.unwrap_or(0.0)),
+            conditions(certificate)[5].2.clone(),
+            point.summary.status.replace('_', " "),
+        ]
+    };
+    let table: Vec<Vec<String>> = std::iter::once(header.to_vec()).chain(points.iter().map(row)).collect();
+    format!("{title}\n\n{}", columns(&table))
+}
+
+fn in_unit(name: &str, unit: &str) -> String {
+    if unit.is_empty() { name.to_string() } else { format!("{name} [{unit}]") }
+}
+
+fn conditions(certificate: &CertificateSummary) -> [(&'static str, &'static str, String); 6] {
     let number = |value: f64| if value == 0.0 { "0".to_string() } else { format!("{value:.1e}") };
     let bound = match certificate.energy_error_bound {
         bound if bound.is_finite() => number(bound),
@@ -81,7 +131,6 @@ fn conditions(summary: &Summary) -> [(&'static str, &'static str, String); 6] {
 /// The table of a comparison, and the line that says whether the methods agree.
 pub fn compare_text(title: &str, summaries: &[Summary; 3], agreement: &Agreement, units: &UnitNames) -> String {
     let zero = |value: f64| if value == 0.0 { "0".to_string() } else { format!("{value:.1e}") };
-    let in_unit = |name: &str, unit: &str| if unit.is_empty() { name.to_string() } else { format!("{name} [{unit}]") };
     let [qp, active_set, penalty] = summaries;
     let rows = [
         (qp, "reference".to_string(), "reference".to_string()),
@@ -120,7 +169,7 @@ pub fn compare_text(title: &str, summaries: &[Summary; 3], agreement: &Agreement
     ];
     for summary in summaries {
         let mut row = vec![summary.method.clone()];
-        row.extend(conditions(summary).into_iter().map(|(_, _, value)| value));
+        row.extend(conditions(&summary.certificate).into_iter().map(|(_, _, value)| value));
         table.push(row);
     }
     text += &columns(&table);
@@ -179,4 +228,14 @@ pub fn solve_json(summary: &Summary) -> Value {
 /// The JSON object of a comparison.
 pub fn compare_json(summaries: &[Summary; 3], agreement: &Agreement) -> Value {
     json!({ "methods": summaries, "agreement": agreement })
+}
+
+/// The JSON object of a sweep.
+pub fn sweep_json(points: &[SweepPoint]) -> Value {
+    json!({ "points": points })
+}
+
+/// The JSON object of a verification.
+pub fn verify_json(verification: &Verification) -> Value {
+    json!(verification)
 }

@@ -1,7 +1,9 @@
 //! What is learnt from more than one solve, and the numbers that a report shows.
 
 mod compare;
+mod scene;
 mod summary;
 
 pub use compare::{Agreement, Comparison, Difference, MethodAnswer, compare};
-pub use summary::{CertificateSummary, ContactSummary, ModelSize, SecondsSummary, Summary};
+pub use scene::{SweepPoint, contact_width, even_gaps, scene_summary, sweep};
+pub use summary::{CertificateSummary, ContactSummary, HistoryEntry, ModelSize, SecondsSummary, Summary, Verification};

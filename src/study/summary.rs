@@ -170,3 +170,34 @@ impl Summary {
         self.status == "certified"
     }
 }
+
+/// The certificate of an answer that came from elsewhere.
+#[derive(Clone, Debug, Serialize)]
+pub struct Verification {
+    /// `certified` or `not_certified`.
+    pub status: &'static str,
+    /// Relative tolerance that the certificate was held against.
+    pub tolerance: f64,
+    /// The total force; a row counts as closed where its multiplier is not zero.
+    pub contact: ContactSummary,
+    /// The recomputed conditions.
+    pub certificate: CertificateSummary,
+    /// Sizes of the model.
+    pub model: ModelSize,
+}
+
+impl Verification {
+    /// Judges `certificate` by `tolerance`.
+    pub fn new(certificate: &Certificate, multiplier: &[f64], model: ModelSize, tolerance: f64) -> Self {
+        let force = -multiplier.iter().sum::<f64>();
+        let count = multiplier.iter().filter(|&&lambda| lambda != 0.0).count();
+        let contact = ContactSummary { count, force, pressure_max: None, width: None, force_balance: None };
+        let status = status(certificate, tolerance);
+        Verification { status, tolerance, contact, certificate: certificate.into(), model }
+    }
+
+    /// Does the answer meet the tolerance?
+    pub fn is_certified(&self) -> bool {
+        self.status == "certified"
+    }
+}

@@ -1,0 +1,276 @@
+//! What `--out` leaves in a folder: answers, fields and pictures of a scene.
+
+use std::path::Path;
+
+use super::{
+    Array, ContactPicture, ObstacleLine, Plot, Quantity, Series, Unstructured, common_limits, common_window,
+    line_plots, ticks::brief, write_atomically, write_files, write_picture,
+};
+use crate::error::Error;
+use crate::matrix_market::solution_files;
+use crate::recovery::Stress;
+use crate::scene::Model;
+use crate::solution::{ContactSet, Solution};
+use crate::solve::with_contact_set;
+use crate::study::{Comparison, SweepPoint};
+
+/// More iterations than this are not drawn one by one.
+const MOST_ITERATIONS: usize = 12;
+
+/// Pieces of the line of an obstacle.
+const OUTLINE_SEGMENTS: usize = 200;
+
+/// Flag of a node that is no candidate; candidates have 0 (open) or 1 (closed).
+const NO_CANDIDATE: f64 = -1.0;
+
+/// Writes `u.mtx` and `lambda.mtx`.
+///
+/// # Errors
+/// [`Error::File`].
+pub fn write_answer(folder: &Path, solution: &Solution) -> Result<(), Error> {
+    write_files(folder, &solution_files(solution))
+}
+
+/// Writes the answer, its fields (`solution.vtu`), its picture (`contact`) and one picture for each iteration
+/// (`iteration-1`, ...), as long as these are no more than twelve.
+///
+/// # Errors
+/// [`Error::File`], and those of the recovery of stresses.
+pub fn write_solve(folder: &Path, model: &Model, solution: &Solution) -> Result<(), Error> {
+    write_answer(folder, solution)?;
+    write_atomically(&folder.join("solution.vtu"), fields(model, solution)?.as_bytes())?;
+    let answer = Scene::new(
+        model,
+        &solution.displacement,
+        &solution.contact_set,
+        format!("{}, {}", headline(model, "the answer"), closed_nodes(&solution.contact_set)),
+    )?;
+    draw_series(folder, &[("contact".to_string(), answer)])?;
+    write_iterations(folder, model, solution)
+}
+
+/// One picture for each set of the history, the displacement being that with the rows of the set held at their gaps.
+fn write_iterations(folder: &Path, model: &Model, solution: &Solution) -> Result<(), Error> {
+    let with_penalty = solution.history.iter().any(|step| step.penalty > 0.0);
+    if with_penalty || solution.history.len() > MOST_ITERATIONS {
+        return Ok(());
+    }
+    let mut series = Vec::new();
+    for (index, step) in solution.history.iter().enumerate() {
+        // A set that does not hold the body by itself has no displacement to show.
+        let Ok((displacement, _)) = with_contact_set(model.problem(), &step.contact_set) else { continue };
+        let number = index + 1;
+        let what = format!("search for contact segments, iteration {number}");
+        let title = format!("{}, {}", headline(model, &what), closed_nodes(&step.contact_set));
+        series.push((format!("iteration-{number}"), Scene::new(model, &displacement, &step.contact_set, title)?));
+    }
+    draw_series(folder, &series)
+}
+
+/// Writes the answer of the QP as [`write_solve`] does, with the iterations of the active-set loop, and the pressure of
+/// the three methods over the boundary (`pressure`).
+///
+/// # Errors
+/// As [`write_solve`].
+pub fn write_compare(folder: &Path, model: &Model, comparison: &Comparison) -> Result<(), Error> {
+    let [qp, active_set, _] = &comparison.answers;
+    let mut drawn = qp.solution.clone();
+    drawn.history.clone_from(&active_set.solution.history);
+    write_solve(folder, model, &drawn)?;
+    let mut plots = Vec::new();
+    for obstacle in 0..model.obstacles().len() {
+        let mut series = Vec::new();
+        for answer in &comparison.answers {
+            let points = pressure_line(model, obstacle, &answer.solution)?;
+            series.push(Series::new(answer.solution.method.clone(), points));
+        }
+        if series[0].points.is_empty() {
+            continue;
+        }
+        let units = model.units();
+        let along = ["x", "y"][along_axis(model, obstacle)];
+        let pressure = Quantity::new("contact pressure p", units.pressure());
+        let mut plot = Plot::new(Quantity::new(along, &units.length), pressure, series);
+        plot.nested = true;
+        if model.obstacles().len() > 1 {
+            plot.title = format!("obstacle {} on {}", obstacle + 1, model.obstacles()[obstacle].boundary());
+        }
+        plots.push(plot);
+    }
+    if !plots.is_empty() {
+        write_picture(folder, "pressure", &line_plots(&headline(model, "three methods"), &plots))?;
+    }
+    Ok(())
+}
+
+/// Writes one picture for each gap (`gap-01`, ...), with common colours and scale, and force and contact width over the
+/// gap (`force-width`).
+///
+/// # Errors
+/// As [`write_solve`].
+pub fn write_sweep(folder: &Path, points: &[SweepPoint]) -> Result<(), Error> {
+    let mut series = Vec::new();
+    for (index, point) in points.iter().enumerate() {
+        let (model, solution) = (&point.model, &point.solution);
+        let title = format!("{}, {}", headline(model, ""), closed_nodes(&solution.contact_set));
+        let picture = Scene::new(model, &solution.displacement, &solution.contact_set, title)?;
+        series.push((format!("gap-{:02}", index + 1), picture));
+    }
+    draw_series(folder, &series)?;
+    let Some(first) = points.first() else { return Ok(()) };
+    let units = first.model.units();
+    let over_gap = |name: &str, unit: &str, value: &dyn Fn(&SweepPoint) -> f64| {
+        let line = points.iter().map(|point| [point.gap, value(point)]).collect();
+        Plot::new(Quantity::new("gap g", &units.length), Quantity::new(name, unit), vec![Series::new(name, line)])
+    };
+    let plots = [
+        over_gap("contact force F", &units.force, &|point| point.summary.contact.force),
+        over_gap("contact width", &units.length, &|point| point.summary.contact.width.unwrap_or(0.0)),
+    ];
+    write_picture(folder, "force-width", &line_plots(first.model.title(), &plots))?;
+    Ok(())
+}
+
+fn headline(model: &Model, what: &str) -> String {
+    let gap = format!("gap {} {}", brief(model.gap()), model.units().length);
+    let parts = [model.title(), gap.trim_end(), what];
+    parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
+}
+
+fn closed_nodes(set: &ContactSet) -> String {
+    match set.count() {
+        1 => "1 closed node".to_string(),
+        count => format!("{count} closed nodes"),
+    }
+}
+
+/// The axis along which the candidates of an obstacle lie: across its approach direction.
+fn along_axis(model: &Model, obstacle: usize) -> usize {
+    usize::from(model.obstacles()[obstacle].approach()[0] != 0.0)
+}
+
+/// Points [position along the boundary, pressure] of one obstacle.
+fn pressure_line(model: &Model, obstacle: usize, solution: &Solution) -> Result<Vec<[f64; 2]>, Error> {
+    let axis = along_axis(model, obstacle);
+    let pressure = model.pressure(&solution.multiplier)?;
+    let rows = model.rows().iter().zip(pressure).filter(|(row, _)| row.obstacle == obstacle);
+    let mut line: Vec<[f64; 2]> =
+        rows.map(|(row, pressure)| [model.mesh().nodes()[row.node][axis], pressure]).collect();
+    line.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    Ok(line)
+}
+
+/// What one picture shows, as plain data that it owns.
+struct Scene {
+    title: String,
+    length_unit: String,
+    stress_unit: String,
+    nodes: Vec<[f64; 2]>,
+    elements: Vec<Vec<usize>>,
+    displacement: Vec<f64>,
+    field: Vec<f64>,
+    outlines: Vec<(Vec<[f64; 2]>, [f64; 2])>,
+    candidates: Vec<usize>,
+    closed: Vec<bool>,
+}
+
+impl Scene {
+    fn new(model: &Model, displacement: &[f64], set: &ContactSet, title: String) -> Result<Self, Error> {
+        let candidates: Vec<usize> = {
+            let mut nodes: Vec<usize> = model.rows().iter().map(|row| row.node).collect();
+            nodes.sort_unstable();
+            nodes.dedup();
+            nodes
+        };
+        let closed_nodes: Vec<usize> = set.iter().map(|row| model.rows()[row].node).collect();
+        let outline = |i: usize| (model.obstacle_outline(i, OUTLINE_SEGMENTS), model.obstacles()[i].approach());
+        Ok(Scene {
+            title,
+            length_unit: model.units().length.clone(),
+            stress_unit: model.units().pressure(),
+            nodes: model.mesh().nodes().to_vec(),
+            elements: model.mesh().elements().map(<[usize]>::to_vec).collect(),
+            displacement: model.nodal_displacement(displacement)?,
+            field: model.stress(displacement)?.nodes.iter().map(|stress| stress.sigma_2).collect(),
+            outlines: (0..model.obstacles().len()).map(outline).collect(),
+            closed: candidates.iter().map(|node| closed_nodes.contains(node)).collect(),
+            candidates,
+        })
+    }
+
+    fn obstacles(&self) -> Vec<ObstacleLine<'_>> {
+        self.outlines.iter().map(|(points, inside)| ObstacleLine { points, inside: *inside }).collect()
+    }
+
+    fn picture<'a>(&'a self, obstacles: &'a [ObstacleLine<'a>]) -> ContactPicture<'a> {
+        ContactPicture {
+            title: &self.title,
+            length_unit: &self.length_unit,
+            nodes: &self.nodes,
+            elements: &self.elements,
+            displacement: &self.displacement,
+            magnification: 1.0,
+            field: &self.field,
+            quantity: Quantity::new("σ₂, second principal stress", &self.stress_unit),
+            limits: [f64::NAN; 2],
+            obstacles,
+            candidates: &self.candidates,
+            closed: &self.closed,
+            window: None,
+        }
+    }
+}
+
+/// Draws a series with common colour limits and a common window.
+fn draw_series(folder: &Path, series: &[(String, Scene)]) -> Result<(), Error> {
+    let limits = common_limits(series.iter().map(|(_, scene)| &scene.field[..]));
+    let obstacles: Vec<_> = series.iter().map(|(_, scene)| scene.obstacles()).collect();
+    let pictures: Vec<_> = series.iter().zip(&obstacles).map(|((_, scene), lines)| scene.picture(lines)).collect();
+    let window = common_window(pictures.iter().map(ContactPicture::window));
+    for ((stem, _), mut picture) in series.iter().zip(pictures) {
+        picture.limits = limits;
+        picture.window = Some(window);
+        write_picture(folder, stem, &picture.draw()?)?;
+    }
+    Ok(())
+}
+
+/// The text of the `.vtu` file: displacement, stresses, and at the candidates gap, pressure and contact flag.
+fn fields(model: &Model, solution: &Solution) -> Result<String, Error> {
+    let nodes = model.mesh().nodes();
+    let elements: Vec<Vec<usize>> = model.mesh().elements().map(<[usize]>::to_vec).collect();
+    let displacement = model.nodal_displacement(&solution.displacement)?;
+    let stress = model.stress(&solution.displacement)?;
+    // A node between two obstacles shows the sum of its pressures and the smaller of its gaps.
+    let (mut pressure, mut gap) = (vec![0.0; nodes.len()], vec![0.0; nodes.len()]);
+    let mut flag = vec![NO_CANDIDATE; nodes.len()];
+    let row_pressure = model.pressure(&solution.multiplier)?;
+    for (index, row) in model.rows().iter().enumerate() {
+        let is_first = flag[row.node] == NO_CANDIDATE;
+        gap[row.node] = if is_first { row.gap } else { row.gap.min(gap[row.node]) };
+        pressure[row.node] += row_pressure[index];
+        flag[row.node] = f64::from(solution.contact_set.contains(index)).max(flag[row.node]);
+    }
+    let components: [fn(&Stress) -> f64; 3] = [|s| s.sigma_1, |s| s.sigma_2, |s| s.von_mises];
+    let of = |stresses: &[Stress]| components.map(|component| stresses.iter().map(component).collect::<Vec<f64>>());
+    let (at_nodes, in_elements) = (of(&stress.nodes), of(&stress.elements));
+    Unstructured {
+        nodes,
+        elements: &elements,
+        point_data: &[
+            Array::Vectors("u", &displacement),
+            Array::Scalars("sigma_1", &at_nodes[0]),
+            Array::Scalars("sigma_2", &at_nodes[1]),
+            Array::Scalars("von_mises", &at_nodes[2]),
+            Array::Scalars("gap", &gap),
+            Array::Scalars("pressure", &pressure),
+            Array::Scalars("contact", &flag),
+        ],
+        cell_data: &[
+            Array::Scalars("sigma_1", &in_elements[0]),
+            Array::Scalars("sigma_2", &in_elements[1]),
+            Array::Scalars("von_mises", &in_elements[2]),
+        ],
+    }
+    .to_vtu()
+}
