@@ -73,8 +73,10 @@ def kkt(problem: Problem, answer: Answer) -> Kkt:
 
 
 def length_scale(problem: Problem, answer: Answer) -> float:
-    """The largest displacement along a contact row or, where none moves, the largest finite gap; in m."""
-    return largest(problem.contact @ answer.displacement) or largest(problem.gap[problem.bound])
+    """The largest displacement, of a dof or along a contact row, or, where none moves, the largest finite gap; in m."""
+    displacement = answer.displacement
+    moved = max(largest(displacement), largest(problem.contact @ displacement))
+    return moved or largest(problem.gap[problem.bound])
 
 
 def multiplier_scale(problem: Problem, answer: Answer) -> float:

@@ -73,8 +73,8 @@ impl fmt::Debug for ContactSet {
 /// How far an answer (u, lambda) is from the conditions that define the solution, each relative and dimensionless.
 ///
 /// Recomputed from the original problem by [`ContactProblem::certify`](crate::ContactProblem::certify), whatever the
-/// method claims. With `fs` the largest of `|f|` and `|B' lambda|`, `us` the largest of `|B u|`, of the gaps of closed
-/// rows, and of a thousandth of `fs` over the largest stiffness `ks`, `ls` the largest `|lambda|`, and `es` the largest of `u'Ku / 2`, `|f'u|`
+/// method claims. With `fs` the largest of `|f|` and `|B' lambda|`, `us` the largest of `|u|`, of `|B u|`, of the gaps of
+/// closed rows, and of a thousandth of `fs` over the largest stiffness `ks`, `ls` the largest `|lambda|`, and `es` the largest of `u'Ku / 2`, `|f'u|`
 /// and `|g' lambda|` (and `norm_K(u)` at least a thousandth of `fs / sqrt(ks)`):
 ///
 /// | field | formula |

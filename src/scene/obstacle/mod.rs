@@ -24,7 +24,7 @@ use surface::{Foot, Surface};
 const NO_COMPONENT: f64 = 1e-14;
 
 /// The pictured surface goes beyond the body by this part of the body's extent on either side.
-const OUTLINE_MARGIN: f64 = 0.05;
+const OUTLINE_MARGIN: f64 = 0.3;
 
 /// The way from a node to an obstacle: `normal . u <= distance`.
 #[derive(Clone, Copy, Debug, PartialEq)]
