@@ -59,6 +59,21 @@ fn stress_of_a_linear_field_is_exact_in_elements_and_at_nodes() {
 }
 
 #[test]
+fn stress_that_is_linear_in_a_rectangle_is_exact_at_its_nodes() {
+    // u_x = x y is bilinear: eps_xx = y, gamma_xy = x, everywhere in Q4 rectangles of any size.
+    use signorini::mesh::{ElementKind, rectangle};
+    let mesh = rectangle(&[0.0, 0.2, 1.0], &[0.0, 0.7, 1.0], ElementKind::Q4).unwrap();
+    let material = signorini::material::Material::new(8.0, 0.25, PlaneState::PlaneStress).unwrap();
+    let body = signorini::body::ElasticBody::new(mesh, material, 1.0).unwrap();
+    let field = recovery::stress(&body, &nodal(body.mesh(), |[x, y]| [x * y, 0.0])).unwrap();
+    let (along, shear) = (8.0 / (1.0 - 0.0625), 8.0 / 2.5);
+    for (stress, [x, y]) in field.nodes.iter().zip(body.mesh().nodes()) {
+        let found = [stress.sigma_xx, stress.sigma_yy, stress.sigma_xy];
+        assert!(difference(&found, &[along * y, 0.25 * along * y, shear * x]) < ROUNDING, "{stress:?} at {x}, {y}");
+    }
+}
+
+#[test]
 fn principal_and_von_mises_stress_follow_their_definitions() {
     // Uniaxial, pure shear, equal pressure in all directions: by hand.
     let uniaxial = Stress::new(-3.0, 0.0, 0.0, 0.0);
