@@ -113,10 +113,10 @@ impl Cell {
         for point in self.reference.quadrature {
             let map = self.map(point.at);
             let weighted = stress(point.at) * (map.determinant * point.weight * thickness * self.unit);
-            for node in 0..self.reference.nodes.len() {
-                let share = strain_matrix(map.gradients[node]).transpose() * weighted;
-                force[node][0] += share.x;
-                force[node][1] += share.y;
+            for (gradient, of_node) in map.gradients.iter().zip(&mut force).take(self.reference.nodes.len()) {
+                let share = strain_matrix(*gradient).transpose() * weighted;
+                of_node[0] += share.x;
+                of_node[1] += share.y;
             }
         }
         force

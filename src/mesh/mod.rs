@@ -75,7 +75,7 @@ impl Mesh {
         if let Some(node) = nodes.iter().position(|at| !(at[0].is_finite() && at[1].is_finite())) {
             return fail(format!("node {node} lies at {:?}; coordinates must be finite", nodes[node]));
         }
-        if connectivity.len() % kind.nodes() != 0 {
+        if !connectivity.len().is_multiple_of(kind.nodes()) {
             let (length, each) = (connectivity.len(), kind.nodes());
             return fail(format!(
                 "the connectivity has length {length}, no multiple of the {each} nodes of an element"

@@ -79,14 +79,15 @@ impl Axis {
         let intervals = points.len() - 1;
         if self.divisions.len() != intervals {
             let found = self.divisions.len();
-            return fail("divisions".into(), format!("{found} entries, but the points make {intervals} intervals"));
+            return fail("divisions".into(), format!("length {found}, but the points make {intervals} intervals"));
         }
         if !self.ratios.is_empty() && self.ratios.len() != intervals {
             let found = self.ratios.len();
-            return fail("ratios".into(), format!("{found} entries, but the points make {intervals} intervals"));
+            return fail("ratios".into(), format!("length {found}, but the points make {intervals} intervals"));
         }
         if let Some(index) = self.ratios.iter().position(|ratio| !(ratio.is_finite() && *ratio > 0.0)) {
-            let message = format!("{:?} must be positive (last cell size over first)", self.ratios[index]);
+            let message =
+                format!("{:?} is not allowed: it must be positive (last cell size over first)", self.ratios[index]);
             return fail(format!("ratios[{index}]"), message);
         }
         let mut lines: usize = 1;

@@ -21,15 +21,16 @@ impl Scene {
         let mut json = serde_json::Deserializer::from_str(text);
         let mut track = serde_path_to_error::Track::new();
         let scene = object(serde_path_to_error::Deserializer::new(&mut json, &mut track));
-        let fail = |path: String, error: serde_json::Error| Error::SceneSyntax {
+        let fail = |path: String, trailing: &str, error: serde_json::Error| Error::SceneSyntax {
             source_name: source_name.into(),
             line: error.line(),
-            column: error.column(),
+            column: error.column().max(1),
             path,
-            message: in_words(&error),
+            message: in_words(&error, text).replace("trailing characters", trailing),
         };
-        let scene = scene.map_err(|error| fail(track.path().to_string(), error))?;
-        json.end().map_err(|error| fail(".".into(), error))?;
+        // The parser knows one word for an array that is too long and for text behind the end.
+        let scene = scene.map_err(|error| fail(track.path().to_string(), "the array has too many entries", error))?;
+        json.end().map_err(|error| fail(".".into(), "there is more text behind the scene", error))?;
         Ok(scene)
     }
 
@@ -54,23 +55,32 @@ impl Scene {
 }
 
 /// The parser's message without its position, and in the words of JSON instead of the words of Rust.
-fn in_words(error: &serde_json::Error) -> String {
-    const WORDS: [(&str, &str); 8] = [
+fn in_words(error: &serde_json::Error, text: &str) -> String {
+    const WORDS: [(&str, &str); 9] = [
         ("invalid type: map", "invalid type: object"),
         ("invalid type: sequence", "invalid type: array"),
         ("expected f64", "expected a number"),
         ("expected usize", "expected a whole number that is not negative"),
         ("expected a sequence", "expected an array"),
+        ("unknown variant", "unknown choice"),
+        ("EOF while parsing", "the text ends within"),
         ("expected string or map", "expected a string or an object"),
         ("expected map with a single key", "expected an object with a single key"),
-        ("expected value", "expected a JSON value"),
     ];
     let position = format!(" at line {} column {}", error.line(), error.column());
     let mut message = error.to_string().replace(&position, "");
     for (rust, json) in WORDS {
         message = message.replace(rust, json);
     }
-    message
+    // The parser asks for a value where it finds a second key in an object that takes one.
+    let line = text.lines().nth(error.line().saturating_sub(1)).unwrap_or_default();
+    let at_comma = line.as_bytes().get(error.column()) == Some(&b',');
+    let expected = if at_comma {
+        "found a comma where an object with a single key ends, or a value stands"
+    } else {
+        "expected a JSON value"
+    };
+    message.replace("expected value", expected)
 }
 
 /// Accepts an object where a struct is expected, and nothing else: serde itself would take an array for it too.
