@@ -63,8 +63,9 @@ impl Mesh {
     /// `connectivity` lists the nodes of element 0, then of element 1, ..., each counterclockwise, indices from 0.
     ///
     /// # Errors
-    /// [`Error::Mesh`] for a mesh without elements, coordinates that are not finite, a connectivity that is no multiple of the nodes of an
-    /// element, a node beyond the last, a node that no element uses, two boundaries of one name.
+    /// [`Error::Mesh`] for a mesh without elements, coordinates that are not finite, a connectivity that is no
+    /// multiple of the nodes of an element, a node beyond the last, a node that no element uses, two boundaries of
+    /// one name.
     pub fn new(
         nodes: Vec<[f64; 2]>,
         kind: ElementKind,

@@ -101,9 +101,9 @@ impl Obstacle {
         &self.candidates
     }
 
-    /// The surface as a polyline [x, y] for pictures: over the body's extent and a little more, shifted by `gap` along the
-    /// approach direction, in `segments` pieces (10,000 at most), corners met exactly. The obstacle lies on the side that
-    /// [`approach`](Self::approach) points to. Empty where the surface does not reach over the body.
+    /// The surface as a polyline [x, y] for pictures: over the body's extent and a little more, shifted by `gap`
+    /// along the approach direction, in `segments` pieces (10,000 at most), corners met exactly. The obstacle lies on
+    /// the side that [`approach`](Self::approach) points to. Empty where the surface does not reach over the body.
     pub fn outline(&self, gap: f64, segments: usize) -> Vec<[f64; 2]> {
         let (low, high) = self.extent;
         let margin = OUTLINE_MARGIN * (high - low);
