@@ -17,8 +17,8 @@ impl ElasticBody {
     /// The body of `mesh` and `material`; `thickness` is its depth across the plane.
     ///
     /// # Errors
-    /// [`Error::Setting`] for a thickness that is not positive and finite, [`Error::Mesh`] for an element whose Jacobian
-    /// is not positive.
+    /// [`Error::Setting`] for a thickness that is not positive and finite, [`Error::Mesh`] for an element whose
+    /// Jacobian is not positive.
     pub fn new(mesh: Mesh, material: Material, thickness: f64) -> Result<Self, Error> {
         if !(thickness.is_normal() && thickness > 0.0) {
             return Err(Error::Setting { name: "thickness", value: thickness, allowed: "positive and finite" });

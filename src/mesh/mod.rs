@@ -63,8 +63,9 @@ impl Mesh {
     /// `connectivity` lists the nodes of element 0, then of element 1, ..., each counterclockwise, indices from 0.
     ///
     /// # Errors
-    /// [`Error::Mesh`] for coordinates that are not finite, a connectivity that is no multiple of the nodes of an
-    /// element, a node beyond the last, a node that no element uses, two boundaries of one name.
+    /// [`Error::Mesh`] for a mesh without elements, coordinates that are not finite, a connectivity that is no
+    /// multiple of the nodes of an element, a node beyond the last, a node that no element uses, two boundaries of
+    /// one name.
     pub fn new(
         nodes: Vec<[f64; 2]>,
         kind: ElementKind,
@@ -72,6 +73,9 @@ impl Mesh {
         boundaries: Vec<Boundary>,
     ) -> Result<Self, Error> {
         let fail = |message| Err(Error::Mesh { message });
+        if connectivity.is_empty() {
+            return fail("there are no elements; a mesh needs at least one".into());
+        }
         if let Some(node) = nodes.iter().position(|at| !(at[0].is_finite() && at[1].is_finite())) {
             return fail(format!("node {node} lies at {:?}; coordinates must be finite", nodes[node]));
         }

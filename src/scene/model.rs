@@ -28,8 +28,8 @@ pub(super) struct Parts {
 
 /// A discretised scene: mesh, contact problem, and what its rows and dofs mean.
 ///
-/// Nodal vectors have length `2 * n_nodes` and the order `[x_0, y_0, x_1, y_1, ...]`. `displacement` arguments are those
-/// of a solution: one entry per free dof.
+/// Nodal vectors have length `2 * n_nodes` and the order `[x_0, y_0, x_1, y_1, ...]`. `displacement` arguments are
+/// those of a solution: one entry per free dof.
 #[derive(Clone, Debug)]
 pub struct Model {
     parts: Arc<Parts>,
@@ -125,8 +125,8 @@ impl Model {
         self.parts.obstacles.get(obstacle).map_or_else(Vec::new, |obstacle| obstacle.outline(self.gap, segments))
     }
 
-    /// The contact rows, in the order of the rows of [`problem`](Self::problem): obstacle by obstacle, each in the order of
-    /// its boundary.
+    /// The contact rows, in the order of the rows of [`problem`](Self::problem): obstacle by obstacle, each in the
+    /// order of its boundary.
     pub fn rows(&self) -> &[ContactRow] {
         &self.rows
     }
@@ -174,8 +174,8 @@ impl Model {
 
     /// Nodal support reactions on the body, in force; zero at free dofs.
     ///
-    /// What the stress in the elements asks for at the supported dofs, less load and contact force there. The multiplier
-    /// enters because a contact row may press on a supported dof.
+    /// What the stress in the elements asks for at the supported dofs, less load and contact force there. The
+    /// multiplier enters because a contact row may press on a supported dof.
     ///
     /// # Errors
     /// [`Error::Length`] where `displacement` or `multiplier` do not fit.

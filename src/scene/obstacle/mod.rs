@@ -26,6 +26,9 @@ const NO_COMPONENT: f64 = 1e-14;
 /// The pictured surface goes beyond the body by this part of the body's extent on either side.
 const OUTLINE_MARGIN: f64 = 0.3;
 
+/// No picture resolves more pieces of a surface.
+const MAX_SEGMENTS: usize = 10_000;
+
 /// The way from a node to an obstacle: `normal . u <= distance`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Approachable {
@@ -98,9 +101,9 @@ impl Obstacle {
         &self.candidates
     }
 
-    /// The surface as a polyline [x, y] for pictures: over the body's extent and a little more, shifted by `gap` along the
-    /// approach direction, at least `segments` pieces, corners met exactly. The obstacle lies on the side that
-    /// [`approach`](Self::approach) points to. Empty where the surface does not reach over the body.
+    /// The surface as a polyline [x, y] for pictures: over the body's extent and a little more, shifted by `gap`
+    /// along the approach direction, in `segments` pieces (10,000 at most), corners met exactly. The obstacle lies on
+    /// the side that [`approach`](Self::approach) points to. Empty where the surface does not reach over the body.
     pub fn outline(&self, gap: f64, segments: usize) -> Vec<[f64; 2]> {
         let (low, high) = self.extent;
         let margin = OUTLINE_MARGIN * (high - low);
@@ -110,7 +113,7 @@ impl Obstacle {
         if first >= last {
             return Vec::new();
         }
-        let segments = segments.max(1);
+        let segments = segments.clamp(1, MAX_SEGMENTS);
         let sample = |i: usize| if i == segments { last } else { first + (last - first) * i as f64 / segments as f64 };
         let mut along: Vec<f64> = (0..=segments).map(sample).collect();
         along.extend(self.surface.corners().into_iter().filter(|&corner| corner > first && corner < last));
