@@ -116,6 +116,9 @@ pub(super) struct Common {
     /// Relative tolerance of the certificate
     #[arg(long, default_value_t = 1e-9, value_name = "T")]
     pub tolerance: f64,
+    /// Let the methods work on all dofs instead of those of the contact rows
+    #[arg(long)]
+    pub no_condense: bool,
     /// Folder for pictures, fields and answers
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,

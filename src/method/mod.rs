@@ -28,23 +28,17 @@ pub struct ScaledProblem<'a> {
     pub problem: &'a ContactProblem,
     /// Is K positive definite by itself?
     pub definite: bool,
-    augmented: AugmentedMatrix,
+    augmented: &'a AugmentedMatrix,
     factor_seconds: Cell<f64>,
 }
 
 impl<'a> ScaledProblem<'a> {
-    /// Analyses the pattern of K + B'B.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] when memory does not suffice.
-    pub fn new(problem: &'a ContactProblem, definite: bool) -> Result<Self, Error> {
-        let clock = Instant::now();
-        let augmented = AugmentedMatrix::new(problem.stiffness(), problem.contact())?;
-        let factor_seconds = Cell::new(clock.elapsed().as_secs_f64());
-        Ok(ScaledProblem { problem, definite, augmented, factor_seconds })
+    /// The problem with the analysed pattern of its K + B'B.
+    pub fn new(problem: &'a ContactProblem, augmented: &'a AugmentedMatrix, definite: bool) -> Self {
+        ScaledProblem { problem, definite, augmented, factor_seconds: Cell::new(0.0) }
     }
 
-    /// Seconds spent in analysis and factorisations so far.
+    /// Seconds spent in factorisations so far.
     pub fn factor_seconds(&self) -> f64 {
         self.factor_seconds.get()
     }

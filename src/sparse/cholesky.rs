@@ -23,7 +23,8 @@ pub struct Analysis {
 #[derive(Clone, Debug)]
 pub struct Cholesky {
     analysis: Analysis,
-    values: Vec<f64>,
+    /// Shared, because a factor is the largest thing there is.
+    values: Arc<Vec<f64>>,
 }
 
 /// Why a factorisation did not end with a factor.
@@ -124,7 +125,7 @@ impl Analysis {
             )
             .map_err(|LltError::NonPositivePivot { .. }| FactorError::NotPositiveDefinite)?;
         if values.iter().all(|value| value.is_finite()) {
-            Ok(Cholesky { analysis: self.clone(), values })
+            Ok(Cholesky { analysis: self.clone(), values: Arc::new(values) })
         } else {
             Err(FactorError::NotPositiveDefinite)
         }
@@ -138,6 +139,11 @@ impl Cholesky {
     /// As [`Analysis::of`] and [`Analysis::factor`].
     pub fn of(matrix: &SymmetricMatrix) -> Result<Self, FactorError> {
         Analysis::of(matrix)?.factor(matrix)
+    }
+
+    /// Number of rows and of columns.
+    pub fn dim(&self) -> usize {
+        self.analysis.symbolic.nrows()
     }
 
     /// The solution x of A x = b, length `dim`.

@@ -2,6 +2,7 @@
 
 mod augmented;
 mod cholesky;
+mod definite;
 mod ordering;
 mod power_of_two;
 mod symmetric;
