@@ -1,9 +1,9 @@
 //! Does a set of closed rows hold the body? If not: along which direction is it free, and does the load drive it?
 
-use super::{ScaledProblem, largest};
+use super::ScaledProblem;
 use crate::error::Error;
 use crate::solution::ContactSet;
-use crate::sparse::{Cholesky, FactorError};
+use crate::sparse::{Cholesky, FactorError, largest};
 
 /// Shifts with which a singular matrix is made definite, smallest first.
 const SHIFTS: [f64; 3] = [1e-12, 1e-10, 1e-8];

@@ -15,7 +15,7 @@ pub use holding::{FreeMotion, Holding};
 use crate::error::Error;
 use crate::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
-use crate::sparse::{AugmentedMatrix, Cholesky, FactorError, SymmetricMatrix};
+use crate::sparse::{AugmentedMatrix, Cholesky, FactorError, SymmetricMatrix, largest};
 
 /// Differences below this, relative to the largest displacement or multiplier, are rounding: the sign of a weakly
 /// active row is compared with it, or such a row would close and open for ever.
@@ -122,8 +122,4 @@ pub struct Outcome {
     pub settled: bool,
     /// Empty, or the variant that ended the loop, to be appended to the method's name.
     pub variant: &'static str,
-}
-
-pub(crate) fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |largest, value| value.abs().max(largest))
 }

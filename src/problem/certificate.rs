@@ -3,7 +3,7 @@
 use super::ContactProblem;
 use crate::error::Error;
 use crate::solution::Certificate;
-use crate::sparse::{Cholesky, Equilibration, FactorError, SymmetricMatrix, ldexp};
+use crate::sparse::{Cholesky, Equilibration, FactorError, SymmetricMatrix, dot, ldexp};
 
 /// Rounding u to double precision and summing a sparse row leaves a residual of about this many units in the last
 /// place of its largest term; below it a residual says nothing about the answer.
@@ -62,10 +62,6 @@ impl EnergyNorm {
     fn of_force(&self, residual: &[f64]) -> f64 {
         dot(residual, &self.free_displacement(residual)).max(0.0).sqrt()
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
 fn largest(values: impl IntoIterator<Item = f64>) -> f64 {

@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::method::{ScaledProblem, interior_point};
 use crate::problem::{ContactProblem, EnergyNorm};
 use crate::solution::{ContactSet, Iteration, Seconds, Solution};
-use crate::sparse::{AugmentedMatrix, Cholesky, FactorError, exponent, ldexp};
+use crate::sparse::{AugmentedMatrix, Cholesky, FactorError, exponent, largest, ldexp};
 use crate::transform::{Condensation, RowSelection, Scaling};
 
 /// A contact problem, scaled, condensed where that pays, factorised.
@@ -190,7 +190,6 @@ impl Prepared {
     /// but no more than the gaps and the load over the stiffness, where a soft support would let the free body run away.
     fn scale(&self, problem: &ContactProblem) -> Result<Scaled, Error> {
         let gap = self.selection.gap(problem.gap());
-        let largest = |values: &[f64]| values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
         let stiffness = largest(&problem.stiffness().diagonal());
         let static_reach = if stiffness > 0.0 { largest(problem.load()) / stiffness } else { 0.0 };
         let local = largest(&gap).max(static_reach);
@@ -241,7 +240,7 @@ impl Prepared {
                 None => direction,
             };
             let mut direction = self.scaling.expand_displacement(&whole, 0);
-            let size = direction.iter().fold(0.0, |size: f64, value| size.max(value.abs()));
+            let size = largest(&direction);
             direction.iter_mut().for_each(|value| *value /= size);
             direction
         };

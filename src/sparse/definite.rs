@@ -1,6 +1,6 @@
 //! Is a matrix positive definite, or did rounding let a singular one pass its Cholesky factorisation?
 
-use super::{Cholesky, SymmetricMatrix};
+use super::{Cholesky, SymmetricMatrix, largest};
 
 /// On a diagonal of order one, a smallest pivot above this leaves no doubt; below it the smallest eigenvalue is looked at.
 const SAFE_PIVOT: f64 = 1e-9;
@@ -33,8 +33,4 @@ impl Cholesky {
         }
         x
     }
-}
-
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |largest, value| value.abs().max(largest))
 }
