@@ -5,6 +5,7 @@
 pub mod active_set;
 mod holding;
 pub mod interior_point;
+pub mod parametric;
 pub mod penalty;
 
 use std::cell::Cell;

@@ -1,8 +1,10 @@
 //! From a contact problem to a certified answer: select rows, scale, condense, method, expand, certify.
 
+mod path;
 mod prepared;
 mod settings;
 
+pub use path::Path;
 pub use prepared::Prepared;
 pub use settings::{Condense, Method, Settings};
 

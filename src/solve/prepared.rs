@@ -2,9 +2,10 @@
 
 use std::time::Instant;
 
-use super::{Condense, Settings, run};
+use super::{Condense, Path, Settings, run};
 use crate::error::Error;
-use crate::method::{ScaledProblem, interior_point};
+use crate::method::parametric::Compliance;
+use crate::method::{ScaledProblem, active_set, interior_point};
 use crate::problem::{ContactProblem, EnergyNorm};
 use crate::solution::{ContactSet, Iteration, Seconds, Solution};
 use crate::sparse::{AugmentedMatrix, Cholesky, FactorError, exponent, largest, ldexp};
@@ -120,6 +121,37 @@ impl Prepared {
         self.solve_from(&self.problem.with_load(load)?, start, settings)
     }
 
+    /// The exact path of the answer while the gaps move from `from` to `to` (length m each) on a straight line.
+    ///
+    /// # Errors
+    /// As [`Prepared::solve_gap`] for both ends; [`Error::NotCondensed`] for a problem that was not condensed or whose
+    /// stiffness is not definite by itself.
+    pub fn path(&self, from: &[f64], to: &[f64], settings: &Settings) -> Result<Path<'_>, Error> {
+        let Some(condensed) = self.condensation.as_ref().filter(|_| self.norm.is_some()) else {
+            return Err(Error::NotCondensed { step: "the exact path" });
+        };
+        let (first, last) = (self.problem.with_gap(from.to_vec())?, self.problem.with_gap(to.to_vec())?);
+        self.check_rows(&last)?;
+        let start = self.solve_from(&first, None, settings)?;
+        let scaled = self.scale(&first)?;
+        let free = condensed.contact().mul(&condensed.free_displacement(&scaled.sweep));
+        let at_end = self.scaling.gap(&self.selection.gap(to), scaled.unit);
+        let constant = free.iter().zip(scaled.problem.gap()).map(|(free, gap)| free - gap).collect();
+        let slope = scaled.problem.gap().iter().zip(&at_end).map(|(first, last)| first - last).collect();
+        let compliance = Compliance::new(condensed.compliance(), constant, slope);
+        let (pieces, mut events) = compliance.walk(&self.selection.restrict_set(&start.contact_set))?;
+        events.iter_mut().for_each(|event| event.row = self.selection.kept()[event.row]);
+        Ok(Path { prepared: self, from: from.to_vec(), to: to.to_vec(), unit: scaled.unit, pieces, events })
+    }
+
+    pub(super) fn expand_multiplier(&self, multiplier: &[f64], unit: i32) -> Vec<f64> {
+        self.selection.expand_multiplier(&self.scaling.expand_multiplier(multiplier, unit))
+    }
+
+    pub(super) fn expand_set(&self, set: &ContactSet) -> ContactSet {
+        self.selection.expand_set(set)
+    }
+
     fn solve_from(
         &self,
         problem: &ContactProblem,
@@ -135,8 +167,7 @@ impl Prepared {
         let outcome = run(&task, start, settings).map_err(|error| self.expand_error(error, &scaled))?;
 
         let displacement = self.expand(&scaled, &outcome.displacement);
-        let multiplier =
-            self.selection.expand_multiplier(&self.scaling.expand_multiplier(&outcome.multiplier, scaled.unit));
+        let multiplier = self.expand_multiplier(&outcome.multiplier, scaled.unit);
         let certificate = problem.certify_in(self.norm.as_ref(), &displacement, &multiplier)?;
         let expand_iteration = |step: Iteration| Iteration {
             contact_set: self.selection.expand_set(&step.contact_set),
@@ -166,10 +197,10 @@ impl Prepared {
     pub(super) fn with_contact_set(&self, closed: &ContactSet) -> Result<(Vec<f64>, Vec<f64>), Error> {
         let scaled = self.scale(&self.problem)?;
         let task = ScaledProblem::new(&scaled.problem, &self.augmented, self.norm.is_some());
-        let held = crate::method::active_set::with_contact_set(&task, &self.selection.restrict_set(closed))
+        let held = active_set::with_contact_set(&task, &self.selection.restrict_set(closed))
             .map_err(|error| self.expand_error(error, &scaled))?;
-        let multiplier = self.scaling.expand_multiplier(&held.multiplier, scaled.unit);
-        Ok((self.expand(&scaled, &held.displacement), self.selection.expand_multiplier(&multiplier)))
+        let multiplier = self.expand_multiplier(&held.multiplier, scaled.unit);
+        Ok((self.expand(&scaled, &held.displacement), multiplier))
     }
 
     /// Rows that were left out when the problem was prepared must still be no constraints, and no others.

@@ -12,7 +12,7 @@
 //! `S + B_t'B_t`: the interior blocks, and so both sweeps, are the same.
 
 use crate::error::Error;
-use crate::sparse::{Analysis, Cholesky, FactorError, SparseMatrix, SymmetricMatrix};
+use crate::sparse::{Analysis, Cholesky, FactorError, SparseMatrix, SymmetricMatrix, dot};
 
 /// Contact dofs beyond this share of all leave little to condense.
 const LARGEST_SHARE: f64 = 0.25;
@@ -125,6 +125,33 @@ impl Condensation {
             x[row] = (x[row] - known) / column[row];
         }
         x
+    }
+
+    /// The compliance B S^-1 B' of the contact rows (m x m, column by column), where K is definite.
+    pub fn compliance(&self) -> Vec<f64> {
+        let (rows, size) = (self.contact.rows(), self.contact_dofs.len());
+        let by_row = self.contact.transposed();
+        // The columns of L_tt^-1 B_t', one for each row.
+        let mut halves = vec![0.0; rows * size];
+        for (row, half) in halves.chunks_exact_mut(size).enumerate() {
+            by_row.column(row).for_each(|(dof, value)| half[dof] += value);
+            let first = by_row.column(row).map(|entry| entry.0).min().unwrap_or(size);
+            for j in first..size {
+                let column = &self.trailing[j * size..(j + 1) * size];
+                half[j] /= column[j];
+                let value = half[j];
+                half[j + 1..].iter_mut().zip(&column[j + 1..]).for_each(|(entry, l)| *entry -= l * value);
+            }
+        }
+        let mut compliance = vec![0.0; rows * rows];
+        for i in 0..rows {
+            for j in 0..=i {
+                let value = dot(&halves[i * size..(i + 1) * size], &halves[j * size..(j + 1) * size]);
+                compliance[i * rows + j] = value;
+                compliance[j * rows + i] = value;
+            }
+        }
+        compliance
     }
 
     /// The displacement of the whole body from that of the contact dofs.
