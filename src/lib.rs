@@ -81,5 +81,5 @@ pub use error::Error;
 pub use problem::ContactProblem;
 pub use scene::{Model, Scene};
 pub use solution::{Certificate, ContactSet, Solution};
-pub use solve::{Method, Settings, solve, solve_qp};
+pub use solve::{Condense, Method, Prepared, Settings, solve, solve_qp};
 pub use sparse::{SparseMatrix, SymmetricMatrix};

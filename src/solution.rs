@@ -177,6 +177,8 @@ pub struct Solution {
     pub history: Vec<Iteration>,
     /// How far the answer can be trusted.
     pub certificate: Certificate,
+    /// Unknowns that the method worked on; fewer than all where the problem was condensed.
+    pub condensed_dofs: usize,
     /// What it cost.
     pub seconds: Seconds,
 }

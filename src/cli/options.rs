@@ -127,6 +127,9 @@ pub(super) struct Common {
     /// Relative tolerance of the certificate
     #[arg(long, default_value = "1e-9", value_name = "T", allow_negative_numbers = true, value_parser = parse_tolerance)]
     pub tolerance: f64,
+    /// Let the methods work on all dofs instead of those of the contact rows
+    #[arg(long)]
+    pub no_condense: bool,
     /// Folder for pictures, fields and answers
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,

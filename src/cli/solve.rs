@@ -5,11 +5,12 @@ use super::options::{Common, Format, Solve};
 use super::{Outcome, warn};
 use crate::error::Error;
 use crate::output::{gallery, solve_json, solve_text, write_files};
-use crate::solve::{Method, Settings, solve};
+use crate::solve::{Condense, Method, Settings, solve};
 
 pub(super) fn settings(method: Method, common: &Common) -> Settings {
     let mut settings = Settings::with_method(method);
     settings.tolerance = common.tolerance;
+    settings.condense = if common.no_condense { Condense::Never } else { Condense::Auto };
     settings
 }
 

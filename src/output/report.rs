@@ -39,7 +39,11 @@ pub fn solve_text(title: &str, summary: &Summary, units: &UnitNames) -> String {
     let mut text = format!("{}\n", printable(title));
     let mut line = |name: &str, content: String| text += &entry(name, &content);
     line("model", format!("{mesh}{} dofs, {}", model.dofs, plural(model.contact_rows, "contact row")));
-    line("method", format!("{}, {}", summary.method, plural(summary.iterations, "iteration")));
+    let unknowns = match model.condensed_dofs {
+        all if all == model.dofs => String::new(),
+        condensed => format!(", condensed to {condensed} dofs"),
+    };
+    line("method", format!("{}, {}{unknowns}", summary.method, plural(summary.iterations, "iteration")));
     line(
         "contact",
         format!("{}, force {}", plural(contact.count, "closed row"), quantity(contact.force, &units.force)),

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::typeface::escape;
-use crate::Error;
+use crate::error::Error;
 
 /// Named values, one entry per point or per cell.
 #[derive(Clone, Copy, Debug)]
