@@ -178,7 +178,7 @@ pub enum Error {
     /// A file or folder that cannot be read or written.
     #[error("cannot {action} {}: {source}", path.display())]
     File {
-        /// `read` or `write`.
+        /// `read`, `write` or `make the folder`.
         action: &'static str,
         /// Which one.
         path: PathBuf,

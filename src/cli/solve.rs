@@ -20,8 +20,9 @@ pub(super) fn run(options: &Solve) -> Result<Outcome, Error> {
     warn(&input.warnings());
     let solution = match solve(input.problem(), &settings(options.method.method(), common)) {
         Ok(solution) => solution,
-        Err(Error::NotCertified { solution, condition, value, tolerance }) => {
-            warn(&format!("not certified: {condition} is {value:.3e}, above the tolerance {tolerance:.1e}\n"));
+        Err(error @ Error::NotCertified { .. }) => {
+            warn(&format!("error: {error}\n"));
+            let Error::NotCertified { solution, .. } = error else { return Err(error) };
             *solution
         }
         Err(error) => return Err(input.explain(error)),

@@ -15,9 +15,14 @@ pub struct UnitNames {
     pub stress: String,
 }
 
+/// Text on one line, without characters that would steer a terminal.
+pub fn printable(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { c.escape_default().to_string() } else { c.to_string() }).collect()
+}
+
 /// A number with its unit.
 fn quantity(value: f64, unit: &str) -> String {
-    format!("{value:.6e} {unit}").trim_end().to_string()
+    format!("{value:.6e} {}", printable(unit)).trim_end().to_string()
 }
 
 fn plural(count: usize, noun: &str) -> String {
@@ -31,7 +36,7 @@ pub fn solve_text(title: &str, summary: &Summary, units: &UnitNames) -> String {
         (Some(nodes), Some(elements)) => format!("{nodes} nodes, {elements} elements, "),
         _ => String::new(),
     };
-    let mut text = format!("{title}\n");
+    let mut text = format!("{}\n", printable(title));
     let mut line = |name: &str, content: String| text += &entry(name, &content);
     line("model", format!("{mesh}{} dofs, {}", model.dofs, plural(model.contact_rows, "contact row")));
     let unknowns = match model.condensed_dofs {
@@ -77,7 +82,7 @@ fn certificate_text(certificate: &CertificateSummary, certified: bool, tolerance
 /// The report of a verification.
 pub fn verify_text(title: &str, verification: &Verification) -> String {
     let Verification { model, contact, .. } = verification;
-    let mut text = format!("{title}\n");
+    let mut text = format!("{}\n", printable(title));
     text += &entry("model", &format!("{} dofs, {}", model.dofs, plural(model.contact_rows, "contact row")));
     text += &entry("contact", &format!("{} under force {:.6e}", plural(contact.count, "row"), contact.force));
     text + &certificate_text(&verification.certificate, verification.is_certified(), verification.tolerance)
@@ -109,11 +114,11 @@ pub fn sweep_text(title: &str, points: &[SweepPoint], units: &UnitNames) -> Stri
         ]
     };
     let table: Vec<Vec<String>> = std::iter::once(header.to_vec()).chain(points.iter().map(row)).collect();
-    format!("{title}\n\n{}", columns(&table))
+    format!("{}\n\n{}", printable(title), columns(&table))
 }
 
 fn in_unit(name: &str, unit: &str) -> String {
-    if unit.is_empty() { name.to_string() } else { format!("{name} [{unit}]") }
+    if unit.is_empty() { name.to_string() } else { format!("{name} [{}]", printable(unit)) }
 }
 
 fn conditions(certificate: &CertificateSummary) -> [(&'static str, &'static str, String); 6] {
@@ -163,7 +168,8 @@ pub fn compare_text(title: &str, summaries: &[Summary; 3], agreement: &Agreement
             format!("{:.4}", summary.seconds.factor + summary.seconds.solve),
         ]);
     }
-    let mut text = format!("{title}\n{} dofs, {}\n\n", qp.model.dofs, plural(qp.model.contact_rows, "contact row"));
+    let mut text =
+        format!("{}\n{} dofs, {}\n\n", printable(title), qp.model.dofs, plural(qp.model.contact_rows, "contact row"));
     text += &columns(&table);
     text += "\n";
     let mut table = vec![

@@ -17,7 +17,7 @@ impl Scene {
     ///
     /// # Errors
     /// [`Error::Scene`] for a value that describes no problem, [`Error::UnderHeld`] for a rigid motion that neither
-    /// supports nor obstacles resist, [`Error::NotFinite`] for a stiffness that overflows.
+    /// supports nor obstacles resist.
     pub fn build(&self) -> Result<Model, Error> {
         let material = self.material()?;
         let body = self.body(material)?;

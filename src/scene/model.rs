@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::motion::RigidMotions;
 use super::rows::{self, ContactRow};
-use super::{Obstacle, Units, Warning};
+use super::{Obstacle, Units, Warning, wrong};
 use crate::assembly::{DofMap, internal_force, stiffness};
 use crate::body::ElasticBody;
 use crate::error::Error;
@@ -51,7 +51,13 @@ impl Model {
             let forces = internal_force(&parts.body, &lifted)?;
             load.iter_mut().zip(forces).for_each(|(load, force)| *load -= force);
         }
-        let stiffness = stiffness(&parts.body, &parts.dofs)?;
+        let stiffness = stiffness(&parts.body, &parts.dofs).map_err(|error| match error {
+            Error::NotFinite { .. } => {
+                let message = "the stiffness that it makes with body and thickness overflows; choose other units";
+                wrong("material", message)
+            }
+            other => other,
+        })?;
         let load = parts.dofs.restrict(&load)?;
         Self::with_rows(Arc::new(parts), gap, built, stiffness, load)
     }

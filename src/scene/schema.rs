@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::parse::{number, object, objects};
+use super::parse::{choice, choices, number, object, objects, word};
 
 /// A contact scene: one elastic body, its supports and loads, and the rigid obstacles around it.
 ///
@@ -21,12 +21,13 @@ pub struct Scene {
     #[serde(default, deserialize_with = "object")]
     pub units: Units,
     /// What happens across the plane.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "word")]
     pub model: PlaneModel,
     /// Depth across the plane, positive.
     #[serde(default = "one")]
     pub thickness: f64,
     /// The elastic body.
+    #[serde(deserialize_with = "choice")]
     pub body: BodySpec,
     /// Its material.
     #[serde(deserialize_with = "object")]
@@ -35,7 +36,7 @@ pub struct Scene {
     #[serde(default, deserialize_with = "objects")]
     pub supports: Vec<SupportSpec>,
     /// External loads; they add up.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "choices")]
     pub loads: Vec<LoadSpec>,
     /// Rigid, frictionless obstacles.
     #[serde(default, deserialize_with = "objects")]
@@ -106,7 +107,7 @@ pub struct RectangleSpec {
     #[serde(deserialize_with = "object")]
     pub y: AxisSpec,
     /// The element.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "word")]
     pub element: ElementSpec,
 }
 
@@ -159,6 +160,7 @@ pub enum Place {
 #[serde(deny_unknown_fields)]
 pub struct SupportSpec {
     /// Where.
+    #[serde(deserialize_with = "choice")]
     pub on: Place,
     /// Prescribed displacement along x.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
@@ -207,11 +209,13 @@ pub struct ObstacleSpec {
     /// The boundary whose nodes are the candidates.
     pub boundary: String,
     /// The direction from the body to the obstacle.
+    #[serde(deserialize_with = "word")]
     pub approach: Approach,
     /// How a node's contact row is made.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "word")]
     pub rule: Rule,
     /// The surface of the obstacle.
+    #[serde(deserialize_with = "choice")]
     pub shape: ShapeSpec,
 }
 

@@ -79,5 +79,13 @@ pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Vec<Swe
 /// `count` gaps from `first` to `last`, both included.
 pub fn even_gaps(first: f64, last: f64, count: usize) -> Vec<f64> {
     let share = |i: usize| i as f64 / (count.max(2) - 1) as f64;
-    (0..count).map(|i| first * (1.0 - share(i)) + last * share(i)).collect()
+    let between = |i: usize| first * (1.0 - share(i)) + last * share(i);
+    // Fifteen digits, so that gaps come out as they would be written: -0.03, not -0.030000000000000002.
+    let written = |gap: f64| format!("{gap:.14e}").parse().unwrap_or(gap);
+    let gap = |i: usize| match i {
+        0 => first,
+        i if i + 1 == count => last,
+        i => written(between(i)),
+    };
+    (0..count).map(gap).collect()
 }
