@@ -15,15 +15,15 @@ pub(super) fn run(options: &Sweep) -> Result<Outcome, Error> {
     let model = Scene::read(&options.scene)?.build()?;
     warn(&warnings(&model));
     let gaps = even_gaps(options.gaps.first, options.gaps.last, options.gaps.count);
-    let points = sweep(&model, &gaps, &settings(Method::Auto, common))?;
-    let json = format!("{:#}\n", sweep_json(&points));
+    let swept = sweep(&model, &gaps, &settings(Method::Auto, common))?;
+    let json = format!("{:#}\n", sweep_json(&swept));
     if let Some(folder) = &common.out {
-        gallery::write_sweep(folder, &points)?;
+        gallery::write_sweep(folder, &swept)?;
         write_files(folder, &[("report.json", json.clone())])?;
     }
     let text = match common.format {
-        Format::Text => sweep_text(&scene_title(&model, &options.scene), &points, &unit_names(&model)),
+        Format::Text => sweep_text(&scene_title(&model, &options.scene), &swept, &unit_names(&model)),
         Format::Json => json,
     };
-    Ok(Outcome::judged(text, points.iter().all(|point| point.summary.is_certified())))
+    Ok(Outcome::judged(text, swept.points.iter().all(|point| point.summary.is_certified())))
 }

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::study::{Agreement, CertificateSummary, Summary, SweepPoint, Verification};
+use crate::study::{Agreement, CertificateSummary, Summary, Sweep, SweepEvent, SweepPoint, Verification};
 
 /// The unit names of a report; empty for a raw problem, whose units are the user's own.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -88,8 +88,11 @@ pub fn verify_text(title: &str, verification: &Verification) -> String {
     text + &certificate_text(&verification.certificate, verification.is_certified(), verification.tolerance)
 }
 
-/// The table of a sweep.
-pub fn sweep_text(title: &str, points: &[SweepPoint], units: &UnitNames) -> String {
+/// Events of a sweep that its text shows; the rest is in the JSON form.
+const MOST_EVENTS: usize = 40;
+
+/// The table of a sweep, and what happens between its gaps.
+pub fn sweep_text(title: &str, sweep: &Sweep, units: &UnitNames) -> String {
     let header = [
         in_unit("gap", &units.length),
         "iterations".to_string(),
@@ -113,8 +116,21 @@ pub fn sweep_text(title: &str, points: &[SweepPoint], units: &UnitNames) -> Stri
             point.summary.status.replace('_', " "),
         ]
     };
-    let table: Vec<Vec<String>> = std::iter::once(header.to_vec()).chain(points.iter().map(row)).collect();
-    format!("{}\n\n{}", printable(title), columns(&table))
+    let table: Vec<Vec<String>> = std::iter::once(header.to_vec()).chain(sweep.points.iter().map(row)).collect();
+    let mut text = format!("{}\n\n{}", printable(title), columns(&table));
+    if !sweep.corners.is_empty() {
+        let times = plural(sweep.events.len(), "time");
+        text += &format!("\nBetween the first and the last gap a row touches or releases {times}, exactly at\n");
+        let event = |event: &SweepEvent| {
+            let what = if event.touches { "touches" } else { "releases" };
+            vec![format!("  {:.12}", event.gap), format!("node {}", event.node), what.to_string()]
+        };
+        text += &columns(&sweep.events.iter().take(MOST_EVENTS).map(event).collect::<Vec<_>>());
+        if sweep.events.len() > MOST_EVENTS {
+            text += &format!("  and {} more; --format json has all\n", sweep.events.len() - MOST_EVENTS);
+        }
+    }
+    text
 }
 
 fn in_unit(name: &str, unit: &str) -> String {
@@ -241,8 +257,8 @@ pub fn compare_json(summaries: &[Summary; 3], agreement: &Agreement) -> Value {
 }
 
 /// The JSON object of a sweep.
-pub fn sweep_json(points: &[SweepPoint]) -> Value {
-    json!({ "points": points })
+pub fn sweep_json(sweep: &Sweep) -> Value {
+    json!(sweep)
 }
 
 /// The JSON object of a verification.

@@ -4,6 +4,7 @@ mod path;
 mod prepared;
 mod settings;
 
+pub use crate::method::parametric::{Event, Piece};
 pub use path::Path;
 pub use prepared::Prepared;
 pub use settings::{Condense, Method, Settings};

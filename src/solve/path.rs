@@ -29,6 +29,21 @@ impl Path<'_> {
         corners
     }
 
+    /// The stretches on which the contact set does not change.
+    pub fn pieces(&self) -> &[Piece] {
+        &self.pieces
+    }
+
+    /// The multipliers at `t` as they are on `piece`: at a corner the pieces on both sides agree but for rounding.
+    pub fn multiplier_on(&self, piece: &Piece, t: f64) -> Vec<f64> {
+        self.prepared.expand_multiplier(&piece.multiplier(t), self.unit)
+    }
+
+    /// The closed rows on `piece`.
+    pub fn contact_set_on(&self, piece: &Piece) -> ContactSet {
+        self.prepared.expand_set(&piece.contact_set)
+    }
+
     /// The gaps at `t`, length m.
     pub fn gap(&self, t: f64) -> Vec<f64> {
         let mix = |(&from, &to): (&f64, &f64)| if from == to { from } else { (1.0 - t) * from + t * to };
@@ -37,12 +52,12 @@ impl Path<'_> {
 
     /// The multipliers at `t`, length m, in force.
     pub fn multiplier(&self, t: f64) -> Vec<f64> {
-        self.piece(t).map_or_else(Vec::new, |piece| self.prepared.expand_multiplier(&piece.multiplier(t), self.unit))
+        self.piece(t).map_or_else(Vec::new, |piece| self.multiplier_on(piece, t))
     }
 
     /// The closed rows at `t`; at an event those of the stretch before it.
     pub fn contact_set(&self, t: f64) -> ContactSet {
-        self.piece(t).map_or_else(ContactSet::default, |piece| self.prepared.expand_set(&piece.contact_set))
+        self.piece(t).map_or_else(ContactSet::default, |piece| self.contact_set_on(piece))
     }
 
     /// The whole answer at `t`, certified like any other.
