@@ -96,6 +96,19 @@ fn each_method_answers_under_its_own_name() {
 }
 
 #[test]
+fn condensed_and_full_problems_give_the_same_force_under_their_own_sizes() {
+    let (desk, scene) = (Desk::new(), example("indentation"));
+    let solve = |more: &[&str]| {
+        let arguments = [&["solve", &scene, "--format", "json"], more].concat();
+        let answer = desk.run(&arguments).ends_with(0).json();
+        (answer["model"]["condensed_dofs"].as_u64().unwrap(), answer["contact"]["force"].as_f64().unwrap())
+    };
+    let (full, condensed) = (solve(&["--no-condense"]), solve(&[]));
+    assert_eq!(full.0, 1640);
+    assert!(condensed.0 < full.0 && (condensed.1 / full.1 - 1.0).abs() < 1e-12, "{condensed:?} {full:?}");
+}
+
+#[test]
 fn text_reports_show_title_units_force_and_certificate() {
     let desk = Desk::new();
     let run = desk.run(&["solve", &example("indentation")]).ends_with(0);
