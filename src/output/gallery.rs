@@ -123,8 +123,7 @@ pub fn write_sweep(folder: &Path, sweep: &Sweep) -> Result<(), Error> {
     let over_gap = |name: &str, unit: &str, at_point: Value<SweepPoint>, at_corner: Value<SweepCorner>| {
         // Beside the exact path the gaps are marks, which no line may join.
         let join = if sweep.corners.is_empty() { None } else { Some([f64::NAN; 2]) };
-        let at_points =
-            points.iter().flat_map(|point| [Some([point.gap, at_point(point)]), join]).flatten().collect();
+        let at_points = points.iter().flat_map(|point| [Some([point.gap, at_point(point)]), join]).flatten().collect();
         let exact = sweep.corners.iter().map(|corner| [corner.gap, at_corner(corner)]).collect::<Vec<_>>();
         let mut series = vec![Series::new("gaps of the sweep", at_points)];
         if !exact.is_empty() {
