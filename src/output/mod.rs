@@ -33,4 +33,4 @@ pub use report::{
     verify_text,
 };
 pub use ticks::{Quantity, Scale};
-pub use vtu::{Array, Unstructured};
+pub use vtu::{Array, CellType, Unstructured};
