@@ -13,6 +13,9 @@ use crate::problem::ContactProblem;
 use crate::recovery::{self, StressField};
 use crate::sparse::SymmetricMatrix;
 
+/// A tributary area below this share of the largest is rounding of zero.
+const NO_AREA: f64 = 1e-12;
+
 /// What a change of the gap leaves alone.
 #[derive(Debug)]
 pub(super) struct Parts {
@@ -157,11 +160,31 @@ impl Model {
 
     /// Contact pressure of each row, `-lambda / tributary area`, in force per area, `>= 0` in compression.
     ///
+    /// The node of a quadratic element on the axis of revolution has no tributary area, and so no force: it is given
+    /// the pressure of its nearest neighbour, from which it differs by the square of their distance.
+    ///
     /// # Errors
     /// [`Error::Length`] where `multiplier` does not have one entry per contact row.
     pub fn pressure(&self, multiplier: &[f64]) -> Result<Vec<f64>, Error> {
         self.check_multiplier(multiplier)?;
-        Ok(self.rows.iter().zip(multiplier).map(|(row, lambda)| -lambda / row.tributary_area).collect())
+        let widest = self.rows.iter().map(|row| row.tributary_area).fold(0.0, f64::max);
+        let has_area = |row: &ContactRow| row.tributary_area > NO_AREA * widest;
+        let of_row = |row: usize| -multiplier[row] / self.rows[row].tributary_area;
+        let nearest = |row: &ContactRow| {
+            let nodes = self.mesh().nodes();
+            let distance = |other: &ContactRow| {
+                let (a, b) = (nodes[row.node], nodes[other.node]);
+                (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>()
+            };
+            (0..self.rows.len())
+                .filter(|&other| self.rows[other].obstacle == row.obstacle && has_area(&self.rows[other]))
+                .min_by(|&a, &b| distance(&self.rows[a]).total_cmp(&distance(&self.rows[b])))
+        };
+        let pressure = |row: usize| match &self.rows[row] {
+            at if has_area(at) => of_row(row),
+            at => nearest(at).map_or(0.0, of_row),
+        };
+        Ok((0..self.rows.len()).map(pressure).collect())
     }
 
     /// Nodal contact forces on the body, `lambda n`, in force.
