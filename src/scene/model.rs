@@ -13,7 +13,7 @@ use crate::problem::ContactProblem;
 use crate::recovery::{self, StressField};
 use crate::sparse::SymmetricMatrix;
 
-/// A tributary area below this share of the largest is rounding of zero.
+/// Tributary areas below this, relative to the largest, are rounding of zero.
 const NO_AREA: f64 = 1e-12;
 
 /// What a change of the gap leaves alone.
@@ -160,31 +160,30 @@ impl Model {
 
     /// Contact pressure of each row, `-lambda / tributary area`, in force per area, `>= 0` in compression.
     ///
-    /// The node of a quadratic element on the axis of revolution has no tributary area, and so no force: it is given
-    /// the pressure of its nearest neighbour, from which it differs by the square of their distance.
+    /// The end of a quadratic edge on an axis of revolution has no tributary area; it shows the pressure of the candidate
+    /// next to it.
     ///
     /// # Errors
     /// [`Error::Length`] where `multiplier` does not have one entry per contact row.
     pub fn pressure(&self, multiplier: &[f64]) -> Result<Vec<f64>, Error> {
         self.check_multiplier(multiplier)?;
-        let widest = self.rows.iter().map(|row| row.tributary_area).fold(0.0, f64::max);
-        let has_area = |row: &ContactRow| row.tributary_area > NO_AREA * widest;
-        let of_row = |row: usize| -multiplier[row] / self.rows[row].tributary_area;
-        let nearest = |row: &ContactRow| {
-            let nodes = self.mesh().nodes();
-            let distance = |other: &ContactRow| {
+        let largest = self.rows.iter().fold(0.0, |largest: f64, row| largest.max(row.tributary_area));
+        let has_area = |row: &ContactRow| row.tributary_area > NO_AREA * largest;
+        let of_row = |index: usize| -multiplier[index] / self.rows[index].tributary_area;
+        let nodes = self.mesh().nodes();
+        let pressure = |(index, row): (usize, &ContactRow)| {
+            if has_area(row) {
+                return of_row(index);
+            }
+            let away = |other: &ContactRow| {
                 let (a, b) = (nodes[row.node], nodes[other.node]);
-                (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>()
+                (a[0] - b[0]).hypot(a[1] - b[1]).hypot(a[2] - b[2])
             };
-            (0..self.rows.len())
-                .filter(|&other| self.rows[other].obstacle == row.obstacle && has_area(&self.rows[other]))
-                .min_by(|&a, &b| distance(&self.rows[a]).total_cmp(&distance(&self.rows[b])))
+            let others = self.rows.iter().enumerate().filter(|(_, other)| other.obstacle == row.obstacle);
+            let with_area = others.filter(|(_, other)| has_area(other));
+            with_area.min_by(|a, b| away(a.1).total_cmp(&away(b.1))).map_or(0.0, |(next, _)| of_row(next))
         };
-        let pressure = |row: usize| match &self.rows[row] {
-            at if has_area(at) => of_row(row),
-            at => nearest(at).map_or(0.0, of_row),
-        };
-        Ok((0..self.rows.len()).map(pressure).collect())
+        Ok(self.rows.iter().enumerate().map(pressure).collect())
     }
 
     /// Nodal contact forces on the body, `lambda n`, in force.
