@@ -158,7 +158,7 @@ fn raw(stiffness: &[(usize, usize, f64)], load: Vec<f64>, gap: f64) -> Result<Co
 fn stored_answers(lines: &mut Vec<Line>) -> Result<(), Box<dyn std::error::Error>> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let stored: Value = serde_json::from_str(&std::fs::read_to_string(root.join("reference/results.json"))?)?;
-    let base = Scene::read(&root.join("examples/indentation.json"))?.build()?;
+    let base = Scene::read(root.join("examples/indentation.json"))?.build()?;
     for gap in [-0.01, -0.05, -0.1] {
         let clock = Instant::now();
         let model = base.with_gap(gap)?;

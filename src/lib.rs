@@ -1,4 +1,59 @@
-//! signorini
+//! Frictionless unilateral contact of linear elastic bodies (the Signorini problem) as a convex QP, cross-checked and
+//! certified.
+//!
+//! ```text
+//! minimise 1/2 u'K u - f'u   subject to   B u - g <= 0
+//! K u - f - B' lambda = 0,  B u - g <= 0,  lambda <= 0,  lambda_i (B u - g)_i = 0
+//! ```
+//!
+//! | symbol | meaning | Rust name | Clarabel / qpsolvers | unit | sign |
+//! |---|---|---|---|---|---|
+//! | u | displacement of the free dofs | `displacement` | x | m | along the axes |
+//! | K | stiffness after supports, symmetric, positive semidefinite | `stiffness` | P | N/m | |
+//! | f | external load | `load` | -q | N | along the axes |
+//! | B | contact rows: the normal trace, one row per candidate node | `contact` | A / G | 1 | + towards the obstacle |
+//! | g | initial gap of each row | `gap` | b / h | m | negative: the obstacle starts inside the body |
+//! | lambda | contact multiplier, `<= 0` | `multiplier` | -z | N | the force on the body along the row; compression is negative |
+//! | C | contact indicator (the set of closed rows) | `ContactSet` | | | |
+//! | p | contact pressure = -lambda / tributary area | `pressure` | | Pa | >= 0 |
+//!
+//! Any consistent system of units. A scene file becomes a [`Model`] with its [`ContactProblem`]; a matrix becomes a
+//! [`ContactProblem`] directly. [`solve_qp`] answers with a [`Solution`]; `Ok` means that its [`Certificate`], recomputed
+//! from the problem, meets the tolerance.
+//!
+//! ```
+//! use signorini::{ContactProblem, SparseMatrix, SymmetricMatrix, solve_qp};
+//!
+//! // Two springs of stiffness 2 and 1 in a row; the end, pushed with force 3, meets a wall at distance 1.
+//! let stiffness = SparseMatrix::from_triplets(2, 2, &[(0, 0, 3.0), (1, 0, -1.0), (1, 1, 1.0)])?;
+//! let stiffness = SymmetricMatrix::from_lower(stiffness)?;
+//! let contact = SparseMatrix::from_triplets(1, 2, &[(0, 1, 1.0)])?;
+//! let problem = ContactProblem::new(stiffness, vec![0.0, 3.0], contact, vec![1.0])?;
+//!
+//! let solution = solve_qp(&problem)?;
+//! assert!((solution.displacement[0] - 1.0 / 3.0).abs() < 1e-15);
+//! assert!((solution.multiplier[0] - (1.0 - 1.0 / 3.0 - 3.0)).abs() < 1e-15);
+//! assert!(solution.certificate.meets(1e-9));
+//! # Ok::<(), signorini::Error>(())
+//! ```
+//!
+//! # The modules, from the ground up
+//!
+//! A module names only modules of lower floors; see `ARCHITECTURE.md`.
+//!
+//! | floor | modules |
+//! |---|---|
+//! | 0 | [`analytical`], [`solution`] |
+//! | 1 | [`error`] |
+//! | 2 | [`sparse`], [`mesh`], [`element`], [`material`] |
+//! | 3 | [`problem`], [`body`] |
+//! | 4 | [`transform`], [`method`], [`assembly`], [`recovery`] |
+//! | 5 | [`mod@solve`] |
+//! | 6 | [`scene`], [`matrix_market`] |
+//! | 7 | [`study`] |
+//! | 8 | [`output`] |
+//! | 9 | [`cli`] |
+
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 
@@ -27,5 +82,5 @@ pub use error::Error;
 pub use problem::ContactProblem;
 pub use scene::{Model, Scene};
 pub use solution::{Certificate, ContactSet, Solution};
-pub use solve::{Method, Settings, solve, solve_qp};
+pub use solve::{Condense, Method, Path, Prepared, Settings, solve, solve_qp};
 pub use sparse::{SparseMatrix, SymmetricMatrix};

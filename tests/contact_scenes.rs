@@ -240,7 +240,7 @@ fn the_same_scene_in_other_units_has_the_same_dimensionless_answer() {
 #[test]
 fn virtual_work_and_the_balance_of_forces_hold_in_every_example() {
     for name in ["indentation", "inclined", "between", "block", "bar", "circle"] {
-        let model = Scene::read(&file(&format!("examples/{name}.json"))).unwrap().build().unwrap();
+        let model = Scene::read(file(&format!("examples/{name}.json"))).unwrap().build().unwrap();
         for method in EXACT {
             let solution = answer(&model, method);
             let (problem, u, lambda) = (model.problem(), &solution.displacement, &solution.multiplier);

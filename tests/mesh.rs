@@ -95,6 +95,7 @@ fn a_mesh_that_does_not_hold_together_is_refused() {
     let mut lone = square();
     lone.push([5.0, 5.0, 0.0]);
     for (nodes, connectivity, boundaries, phrase) in [
+        (vec![], vec![], vec![], "no elements"),
         (far, vec![0, 1, 2, 3], vec![], "node 2"),
         (square(), vec![0, 1, 2], vec![], "no multiple"),
         (square(), vec![0, 1, 2, 7], vec![], "node 7"),

@@ -89,6 +89,9 @@ fn curves() -> Vec<Curve> {
     }
     const ZIGZAG: [[f64; 2]; 6] = [[-1.0, 1.3], [0.1, 0.9], [0.3, 1.2], [0.6, 1.15], [0.7, 0.95], [2.0, 1.6]];
     curves.push((json!({"table": {"points": ZIGZAG}}), Box::new(rise(&ZIGZAG)), (-1.0, 2.0)));
+    // A roof that the square has broken through: nodes inside, closest to its ridge.
+    const ROOF: [[f64; 2]; 3] = [[-1.0, -1.9], [0.47, 0.9], [2.0, -2.0]];
+    curves.push((json!({"table": {"points": ROOF}}), Box::new(rise(&ROOF)), (-1.0, 2.0)));
     curves
 }
 

@@ -30,16 +30,16 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// The mesh of `nodes` (coordinates x, y, z in the unit of length; those beyond the dimension of the element are zero)
-    /// and elements of one `kind`.
+    /// The mesh of `nodes` (coordinates x, y, z in the unit of length; those beyond the dimension of the element are
+    /// zero) and elements of one `kind`.
     ///
     /// `connectivity` lists the nodes of element 0, then of element 1, ..., each in the order of [`ElementKind`], indices
     /// from 0.
     ///
     /// # Errors
-    /// [`Error::Mesh`] for coordinates that are not finite or lie outside the space of the element, a connectivity that is
-    /// no multiple of the nodes of an element, a node beyond the last, a node that no element uses, two boundaries of
-    /// one name, facets of the wrong kind, a facet that is no face of an element.
+    /// [`Error::Mesh`] for a mesh without elements, coordinates that are not finite or lie outside the space of the
+    /// element, a connectivity that is no multiple of the nodes of an element, a node beyond the last, a node that no
+    /// element uses, two boundaries of one name, facets of the wrong kind, a facet that is no face of an element.
     pub fn new(
         nodes: Vec<[f64; 3]>,
         kind: ElementKind,
@@ -54,6 +54,9 @@ impl Mesh {
 
     fn check_nodes(&self) -> Result<(), Error> {
         let (nodes, dimension) = (&self.nodes, self.dimension());
+        if self.connectivity.is_empty() {
+            return fail("there are no elements; a mesh needs at least one".into());
+        }
         for (node, at) in nodes.iter().enumerate() {
             if !at.iter().all(|value| value.is_finite()) {
                 return fail(format!("node {node} lies at {:?}; coordinates must be finite", &at[..dimension]));

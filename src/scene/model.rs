@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::motion::RigidMotions;
 use super::rows::{self, ContactRow};
-use super::{Obstacle, Units, Warning};
+use super::{Obstacle, Units, Warning, wrong};
 use crate::assembly::{DofMap, internal_force, stiffness};
 use crate::body::ElasticBody;
 use crate::error::Error;
@@ -31,8 +31,8 @@ pub(super) struct Parts {
 
 /// A discretised scene: mesh, contact problem, and what its rows and dofs mean.
 ///
-/// Nodal vectors have length `dim * n_nodes` and the order `[x_0, y_0, x_1, ...]` (with z in space). `displacement` arguments are those
-/// of a solution: one entry per free dof.
+/// Nodal vectors have length `dim * n_nodes` and the order `[x_0, y_0, x_1, ...]` (with z in space). `displacement`
+/// arguments are those of a solution: one entry per free dof.
 #[derive(Clone, Debug)]
 pub struct Model {
     parts: Arc<Parts>,
@@ -54,7 +54,13 @@ impl Model {
             let forces = internal_force(&parts.body, &lifted)?;
             load.iter_mut().zip(forces).for_each(|(load, force)| *load -= force);
         }
-        let stiffness = stiffness(&parts.body, &parts.dofs)?;
+        let stiffness = stiffness(&parts.body, &parts.dofs).map_err(|error| match error {
+            Error::NotFinite { .. } => {
+                let message = "the stiffness that it makes with body and thickness overflows; choose other units";
+                wrong("material", message)
+            }
+            other => other,
+        })?;
         let load = parts.dofs.restrict(&load)?;
         Self::with_rows(Arc::new(parts), gap, built, stiffness, load)
     }
@@ -128,8 +134,8 @@ impl Model {
         self.parts.obstacles.get(obstacle).map_or_else(Vec::new, |obstacle| obstacle.outline(self.gap, segments))
     }
 
-    /// The contact rows, in the order of the rows of [`problem`](Self::problem): obstacle by obstacle, each in the order of
-    /// its boundary.
+    /// The contact rows, in the order of the rows of [`problem`](Self::problem): obstacle by obstacle, each in the
+    /// order of its boundary.
     pub fn rows(&self) -> &[ContactRow] {
         &self.rows
     }
@@ -154,8 +160,8 @@ impl Model {
 
     /// Contact pressure of each row, `-lambda / tributary area`, in force per area, `>= 0` in compression.
     ///
-    /// The end of a quadratic edge on an axis of revolution has no tributary area; it shows the pressure of the candidate
-    /// next to it.
+    /// The end of a quadratic edge on an axis of revolution has no tributary area; it shows the pressure of the
+    /// candidate next to it.
     ///
     /// # Errors
     /// [`Error::Length`] where `multiplier` does not have one entry per contact row.
@@ -197,8 +203,8 @@ impl Model {
 
     /// Nodal support reactions on the body, in force; zero at free dofs.
     ///
-    /// What the stress in the elements asks for at the supported dofs, less load and contact force there. The multiplier
-    /// enters because a contact row may press on a supported dof.
+    /// What the stress in the elements asks for at the supported dofs, less load and contact force there. The
+    /// multiplier enters because a contact row may press on a supported dof.
     ///
     /// # Errors
     /// [`Error::Length`] where `displacement` or `multiplier` do not fit.
@@ -217,9 +223,10 @@ impl Model {
         &self.parts.load
     }
 
-    /// The imbalance of loads, support reactions and contact forces on the whole body: the largest of the virtual works on
-    /// its unit rigid motions (the resultant forces, and the resultant moments over half the body's size), relative to
-    /// the sum of all force magnitudes. A body of revolution has one rigid motion, and its forces count along the axis.
+    /// The imbalance of loads, support reactions and contact forces on the whole body: the largest of the virtual works
+    /// on its unit rigid motions (the resultant forces, and the resultant moments over half the body's size), relative
+    /// to the sum of all force magnitudes. A body of revolution has one rigid motion, and its forces count along the
+    /// axis.
     ///
     /// # Errors
     /// As [`Model::reactions`].

@@ -33,8 +33,8 @@ pub(super) struct Rows {
 
 /// Builds the rows with all obstacles shifted by `scene_gap`.
 ///
-/// A row whose dofs are all supported holds or fails by itself: it is left out where it holds, and stays as an empty row
-/// with a negative gap where it fails.
+/// A row whose dofs are all supported holds or fails by itself: it is left out where it holds, and stays as an empty
+/// row with a negative gap where it fails.
 pub(super) fn build(parts: &Parts, scene_gap: f64) -> Result<Rows, Error> {
     finite("gap", scene_gap)?;
     let (mesh, dofs) = (parts.body.mesh(), &parts.dofs);

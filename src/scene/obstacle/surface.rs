@@ -18,7 +18,8 @@ pub(in crate::scene) trait Surface: Debug + Send + Sync {
     /// The height towards the obstacle, or `None` beyond the surface's reach.
     fn height(&self, along: f64) -> Option<f64>;
 
-    /// The foot closest to `node`, or `None` where no part of the surface faces it; lengths below `tolerance` are rounding.
+    /// The foot closest to `node`, or `None` where no part of the surface faces it; lengths below `tolerance` are
+    /// rounding.
     ///
     /// A node behind a vertex or on an axis, equally close to both sides, goes straight back.
     ///
