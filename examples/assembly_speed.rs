@@ -1,8 +1,8 @@
 //! Seconds and bytes of the assembly of 1,000,000 dofs in Q4 and 300,000 dofs in Hex8, on one core:
 //! `cargo run --release --example assembly_speed`.
 //!
-//! Each case runs in a process of its own, so that its peak of memory is its own. The peak holds everything: mesh, numbers
-//! of the dofs, the program itself, and the finished matrix.
+//! Each case runs in a process of its own, so that its peak of memory is its own. The peak holds everything: mesh,
+//! numbers of the dofs, the program itself, and the finished matrix.
 
 use std::process::{Command, ExitCode};
 use std::time::Instant;
@@ -62,7 +62,7 @@ fn run(name: &str, limit: f64) -> Result<bool, Error> {
     if let (Some(before), Some(peak)) = (before, status("VmHWM")) {
         fits &= peak < MOST_MEMORY * matrix;
         println!(
-            "    before assembly {:.1} MB, peak {:.1} MB: {:.2} of the matrix (limit {MOST_MEMORY}), {:.2} by assembly alone",
+            "    before {:.1} MB, peak {:.1} MB: {:.2} of the matrix (limit {MOST_MEMORY}), {:.2} by assembly alone",
             before * million,
             peak * million,
             peak / matrix,

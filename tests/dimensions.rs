@@ -123,7 +123,8 @@ fn disc(element: &str, integration: &str) -> Value {
         }},
         "material": {"young": 2e5, "poisson": 0.3},
         "loads": [{"traction": {"boundary": "top", "value": [0, -300]}}],
-        "obstacles": [{"boundary": "bottom", "approach": "-y", "shape": {"plane": {"point": [0, 0], "normal": [0, -1]}}}]
+        "obstacles": [{"boundary": "bottom", "approach": "-y",
+            "shape": {"plane": {"point": [0, 0], "normal": [0, -1]}}}]
     })
 }
 

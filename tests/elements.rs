@@ -1,8 +1,8 @@
-//! GOAL: every element in every formulation that it fits: patch tests on distorted meshes, rigid motions, stiffness against
-//! internal force, mean dilatation.
+//! GOAL: every element in every formulation that it fits: patch tests on distorted meshes, rigid motions, stiffness
+//! against internal force, mean dilatation.
 //!
-//! MESH: a bar of 5 cells, a 2 x 1 rectangle of 4 x 3 cells, a 2 x 1 x 1.5 box of 3 x 3 x 2 cells, inner nodes moved by up to
-//! a fifth of a cell; E = 7, nu = 0.3.
+//! MESH: a bar of 5 cells, a 2 x 1 rectangle of 4 x 3 cells, a 2 x 1 x 1.5 box of 3 x 3 x 2 cells, inner nodes moved by
+//! up to a fifth of a cell; E = 7, nu = 0.3.
 
 mod bodies;
 
@@ -218,8 +218,8 @@ fn mean_dilatation_is_refused_by_name_where_it_does_nothing() {
     }
 }
 
-/// The sinking of the loaded corner of a block whose bottom, left and right sides hold it, by a pressure on the left half
-/// of its top; nu = 0.4999.
+/// The sinking of the loaded corner of a block whose bottom, left and right sides hold it, by a pressure on the left
+/// half of its top; nu = 0.4999.
 fn sinking(mesh: Mesh, formulation: Formulation, integration: Integration) -> f64 {
     let material = Material::new(1.0, 0.4999).unwrap();
     let body = ElasticBody::new(mesh, material, formulation).unwrap().with_integration(integration).unwrap();

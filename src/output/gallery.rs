@@ -115,8 +115,8 @@ pub fn write_compare(folder: &Path, model: &Model, comparison: &Comparison) -> R
     Ok(())
 }
 
-/// Writes one picture for each gap (`gap-01`, ...), with common colours and scale, and force, contact width (outside the
-/// plane, area) and peak pressure over the gap (`force-width`).
+/// Writes one picture for each gap (`gap-01`, ...), with common colours and scale, and force, contact width (outside
+/// plane strain and plane stress, area) and peak pressure over the gap (`force-width`).
 ///
 /// # Errors
 /// As [`write_solve`].
@@ -147,10 +147,11 @@ pub fn write_sweep(folder: &Path, sweep: &Sweep) -> Result<(), Error> {
     };
     let contact = |point: &SweepPoint| point.summary.contact.clone();
     let extent = if first.summary.contact.width.is_some() {
-        over_gap("contact width", &units.length, &|point| contact(point).width.unwrap_or(0.0), &|c| c.extent)
+        let width = |point: &SweepPoint| contact(point).width.unwrap_or(0.0);
+        over_gap("contact width", &units.length, &width, &|corner| corner.width.unwrap_or(0.0))
     } else {
-        let unit = format!("{}²", units.length);
-        over_gap("contact area", &unit, &|point| contact(point).area.unwrap_or(0.0), &|c| c.extent)
+        let area = |point: &SweepPoint| contact(point).area.unwrap_or(0.0);
+        over_gap("contact area", &format!("{}²", units.length), &area, &|corner| corner.area)
     };
     let plots = [
         over_gap("contact force F", &units.force, &|point| contact(point).force, &|corner| corner.force),

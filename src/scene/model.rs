@@ -160,8 +160,8 @@ impl Model {
 
     /// Contact pressure of each row, `-lambda / tributary area`, in force per area, `>= 0` in compression.
     ///
-    /// The end of a quadratic edge on an axis of revolution has no tributary area; it shows the pressure of the candidate
-    /// next to it.
+    /// The end of a quadratic edge on an axis of revolution has no tributary area; it shows the pressure of the
+    /// candidate next to it.
     ///
     /// # Errors
     /// [`Error::Length`] where `multiplier` does not have one entry per contact row.
@@ -223,9 +223,10 @@ impl Model {
         &self.parts.load
     }
 
-    /// The imbalance of loads, support reactions and contact forces on the whole body: the largest of the virtual works on
-    /// its unit rigid motions (the resultant forces, and the resultant moments over half the body's size), relative to
-    /// the sum of all force magnitudes. A body of revolution has one rigid motion, and its forces count along the axis.
+    /// The imbalance of loads, support reactions and contact forces on the whole body: the largest of the virtual works
+    /// on its unit rigid motions (the resultant forces, and the resultant moments over half the body's size), relative
+    /// to the sum of all force magnitudes. A body of revolution has one rigid motion, and its forces count along the
+    /// axis.
     ///
     /// # Errors
     /// As [`Model::reactions`].

@@ -90,8 +90,11 @@ pub struct SweepCorner {
     pub gap: f64,
     /// Total contact force.
     pub force: f64,
-    /// Length of the boundary in contact; outside the plane, its area.
-    pub extent: f64,
+    /// Length of the boundary in contact, where the model has a thickness.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub width: Option<f64>,
+    /// Area of the boundary in contact.
+    pub area: f64,
     /// Largest contact pressure.
     pub pressure_max: f64,
 }
@@ -176,8 +179,13 @@ fn between(
             let multiplier = path.multiplier_on(piece, t);
             let pressure_max = at_first.pressure(&multiplier)?.into_iter().fold(0.0, f64::max);
             let closed = path.contact_set_on(piece);
-            let extent = contact_width(at_first, &closed).unwrap_or_else(|| contact_area(at_first, &closed));
-            corners.push(SweepCorner { gap: gap_at(t), force: -multiplier.iter().sum::<f64>(), extent, pressure_max });
+            corners.push(SweepCorner {
+                gap: gap_at(t),
+                force: -multiplier.iter().sum::<f64>(),
+                width: contact_width(at_first, &closed),
+                area: contact_area(at_first, &closed),
+                pressure_max,
+            });
         }
     }
     Ok((path.events().iter().map(event).collect(), corners))

@@ -10,8 +10,8 @@ use super::one;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum BodySpec {
-    /// A rectangle with a structured mesh; its boundaries are `left`, `right`, `bottom`, `top`. In an axisymmetric model
-    /// its section.
+    /// A rectangle with a structured mesh; its boundaries are `left`, `right`, `bottom`, `top`. In an axisymmetric
+    /// model its section.
     Rectangle(#[serde(deserialize_with = "object")] RectangleSpec),
     /// A bar along x; its boundaries are `left`, `right`.
     Bar(#[serde(deserialize_with = "object")] BarSpec),
@@ -117,8 +117,8 @@ pub enum IntegrationSpec {
     /// All of it at all quadrature points.
     #[default]
     Standard,
-    /// The dilatation is replaced by its mean over the element: for `q4` and `hex8`, which then do not lock as Poisson's ratio
-    /// nears 0.5.
+    /// The dilatation is replaced by its mean over the element: for `q4` and `hex8`, which then do not lock as
+    /// Poisson's ratio nears 0.5.
     MeanDilatation,
 }
 

@@ -19,8 +19,8 @@ use super::parse::{choice, choices, object, objects, word};
 
 /// A contact scene: one elastic body, its supports and loads, and the rigid obstacles around it.
 ///
-/// Any consistent system of units. Points and vectors have as many entries as the model has coordinates: [x] in a bar,
-/// [x, y] in the plane and about an axis, [x, y, z] in space.
+/// Any consistent system of units. Points and vectors have as many entries as the model has coordinates: `[x]` in a
+/// bar, `[x, y]` in the plane and about an axis, `[x, y, z]` in space.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Scene {
