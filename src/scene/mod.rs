@@ -30,9 +30,10 @@ pub use model::Model;
 pub use obstacle::Obstacle;
 pub use rows::ContactRow;
 pub use schema::{
-    Approach, AxisSpec, BarSpec, BodySpec, BoxSpec, CircleSpec, ElementSpec, ForceSpec, IntegrationSpec, LoadSpec,
-    MaterialSpec, ModelSpec, ObstacleSpec, ParabolaSpec, Place, PlaneSpec, PressureSpec, RectangleSpec, Rule, Scene,
-    ShapeSpec, SolidElementSpec, SupportSpec, TableSpec, TractionSpec, Units, WedgeSpec,
+    Approach, AxisSpec, BarSpec, BodySpec, BoxSpec, CircleSpec, ConeSpec, CylinderSpec, ElementSpec, ForceSpec,
+    HeightMapSpec, IntegrationSpec, LoadSpec, MaterialSpec, ModelSpec, ObstacleSpec, ParabolaSpec, Place, PlaneSpec,
+    PressureSpec, RectangleSpec, Rule, Scene, ShapeSpec, SolidElementSpec, SphereSpec, SupportSpec, TableSpec,
+    TractionSpec, Units, WedgeSpec,
 };
 pub use warning::Warning;
 

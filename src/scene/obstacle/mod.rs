@@ -3,19 +3,22 @@
 mod circle;
 mod frame;
 mod half_space;
+mod height_map;
 mod parabola;
 mod plane;
 mod polyline;
 mod profile;
+mod solid;
 mod surface;
 
 use super::schema::{ObstacleSpec, PlaneSpec, Rule, ShapeSpec};
-use super::{point, vector, wrong};
+use super::{finite, number, point, vector, wrong};
 use crate::error::Error;
 use crate::mesh::Mesh;
 use frame::Frame;
 use half_space::HalfSpace;
 use profile::Profile;
+use solid::Solid;
 
 /// A component of a unit normal below this is rounding of the geometry, not a direction.
 const NO_COMPONENT: f64 = 1e-14;
@@ -44,8 +47,10 @@ pub struct Obstacle {
 enum Geometry {
     /// In the plane: a graph over the coordinate across the approach direction.
     Profile(Profile),
-    /// On a line or in space.
+    /// On a line or in space: a plane.
     HalfSpace(HalfSpace),
+    /// In space: a graph over the two coordinates across the approach direction.
+    Solid(Solid),
 }
 
 impl Obstacle {
@@ -67,20 +72,23 @@ impl Obstacle {
         approach[axis] = sense;
         let shape_path = format!("{path}.shape");
         let geometry = match (&spec.shape, Frame::of(spec.approach).filter(|_| dimension == 2)) {
+            (shape, _) if !fits(shape, dimension) => return Err(misfit(shape, shape_path, dimension)),
             (_, Some(frame)) => Geometry::Profile(Profile::new(spec, &shape_path, mesh, frame)?),
             (ShapeSpec::Plane(plane), None) => {
                 let (point, normal) = plane_of(plane, &format!("{shape_path}.plane"), dimension, approach)?;
                 Geometry::HalfSpace(HalfSpace { point, normal })
             }
-            (shape, None) => {
-                let (name, space) = (shape.name(), ["on a line", "in the plane", "in space"][dimension - 1]);
-                let message = format!("`{name}` is a shape of the plane; {space} there is `plane`");
-                return Err(wrong(shape_path, message));
-            }
+            (shape, None) => Geometry::Solid(Solid::new(shape, &shape_path, spec.approach, mesh.size())?),
         };
         let obstacle = Obstacle { boundary: spec.boundary.clone(), candidates, rule: spec.rule, approach, geometry };
-        if let (ShapeSpec::Table(_), Geometry::Profile(profile)) = (&spec.shape, &obstacle.geometry) {
-            profile.check_reach(&format!("{shape_path}.table.points"), mesh, &obstacle.candidates)?;
+        match (&spec.shape, &obstacle.geometry) {
+            (ShapeSpec::Table(_), Geometry::Profile(profile)) => {
+                profile.check_reach(&format!("{shape_path}.table.points"), mesh, &obstacle.candidates)?;
+            }
+            (ShapeSpec::HeightMap(_), Geometry::Solid(solid)) => {
+                solid.check_reach(&format!("{shape_path}.height-map"), mesh, &obstacle.candidates)?;
+            }
+            _ => {}
         }
         Ok(obstacle)
     }
@@ -112,7 +120,7 @@ impl Obstacle {
     pub fn outline(&self, gap: f64, segments: usize) -> Vec<[f64; 2]> {
         match &self.geometry {
             Geometry::Profile(profile) => profile.outline(gap, segments),
-            Geometry::HalfSpace(_) => Vec::new(),
+            Geometry::HalfSpace(_) | Geometry::Solid(_) => Vec::new(),
         }
     }
 
@@ -124,6 +132,7 @@ impl Obstacle {
         let way = match &self.geometry {
             Geometry::Profile(profile) => profile.row(node, gap, self.rule)?,
             Geometry::HalfSpace(half_space) => Some(half_space.row(node, gap, self.approach, self.rule)),
+            Geometry::Solid(solid) => solid.row(node, gap, self.rule)?,
         };
         match way {
             Some(way) if way.distance.is_nan() => Err("has no distance that could be computed"),
@@ -134,6 +143,26 @@ impl Obstacle {
             _ => Ok(None),
         }
     }
+}
+
+/// Whether a model of `dimension` coordinates has the shape.
+fn fits(shape: &ShapeSpec, dimension: usize) -> bool {
+    match shape {
+        ShapeSpec::Plane(_) => true,
+        ShapeSpec::Parabola(_) | ShapeSpec::Circle(_) | ShapeSpec::Wedge(_) | ShapeSpec::Table(_) => dimension == 2,
+        ShapeSpec::Sphere(_) | ShapeSpec::Cylinder(_) | ShapeSpec::Cone(_) | ShapeSpec::HeightMap(_) => dimension == 3,
+    }
+}
+
+/// The refusal of a shape that does not fit: where it belongs, and what there is instead.
+fn misfit(shape: &ShapeSpec, path: String, dimension: usize) -> Error {
+    let of = if fits(shape, 2) { "the plane" } else { "space" };
+    let there = [
+        "on a line there is `plane`",
+        "in the plane there are `plane`, `parabola`, `circle`, `wedge` and `table`",
+        "in space there are `plane`, `sphere`, `cylinder`, `cone` and `height-map`",
+    ][dimension - 1];
+    wrong(path, format!("`{}` is a shape of {of}; {there}", shape.name()))
 }
 
 /// Point and unit normal of a plane in `dimension` coordinates.
@@ -156,4 +185,13 @@ fn plane_of(spec: &PlaneSpec, path: &str, dimension: usize, approach: [f64; 3]) 
         return Err(wrong(format!("{path}.normal"), message));
     }
     Ok((at, normal))
+}
+
+fn positive(path: String, value: f64) -> Result<f64, Error> {
+    finite(path.as_str(), value)?;
+    if value > 0.0 {
+        Ok(value)
+    } else {
+        Err(wrong(path, format!("{} is not allowed: it must be positive", number(value))))
+    }
 }

@@ -1,4 +1,4 @@
-//! An obstacle in the plane: a surface in its frame.
+//! Obstacles in the plane: a curve in a frame.
 
 use std::sync::Arc;
 
@@ -8,11 +8,11 @@ use super::parabola::Parabola;
 use super::plane::Plane;
 use super::polyline::Polyline;
 use super::surface::{Foot, Surface};
-use super::{Approachable, plane_of};
+use super::{Approachable, misfit, plane_of, positive};
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::scene::schema::{CircleSpec, ObstacleSpec, Rule, ShapeSpec};
-use crate::scene::{PLACE_TOLERANCE, ROUNDING, finite, finite_pair, number, point, wrong};
+use crate::scene::{PLACE_TOLERANCE, ROUNDING, finite_pair, number, point, wrong};
 
 /// The pictured surface goes beyond the body by this part of the body's extent on either side.
 const OUTLINE_MARGIN: f64 = 0.3;
@@ -146,6 +146,9 @@ fn surface_of(shape: &ShapeSpec, path: &str, frame: Frame, size: f64) -> Result<
                 .ok_or_else(|| wrong(path, format!("a table needs at least two points, but there are {found}")))?;
             ([0.0, 0.0], Arc::new(table))
         }
+        ShapeSpec::Sphere(_) | ShapeSpec::Cylinder(_) | ShapeSpec::Cone(_) | ShapeSpec::HeightMap(_) => {
+            return Err(misfit(shape, path.into(), 2));
+        }
     })
 }
 
@@ -162,14 +165,5 @@ fn apex_of_circle(spec: &CircleSpec, path: &str, frame: Frame) -> Result<Local, 
         }
         (Some(_), Some(_)) => Err(wrong(path, "gives both centre and apex; give one of them")),
         (None, None) => Err(wrong(path, "gives neither centre nor apex; give one of them")),
-    }
-}
-
-fn positive(path: String, value: f64) -> Result<f64, Error> {
-    finite(path.as_str(), value)?;
-    if value > 0.0 {
-        Ok(value)
-    } else {
-        Err(wrong(path, format!("{} is not allowed: it must be positive", number(value))))
     }
 }

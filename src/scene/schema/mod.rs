@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 mod body;
 mod condition;
 mod obstacle;
+mod solid;
 
 pub use body::{
     AxisSpec, BarSpec, BodySpec, BoxSpec, ElementSpec, IntegrationSpec, MaterialSpec, RectangleSpec, SolidElementSpec,
@@ -14,6 +15,7 @@ pub use condition::{ForceSpec, LoadSpec, Place, PressureSpec, SupportSpec, Tract
 pub use obstacle::{
     Approach, CircleSpec, ObstacleSpec, ParabolaSpec, PlaneSpec, Rule, ShapeSpec, TableSpec, WedgeSpec,
 };
+pub use solid::{ConeSpec, CylinderSpec, HeightMapSpec, SphereSpec};
 
 use super::parse::{choice, choices, object, objects, word};
 

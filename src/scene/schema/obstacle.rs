@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::super::parse::{choice, object, word};
+use super::solid::{ConeSpec, CylinderSpec, HeightMapSpec, SphereSpec};
 
 /// A rigid, frictionless obstacle and the boundary that may touch it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -82,7 +83,7 @@ pub enum Rule {
     ClosestPoint,
 }
 
-/// The surface of an obstacle, over the coordinate across the approach direction.
+/// The surface of an obstacle, over the coordinates across the approach direction.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ShapeSpec {
@@ -96,6 +97,14 @@ pub enum ShapeSpec {
     Wedge(#[serde(deserialize_with = "object")] WedgeSpec),
     /// A polyline.
     Table(#[serde(deserialize_with = "object")] TableSpec),
+    /// In space: the half of a sphere that faces the body.
+    Sphere(#[serde(deserialize_with = "object")] SphereSpec),
+    /// In space: the half of a cylinder that faces the body, its axis across the approach direction.
+    Cylinder(#[serde(deserialize_with = "object")] CylinderSpec),
+    /// In space: a cone that points at the body, its axis along the approach direction.
+    Cone(#[serde(deserialize_with = "object")] ConeSpec),
+    /// In space: heights on a grid, bilinear in between.
+    HeightMap(#[serde(deserialize_with = "object")] HeightMapSpec),
 }
 
 impl ShapeSpec {
@@ -107,6 +116,10 @@ impl ShapeSpec {
             ShapeSpec::Circle(_) => "circle",
             ShapeSpec::Wedge(_) => "wedge",
             ShapeSpec::Table(_) => "table",
+            ShapeSpec::Sphere(_) => "sphere",
+            ShapeSpec::Cylinder(_) => "cylinder",
+            ShapeSpec::Cone(_) => "cone",
+            ShapeSpec::HeightMap(_) => "height-map",
         }
     }
 }
