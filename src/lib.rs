@@ -47,7 +47,7 @@
 //! | 1 | [`error`] |
 //! | 2 | [`sparse`], [`mesh`], [`element`], [`material`] |
 //! | 3 | [`problem`], [`body`] |
-//! | 4 | [`transform`], [`method`], [`assembly`], [`recovery`] |
+//! | 4 | [`transform`], [`method`], [`assembly`], [`recovery`], [`norm`] |
 //! | 5 | [`mod@solve`] |
 //! | 6 | [`scene`], [`matrix_market`] |
 //! | 7 | [`study`] |
@@ -68,6 +68,7 @@ pub mod material;
 pub mod matrix_market;
 pub mod mesh;
 pub mod method;
+pub mod norm;
 pub mod output;
 pub mod problem;
 pub mod recovery;
