@@ -143,7 +143,7 @@ fn error_plots(name: &str, quadratic_slope: f64, families: &[Family]) -> Drawing
     line_plots(&format!("Manufactured block: {name}"), &panels)
 }
 
-/// Rigid punches on a large block, in the plane and about an axis; its upper side reaches 200 contact widths.
+/// Rigid punches on a large block, in the plane and about an axis; it reaches 200 contact radii, 0.1, in each direction.
 ///
 /// In the plane pressures are compared at the force that was found; the approach depends on the body.
 fn hertz_and_punches(lines: &mut Vec<Line>) -> Result<(), Error> {

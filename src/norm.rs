@@ -25,7 +25,7 @@ pub struct ErrorNorms {
 /// The relative errors of the nodal displacement `displacement` (length `dim * n_nodes`) against `exact(point)`, by five
 /// quadrature points in each direction of an element.
 ///
-/// Exact for polynomials of total degree six; elsewhere within a few thousandths of the error. The errors are
+/// Exact where the squares integrated are polynomials of total degree six; approximate elsewhere. The errors are
 /// infinite or NaN where the exact solution is zero.
 ///
 /// # Errors
