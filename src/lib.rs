@@ -48,7 +48,7 @@
 //! | 2 | [`sparse`], [`element`], [`formulation`] |
 //! | 3 | [`mesh`], [`material`] |
 //! | 4 | [`problem`], [`body`] |
-//! | 5 | [`transform`], [`method`], [`assembly`], [`recovery`] |
+//! | 5 | [`transform`], [`method`], [`assembly`], [`recovery`], [`norm`] |
 //! | 6 | [`mod@solve`] |
 //! | 7 | [`scene`], [`matrix_market`] |
 //! | 8 | [`study`] |
@@ -69,6 +69,7 @@ pub mod material;
 pub mod matrix_market;
 pub mod mesh;
 pub mod method;
+pub mod norm;
 pub mod output;
 pub mod problem;
 pub mod recovery;

@@ -11,7 +11,7 @@ const FLOORS: [&[&str]; 11] = [
     &["sparse", "element", "formulation"],
     &["mesh", "material"],
     &["problem", "body"],
-    &["transform", "method", "assembly", "recovery"],
+    &["transform", "method", "assembly", "recovery", "norm"],
     &["solve"],
     &["scene", "matrix_market"],
     &["study"],

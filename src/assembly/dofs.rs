@@ -1,6 +1,7 @@
 //! Free and supported dofs: eliminate, and expand again.
 
 use crate::error::Error;
+use crate::mesh::Mesh;
 
 /// Stands where a free dof has its number.
 const SUPPORTED: usize = usize::MAX;
@@ -38,6 +39,29 @@ impl DofMap {
         free.shrink_to_fit();
         let prescribed = prescribed.into_iter().map(Option::unwrap_or_default).collect();
         Ok(DofMap { prescribed, number, free })
+    }
+
+    /// All dofs of `mesh` free, but for those of the nodes of `boundaries`: they move by `displacement(point)`.
+    ///
+    /// # Errors
+    /// As [`DofMap::new`]; [`Error::Mesh`] for a boundary that the mesh does not have.
+    pub fn holding(
+        mesh: &Mesh,
+        boundaries: &[&str],
+        displacement: impl Fn([f64; 3]) -> [f64; 3],
+    ) -> Result<Self, Error> {
+        let dimension = mesh.dimension();
+        let mut prescribed = vec![None; dimension * mesh.nodes().len()];
+        for name in boundaries {
+            let missing = || Error::Mesh { message: format!("there is no boundary `{name}`") };
+            for node in mesh.boundary(name).ok_or_else(missing)?.nodes() {
+                let value = displacement(mesh.nodes()[node]);
+                for (axis, &component) in value.iter().enumerate().take(dimension) {
+                    prescribed[dimension * node + axis] = Some(component);
+                }
+            }
+        }
+        Self::new(prescribed)
     }
 
     /// Number of nodal dofs, free and supported.

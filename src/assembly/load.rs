@@ -1,7 +1,10 @@
 //! Consistent nodal loads: f_a = integral of N_a times the force.
 
 use super::surface::for_each_point;
+use super::{DofMap, internal_force};
 use crate::body::ElasticBody;
+use crate::element::Tabulated;
+use crate::error::Error;
 use crate::mesh::Boundary;
 
 /// Adds to the nodal load (length `dim * n_nodes`) a constant traction (x, y, z; force per area) on a boundary.
@@ -33,13 +36,16 @@ pub fn add_traction_field(
 
 /// Adds to the nodal load (length `dim * n_nodes`) a constant body force (x, y, z; force per volume).
 pub fn add_body_force(body: &ElasticBody, force: [f64; 3], load: &mut [f64]) {
-    add_body_force_field(body, |_| force, load);
+    add_force_at(body, &body.tabulated(), |_| force, load);
 }
 
-/// Adds to the nodal load (length `dim * n_nodes`) the body force `field(point)` (force per volume), by the quadrature
-/// of the stiffness.
+/// Adds to the nodal load (length `dim * n_nodes`) the body force `field(point)` (force per volume), by five quadrature
+/// points in each direction of an element.
 pub fn add_body_force_field(body: &ElasticBody, field: impl Fn([f64; 3]) -> [f64; 3], load: &mut [f64]) {
-    let table = body.tabulated();
+    add_force_at(body, &Tabulated::fine(body.mesh().kind().reference()), field, load);
+}
+
+fn add_force_at(body: &ElasticBody, table: &Tabulated, field: impl Fn([f64; 3]) -> [f64; 3], load: &mut [f64]) {
     for (nodes, cell) in body.cells() {
         let scale = cell.unit().powi(body.dimension() as i32);
         for at in &table.points {
@@ -50,6 +56,21 @@ pub fn add_body_force_field(body: &ElasticBody, field: impl Fn([f64; 3]) -> [f64
             }
         }
     }
+}
+
+/// The load of the free dofs: the nodal load (length `dim * n_nodes`) there, less the forces that hold the prescribed
+/// displacements.
+///
+/// # Errors
+/// [`Error::Length`] where load or dofs do not belong to the mesh.
+pub fn free_load(body: &ElasticBody, dofs: &DofMap, nodal: &[f64]) -> Result<Vec<f64>, Error> {
+    let mut load = nodal.to_vec();
+    if (0..dofs.nodal_count()).any(|dof| dofs.prescribed(dof).is_some_and(|value| value != 0.0)) {
+        let lifted = dofs.expand(&vec![0.0; dofs.free().len()])?;
+        let forces = internal_force(body, &lifted)?;
+        load.iter_mut().zip(forces).for_each(|(load, force)| *load -= force);
+    }
+    dofs.restrict(&load)
 }
 
 /// Adds `force` times `factor` at a node; axes beyond the dimension of the body are left out.

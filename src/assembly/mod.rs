@@ -15,6 +15,6 @@ mod surface;
 pub use dofs::DofMap;
 pub use element_stiffness::{ElementStiffness, element_stiffness};
 pub use internal_force::internal_force;
-pub use load::{add_body_force, add_body_force_field, add_pressure, add_traction, add_traction_field};
+pub use load::{add_body_force, add_body_force_field, add_pressure, add_traction, add_traction_field, free_load};
 pub use stiffness::stiffness;
 pub use surface::tributary_areas;

@@ -1,5 +1,7 @@
 //! Quadrature on the reference cells: point, interval [-1,1], square, cube, triangle and tetrahedron.
 
+use super::Shape;
+
 /// A point of a quadrature rule.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QuadraturePoint {
@@ -99,3 +101,44 @@ pub(super) const TRIANGLE_6: [QuadraturePoint; 6] = {
 
 /// The centroid of the tetrahedron (0,0,0), (1,0,0), (0,1,0), (0,0,1), exact for linear functions.
 pub(super) const TETRAHEDRON_1: [QuadraturePoint; 1] = [point(0.25, 0.25, 0.25, 1.0 / 6.0)];
+
+/// Points and weights of five Gauss points on [-1, 1], exact for degree nine.
+const GAUSS_5: [(f64, f64); 5] = [
+    (-0.906_179_845_938_664, 0.236_926_885_056_189_1),
+    (-0.538_469_310_105_683_1, 0.478_628_670_499_366_5),
+    (0.0, 0.568_888_888_888_888_9),
+    (0.538_469_310_105_683_1, 0.478_628_670_499_366_5),
+    (0.906_179_845_938_664, 0.236_926_885_056_189_1),
+];
+
+/// Five Gauss points in each direction of the cell; on a simplex those of the product of intervals that is folded onto it.
+/// Exact for polynomials of total degree six and more.
+pub(super) fn fine(form: Shape, dimension: usize) -> Vec<QuadraturePoint> {
+    let mut points = vec![point(0.0, 0.0, 0.0, 1.0)];
+    for axis in 0..dimension {
+        let along = |start: &QuadraturePoint| {
+            let start = *start;
+            GAUSS_5.map(move |(at, weight)| {
+                let mut next = start;
+                next.at[axis] = at;
+                next.weight *= weight;
+                next
+            })
+        };
+        points = points.iter().flat_map(along).collect();
+    }
+    if form == Shape::Simplex {
+        for point in &mut points {
+            // Each coordinate takes its share of what the later ones leave.
+            let mut left = 1.0;
+            for axis in (0..dimension).rev() {
+                let share = (1.0 + point.at[axis]) / 2.0;
+                point.at[axis] = left * share;
+                // The interval [-1, 1] shrinks to `left`, on a simplex of the coordinates before this one.
+                point.weight *= left / 2.0;
+                left *= 1.0 - share;
+            }
+        }
+    }
+    points
+}

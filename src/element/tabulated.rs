@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use super::{PerNode, QuadraturePoint, ReferenceElement, Shape};
+use super::{PerNode, QuadraturePoint, ReferenceElement, Shape, quadrature};
 
 /// The shape functions at one reference point.
 #[derive(Clone, Copy, Debug)]
@@ -26,13 +26,22 @@ pub struct Tabulated {
     pub nodes: Vec<TabulatedPoint>,
     /// At the centroid.
     pub centroid: TabulatedPoint,
-    rule: &'static [QuadraturePoint],
+    rule: Vec<QuadraturePoint>,
 }
 
 impl Tabulated {
     /// Tabulates `reference` at the points of its quadrature; of that for bodies of revolution where `revolved`.
     pub fn new(reference: &'static ReferenceElement, revolved: bool) -> Self {
         let rule = if revolved { reference.quadrature_revolved } else { reference.quadrature };
+        Self::at(reference, rule.to_vec())
+    }
+
+    /// Tabulates `reference` at five points in each direction, for functions that are no polynomials of the element.
+    pub fn fine(reference: &'static ReferenceElement) -> Self {
+        Self::at(reference, quadrature::fine(reference.form, reference.dimension))
+    }
+
+    fn at(reference: &'static ReferenceElement, rule: Vec<QuadraturePoint>) -> Self {
         let at = |at: [f64; 3], weight| TabulatedPoint {
             weight,
             shape: (reference.shape)(at),

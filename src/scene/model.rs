@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::motion::RigidMotions;
 use super::rows::{self, ContactRow};
 use super::{Obstacle, Units, Warning, wrong};
-use crate::assembly::{DofMap, internal_force, stiffness};
+use crate::assembly::{DofMap, free_load, internal_force, stiffness};
 use crate::body::ElasticBody;
 use crate::error::Error;
 use crate::mesh::Mesh;
@@ -47,13 +47,6 @@ impl Model {
     pub(super) fn new(parts: Parts, gap: f64) -> Result<Self, Error> {
         let built = rows::build(&parts, gap)?;
         RigidMotions::of(&parts.body).check_held(&parts, &built.rows)?;
-        // Prescribed displacements go to the right-hand side as the forces that they alone would cause.
-        let mut load = parts.load.clone();
-        if (0..parts.dofs.nodal_count()).any(|dof| parts.dofs.prescribed(dof).is_some_and(|value| value != 0.0)) {
-            let lifted = parts.dofs.expand(&vec![0.0; parts.dofs.free().len()])?;
-            let forces = internal_force(&parts.body, &lifted)?;
-            load.iter_mut().zip(forces).for_each(|(load, force)| *load -= force);
-        }
         let stiffness = stiffness(&parts.body, &parts.dofs).map_err(|error| match error {
             Error::NotFinite { .. } => {
                 let message = "the stiffness that it makes with body and thickness overflows; choose other units";
@@ -61,7 +54,7 @@ impl Model {
             }
             other => other,
         })?;
-        let load = parts.dofs.restrict(&load)?;
+        let load = free_load(&parts.body, &parts.dofs, &parts.load)?;
         Self::with_rows(Arc::new(parts), gap, built, stiffness, load)
     }
 

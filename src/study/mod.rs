@@ -1,10 +1,12 @@
 //! What is learnt from more than one solve, and the numbers that a report shows.
 
 mod compare;
+mod manufactured;
 mod scene;
 mod summary;
 
 pub use compare::{Agreement, Comparison, Difference, MethodAnswer, compare};
+pub use manufactured::{BlockErrors, NodalPressure, solve_block};
 pub use scene::{
     Sweep, SweepCorner, SweepEvent, SweepPoint, contact_area, contact_width, even_gaps, scene_summary, sweep,
 };

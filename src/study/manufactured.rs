@@ -1,0 +1,104 @@
+//! Blocks with an exact solution, discretised: how far the answer is from it.
+
+use std::time::Instant;
+
+use crate::analytical::manufactured::{ContactSolution, PlaneElasticity};
+use crate::assembly::{DofMap, add_body_force_field, free_load, stiffness, tributary_areas};
+use crate::body::{ElasticBody, Integration};
+use crate::element::ElementKind;
+use crate::error::Error;
+use crate::formulation::Formulation;
+use crate::material::Material;
+use crate::mesh::rectangle;
+use crate::norm::{ErrorNorms, ExactState, error_norms};
+use crate::problem::ContactProblem;
+use crate::solve::solve_qp;
+use crate::sparse::SparseMatrix;
+
+/// The contact pressure at one node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NodalPressure {
+    /// Where, on y = 0.
+    pub x: f64,
+    /// Multiplier over tributary area.
+    pub ours: f64,
+    /// That of the exact solution.
+    pub exact: f64,
+}
+
+/// A discretised block against its exact solution.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BlockErrors {
+    /// Number of free dofs.
+    pub unknowns: usize,
+    /// Relative errors of the displacement.
+    pub errors: ErrorNorms,
+    /// The pressure at the contact rows, in increasing x.
+    pub pressure: Vec<NodalPressure>,
+    /// Assembly and solve, without the norms, in seconds.
+    pub seconds: f64,
+}
+
+/// Solves the block `[0, 1]^2` in plane strain with `cells` x `cells` cells and compares it with `exact`.
+///
+/// The exact displacement is prescribed at the nodes of the left, right and upper side; every other node of y = 0 has a
+/// contact row `-u_y <= gap(x)`.
+///
+/// # Errors
+/// [`Error::Mesh`] for an element that is not plane or an integration that does not fit it, [`Error::Setting`] for
+/// elastic constants that are none, and as [`solve_qp`](crate::solve::solve_qp).
+///
+/// ```
+/// use signorini::analytical::manufactured::{HertzBlock, PlaneElasticity};
+/// use signorini::{body::Integration, element::ElementKind, study::solve_block};
+///
+/// let elasticity = PlaneElasticity::plane_strain(1.0, 0.3);
+/// let exact = HertzBlock { elasticity, half_width: 0.53, peak_pressure: 1.0 };
+/// let block = solve_block(&exact, ElementKind::Q4, Integration::Standard, 16)?;
+/// assert!((block.errors.energy - 5.351e-2).abs() < 5e-5);
+/// # Ok::<(), signorini::Error>(())
+/// ```
+pub fn solve_block(
+    exact: &dyn ContactSolution,
+    kind: ElementKind,
+    integration: Integration,
+    cells: usize,
+) -> Result<BlockErrors, Error> {
+    let clock = Instant::now();
+    let PlaneElasticity { lambda, mu } = exact.elasticity();
+    let material = Material::new(mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu), lambda / (lambda + mu) / 2.0)?;
+    let lines: Vec<f64> = (0..=cells).map(|line| line as f64 / cells as f64).collect();
+    let mesh = rectangle(&lines, &lines, kind)?;
+    let formulation = Formulation::PlaneStrain { thickness: 1.0 };
+    let body = ElasticBody::new(mesh, material, formulation)?.with_integration(integration)?;
+    let in_space = |[x, y]: [f64; 2]| [x, y, 0.0];
+    let dofs =
+        DofMap::holding(body.mesh(), &["left", "right", "top"], |[x, y, _]| in_space(exact.displacement([x, y])))?;
+    let mut load = vec![0.0; body.nodal_dofs()];
+    add_body_force_field(&body, |[x, y, _]| in_space(exact.body_force([x, y])), &mut load);
+
+    let (mut entries, mut gap, mut places) = (Vec::new(), Vec::new(), Vec::new());
+    for (node, area) in body.mesh().boundary("bottom").map_or_else(Vec::new, |bottom| tributary_areas(&body, bottom)) {
+        if let Some(column) = dofs.number(2 * node + 1) {
+            let x = body.mesh().nodes()[node][0];
+            entries.push((gap.len(), column, -1.0));
+            gap.push(exact.gap(x));
+            places.push((x, area));
+        }
+    }
+    let contact = SparseMatrix::from_triplets(gap.len(), dofs.free().len(), &entries)?;
+    let problem = ContactProblem::new(stiffness(&body, &dofs)?, free_load(&body, &dofs, &load)?, contact, gap)?;
+    let solution = solve_qp(&problem)?;
+    let seconds = clock.elapsed().as_secs_f64();
+
+    let nodal = dofs.expand(&solution.displacement)?;
+    let errors = error_norms(&body, &nodal, |[x, y, _]| {
+        let [[xx, xy], [yx, yy]] = exact.gradient([x, y]);
+        let displacement = in_space(exact.displacement([x, y]));
+        ExactState { displacement, strain: [xx, yy, 0.0, (xy + yx) / 2.0, 0.0, 0.0] }
+    })?;
+    let compared =
+        |(&(x, area), lambda): (&(f64, f64), &f64)| NodalPressure { x, ours: -lambda / area, exact: exact.pressure(x) };
+    let pressure = places.iter().zip(&solution.multiplier).map(compared).collect();
+    Ok(BlockErrors { unknowns: problem.dofs(), errors, pressure, seconds })
+}
