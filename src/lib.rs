@@ -63,6 +63,7 @@ pub mod body;
 pub mod cli;
 pub mod element;
 pub mod error;
+pub mod formulation;
 pub mod material;
 pub mod matrix_market;
 pub mod mesh;

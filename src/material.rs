@@ -1,44 +1,37 @@
-//! Homogeneous isotropic linear elasticity in the plane: sigma = D eps.
-
-use nalgebra::{Matrix3, Vector3};
+//! Homogeneous isotropic linear elasticity: sigma = lambda tr(eps) I + 2 mu eps.
 
 use crate::error::Error;
+use crate::formulation::Formulation;
 
-/// What happens across the plane.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PlaneState {
-    /// No strain across the plane: a long body.
-    PlaneStrain,
-    /// No stress across the plane: a thin body.
-    PlaneStress,
-}
-
-/// An isotropic linear elastic material in a plane state, checked once, when it is built.
+/// An isotropic linear elastic material, checked once, when it is built.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
     young: f64,
     poisson: f64,
-    state: PlaneState,
+}
+
+/// The Lamé constants of a material in a formulation, in force per area.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lame {
+    /// lambda, for the trace of the strains that the formulation has.
+    pub lambda: f64,
+    /// mu, the shear modulus; half of Young's modulus in a bar, which has no shear.
+    pub mu: f64,
 }
 
 impl Material {
-    /// Young's modulus (force per area), Poisson's ratio, plane state.
+    /// Young's modulus (force per area), Poisson's ratio.
     ///
     /// # Errors
-    /// [`Error::Setting`] for a modulus that is not positive and finite, or a ratio outside -1 < nu < 0.5 (plane
-    /// strain) or -1 < nu <= 0.5 (plane stress).
-    pub fn new(young: f64, poisson: f64, state: PlaneState) -> Result<Self, Error> {
+    /// [`Error::Setting`] for a modulus that is not positive and finite, or a ratio outside -1 < nu <= 0.5.
+    pub fn new(young: f64, poisson: f64) -> Result<Self, Error> {
         if !(young.is_normal() && young > 0.0) {
             return Err(Error::Setting { name: "young", value: young, allowed: "positive and finite" });
         }
-        let (fits, allowed) = match state {
-            PlaneState::PlaneStrain => (poisson > -1.0 && poisson < 0.5, "above -1 and below 0.5 in plane strain"),
-            PlaneState::PlaneStress => (poisson > -1.0 && poisson <= 0.5, "above -1 and at most 0.5 in plane stress"),
-        };
-        if !fits {
-            return Err(Error::Setting { name: "poisson", value: poisson, allowed });
+        if !(poisson > -1.0 && poisson <= 0.5) {
+            return Err(Error::Setting { name: "poisson", value: poisson, allowed: "above -1 and at most 0.5" });
         }
-        Ok(Material { young, poisson, state })
+        Ok(Material { young, poisson })
     }
 
     /// Young's modulus E.
@@ -51,33 +44,26 @@ impl Material {
         self.poisson
     }
 
-    /// The plane state.
-    pub fn state(&self) -> PlaneState {
-        self.state
-    }
-
-    /// The constitutive matrix D: (sigma_xx, sigma_yy, sigma_xy) = D (eps_xx, eps_yy, gamma_xy).
-    pub fn constitutive(&self) -> Matrix3<f64> {
-        let nu = self.poisson;
-        let shear = self.young / (1.0 + nu) / 2.0;
-        let (along, across) = match self.state {
-            PlaneState::PlaneStrain => {
-                let factor = self.young / (1.0 + nu) / (1.0 - 2.0 * nu);
-                (factor * (1.0 - nu), factor * nu)
-            }
-            PlaneState::PlaneStress => {
-                let factor = self.young / ((1.0 - nu) * (1.0 + nu));
-                (factor, factor * nu)
-            }
+    /// The Lamé constants in `formulation`.
+    ///
+    /// In plane stress lambda is E nu/(1 - nu^2), for the trace of the strains in the plane; in a bar lambda is 0 and
+    /// mu is E/2, so that sigma = E eps.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for nu = 0.5 where the volume would be kept: in plane strain, axisymmetric bodies and space.
+    pub fn lame(&self, formulation: &Formulation) -> Result<Lame, Error> {
+        let (young, nu) = (self.young, self.poisson);
+        let mu = young / (1.0 + nu) / 2.0;
+        let volumetric = |allowed| match nu < 0.5 {
+            true => Ok(Lame { lambda: young * nu / (1.0 + nu) / (1.0 - 2.0 * nu), mu }),
+            false => Err(Error::Setting { name: "poisson", value: nu, allowed }),
         };
-        Matrix3::new(along, across, 0.0, across, along, 0.0, 0.0, 0.0, shear)
-    }
-
-    /// The stress sigma_zz across the plane: nu (sigma_xx + sigma_yy) in plane strain, 0 in plane stress.
-    pub fn out_of_plane_stress(&self, stress: &Vector3<f64>) -> f64 {
-        match self.state {
-            PlaneState::PlaneStrain => self.poisson * (stress.x + stress.y),
-            PlaneState::PlaneStress => 0.0,
+        match formulation {
+            Formulation::Bar { .. } => Ok(Lame { lambda: 0.0, mu: young / 2.0 }),
+            Formulation::PlaneStress { .. } => Ok(Lame { lambda: young * nu / ((1.0 - nu) * (1.0 + nu)), mu }),
+            Formulation::PlaneStrain { .. } => volumetric("above -1 and below 0.5 in plane strain"),
+            Formulation::Axisymmetric => volumetric("above -1 and below 0.5 in an axisymmetric body"),
+            Formulation::Space => volumetric("above -1 and below 0.5 in space"),
         }
     }
 }

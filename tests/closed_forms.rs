@@ -27,7 +27,7 @@ fn a_bar_stopped_by_a_wall_carries_the_rest_of_its_load_into_it() {
         let u = Cholesky::of(model.problem().stiffness()).unwrap().solve(model.problem().load());
         let (nodal, forces) = (model.nodal_displacement(&u).unwrap(), model.reactions(&u, &[]).unwrap());
         let mut wall = 0.0;
-        for (node, &[x, _]) in model.mesh().nodes().iter().enumerate() {
+        for (node, &[x, ..]) in model.mesh().nodes().iter().enumerate() {
             assert!((nodal[2 * node] - displacement(x)).abs() < EXACT * 1e-3, "u({x})");
             wall -= if x == 2.0 { forces[2 * node] } else { 0.0 };
         }
@@ -75,7 +75,7 @@ fn a_uniformly_compressed_block_strains_as_the_patch_test_says() {
             let model = built(&scene);
             let u = Cholesky::of(model.problem().stiffness()).unwrap().solve(model.problem().load());
             let nodal = model.nodal_displacement(&u).unwrap();
-            for (node, &[x, y]) in model.mesh().nodes().iter().enumerate() {
+            for (node, &[x, y, _]) in model.mesh().nodes().iter().enumerate() {
                 let error = (nodal[2 * node] - exx * x).abs().max((nodal[2 * node + 1] - eyy * y).abs());
                 assert!(error < EXACT * eyy.abs(), "{sides:?} {element}: {error:e}");
             }

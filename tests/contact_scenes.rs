@@ -73,7 +73,7 @@ fn bar_against_a_wall_is_exact_at_the_nodes() {
                     let what = format!("{element}, gap {gap}, end force {by_end}, {method:?}");
                     close(solution.contact_force(), reaction, 4.0, CLOSED_FORM, &format!("{what}: R"));
                     let nodal = model.nodal_displacement(&solution.displacement).unwrap();
-                    for (node, &[x, _]) in model.mesh().nodes().iter().enumerate() {
+                    for (node, &[x, ..]) in model.mesh().nodes().iter().enumerate() {
                         let u = if by_end {
                             closed.displacement_under_end_force(4.0, x)
                         } else {
@@ -120,7 +120,7 @@ fn uniform_pressure_on_a_plane_is_exact_on_every_mesh() {
                     close(pressure, p, p, CLOSED_FORM, &format!("{what}: pressure"));
                 }
                 let nodal = model.nodal_displacement(&solution.displacement).unwrap();
-                for (node, &[x, y]) in model.mesh().nodes().iter().enumerate() {
+                for (node, &[x, y, _]) in model.mesh().nodes().iter().enumerate() {
                     close(nodal[2 * node], eps_xx * x, eps_yy.abs(), CLOSED_FORM, &format!("{what}: u_x"));
                     close(nodal[2 * node + 1], eps_yy * y, eps_yy.abs(), CLOSED_FORM, &format!("{what}: u_y"));
                 }

@@ -2,8 +2,9 @@
 
 use signorini::Error;
 use signorini::body::ElasticBody;
-use signorini::material::{Material, PlaneState};
-use signorini::mesh::{Axis, Boundary, ElementKind, Mesh, rectangle};
+use signorini::formulation::Formulation;
+use signorini::material::Material;
+use signorini::mesh::{Axis, Boundary, ElementKind, FacetKind, Mesh, rectangle};
 
 fn axis(points: &[f64], divisions: &[usize], ratios: &[f64]) -> Axis {
     Axis { points: points.into(), divisions: divisions.into(), ratios: ratios.into() }
@@ -86,13 +87,13 @@ fn a_rectangle_beyond_the_size_limit_is_refused_before_it_is_built() {
 
 #[test]
 fn a_mesh_that_does_not_hold_together_is_refused() {
-    let square = || vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
-    let side = |name: &str| Boundary { name: name.into(), edges: vec![[0, 1]] };
+    let square = || vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+    let side = |name: &str| Boundary::new(name, FacetKind::Line2, vec![0, 1]);
     let mut far = square();
     far[2][0] = f64::INFINITY;
-    let beyond = Boundary { name: "b".into(), edges: vec![[0, 9]] };
+    let beyond = Boundary::new("b", FacetKind::Line2, vec![0, 9]);
     let mut lone = square();
-    lone.push([5.0, 5.0]);
+    lone.push([5.0, 5.0, 0.0]);
     for (nodes, connectivity, boundaries, phrase) in [
         (vec![], vec![], vec![], "no elements"),
         (far, vec![0, 1, 2, 3], vec![], "node 2"),
@@ -109,13 +110,15 @@ fn a_mesh_that_does_not_hold_together_is_refused() {
 
 #[test]
 fn an_element_inside_out_or_without_area_is_named() {
-    let nodes = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [2.0, 0.0], [2.0, 1.0]];
-    let material = Material::new(1.0, 0.3, PlaneState::PlaneStrain).unwrap();
+    let nodes: Vec<[f64; 3]> =
+        [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [2.0, 0.0], [2.0, 1.0]].map(|[x, y]| [x, y, 0.0]).to_vec();
+    let material = Material::new(1.0, 0.3).unwrap();
+    let formulation = Formulation::PlaneStrain { thickness: 1.0 };
     let second = |corners: [usize; 4], at: [f64; 2]| {
         let mut nodes = nodes.clone();
-        nodes[5] = at;
+        nodes[5] = [at[0], at[1], 0.0];
         let connectivity = [[0, 1, 2, 3], corners].concat();
-        ElasticBody::new(Mesh::new(nodes, ElementKind::Q4, connectivity, vec![]).unwrap(), material, 1.0)
+        ElasticBody::new(Mesh::new(nodes, ElementKind::Q4, connectivity, vec![]).unwrap(), material, formulation)
     };
     assert!(second([1, 4, 5, 2], [2.0, 1.0]).is_ok());
     for body in [

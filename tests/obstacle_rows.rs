@@ -39,9 +39,9 @@ fn along_the_approach_direction_the_gap_is_the_height_above_the_node() {
         let model = top("approach", shape.clone(), gap);
         assert_eq!(model.rows().len(), 9, "{shape}");
         for (contact, gap_of_problem) in model.rows().iter().zip(model.problem().gap()) {
-            let [x, y] = model.mesh().nodes()[contact.node];
+            let [x, y, _] = model.mesh().nodes()[contact.node];
             let expected = 1.1 + height(x - 0.4) + gap - y;
-            assert_eq!(contact.normal, [0.0, 1.0]);
+            assert_eq!(contact.normal, [0.0, 1.0, 0.0]);
             assert!((contact.gap - expected).abs() < ROUNDING, "{shape} {contact:?} {expected}");
             assert_eq!(*gap_of_problem, contact.gap);
         }
@@ -101,7 +101,8 @@ fn closest_point_distances_are_the_smallest_distances_signed_negative_inside() {
         let model = top("closest-point", shape.clone(), 0.0);
         assert_eq!(model.rows().len(), 9, "{shape}");
         for row in model.rows() {
-            let node = model.mesh().nodes()[row.node];
+            let [x, y, _] = model.mesh().nodes()[row.node];
+            let node = [x, y];
             let inside = node[1] > curve(node[0]);
             let expected = searched_distance(node, &curve, range) * if inside { -1.0 } else { 1.0 };
             assert!((row.gap - expected).abs() < SEARCHED, "{shape} at {node:?}: {} and {expected}", row.gap);
@@ -114,8 +115,9 @@ fn closest_point_normals_are_unit_and_lead_from_the_node_to_the_surface() {
     for (shape, curve, _) in curves() {
         let model = top("closest-point", shape.clone(), 0.0);
         for row in model.rows() {
-            let [nx, ny] = row.normal;
-            let node = model.mesh().nodes()[row.node];
+            let [nx, ny, _] = row.normal;
+            let [x, y, _] = model.mesh().nodes()[row.node];
+            let node = [x, y];
             assert!((nx.hypot(ny) - 1.0).abs() < ROUNDING && ny > 0.0, "{shape}: {row:?}");
             let foot = [node[0] + row.gap * nx, node[1] + row.gap * ny];
             assert!((curve(foot[0]) - foot[1]).abs() < SEARCHED, "{shape} at {node:?}: {foot:?}");
@@ -162,21 +164,21 @@ fn a_node_behind_a_vertex_or_on_an_axis_goes_straight_back() {
         (json!({"circle": {"apex": [0.5, 0.9], "radius": 0.08}}), 0.1),
     ] {
         let model = top("closest-point", shape.clone(), 0.0);
-        let row = model.rows().iter().find(|row| model.mesh().nodes()[row.node] == [0.5, 1.0]).unwrap();
-        assert_eq!(row.normal, [0.0, 1.0], "{shape}");
+        let row = model.rows().iter().find(|row| model.mesh().nodes()[row.node] == [0.5, 1.0, 0.0]).unwrap();
+        assert_eq!(row.normal, [0.0, 1.0, 0.0], "{shape}");
         assert!((row.gap + depth).abs() < ROUNDING, "{shape}: {row:?}");
     }
     // In a notch the node goes straight ahead, until it meets both flanks.
     let notch = top("closest-point", json!({"table": {"points": [[0, 1.1], [0.5, 1.2], [1, 1.1]]}}), 0.0);
-    let row = notch.rows().iter().find(|row| notch.mesh().nodes()[row.node] == [0.5, 1.0]).unwrap();
-    assert_eq!(row.normal, [0.0, 1.0]);
+    let row = notch.rows().iter().find(|row| notch.mesh().nodes()[row.node] == [0.5, 1.0, 0.0]).unwrap();
+    assert_eq!(row.normal, [0.0, 1.0, 0.0]);
     assert!((row.gap - 0.2).abs() < ROUNDING, "{row:?}");
 }
 
 #[test]
 fn a_node_on_a_vertex_takes_the_bisector_of_its_flanks() {
     let model = top("closest-point", json!({"table": {"points": [[0, 1], [0.5, 1], [1, 1.5]]}}), 0.0);
-    let row = model.rows().iter().find(|row| model.mesh().nodes()[row.node] == [0.5, 1.0]).unwrap();
+    let row = model.rows().iter().find(|row| model.mesh().nodes()[row.node] == [0.5, 1.0, 0.0]).unwrap();
     // Flanks at 0 and 45 degrees: the normal leans by half of it.
     let half = std::f64::consts::PI / 8.0;
     assert!((row.normal[0] + half.sin()).abs() < ROUNDING && (row.normal[1] - half.cos()).abs() < ROUNDING);
@@ -193,7 +195,7 @@ fn both_rules_agree_on_a_plane_across_the_approach_direction() {
 fn an_inclined_plane_gives_rows_of_two_entries() {
     let model = top("closest-point", json!({"plane": {"point": [0.5, 1], "normal": [3, 4]}}), -0.5);
     for (i, row) in model.rows().iter().enumerate() {
-        let [x, _] = model.mesh().nodes()[row.node];
+        let [x, ..] = model.mesh().nodes()[row.node];
         assert!((row.normal[0] - 0.6).abs() < ROUNDING && (row.normal[1] - 0.8).abs() < ROUNDING);
         // The shift of -0.5 is along +y: 0.8 of it count.
         assert!((row.gap - (0.6 * (0.5 - x) - 0.4)).abs() < ROUNDING, "{row:?}");
@@ -220,7 +222,7 @@ fn every_approach_direction_is_the_same_scene_turned() {
         let model = built(&scene);
         assert_eq!(model.rows().len(), reference.rows().len());
         for (row, expected) in model.rows().iter().zip(reference.rows()) {
-            let turned = turn(row.normal);
+            let turned = turn([row.normal[0], row.normal[1]]);
             assert!((row.gap - expected.gap).abs() < ROUNDING, "{boundary}: {row:?} {expected:?}");
             assert!((turned[0] - expected.normal[0]).abs() < ROUNDING, "{boundary}: {row:?} {expected:?}");
             assert!((turned[1] - expected.normal[1]).abs() < ROUNDING, "{boundary}: {row:?} {expected:?}");

@@ -8,7 +8,7 @@ use output_fixture::Indented;
 use resvg::usvg::roxmltree::Document;
 use signorini::{
     Error,
-    output::{Array, Drawing, Unstructured, write_atomically, write_picture},
+    output::{Array, CellType, Drawing, Unstructured, write_atomically, write_picture},
 };
 
 fn numbers(document: &Document, name: &str) -> Vec<f64> {
@@ -24,11 +24,14 @@ fn vtu_carries_mesh_and_data_without_losing_a_bit() {
     let closed = vec![false, false, false, true, true, false];
     let thirds: Vec<f64> = (0..6).map(|k| f64::from(k) / 3.0 * 1e-7).collect();
     let areas = [0.25, 0.125];
+    let space: Vec<[f64; 3]> = body.nodes.iter().map(|&[x, y]| [x, y, x - y]).collect();
+    let moved: Vec<f64> = body.displacement.chunks(2).flat_map(|pair| [pair[0], pair[1], -pair[0]]).collect();
     let vtu = Unstructured {
-        nodes: &body.nodes,
+        nodes: &space,
         elements: &elements,
+        cell_types: &[CellType::Quadrilateral, CellType::Triangle],
         point_data: &[
-            Array::Vectors("displacement", &body.displacement),
+            Array::Vectors("displacement", &moved),
             Array::Scalars("pressure <&>", &thirds),
             Array::Flags("contact", &closed),
         ],
@@ -45,26 +48,27 @@ fn vtu_carries_mesh_and_data_without_losing_a_bit() {
     assert_eq!(numbers(&document, "pressure <&>"), thirds);
     assert_eq!(numbers(&document, "contact"), [0.0, 0.0, 0.0, 1.0, 1.0, 0.0]);
     assert_eq!(numbers(&document, "area"), areas);
-    for (name, plane) in [("Points", body.nodes.as_flattened()), ("displacement", &body.displacement)] {
-        let space = plane.chunks(2).flat_map(|pair| [pair[0], pair[1], 0.0]).collect::<Vec<_>>();
-        assert_eq!(numbers(&document, name), space);
+    for (name, expected) in [("Points", space.as_flattened()), ("displacement", &moved)] {
+        assert_eq!(numbers(&document, name), expected);
     }
 }
 
 #[test]
 fn vtu_refuses_what_readers_would_misread() {
     let body = Indented::new([1.0, 0.5], [1, 1]);
-    let good = Unstructured { nodes: &body.nodes, elements: &body.elements, point_data: &[], cell_data: &[] };
+    let nodes: Vec<[f64; 3]> = body.nodes.iter().map(|&[x, y]| [x, y, 0.0]).collect();
+    let cell_types = &[CellType::Quadrilateral];
+    let good = Unstructured { nodes: &nodes, elements: &body.elements, cell_types, point_data: &[], cell_data: &[] };
     assert!(good.to_vtu().is_ok());
     let values = [1.0, f64::NAN, 0.0, 0.0];
     let sentence =
         Unstructured { point_data: &[Array::Scalars("gap", &values)], ..good }.to_vtu().unwrap_err().to_string();
     assert!(sentence.contains("entry 1 of `gap`") && sentence.contains("NaN"), "{sentence}");
     let short = Unstructured { point_data: &[Array::Vectors("u", &values)], ..good };
-    assert!(matches!(short.to_vtu(), Err(Error::Length { found: 4, expected: 8, .. })));
+    assert!(matches!(short.to_vtu(), Err(Error::Length { found: 4, expected: 12, .. })));
     let short = Unstructured { cell_data: &[Array::Flags("dead", &[])], ..good };
     assert!(matches!(short.to_vtu(), Err(Error::Length { found: 0, expected: 1, .. })));
-    for (elements, value) in [([vec![0, 1, 2, 3, 0]], 5.0), ([vec![0, 1]], 2.0), ([vec![0, 1, 4]], 4.0)] {
+    for (elements, value) in [([vec![0, 1, 2, 3, 0]], 5.0), ([vec![0, 1]], 2.0), ([vec![0, 1, 4, 3]], 4.0)] {
         match (Unstructured { elements: &elements, ..good }).to_vtu() {
             Err(Error::Setting { value: found, .. }) => assert_eq!(found, value),
             other => panic!("{elements:?} gave {other:?}"),

@@ -6,7 +6,7 @@ mod bodies;
 
 use bodies::{VARIANTS, difference, distorted_body, largest, nodal, solve_held};
 use signorini::assembly;
-use signorini::material::PlaneState;
+use signorini::formulation::Formulation;
 use signorini::recovery::{self, Stress};
 
 /// A few hundred operations on numbers of order one.
@@ -17,12 +17,12 @@ fn linear([x, y]: [f64; 2]) -> [f64; 2] {
 }
 
 /// Stress of the field above by Hooke's law written out in three dimensions.
-fn hooke(state: PlaneState) -> (f64, f64, f64, f64) {
+fn hooke(formulation: Formulation) -> (f64, f64, f64, f64) {
     let (e, nu, exx, eyy, gxy) = (7.0, 0.3, 0.02, 0.04, 0.02);
     let (lambda, mu) = (e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), e / (2.0 * (1.0 + nu)));
-    let ezz = match state {
-        PlaneState::PlaneStrain => 0.0,
-        PlaneState::PlaneStress => -lambda * (exx + eyy) / (lambda + 2.0 * mu),
+    let ezz = match formulation {
+        Formulation::PlaneStrain { .. } => 0.0,
+        _ => -lambda * (exx + eyy) / (lambda + 2.0 * mu),
     };
     let trace = lambda * (exx + eyy + ezz);
     (trace + 2.0 * mu * exx, trace + 2.0 * mu * eyy, mu * gxy, trace + 2.0 * mu * ezz)
@@ -34,7 +34,7 @@ fn inner_nodes_follow_a_linear_field_that_is_prescribed_on_the_outline() {
         let body = distorted_body(kind, state);
         let field = nodal(body.mesh(), linear);
         let on_outline = |dof: usize| {
-            let [x, y] = body.mesh().nodes()[dof / 2];
+            let [x, y, _] = body.mesh().nodes()[dof / 2];
             x == 0.0 || x == 2.0 || y == 0.0 || y == 1.0
         };
         let solved = solve_held(&body, &field, on_outline, &vec![0.0; field.len()]);
@@ -63,11 +63,12 @@ fn stress_that_is_linear_in_a_rectangle_is_exact_at_its_nodes() {
     // u_x = x y is bilinear: eps_xx = y, gamma_xy = x, everywhere in Q4 rectangles of any size.
     use signorini::mesh::{ElementKind, rectangle};
     let mesh = rectangle(&[0.0, 0.2, 1.0], &[0.0, 0.7, 1.0], ElementKind::Q4).unwrap();
-    let material = signorini::material::Material::new(8.0, 0.25, PlaneState::PlaneStress).unwrap();
-    let body = signorini::body::ElasticBody::new(mesh, material, 1.0).unwrap();
+    let material = signorini::material::Material::new(8.0, 0.25).unwrap();
+    let formulation = Formulation::PlaneStress { thickness: 1.0 };
+    let body = signorini::body::ElasticBody::new(mesh, material, formulation).unwrap();
     let field = recovery::stress(&body, &nodal(body.mesh(), |[x, y]| [x * y, 0.0])).unwrap();
     let (along, shear) = (8.0 / (1.0 - 0.0625), 8.0 / 2.5);
-    for (stress, [x, y]) in field.nodes.iter().zip(body.mesh().nodes()) {
+    for (stress, [x, y]) in field.nodes.iter().zip(body.mesh().nodes().iter().map(|&[x, y, _]| [x, y])) {
         let found = [stress.sigma_xx, stress.sigma_yy, stress.sigma_xy];
         assert!(difference(&found, &[along * y, 0.25 * along * y, shear * x]) < ROUNDING, "{stress:?} at {x}, {y}");
     }
@@ -118,8 +119,9 @@ fn assembled_stiffness_and_internal_force_agree() {
 fn stiffness_of_a_square_element_has_its_known_entries() {
     // Q4, plane stress, nu = 0, E = t = 1, unit square: K_xx = 1/3 + 1/6, K_xy = 1/8 by hand.
     let mesh = signorini::mesh::rectangle(&[0.0, 1.0], &[0.0, 1.0], signorini::mesh::ElementKind::Q4).unwrap();
-    let material = signorini::material::Material::new(1.0, 0.0, PlaneState::PlaneStress).unwrap();
-    let body = signorini::body::ElasticBody::new(mesh, material, 1.0).unwrap();
+    let material = signorini::material::Material::new(1.0, 0.0).unwrap();
+    let formulation = Formulation::PlaneStress { thickness: 1.0 };
+    let body = signorini::body::ElasticBody::new(mesh, material, formulation).unwrap();
     let dofs = assembly::DofMap::new(vec![None; 8]).unwrap();
     let stiffness = assembly::stiffness(&body, &dofs).unwrap();
     let first: Vec<f64> = stiffness.lower().column(0).map(|entry| entry.1).collect();
@@ -133,8 +135,9 @@ fn stiffness_does_not_change_with_the_unit_of_length() {
             let lines = |lines: &[f64]| lines.iter().map(|x| x * scale).collect::<Vec<f64>>();
             let (x, y) = (lines(&[0.0, 0.4, 1.0]), lines(&[0.0, 0.7]));
             let mesh = signorini::mesh::rectangle(&x, &y, signorini::mesh::ElementKind::Q4).unwrap();
-            let material = signorini::material::Material::new(7.0, 0.3, PlaneState::PlaneStrain).unwrap();
-            let body = signorini::body::ElasticBody::new(mesh, material, 1.0).unwrap();
+            let material = signorini::material::Material::new(7.0, 0.3).unwrap();
+            let formulation = Formulation::PlaneStrain { thickness: 1.0 };
+            let body = signorini::body::ElasticBody::new(mesh, material, formulation).unwrap();
             assembly::stiffness(&body, &assembly::DofMap::new(vec![None; 12]).unwrap()).unwrap()
         };
         assert_eq!(of(scale), of(1.0), "scale {scale:e}");
@@ -143,21 +146,26 @@ fn stiffness_does_not_change_with_the_unit_of_length() {
 
 #[test]
 fn material_refuses_what_is_no_material() {
-    use PlaneState::{PlaneStrain, PlaneStress};
     use signorini::material::Material;
-    for (young, poisson, state, fits) in [
-        (1.0, 0.499999, PlaneStrain, true),
-        (1.0, 0.5, PlaneStrain, false),
-        (1.0, 0.5, PlaneStress, true),
-        (1.0, 0.500001, PlaneStress, false),
-        (1.0, -0.999, PlaneStress, true),
-        (1.0, -1.0, PlaneStrain, false),
-        (1.0, f64::NAN, PlaneStrain, false),
-        (0.0, 0.3, PlaneStrain, false),
-        (-1.0, 0.3, PlaneStress, false),
-        (f64::INFINITY, 0.3, PlaneStress, false),
-        (f64::NAN, 0.3, PlaneStress, false),
+    let strain = Formulation::PlaneStrain { thickness: 1.0 };
+    let stress = Formulation::PlaneStress { thickness: 1.0 };
+    for (young, poisson, formulation, fits) in [
+        (1.0, 0.499999, strain, true),
+        (1.0, 0.5, strain, false),
+        (1.0, 0.5, Formulation::Axisymmetric, false),
+        (1.0, 0.5, Formulation::Space, false),
+        (1.0, 0.5, Formulation::Bar { area: 1.0 }, true),
+        (1.0, 0.5, stress, true),
+        (1.0, 0.500001, stress, false),
+        (1.0, -0.999, stress, true),
+        (1.0, -1.0, strain, false),
+        (1.0, f64::NAN, strain, false),
+        (0.0, 0.3, strain, false),
+        (-1.0, 0.3, stress, false),
+        (f64::INFINITY, 0.3, stress, false),
+        (f64::NAN, 0.3, stress, false),
     ] {
-        assert_eq!(Material::new(young, poisson, state).is_ok(), fits, "{young} {poisson} {state:?}");
+        let found = Material::new(young, poisson).and_then(|material| material.lame(&formulation)).is_ok();
+        assert_eq!(found, fits, "{young} {poisson} {formulation:?}");
     }
 }

@@ -104,7 +104,7 @@ fn prescribed_displacements_load_the_free_dofs_and_come_back_at_the_supports() {
     let model = built(&scene);
     let u = Cholesky::of(model.problem().stiffness()).unwrap().solve(model.problem().load());
     let nodal = model.nodal_displacement(&u).unwrap();
-    for (node, &[x, y]) in model.mesh().nodes().iter().enumerate() {
+    for (node, &[x, y, _]) in model.mesh().nodes().iter().enumerate() {
         assert!((nodal[2 * node] - 0.01 * x).abs() < ROUNDING);
         assert!((nodal[2 * node + 1] + 0.25 * 0.01 * y).abs() < ROUNDING);
     }
@@ -125,7 +125,7 @@ fn rows_at_supported_dofs_keep_only_their_free_part() {
     );
     scene["supports"].as_array_mut().unwrap().push(json!({"on": {"point": [0, 1]}, "x": 0.1}));
     let model = built(&scene);
-    let row = model.rows().iter().position(|row| model.mesh().nodes()[row.node] == [0.0, 1.0]).unwrap();
+    let row = model.rows().iter().position(|row| model.mesh().nodes()[row.node] == [0.0, 1.0, 0.0]).unwrap();
     let entries: Vec<f64> = model.problem().contact().transposed().column(row).map(|entry| entry.1).collect();
     assert_eq!(entries.len(), 1);
     assert!((entries[0] - 0.8).abs() < ROUNDING);
@@ -249,7 +249,7 @@ fn unbounded_motions_are_explained_in_words() {
     let model = built(&scene);
     let nodes = model.mesh().nodes().to_vec();
     let restricted = |field: &dyn Fn([f64; 2]) -> [f64; 2]| -> Vec<f64> {
-        let nodal: Vec<f64> = nodes.iter().flat_map(|&at| field(at)).collect();
+        let nodal: Vec<f64> = nodes.iter().flat_map(|&[x, y, _]| field([x, y])).collect();
         model.dofs().restrict(&nodal).unwrap()
     };
     let explained = |direction: Vec<f64>| match model.explain(Error::Unbounded { motion: "column 3".into(), direction })
@@ -266,7 +266,7 @@ fn unbounded_motions_are_explained_in_words() {
         let mut scene = plane_above(0.0);
         scene["supports"] = json!([{"on": {"point": [0.25, 0]}, "x": 0, "y": 0}]);
         let model = built(&scene);
-        let nodal: Vec<f64> = model.mesh().nodes().iter().flat_map(|&at| field(at)).collect();
+        let nodal: Vec<f64> = model.mesh().nodes().iter().flat_map(|&[x, y, _]| field([x, y])).collect();
         let direction = model.dofs().restrict(&nodal).unwrap();
         match model.explain(Error::UnderHeld { motion: "?".into(), direction }) {
             Error::UnderHeld { motion, .. } => motion,
@@ -283,7 +283,7 @@ fn warnings_say_what_to_do_next() {
     assert_eq!(built(&scene).warnings(), []);
     scene["material"]["poisson"] = json!(0.495);
     let model = built(&scene);
-    assert_eq!(model.warnings(), [Warning::NearlyIncompressible { poisson: 0.495 }]);
+    assert_eq!(model.warnings(), [Warning::NearlyIncompressible { poisson: 0.495, element: "Q4" }]);
     assert!(model.warnings()[0].to_string().contains("finer mesh"));
     scene["model"] = json!("plane-stress");
     assert_eq!(built(&scene).warnings(), []);

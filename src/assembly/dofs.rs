@@ -2,11 +2,16 @@
 
 use crate::error::Error;
 
+/// Stands where a free dof has its number.
+const SUPPORTED: usize = usize::MAX;
+
 /// Which dofs are free, their numbers in the problem, and the displacement of the supported ones.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DofMap {
-    prescribed: Vec<Option<f64>>,
-    number: Vec<Option<usize>>,
+    /// Zero at free dofs.
+    prescribed: Vec<f64>,
+    /// [`SUPPORTED`] at supported dofs.
+    number: Vec<usize>,
     free: Vec<usize>,
 }
 
@@ -23,13 +28,15 @@ impl DofMap {
                     let (name, at) = ("prescribed displacement", format!("dof {dof}"));
                     return Err(Error::NotFinite { name, at, value, allowed: "finite" });
                 }
-                Some(_) => number.push(None),
+                Some(_) => number.push(SUPPORTED),
                 None => {
-                    number.push(Some(free.len()));
+                    number.push(free.len());
                     free.push(dof);
                 }
             }
         }
+        free.shrink_to_fit();
+        let prescribed = prescribed.into_iter().map(Option::unwrap_or_default).collect();
         Ok(DofMap { prescribed, number, free })
     }
 
@@ -44,13 +51,15 @@ impl DofMap {
     }
 
     /// The number of nodal dof `dof` among the free ones; `None` where it is supported.
+    #[inline]
     pub fn number(&self, dof: usize) -> Option<usize> {
-        self.number.get(dof).copied().flatten()
+        self.number.get(dof).copied().filter(|&number| number != SUPPORTED)
     }
 
     /// The displacement of nodal dof `dof` where it is supported.
     pub fn prescribed(&self, dof: usize) -> Option<f64> {
-        self.prescribed.get(dof).copied().flatten()
+        let supported = self.number.get(dof) == Some(&SUPPORTED);
+        self.prescribed.get(dof).copied().filter(|_| supported)
     }
 
     /// Nodal displacements from those of the free dofs; supported dofs take their prescribed values.
@@ -74,7 +83,7 @@ impl DofMap {
             let (found, expected) = (free.len(), self.free.len());
             return Err(Error::Length { name: "displacement", found, expected, of: "free dofs" });
         }
-        let value = |(dof, number): (usize, &Option<usize>)| number.map_or_else(|| supported(dof), |i| free[i]);
+        let value = |(dof, &number): (usize, &usize)| if number == SUPPORTED { supported(dof) } else { free[number] };
         Ok(self.number.iter().enumerate().map(value).collect())
     }
 

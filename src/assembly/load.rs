@@ -1,48 +1,63 @@
 //! Consistent nodal loads: f_a = integral of N_a times the force.
 
+use super::surface::for_each_point;
 use crate::body::ElasticBody;
-use crate::element::edge_integrals;
 use crate::mesh::Boundary;
 
-/// The nodes of a boundary in its order, each with its tributary area: the integral of its shape function along the
-/// boundary times the thickness. The areas add up to the area of the boundary.
-pub fn tributary_areas(body: &ElasticBody, boundary: &Boundary) -> Vec<(usize, f64)> {
-    let nodes = body.mesh().nodes();
-    let mut areas: Vec<(usize, f64)> = boundary.nodes().into_iter().map(|node| (node, 0.0)).collect();
-    let mut first = 0;
-    for &[start, end] in &boundary.edges {
-        let Some((at_start, at_end)) = nodes.get(start).zip(nodes.get(end)) else { continue };
-        // The nodes stand in the order of the edges: each edge is found from where the last one was.
-        let Some(place) = areas[first..].iter().position(|entry| entry.0 == start) else { continue };
-        first += place;
-        let shares = edge_integrals(*at_start, *at_end);
-        for (entry, share) in areas[first..].iter_mut().zip(shares) {
-            entry.1 += share * body.thickness();
-        }
-    }
-    areas
+/// Adds to the nodal load (length `dim * n_nodes`) a constant traction (x, y, z; force per area) on a boundary.
+pub fn add_traction(body: &ElasticBody, boundary: &Boundary, traction: [f64; 3], load: &mut [f64]) {
+    add_traction_field(body, boundary, |_, _| traction, load);
 }
 
-/// Adds to the nodal load (length `2 * n_nodes`) a constant traction (x, y; force per area) on a boundary.
-pub fn add_traction(body: &ElasticBody, boundary: &Boundary, traction: [f64; 2], load: &mut [f64]) {
-    for (node, area) in tributary_areas(body, boundary) {
-        for (axis, value) in traction.iter().enumerate() {
-            if let Some(entry) = load.get_mut(2 * node + axis) {
-                *entry += value * area;
-            }
-        }
-    }
+/// Adds to the nodal load (length `dim * n_nodes`) a pressure (force per area) on a boundary: positive pushes against the
+/// outward normal.
+pub fn add_pressure(body: &ElasticBody, boundary: &Boundary, pressure: f64, load: &mut [f64]) {
+    add_traction_field(body, boundary, |_, normal| normal.map(|component| -pressure * component), load);
 }
 
-/// Adds to the nodal load (length `2 * n_nodes`) a constant body force (x, y; force per volume).
-pub fn add_body_force(body: &ElasticBody, force: [f64; 2], load: &mut [f64]) {
+/// Adds to the nodal load (length `dim * n_nodes`) the traction `field(point, outward unit normal)` (force per area) on a
+/// boundary, by the quadrature of its facets.
+pub fn add_traction_field(
+    body: &ElasticBody,
+    boundary: &Boundary,
+    field: impl Fn([f64; 3], [f64; 3]) -> [f64; 3],
+    load: &mut [f64],
+) {
+    for_each_point(body, boundary, &mut |point| {
+        let traction = field(point.at, point.normal);
+        for (&node, share) in point.nodes.iter().zip(point.shape) {
+            add_at(body, node, traction, share * point.area, load);
+        }
+    });
+}
+
+/// Adds to the nodal load (length `dim * n_nodes`) a constant body force (x, y, z; force per volume).
+pub fn add_body_force(body: &ElasticBody, force: [f64; 3], load: &mut [f64]) {
+    add_body_force_field(body, |_| force, load);
+}
+
+/// Adds to the nodal load (length `dim * n_nodes`) the body force `field(point)` (force per volume), by the quadrature of
+/// the stiffness.
+pub fn add_body_force_field(body: &ElasticBody, field: impl Fn([f64; 3]) -> [f64; 3], load: &mut [f64]) {
+    let table = body.tabulated();
     for (nodes, cell) in body.cells() {
-        for (&node, integral) in nodes.iter().zip(cell.shape_integrals()) {
-            for (axis, value) in force.iter().enumerate() {
-                if let Some(entry) = load.get_mut(2 * node + axis) {
-                    *entry += value * integral * body.thickness();
-                }
+        let scale = cell.unit().powi(body.dimension() as i32);
+        for at in &table.points {
+            let volume = body.point(&cell, at).weight * scale;
+            let force = field(cell.place(&at.shape));
+            for (&node, share) in nodes.iter().zip(at.shape) {
+                add_at(body, node, force, share * volume, load);
             }
+        }
+    }
+}
+
+/// Adds `force` times `factor` at a node; axes beyond the dimension of the body are left out.
+fn add_at(body: &ElasticBody, node: usize, force: [f64; 3], factor: f64, load: &mut [f64]) {
+    let dimension = body.dimension();
+    for (axis, component) in force.iter().enumerate().take(dimension) {
+        if let Some(entry) = load.get_mut(dimension * node + axis) {
+            *entry += component * factor;
         }
     }
 }

@@ -1,12 +1,20 @@
 //! Assembly in the free dofs: stiffness, loads, internal forces.
 //!
-//! Nodal vectors have length `2 * n_nodes` and the order `[x_0, y_0, x_1, y_1, ...]`; vectors of the problem have one
-//! entry per free dof, in the same order with the supported dofs left out.
+//! Nodal vectors have length `dim * n_nodes` and the order `[x_0, y_0, x_1, y_1, ...]` (in space `[x_0, y_0, z_0, ...]`, in
+//! a bar `[x_0, x_1, ...]`); vectors of the problem have one entry per free dof, in the same order with the supported
+//! dofs left out.
 
 mod dofs;
+mod element_stiffness;
+mod internal_force;
 mod load;
+mod pattern;
 mod stiffness;
+mod surface;
 
 pub use dofs::DofMap;
-pub use load::{add_body_force, add_traction, tributary_areas};
-pub use stiffness::{internal_force, stiffness};
+pub use element_stiffness::{ElementStiffness, element_stiffness};
+pub use internal_force::internal_force;
+pub use load::{add_body_force, add_body_force_field, add_pressure, add_traction, add_traction_field};
+pub use stiffness::stiffness;
+pub use surface::tributary_areas;

@@ -1,163 +1,163 @@
-//! One element in place: x = sum N_a x_a, K = t sum_q B'D B det(J) w, eps = B u.
+//! One cell in place: x = sum N_a x_a, the Jacobian J = dx/dxi, gradients dN/dx, area vectors.
 
-use nalgebra::{Matrix2, Matrix3, Matrix3x2, SMatrix, Vector2, Vector3};
+use super::{MAX_NODES, PerNode, ReferenceElement, Tabulated};
 
-use super::{MAX_NODES, PerNode, ReferenceElement};
-
-/// The stiffness of one element, order `[x_0, y_0, x_1, y_1, ...]`; rows and columns beyond its nodes are zero.
-pub type ElementMatrix = SMatrix<f64, { 2 * MAX_NODES }, { 2 * MAX_NODES }>;
-
-/// The Jacobian of an element that is turned inside out or has no area.
+/// The Jacobian of an element that is turned inside out or has no volume.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("the Jacobian determinant is {value:e} at its local node or quadrature point {point}; it must be positive")]
 pub struct NonPositiveJacobian {
-    /// The smallest determinant, relative to the square of the element's size.
+    /// The smallest determinant, relative to the element's size to the power of its dimension.
     pub value: f64,
     /// Where: local nodes first, then quadrature points, from 0.
     pub point: usize,
 }
 
-/// Determinants below this, relative to the square of the element's size, are rounding: the element has no area.
-const NO_AREA: f64 = 1e-14;
+/// Determinants below this, relative to the element's size to the power of its dimension, are rounding: the element has
+/// no volume.
+const NO_VOLUME: f64 = 1e-14;
 
-/// An element with its coordinates.
+/// A reference cell with the coordinates of its nodes.
 ///
-/// The coordinates are kept relative to the first node and in a unit that is the power of two next to the element's
-/// size: the stiffness of a plane element does not depend on its size, and no size overflows on the way to it.
-#[derive(Clone, Debug)]
+/// The coordinates are kept relative to the first node and in a unit that is the power of two next to the cell's size: a
+/// change of the unit of length by a power of two changes no bit of what follows, and no size overflows on the way to it.
+#[derive(Clone, Copy, Debug)]
 pub struct Cell {
     reference: &'static ReferenceElement,
-    coordinates: PerNode<[f64; 2]>,
+    coordinates: PerNode<[f64; 3]>,
+    origin: [f64; 3],
     unit: f64,
 }
 
-/// The map from the reference cell at one point: shape function gradients and determinant, in the unit of the cell.
-struct Mapping {
-    gradients: PerNode<[f64; 2]>,
-    determinant: f64,
+/// The map from the reference cell at one point, in the unit of the cell.
+#[derive(Clone, Copy, Debug)]
+pub struct Mapping {
+    /// Gradients of the shape functions, per unit.
+    pub gradients: PerNode<[f64; 3]>,
+    /// Determinant of the Jacobian.
+    pub determinant: f64,
 }
 
 impl Cell {
-    /// The element of kind `reference` at `coordinates` (x, y of its nodes, counterclockwise).
-    pub fn new(reference: &'static ReferenceElement, coordinates: PerNode<[f64; 2]>) -> Self {
-        let nodes = reference.nodes.len();
-        let mut relative = [[0.0; 2]; MAX_NODES];
+    /// The cell `reference` at `coordinates` (x, y, z of its nodes, in its order).
+    #[inline]
+    pub fn new(reference: &'static ReferenceElement, coordinates: &PerNode<[f64; 3]>) -> Self {
+        let origin = coordinates[0];
+        let mut relative = [[0.0; 3]; MAX_NODES];
         let mut size: f64 = 0.0;
-        for (node, at) in relative.iter_mut().enumerate().take(nodes) {
-            *at = [0, 1].map(|axis| coordinates[node][axis] - coordinates[0][axis]);
-            size = size.max(at[0].abs()).max(at[1].abs());
+        for (at, node) in relative.iter_mut().zip(coordinates).take(reference.nodes.len()) {
+            *at = [node[0] - origin[0], node[1] - origin[1], node[2] - origin[2]];
+            size = size.max(at[0].abs()).max(at[1].abs()).max(at[2].abs());
         }
         // The exponent bits alone are the power of two at or below the size.
         let power = f64::from_bits(size.to_bits() & (0x7ff << 52));
         let unit = if power.is_normal() { power } else { 1.0 };
-        Cell { reference, coordinates: relative.map(|at| at.map(|value| value / unit)), unit }
+        for at in relative.iter_mut().take(reference.nodes.len()) {
+            *at = at.map(|value| value / unit);
+        }
+        Cell { reference, coordinates: relative, origin, unit }
     }
 
-    /// Checks that the determinant of the Jacobian is positive at the nodes and the quadrature points.
+    /// The unit of the cell: a power of two, in the unit of length of the coordinates.
+    pub fn unit(&self) -> f64 {
+        self.unit
+    }
+
+    /// The point with the given shape function values, in the unit of length of the coordinates.
+    #[inline]
+    pub fn place(&self, shape: &PerNode<f64>) -> [f64; 3] {
+        let mut at = [0.0; 3];
+        for (value, node) in shape.iter().zip(&self.coordinates).take(self.reference.nodes.len()) {
+            for axis in 0..3 {
+                at[axis] += value * node[axis];
+            }
+        }
+        [0, 1, 2].map(|axis| self.origin[axis] + self.unit * at[axis])
+    }
+
+    /// Checks that the determinant of the Jacobian is positive at the nodes and the quadrature points of `table`.
     ///
     /// # Errors
     /// [`NonPositiveJacobian`] with the worst place.
-    pub fn check(&self) -> Result<(), NonPositiveJacobian> {
-        let at_nodes = self.reference.nodes.iter().copied();
-        let points = at_nodes.chain(self.reference.quadrature.iter().map(|point| point.at));
-        let worst = points
-            .map(|at| self.map(at).determinant)
-            .enumerate()
-            .map(|(point, value)| NonPositiveJacobian { value, point })
-            .min_by(|a, b| a.value.total_cmp(&b.value));
-        match worst {
+    pub fn check(&self, table: &Tabulated) -> Result<(), NonPositiveJacobian> {
+        let mut worst = NonPositiveJacobian { value: f64::INFINITY, point: 0 };
+        for (point, tabulated) in table.nodes.iter().chain(&table.points).enumerate() {
+            let value = determinant(&self.jacobian(&tabulated.derivative), self.reference.dimension);
             // A determinant that is not a number is not positive either.
-            Some(worst) if worst.value.is_nan() || worst.value <= NO_AREA => Err(worst),
-            _ => Ok(()),
+            if value.is_nan() || value < worst.value {
+                worst = NonPositiveJacobian { value, point };
+            }
+            if value.is_nan() {
+                break;
+            }
         }
+        if worst.value > NO_VOLUME { Ok(()) } else { Err(worst) }
     }
 
-    /// The stiffness `t sum_q B'D B det(J) w` for the constitutive matrix D and the thickness t, in force per length.
-    pub fn stiffness(&self, constitutive: &Matrix3<f64>, thickness: f64) -> ElementMatrix {
-        let nodes = self.reference.nodes.len();
-        let mut stiffness = ElementMatrix::zeros();
-        for point in self.reference.quadrature {
-            let map = self.map(point.at);
-            let weight = map.determinant * point.weight * thickness;
-            for b in 0..nodes {
-                let stress = constitutive * strain_matrix(map.gradients[b]) * weight;
-                for a in b..nodes {
-                    let block = strain_matrix(map.gradients[a]).transpose() * stress;
-                    for (i, j) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-                        stiffness[(2 * a + i, 2 * b + j)] += block[(i, j)];
-                    }
+    /// J_ij = dx_j/dxi_i, in the unit of the cell.
+    #[inline]
+    fn jacobian(&self, derivative: &PerNode<[f64; 3]>) -> [[f64; 3]; 3] {
+        let mut jacobian = [[0.0; 3]; 3];
+        for (slope, x) in derivative.iter().zip(&self.coordinates).take(self.reference.nodes.len()) {
+            for i in 0..3 {
+                for j in 0..3 {
+                    jacobian[i][j] += slope[i] * x[j];
                 }
             }
         }
-        // One triangle was summed; the other is its mirror, to the last bit.
-        stiffness.fill_upper_triangle_with_lower_triangle();
-        stiffness
+        jacobian
     }
 
-    /// The strain `(eps_xx, eps_yy, gamma_xy)` at a reference point, from the displacement of the nodes.
-    pub fn strain(&self, at: [f64; 2], displacement: &PerNode<[f64; 2]>) -> Vector3<f64> {
-        let map = self.map(at);
-        let mut strain = Vector3::zeros();
-        for node in 1..self.reference.nodes.len() {
-            // Relative to the first node: a translation strains nothing, to the last bit.
-            let relative = [0, 1].map(|axis| displacement[node][axis] - displacement[0][axis]);
-            strain += strain_matrix(map.gradients[node]) * Vector2::from(relative);
+    /// Gradients and determinant at the point with the given shape function derivatives; the cell fills its space.
+    #[inline]
+    pub fn map(&self, derivative: &PerNode<[f64; 3]>) -> Mapping {
+        let dimension = self.reference.dimension;
+        let mut j = self.jacobian(derivative);
+        // The unused directions map onto themselves.
+        for (axis, row) in j.iter_mut().enumerate().skip(dimension) {
+            row[axis] = 1.0;
         }
-        strain / self.unit
-    }
-
-    /// The nodal forces `t sum_q B' stress det(J) w` that the stress in the element asks for; the stress is
-    /// `(sigma_xx, sigma_yy, sigma_xy)` at each quadrature point.
-    pub fn internal_force(&self, stress: impl Fn([f64; 2]) -> Vector3<f64>, thickness: f64) -> PerNode<[f64; 2]> {
-        let mut force = [[0.0; 2]; MAX_NODES];
-        for point in self.reference.quadrature {
-            let map = self.map(point.at);
-            let weighted = stress(point.at) * (map.determinant * point.weight * thickness * self.unit);
-            for (gradient, of_node) in map.gradients.iter().zip(&mut force).take(self.reference.nodes.len()) {
-                let share = strain_matrix(*gradient).transpose() * weighted;
-                of_node[0] += share.x;
-                of_node[1] += share.y;
+        let determinant = determinant(&j, 3);
+        // Columns of J^-1 times the determinant: cross products of the rows of J.
+        let cofactors = [cross(j[1], j[2]), cross(j[2], j[0]), cross(j[0], j[1])];
+        let mut gradients = [[0.0; 3]; MAX_NODES];
+        for (gradient, slope) in gradients.iter_mut().zip(derivative).take(self.reference.nodes.len()) {
+            for axis in 0..dimension {
+                let sum = cofactors[0][axis] * slope[0] + cofactors[1][axis] * slope[1] + cofactors[2][axis] * slope[2];
+                gradient[axis] = sum / determinant;
             }
         }
-        force
-    }
-
-    /// The integral of each shape function over the element, in area.
-    pub fn shape_integrals(&self) -> PerNode<f64> {
-        let mut integrals = [0.0; MAX_NODES];
-        for point in self.reference.quadrature {
-            let weight = self.map(point.at).determinant * point.weight * self.unit * self.unit;
-            let shape = (self.reference.shape)(point.at);
-            for (integral, value) in integrals.iter_mut().zip(shape) {
-                *integral += weight * value;
-            }
-        }
-        integrals
-    }
-
-    fn map(&self, at: [f64; 2]) -> Mapping {
-        let derivative = (self.reference.derivative)(at);
-        let mut jacobian = Matrix2::zeros();
-        for (slope, x) in derivative.iter().zip(&self.coordinates) {
-            jacobian += Vector2::from(*slope) * Vector2::from(*x).transpose();
-        }
-        let determinant = jacobian[(0, 0)] * jacobian[(1, 1)] - jacobian[(0, 1)] * jacobian[(1, 0)];
-        let gradients = derivative.map(|[xi, eta]| {
-            let x = jacobian[(1, 1)] * xi - jacobian[(0, 1)] * eta;
-            let y = jacobian[(0, 0)] * eta - jacobian[(1, 0)] * xi;
-            [x / determinant, y / determinant]
-        });
         Mapping { gradients, determinant }
     }
+
+    /// The area vector of a facet at the point with the given shape function derivatives: normal to the facet, its
+    /// length is the ratio of area in place (in powers of the unit of the cell) to area on the reference cell.
+    ///
+    /// To the right of an edge that runs along its nodes; towards the side from which a face's nodes are
+    /// counterclockwise; along x for a point.
+    pub fn area_vector(&self, derivative: &PerNode<[f64; 3]>) -> [f64; 3] {
+        let tangents = self.jacobian(derivative);
+        match self.reference.dimension {
+            0 => [1.0, 0.0, 0.0],
+            1 => [tangents[0][1], -tangents[0][0], 0.0],
+            _ => cross(tangents[0], tangents[1]),
+        }
+    }
 }
 
-/// The columns of B that belong to one node: (eps_xx, eps_yy, gamma_xy) from (u_x, u_y).
-fn strain_matrix([x, y]: [f64; 2]) -> Matrix3x2<f64> {
-    Matrix3x2::new(x, 0.0, 0.0, y, y, x)
+#[inline]
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// The integral of each shape function along a straight edge of two nodes, in length: one half of it each.
-pub fn edge_integrals(start: [f64; 2], end: [f64; 2]) -> [f64; 2] {
-    let length = (end[0] - start[0]).hypot(end[1] - start[1]);
-    [length / 2.0; 2]
+/// Determinant of the leading `dimension` rows and columns.
+#[inline]
+fn determinant(j: &[[f64; 3]; 3], dimension: usize) -> f64 {
+    match dimension {
+        1 => j[0][0],
+        2 => j[0][0] * j[1][1] - j[0][1] * j[1][0],
+        _ => {
+            let minor = cross(j[1], j[2]);
+            j[0][0] * minor[0] + j[0][1] * minor[1] + j[0][2] * minor[2]
+        }
+    }
 }

@@ -1,23 +1,34 @@
-//! T3, the linear triangle: N = (1 - xi - eta, xi, eta); strain and stress are constant.
+//! T3, the linear triangle: N = (1 - xi - eta, xi, eta); strain and stress are constant in the plane.
 
-use super::quadrature::TRIANGLE_1;
-use super::{PerNode, ReferenceElement};
+use super::quadrature::{TRIANGLE_1, TRIANGLE_3};
+use super::{MAX_NODES, PerNode, ReferenceElement, Shape};
 
 /// The linear triangle.
-pub static T3: ReferenceElement = ReferenceElement {
+///
+/// Revolved it takes three points: with one, a turn about the centroid would cost no energy.
+pub(super) static T3: ReferenceElement = ReferenceElement {
     name: "T3",
-    nodes: &[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]],
+    form: Shape::Simplex,
+    dimension: 2,
+    nodes: &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+    corners: 3,
+    faces: &[&[0, 1], &[1, 2], &[2, 0]],
+    along: &[0, 1, 2],
     shape,
     derivative,
     quadrature: &TRIANGLE_1,
-    centroid: [1.0 / 3.0, 1.0 / 3.0],
-    extrapolation: &[&[1.0], &[1.0], &[1.0]],
+    quadrature_revolved: &TRIANGLE_3,
+    centroid: [1.0 / 3.0, 1.0 / 3.0, 0.0],
 };
 
-fn shape([xi, eta]: [f64; 2]) -> PerNode<f64> {
-    [1.0 - xi - eta, xi, eta, 0.0]
+fn shape([xi, eta, _]: [f64; 3]) -> PerNode<f64> {
+    let mut values = [0.0; MAX_NODES];
+    values[..3].copy_from_slice(&[1.0 - xi - eta, xi, eta]);
+    values
 }
 
-fn derivative(_: [f64; 2]) -> PerNode<[f64; 2]> {
-    [[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0], [0.0, 0.0]]
+fn derivative(_: [f64; 3]) -> PerNode<[f64; 3]> {
+    let mut slopes = [[0.0; 3]; MAX_NODES];
+    slopes[..3].copy_from_slice(&[[-1.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+    slopes
 }

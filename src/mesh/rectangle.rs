@@ -1,166 +1,86 @@
 //! The structured rectangle: the product of two graded axes.
 
-use super::{Boundary, ElementKind, Mesh};
+use super::{Boundary, ElementKind, Mesh, check_lines, fail};
 use crate::error::Error;
 
-/// More nodes than this are refused before anything is allocated: ten million dofs are far beyond what a direct
-/// factorisation of a plane problem holds in memory.
-pub const MAX_NODES: usize = 5_000_000;
+/// No node stands here: the middle of a Q8 cell.
+const NO_NODE: usize = usize::MAX;
 
-/// One axis of a structured mesh: intervals between breakpoints, each divided into cells of constant growth.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Axis {
-    /// Breakpoints, at least two, increasing, in the unit of length.
-    pub points: Vec<f64>,
-    /// Cells of each interval, at least one; one entry fewer than `points`.
-    pub divisions: Vec<usize>,
-    /// Last cell size over first cell size of each interval, positive; empty for cells of equal size.
-    pub ratios: Vec<f64>,
-}
-
-/// An axis that describes no mesh: the field at fault, as `divisions[0]`, and what is wrong with it.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{field}: {message}")]
-pub struct AxisError {
-    /// The field, with its index where it has one.
-    pub field: String,
-    /// What is wrong, and what is allowed.
-    pub message: String,
-}
-
-impl Axis {
-    /// The coordinates of the mesh lines, strictly increasing; breakpoints are met exactly.
-    ///
-    /// # Errors
-    /// [`AxisError`] for fewer than two points, points that do not increase, lengths that do not fit, zero
-    /// divisions, a ratio that is not positive, more than [`MAX_NODES`] lines, cells so small that two lines fall
-    /// together.
-    pub fn coordinates(&self) -> Result<Vec<f64>, AxisError> {
-        let lines = self.check()?;
-        let mut coordinates = Vec::with_capacity(lines);
-        for (interval, ends) in self.points.windows(2).enumerate() {
-            let (cells, length) = (self.divisions[interval], ends[1] - ends[0]);
-            let ratio = self.ratios.get(interval).copied().unwrap_or(1.0);
-            for cell in 0..cells {
-                let at = ends[0] + length * graded_fraction(cell, cells, ratio);
-                if coordinates.last().is_some_and(|&last| at <= last) {
-                    return Err(collapsed(interval));
-                }
-                coordinates.push(at);
-            }
-            if coordinates.last().is_some_and(|&last| ends[1] <= last) {
-                return Err(collapsed(interval));
-            }
-        }
-        coordinates.extend(self.points.last());
-        Ok(coordinates)
-    }
-
-    /// Checks the fields and counts the mesh lines.
-    fn check(&self) -> Result<usize, AxisError> {
-        let fail = |field: String, message: String| Err(AxisError { field, message });
-        let points = &self.points;
-        if points.len() < 2 {
-            let message = format!("an axis needs at least two points, but there are {}", points.len());
-            return fail("points".into(), message);
-        }
-        for (index, &point) in points.iter().enumerate() {
-            if !point.is_finite() {
-                return fail(format!("points[{index}]"), format!("{point} is not finite"));
-            }
-            if index > 0 && point <= points[index - 1] {
-                let message = format!("{point:?} does not lie beyond {:?}; points must increase", points[index - 1]);
-                return fail(format!("points[{index}]"), message);
-            }
-        }
-        if !(points[points.len() - 1] - points[0]).is_finite() {
-            return fail("points".into(), "the length of the axis is not finite".into());
-        }
-        let intervals = points.len() - 1;
-        if self.divisions.len() != intervals {
-            let found = self.divisions.len();
-            return fail("divisions".into(), format!("length {found}, but the points make {intervals} intervals"));
-        }
-        if !self.ratios.is_empty() && self.ratios.len() != intervals {
-            let found = self.ratios.len();
-            return fail("ratios".into(), format!("length {found}, but the points make {intervals} intervals"));
-        }
-        if let Some(index) = self.ratios.iter().position(|ratio| !(ratio.is_finite() && *ratio > 0.0)) {
-            let message =
-                format!("{:?} is not allowed: it must be positive (last cell size over first)", self.ratios[index]);
-            return fail(format!("ratios[{index}]"), message);
-        }
-        let mut lines: usize = 1;
-        for (index, &cells) in self.divisions.iter().enumerate() {
-            if cells == 0 {
-                return fail(format!("divisions[{index}]"), "0 cells; an interval needs at least 1".into());
-            }
-            lines = lines.saturating_add(cells);
-            if lines > MAX_NODES {
-                let message = format!("{cells} cells make more than the {MAX_NODES} nodes that are allowed");
-                return fail(format!("divisions[{index}]"), message);
-            }
-        }
-        Ok(lines)
-    }
-}
-
-fn collapsed(interval: usize) -> AxisError {
-    let message = "its cells are so small that two mesh lines fall together in double precision; \
-                   take fewer divisions or a ratio nearer to 1";
-    AxisError { field: format!("divisions[{interval}]"), message: message.into() }
-}
-
-/// Where line `cell` of `cells` lies, as a fraction of the interval: cell sizes grow by the constant factor
-/// q = ratio^(1/(cells-1)), so that the fraction is (q^cell - 1)/(q^cells - 1).
-fn graded_fraction(cell: usize, cells: usize, ratio: f64) -> f64 {
-    if ratio == 1.0 || cells == 1 {
-        return cell as f64 / cells as f64;
-    }
-    let growth = ratio.ln() / (cells - 1) as f64;
-    (growth * cell as f64).exp_m1() / (growth * cells as f64).exp_m1()
-}
-
-/// The mesh of the lines `x` and `y` (coordinates, strictly increasing, at least two each).
+/// The mesh of the lines `x` and `y` (coordinates, strictly increasing, at least two each), of T3, T6, Q4 or Q8.
 ///
-/// Nodes are numbered along x first. Triangles come from cutting each cell from its lower left to its upper right
-/// corner. The boundaries are `left`, `right`, `bottom` and `top`, their edges in the direction of growing coordinates.
+/// Nodes are numbered along x first; those of quadratic elements stand at mid-sides. Triangles come from cutting each
+/// cell from its lower left to its upper right corner. The boundaries are `left`, `right`, `bottom` and `top`, their
+/// edges in the direction of growing coordinates.
 ///
 /// # Errors
-/// [`Error::Mesh`] for fewer than two lines, lines that do not increase, or more than [`MAX_NODES`] nodes.
+/// [`Error::Mesh`] for an element that is not plane, fewer than two lines, lines that do not increase, or more than
+/// [`MAX_NODES`](super::MAX_NODES) nodes.
 pub fn rectangle(x: &[f64], y: &[f64], kind: ElementKind) -> Result<Mesh, Error> {
-    for (name, lines) in [("x", x), ("y", y)] {
-        if lines.len() < 2
-            || lines.windows(2).any(|pair| pair[1].partial_cmp(&pair[0]) != Some(std::cmp::Ordering::Greater))
-        {
-            return Err(Error::Mesh { message: format!("the {name} lines must be at least two, and increase") });
-        }
+    if kind.dimension() != 2 {
+        return fail(format!("a rectangle is no mesh of {}", kind.name()));
     }
+    let step = if kind.is_quadratic() { 2 } else { 1 };
+    check_lines(&[("x", x), ("y", y)], step)?;
     let (columns, rows) = (x.len() - 1, y.len() - 1);
-    if x.len().checked_mul(y.len()).is_none_or(|nodes| nodes > MAX_NODES) {
-        let message = format!("{columns} x {rows} cells make more than the {MAX_NODES} nodes that are allowed");
-        return Err(Error::Mesh { message });
-    }
-    let nodes = y.iter().flat_map(|&y| x.iter().map(move |&x| [x, y])).collect();
-    let node = |i: usize, j: usize| j * x.len() + i;
-    let mut connectivity = Vec::with_capacity(columns * rows * 6);
-    for j in 0..rows {
-        for i in 0..columns {
-            let corners = [node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)];
-            match kind {
-                ElementKind::Q4 => connectivity.extend(corners),
-                ElementKind::T3 => connectivity.extend([0, 1, 2, 0, 2, 3].map(|corner| corners[corner])),
+    let (fine_x, fine_y) = (with_midpoints(x, step), with_midpoints(y, step));
+    // The grid of lines and mid-lines; the middles of Q8 cells are left out.
+    let mut number = vec![NO_NODE; fine_x.len() * fine_y.len()];
+    let mut nodes = Vec::with_capacity(number.len());
+    for (j, &y) in fine_y.iter().enumerate() {
+        for (i, &x) in fine_x.iter().enumerate() {
+            if kind != ElementKind::Q8 || i % 2 == 0 || j % 2 == 0 {
+                number[j * fine_x.len() + i] = nodes.len();
+                nodes.push([x, y, 0.0]);
             }
         }
     }
-    let along_x = |name: &str, j| Boundary {
-        name: name.into(),
-        edges: (0..columns).map(|i| [node(i, j), node(i + 1, j)]).collect(),
+    let node = |i: usize, j: usize| number[j * fine_x.len() + i];
+    // A simplex or quadrilateral of grid points, its mid-sides between them.
+    let element = |corners: &[[usize; 2]], connectivity: &mut Vec<usize>| {
+        connectivity.extend(corners.iter().map(|&[i, j]| node(i, j)));
+        if step == 2 {
+            let next = corners.iter().cycle().skip(1);
+            connectivity.extend(corners.iter().zip(next).map(|(a, b)| node((a[0] + b[0]) / 2, (a[1] + b[1]) / 2)));
+        }
     };
-    let along_y = |name: &str, i| Boundary {
-        name: name.into(),
-        edges: (0..rows).map(|j| [node(i, j), node(i, j + 1)]).collect(),
+    let mut connectivity = Vec::with_capacity(columns * rows * kind.nodes() * 2);
+    for j in (0..rows).map(|j| j * step) {
+        for i in (0..columns).map(|i| i * step) {
+            let (right, top) = (i + step, j + step);
+            if kind.corners() == 4 {
+                element(&[[i, j], [right, j], [right, top], [i, top]], &mut connectivity);
+            } else {
+                element(&[[i, j], [right, j], [right, top]], &mut connectivity);
+                element(&[[i, j], [right, top], [i, top]], &mut connectivity);
+            }
+        }
+    }
+    connectivity.shrink_to_fit();
+    let side = |name: &str, cells: usize, at: &dyn Fn(usize) -> usize| {
+        // Ends first, then the mid-side.
+        let edge = |cell: usize| [at(step * cell), at(step * (cell + 1)), at(step * cell + 1)];
+        let connectivity = (0..cells).flat_map(|cell| edge(cell).into_iter().take(step + 1)).collect();
+        Boundary::new(name, kind.facet(), connectivity)
     };
-    let boundaries = vec![along_y("left", 0), along_y("right", columns), along_x("bottom", 0), along_x("top", rows)];
+    let (last_x, last_y) = (fine_x.len() - 1, fine_y.len() - 1);
+    let boundaries = vec![
+        side("left", rows, &|j| node(0, j)),
+        side("right", rows, &|j| node(last_x, j)),
+        side("bottom", columns, &|i| node(i, 0)),
+        side("top", columns, &|i| node(i, last_y)),
+    ];
     Mesh::new(nodes, kind, connectivity, boundaries)
+}
+
+/// The lines, and half way between each two of them where `step` is 2.
+fn with_midpoints(lines: &[f64], step: usize) -> Vec<f64> {
+    let mut fine = Vec::with_capacity(lines.len() * step);
+    for (index, &line) in lines.iter().enumerate() {
+        if step == 2 && index > 0 {
+            let before = lines[index - 1];
+            fine.push(before + (line - before) / 2.0);
+        }
+        fine.push(line);
+    }
+    fine
 }

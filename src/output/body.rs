@@ -10,7 +10,7 @@ use super::{
     ticks::{Quantity, Scale, brief, common_exponent},
     typeface,
 };
-use crate::Error;
+use crate::error::Error;
 
 pub use super::obstacle::ObstacleLine;
 

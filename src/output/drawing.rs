@@ -10,7 +10,7 @@ use super::{
     paint::{hex, hundredths, number},
     typeface,
 };
-use crate::Error;
+use crate::error::Error;
 
 /// Largest number of pixels of a PNG: 400 MB of memory while it is drawn.
 const MOST_PIXELS: f64 = 1e8;

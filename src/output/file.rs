@@ -6,7 +6,7 @@ use std::{
 };
 
 use super::Drawing;
-use crate::Error;
+use crate::error::Error;
 
 /// Writes `contents` to `path` as a whole or not at all, and makes its folder where that is missing.
 ///

@@ -3,11 +3,12 @@
 use std::path::Path;
 
 use super::{
-    Array, ContactPicture, ObstacleLine, Plot, Quantity, Series, Unstructured, common_limits, common_window,
+    Array, CellType, ContactPicture, ObstacleLine, Plot, Quantity, Series, Unstructured, common_limits, common_window,
     line_plots, ticks::brief, write_atomically, write_files, write_picture,
 };
 use crate::error::Error;
 use crate::matrix_market::solution_files;
+use crate::mesh::ElementKind;
 use crate::recovery::Stress;
 use crate::scene::Model;
 use crate::solution::{ContactSet, Solution};
@@ -32,13 +33,16 @@ pub fn write_answer(folder: &Path, solution: &Solution) -> Result<(), Error> {
 }
 
 /// Writes the answer, its fields (`solution.vtu`), its picture (`contact`) and one picture for each iteration
-/// (`iteration-1`, ...), as long as these are no more than twelve.
+/// (`iteration-1`, ...), as long as these are no more than twelve. A bar and a body in space have no pictures.
 ///
 /// # Errors
 /// [`Error::File`], and those of the recovery of stresses.
 pub fn write_solve(folder: &Path, model: &Model, solution: &Solution) -> Result<(), Error> {
     write_answer(folder, solution)?;
     write_atomically(&folder.join("solution.vtu"), fields(model, solution)?.as_bytes())?;
+    if !is_plane(model) {
+        return Ok(());
+    }
     let answer = Scene::new(
         model,
         &solution.displacement,
@@ -47,6 +51,11 @@ pub fn write_solve(folder: &Path, model: &Model, solution: &Solution) -> Result<
     )?;
     draw_series(folder, &[("contact".to_string(), answer)])?;
     write_iterations(folder, model, solution)
+}
+
+/// Has the model a picture in the plane?
+fn is_plane(model: &Model) -> bool {
+    model.mesh().dimension() == 2
 }
 
 /// One picture for each set of the history, the displacement being that with the rows of the set held at their gaps.
@@ -77,6 +86,9 @@ pub fn write_compare(folder: &Path, model: &Model, comparison: &Comparison) -> R
     let mut drawn = qp.solution.clone();
     drawn.history.clone_from(&active_set.solution.history);
     write_solve(folder, model, &drawn)?;
+    if !is_plane(model) {
+        return Ok(());
+    }
     let mut plots = Vec::new();
     for obstacle in 0..model.obstacles().len() {
         let mut series = Vec::new();
@@ -103,14 +115,14 @@ pub fn write_compare(folder: &Path, model: &Model, comparison: &Comparison) -> R
     Ok(())
 }
 
-/// Writes one picture for each gap (`gap-01`, ...), with common colours and scale, and force and contact width over the
-/// gap (`force-width`).
+/// Writes one picture for each gap (`gap-01`, ...), with common colours and scale, and force and contact width (outside
+/// the plane, area) over the gap (`force-width`).
 ///
 /// # Errors
 /// As [`write_solve`].
 pub fn write_sweep(folder: &Path, points: &[SweepPoint]) -> Result<(), Error> {
     let mut series = Vec::new();
-    for (index, point) in points.iter().enumerate() {
+    for (index, point) in points.iter().enumerate().filter(|(_, point)| is_plane(&point.model)) {
         let (model, solution) = (&point.model, &point.solution);
         let title = format!("{}, {}", headline(model, ""), closed_nodes(&solution.contact_set));
         let picture = Scene::new(model, &solution.displacement, &solution.contact_set, title)?;
@@ -123,10 +135,13 @@ pub fn write_sweep(folder: &Path, points: &[SweepPoint]) -> Result<(), Error> {
         let line = points.iter().map(|point| [point.gap, value(point)]).collect();
         Plot::new(Quantity::new("gap g", &units.length), Quantity::new(name, unit), vec![Series::new(name, line)])
     };
-    let plots = [
-        over_gap("contact force F", &units.force, &|point| point.summary.contact.force),
-        over_gap("contact width", &units.length, &|point| point.summary.contact.width.unwrap_or(0.0)),
-    ];
+    let extent = if first.summary.contact.width.is_some() {
+        over_gap("contact width", &units.length, &|point| point.summary.contact.width.unwrap_or(0.0))
+    } else {
+        let unit = format!("{}²", units.length);
+        over_gap("contact area", &unit, &|point| point.summary.contact.area.unwrap_or(0.0))
+    };
+    let plots = [over_gap("contact force F", &units.force, &|point| point.summary.contact.force), extent];
     write_picture(folder, "force-width", &line_plots(first.model.title(), &plots))?;
     Ok(())
 }
@@ -183,13 +198,17 @@ impl Scene {
             nodes
         };
         let closed_nodes: Vec<usize> = set.iter().map(|row| model.rows()[row].node).collect();
-        let outline = |i: usize| (model.obstacle_outline(i, OUTLINE_SEGMENTS), model.obstacles()[i].approach());
+        let outline = |i: usize| {
+            let [x, y, _] = model.obstacles()[i].approach();
+            (model.obstacle_outline(i, OUTLINE_SEGMENTS), [x, y])
+        };
+        let corners = model.mesh().kind().corners();
         Ok(Scene {
             title,
             length_unit: model.units().length.clone(),
             stress_unit: model.units().pressure(),
-            nodes: model.mesh().nodes().to_vec(),
-            elements: model.mesh().elements().map(<[usize]>::to_vec).collect(),
+            nodes: model.mesh().nodes().iter().map(|&[x, y, _]| [x, y]).collect(),
+            elements: model.mesh().elements().map(|nodes| nodes[..corners].to_vec()).collect(),
             displacement: model.nodal_displacement(displacement)?,
             field: model.stress(displacement)?.nodes.iter().map(|stress| stress.sigma_2).collect(),
             outlines: (0..model.obstacles().len()).map(outline).collect(),
@@ -239,7 +258,8 @@ fn draw_series(folder: &Path, series: &[(String, Scene)]) -> Result<(), Error> {
 fn fields(model: &Model, solution: &Solution) -> Result<String, Error> {
     let nodes = model.mesh().nodes();
     let elements: Vec<Vec<usize>> = model.mesh().elements().map(<[usize]>::to_vec).collect();
-    let displacement = model.nodal_displacement(&solution.displacement)?;
+    let cell_types = vec![cell_type(model.mesh().kind()); elements.len()];
+    let displacement = in_space(&model.nodal_displacement(&solution.displacement)?, model.mesh().dimension());
     let stress = model.stress(&solution.displacement)?;
     // A node between two obstacles shows the sum of its pressures and the smaller of its gaps.
     let (mut pressure, mut gap) = (vec![0.0; nodes.len()], vec![0.0; nodes.len()]);
@@ -251,16 +271,18 @@ fn fields(model: &Model, solution: &Solution) -> Result<String, Error> {
         pressure[row.node] += row_pressure[index];
         flag[row.node] = f64::from(solution.contact_set.contains(index)).max(flag[row.node]);
     }
-    let components: [fn(&Stress) -> f64; 3] = [|s| s.sigma_1, |s| s.sigma_2, |s| s.von_mises];
+    let components: [fn(&Stress) -> f64; 4] = [|s| s.sigma_1, |s| s.sigma_2, |s| s.von_mises, |s| s.sigma_3];
     let of = |stresses: &[Stress]| components.map(|component| stresses.iter().map(component).collect::<Vec<f64>>());
     let (at_nodes, in_elements) = (of(&stress.nodes), of(&stress.elements));
     Unstructured {
         nodes,
         elements: &elements,
+        cell_types: &cell_types,
         point_data: &[
             Array::Vectors("u", &displacement),
             Array::Scalars("sigma_1", &at_nodes[0]),
             Array::Scalars("sigma_2", &at_nodes[1]),
+            Array::Scalars("sigma_3", &at_nodes[3]),
             Array::Scalars("von_mises", &at_nodes[2]),
             Array::Scalars("gap", &gap),
             Array::Scalars("pressure", &pressure),
@@ -269,8 +291,26 @@ fn fields(model: &Model, solution: &Solution) -> Result<String, Error> {
         cell_data: &[
             Array::Scalars("sigma_1", &in_elements[0]),
             Array::Scalars("sigma_2", &in_elements[1]),
+            Array::Scalars("sigma_3", &in_elements[3]),
             Array::Scalars("von_mises", &in_elements[2]),
         ],
     }
     .to_vtu()
+}
+
+fn cell_type(kind: ElementKind) -> CellType {
+    match kind {
+        ElementKind::Line2 => CellType::Line,
+        ElementKind::T3 => CellType::Triangle,
+        ElementKind::T6 => CellType::QuadraticTriangle,
+        ElementKind::Q4 => CellType::Quadrilateral,
+        ElementKind::Q8 => CellType::QuadraticQuadrilateral,
+        ElementKind::Tet4 => CellType::Tetrahedron,
+        ElementKind::Hex8 => CellType::Hexahedron,
+    }
+}
+
+/// Nodal vectors of `dimension` components with three.
+fn in_space(nodal: &[f64], dimension: usize) -> Vec<f64> {
+    nodal.chunks(dimension).flat_map(|v| [0, 1, 2].map(|axis| v.get(axis).copied().unwrap_or(0.0))).collect()
 }

@@ -32,4 +32,4 @@ pub use report::{
     UnitNames, compare_json, compare_text, solve_json, solve_text, sweep_json, sweep_text, verify_json, verify_text,
 };
 pub use ticks::{Quantity, Scale};
-pub use vtu::{Array, Unstructured};
+pub use vtu::{Array, CellType, Unstructured};

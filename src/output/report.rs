@@ -39,9 +39,12 @@ pub fn solve_text(title: &str, summary: &Summary, units: &UnitNames) -> String {
         "contact",
         format!("{}, force {}", plural(contact.count, "closed row"), quantity(contact.force, &units.force)),
     );
-    if let (Some(pressure), Some(width)) = (contact.pressure_max, contact.width) {
-        let (pressure, width) = (quantity(pressure, &units.stress), quantity(width, &units.length));
-        line("", format!("peak pressure {pressure}, width {width}"));
+    if let (Some(pressure), Some(area)) = (contact.pressure_max, contact.area) {
+        let extent = match contact.width {
+            Some(width) => format!("width {}", quantity(width, &units.length)),
+            None => format!("area {}", quantity(area, &format!("{}²", units.length))),
+        };
+        line("", format!("peak pressure {}, {extent}", quantity(pressure, &units.stress)));
     }
     if let Some(balance) = contact.force_balance {
         line("", format!("loads, reactions and contact forces balance to {balance:.1e}"));
@@ -99,7 +102,7 @@ pub fn sweep_text(title: &str, points: &[SweepPoint], units: &UnitNames) -> Stri
             contact.count.to_string(),
             format!("{:.9e}", contact.force),
             format!("{:.6e}", contact.pressure_max.unwrap_or(0.0)),
-            format!("{:.6}", contact.width.unwrap_or(0.0)),
+            contact.width.map_or_else(|| "-".to_string(), |width| format!("{width:.6}")),
             conditions(certificate)[5].2.clone(),
             point.summary.status.replace('_', " "),
         ]

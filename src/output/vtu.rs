@@ -3,26 +3,62 @@
 use std::fmt::Write;
 
 use super::typeface::escape;
-use crate::Error;
+use crate::error::Error;
 
 /// Named values, one entry per point or per cell.
 #[derive(Clone, Copy, Debug)]
 pub enum Array<'a> {
     /// One number per entry.
     Scalars(&'a str, &'a [f64]),
-    /// A plane vector per entry, order `[x0, y0, x1, ...]`; written with a third component that is zero.
+    /// A vector per entry, order `[x0, y0, z0, x1, ...]`.
     Vectors(&'a str, &'a [f64]),
     /// A flag per entry, written as 0 or 1.
     Flags(&'a str, &'a [bool]),
 }
 
-/// A plane mesh with its data, as plain data.
+/// The cells of a `.vtu` file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CellType {
+    /// Two nodes.
+    Line,
+    /// Three nodes in order around it.
+    Triangle,
+    /// Three corners, then the mid-sides between them.
+    QuadraticTriangle,
+    /// Four nodes in order around it.
+    Quadrilateral,
+    /// Four corners, then the mid-sides between them.
+    QuadraticQuadrilateral,
+    /// Four nodes, the first three counterclockwise seen from the fourth.
+    Tetrahedron,
+    /// Eight nodes: a face, counterclockwise seen from the opposite one, and the opposite one.
+    Hexahedron,
+}
+
+impl CellType {
+    /// The number by which the format knows it, and how many nodes it has.
+    fn number_and_nodes(self) -> (u8, usize) {
+        match self {
+            CellType::Line => (3, 2),
+            CellType::Triangle => (5, 3),
+            CellType::QuadraticTriangle => (22, 6),
+            CellType::Quadrilateral => (9, 4),
+            CellType::QuadraticQuadrilateral => (23, 8),
+            CellType::Tetrahedron => (10, 4),
+            CellType::Hexahedron => (12, 8),
+        }
+    }
+}
+
+/// A mesh with its data, as plain data.
 #[derive(Clone, Copy, Debug)]
 pub struct Unstructured<'a> {
-    /// Coordinates of the nodes.
-    pub nodes: &'a [[f64; 2]],
-    /// The corner nodes of every triangle or quadrilateral in order around it, indices from 0.
+    /// Coordinates x, y, z of the nodes.
+    pub nodes: &'a [[f64; 3]],
+    /// The nodes of every cell in the order of its type, indices from 0.
     pub elements: &'a [Vec<usize>],
+    /// What each cell is; as many as there are elements.
+    pub cell_types: &'a [CellType],
     /// Values at the nodes.
     pub point_data: &'a [Array<'a>],
     /// Values in the elements.
@@ -34,8 +70,8 @@ impl Unstructured<'_> {
     ///
     /// # Errors
     /// [`Error::Length`] where an array does not fit the nodes or the elements, [`Error::NotFinite`] for a coordinate or value
-    /// that ASCII readers would stop at, [`Error::Setting`] for an element that is neither a triangle nor a
-    /// quadrilateral, or that names a node that does not exist.
+    /// that ASCII readers would stop at, [`Error::Setting`] for an element with a number of nodes that is not that of its
+    /// type, or that names a node that does not exist.
     pub fn to_vtu(&self) -> Result<String, Error> {
         let mut text = String::from(
             "<?xml version=\"1.0\"?>\n\
@@ -57,22 +93,24 @@ impl Unstructured<'_> {
     fn write_cells(&self, text: &mut String) -> Result<(), Error> {
         let (mut connectivity, mut offsets, mut types) = (String::new(), String::new(), String::new());
         let mut end = 0;
-        for element in self.elements {
-            let kind = match element.len() {
-                3 => 5,
-                4 => 9,
-                corners => {
-                    let name = "number of corners of an element in a .vtu file";
-                    return Err(Error::Setting { name, value: corners as f64, allowed: "3 or 4" });
-                }
-            };
+        if self.cell_types.len() != self.elements.len() {
+            let (found, expected) = (self.cell_types.len(), self.elements.len());
+            return Err(Error::Length { name: "the cell types of a .vtu file", found, expected, of: "elements" });
+        }
+        for (element, cell_type) in self.elements.iter().zip(self.cell_types) {
+            let (kind, nodes) = cell_type.number_and_nodes();
+            if element.len() != nodes {
+                let name = "number of nodes of an element in a .vtu file";
+                let value = element.len() as f64;
+                return Err(Error::Setting { name, value, allowed: "that of its cell type" });
+            }
             if let Some(&node) = element.iter().find(|&&node| node >= self.nodes.len()) {
                 let allowed = "smaller than the number of nodes (indices from 0)";
                 return Err(Error::Setting { name: "node index in a .vtu file", value: node as f64, allowed });
             }
             end += element.len();
-            let corners: Vec<String> = element.iter().map(usize::to_string).collect();
-            let _ = writeln!(connectivity, "{}", corners.join(" "));
+            let named: Vec<String> = element.iter().map(usize::to_string).collect();
+            let _ = writeln!(connectivity, "{}", named.join(" "));
             let _ = writeln!(offsets, "{end}");
             let _ = writeln!(types, "{kind}");
         }
@@ -92,7 +130,7 @@ fn write_data(text: &mut String, tag: &str, arrays: &[Array], expected: usize, o
     for array in arrays {
         let (found, expected) = match array {
             Array::Scalars(_, values) => (values.len(), expected),
-            Array::Vectors(_, values) => (values.len(), 2 * expected),
+            Array::Vectors(_, values) => (values.len(), 3 * expected),
             Array::Flags(_, values) => (values.len(), expected),
         };
         if found != expected {
@@ -119,11 +157,11 @@ fn write_data(text: &mut String, tag: &str, arrays: &[Array], expected: usize, o
 }
 
 fn vectors(text: &mut String, name: &str, values: &[f64]) -> Result<(), Error> {
-    let line = |(k, pair): (usize, &[f64])| {
-        let parts = pair.iter().map(|&value| finite(name, k, value)).collect::<Result<Vec<_>, _>>()?;
-        Ok(parts.join(" ") + " 0")
+    let line = |(k, vector): (usize, &[f64])| {
+        let parts = vector.iter().map(|&value| finite(name, k, value)).collect::<Result<Vec<_>, _>>()?;
+        Ok(parts.join(" "))
     };
-    let lines = values.chunks_exact(2).enumerate().map(line).collect::<Result<Vec<_>, Error>>()?;
+    let lines = values.chunks_exact(3).enumerate().map(line).collect::<Result<Vec<_>, Error>>()?;
     write_array(text, "Float64", name, 3, &lines);
     Ok(())
 }

@@ -33,7 +33,7 @@ impl Model {
     fn name_of(&self, direction: &[f64]) -> Option<String> {
         let parts = self.parts();
         let motion = parts.dofs.expand_motion(direction).ok()?;
-        RigidMotions::of(parts).name_of(parts.body.mesh().nodes(), &motion)
+        RigidMotions::of(&parts.body).name_of(parts.body.mesh().nodes(), &motion)
     }
 
     fn describe_rows(&self, rows: &[usize]) -> Option<String> {
@@ -58,9 +58,10 @@ impl Model {
             let row = &self.rows()[*row];
             format!("obstacles[{}] (gap {})", row.obstacle, number(row.gap))
         };
-        let at = point(self.mesh().nodes()[node]);
+        let dimension = self.mesh().dimension();
+        let at = point(&self.mesh().nodes()[node][..dimension]);
         let names: Vec<String> = rows.iter().map(obstacle).collect();
-        let supported = [0, 1].iter().all(|axis| self.parts().dofs.number(2 * node + axis).is_none());
+        let supported = (0..dimension).all(|axis| self.parts().dofs.number(dimension * node + axis).is_none());
         match names.as_slice() {
             [one] if supported => format!("node {node} at {at} is supported inside {one}"),
             [one] => format!("node {node} at {at} cannot leave {one}"),

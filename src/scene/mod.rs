@@ -14,7 +14,9 @@
 //! # Ok::<(), signorini::Error>(())
 //! ```
 
+mod body;
 mod build;
+mod condition;
 mod explain;
 mod model;
 mod motion;
@@ -28,11 +30,13 @@ pub use model::Model;
 pub use obstacle::Obstacle;
 pub use rows::ContactRow;
 pub use schema::{
-    Approach, AxisSpec, BodySpec, CircleSpec, ElementSpec, ForceSpec, LoadSpec, MaterialSpec, ObstacleSpec,
-    ParabolaSpec, Place, PlaneModel, PlaneSpec, RectangleSpec, Rule, Scene, ShapeSpec, SupportSpec, TableSpec,
-    TractionSpec, Units, WedgeSpec,
+    Approach, AxisSpec, BarSpec, BodySpec, BoxSpec, CircleSpec, ElementSpec, ForceSpec, IntegrationSpec, LoadSpec,
+    MaterialSpec, ModelSpec, ObstacleSpec, ParabolaSpec, Place, PlaneSpec, PressureSpec, RectangleSpec, Rule, Scene,
+    ShapeSpec, SolidElementSpec, SupportSpec, TableSpec, TractionSpec, Units, WedgeSpec,
 };
 pub use warning::Warning;
+
+use build::located;
 
 use crate::error::Error;
 
@@ -62,6 +66,22 @@ fn number(value: f64) -> String {
     if size == 0.0 || (1e-4..1e7).contains(&size) { format!("{value}") } else { format!("{value:e}") }
 }
 
-fn point([x, y]: [f64; 2]) -> String {
-    format!("({}, {})", number(x), number(y))
+/// A point as a reader writes it, with as many coordinates as it has entries.
+fn point(at: &[f64]) -> String {
+    let coordinates: Vec<String> = at.iter().map(|&coordinate| number(coordinate)).collect();
+    format!("({})", coordinates.join(", "))
+}
+
+/// A point or vector of a scene in `dimension` coordinates; those beyond are zero.
+fn vector(path: &str, entries: &[f64], dimension: usize) -> Result<[f64; 3], Error> {
+    if entries.len() != dimension {
+        let (found, names) = (entries.len(), ["[x]", "[x, y]", "[x, y, z]"][dimension - 1]);
+        return Err(wrong(path, format!("the array has {found} entries; in this model it has {dimension}: {names}")));
+    }
+    let mut vector = [0.0; 3];
+    for (index, (place, &entry)) in vector.iter_mut().zip(entries).enumerate() {
+        finite(format!("{path}[{index}]"), entry)?;
+        *place = entry;
+    }
+    Ok(vector)
 }

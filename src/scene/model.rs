@@ -20,7 +20,7 @@ pub(super) struct Parts {
     pub units: Units,
     pub body: ElasticBody,
     pub dofs: DofMap,
-    /// External load at all nodes, length `2 * n_nodes`.
+    /// External load at all nodes, length `dim * n_nodes`.
     pub load: Vec<f64>,
     pub obstacles: Vec<Obstacle>,
     pub warnings: Vec<Warning>,
@@ -28,8 +28,8 @@ pub(super) struct Parts {
 
 /// A discretised scene: mesh, contact problem, and what its rows and dofs mean.
 ///
-/// Nodal vectors have length `2 * n_nodes` and the order `[x_0, y_0, x_1, y_1, ...]`. `displacement` arguments are
-/// those of a solution: one entry per free dof.
+/// Nodal vectors have length `dim * n_nodes` and the order `[x_0, y_0, x_1, ...]` (with z in space). `displacement`
+/// arguments are those of a solution: one entry per free dof.
 #[derive(Clone, Debug)]
 pub struct Model {
     parts: Arc<Parts>,
@@ -43,7 +43,7 @@ impl Model {
     /// Rows first, since they tell whether the body is held, before anything expensive is built.
     pub(super) fn new(parts: Parts, gap: f64) -> Result<Self, Error> {
         let built = rows::build(&parts, gap)?;
-        RigidMotions::of(&parts).check_held(&parts, &built.rows)?;
+        RigidMotions::of(&parts.body).check_held(&parts, &built.rows)?;
         // Prescribed displacements go to the right-hand side as the forces that they alone would cause.
         let mut load = parts.load.clone();
         if (0..parts.dofs.nodal_count()).any(|dof| parts.dofs.prescribed(dof).is_some_and(|value| value != 0.0)) {
@@ -75,7 +75,7 @@ impl Model {
     /// [`Error::UnderHeld`] where the new rows leave a rigid motion free.
     pub fn with_gap(&self, gap: f64) -> Result<Self, Error> {
         let built = rows::build(&self.parts, gap)?;
-        RigidMotions::of(&self.parts).check_held(&self.parts, &built.rows)?;
+        RigidMotions::of(&self.parts.body).check_held(&self.parts, &built.rows)?;
         let (stiffness, load) = (self.problem.stiffness().clone(), self.problem.load().to_vec());
         Self::with_rows(self.parts.clone(), gap, built, stiffness, load)
     }
@@ -164,10 +164,11 @@ impl Model {
     /// As [`Model::pressure`].
     pub fn contact_forces(&self, multiplier: &[f64]) -> Result<Vec<f64>, Error> {
         self.check_multiplier(multiplier)?;
+        let dimension = self.body().dimension();
         let mut forces = vec![0.0; self.parts.dofs.nodal_count()];
         for (row, lambda) in self.rows.iter().zip(multiplier) {
-            forces[2 * row.node] += lambda * row.normal[0];
-            forces[2 * row.node + 1] += lambda * row.normal[1];
+            let entries = &mut forces[dimension * row.node..dimension * (row.node + 1)];
+            entries.iter_mut().zip(row.normal).for_each(|(entry, component)| *entry += lambda * component);
         }
         Ok(forces)
     }
@@ -189,34 +190,21 @@ impl Model {
         Ok(reactions)
     }
 
-    /// External loads at all nodes, in force, length `2 * n_nodes`.
+    /// External loads at all nodes, in force, length `dim * n_nodes`.
     pub fn nodal_load(&self) -> &[f64] {
         &self.parts.load
     }
 
-    /// The imbalance of loads, support reactions and contact forces on the whole body: the largest of the two resultant
-    /// forces and the resultant moment over half the body's size, relative to the sum of all force magnitudes.
+    /// The imbalance of loads, support reactions and contact forces on the whole body: the largest of the virtual works on
+    /// its unit rigid motions (the resultant forces, and the resultant moments over half the body's size), relative to
+    /// the sum of all force magnitudes. A body of revolution has one rigid motion, and its forces count along the axis.
     ///
     /// # Errors
     /// As [`Model::reactions`].
     pub fn force_balance(&self, displacement: &[f64], multiplier: &[f64]) -> Result<f64, Error> {
         let reactions = self.reactions(displacement, multiplier)?;
         let contact = self.contact_forces(multiplier)?;
-        let (low, high) = self.mesh().extent();
-        let arm = self.mesh().size() / 2.0;
-        let (mut resultant, mut magnitude) = ([0.0; 3], 0.0);
-        for (node, at) in self.mesh().nodes().iter().enumerate() {
-            let [x, y] = [0, 1].map(|axis| (at[axis] - low[axis] - (high[axis] - low[axis]) / 2.0) / arm);
-            for forces in [&self.parts.load, &reactions, &contact] {
-                let (fx, fy) = (forces[2 * node], forces[2 * node + 1]);
-                resultant[0] += fx;
-                resultant[1] += fy;
-                resultant[2] += x * fy - y * fx;
-                magnitude += fx.hypot(fy);
-            }
-        }
-        let largest = resultant.iter().fold(0.0_f64, |largest, part| largest.max(part.abs()));
-        Ok(if magnitude == 0.0 { 0.0 } else { largest / magnitude })
+        Ok(RigidMotions::of(self.body()).imbalance(self.mesh().nodes(), &[&self.parts.load, &reactions, &contact]))
     }
 
     /// The stress in the displaced body, per element and per node.

@@ -1,10 +1,11 @@
-//! Rigid motions of the plane: which of them nothing resists, and their names.
+//! Rigid motions: which of them nothing resists, and their names.
 
 use nalgebra::DMatrix;
 
 use super::model::Parts;
 use super::point;
 use super::rows::ContactRow;
+use crate::body::ElasticBody;
 use crate::error::Error;
 
 /// A motion is held where the singular value that belongs to it exceeds this times the largest; exact geometry gives
@@ -14,28 +15,66 @@ const HELD: f64 = 1e-10;
 /// A part of a motion below this, relative to the whole, does not enter its name.
 const NAMED: f64 = 1e-6;
 
-/// Translation along x, translation along y, rotation about the centre, as multiples of unit motions: the rotation is
-/// measured by the displacement that it gives at the distance `size` from the centre.
-type Amplitudes = [f64; 3];
+const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// The centre and the size of a body: they make its three rigid motions comparable.
+/// Translations along x, y, z, and rotations about axes through the centre along x, y, z, as multiples of unit motions: a
+/// rotation is measured by the displacement that it gives at the distance `size` from the axis.
+type Amplitudes = [f64; 6];
+
+/// The unit motions of a body; its centre and size make them comparable.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RigidMotions {
-    centre: [f64; 2],
+    centre: [f64; 3],
     size: f64,
+    dimension: usize,
+    /// Which of the six unit motions cost no energy: one in a bar and in a body of revolution, three in the plane.
+    modes: &'static [usize],
 }
 
 impl RigidMotions {
-    pub fn of(parts: &Parts) -> Self {
-        let (low, high) = parts.body.mesh().extent();
-        let centre = [0, 1].map(|axis| low[axis] + (high[axis] - low[axis]) / 2.0);
-        RigidMotions { centre, size: parts.body.mesh().size() / 2.0 }
+    pub fn of(body: &ElasticBody) -> Self {
+        let (low, high) = body.mesh().extent();
+        let modes: &[usize] = match body.dimension() {
+            1 => &[0],
+            2 if body.formulation().is_axisymmetric() => &[1],
+            2 => &[0, 1, 5],
+            _ => &[0, 1, 2, 3, 4, 5],
+        };
+        RigidMotions {
+            centre: [0, 1, 2].map(|axis| low[axis] + (high[axis] - low[axis]) / 2.0),
+            size: body.mesh().size() / 2.0,
+            dimension: body.dimension(),
+            modes,
+        }
     }
 
-    /// The displacement [x, y] of each unit motion at a point.
-    fn at(&self, [x, y]: [f64; 2]) -> [[f64; 2]; 3] {
-        let (x, y) = ((x - self.centre[0]) / self.size, (y - self.centre[1]) / self.size);
-        [[1.0, 0.0], [0.0, 1.0], [-y, x]]
+    /// The displacement of unit motion `mode` at a point.
+    fn at(&self, mode: usize, point: [f64; 3]) -> [f64; 3] {
+        let [x, y, z] = [0, 1, 2].map(|axis| (point[axis] - self.centre[axis]) / self.size);
+        match mode {
+            0 => [1.0, 0.0, 0.0],
+            1 => [0.0, 1.0, 0.0],
+            2 => [0.0, 0.0, 1.0],
+            3 => [0.0, -z, y],
+            4 => [z, 0.0, -x],
+            _ => [-y, x, 0.0],
+        }
+    }
+
+    /// The component along `direction` of each unit motion at a point; motions that the body has not give 0.
+    fn along(&self, point: [f64; 3], direction: [f64; 3]) -> Amplitudes {
+        let mut components = [0.0; 6];
+        for &mode in self.modes {
+            components[mode] = dot(&self.at(mode, point), &direction);
+        }
+        components
+    }
+
+    /// The component of each unit motion at a nodal dof.
+    fn at_dof(&self, nodes: &[[f64; 3]], dof: usize) -> Amplitudes {
+        let mut direction = [0.0; 3];
+        direction[dof % self.dimension] = 1.0;
+        self.along(nodes[dof / self.dimension], direction)
     }
 
     /// Refuses a body with a rigid motion that neither supports nor contact rows resist.
@@ -46,44 +85,44 @@ impl RigidMotions {
         let free = self.free(parts, rows);
         let Some(first) = free.first() else { return Ok(()) };
         let names: Vec<String> = free.iter().map(|motion| self.name(motion, false)).collect();
-        let nodal = |dof: &usize| {
-            let modes = self.at(parts.body.mesh().nodes()[dof / 2]);
-            modes.iter().zip(first).map(|(mode, amplitude)| amplitude * mode[dof % 2]).sum()
-        };
-        let direction = parts.dofs.free().iter().map(nodal).collect();
+        let nodes = parts.body.mesh().nodes();
+        let direction = parts.dofs.free().iter().map(|&dof| dot(&self.at_dof(nodes, dof), first)).collect();
         Err(Error::UnderHeld { motion: format!("{}: {}", names.join(", "), advice(!rows.is_empty())), direction })
     }
 
-    /// A basis of the motions that nothing resists: translations along the axes first.
+    /// A basis of the motions that nothing resists: unit motions first.
     fn free(&self, parts: &Parts, rows: &[ContactRow]) -> Vec<Amplitudes> {
         let nodes = parts.body.mesh().nodes();
-        let supported = (0..2 * nodes.len()).filter(|&dof| parts.dofs.number(dof).is_none());
-        let of_supports = supported.map(|dof| self.at(nodes[dof / 2]).map(|mode| mode[dof % 2]));
-        let of_rows =
-            rows.iter().map(|row| self.at(nodes[row.node]).map(|m| m[0] * row.normal[0] + m[1] * row.normal[1]));
+        let supported = (0..parts.dofs.nodal_count()).filter(|&dof| parts.dofs.number(dof).is_none());
+        let of_supports = supported.map(|dof| self.at_dof(nodes, dof));
+        let of_rows = rows.iter().map(|row| self.along(nodes[row.node], row.normal));
         let mut resisted: Vec<Amplitudes> = of_supports.chain(of_rows).collect();
-        // Three rows at least, or the decomposition leaves out what they do not span.
-        resisted.resize(resisted.len().max(3), [0.0; 3]);
-        let matrix = DMatrix::from_fn(resisted.len(), 3, |row, column| resisted[row][column]);
+        let count = self.modes.len();
+        // A row for each motion at least, or the decomposition leaves out what they do not span.
+        resisted.resize(resisted.len().max(count), [0.0; 6]);
+        let matrix = DMatrix::from_fn(resisted.len(), count, |row, column| resisted[row][self.modes[column]]);
         let svd = matrix.svd(false, true);
         let Some(modes) = svd.v_t else { return Vec::new() };
         let largest = svd.singular_values.max();
-        let mut null: Vec<Amplitudes> = (0..3)
-            .filter(|&mode| svd.singular_values[mode] <= HELD * largest)
-            .map(|mode| [0, 1, 2].map(|part| modes[(mode, part)]))
-            .collect();
-        // Rotate the basis towards the axes: a translation along x, along y, then what is left.
+        let mut null: Vec<Amplitudes> = Vec::new();
+        for mode in (0..count).filter(|&mode| svd.singular_values[mode] <= HELD * largest) {
+            let mut amplitudes = [0.0; 6];
+            self.modes.iter().enumerate().for_each(|(column, &part)| amplitudes[part] = modes[(mode, column)]);
+            null.push(amplitudes);
+        }
+        // Rotate the basis towards the unit motions, then take what is left.
         let mut basis: Vec<Amplitudes> = Vec::new();
-        for axis in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]] {
-            let inside: f64 = null.iter().map(|mode| dot(mode, &axis).powi(2)).sum();
-            if inside > 1.0 - NAMED {
-                basis.push(axis);
+        for &mode in self.modes {
+            if null.iter().map(|motion| motion[mode].powi(2)).sum::<f64>() > 1.0 - NAMED {
+                let mut unit = [0.0; 6];
+                unit[mode] = 1.0;
+                basis.push(unit);
             }
         }
         for mode in &mut null {
             for known in &basis {
                 let part = dot(mode, known);
-                [0, 1, 2].iter().for_each(|&i| mode[i] -= part * known[i]);
+                mode.iter_mut().zip(known).for_each(|(value, known)| *value -= part * known);
             }
             let length = dot(mode, mode).sqrt();
             if length > NAMED {
@@ -93,38 +132,72 @@ impl RigidMotions {
         basis
     }
 
-    /// The name of the rigid motion next to a nodal motion (length `2 * n_nodes`), if the motion is rigid.
-    pub fn name_of(&self, nodes: &[[f64; 2]], motion: &[f64]) -> Option<String> {
+    /// The name of the rigid motion next to a nodal motion (length `dim * n_nodes`), if the motion is rigid.
+    pub fn name_of(&self, nodes: &[[f64; 3]], motion: &[f64]) -> Option<String> {
         if !motion.iter().all(|value| value.is_finite()) {
             return None;
         }
-        // Least squares on three modes.
-        let design = DMatrix::from_fn(motion.len(), 3, |dof, mode| self.at(nodes[dof / 2])[mode][dof % 2]);
+        // Least squares on the unit motions.
+        let parts: Vec<Amplitudes> = (0..motion.len()).map(|dof| self.at_dof(nodes, dof)).collect();
+        let design = DMatrix::from_fn(motion.len(), self.modes.len(), |dof, mode| parts[dof][self.modes[mode]]);
         let target = DMatrix::from_column_slice(motion.len(), 1, motion);
         let fitted = design.clone().svd(true, true).solve(&target, f64::EPSILON).ok()?;
         let rest = (design * &fitted - &target).norm();
         if !(rest <= NAMED * target.norm() && target.norm() > 0.0) {
             return None;
         }
-        Some(self.name(&[fitted[(0, 0)], fitted[(1, 0)], fitted[(2, 0)]], true))
+        let mut amplitudes = [0.0; 6];
+        self.modes.iter().enumerate().for_each(|(row, &mode)| amplitudes[mode] = fitted[(row, 0)]);
+        Some(self.name(&amplitudes, true))
     }
 
     /// `signed` where the sense of the motion matters.
-    fn name(&self, &[x, y, turn]: &Amplitudes, signed: bool) -> String {
-        let whole = x.hypot(y).hypot(turn);
-        let small = |part: f64| part.abs() <= NAMED * whole;
-        if small(turn) {
-            let sign = |part: f64| if signed && part < 0.0 { "-" } else { "" };
-            return match (small(x), small(y)) {
-                (_, true) => format!("translation along {}x", sign(x)),
-                (true, _) => format!("translation along {}y", sign(y)),
-                _ => format!("translation along ({:.3}, {:.3})", x / whole, y / whole),
+    fn name(&self, &[x, y, z, a, b, c]: &Amplitudes, signed: bool) -> String {
+        let (shift, turn) = ([x, y, z], [a, b, c]);
+        let (distance, angle) = (dot(&shift, &shift).sqrt(), dot(&turn, &turn).sqrt());
+        let sign = |part: f64| if signed && part < 0.0 { "-" } else { "" };
+        if angle <= NAMED * distance.hypot(angle) {
+            return match along_one_axis(shift) {
+                Some(axis) => format!("translation along {}{}", sign(shift[axis]), AXES[axis]),
+                None => format!("translation along {}", direction(&shift[..self.dimension])),
             };
         }
-        // Where translation and rotation cancel.
-        let pole = [self.centre[0] - y / turn * self.size, self.centre[1] + x / turn * self.size];
-        let tidy = pole.map(|at| if at.abs() <= NAMED * self.size { 0.0 } else { at });
-        format!("rotation about z through {}", point(tidy.map(six_digits)))
+        let axis = along_one_axis(turn).map_or_else(|| direction(&turn), |axis| AXES[axis].into());
+        // Where translation and rotation cancel, but for what runs along the axis.
+        let [u, v, w] = [
+            (turn[1] * shift[2] - turn[2] * shift[1]) / (angle * angle),
+            (turn[2] * shift[0] - turn[0] * shift[2]) / (angle * angle),
+            (turn[0] * shift[1] - turn[1] * shift[0]) / (angle * angle),
+        ];
+        let pole = [u, v, w].map(|part| part * self.size);
+        let tidy = [0, 1, 2].map(|axis| {
+            let at = self.centre[axis] + pole[axis];
+            if at.abs() <= NAMED * self.size { 0.0 } else { six_digits(at) }
+        });
+        let pitch = dot(&shift, &turn).abs() > NAMED * angle * distance.hypot(angle);
+        let along = if pitch { ", with a translation along it" } else { "" };
+        format!("rotation about {axis} through {}{along}", point(&tidy[..self.dimension]))
+    }
+
+    /// The largest virtual work of the nodal `forces` (each of length `dim * n_nodes`) on the unit motions, relative to
+    /// the sum of the magnitudes of all forces; those along motions that the body has not are left out.
+    pub fn imbalance(&self, nodes: &[[f64; 3]], forces: &[&[f64]]) -> f64 {
+        let counts = |axis: usize| self.modes.contains(&axis);
+        let (mut works, mut magnitude) = ([0.0; 6], 0.0);
+        for (node, &at) in nodes.iter().enumerate() {
+            for of_node in forces.iter().map(|forces| &forces[self.dimension * node..self.dimension * (node + 1)]) {
+                let mut force = [0.0; 3];
+                for (axis, component) in of_node.iter().enumerate().filter(|entry| counts(entry.0)) {
+                    force[axis] = *component;
+                }
+                for (work, part) in works.iter_mut().zip(self.along(at, force)) {
+                    *work += part;
+                }
+                magnitude += force[0].hypot(force[1]).hypot(force[2]);
+            }
+        }
+        let largest = works.iter().fold(0.0_f64, |largest, work| largest.max(work.abs()));
+        if magnitude == 0.0 { 0.0 } else { largest / magnitude }
     }
 }
 
@@ -133,8 +206,21 @@ pub(super) fn advice(has_rows: bool) -> &'static str {
     if has_rows { "a frictionless obstacle does not hold it, add a guide" } else { "add a support" }
 }
 
-fn dot(a: &Amplitudes, b: &Amplitudes) -> f64 {
+fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+/// The axis along which a vector lies, but for rounding.
+fn along_one_axis(vector: [f64; 3]) -> Option<usize> {
+    let length = dot(&vector, &vector).sqrt();
+    (0..3).find(|&axis| (0..3).all(|other| other == axis || vector[other].abs() <= NAMED * length))
+}
+
+/// A direction in words, of length 1.
+fn direction(vector: &[f64]) -> String {
+    let length = dot(vector, vector).sqrt();
+    let components: Vec<String> = vector.iter().map(|part| format!("{:.3}", part / length)).collect();
+    format!("({})", components.join(", "))
 }
 
 /// Rounded to six significant digits: a pole is a computed place.

@@ -12,13 +12,14 @@ pub struct ContactRow {
     pub node: usize,
     /// The obstacle, from 0 in the order of the scene.
     pub obstacle: usize,
-    /// Unit vector [x, y] into the obstacle.
-    pub normal: [f64; 2],
+    /// Unit vector [x, y, z] into the obstacle; zero beyond the dimension of the model.
+    pub normal: [f64; 3],
     /// Signed distance of the undeformed node to the obstacle along `normal`, in length; negative inside.
     ///
     /// The gap of the problem is this less what prescribed displacements of the node take up.
     pub gap: f64,
-    /// Integral of the node's shape function along the candidate boundary times the thickness, in area.
+    /// Integral of the node's shape function over the candidate boundary, in area: thickness, cross-section or
+    /// circumference included.
     pub tributary_area: f64,
 }
 
@@ -37,6 +38,7 @@ pub(super) struct Rows {
 pub(super) fn build(parts: &Parts, scene_gap: f64) -> Result<Rows, Error> {
     finite("gap", scene_gap)?;
     let (mesh, dofs) = (parts.body.mesh(), &parts.dofs);
+    let dimension = parts.body.dimension();
     let rounding = ROUNDING * mesh.size();
     let (mut rows, mut gap, mut entries, mut warnings) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (index, obstacle) in parts.obstacles.iter().enumerate() {
@@ -44,14 +46,15 @@ pub(super) fn build(parts: &Parts, scene_gap: f64) -> Result<Rows, Error> {
         for &(node, tributary_area) in obstacle.candidates() {
             let at = mesh.nodes()[node];
             let way = obstacle.row(at, scene_gap).map_err(|reason| {
-                let message = format!("node {node} at {} {reason}; move the obstacle away from it", point(at));
+                let message =
+                    format!("node {node} at {} {reason}; move the obstacle away from it", point(&at[..dimension]));
                 wrong(format!("obstacles[{index}]"), message)
             })?;
             let Some(way) = way else { continue };
             reached = true;
             let (mut remaining, mut free) = (way.distance, false);
-            for (axis, &component) in way.normal.iter().enumerate().filter(|entry| *entry.1 != 0.0) {
-                let dof = 2 * node + axis;
+            for (axis, &component) in way.normal[..dimension].iter().enumerate().filter(|entry| *entry.1 != 0.0) {
+                let dof = dimension * node + axis;
                 match dofs.number(dof) {
                     Some(column) => {
                         entries.push((rows.len(), column, component));

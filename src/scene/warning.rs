@@ -4,14 +4,17 @@
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Warning {
-    /// Linear elements lock when the material keeps its volume.
+    /// Elements lock when the material keeps its volume.
     #[error(
-        "Poisson's ratio {poisson} in plane strain locks linear elements: pressures can come out several times too \
-         large; take a ratio of at most 0.49, or compare with a finer mesh before using them"
+        "Poisson's ratio {poisson} locks {element} elements: pressures can come out several times too large; take \
+         `\"integration\": \"mean-dilatation\"` with q4 or hex8 elements, a smaller ratio, or compare with a finer mesh \
+         before using them"
     )]
     NearlyIncompressible {
         /// The ratio.
         poisson: f64,
+        /// The element, as `Q4`.
+        element: &'static str,
     },
     /// No node of the candidate boundary faces the obstacle.
     #[error(

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::{ModelSize, Summary};
 use crate::error::Error;
+use crate::formulation::Formulation;
 use crate::scene::Model;
 use crate::solution::{ContactSet, Solution};
 use crate::solve::{Settings, solve};
@@ -29,15 +30,25 @@ pub fn scene_summary(
     let mut summary = Summary::new(solution, size, tolerance, assemble_seconds);
     let pressure = model.pressure(&solution.multiplier)?;
     summary.contact.pressure_max = Some(pressure.iter().copied().fold(0.0, f64::max));
-    summary.contact.width = Some(contact_width(model, &solution.contact_set));
+    summary.contact.width = contact_width(model, &solution.contact_set);
+    summary.contact.area = Some(contact_area(model, &solution.contact_set));
     summary.contact.force_balance = Some(model.force_balance(&solution.displacement, &solution.multiplier)?);
     Ok(summary)
 }
 
-/// Length of the boundary that the closed rows stand for, in the unit of length.
-pub fn contact_width(model: &Model, closed: &ContactSet) -> f64 {
-    let area: f64 = closed.iter().filter_map(|row| model.rows().get(row)).map(|row| row.tributary_area).sum();
-    area / model.body().thickness()
+/// Area of the boundary that the closed rows stand for; thickness, cross-section or circumference included.
+pub fn contact_area(model: &Model, closed: &ContactSet) -> f64 {
+    closed.iter().filter_map(|row| model.rows().get(row)).map(|row| row.tributary_area).sum()
+}
+
+/// Length of the boundary that the closed rows stand for, in the unit of length, where the model has a thickness.
+pub fn contact_width(model: &Model, closed: &ContactSet) -> Option<f64> {
+    match *model.body().formulation() {
+        Formulation::PlaneStrain { thickness } | Formulation::PlaneStress { thickness } => {
+            Some(contact_area(model, closed) / thickness)
+        }
+        _ => None,
+    }
 }
 
 /// One gap of a sweep.

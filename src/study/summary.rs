@@ -48,9 +48,12 @@ pub struct ContactSummary {
     /// Largest contact pressure; only a scene has areas to divide by.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pressure_max: Option<f64>,
-    /// Length of the boundary that closed rows stand for; only in a scene.
+    /// Length of the boundary that closed rows stand for; only in a scene in plane strain or plane stress.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub width: Option<f64>,
+    /// Area of the boundary that closed rows stand for; only in a scene.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub area: Option<f64>,
     /// Imbalance of loads, reactions and contact forces, relative; only in a scene.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub force_balance: Option<f64>,
@@ -151,6 +154,7 @@ impl Summary {
                 force: solution.contact_force(),
                 pressure_max: None,
                 width: None,
+                area: None,
                 force_balance: None,
             },
             certificate: (&solution.certificate).into(),
@@ -191,7 +195,7 @@ impl Verification {
     pub fn new(certificate: &Certificate, multiplier: &[f64], model: ModelSize, tolerance: f64) -> Self {
         let force = -multiplier.iter().sum::<f64>();
         let count = multiplier.iter().filter(|&&lambda| lambda != 0.0).count();
-        let contact = ContactSummary { count, force, pressure_max: None, width: None, force_balance: None };
+        let contact = ContactSummary { count, force, pressure_max: None, width: None, area: None, force_balance: None };
         let status = status(certificate, tolerance);
         Verification { status, tolerance, contact, certificate: certificate.into(), model }
     }

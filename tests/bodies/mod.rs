@@ -3,40 +3,70 @@
 
 use nalgebra::{DMatrix, DVector};
 use serde_json::{Value, json};
-use signorini::material::{Material, PlaneState};
+use signorini::formulation::Formulation;
+use signorini::material::Material;
 use signorini::mesh::{ElementKind, Mesh, rectangle};
 use signorini::sparse::Cholesky;
 use signorini::{ContactProblem, Model, Scene, assembly, body::ElasticBody};
 
-/// Both elements in both plane states.
-pub const VARIANTS: [(ElementKind, PlaneState); 4] = [
-    (ElementKind::T3, PlaneState::PlaneStrain),
-    (ElementKind::T3, PlaneState::PlaneStress),
-    (ElementKind::Q4, PlaneState::PlaneStrain),
-    (ElementKind::Q4, PlaneState::PlaneStress),
+const STRAIN: Formulation = Formulation::PlaneStrain { thickness: 0.5 };
+const STRESS: Formulation = Formulation::PlaneStress { thickness: 0.5 };
+
+/// All elements of the plane in both plane states.
+pub const VARIANTS: [(ElementKind, Formulation); 8] = [
+    (ElementKind::T3, STRAIN),
+    (ElementKind::T3, STRESS),
+    (ElementKind::T6, STRAIN),
+    (ElementKind::T6, STRESS),
+    (ElementKind::Q4, STRAIN),
+    (ElementKind::Q4, STRESS),
+    (ElementKind::Q8, STRAIN),
+    (ElementKind::Q8, STRESS),
 ];
 
-/// A 2 x 1 rectangle of 4 x 3 cells whose inner nodes are moved by up to a fifth of a cell.
+/// A 2 x 1 rectangle of 4 x 3 cells whose inner corners are moved by up to a fifth of a cell; mid-sides stay in the
+/// middle.
 pub fn distorted(kind: ElementKind) -> Mesh {
-    let regular = rectangle(&[0.0, 0.5, 1.0, 1.5, 2.0], &[0.0, 0.3, 0.7, 1.0], kind).unwrap();
-    let move_inner = |(index, &[x, y]): (usize, &[f64; 2])| {
-        let inner = x > 0.0 && x < 2.0 && y > 0.0 && y < 1.0;
-        let (a, b) = ((index as f64 * 1.7).sin(), (index as f64 * 2.3).cos());
-        if inner { [x + 0.1 * a, y + 0.06 * b] } else { [x, y] }
+    distort(&rectangle(&[0.0, 0.5, 1.0, 1.5, 2.0], &[0.0, 0.3, 0.7, 1.0], kind).unwrap(), [0.1, 0.06, 0.0])
+}
+
+/// The mesh with inner nodes moved by up to `reach` along each axis; mid-sides go to the middle of their side.
+pub fn distort(regular: &Mesh, reach: [f64; 3]) -> Mesh {
+    let (low, high) = regular.extent();
+    let dimension = regular.dimension();
+    let move_inner = |(index, &at): (usize, &[f64; 3])| {
+        let inner = (0..dimension).all(|axis| at[axis] > low[axis] && at[axis] < high[axis]);
+        let index = index as f64;
+        let shift = [(index * 1.7).sin(), (index * 2.3).cos(), (index * 3.1).sin()];
+        if inner { [0, 1, 2].map(|axis| at[axis] + reach[axis] * shift[axis]) } else { at }
     };
-    let nodes = regular.nodes().iter().enumerate().map(move_inner).collect();
+    let mut nodes: Vec<[f64; 3]> = regular.nodes().iter().enumerate().map(move_inner).collect();
+    let kind = regular.kind();
+    if kind.is_quadratic() {
+        for element in regular.elements() {
+            for side in 0..kind.corners() {
+                let (a, b) = (nodes[element[side]], nodes[element[(side + 1) % kind.corners()]]);
+                nodes[element[kind.corners() + side]] = [0, 1, 2].map(|axis| (a[axis] + b[axis]) / 2.0);
+            }
+        }
+    }
     let connectivity = regular.elements().flatten().copied().collect();
     Mesh::new(nodes, kind, connectivity, regular.boundaries().to_vec()).unwrap()
 }
 
 /// The distorted body with E = 7, nu = 0.3 and a thickness of 0.5.
-pub fn distorted_body(kind: ElementKind, state: PlaneState) -> ElasticBody {
-    ElasticBody::new(distorted(kind), Material::new(7.0, 0.3, state).unwrap(), 0.5).unwrap()
+pub fn distorted_body(kind: ElementKind, formulation: Formulation) -> ElasticBody {
+    ElasticBody::new(distorted(kind), Material::new(7.0, 0.3).unwrap(), formulation).unwrap()
 }
 
-/// The nodal displacement of a field.
+/// The nodal displacement of a field in the plane.
 pub fn nodal(mesh: &Mesh, field: impl Fn([f64; 2]) -> [f64; 2]) -> Vec<f64> {
-    mesh.nodes().iter().flat_map(|&at| field(at)).collect()
+    mesh.nodes().iter().flat_map(|&[x, y, _]| field([x, y])).collect()
+}
+
+/// The nodal displacement of a field in any dimension.
+pub fn nodal_of(mesh: &Mesh, field: impl Fn([f64; 3]) -> [f64; 3]) -> Vec<f64> {
+    mesh.nodes().iter().flat_map(|&at| field(at).into_iter().take(mesh.dimension())).collect()
 }
 
 /// Solves the body with the displacement prescribed where `held` says so, under a nodal load.

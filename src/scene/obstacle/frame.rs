@@ -15,14 +15,10 @@ pub(in crate::scene) struct Frame {
 }
 
 impl Frame {
-    pub fn of(approach: Approach) -> Self {
-        let (axis, sense) = match approach {
-            Approach::PlusX => (0, 1.0),
-            Approach::MinusX => (0, -1.0),
-            Approach::PlusY => (1, 1.0),
-            Approach::MinusY => (1, -1.0),
-        };
-        Frame { axis, sense }
+    /// The frame of an approach direction in the plane.
+    pub fn of(approach: Approach) -> Option<Self> {
+        let (axis, sense) = approach.axis();
+        (axis < 2).then_some(Frame { axis, sense })
     }
 
     /// From [x, y] to [along, towards].

@@ -2,6 +2,7 @@
 
 mod circle;
 mod frame;
+mod half_space;
 mod parabola;
 mod plane;
 mod polyline;
@@ -9,12 +10,13 @@ mod surface;
 
 use std::sync::Arc;
 
-use super::schema::{CircleSpec, ObstacleSpec, Rule, ShapeSpec};
-use super::{PLACE_TOLERANCE, ROUNDING, finite, finite_pair, number, point, wrong};
+use super::schema::{CircleSpec, ObstacleSpec, PlaneSpec, Rule, ShapeSpec};
+use super::{PLACE_TOLERANCE, ROUNDING, finite, finite_pair, number, point, vector, wrong};
 use crate::error::Error;
 use crate::mesh::Mesh;
 use circle::Circle;
 use frame::{Frame, Local};
+use half_space::HalfSpace;
 use parabola::Parabola;
 use plane::Plane;
 use polyline::Polyline;
@@ -32,8 +34,8 @@ const MAX_SEGMENTS: usize = 10_000;
 /// The way from a node to an obstacle: `normal . u <= distance`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Approachable {
-    /// Unit vector [x, y] into the obstacle.
-    pub normal: [f64; 2],
+    /// Unit vector [x, y, z] into the obstacle.
+    pub normal: [f64; 3],
     /// Signed distance along it; negative inside.
     pub distance: f64,
 }
@@ -44,6 +46,22 @@ pub struct Obstacle {
     boundary: String,
     candidates: Vec<(usize, f64)>,
     rule: Rule,
+    approach: [f64; 3],
+    geometry: Geometry,
+}
+
+/// What an obstacle looks like.
+#[derive(Clone, Debug)]
+enum Geometry {
+    /// In the plane: a graph over the coordinate across the approach direction.
+    Profile(Profile),
+    /// On a line or in space.
+    HalfSpace(HalfSpace),
+}
+
+/// A surface in the plane, in its frame.
+#[derive(Clone, Debug)]
+struct Profile {
     frame: Frame,
     origin: Local,
     surface: Arc<dyn Surface>,
@@ -60,23 +78,31 @@ impl Obstacle {
         mesh: &Mesh,
         candidates: Vec<(usize, f64)>,
     ) -> Result<Self, Error> {
-        let frame = Frame::of(spec.approach);
-        let (low, high) = mesh.extent();
-        let axis = frame.along_axis();
-        let size = mesh.size();
-        let (origin, surface) = surface_of(&spec.shape, &format!("{path}.shape"), frame, size)?;
-        let obstacle = Obstacle {
-            boundary: spec.boundary.clone(),
-            candidates,
-            rule: spec.rule,
-            frame,
-            origin,
-            surface,
-            extent: (low[axis], high[axis]),
-            rounding: ROUNDING * size,
+        let dimension = mesh.dimension();
+        let (axis, sense) = spec.approach.axis();
+        if axis >= dimension {
+            let names = ["x", "x and y", "x, y and z"][dimension - 1];
+            let message = format!("`{}` is no direction of this model, which has {names}", spec.approach.name());
+            return Err(wrong(format!("{path}.approach"), message));
+        }
+        let mut approach = [0.0; 3];
+        approach[axis] = sense;
+        let shape_path = format!("{path}.shape");
+        let geometry = match (&spec.shape, Frame::of(spec.approach).filter(|_| dimension == 2)) {
+            (_, Some(frame)) => Geometry::Profile(Profile::new(spec, &shape_path, mesh, frame)?),
+            (ShapeSpec::Plane(plane), None) => {
+                let (point, normal) = plane_of(plane, &format!("{shape_path}.plane"), dimension, approach)?;
+                Geometry::HalfSpace(HalfSpace { point, normal })
+            }
+            (shape, None) => {
+                let (name, space) = (shape.name(), ["on a line", "in the plane", "in space"][dimension - 1]);
+                let message = format!("`{name}` is a shape of the plane; {space} there is `plane`");
+                return Err(wrong(shape_path, message));
+            }
         };
-        if let ShapeSpec::Table(_) = spec.shape {
-            obstacle.check_reach(&format!("{path}.shape.table.points"), mesh)?;
+        let obstacle = Obstacle { boundary: spec.boundary.clone(), candidates, rule: spec.rule, approach, geometry };
+        if let (ShapeSpec::Table(_), Geometry::Profile(profile)) = (&spec.shape, &obstacle.geometry) {
+            profile.check_reach(&format!("{shape_path}.table.points"), mesh, &obstacle.candidates)?;
         }
         Ok(obstacle)
     }
@@ -91,9 +117,9 @@ impl Obstacle {
         self.rule
     }
 
-    /// The approach direction [x, y], of length 1: from the body to the obstacle.
-    pub fn approach(&self) -> [f64; 2] {
-        self.frame.global([0.0, 1.0])
+    /// The approach direction [x, y, z], of length 1: from the body to the obstacle.
+    pub fn approach(&self) -> [f64; 3] {
+        self.approach
     }
 
     /// The candidate nodes, in the order of the boundary, each with its tributary area.
@@ -103,8 +129,45 @@ impl Obstacle {
 
     /// The surface as a polyline [x, y] for pictures: over the body's extent and a little more, shifted by `gap`
     /// along the approach direction, in `segments` pieces (10,000 at most), corners met exactly. The obstacle lies on
-    /// the side that [`approach`](Self::approach) points to. Empty where the surface does not reach over the body.
+    /// the side that [`approach`](Self::approach) points to. Empty where the surface does not reach over the body, and
+    /// outside the plane.
     pub fn outline(&self, gap: f64, segments: usize) -> Vec<[f64; 2]> {
+        match &self.geometry {
+            Geometry::Profile(profile) => profile.outline(gap, segments),
+            Geometry::HalfSpace(_) => Vec::new(),
+        }
+    }
+
+    /// The way from `node` to the surface shifted by `gap`, or `None` where it is out of reach.
+    ///
+    /// # Errors
+    /// A predicate of the node, where it lies so deep that the rule makes no sense.
+    pub(super) fn row(&self, node: [f64; 3], gap: f64) -> Result<Option<Approachable>, &'static str> {
+        let way = match &self.geometry {
+            Geometry::Profile(profile) => profile.row(node, gap, self.rule)?,
+            Geometry::HalfSpace(half_space) => Some(half_space.row(node, gap, self.approach, self.rule)),
+        };
+        match way {
+            Some(way) if way.distance.is_nan() => Err("has no distance that could be computed"),
+            Some(way) if way.distance.is_finite() => {
+                let normal = way.normal.map(|c| if c.abs() < NO_COMPONENT { 0.0 } else { c });
+                Ok(Some(Approachable { normal, ..way }))
+            }
+            _ => Ok(None),
+        }
+    }
+}
+
+impl Profile {
+    fn new(spec: &ObstacleSpec, path: &str, mesh: &Mesh, frame: Frame) -> Result<Self, Error> {
+        let (low, high) = mesh.extent();
+        let axis = frame.along_axis();
+        let size = mesh.size();
+        let (origin, surface) = surface_of(&spec.shape, path, frame, size)?;
+        Ok(Profile { frame, origin, surface, extent: (low[axis], high[axis]), rounding: ROUNDING * size })
+    }
+
+    fn outline(&self, gap: f64, segments: usize) -> Vec<[f64; 2]> {
         let (low, high) = self.extent;
         let margin = OUTLINE_MARGIN * (high - low);
         let range = self.surface.range();
@@ -126,35 +189,28 @@ impl Obstacle {
         along.into_iter().filter_map(place).collect()
     }
 
-    /// The way from `node` to the surface shifted by `gap`, or `None` where it is out of reach.
-    ///
-    /// # Errors
-    /// A predicate of the node, where it lies so deep that the rule makes no sense.
-    pub(super) fn row(&self, node: [f64; 2], gap: f64) -> Result<Option<Approachable>, &'static str> {
-        let local = self.frame.local(node);
+    fn row(&self, [x, y, _]: [f64; 3], gap: f64, rule: Rule) -> Result<Option<Approachable>, &'static str> {
+        let local = self.frame.local([x, y]);
         let offset = [local[0] - self.origin[0], local[1] - self.origin[1] - gap];
-        let foot = match self.rule {
+        let foot = match rule {
             Rule::Approach => {
                 self.surface.height(offset[0]).map(|height| Foot { normal: [0.0, 1.0], distance: height - offset[1] })
             }
             Rule::ClosestPoint => self.surface.closest(offset, self.rounding)?,
         };
-        match foot {
-            Some(foot) if foot.distance.is_nan() => Err("has no distance that could be computed"),
-            Some(foot) if foot.distance.is_finite() => {
-                let normal = self.frame.global(foot.normal.map(|c| if c.abs() < NO_COMPONENT { 0.0 } else { c }));
-                Ok(Some(Approachable { normal, distance: foot.distance }))
-            }
-            _ => Ok(None),
-        }
+        Ok(foot.map(|foot| {
+            let [x, y] = self.frame.global(foot.normal);
+            Approachable { normal: [x, y, 0.0], distance: foot.distance }
+        }))
     }
 
     /// Every candidate must lie over the surface: a table says nothing beyond its ends.
-    fn check_reach(&self, path: &str, mesh: &Mesh) -> Result<(), Error> {
+    fn check_reach(&self, path: &str, mesh: &Mesh, candidates: &[(usize, f64)]) -> Result<(), Error> {
         let axis = ["x", "y"][self.frame.along_axis()];
         let (first, last) = self.surface.range();
-        for &(node, _) in &self.candidates {
-            let at = mesh.nodes()[node];
+        for &(node, _) in candidates {
+            let [x, y, _] = mesh.nodes()[node];
+            let at = [x, y];
             let along = self.frame.local(at)[0];
             if !(first..=last).contains(&along) {
                 let corners = self.surface.corners();
@@ -163,7 +219,7 @@ impl Obstacle {
                     ends.map_or(String::new(), |(a, b)| format!(" from {axis} = {} to {}", number(*a), number(*b)));
                 let message = format!(
                     "the table reaches{reach}, but candidate node {node} at {} needs it at {axis} = {}",
-                    point(at),
+                    point(&at),
                     number(along)
                 );
                 return Err(wrong(path, message));
@@ -177,23 +233,9 @@ impl Obstacle {
 fn surface_of(shape: &ShapeSpec, path: &str, frame: Frame, size: f64) -> Result<(Local, Arc<dyn Surface>), Error> {
     Ok(match shape {
         ShapeSpec::Plane(spec) => {
-            let path = format!("{path}.plane");
-            finite_pair(&format!("{path}.point"), spec.point)?;
-            finite_pair(&format!("{path}.normal"), spec.normal)?;
-            let length = spec.normal[0].hypot(spec.normal[1]);
-            if length == 0.0 {
-                return Err(wrong(format!("{path}.normal"), "(0, 0) has no direction; the normal needs a length"));
-            }
-            let normal = frame.local(spec.normal.map(|component| component / length));
-            if !(normal[1] > 0.0 && normal[1].is_finite()) {
-                let message = format!(
-                    "{} must point into the obstacle: to the side of the approach direction {}",
-                    point(spec.normal),
-                    point(frame.global([0.0, 1.0]))
-                );
-                return Err(wrong(format!("{path}.normal"), message));
-            }
-            (frame.local(spec.point), Arc::new(Plane { normal }))
+            let [x, y] = frame.global([0.0, 1.0]);
+            let ([px, py, _], [nx, ny, _]) = plane_of(spec, &format!("{path}.plane"), 2, [x, y, 0.0])?;
+            (frame.local([px, py]), Arc::new(Plane { normal: frame.local([nx, ny]) }))
         }
         ShapeSpec::Parabola(spec) => {
             finite_pair(&format!("{path}.parabola.apex"), spec.apex)?;
@@ -232,6 +274,28 @@ fn surface_of(shape: &ShapeSpec, path: &str, frame: Frame, size: f64) -> Result<
             ([0.0, 0.0], Arc::new(table))
         }
     })
+}
+
+/// Point and unit normal of a plane in `dimension` coordinates.
+fn plane_of(spec: &PlaneSpec, path: &str, dimension: usize, approach: [f64; 3]) -> Result<([f64; 3], [f64; 3]), Error> {
+    let at = vector(&format!("{path}.point"), &spec.point, dimension)?;
+    let normal = vector(&format!("{path}.normal"), &spec.normal, dimension)?;
+    let length = normal[0].hypot(normal[1]).hypot(normal[2]);
+    if length == 0.0 {
+        let zero = point(&normal[..dimension]);
+        return Err(wrong(format!("{path}.normal"), format!("{zero} has no direction; the normal needs a length")));
+    }
+    let normal = normal.map(|component| component / length);
+    let towards = normal[0] * approach[0] + normal[1] * approach[1] + normal[2] * approach[2];
+    if !(towards > 0.0 && towards.is_finite()) {
+        let message = format!(
+            "{} must point into the obstacle: to the side of the approach direction {}",
+            point(&spec.normal),
+            point(&approach[..dimension])
+        );
+        return Err(wrong(format!("{path}.normal"), message));
+    }
+    Ok((at, normal))
 }
 
 fn apex_of_circle(spec: &CircleSpec, path: &str, frame: Frame) -> Result<Local, Error> {

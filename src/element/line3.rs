@@ -1,0 +1,34 @@
+//! Line3, the quadratic edge: N = (xi (xi - 1)/2, xi (xi + 1)/2, 1 - xi^2), ends first.
+
+use super::quadrature::INTERVAL_3;
+use super::{MAX_NODES, PerNode, ReferenceElement, Shape};
+
+/// The quadratic line.
+pub(super) static LINE3: ReferenceElement = ReferenceElement {
+    name: "Line3",
+    form: Shape::Product,
+    dimension: 1,
+    nodes: &[[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
+    corners: 2,
+    faces: &[&[0], &[1]],
+    along: &[0, 2, 1],
+    shape,
+    derivative,
+    quadrature: &INTERVAL_3,
+    quadrature_revolved: &INTERVAL_3,
+    centroid: [0.0; 3],
+};
+
+fn shape([xi, ..]: [f64; 3]) -> PerNode<f64> {
+    let mut values = [0.0; MAX_NODES];
+    values[..3].copy_from_slice(&[xi * (xi - 1.0) / 2.0, xi * (xi + 1.0) / 2.0, (1.0 - xi) * (1.0 + xi)]);
+    values
+}
+
+fn derivative([xi, ..]: [f64; 3]) -> PerNode<[f64; 3]> {
+    let mut slopes = [[0.0; 3]; MAX_NODES];
+    for (slope, value) in slopes.iter_mut().zip([xi - 0.5, xi + 0.5, -2.0 * xi]) {
+        slope[0] = value;
+    }
+    slopes
+}

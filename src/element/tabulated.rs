@@ -1,0 +1,74 @@
+//! Shape functions tabulated once, for all elements of a mesh; extrapolation from quadrature points to nodes.
+
+use nalgebra::DMatrix;
+
+use super::{PerNode, QuadraturePoint, ReferenceElement, Shape};
+
+/// The shape functions at one reference point.
+#[derive(Clone, Copy, Debug)]
+pub struct TabulatedPoint {
+    /// Quadrature weight; zero where the point belongs to no rule.
+    pub weight: f64,
+    /// Values.
+    pub shape: PerNode<f64>,
+    /// Derivatives with respect to the reference coordinates.
+    pub derivative: PerNode<[f64; 3]>,
+}
+
+/// The shape functions of an element at the points of a quadrature rule, at its nodes and its centroid.
+#[derive(Clone, Debug)]
+pub struct Tabulated {
+    /// The element.
+    pub reference: &'static ReferenceElement,
+    /// At the quadrature points.
+    pub points: Vec<TabulatedPoint>,
+    /// At the nodes.
+    pub nodes: Vec<TabulatedPoint>,
+    /// At the centroid.
+    pub centroid: TabulatedPoint,
+    rule: &'static [QuadraturePoint],
+}
+
+impl Tabulated {
+    /// Tabulates `reference` at the points of its quadrature; of that for bodies of revolution where `revolved`.
+    pub fn new(reference: &'static ReferenceElement, revolved: bool) -> Self {
+        let rule = if revolved { reference.quadrature_revolved } else { reference.quadrature };
+        let at = |at: [f64; 3], weight| TabulatedPoint {
+            weight,
+            shape: (reference.shape)(at),
+            derivative: (reference.derivative)(at),
+        };
+        Tabulated {
+            reference,
+            points: rule.iter().map(|point| at(point.at, point.weight)).collect(),
+            nodes: reference.nodes.iter().map(|&node| at(node, 0.0)).collect(),
+            centroid: at(reference.centroid, 0.0),
+            rule,
+        }
+    }
+
+    /// The weights that carry values at the quadrature points to the nodes, n_nodes x n_points: the least-squares fit of a
+    /// linear function (multilinear on a product of intervals; a constant where one point is all there is).
+    pub fn extrapolation(&self) -> DMatrix<f64> {
+        let basis = |at: [f64; 3]| -> Vec<f64> {
+            let dimension = self.reference.dimension;
+            match self.reference.form {
+                _ if self.rule.len() <= dimension => vec![1.0],
+                Shape::Simplex => [1.0].into_iter().chain(at.into_iter().take(dimension)).collect(),
+                Shape::Product => (0..1_usize << dimension)
+                    .map(|choice| (0..dimension).filter(|axis| choice >> axis & 1 == 1).map(|axis| at[axis]).product())
+                    .collect(),
+            }
+        };
+        let rows = |points: Vec<[f64; 3]>| {
+            let rows: Vec<Vec<f64>> = points.into_iter().map(basis).collect();
+            DMatrix::from_fn(rows.len(), rows.first().map_or(0, Vec::len), |i, j| rows[i][j])
+        };
+        let at_points = rows(self.rule.iter().map(|point| point.at).collect());
+        let at_nodes = rows(self.reference.nodes.to_vec());
+        // The basis is independent on every rule here; an inverse that failed would leave the mean value.
+        let mean = || DMatrix::from_element(at_nodes.nrows(), at_points.nrows(), 1.0 / at_points.nrows() as f64);
+        let normal = at_points.transpose() * &at_points;
+        normal.try_inverse().map_or_else(mean, |inverse| &at_nodes * inverse * at_points.transpose())
+    }
+}

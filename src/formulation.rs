@@ -1,0 +1,92 @@
+//! What a model leaves out: the smallest space that holds its physics.
+
+use std::f64::consts::TAU;
+
+use crate::error::Error;
+
+/// The dimension of a model and what happens in the directions that it leaves out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Formulation {
+    /// A bar along x; no stress across it.
+    Bar {
+        /// Cross-section, positive, in area.
+        area: f64,
+    },
+    /// No strain across the plane: a long body.
+    PlaneStrain {
+        /// Depth across the plane, positive, in length.
+        thickness: f64,
+    },
+    /// No stress across the plane: a thin body.
+    PlaneStress {
+        /// Depth across the plane, positive, in length.
+        thickness: f64,
+    },
+    /// A body of revolution about the y axis, x being the radius, `x >= 0`, without twist.
+    ///
+    /// Loads, forces, stiffness and areas are those of the full circle: integrals carry the factor `2 pi x`.
+    Axisymmetric,
+    /// Three dimensions.
+    Space,
+}
+
+impl Formulation {
+    /// Checks area or thickness.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] where it is not positive and finite.
+    pub fn check(&self) -> Result<(), Error> {
+        let (name, value) = match *self {
+            Formulation::Bar { area } => ("area", area),
+            Formulation::PlaneStrain { thickness } | Formulation::PlaneStress { thickness } => ("thickness", thickness),
+            Formulation::Axisymmetric | Formulation::Space => return Ok(()),
+        };
+        if value.is_normal() && value > 0.0 {
+            Ok(())
+        } else {
+            Err(Error::Setting { name, value, allowed: "positive and finite" })
+        }
+    }
+
+    /// Number of coordinates, and of dofs per node.
+    pub fn dimension(&self) -> usize {
+        match self {
+            Formulation::Bar { .. } => 1,
+            Formulation::PlaneStrain { .. } | Formulation::PlaneStress { .. } | Formulation::Axisymmetric => 2,
+            Formulation::Space => 3,
+        }
+    }
+
+    /// In words, as `plane strain`.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Formulation::Bar { .. } => "a bar",
+            Formulation::PlaneStrain { .. } => "plane strain",
+            Formulation::PlaneStress { .. } => "plane stress",
+            Formulation::Axisymmetric => "an axisymmetric body",
+            Formulation::Space => "space",
+        }
+    }
+
+    /// Is it a body of revolution?
+    pub fn is_axisymmetric(&self) -> bool {
+        matches!(self, Formulation::Axisymmetric)
+    }
+
+    /// What a unit of length, area or volume of the model stands for, at the coordinate `x`: cross-section, thickness,
+    /// the circumference `2 pi x`, or 1.
+    #[inline]
+    pub fn measure(&self, x: f64) -> f64 {
+        match *self {
+            Formulation::Bar { area } => area,
+            Formulation::PlaneStrain { thickness } | Formulation::PlaneStress { thickness } => thickness,
+            Formulation::Axisymmetric => TAU * x,
+            Formulation::Space => 1.0,
+        }
+    }
+
+    /// Can the material's volume be kept by force? Not where the body is free to move across.
+    pub fn can_lock(&self) -> bool {
+        !matches!(self, Formulation::Bar { .. } | Formulation::PlaneStress { .. })
+    }
+}

@@ -1,0 +1,117 @@
+//! One axis of a structured mesh: breakpoints, divisions, gradings.
+
+use super::MAX_NODES;
+
+/// One axis of a structured mesh: intervals between breakpoints, each divided into cells of constant growth.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// Breakpoints, at least two, increasing, in the unit of length.
+    pub points: Vec<f64>,
+    /// Cells of each interval, at least one; one entry fewer than `points`.
+    pub divisions: Vec<usize>,
+    /// Last cell size over first cell size of each interval, positive; empty for cells of equal size.
+    pub ratios: Vec<f64>,
+}
+
+/// An axis that describes no mesh: the field at fault, as `divisions[0]`, and what is wrong with it.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{field}: {message}")]
+pub struct AxisError {
+    /// The field, with its index where it has one.
+    pub field: String,
+    /// What is wrong, and what is allowed.
+    pub message: String,
+}
+
+impl Axis {
+    /// The coordinates of the mesh lines, strictly increasing; breakpoints are met exactly.
+    ///
+    /// # Errors
+    /// [`AxisError`] for fewer than two points, points that do not increase, lengths that do not fit, zero
+    /// divisions, a ratio that is not positive, more than [`MAX_NODES`] lines, cells so small that two lines fall
+    /// together.
+    pub fn coordinates(&self) -> Result<Vec<f64>, AxisError> {
+        let lines = self.check()?;
+        let mut coordinates = Vec::with_capacity(lines);
+        for (interval, ends) in self.points.windows(2).enumerate() {
+            let (cells, length) = (self.divisions[interval], ends[1] - ends[0]);
+            let ratio = self.ratios.get(interval).copied().unwrap_or(1.0);
+            for cell in 0..cells {
+                let at = ends[0] + length * graded_fraction(cell, cells, ratio);
+                if coordinates.last().is_some_and(|&last| at <= last) {
+                    return Err(collapsed(interval));
+                }
+                coordinates.push(at);
+            }
+            if coordinates.last().is_some_and(|&last| ends[1] <= last) {
+                return Err(collapsed(interval));
+            }
+        }
+        coordinates.extend(self.points.last());
+        Ok(coordinates)
+    }
+
+    /// Checks the fields and counts the mesh lines.
+    fn check(&self) -> Result<usize, AxisError> {
+        let fail = |field: String, message: String| Err(AxisError { field, message });
+        let points = &self.points;
+        if points.len() < 2 {
+            let message = format!("an axis needs at least two points, but there are {}", points.len());
+            return fail("points".into(), message);
+        }
+        for (index, &point) in points.iter().enumerate() {
+            if !point.is_finite() {
+                return fail(format!("points[{index}]"), format!("{point} is not finite"));
+            }
+            if index > 0 && point <= points[index - 1] {
+                let message = format!("{point:?} does not lie beyond {:?}; points must increase", points[index - 1]);
+                return fail(format!("points[{index}]"), message);
+            }
+        }
+        if !(points[points.len() - 1] - points[0]).is_finite() {
+            return fail("points".into(), "the length of the axis is not finite".into());
+        }
+        let intervals = points.len() - 1;
+        if self.divisions.len() != intervals {
+            let found = self.divisions.len();
+            return fail("divisions".into(), format!("length {found}, but the points make {intervals} intervals"));
+        }
+        if !self.ratios.is_empty() && self.ratios.len() != intervals {
+            let found = self.ratios.len();
+            return fail("ratios".into(), format!("length {found}, but the points make {intervals} intervals"));
+        }
+        if let Some(index) = self.ratios.iter().position(|ratio| !(ratio.is_finite() && *ratio > 0.0)) {
+            let message =
+                format!("{:?} is not allowed: it must be positive (last cell size over first)", self.ratios[index]);
+            return fail(format!("ratios[{index}]"), message);
+        }
+        let mut lines: usize = 1;
+        for (index, &cells) in self.divisions.iter().enumerate() {
+            if cells == 0 {
+                return fail(format!("divisions[{index}]"), "0 cells; an interval needs at least 1".into());
+            }
+            lines = lines.saturating_add(cells);
+            if lines > MAX_NODES {
+                let message = format!("{cells} cells make more than the {MAX_NODES} nodes that are allowed");
+                return fail(format!("divisions[{index}]"), message);
+            }
+        }
+        Ok(lines)
+    }
+}
+
+fn collapsed(interval: usize) -> AxisError {
+    let message = "its cells are so small that two mesh lines fall together in double precision; \
+                   take fewer divisions or a ratio nearer to 1";
+    AxisError { field: format!("divisions[{interval}]"), message: message.into() }
+}
+
+/// Where line `cell` of `cells` lies, as a fraction of the interval: cell sizes grow by the constant factor
+/// q = ratio^(1/(cells-1)), so that the fraction is (q^cell - 1)/(q^cells - 1).
+fn graded_fraction(cell: usize, cells: usize, ratio: f64) -> f64 {
+    if ratio == 1.0 || cells == 1 {
+        return cell as f64 / cells as f64;
+    }
+    let growth = ratio.ln() / (cells - 1) as f64;
+    (growth * cell as f64).exp_m1() / (growth * cells as f64).exp_m1()
+}

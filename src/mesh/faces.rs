@@ -1,0 +1,68 @@
+//! Which element a facet belongs to.
+
+use std::collections::HashMap;
+
+use super::{Boundary, Mesh, fail};
+use crate::error::Error;
+
+/// The most nodes that a facet has.
+const MOST_NODES: usize = 4;
+
+/// The nodes of a facet in increasing order, padded at the end: the same for a face of any orientation.
+type Key = [usize; MOST_NODES];
+
+fn key(nodes: impl Iterator<Item = usize>) -> Key {
+    let mut key = [usize::MAX; MOST_NODES];
+    for (place, node) in key.iter_mut().zip(nodes) {
+        *place = node;
+    }
+    key.sort_unstable();
+    key
+}
+
+impl Mesh {
+    /// The element and its local face that each facet of a boundary is; the first one where the boundary lies between two
+    /// elements, `None` where the facet is no face of any element.
+    pub fn faces_of(&self, boundary: &Boundary) -> Vec<Option<(usize, usize)>> {
+        let mut places: HashMap<Key, Vec<usize>> = HashMap::with_capacity(boundary.facet_count());
+        let mut marked = vec![false; self.nodes().len()];
+        for (index, facet) in boundary.facets().enumerate() {
+            places.entry(key(facet.iter().copied())).or_default().push(index);
+            for &node in facet {
+                if let Some(mark) = marked.get_mut(node) {
+                    *mark = true;
+                }
+            }
+        }
+        let mut found = vec![None; boundary.facet_count()];
+        let faces = self.kind().reference().faces;
+        for (element, nodes) in self.elements().enumerate() {
+            // Most elements do not touch the boundary.
+            if !nodes.iter().any(|&node| marked[node]) {
+                continue;
+            }
+            for (face, local) in faces.iter().enumerate() {
+                if !local.iter().all(|&place| marked[nodes[place]]) {
+                    continue;
+                }
+                for &index in places.get(&key(local.iter().map(|&place| nodes[place]))).into_iter().flatten() {
+                    found[index].get_or_insert((element, face));
+                }
+            }
+        }
+        found
+    }
+
+    pub(super) fn check_facets(&self) -> Result<(), Error> {
+        for boundary in self.boundaries() {
+            if let Some(index) = self.faces_of(boundary).iter().position(Option::is_none) {
+                let facet: Vec<usize> = boundary.facets().nth(index).unwrap_or_default().to_vec();
+                return fail(format!(
+                    "boundary `{}`: facet {index} (nodes {facet:?}, from 0) is no face of any element",
+                    boundary.name
+                ));
+            }
+        }
+        Ok(())
+    }
+}

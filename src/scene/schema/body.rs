@@ -1,0 +1,133 @@
+//! Bodies and materials as they are written in a scene.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::super::parse::object;
+use super::one;
+
+/// The elastic body.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum BodySpec {
+    /// A rectangle with a structured mesh; its boundaries are `left`, `right`, `bottom`, `top`. In an axisymmetric model
+    /// its section.
+    Rectangle(#[serde(deserialize_with = "object")] RectangleSpec),
+    /// A bar along x; its boundaries are `left`, `right`.
+    Bar(#[serde(deserialize_with = "object")] BarSpec),
+    /// A box with a structured mesh; its boundaries are `left`, `right` (along x), `front`, `back` (along y), `bottom`,
+    /// `top` (along z).
+    Box(#[serde(deserialize_with = "object")] BoxSpec),
+}
+
+/// A bar along x.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BarSpec {
+    /// The axis along x.
+    #[serde(deserialize_with = "object")]
+    pub x: AxisSpec,
+    /// Cross-section, positive.
+    #[serde(default = "one")]
+    pub area: f64,
+}
+
+/// A rectangle: the product of two divided axes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RectangleSpec {
+    /// The axis along x.
+    #[serde(deserialize_with = "object")]
+    pub x: AxisSpec,
+    /// The axis along y.
+    #[serde(deserialize_with = "object")]
+    pub y: AxisSpec,
+    /// The element.
+    #[serde(default)]
+    pub element: ElementSpec,
+    /// How its stiffness is integrated.
+    #[serde(default)]
+    pub integration: IntegrationSpec,
+}
+
+/// A box: the product of three divided axes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BoxSpec {
+    /// The axis along x.
+    #[serde(deserialize_with = "object")]
+    pub x: AxisSpec,
+    /// The axis along y.
+    #[serde(deserialize_with = "object")]
+    pub y: AxisSpec,
+    /// The axis along z.
+    #[serde(deserialize_with = "object")]
+    pub z: AxisSpec,
+    /// The element.
+    #[serde(default)]
+    pub element: SolidElementSpec,
+    /// How its stiffness is integrated.
+    #[serde(default)]
+    pub integration: IntegrationSpec,
+}
+
+/// One axis of a structured mesh.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AxisSpec {
+    /// Breakpoints, at least two, increasing.
+    pub points: Vec<f64>,
+    /// Cells of each interval between breakpoints, at least 1.
+    pub divisions: Vec<usize>,
+    /// Last cell size over first cell size of each interval, positive; all 1 where left out.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub ratios: Vec<f64>,
+}
+
+/// The elements of the plane to choose from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ElementSpec {
+    /// Linear triangle.
+    T3,
+    /// Quadratic triangle.
+    T6,
+    /// Bilinear quadrilateral.
+    #[default]
+    Q4,
+    /// Quadratic quadrilateral of eight nodes.
+    Q8,
+}
+
+/// The elements of space to choose from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum SolidElementSpec {
+    /// Linear tetrahedron.
+    Tet4,
+    /// Trilinear hexahedron.
+    #[default]
+    Hex8,
+}
+
+/// How the stiffness of an element is integrated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum IntegrationSpec {
+    /// All of it at all quadrature points.
+    #[default]
+    Standard,
+    /// The dilatation is replaced by its mean over the element: for `q4` and `hex8`, which then do not lock as Poisson's ratio
+    /// nears 0.5.
+    MeanDilatation,
+}
+
+/// An isotropic linear elastic material.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MaterialSpec {
+    /// Young's modulus, positive, in force per area.
+    pub young: f64,
+    /// Poisson's ratio: above -1, at most 0.5 in a bar and in plane stress, below 0.5 elsewhere.
+    pub poisson: f64,
+}

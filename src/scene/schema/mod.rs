@@ -1,0 +1,120 @@
+//! The scene as it is written: typed, with defaults, unknown fields refused.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+mod body;
+mod condition;
+mod obstacle;
+
+pub use body::{
+    AxisSpec, BarSpec, BodySpec, BoxSpec, ElementSpec, IntegrationSpec, MaterialSpec, RectangleSpec, SolidElementSpec,
+};
+pub use condition::{ForceSpec, LoadSpec, Place, PressureSpec, SupportSpec, TractionSpec};
+pub use obstacle::{
+    Approach, CircleSpec, ObstacleSpec, ParabolaSpec, PlaneSpec, Rule, ShapeSpec, TableSpec, WedgeSpec,
+};
+
+use super::parse::{object, objects};
+
+/// A contact scene: one elastic body, its supports and loads, and the rigid obstacles around it.
+///
+/// Any consistent system of units. Points and vectors have as many entries as the model has coordinates: [x] in a bar,
+/// [x, y] in the plane and about an axis, [x, y, z] in space.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Scene {
+    /// Address of the JSON Schema of scenes, for editors.
+    #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
+    pub schema: Option<String>,
+    /// What the scene shows.
+    #[serde(default)]
+    pub title: String,
+    /// Names of the units, for tables and pictures.
+    #[serde(default, deserialize_with = "object")]
+    pub units: Units,
+    /// The space that holds the physics, and what happens in the directions that it leaves out.
+    #[serde(default)]
+    pub model: ModelSpec,
+    /// Depth across the plane, positive; only in plane strain and plane stress.
+    #[serde(default = "one")]
+    pub thickness: f64,
+    /// The elastic body.
+    pub body: BodySpec,
+    /// Its material.
+    #[serde(deserialize_with = "object")]
+    pub material: MaterialSpec,
+    /// Prescribed displacements.
+    #[serde(default, deserialize_with = "objects")]
+    pub supports: Vec<SupportSpec>,
+    /// External loads; they add up.
+    #[serde(default)]
+    pub loads: Vec<LoadSpec>,
+    /// Rigid, frictionless obstacles.
+    #[serde(default, deserialize_with = "objects")]
+    pub obstacles: Vec<ObstacleSpec>,
+    /// Shift of every obstacle along its own approach direction; negative moves it towards, and into, the body.
+    #[serde(default)]
+    pub gap: f64,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+/// Names of the units.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Units {
+    /// Unit of length, as `m`.
+    pub length: String,
+    /// Unit of force, as `N`.
+    pub force: String,
+}
+
+impl Default for Units {
+    fn default() -> Self {
+        Units { length: "m".into(), force: "N".into() }
+    }
+}
+
+impl Units {
+    /// The unit of pressure and stress: `Pa`, `MPa`, or force over length squared.
+    pub fn pressure(&self) -> String {
+        match (self.force.as_str(), self.length.as_str()) {
+            ("N", "m") => "Pa".into(),
+            ("N", "mm") => "MPa".into(),
+            (force, length) => format!("{force}/{length}²"),
+        }
+    }
+}
+
+/// The space of a model, and what happens in the directions that it leaves out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ModelSpec {
+    /// A bar along x, free across.
+    Bar,
+    /// No strain across the plane: a long body.
+    #[default]
+    PlaneStrain,
+    /// No stress across the plane: a thin body.
+    PlaneStress,
+    /// A body of revolution about the y axis, x being the radius; forces are those of the full circle.
+    Axisymmetric,
+    /// Three dimensions.
+    Space,
+}
+
+impl ModelSpec {
+    /// As it is written.
+    pub fn name(self) -> &'static str {
+        match self {
+            ModelSpec::Bar => "bar",
+            ModelSpec::PlaneStrain => "plane-strain",
+            ModelSpec::PlaneStress => "plane-stress",
+            ModelSpec::Axisymmetric => "axisymmetric",
+            ModelSpec::Space => "space",
+        }
+    }
+}
