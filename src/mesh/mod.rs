@@ -5,14 +5,24 @@ mod bar;
 mod boundary;
 mod cuboid;
 mod faces;
+mod half_ball;
+mod half_disc;
+mod lattice;
+mod outline;
 mod rectangle;
+mod ring;
+mod zone;
 
 pub use crate::element::{ElementKind, FacetKind};
 pub use axis::{Axis, AxisError};
 pub use bar::bar;
 pub use boundary::Boundary;
 pub use cuboid::cuboid;
+pub use half_ball::half_ball;
+pub use half_disc::half_disc;
 pub use rectangle::rectangle;
+pub use ring::ring;
+pub use zone::Zone;
 
 use crate::error::Error;
 
