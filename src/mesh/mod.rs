@@ -5,6 +5,7 @@ mod bar;
 mod boundary;
 mod cuboid;
 mod faces;
+pub mod gmsh;
 mod half_ball;
 mod half_disc;
 mod lattice;
