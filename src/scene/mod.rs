@@ -18,6 +18,7 @@ mod body;
 mod build;
 mod condition;
 mod explain;
+mod mesh;
 mod model;
 mod motion;
 mod obstacle;
@@ -30,9 +31,10 @@ pub use model::Model;
 pub use obstacle::Obstacle;
 pub use rows::ContactRow;
 pub use schema::{
-    Approach, AxisSpec, BarSpec, BodySpec, BoxSpec, CircleSpec, ElementSpec, ForceSpec, IntegrationSpec, LoadSpec,
-    MaterialSpec, ModelSpec, ObstacleSpec, ParabolaSpec, Place, PlaneSpec, PressureSpec, RectangleSpec, Rule, Scene,
-    ShapeSpec, SolidElementSpec, SupportSpec, TableSpec, TractionSpec, Units, WedgeSpec,
+    Approach, AxisSpec, BarSpec, BodySpec, BoxSpec, CircleSpec, ElementSpec, ForceSpec, GmshSpec, HalfBallSpec,
+    HalfDiscSpec, IntegrationSpec, LoadSpec, MaterialSpec, ModelSpec, ObstacleSpec, ParabolaSpec, Place, PlaneSpec,
+    PressureSpec, RectangleSpec, RingSpec, Rule, Scene, ShapeSpec, SolidElementSpec, SupportSpec, SymmetrySpec,
+    TableSpec, TractionSpec, Units, WedgeSpec, ZoneSpec,
 };
 pub use warning::Warning;
 

@@ -34,7 +34,7 @@ impl Scene {
         Ok(scene)
     }
 
-    /// Reads a scene from a JSON file.
+    /// Reads a scene from a JSON file; names of further files in it start from its folder.
     ///
     /// # Errors
     /// [`Error::File`] for a file that cannot be read, and as [`Scene::from_json`].
@@ -45,7 +45,8 @@ impl Scene {
             path: path.into(),
             source,
         })?;
-        Self::from_json(&text, &path.display().to_string())
+        let scene = Self::from_json(&text, &path.display().to_string())?;
+        Ok(Scene { folder: path.parent().map(Path::to_path_buf), ..scene })
     }
 
     /// The JSON Schema of scenes.
