@@ -121,6 +121,14 @@ pub enum Error {
         /// The range.
         allowed: &'static str,
     },
+    /// A step that needs the problem condensed.
+    #[error(
+        "{step} needs a problem that is condensed onto its contact dofs and held by its supports; solve point by point"
+    )]
+    NotCondensed {
+        /// Which step.
+        step: &'static str,
+    },
     /// A library step that failed for a reason of its own.
     #[error("{step} failed: {reason}")]
     Numerical {
@@ -170,7 +178,7 @@ pub enum Error {
     /// A file or folder that cannot be read or written.
     #[error("cannot {action} {}: {source}", path.display())]
     File {
-        /// `read` or `write`.
+        /// `read`, `write` or `make the folder`.
         action: &'static str,
         /// Which one.
         path: PathBuf,

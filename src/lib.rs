@@ -45,14 +45,15 @@
 //! |---|---|
 //! | 0 | [`analytical`], [`solution`] |
 //! | 1 | [`error`] |
-//! | 2 | [`sparse`], [`mesh`], [`element`], [`material`] |
-//! | 3 | [`problem`], [`body`] |
-//! | 4 | [`transform`], [`method`], [`assembly`], [`recovery`] |
-//! | 5 | [`mod@solve`] |
-//! | 6 | [`scene`], [`matrix_market`] |
-//! | 7 | [`study`] |
-//! | 8 | [`output`] |
-//! | 9 | [`cli`] |
+//! | 2 | [`sparse`], [`element`], [`formulation`] |
+//! | 3 | [`mesh`], [`material`] |
+//! | 4 | [`problem`], [`body`] |
+//! | 5 | [`transform`], [`method`], [`assembly`], [`recovery`] |
+//! | 6 | [`mod@solve`] |
+//! | 7 | [`scene`], [`matrix_market`] |
+//! | 8 | [`study`] |
+//! | 9 | [`output`] |
+//! | 10 | [`cli`] |
 
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
@@ -82,5 +83,5 @@ pub use error::Error;
 pub use problem::ContactProblem;
 pub use scene::{Model, Scene};
 pub use solution::{Certificate, ContactSet, Solution};
-pub use solve::{Method, Settings, solve, solve_qp};
+pub use solve::{Condense, Method, Path, Prepared, Settings, solve, solve_qp};
 pub use sparse::{SparseMatrix, SymmetricMatrix};

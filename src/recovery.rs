@@ -13,8 +13,8 @@ pub struct Stress {
     pub sigma_xx: f64,
     /// Normal stress along y.
     pub sigma_yy: f64,
-    /// Normal stress along z: `nu (sigma_xx + sigma_yy)` in plane strain, 0 in plane stress, the hoop stress of a body of
-    /// revolution.
+    /// Normal stress along z: `nu (sigma_xx + sigma_yy)` in plane strain, 0 in plane stress, the hoop stress of a body
+    /// of revolution.
     pub sigma_zz: f64,
     /// Shear stress between x and y.
     pub sigma_xy: f64,
@@ -70,8 +70,8 @@ pub struct StressField {
 
 /// The stress in `body` at the nodal displacement `displacement` (length `dim * n_nodes`, order `[x_0, y_0, ...]`).
 ///
-/// Exact where the displacement is linear. In each element the nodes take the linear function (multilinear in quadrilaterals
-/// and hexahedra) that fits the stresses at the quadrature points by least squares.
+/// Exact where the displacement is linear. In each element the nodes take the linear function (multilinear in
+/// quadrilaterals and hexahedra) that fits the stresses at the quadrature points by least squares.
 ///
 /// # Errors
 /// [`Error::Length`] where the displacement does not have `dim` entries per node.

@@ -117,9 +117,18 @@ impl Certificate {
     }
 
     /// The condition that is worst, and its value; a value that is not a number is the worst of all.
+    ///
+    /// The square of the energy bound, where there is one, stands beside the conditions, as [`meets`](Self::meets)
+    /// holds it against the tolerance.
     pub fn worst(&self) -> (&'static str, f64) {
         let rank = |value: f64| if value.is_nan() { f64::INFINITY } else { value };
-        self.conditions().into_iter().max_by(|a, b| rank(a.1).total_cmp(&rank(b.1))).unwrap_or(("stationarity", 0.0))
+        let bound = self.energy_error_bound;
+        let squared = (!bound.is_infinite()).then_some(("energy_error_bound squared", bound * bound));
+        squared
+            .into_iter()
+            .chain(self.conditions())
+            .max_by(|a, b| rank(a.1).total_cmp(&rank(b.1)))
+            .unwrap_or(("stationarity", 0.0))
     }
 
     /// Do all conditions hold to `tolerance`, and does the energy bound, where there is one, agree?
@@ -168,6 +177,8 @@ pub struct Solution {
     pub history: Vec<Iteration>,
     /// How far the answer can be trusted.
     pub certificate: Certificate,
+    /// Unknowns that the method worked on; fewer than all where the problem was condensed.
+    pub condensed_dofs: usize,
     /// What it cost.
     pub seconds: Seconds,
 }

@@ -325,3 +325,33 @@ fn bars_in_series_keep_their_digits_over_twelve_decades_of_stiffness() {
         }
     }
 }
+
+/// A sphere of radius 1 on a block of revolution of quadratic elements: the node on the axis has no tributary area.
+#[test]
+fn pressure_on_the_axis_of_revolution_is_finite_and_the_largest() {
+    let scene = |element: &str| {
+        model(&json!({
+            "model": "axisymmetric",
+            "body": {"rectangle": {
+                "x": {"points": [0, 0.3, 2], "divisions": [12, 10], "ratios": [1, 10]},
+                "y": {"points": [-2, -0.3, 0], "divisions": [10, 10], "ratios": [0.1, 0.6]},
+                "element": element,
+            }},
+            "material": {"young": 1.0, "poisson": 0.3},
+            "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}, {"on": {"boundary": "left"}, "x": 0}],
+            "obstacles": [{"boundary": "top", "approach": "+y", "shape": {"circle": {"apex": [0, 0], "radius": 1}}}],
+            "gap": -0.01,
+        }))
+    };
+    let peaks = ["q4", "q8", "t6"].map(|element| {
+        let model = scene(element);
+        let solution = answer(&model, Method::Qp);
+        let pressure = model.pressure(&solution.multiplier).unwrap();
+        let axis = model.rows().iter().position(|row| model.mesh().nodes()[row.node][0] == 0.0).unwrap();
+        let peak = pressure.iter().copied().fold(0.0, f64::max);
+        assert!(pressure[axis] > 0.9 * peak, "{element}: {} of {peak}", pressure[axis]);
+        peak
+    });
+    // Hertz: p0 = 2 E* a / (pi R) = 0.07 with a = 0.1; the coarse mesh and the finite block cost some per cent.
+    assert!(peaks.iter().all(|peak| (peak / 0.07 - 1.0).abs() < 0.1), "{peaks:?}");
+}

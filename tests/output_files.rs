@@ -124,13 +124,12 @@ fn place_that_cannot_be_written_is_reported_with_its_path_and_left_as_it_is() {
     let occupied = folder.path().join("file");
     std::fs::write(&occupied, b"kept").unwrap();
     // A file where a folder should be, and a folder where a file should be: refused whoever asks.
-    let inside = occupied.join("picture.svg");
-    for path in [inside.as_path(), folder.path()] {
+    let refused = |path: &Path, sentence: String| {
         let error = write_atomically(path, b"lost").unwrap_err();
-        let sentence = error.to_string();
-        assert!(sentence.starts_with(&format!("cannot write {}: ", path.display())), "{sentence}");
-        assert!(matches!(error, Error::File { action: "write", .. }));
-    }
+        assert!(matches!(error, Error::File { .. }) && error.to_string().starts_with(&sentence), "{error}");
+    };
+    refused(&occupied.join("picture.svg"), format!("cannot make the folder {}: there is a file", occupied.display()));
+    refused(folder.path(), format!("cannot write {}: ", folder.path().display()));
     assert_eq!(std::fs::read(&occupied).unwrap(), b"kept");
     assert_eq!(names(folder.path()), ["file"]);
     assert!(write_picture(&occupied, "picture", &Drawing::new(3.0, 3.0)).is_err());

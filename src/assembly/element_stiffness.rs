@@ -1,6 +1,5 @@
-//! The stiffness of one element by the isotropic block formula:
-//! `K_ab[i][j] = sum_q w (lambda d_a[i] d_b[j] + mu g_a[j] g_b[i] + mu delta_ij g_a . g_b)`, g = grad N, d the dilatation of
-//! a unit displacement.
+//! The stiffness of one element by the isotropic block formula: `K_ab[i][j] = sum_q w (lambda d_a[i] d_b[j] + mu g_a[j]
+//! g_b[i] + mu delta_ij g_a . g_b)`, g = grad N, d the dilatation of a unit displacement.
 
 use crate::body::{ElasticBody, Integration};
 use crate::element::{Cell, MAX_NODES, Tabulated};

@@ -5,8 +5,8 @@ use crate::error::Error;
 
 /// The nodal forces (length `dim * n_nodes`, in force) that hold the body in the nodal displacement `displacement`.
 ///
-/// Computed from the strains, element by element: a rigid translation gives exactly zero, but for the radial one of a body
-/// of revolution, which is none.
+/// Computed from the strains, element by element: a rigid translation gives exactly zero, but for the radial one of a
+/// body of revolution, which is none.
 ///
 /// # Errors
 /// [`Error::Length`] where the displacement does not have `dim` entries per node.

@@ -9,14 +9,14 @@ pub fn add_traction(body: &ElasticBody, boundary: &Boundary, traction: [f64; 3],
     add_traction_field(body, boundary, |_, _| traction, load);
 }
 
-/// Adds to the nodal load (length `dim * n_nodes`) a pressure (force per area) on a boundary: positive pushes against the
-/// outward normal.
+/// Adds to the nodal load (length `dim * n_nodes`) a pressure (force per area) on a boundary: positive pushes against
+/// the outward normal.
 pub fn add_pressure(body: &ElasticBody, boundary: &Boundary, pressure: f64, load: &mut [f64]) {
     add_traction_field(body, boundary, |_, normal| normal.map(|component| -pressure * component), load);
 }
 
-/// Adds to the nodal load (length `dim * n_nodes`) the traction `field(point, outward unit normal)` (force per area) on a
-/// boundary, by the quadrature of its facets.
+/// Adds to the nodal load (length `dim * n_nodes`) the traction `field(point, outward unit normal)` (force per area) on
+/// a boundary, by the quadrature of its facets.
 pub fn add_traction_field(
     body: &ElasticBody,
     boundary: &Boundary,
@@ -36,8 +36,8 @@ pub fn add_body_force(body: &ElasticBody, force: [f64; 3], load: &mut [f64]) {
     add_body_force_field(body, |_| force, load);
 }
 
-/// Adds to the nodal load (length `dim * n_nodes`) the body force `field(point)` (force per volume), by the quadrature of
-/// the stiffness.
+/// Adds to the nodal load (length `dim * n_nodes`) the body force `field(point)` (force per volume), by the quadrature
+/// of the stiffness.
 pub fn add_body_force_field(body: &ElasticBody, field: impl Fn([f64; 3]) -> [f64; 3], load: &mut [f64]) {
     let table = body.tabulated();
     for (nodes, cell) in body.cells() {

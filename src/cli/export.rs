@@ -1,7 +1,8 @@
 //! `signorini export`: the problem of a scene as Matrix Market files.
 
-use super::Outcome;
+use super::input::warnings;
 use super::options::Export;
+use super::{Outcome, warn};
 use crate::error::Error;
 use crate::matrix_market;
 use crate::output::write_files;
@@ -9,6 +10,7 @@ use crate::scene::Scene;
 
 pub(super) fn run(options: &Export) -> Result<Outcome, Error> {
     let model = Scene::read(&options.scene)?.build()?;
+    warn(&warnings(&model));
     let problem = model.problem();
     write_files(&options.directory, &matrix_market::problem_files(problem))?;
     let text = format!(

@@ -33,8 +33,7 @@ impl Input {
             (title, UnitNames::default(), Content::Directory(matrix_market::read_problem(path)?))
         } else {
             let model = Scene::read(path)?.build()?;
-            let title = if model.title().is_empty() { path.display().to_string() } else { model.title().to_string() };
-            (title, unit_names(&model), Content::Scene(Box::new(model)))
+            (scene_title(&model, path), unit_names(&model), Content::Scene(Box::new(model)))
         };
         Ok(Input { title, units, assemble_seconds: clock.elapsed().as_secs_f64(), content })
     }
@@ -64,13 +63,23 @@ impl Input {
         }
     }
 
-    /// The warnings of the scene, one line each.
+    /// The warnings of the scene, one line each; none of a problem directory.
     pub fn warnings(&self) -> String {
         match &self.content {
-            Content::Scene(model) => model.warnings().iter().map(|warning| format!("warning: {warning}\n")).collect(),
+            Content::Scene(model) => warnings(model),
             Content::Directory(_) => String::new(),
         }
     }
+}
+
+/// The title of a scene, or its file where it has none.
+pub(super) fn scene_title(model: &Model, path: &Path) -> String {
+    if model.title().is_empty() { path.display().to_string() } else { model.title().to_string() }
+}
+
+/// The warnings of a scene, one line each.
+pub(super) fn warnings(model: &Model) -> String {
+    model.warnings().iter().map(|warning| format!("warning: {warning}\n")).collect()
 }
 
 pub(super) fn unit_names(model: &Model) -> UnitNames {

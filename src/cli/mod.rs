@@ -15,6 +15,7 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use crate::error::Error;
+use crate::output::printable;
 use crate::scene::Scene;
 use options::{Arguments, Command, Format};
 
@@ -53,10 +54,11 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Schema => Ok(Outcome::certified(format!("{:#}\n", Scene::json_schema()))),
     };
     let outcome = outcome.unwrap_or_else(|error| {
-        warn(&format!("error: {error}\n"));
+        let message = sentence(&error);
+        warn(&format!("error: {message}\n"));
         let ending = ending_of(&error);
         let text = match format {
-            Format::Json => format!("{:#}\n", failure_json(&error)),
+            Format::Json => format!("{:#}\n", failure_json(&error, &message)),
             Format::Text => String::new(),
         };
         Outcome { text, ending }
@@ -86,6 +88,20 @@ impl Outcome {
     }
 }
 
+/// More characters than this of a message are left out of its middle: a file may repeat megabytes in it.
+const LONGEST_SENTENCE: usize = 800;
+
+/// The message of an error on one line of bearable length.
+fn sentence(error: &Error) -> String {
+    let message: Vec<char> = printable(&error.to_string()).chars().collect();
+    let half = LONGEST_SENTENCE / 2;
+    if message.len() <= LONGEST_SENTENCE {
+        return message.into_iter().collect();
+    }
+    let (head, tail) = (&message[..half], &message[message.len() - half..]);
+    head.iter().chain(&[' ', '.', '.', '.', ' ']).chain(tail).collect()
+}
+
 fn ending_of(error: &Error) -> Ending {
     match error {
         Error::Infeasible { .. } | Error::Unbounded { .. } | Error::UnderHeld { .. } => Ending::NoSolution,
@@ -94,13 +110,14 @@ fn ending_of(error: &Error) -> Ending {
     }
 }
 
-fn failure_json(error: &Error) -> serde_json::Value {
+fn failure_json(error: &Error, message: &str) -> serde_json::Value {
     let status = match error {
         Error::Infeasible { .. } => "infeasible",
         Error::Unbounded { .. } => "unbounded",
         Error::UnderHeld { .. } => "under_held",
         Error::NotConvex { .. } => "not_convex",
+        Error::Numerical { .. } => "failed",
         _ => "bad_input",
     };
-    serde_json::json!({ "status": status, "message": error.to_string() })
+    serde_json::json!({ "status": status, "message": message })
 }

@@ -107,15 +107,29 @@ fn parse_gaps(text: &str) -> Result<Gaps, String> {
         Ok(count) if (1..=MOST_GAPS).contains(&count) => count,
         _ => return Err(format!("`{count}` is not a whole number from 1 to {MOST_GAPS}; {form}")),
     };
-    Ok(Gaps { first: number(first)?, last: number(last)?, count })
+    let gaps = Gaps { first: number(first)?, last: number(last)?, count };
+    if count == 1 && gaps.first != gaps.last {
+        return Err(format!("one gap cannot be both {first} and {last}; {form}"));
+    }
+    Ok(gaps)
+}
+
+fn parse_tolerance(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
+        _ => Err("it must be a positive number, as 1e-9".to_string()),
+    }
 }
 
 /// What every solving command takes.
 #[derive(Debug, Args)]
 pub(super) struct Common {
     /// Relative tolerance of the certificate
-    #[arg(long, default_value_t = 1e-9, value_name = "T")]
+    #[arg(long, default_value = "1e-9", value_name = "T", allow_negative_numbers = true, value_parser = parse_tolerance)]
     pub tolerance: f64,
+    /// Let the methods work on all dofs instead of those of the contact rows
+    #[arg(long)]
+    pub no_condense: bool,
     /// Folder for pictures, fields and answers
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -143,7 +157,7 @@ pub(super) struct Verify {
     #[arg(long, value_name = "lambda.mtx")]
     pub multiplier: PathBuf,
     /// Relative tolerance of the certificate
-    #[arg(long, default_value_t = 1e-9, value_name = "T")]
+    #[arg(long, default_value = "1e-9", value_name = "T", allow_negative_numbers = true, value_parser = parse_tolerance)]
     pub tolerance: f64,
     /// Form of the report
     #[arg(long, value_enum, default_value_t = Format::Text)]

@@ -5,11 +5,12 @@ use super::options::{Common, Format, Solve};
 use super::{Outcome, warn};
 use crate::error::Error;
 use crate::output::{gallery, solve_json, solve_text, write_files};
-use crate::solve::{Method, Settings, solve};
+use crate::solve::{Condense, Method, Settings, solve};
 
 pub(super) fn settings(method: Method, common: &Common) -> Settings {
     let mut settings = Settings::with_method(method);
     settings.tolerance = common.tolerance;
+    settings.condense = if common.no_condense { Condense::Never } else { Condense::Auto };
     settings
 }
 
@@ -19,8 +20,9 @@ pub(super) fn run(options: &Solve) -> Result<Outcome, Error> {
     warn(&input.warnings());
     let solution = match solve(input.problem(), &settings(options.method.method(), common)) {
         Ok(solution) => solution,
-        Err(Error::NotCertified { solution, condition, value, tolerance }) => {
-            warn(&format!("not certified: {condition} is {value:.3e}, above the tolerance {tolerance:.1e}\n"));
+        Err(error @ Error::NotCertified { .. }) => {
+            warn(&format!("error: {error}\n"));
+            let Error::NotCertified { solution, .. } = error else { return Err(error) };
             *solution
         }
         Err(error) => return Err(input.explain(error)),

@@ -1,6 +1,6 @@
 //! `signorini sweep`: one scene at several gaps.
 
-use super::input::unit_names;
+use super::input::{scene_title, unit_names, warnings};
 use super::options::{Format, Sweep};
 use super::solve::settings;
 use super::{Outcome, warn};
@@ -13,17 +13,17 @@ use crate::study::{even_gaps, sweep};
 pub(super) fn run(options: &Sweep) -> Result<Outcome, Error> {
     let common = &options.common;
     let model = Scene::read(&options.scene)?.build()?;
-    model.warnings().iter().for_each(|warning| warn(&format!("warning: {warning}\n")));
+    warn(&warnings(&model));
     let gaps = even_gaps(options.gaps.first, options.gaps.last, options.gaps.count);
-    let points = sweep(&model, &gaps, &settings(Method::Auto, common))?;
-    let json = format!("{:#}\n", sweep_json(&points));
+    let swept = sweep(&model, &gaps, &settings(Method::Auto, common))?;
+    let json = format!("{:#}\n", sweep_json(&swept));
     if let Some(folder) = &common.out {
-        gallery::write_sweep(folder, &points)?;
+        gallery::write_sweep(folder, &swept)?;
         write_files(folder, &[("report.json", json.clone())])?;
     }
     let text = match common.format {
-        Format::Text => sweep_text(model.title(), &points, &unit_names(&model)),
+        Format::Text => sweep_text(&scene_title(&model, &options.scene), &swept, &unit_names(&model)),
         Format::Json => json,
     };
-    Ok(Outcome::judged(text, points.iter().all(|point| point.summary.is_certified())))
+    Ok(Outcome::judged(text, swept.points.iter().all(|point| point.summary.is_certified())))
 }

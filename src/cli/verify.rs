@@ -14,7 +14,7 @@ pub(super) fn run(options: &Verify) -> Result<Outcome, Error> {
     let certificate = problem.certify(&displacement, &multiplier)?;
     let verification = Verification::new(&certificate, &multiplier, ModelSize::of(&problem), options.tolerance);
     let text = match options.format {
-        Format::Text => verify_text(&options.directory.display().to_string(), &verification),
+        Format::Text => verify_text(&format!("Problem directory {}", options.directory.display()), &verification),
         Format::Json => format!("{:#}\n", verify_json(&verification)),
     };
     Ok(Outcome::judged(text, verification.is_certified()))

@@ -18,8 +18,9 @@ const NO_VOLUME: f64 = 1e-14;
 
 /// A reference cell with the coordinates of its nodes.
 ///
-/// The coordinates are kept relative to the first node and in a unit that is the power of two next to the cell's size: a
-/// change of the unit of length by a power of two changes no bit of what follows, and no size overflows on the way to it.
+/// The coordinates are kept relative to the first node and in a unit that is the power of two next to the cell's size:
+/// a change of the unit of length by a power of two changes no bit of what follows, and no size overflows on the way to
+/// it.
 #[derive(Clone, Copy, Debug)]
 pub struct Cell {
     reference: &'static ReferenceElement,

@@ -47,8 +47,8 @@ impl Tabulated {
         }
     }
 
-    /// The weights that carry values at the quadrature points to the nodes, n_nodes x n_points: the least-squares fit of a
-    /// linear function (multilinear on a product of intervals; a constant where one point is all there is).
+    /// The weights that carry values at the quadrature points to the nodes, n_nodes x n_points: the least-squares fit
+    /// of a linear function (multilinear on a product of intervals; a constant where one point is all there is).
     pub fn extrapolation(&self) -> DMatrix<f64> {
         let basis = |at: [f64; 3]| -> Vec<f64> {
             let dimension = self.reference.dimension;

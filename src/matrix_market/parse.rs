@@ -16,8 +16,21 @@ pub(super) struct Content {
     pub entries: Vec<(usize, usize, f64)>,
 }
 
+/// Words of a file that an error repeats are cut to this many characters.
+const LONGEST_EXCERPT: usize = 80;
+
+/// Which values a file may hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Values {
+    Finite,
+    /// Gaps: `inf` is a row without obstacle.
+    FiniteOrInfinite,
+}
+
 /// Parses `text`; `file` is named in errors.
-pub(super) fn parse(file: &Path, text: &str) -> Result<Content, Error> {
+pub(super) fn parse(file: &Path, text: &str, values: Values) -> Result<Content, Error> {
+    // Some editors put a byte order mark in front.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let fault = |line: usize, message: String| Error::FileSyntax { file: file.to_path_buf(), line, message };
     let mut lines = text.lines().enumerate().map(|(index, line)| (index + 1, line.trim()));
     let (_, header) = lines.next().ok_or_else(|| fault(1, "the file is empty".into()))?;
@@ -25,20 +38,24 @@ pub(super) fn parse(file: &Path, text: &str) -> Result<Content, Error> {
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     let ["%%matrixmarket", "matrix", layout, field, symmetry] = words[..] else {
         let expected = "%%MatrixMarket matrix coordinate|array real|integer general|symmetric";
-        return Err(fault(1, format!("the first line is `{header}`; it must be `{expected}`")));
+        return Err(fault(1, format!("the first line is `{}`; it must be `{expected}`", excerpt(header))));
     };
     let is_array = match layout {
         "coordinate" => false,
         "array" => true,
-        other => return Err(fault(1, format!("the layout is `{other}`; it must be `coordinate` or `array`"))),
+        other => {
+            return Err(fault(1, format!("the layout is `{}`; it must be `coordinate` or `array`", excerpt(other))));
+        }
     };
     if !["real", "integer", "double"].contains(&field) {
-        return Err(fault(1, format!("the field is `{field}`; it must be `real` or `integer`")));
+        return Err(fault(1, format!("the field is `{}`; it must be `real` or `integer`", excerpt(field))));
     }
     let symmetric = match symmetry {
         "general" => false,
         "symmetric" => true,
-        other => return Err(fault(1, format!("the symmetry is `{other}`; it must be `general` or `symmetric`"))),
+        other => {
+            return Err(fault(1, format!("the symmetry is `{}`; it must be `general` or `symmetric`", excerpt(other))));
+        }
     };
 
     let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('%'));
@@ -47,7 +64,7 @@ pub(super) fn parse(file: &Path, text: &str) -> Result<Content, Error> {
     let numbers: Option<Vec<usize>> = sizes.split_whitespace().map(|word| word.parse().ok()).collect();
     let numbers = numbers.filter(|numbers| numbers.len() == wanted).ok_or_else(|| {
         let names = if is_array { "rows and columns" } else { "rows, columns and entries" };
-        fault(line, format!("the sizes are `{sizes}`; they must be {wanted} whole numbers ({names})"))
+        fault(line, format!("the sizes are `{}`; they must be {wanted} whole numbers ({names})", excerpt(sizes)))
     })?;
     let (rows, columns) = (numbers[0], numbers[1]);
     if rows.max(columns) > LARGEST_DIMENSION {
@@ -62,7 +79,8 @@ pub(super) fn parse(file: &Path, text: &str) -> Result<Content, Error> {
         let mut places =
             (0..columns).flat_map(|column| (if symmetric { column } else { 0 }..rows).map(move |row| (row, column)));
         for (line, word) in lines {
-            let value = number(word).ok_or_else(|| fault(line, format!("`{word}` is not a number")))?;
+            let value = number(word).ok_or_else(|| fault(line, format!("`{}` is not a number", excerpt(word))))?;
+            values.check(value).map_err(|message| fault(line, message))?;
             let Some((row, column)) = places.next() else {
                 return Err(fault(line, format!("there are more values than the {rows} x {columns} announced")));
             };
@@ -81,7 +99,10 @@ pub(super) fn parse(file: &Path, text: &str) -> Result<Content, Error> {
                 _ => None,
             };
             let Some(((row, column), value)): Option<((usize, usize), f64)> = entry else {
-                return Err(fault(line, format!("`{content}` is not an entry; it must be `row column value`")));
+                return Err(fault(
+                    line,
+                    format!("`{}` is not an entry; it must be `row column value`", excerpt(content)),
+                ));
             };
             if row == 0 || column == 0 || row > rows || column > columns {
                 let message = format!("entry ({row}, {column}) lies outside {rows} x {columns} (indices from 1)");
@@ -96,6 +117,7 @@ pub(super) fn parse(file: &Path, text: &str) -> Result<Content, Error> {
             if entries.len() == announced {
                 return Err(fault(line, format!("there are more entries than the {announced} announced")));
             }
+            values.check(value).map_err(|message| fault(line, message))?;
             entries.push((row - 1, column - 1, value));
         }
         if entries.len() < announced {
@@ -104,6 +126,27 @@ pub(super) fn parse(file: &Path, text: &str) -> Result<Content, Error> {
         }
     }
     Ok(Content { rows, columns, symmetric, entries })
+}
+
+impl Values {
+    fn check(self, value: f64) -> Result<(), String> {
+        match self {
+            _ if value.is_finite() => Ok(()),
+            Values::FiniteOrInfinite if value == f64::INFINITY => Ok(()),
+            Values::Finite => Err(format!("the value is {value}; it must be finite")),
+            Values::FiniteOrInfinite => {
+                Err(format!("the value is {value}; it must be finite, or inf for a row without obstacle"))
+            }
+        }
+    }
+}
+
+/// The beginning of what stands in a file.
+fn excerpt(words: &str) -> String {
+    match words.char_indices().nth(LONGEST_EXCERPT) {
+        Some((end, _)) => format!("{}...", &words[..end]),
+        None => words.to_string(),
+    }
 }
 
 fn number(word: &str) -> Option<f64> {

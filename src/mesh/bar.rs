@@ -6,7 +6,8 @@ use crate::error::Error;
 /// The bar with nodes at `x` (coordinates, strictly increasing, at least two); its boundaries are `left` and `right`.
 ///
 /// # Errors
-/// [`Error::Mesh`] for fewer than two nodes, coordinates that do not increase, or more than [`MAX_NODES`](super::MAX_NODES).
+/// [`Error::Mesh`] for fewer than two nodes, coordinates that do not increase, or more than
+/// [`MAX_NODES`](super::MAX_NODES).
 pub fn bar(x: &[f64]) -> Result<Mesh, Error> {
     check_lines(&[("x", x)], 1)?;
     let cells = x.len() - 1;

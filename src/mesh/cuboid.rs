@@ -25,8 +25,9 @@ const SIDES: [(&str, usize, bool, [usize; 4]); 6] = [
 
 /// The mesh of the lines `x`, `y`, `z` (coordinates, strictly increasing, at least two each), of Hex8 or Tet4.
 ///
-/// Nodes are numbered along x first, then along y. Each cell is one Hex8 or six Tet4. The boundaries are `left`, `right`
-/// (along x), `front`, `back` (along y), `bottom` and `top` (along z), their facets counterclockwise seen from outside.
+/// Nodes are numbered along x first, then along y. Each cell is one Hex8 or six Tet4. The boundaries are `left`,
+/// `right` (along x), `front`, `back` (along y), `bottom` and `top` (along z), their facets counterclockwise seen from
+/// outside.
 ///
 /// # Errors
 /// [`Error::Mesh`] for an element that is not in space, fewer than two lines, lines that do not increase, or more than

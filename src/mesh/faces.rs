@@ -21,8 +21,8 @@ fn key(nodes: impl Iterator<Item = usize>) -> Key {
 }
 
 impl Mesh {
-    /// The element and its local face that each facet of a boundary is; the first one where the boundary lies between two
-    /// elements, `None` where the facet is no face of any element.
+    /// The element and its local face that each facet of a boundary is; the first one where the boundary lies between
+    /// two elements, `None` where the facet is no face of any element.
     pub fn faces_of(&self, boundary: &Boundary) -> Vec<Option<(usize, usize)>> {
         let mut places: HashMap<Key, Vec<usize>> = HashMap::with_capacity(boundary.facet_count());
         let mut marked = vec![false; self.nodes().len()];

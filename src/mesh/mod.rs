@@ -41,8 +41,8 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// The mesh of `nodes` (coordinates x, y, z in the unit of length; those beyond the dimension of the element are zero)
-    /// and elements of one `kind`.
+    /// The mesh of `nodes` (coordinates x, y, z in the unit of length; those beyond the dimension of the element are
+    /// zero) and elements of one `kind`.
     ///
     /// `connectivity` lists the nodes of element 0, then of element 1, ..., each in the order of [`ElementKind`], indices
     /// from 0.
@@ -68,6 +68,9 @@ impl Mesh {
             return fail("there are no elements; a mesh needs at least one".into());
         }
         let (nodes, dimension) = (&self.nodes, self.dimension());
+        if self.connectivity.is_empty() {
+            return fail("there are no elements; a mesh needs at least one".into());
+        }
         for (node, at) in nodes.iter().enumerate() {
             if !at.iter().all(|value| value.is_finite()) {
                 return fail(format!("node {node} lies at {:?}; coordinates must be finite", &at[..dimension]));

@@ -15,11 +15,11 @@
 
 use std::collections::HashSet;
 
-use super::{Holding, Outcome, SIGN_TOLERANCE, ScaledProblem, largest};
+use super::{Holding, Outcome, SIGN_TOLERANCE, ScaledProblem};
 use crate::error::Error;
 use crate::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
-use crate::sparse::Cholesky;
+use crate::sparse::{Cholesky, largest};
 
 /// Weight of the closed rows in K + w B_C'B_C, on a diagonal of order one: every correction of the multipliers gains
 /// about four digits, and the factorisation loses as many.

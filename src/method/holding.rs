@@ -1,21 +1,14 @@
 //! Does a set of closed rows hold the body? If not: along which direction is it free, and does the load drive it?
 
-use super::{ScaledProblem, largest};
+use super::ScaledProblem;
 use crate::error::Error;
 use crate::solution::ContactSet;
-use crate::sparse::{Cholesky, FactorError, SymmetricMatrix};
-
-/// A factorisation whose smallest pivot is above this (the diagonal is near one) is that of a held body; below it the
-/// smallest eigenvalue is looked at, because a singular matrix can pass a Cholesky factorisation by rounding.
-const SAFE_PIVOT: f64 = 1e-9;
-
-/// `norm(M x)` of a null vector x is rounding: this many units in the last place of the terms that cancel.
-const NULL_ROUNDING: f64 = 64.0 * f64::EPSILON;
+use crate::sparse::{Cholesky, FactorError, largest};
 
 /// Shifts with which a singular matrix is made definite, smallest first.
 const SHIFTS: [f64; 3] = [1e-12, 1e-10, 1e-8];
 
-/// Steps of inverse iteration: each gains several digits, since eigenvalues differ by many orders of magnitude.
+/// Projections of the load: each gains several digits, since eigenvalues differ by many orders of magnitude.
 const STEPS: usize = 5;
 
 /// Work of the load on a free motion below this, relative to the load, is rounding.
@@ -73,16 +66,8 @@ impl ScaledProblem<'_> {
     pub fn hold(&self, closed: &ContactSet, weight: f64) -> Result<Holding, Error> {
         let matrix = self.matrix(closed, weight, 0.0);
         match self.factor(&matrix) {
-            Ok(cholesky) if self.definite || cholesky.smallest_pivot() > SAFE_PIVOT => Ok(Holding::Held(cholesky)),
-            Ok(cholesky) => {
-                let softest = inverse_iteration(&cholesky, &seed(self.problem.dofs()));
-                if is_null(&matrix, &softest) {
-                    self.free_motion(closed, weight).map(Holding::Free)
-                } else {
-                    Ok(Holding::Held(cholesky))
-                }
-            }
-            Err(FactorError::NotPositiveDefinite) => self.free_motion(closed, weight).map(Holding::Free),
+            Ok(cholesky) if self.definite || cholesky.is_definite(&matrix) => Ok(Holding::Held(cholesky)),
+            Ok(_) | Err(FactorError::NotPositiveDefinite) => self.free_motion(closed, weight).map(Holding::Free),
             Err(error) => Err(error.into()),
         }
     }
@@ -102,8 +87,7 @@ impl ScaledProblem<'_> {
                 projected.iter_mut().for_each(|value| *value *= shift);
             }
             let driven = largest(&projected) > WORK_TOLERANCE * largest(load);
-            let mut direction =
-                if driven { projected } else { inverse_iteration(&cholesky, &seed(self.problem.dofs())) };
+            let mut direction = if driven { projected } else { cholesky.softest_vector() };
             let size = largest(&direction);
             direction.iter_mut().for_each(|value| *value /= size);
             return Ok(FreeMotion { direction, driven });
@@ -138,23 +122,4 @@ impl ScaledProblem<'_> {
         }
         None
     }
-}
-
-/// A start vector without symmetry, the same in every run.
-fn seed(dofs: usize) -> Vec<f64> {
-    (0..dofs).map(|i| 0.5 + (i as f64 * 0.618_033_988_749_895).fract()).collect()
-}
-
-fn inverse_iteration(cholesky: &Cholesky, start: &[f64]) -> Vec<f64> {
-    let mut x = start.to_vec();
-    for _ in 0..STEPS {
-        x = cholesky.solve(&x);
-        let size = largest(&x);
-        x.iter_mut().for_each(|value| *value /= size);
-    }
-    x
-}
-
-fn is_null(matrix: &SymmetricMatrix, x: &[f64]) -> bool {
-    largest(&matrix.mul(x)) <= NULL_ROUNDING * largest(&matrix.mul_abs(x))
 }

@@ -3,11 +3,11 @@
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 
-use super::{ScaledProblem, largest};
+use super::ScaledProblem;
 use crate::error::Error;
 use crate::problem::ContactProblem;
 use crate::solution::ContactSet;
-use crate::sparse::{SparseMatrix, exponent, ldexp};
+use crate::sparse::{SparseMatrix, exponent, largest, ldexp};
 
 /// A gap this many times the displacement is out of reach: the row is left out, where it would only spoil the scale.
 const OUT_OF_REACH: f64 = 1e12;

@@ -5,6 +5,7 @@
 pub mod active_set;
 mod holding;
 pub mod interior_point;
+pub mod parametric;
 pub mod penalty;
 
 use std::cell::Cell;
@@ -15,7 +16,7 @@ pub use holding::{FreeMotion, Holding};
 use crate::error::Error;
 use crate::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
-use crate::sparse::{AugmentedMatrix, Cholesky, FactorError, SymmetricMatrix};
+use crate::sparse::{AugmentedMatrix, Cholesky, FactorError, SymmetricMatrix, largest};
 
 /// Differences below this, relative to the largest displacement or multiplier, are rounding: the sign of a weakly
 /// active row is compared with it, or such a row would close and open for ever.
@@ -28,23 +29,17 @@ pub struct ScaledProblem<'a> {
     pub problem: &'a ContactProblem,
     /// Is K positive definite by itself?
     pub definite: bool,
-    augmented: AugmentedMatrix,
+    augmented: &'a AugmentedMatrix,
     factor_seconds: Cell<f64>,
 }
 
 impl<'a> ScaledProblem<'a> {
-    /// Analyses the pattern of K + B'B.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] when memory does not suffice.
-    pub fn new(problem: &'a ContactProblem, definite: bool) -> Result<Self, Error> {
-        let clock = Instant::now();
-        let augmented = AugmentedMatrix::new(problem.stiffness(), problem.contact())?;
-        let factor_seconds = Cell::new(clock.elapsed().as_secs_f64());
-        Ok(ScaledProblem { problem, definite, augmented, factor_seconds })
+    /// The problem with the analysed pattern of its K + B'B.
+    pub fn new(problem: &'a ContactProblem, augmented: &'a AugmentedMatrix, definite: bool) -> Self {
+        ScaledProblem { problem, definite, augmented, factor_seconds: Cell::new(0.0) }
     }
 
-    /// Seconds spent in analysis and factorisations so far.
+    /// Seconds spent in factorisations so far.
     pub fn factor_seconds(&self) -> f64 {
         self.factor_seconds.get()
     }
@@ -128,8 +123,4 @@ pub struct Outcome {
     pub settled: bool,
     /// Empty, or the variant that ended the loop, to be appended to the method's name.
     pub variant: &'static str,
-}
-
-pub(crate) fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |largest, value| value.abs().max(largest))
 }

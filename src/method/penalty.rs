@@ -12,10 +12,10 @@
 
 use std::collections::HashSet;
 
-use super::{Holding, Outcome, ScaledProblem, largest};
+use super::{Holding, Outcome, ScaledProblem};
 use crate::error::Error;
 use crate::solution::{ContactSet, Iteration};
-use crate::sparse::Cholesky;
+use crate::sparse::{Cholesky, largest};
 
 /// The penalty at which the two parts of the error meet: one over the square root of the machine precision.
 pub const BEST_PENALTY: f64 = 1e8;

@@ -15,15 +15,23 @@ use crate::error::Error;
 /// # Errors
 /// [`Error::File`] where the system refuses; an older file at `path` is then untouched, and nothing is left beside it.
 pub fn write_atomically(path: &Path, contents: &[u8]) -> Result<(), Error> {
-    write(path, contents).map_err(|source| Error::File { action: "write", path: path.to_owned(), source })
-}
-
-fn write(path: &Path, contents: &[u8]) -> io::Result<()> {
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
-    std::fs::create_dir_all(folder)?;
+    make_folder(folder).map_err(|source| Error::File { action: "make the folder", path: folder.to_owned(), source })?;
+    write(folder, path, contents).map_err(|source| Error::File { action: "write", path: path.to_owned(), source })
+}
+
+fn make_folder(folder: &Path) -> io::Result<()> {
+    std::fs::create_dir_all(folder).map_err(|error| match error.kind() {
+        // The system calls it existing, which is not what is wrong.
+        io::ErrorKind::AlreadyExists => io::Error::new(io::ErrorKind::NotADirectory, "there is a file of that name"),
+        _ => error,
+    })
+}
+
+fn write(folder: &Path, path: &Path, contents: &[u8]) -> io::Result<()> {
     let mut builder = tempfile::Builder::new();
     // A temporary file is private by default; what takes its place is an ordinary file, as the umask wants it.
     #[cfg(unix)]

@@ -13,7 +13,7 @@ use crate::recovery::Stress;
 use crate::scene::Model;
 use crate::solution::{ContactSet, Solution};
 use crate::solve::with_contact_set;
-use crate::study::{Comparison, SweepPoint};
+use crate::study::{Comparison, Sweep, SweepCorner, SweepPoint};
 
 /// More iterations than this are not drawn one by one.
 const MOST_ITERATIONS: usize = 12;
@@ -115,12 +115,13 @@ pub fn write_compare(folder: &Path, model: &Model, comparison: &Comparison) -> R
     Ok(())
 }
 
-/// Writes one picture for each gap (`gap-01`, ...), with common colours and scale, and force and contact width (outside
-/// the plane, area) over the gap (`force-width`).
+/// Writes one picture for each gap (`gap-01`, ...), with common colours and scale, and force, contact width (outside
+/// plane strain and plane stress, area) and peak pressure over the gap (`force-width`).
 ///
 /// # Errors
 /// As [`write_solve`].
-pub fn write_sweep(folder: &Path, points: &[SweepPoint]) -> Result<(), Error> {
+pub fn write_sweep(folder: &Path, sweep: &Sweep) -> Result<(), Error> {
+    let points = &sweep.points;
     let mut series = Vec::new();
     for (index, point) in points.iter().enumerate().filter(|(_, point)| is_plane(&point.model)) {
         let (model, solution) = (&point.model, &point.solution);
@@ -131,20 +132,38 @@ pub fn write_sweep(folder: &Path, points: &[SweepPoint]) -> Result<(), Error> {
     draw_series(folder, &series)?;
     let Some(first) = points.first() else { return Ok(()) };
     let units = first.model.units();
-    let over_gap = |name: &str, unit: &str, value: &dyn Fn(&SweepPoint) -> f64| {
-        let line = points.iter().map(|point| [point.gap, value(point)]).collect();
-        Plot::new(Quantity::new("gap g", &units.length), Quantity::new(name, unit), vec![Series::new(name, line)])
+    let over_gap = |name: &str, unit: &str, at_point: Value<SweepPoint>, at_corner: Value<SweepCorner>| {
+        // Beside the exact path the gaps are marks, which no line may join.
+        let join = if sweep.corners.is_empty() { None } else { Some([f64::NAN; 2]) };
+        let at_points = points.iter().flat_map(|point| [Some([point.gap, at_point(point)]), join]).flatten().collect();
+        let exact = sweep.corners.iter().map(|corner| [corner.gap, at_corner(corner)]).collect::<Vec<_>>();
+        let mut series = vec![Series::new("gaps of the sweep", at_points)];
+        if !exact.is_empty() {
+            series.insert(0, Series::new("exact path", exact));
+        }
+        let mut plot = Plot::new(Quantity::new("gap g", &units.length), Quantity::new(name, unit), series);
+        plot.nested = true;
+        plot
     };
+    let contact = |point: &SweepPoint| point.summary.contact.clone();
     let extent = if first.summary.contact.width.is_some() {
-        over_gap("contact width", &units.length, &|point| point.summary.contact.width.unwrap_or(0.0))
+        let width = |point: &SweepPoint| contact(point).width.unwrap_or(0.0);
+        over_gap("contact width", &units.length, &width, &|corner| corner.width.unwrap_or(0.0))
     } else {
-        let unit = format!("{}²", units.length);
-        over_gap("contact area", &unit, &|point| point.summary.contact.area.unwrap_or(0.0))
+        let area = |point: &SweepPoint| contact(point).area.unwrap_or(0.0);
+        over_gap("contact area", &format!("{}²", units.length), &area, &|corner| corner.area)
     };
-    let plots = [over_gap("contact force F", &units.force, &|point| point.summary.contact.force), extent];
+    let plots = [
+        over_gap("contact force F", &units.force, &|point| contact(point).force, &|corner| corner.force),
+        extent,
+        over_gap("peak pressure", &units.pressure(), &|p| contact(p).pressure_max.unwrap_or(0.0), &|c| c.pressure_max),
+    ];
     write_picture(folder, "force-width", &line_plots(first.model.title(), &plots))?;
     Ok(())
 }
+
+/// A number of something that is plotted.
+type Value<'a, T> = &'a dyn Fn(&T) -> f64;
 
 fn headline(model: &Model, what: &str) -> String {
     let gap = format!("gap {} {}", brief(model.gap()), model.units().length);

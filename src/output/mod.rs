@@ -29,7 +29,8 @@ pub use drawing::{Anchor, Drawing, Paint};
 pub use file::{write_atomically, write_files, write_picture};
 pub use plot::{Plot, Series, line_plots};
 pub use report::{
-    UnitNames, compare_json, compare_text, solve_json, solve_text, sweep_json, sweep_text, verify_json, verify_text,
+    UnitNames, compare_json, compare_text, printable, solve_json, solve_text, sweep_json, sweep_text, verify_json,
+    verify_text,
 };
 pub use ticks::{Quantity, Scale};
 pub use vtu::{Array, CellType, Unstructured};

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::study::{Agreement, CertificateSummary, Summary, SweepPoint, Verification};
+use crate::study::{Agreement, CertificateSummary, Summary, Sweep, SweepEvent, SweepPoint, Verification};
 
 /// The unit names of a report; empty for a raw problem, whose units are the user's own.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -15,9 +15,14 @@ pub struct UnitNames {
     pub stress: String,
 }
 
+/// Text on one line, without characters that would steer a terminal.
+pub fn printable(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { c.escape_default().to_string() } else { c.to_string() }).collect()
+}
+
 /// A number with its unit.
 fn quantity(value: f64, unit: &str) -> String {
-    format!("{value:.6e} {unit}").trim_end().to_string()
+    format!("{value:.6e} {}", printable(unit)).trim_end().to_string()
 }
 
 fn plural(count: usize, noun: &str) -> String {
@@ -31,10 +36,14 @@ pub fn solve_text(title: &str, summary: &Summary, units: &UnitNames) -> String {
         (Some(nodes), Some(elements)) => format!("{nodes} nodes, {elements} elements, "),
         _ => String::new(),
     };
-    let mut text = format!("{title}\n");
+    let mut text = format!("{}\n", printable(title));
     let mut line = |name: &str, content: String| text += &entry(name, &content);
     line("model", format!("{mesh}{} dofs, {}", model.dofs, plural(model.contact_rows, "contact row")));
-    line("method", format!("{}, {}", summary.method, plural(summary.iterations, "iteration")));
+    let unknowns = match model.condensed_dofs {
+        all if all == model.dofs => String::new(),
+        condensed => format!(", condensed to {condensed} dofs"),
+    };
+    line("method", format!("{}, {}{unknowns}", summary.method, plural(summary.iterations, "iteration")));
     line(
         "contact",
         format!("{}, force {}", plural(contact.count, "closed row"), quantity(contact.force, &units.force)),
@@ -76,14 +85,17 @@ fn certificate_text(certificate: &CertificateSummary, certified: bool, tolerance
 /// The report of a verification.
 pub fn verify_text(title: &str, verification: &Verification) -> String {
     let Verification { model, contact, .. } = verification;
-    let mut text = format!("{title}\n");
+    let mut text = format!("{}\n", printable(title));
     text += &entry("model", &format!("{} dofs, {}", model.dofs, plural(model.contact_rows, "contact row")));
     text += &entry("contact", &format!("{} under force {:.6e}", plural(contact.count, "row"), contact.force));
     text + &certificate_text(&verification.certificate, verification.is_certified(), verification.tolerance)
 }
 
-/// The table of a sweep.
-pub fn sweep_text(title: &str, points: &[SweepPoint], units: &UnitNames) -> String {
+/// Events of a sweep that its text shows; the rest is in the JSON form.
+const MOST_EVENTS: usize = 40;
+
+/// The table of a sweep, and what happens between its gaps.
+pub fn sweep_text(title: &str, sweep: &Sweep, units: &UnitNames) -> String {
     let header = [
         in_unit("gap", &units.length),
         "iterations".to_string(),
@@ -107,12 +119,25 @@ pub fn sweep_text(title: &str, points: &[SweepPoint], units: &UnitNames) -> Stri
             point.summary.status.replace('_', " "),
         ]
     };
-    let table: Vec<Vec<String>> = std::iter::once(header.to_vec()).chain(points.iter().map(row)).collect();
-    format!("{title}\n\n{}", columns(&table))
+    let table: Vec<Vec<String>> = std::iter::once(header.to_vec()).chain(sweep.points.iter().map(row)).collect();
+    let mut text = format!("{}\n\n{}", printable(title), columns(&table));
+    if !sweep.corners.is_empty() {
+        let times = plural(sweep.events.len(), "time");
+        text += &format!("\nBetween the first and the last gap a row touches or releases {times}, exactly at\n");
+        let event = |event: &SweepEvent| {
+            let what = if event.touches { "touches" } else { "releases" };
+            vec![format!("  {:.12}", event.gap), format!("node {}", event.node), what.to_string()]
+        };
+        text += &columns(&sweep.events.iter().take(MOST_EVENTS).map(event).collect::<Vec<_>>());
+        if sweep.events.len() > MOST_EVENTS {
+            text += &format!("  and {} more; --format json has all\n", sweep.events.len() - MOST_EVENTS);
+        }
+    }
+    text
 }
 
 fn in_unit(name: &str, unit: &str) -> String {
-    if unit.is_empty() { name.to_string() } else { format!("{name} [{unit}]") }
+    if unit.is_empty() { name.to_string() } else { format!("{name} [{}]", printable(unit)) }
 }
 
 fn conditions(certificate: &CertificateSummary) -> [(&'static str, &'static str, String); 6] {
@@ -162,7 +187,8 @@ pub fn compare_text(title: &str, summaries: &[Summary; 3], agreement: &Agreement
             format!("{:.4}", summary.seconds.factor + summary.seconds.solve),
         ]);
     }
-    let mut text = format!("{title}\n{} dofs, {}\n\n", qp.model.dofs, plural(qp.model.contact_rows, "contact row"));
+    let mut text =
+        format!("{}\n{} dofs, {}\n\n", printable(title), qp.model.dofs, plural(qp.model.contact_rows, "contact row"));
     text += &columns(&table);
     text += "\n";
     let mut table = vec![
@@ -234,8 +260,8 @@ pub fn compare_json(summaries: &[Summary; 3], agreement: &Agreement) -> Value {
 }
 
 /// The JSON object of a sweep.
-pub fn sweep_json(points: &[SweepPoint]) -> Value {
-    json!({ "points": points })
+pub fn sweep_json(sweep: &Sweep) -> Value {
+    json!(sweep)
 }
 
 /// The JSON object of a verification.

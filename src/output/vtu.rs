@@ -69,9 +69,9 @@ impl Unstructured<'_> {
     /// The text of the `.vtu` file; every number reads back as the same number.
     ///
     /// # Errors
-    /// [`Error::Length`] where an array does not fit the nodes or the elements, [`Error::NotFinite`] for a coordinate or value
-    /// that ASCII readers would stop at, [`Error::Setting`] for an element with a number of nodes that is not that of its
-    /// type, or that names a node that does not exist.
+    /// [`Error::Length`] where an array does not fit the nodes or the elements, [`Error::NotFinite`] for a coordinate
+    /// or value that ASCII readers would stop at, [`Error::Setting`] for an element with a number of nodes that is not
+    /// that of its type, or that names a node that does not exist.
     pub fn to_vtu(&self) -> Result<String, Error> {
         let mut text = String::from(
             "<?xml version=\"1.0\"?>\n\

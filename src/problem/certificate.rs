@@ -3,7 +3,7 @@
 use super::ContactProblem;
 use crate::error::Error;
 use crate::solution::Certificate;
-use crate::sparse::{Cholesky, Equilibration, FactorError, SymmetricMatrix, ldexp};
+use crate::sparse::{Cholesky, Equilibration, FactorError, SymmetricMatrix, dot, ldexp};
 
 /// Rounding u to double precision and summing a sparse row leaves a residual of about this many units in the last
 /// place of its largest term; below it a residual says nothing about the answer.
@@ -14,9 +14,6 @@ const REPAIR_SWEEPS: usize = 50;
 
 /// A displacement below this share of force over stiffness is zero but for rounding.
 const NOTHING: f64 = 1e-3;
-
-/// A pivot of the stiffness, scaled to a unit diagonal, below which its energy norm is not trusted.
-const SMALLEST_PIVOT: f64 = 1e-14;
 
 /// The energy norm of a positive definite stiffness and its dual, from one factorisation of K with a diagonal near one.
 #[derive(Clone, Debug)]
@@ -35,11 +32,17 @@ impl EnergyNorm {
             return Ok(None);
         }
         let equilibration = Equilibration::of(stiffness);
-        match Cholesky::of(&equilibration.apply(stiffness)) {
-            Ok(cholesky) if cholesky.smallest_pivot() > SMALLEST_PIVOT => Ok(Some(Self { cholesky, equilibration })),
+        let scaled = equilibration.apply(stiffness);
+        match Cholesky::of(&scaled) {
+            Ok(cholesky) if cholesky.is_definite(&scaled) => Ok(Some(Self { cholesky, equilibration })),
             Ok(_) | Err(FactorError::NotPositiveDefinite) => Ok(None),
             Err(error) => Err(error.into()),
         }
+    }
+
+    /// The energy norm from a factor of the equilibrated stiffness `c D K D` that is at hand.
+    pub fn new(cholesky: Cholesky, equilibration: Equilibration) -> Self {
+        EnergyNorm { cholesky, equilibration }
     }
 
     /// The displacement K^-1 f of the body without obstacle.
@@ -50,14 +53,15 @@ impl EnergyNorm {
         scale(&self.cholesky.solve(&scale(load, 0)), self.equilibration.factor)
     }
 
+    /// The displacement of the equilibrated stiffness under an equilibrated load.
+    pub fn scaled_displacement(&self, load: &[f64]) -> Vec<f64> {
+        self.cholesky.solve(load)
+    }
+
     /// `sqrt(r' K^-1 r)`: the energy norm of the displacement that the force r causes.
     fn of_force(&self, residual: &[f64]) -> f64 {
         dot(residual, &self.free_displacement(residual)).max(0.0).sqrt()
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
 fn largest(values: impl IntoIterator<Item = f64>) -> f64 {

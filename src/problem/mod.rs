@@ -104,6 +104,14 @@ impl ContactProblem {
         Self::new(self.stiffness.clone(), self.load.clone(), self.contact.clone(), gap)
     }
 
+    /// The same body and obstacle under another load.
+    ///
+    /// # Errors
+    /// As [`ContactProblem::new`].
+    pub fn with_load(&self, load: Vec<f64>) -> Result<Self, Error> {
+        Self::new(self.stiffness.clone(), load, self.contact.clone(), self.gap.clone())
+    }
+
     /// The violation B u - g of each row, length m: positive is penetration; `-inf` where there is no obstacle.
     pub fn violation(&self, displacement: &[f64]) -> Vec<f64> {
         let mut violation = self.contact.mul(displacement);

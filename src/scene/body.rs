@@ -63,14 +63,15 @@ impl Scene {
 
     /// An error of the material at its place; the allowed range is that of the model.
     fn in_material(&self, error: Error) -> Error {
-        let keeps_volume = !matches!(self.model, ModelSpec::Bar | ModelSpec::PlaneStress);
+        let allowed = match self.model {
+            ModelSpec::Bar => "above -1 and at most 0.5 in a bar",
+            ModelSpec::PlaneStrain => "above -1 and below 0.5 in plane strain",
+            ModelSpec::PlaneStress => "above -1 and at most 0.5 in plane stress",
+            ModelSpec::Axisymmetric => "above -1 and below 0.5 in an axisymmetric body",
+            ModelSpec::Space => "above -1 and below 0.5 in space",
+        };
         match error {
-            Error::Setting { name: "poisson", value, .. } if keeps_volume => {
-                let allowed = match self.model {
-                    ModelSpec::PlaneStrain => "above -1 and below 0.5 in plane strain",
-                    ModelSpec::Axisymmetric => "above -1 and below 0.5 in an axisymmetric body",
-                    _ => "above -1 and below 0.5 in space",
-                };
+            Error::Setting { name: "poisson", value, .. } => {
                 located(Error::Setting { name: "poisson", value, allowed }, "material.")
             }
             other => located(other, "material."),

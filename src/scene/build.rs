@@ -13,7 +13,7 @@ impl Scene {
     ///
     /// # Errors
     /// [`Error::Scene`] for a value that describes no problem, [`Error::UnderHeld`] for a rigid motion that neither
-    /// supports nor obstacles resist, [`Error::NotFinite`] for a stiffness that overflows.
+    /// supports nor obstacles resist.
     pub fn build(&self) -> Result<Model, Error> {
         let body = self.elastic_body()?;
         let dofs = self.dofs(&body)?;

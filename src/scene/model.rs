@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::motion::RigidMotions;
 use super::rows::{self, ContactRow};
-use super::{Obstacle, Units, Warning};
+use super::{Obstacle, Units, Warning, wrong};
 use crate::assembly::{DofMap, internal_force, stiffness};
 use crate::body::ElasticBody;
 use crate::error::Error;
@@ -12,6 +12,9 @@ use crate::mesh::Mesh;
 use crate::problem::ContactProblem;
 use crate::recovery::{self, StressField};
 use crate::sparse::SymmetricMatrix;
+
+/// Tributary areas below this, relative to the largest, are rounding of zero.
+const NO_AREA: f64 = 1e-12;
 
 /// What a change of the gap leaves alone.
 #[derive(Debug)]
@@ -51,7 +54,13 @@ impl Model {
             let forces = internal_force(&parts.body, &lifted)?;
             load.iter_mut().zip(forces).for_each(|(load, force)| *load -= force);
         }
-        let stiffness = stiffness(&parts.body, &parts.dofs)?;
+        let stiffness = stiffness(&parts.body, &parts.dofs).map_err(|error| match error {
+            Error::NotFinite { .. } => {
+                let message = "the stiffness that it makes with body and thickness overflows; choose other units";
+                wrong("material", message)
+            }
+            other => other,
+        })?;
         let load = parts.dofs.restrict(&load)?;
         Self::with_rows(Arc::new(parts), gap, built, stiffness, load)
     }
@@ -151,11 +160,30 @@ impl Model {
 
     /// Contact pressure of each row, `-lambda / tributary area`, in force per area, `>= 0` in compression.
     ///
+    /// The end of a quadratic edge on an axis of revolution has no tributary area; it shows the pressure of the
+    /// candidate next to it.
+    ///
     /// # Errors
     /// [`Error::Length`] where `multiplier` does not have one entry per contact row.
     pub fn pressure(&self, multiplier: &[f64]) -> Result<Vec<f64>, Error> {
         self.check_multiplier(multiplier)?;
-        Ok(self.rows.iter().zip(multiplier).map(|(row, lambda)| -lambda / row.tributary_area).collect())
+        let largest = self.rows.iter().fold(0.0, |largest: f64, row| largest.max(row.tributary_area));
+        let has_area = |row: &ContactRow| row.tributary_area > NO_AREA * largest;
+        let of_row = |index: usize| -multiplier[index] / self.rows[index].tributary_area;
+        let nodes = self.mesh().nodes();
+        let pressure = |(index, row): (usize, &ContactRow)| {
+            if has_area(row) {
+                return of_row(index);
+            }
+            let away = |other: &ContactRow| {
+                let (a, b) = (nodes[row.node], nodes[other.node]);
+                (a[0] - b[0]).hypot(a[1] - b[1]).hypot(a[2] - b[2])
+            };
+            let others = self.rows.iter().enumerate().filter(|(_, other)| other.obstacle == row.obstacle);
+            let with_area = others.filter(|(_, other)| has_area(other));
+            with_area.min_by(|a, b| away(a.1).total_cmp(&away(b.1))).map_or(0.0, |(next, _)| of_row(next))
+        };
+        Ok(self.rows.iter().enumerate().map(pressure).collect())
     }
 
     /// Nodal contact forces on the body, `lambda n`, in force.
@@ -195,9 +223,10 @@ impl Model {
         &self.parts.load
     }
 
-    /// The imbalance of loads, support reactions and contact forces on the whole body: the largest of the virtual works on
-    /// its unit rigid motions (the resultant forces, and the resultant moments over half the body's size), relative to
-    /// the sum of all force magnitudes. A body of revolution has one rigid motion, and its forces count along the axis.
+    /// The imbalance of loads, support reactions and contact forces on the whole body: the largest of the virtual works
+    /// on its unit rigid motions (the resultant forces, and the resultant moments over half the body's size), relative
+    /// to the sum of all force magnitudes. A body of revolution has one rigid motion, and its forces count along the
+    /// axis.
     ///
     /// # Errors
     /// As [`Model::reactions`].

@@ -17,8 +17,8 @@ const NAMED: f64 = 1e-6;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Translations along x, y, z, and rotations about axes through the centre along x, y, z, as multiples of unit motions: a
-/// rotation is measured by the displacement that it gives at the distance `size` from the axis.
+/// Translations along x, y, z, and rotations about axes through the centre along x, y, z, as multiples of unit motions:
+/// a rotation is measured by the displacement that it gives at the distance `size` from the axis.
 type Amplitudes = [f64; 6];
 
 /// The unit motions of a body; its centre and size make them comparable.

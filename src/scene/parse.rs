@@ -1,11 +1,12 @@
 //! From text to a typed scene: every failure has a path, a line and a column.
 
 use std::fmt;
+use std::io;
 use std::marker::PhantomData;
 use std::path::Path;
 
 use serde::de::value::MapAccessDeserializer;
-use serde::de::{Deserialize, Deserializer, Error as _, MapAccess, SeqAccess, Visitor};
+use serde::de::{Deserialize, Deserializer, Error as _, IgnoredAny, IntoDeserializer, MapAccess, SeqAccess, Visitor};
 
 use super::Scene;
 use crate::error::Error;
@@ -26,10 +27,10 @@ impl Scene {
             line: error.line(),
             column: error.column().max(1),
             path,
-            message: in_words(&error, text).replace("trailing characters", trailing),
+            message: in_words(&error).replace("trailing characters", trailing),
         };
         // The parser knows one word for an array that is too long and for text behind the end.
-        let scene = scene.map_err(|error| fail(track.path().to_string(), "the array has too many entries", error))?;
+        let scene = scene.map_err(|error| fail(known_path(track), "the array has too many entries", error))?;
         json.end().map_err(|error| fail(".".into(), "there is more text behind the scene", error))?;
         Ok(scene)
     }
@@ -40,6 +41,10 @@ impl Scene {
     /// [`Error::File`] for a file that cannot be read, and as [`Scene::from_json`].
     pub fn read(path: impl AsRef<Path>) -> Result<Scene, Error> {
         let path = path.as_ref();
+        if path.is_dir() {
+            let source = io::Error::new(io::ErrorKind::IsADirectory, "it is a folder, but a scene is a JSON file");
+            return Err(Error::File { action: "read", path: path.into(), source });
+        }
         let text = std::fs::read_to_string(path).map_err(|source| Error::File {
             action: "read",
             path: path.into(),
@@ -55,9 +60,18 @@ impl Scene {
     }
 }
 
+/// Where the parser stood, without the key that it could not read.
+fn known_path(track: serde_path_to_error::Track) -> String {
+    match track.path().to_string().trim_end_matches('?').trim_end_matches('.') {
+        "" => ".".into(),
+        path => path.into(),
+    }
+}
+
 /// The parser's message without its position, and in the words of JSON instead of the words of Rust.
-fn in_words(error: &serde_json::Error, text: &str) -> String {
-    const WORDS: [(&str, &str); 9] = [
+fn in_words(error: &serde_json::Error) -> String {
+    const WORDS: [(&str, &str); 10] = [
+        ("invalid type: map, expected enum", "the object is empty, expected a single key"),
         ("invalid type: map", "invalid type: object"),
         ("invalid type: sequence", "invalid type: array"),
         ("expected f64", "expected a number"),
@@ -66,22 +80,14 @@ fn in_words(error: &serde_json::Error, text: &str) -> String {
         ("unknown variant", "unknown choice"),
         ("EOF while parsing", "the text ends within"),
         ("expected string or map", "expected a string or an object"),
-        ("expected map with a single key", "expected an object with a single key"),
+        ("expected value", "expected a JSON value"),
     ];
     let position = format!(" at line {} column {}", error.line(), error.column());
     let mut message = error.to_string().replace(&position, "");
     for (rust, json) in WORDS {
         message = message.replace(rust, json);
     }
-    // The parser asks for a value where it finds a second key in an object that takes one.
-    let line = text.lines().nth(error.line().saturating_sub(1)).unwrap_or_default();
-    let at_comma = line.as_bytes().get(error.column()) == Some(&b',');
-    let expected = if at_comma {
-        "found a comma where an object with a single key ends, or a value stands"
-    } else {
-        "expected a JSON value"
-    };
-    message.replace("expected value", expected)
+    message
 }
 
 /// Accepts an object where a struct is expected, and nothing else: serde itself would take an array for it too.
@@ -97,6 +103,64 @@ pub(super) fn object<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserialize
         }
     }
     deserializer.deserialize_map(OfObject(PhantomData))
+}
+
+/// Accepts an object with a single key that chooses what its value is: the parser itself has no words for another form.
+pub(super) fn choice<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<T, D::Error> {
+    struct OfSingleKey<T>(PhantomData<T>);
+    impl<'de, T: Deserialize<'de>> Visitor<'de> for OfSingleKey<T> {
+        type Value = T;
+        fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+            formatter.write_str("an object with a single key")
+        }
+        fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<T, A::Error> {
+            let chosen = T::deserialize(MapAccessDeserializer::new(&mut map))?;
+            match map.next_key::<IgnoredAny>()? {
+                None => Ok(chosen),
+                Some(_) => Err(A::Error::custom("a second key, expected an object with a single key")),
+            }
+        }
+    }
+    deserializer.deserialize_map(OfSingleKey(PhantomData))
+}
+
+/// Accepts an array of choices.
+pub(super) fn choices<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<Vec<T>, D::Error> {
+    struct OneChoice<T>(T);
+    impl<'de, T: Deserialize<'de>> Deserialize<'de> for OneChoice<T> {
+        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+            choice(deserializer).map(OneChoice)
+        }
+    }
+    let items = Vec::<OneChoice<T>>::deserialize(deserializer)?;
+    Ok(items.into_iter().map(|OneChoice(item)| item).collect())
+}
+
+/// Accepts a word out of a list, and no other JSON value.
+pub(super) fn word<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<T, D::Error> {
+    struct OfWord<T>(PhantomData<T>);
+    impl<'de, T: Deserialize<'de>> Visitor<'de> for OfWord<T> {
+        type Value = T;
+        fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+            formatter.write_str("a string")
+        }
+        fn visit_str<E: serde::de::Error>(self, word: &str) -> Result<T, E> {
+            T::deserialize(word.into_deserializer())
+        }
+    }
+    deserializer.deserialize_str(OfWord(PhantomData))
+}
+
+/// Accepts an array of words.
+pub(super) fn words<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<Vec<T>, D::Error> {
+    struct OneWord<T>(T);
+    impl<'de, T: Deserialize<'de>> Deserialize<'de> for OneWord<T> {
+        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+            word(deserializer).map(OneWord)
+        }
+    }
+    let items = Vec::<OneWord<T>>::deserialize(deserializer)?;
+    Ok(items.into_iter().map(|OneWord(item)| item).collect())
 }
 
 /// Accepts an array of objects.

@@ -28,12 +28,25 @@ impl Method {
     }
 }
 
+/// Is the problem condensed onto the dofs of its contact rows?
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Condense {
+    /// Where an estimate of work and memory says that it pays.
+    #[default]
+    Auto,
+    /// Never: the methods work on all dofs.
+    Never,
+}
+
 /// Settings of a solve; start from [`Settings::default`] or [`Settings::with_method`] and change fields.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Settings {
     /// The method.
     pub method: Method,
+    /// Is the problem condensed onto its contact dofs?
+    pub condense: Condense,
     /// Tolerance of the certificate, relative: what `Ok` promises.
     pub tolerance: f64,
     /// Is the contact set of the QP settled by the active-set loop?
@@ -54,6 +67,7 @@ impl Default for Settings {
     fn default() -> Self {
         Settings {
             method: Method::Auto,
+            condense: Condense::Auto,
             tolerance: 1e-9,
             polish: true,
             interior_point_tolerance: 1e-9,

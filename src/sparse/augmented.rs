@@ -24,6 +24,14 @@ impl AugmentedMatrix {
     /// # Errors
     /// As [`Analysis::of`].
     pub fn new(stiffness: &SymmetricMatrix, rows: &SparseMatrix) -> Result<Self, FactorError> {
+        Self::with_last(stiffness, rows, &[])
+    }
+
+    /// As [`AugmentedMatrix::new`], with the columns of `last` eliminated last.
+    ///
+    /// # Errors
+    /// As [`Analysis::with_last`].
+    pub fn with_last(stiffness: &SymmetricMatrix, rows: &SparseMatrix, last: &[usize]) -> Result<Self, FactorError> {
         let dim = stiffness.dim();
         let by_row = rows.transposed();
         let mut columns: Vec<Vec<usize>> = (0..dim)
@@ -61,7 +69,7 @@ impl AugmentedMatrix {
         let products = squares.iter().map(|&(first, second, product)| (slot(second, first), product)).collect();
         let zeros = vec![0.0; indices.len()];
         let pattern = SparseMatrix::from_parts(dim, starts, indices, zeros);
-        let analysis = Analysis::of(&SymmetricMatrix::from_sorted_lower(pattern.clone()))?;
+        let analysis = Analysis::with_last(&SymmetricMatrix::from_sorted_lower(pattern.clone()), last)?;
         let stiffness_values = stiffness.lower().values().to_vec();
         Ok(Self { pattern, stiffness_slots, diagonal_slots, row_starts, products, stiffness_values, analysis })
     }

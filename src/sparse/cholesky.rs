@@ -4,24 +4,27 @@ use std::sync::Arc;
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::solvers::LltError;
-use faer::sparse::linalg::cholesky as fc;
+use faer::perm::PermRef;
+use faer::sparse::linalg::{SupernodalThreshold, cholesky as fc};
 use faer::sparse::{FaerError, SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 
-use super::{SparseMatrix, SymmetricMatrix};
+use super::{SparseMatrix, SymmetricMatrix, ordering};
 use crate::error::Error;
 
 /// Fill-reducing ordering and structure of the factor, for all matrices of one sparsity pattern.
 #[derive(Clone, Debug)]
 pub struct Analysis {
     symbolic: Arc<fc::SymbolicCholesky<usize>>,
+    trailing: usize,
 }
 
 /// The factor L of a positive definite matrix.
 #[derive(Clone, Debug)]
 pub struct Cholesky {
     analysis: Analysis,
-    values: Vec<f64>,
+    /// Shared, because a factor is the largest thing there is.
+    values: Arc<Vec<f64>>,
 }
 
 /// Why a factorisation did not end with a factor.
@@ -65,18 +68,38 @@ fn memory(request: faer::dyn_stack::StackReq) -> Result<MemBuffer, FactorError> 
 }
 
 impl Analysis {
-    /// Orders (approximate minimum degree) and analyses the pattern of `matrix`.
+    /// Orders and analyses the pattern of `matrix`.
     ///
     /// # Errors
     /// [`FactorError::Failed`] when memory or the index range does not suffice.
     pub fn of(matrix: &SymmetricMatrix) -> Result<Self, FactorError> {
+        Self::with_last(matrix, &[])
+    }
+
+    /// As [`Analysis::of`], with the columns of `last` eliminated last, in the order given: the trailing block of the
+    /// factor is then that of their Schur complement.
+    ///
+    /// # Errors
+    /// As [`Analysis::of`].
+    pub fn with_last(matrix: &SymmetricMatrix, last: &[usize]) -> Result<Self, FactorError> {
+        let lower = matrix.lower();
+        let order = ordering::order(lower, last)?;
+        let mut place = vec![0; order.len()];
+        order.iter().enumerate().for_each(|(position, &column)| place[column] = position);
+        // The sweeps that stop at the trailing block need supernodes.
+        let threshold = if last.is_empty() { SupernodalThreshold::AUTO } else { SupernodalThreshold::FORCE_SUPERNODAL };
         let symbolic = fc::factorize_symbolic_cholesky(
-            structure(matrix.lower()),
+            structure(lower),
             Side::Lower,
-            fc::SymmetricOrdering::Amd,
-            fc::CholeskySymbolicParams::default(),
+            fc::SymmetricOrdering::Custom(PermRef::new_checked(&order, &place, order.len())),
+            fc::CholeskySymbolicParams { supernodal_flop_ratio_threshold: threshold, ..Default::default() },
         )?;
-        Ok(Analysis { symbolic: Arc::new(symbolic) })
+        Ok(Analysis { symbolic: Arc::new(symbolic), trailing: last.len() })
+    }
+
+    /// Number of values of the factor, zeros inside supernodes included.
+    pub fn factor_entries(&self) -> usize {
+        self.symbolic.len_val()
     }
 
     /// Factorises `matrix`, whose pattern must be the analysed one.
@@ -102,7 +125,7 @@ impl Analysis {
             )
             .map_err(|LltError::NonPositivePivot { .. }| FactorError::NotPositiveDefinite)?;
         if values.iter().all(|value| value.is_finite()) {
-            Ok(Cholesky { analysis: self.clone(), values })
+            Ok(Cholesky { analysis: self.clone(), values: Arc::new(values) })
         } else {
             Err(FactorError::NotPositiveDefinite)
         }
@@ -118,6 +141,11 @@ impl Cholesky {
         Analysis::of(matrix)?.factor(matrix)
     }
 
+    /// Number of rows and of columns.
+    pub fn dim(&self) -> usize {
+        self.analysis.symbolic.nrows()
+    }
+
     /// The solution x of A x = b, length `dim`.
     pub fn solve(&self, b: &[f64]) -> Vec<f64> {
         let mut x = b.to_vec();
@@ -131,6 +159,67 @@ impl Cholesky {
             MemStack::new(&mut buffer),
         );
         x
+    }
+
+    /// The sweep L y = P b through the factor, in the order of elimination; its last entries belong to the columns that
+    /// were put last. Empty unless the analysis put columns last.
+    pub fn forward(&self, b: &[f64]) -> Vec<f64> {
+        let Some(factor) = self.supernodes() else { return Vec::new() };
+        let mut y: Vec<f64> = self.order().iter().map(|&column| b[column]).collect();
+        let mut buffer = MemBuffer::new(factor.symbolic().solve_in_place_scratch::<f64>(1, Par::Seq));
+        let rows = y.len();
+        let y_column = MatMut::from_column_major_slice_mut(&mut y, rows, 1);
+        factor.l_solve_with_conj(Conj::No, y_column, Par::Seq, MemStack::new(&mut buffer));
+        y
+    }
+
+    /// The sweep L' P x = y, `y` in the order of elimination, `x` in that of the matrix.
+    pub fn backward(&self, y: &[f64]) -> Vec<f64> {
+        let Some(factor) = self.supernodes() else { return Vec::new() };
+        let mut ordered = y.to_vec();
+        let mut buffer = MemBuffer::new(factor.symbolic().solve_in_place_scratch::<f64>(1, Par::Seq));
+        let rows = ordered.len();
+        let column = MatMut::from_column_major_slice_mut(&mut ordered, rows, 1);
+        factor.l_transpose_solve_with_conj(Conj::No, column, Par::Seq, MemStack::new(&mut buffer));
+        let mut x = vec![0.0; rows];
+        self.order().iter().zip(&ordered).for_each(|(&column, &value)| x[column] = value);
+        x
+    }
+
+    /// The trailing block of L that belongs to the columns put last: m x m, lower triangle, column by column with zeros
+    /// above the diagonal. Its product with its transpose is their Schur complement.
+    pub fn trailing_block(&self) -> Vec<f64> {
+        let (size, dim) = (self.analysis.trailing, self.analysis.symbolic.nrows());
+        let first = dim - size;
+        let mut block = vec![0.0; size * size];
+        let Some(factor) = self.supernodes() else { return block };
+        for node in 0..factor.symbolic().n_supernodes() {
+            let node = factor.supernode(node);
+            let (start, values) = (node.start(), node.val());
+            for j in first.saturating_sub(start)..values.ncols() {
+                let column = start + j - first;
+                for i in j..values.ncols() {
+                    block[column * size + start + i - first] = values[(i, j)];
+                }
+                for (i, &row) in node.pattern().iter().enumerate() {
+                    block[column * size + row - first] = values[(values.ncols() + i, j)];
+                }
+            }
+        }
+        block
+    }
+
+    fn order(&self) -> &[usize] {
+        self.analysis.symbolic.perm().map_or(&[], |perm| perm.arrays().0)
+    }
+
+    fn supernodes(&self) -> Option<fc::supernodal::SupernodalLltRef<'_, usize, f64>> {
+        match self.analysis.symbolic.raw() {
+            fc::SymbolicCholeskyRaw::Supernodal(inner) if self.analysis.trailing > 0 => {
+                Some(fc::supernodal::SupernodalLltRef::new(inner, &self.values))
+            }
+            _ => None,
+        }
     }
 
     /// The smallest pivot, min over j of L_jj^2: small against the diagonal of A when A is close to singular.

@@ -2,13 +2,17 @@
 
 mod augmented;
 mod cholesky;
+mod definite;
+mod ordering;
 mod power_of_two;
 mod symmetric;
+mod vector;
 
 pub use augmented::AugmentedMatrix;
 pub use cholesky::{Analysis, Cholesky, FactorError};
 pub use power_of_two::{Equilibration, exponent, ldexp};
 pub use symmetric::SymmetricMatrix;
+pub use vector::{dot, largest};
 
 use crate::error::Error;
 

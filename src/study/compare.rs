@@ -6,6 +6,7 @@ use crate::error::Error;
 use crate::problem::ContactProblem;
 use crate::solution::Solution;
 use crate::solve::{Method, Settings, solve};
+use crate::sparse::{dot, largest};
 
 /// Two exact methods agree in the displacement to this share of its largest entry: both end with a linear solve, whose
 /// rounding the condition of the stiffness may enlarge a millionfold.
@@ -98,13 +99,9 @@ pub fn compare(problem: &ContactProblem, settings: &Settings) -> Result<Comparis
 }
 
 fn difference(problem: &ContactProblem, answer: &Solution, reference: &Solution) -> Difference {
-    let largest = |values: &[f64]| values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
     let minus = |a: &[f64], b: &[f64]| -> Vec<f64> { a.iter().zip(b).map(|(a, b)| a - b).collect() };
     let relative = |value: f64, scale: f64| if value == 0.0 { 0.0 } else { value / scale };
-    let energy_norm = |u: &[f64]| {
-        let force = problem.stiffness().mul(u);
-        u.iter().zip(&force).map(|(u, f)| u * f).sum::<f64>().max(0.0).sqrt()
-    };
+    let energy_norm = |u: &[f64]| dot(u, &problem.stiffness().mul(u)).max(0.0).sqrt();
     let (u, lambda) = (&reference.displacement, &reference.multiplier);
     let moved = minus(&answer.displacement, u);
     let violation = problem.violation(u);

@@ -5,5 +5,7 @@ mod scene;
 mod summary;
 
 pub use compare::{Agreement, Comparison, Difference, MethodAnswer, compare};
-pub use scene::{SweepPoint, contact_area, contact_width, even_gaps, scene_summary, sweep};
+pub use scene::{
+    Sweep, SweepCorner, SweepEvent, SweepPoint, contact_area, contact_width, even_gaps, scene_summary, sweep,
+};
 pub use summary::{CertificateSummary, ContactSummary, HistoryEntry, ModelSize, SecondsSummary, Summary, Verification};

@@ -9,7 +9,10 @@ use crate::error::Error;
 use crate::formulation::Formulation;
 use crate::scene::Model;
 use crate::solution::{ContactSet, Solution};
-use crate::solve::{Settings, solve};
+use crate::solve::{Event, Prepared, Settings, solve};
+
+/// Gaps half way that differ by this from the mean of the ends, relative, are not on a straight line.
+const STRAIGHT: f64 = 1e-12;
 
 /// The numbers of an answer to a scene: with pressures, the width of the contact, and the balance of all forces.
 ///
@@ -67,28 +70,137 @@ pub struct SweepPoint {
     pub solution: Solution,
 }
 
+/// A row that touches or releases on the way from the first to the last gap of a sweep.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SweepEvent {
+    /// The gap, exactly.
+    pub gap: f64,
+    /// The contact row.
+    pub row: usize,
+    /// Its node.
+    pub node: usize,
+    /// Does it touch? Otherwise it releases.
+    pub touches: bool,
+}
+
+/// A corner of the polylines over the gap. Where the contact set changes there are two, before and after.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SweepCorner {
+    /// The gap.
+    pub gap: f64,
+    /// Total contact force.
+    pub force: f64,
+    /// Length of the boundary in contact, where the model has a thickness.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub width: Option<f64>,
+    /// Area of the boundary in contact.
+    pub area: f64,
+    /// Largest contact pressure.
+    pub pressure_max: f64,
+}
+
+/// A scene at several gaps.
+#[derive(Clone, Debug, Serialize)]
+pub struct Sweep {
+    /// The answers at the gaps that were asked for.
+    pub points: Vec<SweepPoint>,
+    /// What happens between the first and the last gap; empty where the rows do not move on straight lines.
+    pub events: Vec<SweepEvent>,
+    /// Force, width and pressure between, exactly; empty where the events are.
+    pub corners: Vec<SweepCorner>,
+}
+
 /// Solves a scene at every one of `gaps`; an answer that is not certified is an answer here.
+///
+/// The stiffness is factorised once, and every solve starts from the last contact set. Where the rows move on straight
+/// lines (rows along the approach direction do), everything that happens between the first and the last gap is found.
 ///
 /// # Errors
 /// As [`Model::with_gap`] and [`solve`].
-pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Vec<SweepPoint>, Error> {
-    let point = |&gap: &f64| {
+pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, Error> {
+    let (Some(&first), Some(&last)) = (gaps.first(), gaps.last()) else {
+        return Ok(Sweep { points: Vec::new(), events: Vec::new(), corners: Vec::new() });
+    };
+    let at_first = model.with_gap(first)?;
+    let prepared = Prepared::new(at_first.problem(), settings.condense).map_err(|error| at_first.explain(error))?;
+    let mut points: Vec<SweepPoint> = Vec::new();
+    for &gap in gaps {
         let clock = Instant::now();
         let model = model.with_gap(gap)?;
         let assemble_seconds = clock.elapsed().as_secs_f64();
-        let solution = match solve(model.problem(), settings) {
+        let same_rows = model.problem().contact() == at_first.problem().contact();
+        let start = points.last().map(|point| &point.solution.contact_set);
+        let solved = match same_rows {
+            true => prepared.solve_gap(model.problem().gap().to_vec(), start, settings),
+            false => solve(model.problem(), settings),
+        };
+        let solution = match solved {
             Ok(solution) => solution,
             Err(Error::NotCertified { solution, .. }) => *solution,
             Err(error) => return Err(model.explain(error)),
         };
         let summary = scene_summary(&model, &solution, settings.tolerance, assemble_seconds)?;
-        Ok(SweepPoint { gap, summary, model, solution })
+        points.push(SweepPoint { gap, summary, model, solution });
+    }
+    let (events, corners) = between(&prepared, &at_first, first, last, settings)?;
+    Ok(Sweep { points, events, corners })
+}
+
+/// Events and corners between two gaps; none where the rows turn on the way, or where the body is not condensed.
+fn between(
+    prepared: &Prepared,
+    at_first: &Model,
+    first: f64,
+    last: f64,
+    settings: &Settings,
+) -> Result<(Vec<SweepEvent>, Vec<SweepCorner>), Error> {
+    let (at_last, at_middle) = (at_first.with_gap(last)?, at_first.with_gap((first + last) / 2.0)?);
+    let rows = at_first.problem().contact();
+    let (from, to) = (at_first.problem().gap(), at_last.problem().gap());
+    let is_straight = rows == at_last.problem().contact()
+        && rows == at_middle.problem().contact()
+        && from
+            .iter()
+            .zip(to)
+            .zip(at_middle.problem().gap())
+            .all(|((from, to), middle)| ((from + to) / 2.0 - middle).abs() <= STRAIGHT * (from.abs() + to.abs()));
+    if first == last || !is_straight {
+        return Ok((Vec::new(), Vec::new()));
+    }
+    let Ok(path) = prepared.path(from, to, settings) else { return Ok((Vec::new(), Vec::new())) };
+    let gap_at = |t: f64| (1.0 - t) * first + t * last;
+    let event = |event: &Event| {
+        let node = at_first.rows()[event.row].node;
+        SweepEvent { gap: gap_at(event.at), row: event.row, node, touches: event.touches }
     };
-    gaps.iter().map(point).collect()
+    let mut corners = Vec::new();
+    for piece in path.pieces() {
+        for t in [piece.from, piece.to] {
+            let multiplier = path.multiplier_on(piece, t);
+            let pressure_max = at_first.pressure(&multiplier)?.into_iter().fold(0.0, f64::max);
+            let closed = path.contact_set_on(piece);
+            corners.push(SweepCorner {
+                gap: gap_at(t),
+                force: -multiplier.iter().sum::<f64>(),
+                width: contact_width(at_first, &closed),
+                area: contact_area(at_first, &closed),
+                pressure_max,
+            });
+        }
+    }
+    Ok((path.events().iter().map(event).collect(), corners))
 }
 
 /// `count` gaps from `first` to `last`, both included.
 pub fn even_gaps(first: f64, last: f64, count: usize) -> Vec<f64> {
     let share = |i: usize| i as f64 / (count.max(2) - 1) as f64;
-    (0..count).map(|i| first * (1.0 - share(i)) + last * share(i)).collect()
+    let between = |i: usize| first * (1.0 - share(i)) + last * share(i);
+    // Fifteen digits, so that gaps come out as they would be written: -0.03, not -0.030000000000000002.
+    let written = |gap: f64| format!("{gap:.14e}").parse().unwrap_or(gap);
+    let gap = |i: usize| match i {
+        0 => first,
+        i if i + 1 == count => last,
+        i => written(between(i)),
+    };
+    (0..count).map(gap).collect()
 }

@@ -139,6 +139,7 @@ pub(crate) fn status(certificate: &Certificate, tolerance: f64) -> &'static str 
 impl Summary {
     /// The numbers of `solution` to a raw problem; a scene adds what it knows to `contact` and `model`.
     pub fn new(solution: &Solution, model: ModelSize, tolerance: f64, assemble_seconds: f64) -> Self {
+        let model = ModelSize { condensed_dofs: solution.condensed_dofs, ..model };
         let entry = |step: &Iteration| HistoryEntry {
             closed: step.contact_set.count(),
             penalty: (step.penalty > 0.0).then_some(step.penalty),

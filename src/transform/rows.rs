@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 
 use crate::error::Error;
-use crate::problem::ContactProblem;
 use crate::solution::ContactSet;
+use crate::sparse::SparseMatrix;
 
 /// Two opposed gaps that overlap by less than this times their size meet: the rows are an equality.
 const MEETING: f64 = 4.0 * f64::EPSILON;
@@ -16,35 +16,33 @@ type Direction = Vec<(usize, u64)>;
 type Nearest = [Option<(usize, f64)>; 2];
 
 /// The rows that can close: those with an obstacle (finite gap) and with a dof to move.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct RowSelection {
     rows: usize,
     kept: Vec<usize>,
-    problem: ContactProblem,
 }
 
 impl RowSelection {
-    /// Selects the rows of `problem` that can close.
+    /// Selects the rows of `contact` (m x n) that can close under `gap` (m).
     ///
     /// # Errors
     /// [`Error::Infeasible`] for a row without dofs whose gap is negative, and for two opposed rows whose gaps overlap.
-    pub fn of(problem: &ContactProblem) -> Result<Self, Error> {
-        let by_row = problem.contact().transposed();
-        let gap = problem.gap();
+    pub fn of(contact: &SparseMatrix, gap: &[f64]) -> Result<Self, Error> {
+        let by_row = contact.transposed();
         let is_empty = |row: usize| by_row.column(row).all(|(_, value)| value == 0.0);
-        if let Some(row) = (0..problem.rows()).find(|&row| gap[row] < 0.0 && is_empty(row)) {
+        if let Some(row) = (0..gap.len()).find(|&row| gap[row] < 0.0 && is_empty(row)) {
             let reason =
                 format!("contact row {row} has no free dof, but its gap is {:e}: it must not be negative", gap[row]);
             return Err(Error::Infeasible { reason, rows: vec![row] });
         }
-        let kept: Vec<usize> = (0..problem.rows()).filter(|&row| gap[row].is_finite() && !is_empty(row)).collect();
+        let kept: Vec<usize> = (0..gap.len()).filter(|&row| gap[row].is_finite() && !is_empty(row)).collect();
 
         // Opposed rows are alike after division by their first entry, and differ in its sign.
         let mut nearest: HashMap<Direction, Nearest> = HashMap::new();
         for &row in &kept {
-            let entries: Vec<(usize, f64)> = by_row.column(row).filter(|entry| entry.1 != 0.0).collect();
-            let first = entries[0].1;
-            let direction = entries.iter().map(|&(dof, value)| (dof, (value / first).to_bits())).collect();
+            let mut entries = by_row.column(row).filter(|entry| entry.1 != 0.0).peekable();
+            let Some(&(_, first)) = entries.peek() else { continue };
+            let direction = entries.map(|(dof, value)| (dof, (value / first).to_bits())).collect();
             let (side, distance) = (usize::from(first < 0.0), gap[row] / first.abs());
             let place = &mut nearest.entry(direction).or_default()[side];
             if place.is_none_or(|(_, other)| distance < other) {
@@ -61,21 +59,22 @@ impl RowSelection {
             let reason = format!("contact rows {a} and {b} oppose each other and overlap by {:e}", -overlap);
             return Err(Error::Infeasible { reason, rows: vec![a, b] });
         }
-
-        let contact = problem.contact().select_rows(&kept);
-        let gap = kept.iter().map(|&row| gap[row]).collect();
-        let problem = ContactProblem::new(problem.stiffness().clone(), problem.load().to_vec(), contact, gap)?;
-        Ok(RowSelection { rows: by_row.columns(), kept, problem })
-    }
-
-    /// The problem of the selected rows alone.
-    pub fn problem(&self) -> &ContactProblem {
-        &self.problem
+        Ok(RowSelection { rows: gap.len(), kept })
     }
 
     /// The index in the original problem of each selected row.
     pub fn kept(&self) -> &[usize] {
         &self.kept
+    }
+
+    /// The selected rows alone.
+    pub fn contact(&self, contact: &SparseMatrix) -> SparseMatrix {
+        contact.select_rows(&self.kept)
+    }
+
+    /// The gaps of the selected rows.
+    pub fn gap(&self, gap: &[f64]) -> Vec<f64> {
+        self.kept.iter().map(|&row| gap[row]).collect()
     }
 
     /// Multipliers of all rows from those of the selected ones: a row that cannot close carries none.

@@ -3,15 +3,15 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::super::parse::object;
+use super::super::parse::{object, word};
 use super::{GmshSpec, HalfBallSpec, HalfDiscSpec, RingSpec, one};
 
 /// The elastic body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum BodySpec {
-    /// A rectangle with a structured mesh; its boundaries are `left`, `right`, `bottom`, `top`. In an axisymmetric model
-    /// its section.
+    /// A rectangle with a structured mesh; its boundaries are `left`, `right`, `bottom`, `top`. In an axisymmetric
+    /// model its section.
     Rectangle(#[serde(deserialize_with = "object")] RectangleSpec),
     /// A bar along x; its boundaries are `left`, `right`.
     Bar(#[serde(deserialize_with = "object")] BarSpec),
@@ -53,10 +53,10 @@ pub struct RectangleSpec {
     #[serde(deserialize_with = "object")]
     pub y: AxisSpec,
     /// The element.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "word")]
     pub element: ElementSpec,
     /// How its stiffness is integrated.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "word")]
     pub integration: IntegrationSpec,
 }
 
@@ -74,10 +74,10 @@ pub struct BoxSpec {
     #[serde(deserialize_with = "object")]
     pub z: AxisSpec,
     /// The element.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "word")]
     pub element: SolidElementSpec,
     /// How its stiffness is integrated.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "word")]
     pub integration: IntegrationSpec,
 }
 
@@ -127,8 +127,8 @@ pub enum IntegrationSpec {
     /// All of it at all quadrature points.
     #[default]
     Standard,
-    /// The dilatation is replaced by its mean over the element: for `q4` and `hex8`, which then do not lock as Poisson's ratio
-    /// nears 0.5.
+    /// The dilatation is replaced by its mean over the element: for `q4` and `hex8`, which then do not lock as
+    /// Poisson's ratio nears 0.5.
     MeanDilatation,
 }
 

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::super::parse::{number, object};
+use super::super::parse::{choice, number, object};
 
 /// Where on the body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -20,6 +20,7 @@ pub enum Place {
 #[serde(deny_unknown_fields)]
 pub struct SupportSpec {
     /// Where.
+    #[serde(deserialize_with = "choice")]
     pub on: Place,
     /// Prescribed displacement along x.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]

@@ -19,12 +19,12 @@ pub use shape::{GmshSpec, HalfBallSpec, HalfDiscSpec, RingSpec, SymmetrySpec, Zo
 
 use std::path::PathBuf;
 
-use super::parse::{object, objects};
+use super::parse::{choice, choices, object, objects, word};
 
 /// A contact scene: one elastic body, its supports and loads, and the rigid obstacles around it.
 ///
-/// Any consistent system of units. Points and vectors have as many entries as the model has coordinates: [x] in a bar,
-/// [x, y] in the plane and about an axis, [x, y, z] in space.
+/// Any consistent system of units. Points and vectors have as many entries as the model has coordinates: `[x]` in a
+/// bar, `[x, y]` in the plane and about an axis, `[x, y, z]` in space.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Scene {
@@ -38,12 +38,13 @@ pub struct Scene {
     #[serde(default, deserialize_with = "object")]
     pub units: Units,
     /// The space that holds the physics, and what happens in the directions that it leaves out.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "word")]
     pub model: ModelSpec,
     /// Depth across the plane, positive; only in plane strain and plane stress.
     #[serde(default = "one")]
     pub thickness: f64,
     /// The elastic body.
+    #[serde(deserialize_with = "choice")]
     pub body: BodySpec,
     /// Its material.
     #[serde(deserialize_with = "object")]
@@ -52,7 +53,7 @@ pub struct Scene {
     #[serde(default, deserialize_with = "objects")]
     pub supports: Vec<SupportSpec>,
     /// External loads; they add up.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "choices")]
     pub loads: Vec<LoadSpec>,
     /// Rigid, frictionless obstacles.
     #[serde(default, deserialize_with = "objects")]

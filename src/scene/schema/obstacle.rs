@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::super::parse::object;
+use super::super::parse::{choice, object, word};
 
 /// A rigid, frictionless obstacle and the boundary that may touch it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -12,11 +12,13 @@ pub struct ObstacleSpec {
     /// The boundary whose nodes are the candidates.
     pub boundary: String,
     /// The direction from the body to the obstacle.
+    #[serde(deserialize_with = "word")]
     pub approach: Approach,
     /// How a node's contact row is made.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "word")]
     pub rule: Rule,
     /// The surface of the obstacle.
+    #[serde(deserialize_with = "choice")]
     pub shape: ShapeSpec,
 }
 

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::super::parse::object;
+use super::super::parse::{object, word, words};
 use super::{AxisSpec, ElementSpec, IntegrationSpec, one};
 
 /// A mesh written by Gmsh: a `.msh` file of version 4.1 or 2.2 in ASCII. A bar has the cross-section 1.
@@ -19,7 +19,7 @@ pub struct GmshSpec {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub group: Option<String>,
     /// How the stiffness is integrated.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "word")]
     pub integration: IntegrationSpec,
 }
 
@@ -39,10 +39,10 @@ pub struct HalfDiscSpec {
     #[serde(default)]
     pub symmetric: bool,
     /// The element.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "word")]
     pub element: ElementSpec,
     /// How its stiffness is integrated.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "word")]
     pub integration: IntegrationSpec,
 }
 
@@ -60,10 +60,10 @@ pub struct HalfBallSpec {
     pub zone: ZoneSpec,
     /// Axes along which only the part beyond the centre is meshed; the planes through the centre become the boundaries
     /// `symmetry-x` and `symmetry-y`.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "words")]
     pub symmetric: Vec<SymmetrySpec>,
     /// How its stiffness is integrated.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "word")]
     pub integration: IntegrationSpec,
 }
 
@@ -91,10 +91,10 @@ pub struct RingSpec {
     #[serde(deserialize_with = "object")]
     pub angle: AxisSpec,
     /// The element.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "word")]
     pub element: ElementSpec,
     /// How its stiffness is integrated.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "word")]
     pub integration: IntegrationSpec,
 }
 

@@ -1,0 +1,170 @@
+//! The built program in temporary folders, and what to give it.
+#![allow(dead_code)]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// What a run left behind.
+pub struct Run {
+    pub code: i32,
+    pub stdout: String,
+    pub stderr: String,
+}
+
+impl Run {
+    /// Standard output as one JSON value.
+    pub fn json(&self) -> Value {
+        serde_json::from_str(&self.stdout).unwrap_or_else(|error| panic!("{error}: {:?}", self.stdout))
+    }
+
+    /// Asserts an exit code, and that nothing panicked.
+    #[track_caller]
+    pub fn ends_with(self, code: i32) -> Self {
+        assert!(!self.stderr.contains("panicked"), "{}", self.stderr);
+        assert_eq!(self.code, code, "stdout: {}\nstderr: {}", self.stdout, self.stderr);
+        self
+    }
+
+    /// Asserts an exit code, and a standard error of one sentence with every one of `phrases`.
+    #[track_caller]
+    pub fn fails_with(self, code: i32, phrases: &[&str]) -> Self {
+        let run = self.ends_with(code);
+        let sentences: Vec<&str> = run.stderr.lines().filter(|line| !line.starts_with("warning: ")).collect();
+        let [sentence] = sentences[..] else { panic!("not one sentence: {:?}", run.stderr) };
+        assert!(sentence.starts_with("error: ") && sentence.chars().count() < 1000, "{sentence}");
+        assert!(!sentence.chars().any(char::is_control), "{sentence:?}");
+        for phrase in phrases {
+            assert!(sentence.contains(phrase), "{sentence:?} lacks {phrase:?}");
+        }
+        run
+    }
+}
+
+/// A temporary folder in which the program runs.
+pub struct Desk(TempDir);
+
+impl Desk {
+    pub fn new() -> Self {
+        Desk(tempfile::tempdir().unwrap())
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    pub fn write(&self, name: &str, content: impl AsRef<[u8]>) {
+        let path = self.path(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, content).unwrap();
+    }
+
+    /// Writes a problem directory.
+    pub fn problem(&self, name: &str, files: &Problem) {
+        for (file, text) in [("K", &files.k), ("f", &files.f), ("B", &files.b), ("g", &files.g)] {
+            self.write(&format!("{name}/{file}.mtx"), text);
+        }
+    }
+
+    pub fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_signorini"));
+        command.args(arguments).current_dir(self.0.path()).stdin(Stdio::null());
+        command
+    }
+
+    pub fn run(&self, arguments: &[&str]) -> Run {
+        let output = self.command(arguments).output().unwrap();
+        Run {
+            code: output.status.code().expect("an exit code, not a signal"),
+            stdout: String::from_utf8(output.stdout).unwrap(),
+            stderr: String::from_utf8(output.stderr).unwrap(),
+        }
+    }
+}
+
+/// The files of a problem directory.
+#[derive(Clone)]
+pub struct Problem {
+    pub k: String,
+    pub f: String,
+    pub b: String,
+    pub g: String,
+}
+
+/// A vector as a Matrix Market file.
+pub fn vector(values: &[&str]) -> String {
+    format!("%%MatrixMarket matrix array real general\n{} 1\n{}\n", values.len(), values.join("\n"))
+}
+
+/// A sparse matrix as a Matrix Market file: `symmetry`, sizes, entries.
+pub fn matrix(symmetry: &str, sizes: &str, entries: &[&str]) -> String {
+    let lines = entries.join("\n");
+    format!("%%MatrixMarket matrix coordinate real {symmetry}\n{sizes} {}\n{lines}\n", entries.len())
+}
+
+impl Problem {
+    /// K = [[2, -1], [-1, 2]], f = (1, 1), u_2 <= 0.1: u = (0.55, 0.1), lambda = 2 * 0.1 - 0.55 - 1 = -1.35.
+    pub fn right() -> Self {
+        Problem {
+            k: matrix("symmetric", "2 2", &["1 1 2", "2 1 -1", "2 2 2"]),
+            f: vector(&["1", "1"]),
+            b: matrix("general", "1 2", &["1 2 1"]),
+            g: vector(&["0.1"]),
+        }
+    }
+
+    /// u_1 <= -1 and u_1 >= 1.
+    pub fn infeasible() -> Self {
+        let b = matrix("general", "2 2", &["1 1 1", "2 1 -1"]);
+        Problem { b, g: vector(&["-1", "-1"]), ..Problem::right() }
+    }
+
+    /// Nothing holds the second dof, and its load pulls it away from its obstacle.
+    pub fn unbounded() -> Self {
+        Problem { k: matrix("symmetric", "2 2", &["1 1 1"]), f: vector(&["1", "-1"]), ..Problem::right() }
+    }
+
+    /// Nothing holds the second dof, and no load moves it.
+    pub fn under_held() -> Self {
+        let b = matrix("general", "1 2", &["1 1 1"]);
+        Problem { k: matrix("symmetric", "2 2", &["1 1 1"]), f: vector(&["1", "0"]), b, ..Problem::right() }
+    }
+}
+
+/// Where an example scene lies.
+pub fn example(name: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples").join(format!("{name}.json"));
+    path.to_str().unwrap().to_string()
+}
+
+/// The names of all example scenes.
+pub fn examples() -> Vec<String> {
+    let folder = fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples")).unwrap();
+    let paths = folder.map(|entry| entry.unwrap().path());
+    let scenes = paths.filter(|path| path.extension().is_some_and(|extension| extension == "json"));
+    let mut names: Vec<String> = scenes.map(|path| path.file_stem().unwrap().to_str().unwrap().to_string()).collect();
+    names.sort();
+    assert!(names.len() >= 6);
+    names
+}
+
+/// A small scene that is right: a block of 4 x 2 cells under a parabola.
+pub fn scene() -> Value {
+    serde_json::json!({
+        "title": "Small block",
+        "body": {"rectangle": {
+            "x": {"points": [0, 1], "divisions": [4]},
+            "y": {"points": [0, 0.5], "divisions": [2]}
+        }},
+        "material": {"young": 1e7, "poisson": 0.3},
+        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}],
+        "loads": [{"traction": {"boundary": "top", "value": [0, 1]}}],
+        "obstacles": [
+            {"boundary": "top", "approach": "+y", "shape": {"parabola": {"apex": [0.5, 0.5], "radius": 1}}}
+        ],
+        "gap": -0.01
+    })
+}
