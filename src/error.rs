@@ -165,9 +165,9 @@ pub enum Error {
         /// What is wrong, and what is allowed.
         message: String,
     },
-    /// A Matrix Market file that does not have the right form.
+    /// A file of lines, as a matrix or a mesh, that does not have the right form.
     #[error("{}:{line}: {message}", file.display())]
-    MatrixMarket {
+    FileSyntax {
         /// The file.
         file: PathBuf,
         /// Line, from 1.

@@ -78,7 +78,7 @@ fn faults_have_their_line_and_say_what_is_allowed() {
         let folder = tempfile::tempdir().unwrap();
         write(folder.path(), &[("K.mtx", text.to_string())]);
         match matrix_market::read_problem(folder.path()) {
-            Err(Error::MatrixMarket { line, message, .. }) => {
+            Err(Error::FileSyntax { line, message, .. }) => {
                 assert!(line == expected_line && message.contains(phrase), "{text:?}: line {line}: {message}");
             }
             other => panic!("{text:?}: {other:?}"),

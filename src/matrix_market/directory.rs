@@ -12,7 +12,7 @@ use crate::sparse::{SparseMatrix, SymmetricMatrix};
 /// Reads the problem of a directory.
 ///
 /// # Errors
-/// [`Error::File`] and [`Error::MatrixMarket`] for a file that is missing or malformed, and those of
+/// [`Error::File`] and [`Error::FileSyntax`] for a file that is missing or malformed, and those of
 /// [`ContactProblem::new`].
 pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
     let stiffness = read(&directory.join("K.mtx"), Values::Finite)?;
@@ -28,7 +28,7 @@ pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
 /// Reads a vector of finite numbers: one column, or one row.
 ///
 /// # Errors
-/// [`Error::File`] and [`Error::MatrixMarket`].
+/// [`Error::File`] and [`Error::FileSyntax`].
 pub fn read_vector(file: &Path) -> Result<Vec<f64>, Error> {
     vector(file, Values::Finite)
 }
@@ -37,7 +37,7 @@ fn vector(file: &Path, values: Values) -> Result<Vec<f64>, Error> {
     let content = read(file, values)?;
     if content.columns != 1 && content.rows != 1 {
         let message = format!("a vector has one column, but this is {} x {}", content.rows, content.columns);
-        return Err(Error::MatrixMarket { file: file.to_path_buf(), line: 1, message });
+        return Err(Error::FileSyntax { file: file.to_path_buf(), line: 1, message });
     }
     let mut vector = vec![0.0; content.rows * content.columns];
     for (row, column, value) in content.entries {

@@ -31,7 +31,7 @@ pub(super) enum Values {
 pub(super) fn parse(file: &Path, text: &str, values: Values) -> Result<Content, Error> {
     // Some editors put a byte order mark in front.
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let fault = |line: usize, message: String| Error::MatrixMarket { file: file.to_path_buf(), line, message };
+    let fault = |line: usize, message: String| Error::FileSyntax { file: file.to_path_buf(), line, message };
     let mut lines = text.lines().enumerate().map(|(index, line)| (index + 1, line.trim()));
     let (_, header) = lines.next().ok_or_else(|| fault(1, "the file is empty".into()))?;
     let words: Vec<String> = header.split_whitespace().map(str::to_lowercase).collect();

@@ -5,14 +5,25 @@ mod bar;
 mod boundary;
 mod cuboid;
 mod faces;
+pub mod gmsh;
+mod half_ball;
+mod half_disc;
+mod lattice;
+mod outline;
 mod rectangle;
+mod ring;
+mod zone;
 
 pub use crate::element::{ElementKind, FacetKind};
 pub use axis::{Axis, AxisError};
 pub use bar::bar;
 pub use boundary::Boundary;
 pub use cuboid::cuboid;
+pub use half_ball::half_ball;
+pub use half_disc::half_disc;
 pub use rectangle::rectangle;
+pub use ring::ring;
+pub use zone::Zone;
 
 use crate::error::Error;
 
@@ -53,6 +64,9 @@ impl Mesh {
     }
 
     fn check_nodes(&self) -> Result<(), Error> {
+        if self.connectivity.is_empty() {
+            return fail("there are no elements; a mesh needs at least one".into());
+        }
         let (nodes, dimension) = (&self.nodes, self.dimension());
         if self.connectivity.is_empty() {
             return fail("there are no elements; a mesh needs at least one".into());

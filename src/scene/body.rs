@@ -1,46 +1,33 @@
 //! The body of a scene: mesh, material, formulation.
 
-use super::schema::{AxisSpec, BodySpec, ElementSpec, IntegrationSpec, ModelSpec, Scene, SolidElementSpec};
+use super::schema::{BodySpec, IntegrationSpec, ModelSpec, Scene};
 use super::{Warning, located, wrong};
 use crate::body::{ElasticBody, Integration};
 use crate::error::Error;
 use crate::formulation::Formulation;
 use crate::material::Material;
-use crate::mesh::{self, Axis, ElementKind};
 
 /// Above this ratio linear elements are known to lock noticeably; measured, quadratic ones do above the second.
 const LOCKING_POISSON: [f64; 2] = [0.49, 0.499];
 
-impl BodySpec {
-    /// As it is written.
-    fn name(&self) -> &'static str {
-        match self {
-            BodySpec::Rectangle(_) => "rectangle",
-            BodySpec::Bar(_) => "bar",
-            BodySpec::Box(_) => "box",
-        }
-    }
-}
-
 impl Scene {
     fn formulation(&self) -> Result<Formulation, Error> {
         let thickness = self.thickness;
+        if self.body.dimension().is_some_and(|dimension| dimension != self.model.dimension()) {
+            let fitting =
+                ["bar", "rectangle, half-disc, ring or gmsh", "box, half-ball or gmsh"][self.model.dimension() - 1];
+            let (body, model) = (self.body.name(), self.model.name());
+            let message = format!("a {body} is no body of the model `{model}`; there it is a {fitting}");
+            return Err(wrong(format!("body.{body}"), message));
+        }
         let formulation = match (self.model, &self.body) {
             (ModelSpec::Bar, BodySpec::Bar(spec)) => Formulation::Bar { area: spec.area },
-            (ModelSpec::PlaneStrain, BodySpec::Rectangle(_)) => Formulation::PlaneStrain { thickness },
-            (ModelSpec::PlaneStress, BodySpec::Rectangle(_)) => Formulation::PlaneStress { thickness },
-            (ModelSpec::Axisymmetric, BodySpec::Rectangle(_)) => Formulation::Axisymmetric,
-            (ModelSpec::Space, BodySpec::Box(_)) => Formulation::Space,
-            (model, body) => {
-                let fitting = match model {
-                    ModelSpec::Bar => "bar",
-                    ModelSpec::Space => "box",
-                    _ => "rectangle",
-                };
-                let (body, model) = (body.name(), model.name());
-                let message = format!("a {body} is no body of the model `{model}`; there it is a {fitting}");
-                return Err(wrong(format!("body.{body}"), message));
-            }
+            // A mesh file says nothing of the cross-section.
+            (ModelSpec::Bar, _) => Formulation::Bar { area: 1.0 },
+            (ModelSpec::PlaneStrain, _) => Formulation::PlaneStrain { thickness },
+            (ModelSpec::PlaneStress, _) => Formulation::PlaneStress { thickness },
+            (ModelSpec::Axisymmetric, _) => Formulation::Axisymmetric,
+            (ModelSpec::Space, _) => Formulation::Space,
         };
         let plane = matches!(formulation, Formulation::PlaneStrain { .. } | Formulation::PlaneStress { .. });
         if !plane && thickness != 1.0 {
@@ -57,42 +44,17 @@ impl Scene {
         let material = material.map_err(|error| self.in_material(error))?;
         let formulation = self.formulation()?;
         material.lame(&formulation).map_err(|error| self.in_material(error))?;
-        let name = self.body.name();
-        let lines = |spec: &AxisSpec, axis: &str| {
-            let of =
-                Axis { points: spec.points.clone(), divisions: spec.divisions.clone(), ratios: spec.ratios.clone() };
-            of.coordinates().map_err(|error| wrong(format!("body.{name}.{axis}.{}", error.field), error.message))
-        };
-        let (mesh, integration) = match &self.body {
-            BodySpec::Bar(spec) => (mesh::bar(&lines(&spec.x, "x")?), IntegrationSpec::Standard),
-            BodySpec::Rectangle(spec) => {
-                let kind = match spec.element {
-                    ElementSpec::T3 => ElementKind::T3,
-                    ElementSpec::T6 => ElementKind::T6,
-                    ElementSpec::Q4 => ElementKind::Q4,
-                    ElementSpec::Q8 => ElementKind::Q8,
-                };
-                (mesh::rectangle(&lines(&spec.x, "x")?, &lines(&spec.y, "y")?, kind), spec.integration)
-            }
-            BodySpec::Box(spec) => {
-                let kind = match spec.element {
-                    SolidElementSpec::Tet4 => ElementKind::Tet4,
-                    SolidElementSpec::Hex8 => ElementKind::Hex8,
-                };
-                let (x, y, z) = (lines(&spec.x, "x")?, lines(&spec.y, "y")?, lines(&spec.z, "z")?);
-                (mesh::cuboid(&x, &y, &z, kind), spec.integration)
-            }
-        };
         let at_body = |error| match error {
-            Error::Mesh { message } => wrong(format!("body.{name}"), message),
-            other => located(other, ""),
+            // A setting that stands beside the body: the thickness.
+            Error::Setting { .. } => located(error, ""),
+            other => self.at_body(other),
         };
-        let body = ElasticBody::new(mesh.map_err(at_body)?, material, formulation).map_err(at_body)?;
-        match integration {
+        let body = ElasticBody::new(self.mesh()?, material, formulation).map_err(at_body)?;
+        match self.body.integration() {
             IntegrationSpec::Standard => Ok(body),
             IntegrationSpec::MeanDilatation => {
                 body.with_integration(Integration::MeanDilatation).map_err(|error| match error {
-                    Error::Mesh { message } => wrong(format!("body.{name}.integration"), message),
+                    Error::Mesh { message } => wrong(format!("body.{}.integration", self.body.name()), message),
                     other => other,
                 })
             }

@@ -18,6 +18,7 @@ mod body;
 mod build;
 mod condition;
 mod explain;
+mod mesh;
 mod model;
 mod motion;
 mod obstacle;
@@ -31,9 +32,9 @@ pub use obstacle::Obstacle;
 pub use rows::ContactRow;
 pub use schema::{
     Approach, AxisSpec, BarSpec, BodySpec, BoxSpec, CircleSpec, ConeSpec, CylinderSpec, ElementSpec, ForceSpec,
-    HeightMapSpec, IntegrationSpec, LoadSpec, MaterialSpec, ModelSpec, ObstacleSpec, ParabolaSpec, Place, PlaneSpec,
-    PressureSpec, RectangleSpec, Rule, Scene, ShapeSpec, SolidElementSpec, SphereSpec, SupportSpec, TableSpec,
-    TractionSpec, Units, WedgeSpec,
+    GmshSpec, HalfBallSpec, HalfDiscSpec, HeightMapSpec, IntegrationSpec, LoadSpec, MaterialSpec, ModelSpec,
+    ObstacleSpec, ParabolaSpec, Place, PlaneSpec, PressureSpec, RectangleSpec, RingSpec, Rule, Scene, ShapeSpec,
+    SolidElementSpec, SphereSpec, SupportSpec, SymmetrySpec, TableSpec, TractionSpec, Units, WedgeSpec, ZoneSpec,
 };
 pub use warning::Warning;
 

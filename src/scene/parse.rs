@@ -35,7 +35,7 @@ impl Scene {
         Ok(scene)
     }
 
-    /// Reads a scene from a JSON file.
+    /// Reads a scene from a JSON file; names of further files in it start from its folder.
     ///
     /// # Errors
     /// [`Error::File`] for a file that cannot be read, and as [`Scene::from_json`].
@@ -50,7 +50,8 @@ impl Scene {
             path: path.into(),
             source,
         })?;
-        Self::from_json(&text, &path.display().to_string())
+        let scene = Self::from_json(&text, &path.display().to_string())?;
+        Ok(Scene { folder: path.parent().map(Path::to_path_buf), ..scene })
     }
 
     /// The JSON Schema of scenes.
@@ -148,6 +149,18 @@ pub(super) fn word<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer:
         }
     }
     deserializer.deserialize_str(OfWord(PhantomData))
+}
+
+/// Accepts an array of words.
+pub(super) fn words<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<Vec<T>, D::Error> {
+    struct OneWord<T>(T);
+    impl<'de, T: Deserialize<'de>> Deserialize<'de> for OneWord<T> {
+        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+            word(deserializer).map(OneWord)
+        }
+    }
+    let items = Vec::<OneWord<T>>::deserialize(deserializer)?;
+    Ok(items.into_iter().map(|OneWord(item)| item).collect())
 }
 
 /// Accepts an array of objects.

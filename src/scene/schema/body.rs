@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::super::parse::{object, word};
-use super::one;
+use super::{GmshSpec, HalfBallSpec, HalfDiscSpec, RingSpec, one};
 
 /// The elastic body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -18,6 +18,16 @@ pub enum BodySpec {
     /// A box with a structured mesh; its boundaries are `left`, `right` (along x), `front`, `back` (along y), `bottom`,
     /// `top` (along z).
     Box(#[serde(deserialize_with = "object")] BoxSpec),
+    /// The lower half of a disc, graded towards its lowest point; its boundaries are `cut` (flat), `arc` and, where it is
+    /// symmetric, `symmetry-x`. In an axisymmetric model, symmetric about x = 0, half a ball.
+    HalfDisc(#[serde(deserialize_with = "object")] HalfDiscSpec),
+    /// The lower half of a ball, or a quarter or an eighth of one, graded towards its lowest point; its boundaries are
+    /// `cut` (flat), `round` and the planes `symmetry-x` and `symmetry-y`.
+    HalfBall(#[serde(deserialize_with = "object")] HalfBallSpec),
+    /// A ring or a sector of it; its boundaries are `inner`, `outer` and, where it does not close, `start` and `end`.
+    Ring(#[serde(deserialize_with = "object")] RingSpec),
+    /// A mesh written by Gmsh; its physical groups are the boundaries.
+    Gmsh(#[serde(deserialize_with = "object")] GmshSpec),
 }
 
 /// A bar along x.

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 mod body;
 mod condition;
 mod obstacle;
+mod shape;
 mod solid;
 
 pub use body::{
@@ -15,7 +16,10 @@ pub use condition::{ForceSpec, LoadSpec, Place, PressureSpec, SupportSpec, Tract
 pub use obstacle::{
     Approach, CircleSpec, ObstacleSpec, ParabolaSpec, PlaneSpec, Rule, ShapeSpec, TableSpec, WedgeSpec,
 };
+pub use shape::{GmshSpec, HalfBallSpec, HalfDiscSpec, RingSpec, SymmetrySpec, ZoneSpec};
 pub use solid::{ConeSpec, CylinderSpec, HeightMapSpec, SphereSpec};
+
+use std::path::PathBuf;
 
 use super::parse::{choice, choices, object, objects, word};
 
@@ -59,6 +63,9 @@ pub struct Scene {
     /// Shift of every obstacle along its own approach direction; negative moves it towards, and into, the body.
     #[serde(default)]
     pub gap: f64,
+    /// The folder of the file that the scene was read from: where relative file names start. Not part of the text.
+    #[serde(skip)]
+    pub folder: Option<PathBuf>,
 }
 
 fn one() -> f64 {
@@ -118,6 +125,15 @@ impl ModelSpec {
             ModelSpec::PlaneStress => "plane-stress",
             ModelSpec::Axisymmetric => "axisymmetric",
             ModelSpec::Space => "space",
+        }
+    }
+
+    /// Coordinates of a point: 1 in a bar, 2 in the plane and about an axis, 3 in space.
+    pub fn dimension(self) -> usize {
+        match self {
+            ModelSpec::Bar => 1,
+            ModelSpec::PlaneStrain | ModelSpec::PlaneStress | ModelSpec::Axisymmetric => 2,
+            ModelSpec::Space => 3,
         }
     }
 }

@@ -1,0 +1,123 @@
+"""Writes the meshes of tests/meshes with the real Gmsh.
+
+The files are kept, so that no test needs Gmsh; run this to write them anew:
+
+    target/reference-venv/bin/python reference/meshes.py
+
+Gmsh needs libraries of a graphical system (on Debian libglu1-mesa, libxcursor1, libxft2, libxinerama1).
+Every file has a node that belongs to no element of the body. Those of version 4.1 have node tags with gaps and out of
+order; Gmsh itself numbers the nodes anew when it writes version 2.2.
+"""
+
+import pathlib
+import random
+
+import gmsh
+
+FOLDER = pathlib.Path(__file__).resolve().parent.parent / "tests" / "meshes"
+OPTIONS = {
+    "General.Terminal": 0,
+    "Mesh.Binary": 0,
+    "Mesh.RecombineAll": 0,
+    "Mesh.ElementOrder": 1,
+    "Mesh.SecondOrderIncomplete": 1,
+    "Mesh.Algorithm": 6,
+}
+
+
+def name_all(dimension, names):
+    for name, entities in names.items():
+        gmsh.model.addPhysicalGroup(dimension, entities, name=name)
+
+
+def lines_through(points, size):
+    tags = [gmsh.model.geo.addPoint(*point, 0, size) for point in points]
+    return [gmsh.model.geo.addLine(tag, tags[(i + 1) % len(tags)]) for i, tag in enumerate(tags)]
+
+
+def surface(lines):
+    return gmsh.model.geo.addPlaneSurface([gmsh.model.geo.addCurveLoop(lines)])
+
+
+def stray_point():
+    point = gmsh.model.geo.addPoint(5, 5, 0)
+    gmsh.model.geo.synchronize()
+    name_all(0, {"stray": [point]})
+
+
+def block():
+    """The block 2 x 1."""
+    bottom, right, top, left = lines_through([(0, 0), (2, 0), (2, 1), (0, 1)], 0.3)
+    body = surface([bottom, right, top, left])
+    stray_point()
+    name_all(1, {"bottom": [bottom], "right": [right], "top": [top], "left": [left]})
+    name_all(2, {"body": [body]})
+
+
+def two_parts():
+    """The blocks 1 x 1 side by side, with a line between them."""
+    geo = gmsh.model.geo
+    points = [geo.addPoint(x, y, 0, 0.3) for x in (0, 1, 2) for y in (0, 1)]
+    line = lambda a, b: geo.addLine(points[a], points[b])
+    left, middle, right = line(0, 1), line(2, 3), line(4, 5)
+    bottom, top = [line(0, 2), line(2, 4)], [line(1, 3), line(3, 5)]
+    first = surface([bottom[0], middle, -top[0], -left])
+    second = surface([bottom[1], right, -top[1], -middle])
+    stray_point()
+    name_all(1, {"left": [left], "interface": [middle], "right": [right], "bottom": bottom, "top": top})
+    name_all(2, {"first": [first], "second": [second]})
+
+
+def half_disc():
+    """The lower half of the unit disc about (0, 1)."""
+    geo = gmsh.model.geo
+    centre, west, south, east = [
+        geo.addPoint(x, y, 0, size) for x, y, size in ((0, 1, 0.4), (-1, 1, 0.4), (0, 0, 0.15), (1, 1, 0.4))
+    ]
+    cut = geo.addLine(east, west)
+    arcs = [geo.addCircleArc(west, centre, south), geo.addCircleArc(south, centre, east)]
+    body = surface(arcs + [cut])
+    geo.synchronize()
+    name_all(0, {"centre": [centre]})
+    name_all(1, {"arc": arcs, "cut": [cut]})
+    name_all(2, {"disc": [body]})
+
+
+def box(divisions, recombined):
+    """The unit cube."""
+    gmsh.model.occ.addBox(0, 0, 0, 1, 1, 1)
+    stray = gmsh.model.occ.addPoint(5, 5, 5)
+    gmsh.model.occ.synchronize()
+    if divisions:
+        gmsh.model.mesh.setTransfiniteAutomatic(recombine=recombined)
+        for _, curve in gmsh.model.getEntities(1):
+            gmsh.model.mesh.setTransfiniteCurve(curve, divisions + 1)
+    sides = ["left", "right", "front", "back", "bottom", "top"]
+    name_all(0, {"stray": [stray]})
+    name_all(2, {name: [tag] for tag, name in enumerate(sides, start=1)})
+    name_all(3, {"body": [1]})
+    gmsh.option.setNumber("Mesh.MeshSizeMax", 0.6)
+
+
+def write(name, version, dimension, build, **options):
+    gmsh.clear()
+    for option, value in (OPTIONS | {"Mesh.MshFileVersion": version} | options).items():
+        gmsh.option.setNumber(option, value)
+    gmsh.model.add(name)
+    build()
+    gmsh.model.mesh.generate(dimension)
+    tags = [int(tag) for tag in gmsh.model.mesh.getNodes()[0]]
+    shuffled = [3 * tag + 7 for tag in tags]
+    random.Random(1).shuffle(shuffled)
+    gmsh.model.mesh.renumberNodes(tags, shuffled)
+    gmsh.write(str(FOLDER / f"{name}.msh"))
+
+
+if __name__ == "__main__":
+    gmsh.initialize()
+    write("block-t3", 4.1, 2, block)
+    write("two-parts-q8", 2.2, 2, two_parts, **{"Mesh.ElementOrder": 2, "Mesh.RecombineAll": 1, "Mesh.Algorithm": 8})
+    write("half-disc-t6", 2.2, 2, half_disc, **{"Mesh.ElementOrder": 2})
+    write("box-tet4", 4.1, 3, lambda: box(0, False))
+    write("box-hex8", 4.1, 3, lambda: box(2, True))
+    gmsh.finalize()

@@ -1,0 +1,44 @@
+//! The outline of a mesh: faces found by their nodes, edges put in their order.
+
+use std::collections::{HashMap, HashSet};
+
+use super::{Boundary, FacetKind, Mesh};
+
+impl Mesh {
+    /// The boundary of all faces whose nodes are all marked, seen from outside; edges in the order in which they follow
+    /// each other. `None` where there is no such face.
+    pub(super) fn boundary_where(&self, name: &str, marked: impl Fn(usize) -> bool) -> Option<Boundary> {
+        let faces = self.kind().reference().faces;
+        let mut connectivity = Vec::new();
+        for nodes in self.elements() {
+            for face in faces.iter().filter(|face| face.iter().all(|&local| marked(nodes[local]))) {
+                connectivity.extend(face.iter().map(|&local| nodes[local]));
+            }
+        }
+        let kind = self.kind().facet();
+        (!connectivity.is_empty()).then(|| Boundary::new(name, kind, chained(kind, connectivity)))
+    }
+}
+
+/// Edges in the order in which they follow each other; other facets as they are.
+pub(super) fn chained(kind: FacetKind, connectivity: Vec<usize>) -> Vec<usize> {
+    if kind.reference().dimension != 1 {
+        return connectivity;
+    }
+    let edges: Vec<&[usize]> = connectivity.chunks_exact(kind.nodes()).collect();
+    let starting: HashMap<usize, usize> =
+        edges.iter().enumerate().rev().map(|(index, edge)| (edge[0], index)).collect();
+    let ends: HashSet<usize> = edges.iter().map(|edge| edge[1]).collect();
+    let mut waiting = vec![true; edges.len()];
+    let mut ordered = Vec::with_capacity(connectivity.len());
+    // Open lines from their beginnings, then closed ones from any place.
+    let beginnings = (0..edges.len()).filter(|&index| !ends.contains(&edges[index][0]));
+    for first in beginnings.chain(0..edges.len()) {
+        let mut next = Some(first);
+        while let Some(index) = next.filter(|&index| std::mem::replace(&mut waiting[index], false)) {
+            ordered.extend_from_slice(edges[index]);
+            next = starting.get(&edges[index][1]).copied();
+        }
+    }
+    ordered
+}

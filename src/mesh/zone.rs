@@ -1,0 +1,67 @@
+//! Grading towards a place of contact: fine cells of one size there, growing cells beyond.
+
+use super::MAX_NODES;
+use crate::error::Error;
+
+/// The fine zone of a mesh around the lowest point of a curved body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Zone {
+    /// How far the cells of one size reach from the lowest point: to each side along the surface, and into the body.
+    pub width: f64,
+    /// Cells on this width, at least one.
+    pub divisions: usize,
+    /// Size of each further cell over that of its neighbour towards the zone, at least 1.
+    pub growth: f64,
+}
+
+/// A cell smaller than this times the radius is lost in the rounding of coordinates.
+const SMALLEST: f64 = 1e-8;
+
+impl Zone {
+    pub(super) fn check(&self, radius: f64) -> Result<(), Error> {
+        let fail = |name, value, allowed| Err(Error::Setting { name, value, allowed });
+        if !(radius.is_normal() && radius > 0.0) {
+            return fail("radius", radius, "positive and finite");
+        }
+        if !(self.width > 0.0 && self.width <= radius) {
+            return fail("zone.width", self.width, "positive, and at most the radius");
+        }
+        if !(self.growth >= 1.0 && self.growth <= 10.0) {
+            return fail("zone.growth", self.growth, "from 1 to 10 (each cell over its neighbour)");
+        }
+        let cells = self.divisions as f64;
+        if self.divisions == 0 || self.divisions > MAX_NODES || self.width / cells < SMALLEST * radius {
+            return fail("zone.divisions", cells, "at least 1, with cells of at least 1e-8 of the radius");
+        }
+        Ok(())
+    }
+
+    /// Lines from 0 to `length`, fine at 0; the last one is met exactly.
+    pub(super) fn lines(&self, length: f64) -> Result<Vec<f64>, Error> {
+        let size = self.width / self.divisions as f64;
+        let fine = if self.width < length { self.divisions } else { (length / size).ceil().max(1.0) as usize };
+        let reach = self.width.min(length);
+        let mut lines: Vec<f64> = (0..fine).map(|cell| reach * cell as f64 / fine as f64).collect();
+        let mut growing = Vec::new();
+        let mut total = 0.0;
+        let mut next = size;
+        while reach + total < length {
+            next *= self.growth;
+            total += next;
+            growing.push(next);
+            if growing.len() > MAX_NODES {
+                let (name, allowed) = ("zone.growth", "larger: the cells are more than the nodes that are allowed");
+                return Err(Error::Setting { name, value: self.growth, allowed });
+            }
+        }
+        // All growing cells shrink alike, so that they end where they should.
+        let factor = (length - reach) / total;
+        let mut at = reach;
+        for cell in growing {
+            lines.push(at);
+            at += cell * factor;
+        }
+        lines.push(length);
+        Ok(lines)
+    }
+}

@@ -1,0 +1,128 @@
+//! The mesh of a scene's body.
+
+use std::path::Path;
+
+use super::schema::{
+    AxisSpec, BodySpec, ElementSpec, GmshSpec, IntegrationSpec, Scene, SolidElementSpec, SymmetrySpec, ZoneSpec,
+};
+use super::{located, wrong};
+use crate::error::Error;
+use crate::mesh::gmsh::GmshFile;
+use crate::mesh::{self, Axis, ElementKind, Mesh, Zone};
+
+impl BodySpec {
+    /// As it is written.
+    pub(super) fn name(&self) -> &'static str {
+        match self {
+            BodySpec::Rectangle(_) => "rectangle",
+            BodySpec::Bar(_) => "bar",
+            BodySpec::Box(_) => "box",
+            BodySpec::HalfDisc(_) => "half-disc",
+            BodySpec::HalfBall(_) => "half-ball",
+            BodySpec::Ring(_) => "ring",
+            BodySpec::Gmsh(_) => "gmsh",
+        }
+    }
+
+    /// The coordinates that the body has; those of a mesh file are known when it has been read.
+    pub(super) fn dimension(&self) -> Option<usize> {
+        match self {
+            BodySpec::Bar(_) => Some(1),
+            BodySpec::Rectangle(_) | BodySpec::HalfDisc(_) | BodySpec::Ring(_) => Some(2),
+            BodySpec::Box(_) | BodySpec::HalfBall(_) => Some(3),
+            BodySpec::Gmsh(_) => None,
+        }
+    }
+
+    pub(super) fn integration(&self) -> IntegrationSpec {
+        match self {
+            BodySpec::Bar(_) => IntegrationSpec::Standard,
+            BodySpec::Rectangle(spec) => spec.integration,
+            BodySpec::Box(spec) => spec.integration,
+            BodySpec::HalfDisc(spec) => spec.integration,
+            BodySpec::HalfBall(spec) => spec.integration,
+            BodySpec::Ring(spec) => spec.integration,
+            BodySpec::Gmsh(spec) => spec.integration,
+        }
+    }
+}
+
+impl Scene {
+    pub(super) fn mesh(&self) -> Result<Mesh, Error> {
+        let name = self.body.name();
+        let lines = |spec: &AxisSpec, axis: &str| {
+            let of =
+                Axis { points: spec.points.clone(), divisions: spec.divisions.clone(), ratios: spec.ratios.clone() };
+            of.coordinates().map_err(|error| wrong(format!("body.{name}.{axis}.{}", error.field), error.message))
+        };
+        let mesh = match &self.body {
+            BodySpec::Bar(spec) => mesh::bar(&lines(&spec.x, "x")?),
+            BodySpec::Rectangle(spec) => {
+                mesh::rectangle(&lines(&spec.x, "x")?, &lines(&spec.y, "y")?, spec.element.kind())
+            }
+            BodySpec::Box(spec) => {
+                let kind = match spec.element {
+                    SolidElementSpec::Tet4 => ElementKind::Tet4,
+                    SolidElementSpec::Hex8 => ElementKind::Hex8,
+                };
+                mesh::cuboid(&lines(&spec.x, "x")?, &lines(&spec.y, "y")?, &lines(&spec.z, "z")?, kind)
+            }
+            BodySpec::HalfDisc(spec) => {
+                mesh::half_disc(spec.centre, spec.radius, &spec.zone.zone(), spec.symmetric, spec.element.kind())
+            }
+            BodySpec::HalfBall(spec) => {
+                let symmetric = [SymmetrySpec::X, SymmetrySpec::Y].map(|axis| spec.symmetric.contains(&axis));
+                mesh::half_ball(spec.centre, spec.radius, &spec.zone.zone(), symmetric)
+            }
+            BodySpec::Ring(spec) => {
+                let (radii, angles) = (lines(&spec.radius, "radius")?, lines(&spec.angle, "angle")?);
+                mesh::ring(spec.centre, &radii, &angles, spec.element.kind())
+            }
+            BodySpec::Gmsh(spec) => self.gmsh(spec),
+        };
+        mesh.map_err(|error| self.at_body(error))
+    }
+
+    /// An error of the mesh at its place in the scene; what has a file and a line of its own stays there.
+    pub(super) fn at_body(&self, error: Error) -> Error {
+        let name = self.body.name();
+        match error {
+            Error::Mesh { message } => wrong(format!("body.{name}"), message),
+            other => located(other, &format!("body.{name}.")),
+        }
+    }
+
+    fn gmsh(&self, spec: &GmshSpec) -> Result<Mesh, Error> {
+        let file = match &self.folder {
+            Some(folder) => folder.join(&spec.file),
+            None => Path::new(&spec.file).to_path_buf(),
+        };
+        let mesh = GmshFile::read(file)?.mesh(spec.group.as_deref(), spec.scale)?;
+        let (found, model) = (mesh.dimension(), self.model.name());
+        if found != self.model.dimension() {
+            let body = ["a bar", "plane", "in space"][found - 1];
+            return Err(wrong(
+                "body.gmsh.file",
+                format!("the mesh is {body}, which is no body of the model `{model}`"),
+            ));
+        }
+        Ok(mesh)
+    }
+}
+
+impl ElementSpec {
+    fn kind(self) -> ElementKind {
+        match self {
+            ElementSpec::T3 => ElementKind::T3,
+            ElementSpec::T6 => ElementKind::T6,
+            ElementSpec::Q4 => ElementKind::Q4,
+            ElementSpec::Q8 => ElementKind::Q8,
+        }
+    }
+}
+
+impl ZoneSpec {
+    fn zone(&self) -> Zone {
+        Zone { width: self.width, divisions: self.divisions, growth: self.growth }
+    }
+}

@@ -1,0 +1,107 @@
+//! Files written by the real Gmsh (`reference/meshes.py`): what they hold.
+
+use std::path::{Path, PathBuf};
+
+use signorini::mesh::gmsh::GmshFile;
+use signorini::mesh::{ElementKind, Mesh};
+
+fn path(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes").join(name)
+}
+
+fn mesh(name: &str) -> Mesh {
+    GmshFile::read(path(name)).unwrap().mesh(None, 1.0).unwrap()
+}
+
+/// Every node of a boundary lies where `off` is zero, and every node there belongs to it.
+fn lies(mesh: &Mesh, name: &str, off: impl Fn([f64; 3]) -> f64) {
+    let mut nodes = mesh.boundary(name).unwrap_or_else(|| panic!("no boundary {name}")).nodes();
+    nodes.sort_unstable();
+    let there: Vec<usize> = (0..mesh.nodes().len()).filter(|&node| off(mesh.nodes()[node]).abs() < 1e-9).collect();
+    assert_eq!(nodes, there, "{name}");
+}
+
+#[test]
+fn tags_out_of_order_and_unused_nodes_leave_no_trace() {
+    for name in ["block-t3.msh", "box-tet4.msh", "box-hex8.msh"] {
+        let text = std::fs::read_to_string(path(name)).unwrap();
+        // In version 4.1 the tags of the corner points stand alone in their lines, after `0 <point> 0 1`.
+        let mut lines = text.lines().skip_while(|line| *line != "$Nodes");
+        let mut tags = Vec::new();
+        while let Some(line) = lines.next().filter(|line| *line != "$EndNodes") {
+            if line.starts_with("0 ") && line.ends_with(" 0 1") {
+                tags.extend(lines.next().and_then(|tag| tag.trim().parse::<usize>().ok()));
+            }
+        }
+        assert!(tags.len() > 4 && !tags.is_sorted(), "{name}: {tags:?}");
+        assert!(text.contains("\"stray\""));
+        let mesh = mesh(name);
+        assert!(mesh.nodes().iter().all(|at| at.iter().all(|&value| value <= 2.0)), "{name}: the stray node is gone");
+        assert!(mesh.boundary("stray").is_none());
+    }
+}
+
+#[test]
+fn an_unstructured_block_has_its_four_sides() {
+    let block = mesh("block-t3.msh");
+    assert_eq!(block.kind(), ElementKind::T3);
+    assert_eq!(block.extent(), ([0.0; 3], [2.0, 1.0, 0.0]));
+    lies(&block, "bottom", |[_, y, _]| y);
+    lies(&block, "top", |[_, y, _]| y - 1.0);
+    lies(&block, "left", |[x, ..]| x);
+    lies(&block, "right", |[x, ..]| x - 2.0);
+}
+
+#[test]
+fn one_of_two_domains_is_a_body_of_its_own() {
+    let file = GmshFile::read(path("two-parts-q8.msh")).unwrap();
+    let (both, second) = (file.mesh(None, 1.0).unwrap(), file.mesh(Some("second"), 1.0).unwrap());
+    assert_eq!(both.kind(), ElementKind::Q8);
+    assert_eq!(both.extent(), ([0.0; 3], [2.0, 1.0, 0.0]));
+    lies(&both, "interface", |[x, ..]| x - 1.0);
+    assert_eq!(second.extent(), ([1.0, 0.0, 0.0], [2.0, 1.0, 0.0]));
+    assert_eq!(both.element_count(), 2 * second.element_count());
+    // A side that both parts share is cut to the part; one that lies elsewhere is left out.
+    lies(&second, "bottom", |[_, y, _]| y);
+    lies(&second, "interface", |[x, ..]| x - 1.0);
+    assert!(second.boundary("left").is_none());
+}
+
+#[test]
+fn mid_sides_of_a_half_disc_lie_on_the_arc_in_their_order() {
+    let disc = mesh("half-disc-t6.msh");
+    assert_eq!(disc.kind(), ElementKind::T6);
+    lies(&disc, "cut", |[_, y, _]| y - 1.0);
+    lies(&disc, "arc", |[x, y, _]| x.hypot(y - 1.0) - 1.0);
+    let arc = disc.boundary("arc").unwrap().nodes();
+    assert!(arc.windows(2).all(|pair| disc.nodes()[pair[0]][0] < disc.nodes()[pair[1]][0]), "in order along the arc");
+    for facet in disc.boundary("arc").unwrap().facets() {
+        let [a, b, middle] = [0, 1, 2].map(|local| disc.nodes()[facet[local]]);
+        let distance = |p: [f64; 3]| (p[0] - middle[0]).hypot(p[1] - middle[1]);
+        assert!((distance(a) - distance(b)).abs() < 1e-6, "the mid-side is the last node of an edge");
+    }
+}
+
+#[test]
+fn boxes_have_their_six_sides_seen_from_outside() {
+    for (name, kind) in [("box-tet4.msh", ElementKind::Tet4), ("box-hex8.msh", ElementKind::Hex8)] {
+        let solid = mesh(name);
+        assert_eq!((solid.kind(), solid.boundaries().len()), (kind, 6));
+        for (side, axis, at) in [
+            ("left", 0, 0.0),
+            ("right", 0, 1.0),
+            ("front", 1, 0.0),
+            ("back", 1, 1.0),
+            ("bottom", 2, 0.0),
+            ("top", 2, 1.0),
+        ] {
+            lies(&solid, side, |node| node[axis] - at);
+            for facet in solid.boundary(side).unwrap().facets() {
+                let [a, b, c] = [0, 1, 2].map(|local| solid.nodes()[facet[local]]);
+                let (p, q) = ((axis + 1) % 3, (axis + 2) % 3);
+                let normal = (b[p] - a[p]) * (c[q] - a[q]) - (b[q] - a[q]) * (c[p] - a[p]);
+                assert!(normal * (at - 0.5) > 0.0, "{name}: {side}");
+            }
+        }
+    }
+}

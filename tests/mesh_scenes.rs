@@ -1,0 +1,246 @@
+//! Scenes on bodies from mesh files and on round bodies, solved end to end against closed forms.
+
+use std::f64::consts::PI;
+use std::path::Path;
+
+use serde_json::{Value, json};
+use signorini::{Error, Model, Scene, solve_qp};
+
+const YOUNG: f64 = 1000.0;
+const POISSON: f64 = 0.3;
+
+/// A scene as if it were read from a file in the folder of the meshes.
+fn scene(value: &Value) -> Scene {
+    let scene = Scene::from_json(&value.to_string(), "scene").unwrap();
+    Scene { folder: Some(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes")), ..scene }
+}
+
+/// The pressures of the contact rows, and the sum of the contact forces.
+fn solved(model: &Model) -> (Vec<f64>, f64) {
+    let solution = solve_qp(model.problem()).unwrap();
+    let force = -solution.multiplier.iter().sum::<f64>();
+    (model.pressure(&solution.multiplier).unwrap(), force)
+}
+
+/// A body between rollers, its top pressed down by 0.01 of its height 1.
+fn pressed(model: &str, body: Value, vertical: &str, rollers: &[(&str, &str)]) -> Value {
+    let normal: Vec<f64> = if vertical == "z" { vec![0.0, 0.0, 1.0] } else { vec![0.0, 1.0] };
+    let supports: Vec<Value> = rollers.iter().map(|(side, axis)| json!({"on": {"boundary": side}, *axis: 0})).collect();
+    json!({
+        "model": model, "body": body, "material": {"young": YOUNG, "poisson": POISSON}, "supports": supports,
+        "obstacles": [{"boundary": "top", "approach": format!("+{vertical}"),
+                       "shape": {"plane": {"point": normal, "normal": normal}}}],
+        "gap": -0.01,
+    })
+}
+
+#[test]
+fn uniform_compression_is_exact_on_unstructured_meshes() {
+    let gmsh = |file: &str| json!({"gmsh": {"file": file}});
+    let part = json!({"gmsh": {"file": "two-parts-q8.msh", "group": "second"}});
+    let plane = [("bottom", "y"), ("left", "x")];
+    let space = [("bottom", "z"), ("left", "x"), ("front", "y")];
+    let plane_strain = YOUNG / (1.0 - POISSON * POISSON);
+    let cases = [
+        (pressed("plane-strain", gmsh("block-t3.msh"), "y", &plane), plane_strain, 2.0),
+        (pressed("plane-stress", gmsh("block-t3.msh"), "y", &plane), YOUNG, 2.0),
+        (pressed("plane-strain", gmsh("two-parts-q8.msh"), "y", &plane), plane_strain, 2.0),
+        (pressed("plane-strain", part, "y", &[("bottom", "y"), ("interface", "x")]), plane_strain, 1.0),
+        (pressed("axisymmetric", gmsh("block-t3.msh"), "y", &[("bottom", "y")]), YOUNG, PI * 4.0),
+        (pressed("space", gmsh("box-tet4.msh"), "z", &space), YOUNG, 1.0),
+        (pressed("space", gmsh("box-hex8.msh"), "z", &space), YOUNG, 1.0),
+    ];
+    for (value, modulus, area) in cases {
+        let (pressures, force) = solved(&scene(&value).build().unwrap());
+        let expected = 0.01 * modulus;
+        assert!(pressures.len() >= 4);
+        for pressure in pressures {
+            assert!((pressure / expected - 1.0).abs() < 1e-7, "{value}: {pressure} instead of {expected}");
+        }
+        assert!((force / (expected * area) - 1.0).abs() < 1e-7, "{value}: {force}");
+    }
+}
+
+#[test]
+fn a_scaled_mesh_in_other_units_gives_the_same_pressure() {
+    let mut value = pressed("plane-strain", json!({}), "y", &[("bottom", "y"), ("left", "x")]);
+    value["body"] = json!({"gmsh": {"file": "block-t3.msh", "scale": 1000.0}});
+    value["obstacles"][0]["shape"]["plane"]["point"] = json!([0, 1000]);
+    value["gap"] = json!(-10.0);
+    let (pressures, _) = solved(&scene(&value).build().unwrap());
+    let expected = 0.01 * YOUNG / (1.0 - POISSON * POISSON);
+    assert!(pressures.iter().all(|pressure| (pressure / expected - 1.0).abs() < 1e-7), "{pressures:?}");
+}
+
+/// A round body of radius 1 above the plane through its lowest point, its cut moved down.
+fn indented(model: &str, body: Value, round: &str, depth: f64, symmetry: &[&str]) -> Value {
+    let vertical = if model == "space" { "z" } else { "y" };
+    let down: Vec<f64> = if model == "space" { vec![0.0, 0.0, -1.0] } else { vec![0.0, -1.0] };
+    let origin = vec![0.0; down.len()];
+    let mut supports = vec![json!({"on": {"boundary": "cut"}, vertical: -depth})];
+    for side in symmetry {
+        supports.push(json!({"on": {"boundary": format!("symmetry-{side}")}, *side: 0}));
+    }
+    json!({
+        "model": model, "body": body, "material": {"young": YOUNG, "poisson": POISSON}, "supports": supports,
+        "obstacles": [{"boundary": round, "approach": format!("-{vertical}"),
+                       "shape": {"plane": {"point": origin, "normal": down}}}],
+    })
+}
+
+/// GOAL: the peak pressure of a cylinder and a ball on a rigid plane, from the total force.
+///
+/// CONDITIONS: half disc, or half ball, of radius 1 whose flat cut is moved down; contact half-width near 0.06.
+///
+/// REFERENCE: Hertz: p0 = sqrt(F E* / (pi R)) per unit of length, p0 = (6 F E*^2 / (pi^3 R^2))^(1/3) for a ball.
+#[test]
+fn round_bodies_have_the_peak_pressure_of_hertz() {
+    let modulus = YOUNG / (1.0 - POISSON * POISSON);
+    let line = |force: f64| (force * modulus / PI).sqrt();
+    let point = |force: f64| (6.0 * force * modulus * modulus / PI.powi(3)).cbrt();
+    let disc = |element: &str, symmetric: bool, width: f64, divisions: usize| {
+        let zone = json!({"width": width, "divisions": divisions, "growth": 1.25});
+        json!({"half-disc": {"centre": [0, 1], "radius": 1, "zone": zone, "symmetric": symmetric, "element": element}})
+    };
+    let strain = |element: &str, tolerance: f64| {
+        let value = indented("plane-strain", disc(element, true, 0.1, 12), "arc", 0.007, &["x"]);
+        let (pressures, half) = solved(&scene(&value).build().unwrap());
+        let (peak, expected) = (pressures.iter().copied().fold(0.0, f64::max), line(2.0 * half));
+        assert!((peak / expected - 1.0).abs() < tolerance, "{element}: {peak} instead of {expected}");
+    };
+    strain("q4", 0.02);
+    strain("t3", 0.03);
+    let revolved = |element: &str, tolerance: f64| {
+        let value = indented("axisymmetric", disc(element, true, 0.1, 12), "arc", 0.004, &[]);
+        let (pressures, force) = solved(&scene(&value).build().unwrap());
+        let (peak, expected) = (pressures.iter().copied().fold(0.0, f64::max), point(force));
+        assert!((peak / expected - 1.0).abs() < tolerance, "{element}: {peak} instead of {expected}");
+        force
+    };
+    let force = revolved("q4", 0.05);
+    let ball = json!({"half-ball": {"centre": [0, 0, 1], "radius": 1, "symmetric": ["x", "y"],
+                                    "zone": {"width": 0.1, "divisions": 4, "growth": 1.8}}});
+    let value = indented("space", ball, "round", 0.004, &["x", "y"]);
+    let (_, quarter) = solved(&scene(&value).build().unwrap());
+    assert!((4.0 * quarter / force - 1.0).abs() < 0.05, "in space {}, revolved {force}", 4.0 * quarter);
+}
+
+#[test]
+fn an_unstructured_half_disc_carries_the_force_of_the_structured_one() {
+    let zone = json!({"width": 0.3, "divisions": 8, "growth": 1.2});
+    let structured = json!({"half-disc": {"centre": [0, 1], "radius": 1, "element": "t6", "zone": zone}});
+    let force = |body: Value| {
+        let mut value = indented("plane-strain", body, "arc", 0.03, &[]);
+        // The node at the lowest point keeps the disc from sliding.
+        let cut = value["supports"][0].clone();
+        value["supports"] = json!([cut, {"on": {"point": [0, 0]}, "x": 0}]);
+        solved(&scene(&value).build().unwrap()).1
+    };
+    let (one, other) = (force(json!({"gmsh": {"file": "half-disc-t6.msh"}})), force(structured));
+    assert!((one / other - 1.0).abs() < 0.01, "{one} and {other}");
+}
+
+/// GOAL: a thick ring under pressure from outside, inside a quarter with planes of symmetry.
+///
+/// REFERENCE: Lamé, plane strain: u(b) = -p b (1 + nu) ((1 - 2 nu) b^2 + a^2) / (E (b^2 - a^2)).
+#[test]
+fn a_pressed_ring_narrows_as_lame_says() {
+    let axis = |points: [f64; 2], cells: usize| json!({"points": points, "divisions": [cells]});
+    let value = json!({
+        "body": {"ring": {"radius": axis([1.0, 2.0], 6), "angle": axis([0.0, 90.0], 12), "element": "q8"}},
+        "material": {"young": YOUNG, "poisson": POISSON},
+        "supports": [{"on": {"boundary": "start"}, "y": 0}, {"on": {"boundary": "end"}, "x": 0}],
+        "loads": [{"pressure": {"boundary": "outer", "value": 3}}],
+        "obstacles": [{"boundary": "inner", "approach": "-x",
+                       "shape": {"plane": {"point": [-5, 0], "normal": [-1, 0]}}}],
+    });
+    let model = scene(&value).build().unwrap();
+    let solution = solve_qp(model.problem()).unwrap();
+    let displacement = model.nodal_displacement(&solution.displacement).unwrap();
+    let (node, _) = model.mesh().nearest_node([2.0, 0.0, 0.0]).unwrap();
+    let expected = -3.0 * 2.0 * (1.0 + POISSON) * ((1.0 - 2.0 * POISSON) * 4.0 + 1.0) / (YOUNG * 3.0);
+    assert!((displacement[2 * node] / expected - 1.0).abs() < 1e-4, "{} and {expected}", displacement[2 * node]);
+}
+
+#[test]
+fn a_mesh_file_stands_beside_its_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let meshes = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes");
+    std::fs::create_dir(folder.path().join("parts")).unwrap();
+    std::fs::copy(meshes.join("block-t3.msh"), folder.path().join("parts/block.msh")).unwrap();
+    let body = json!({"gmsh": {"file": "parts/block.msh"}});
+    let value = pressed("plane-strain", body, "y", &[("bottom", "y"), ("left", "x")]);
+    std::fs::write(folder.path().join("scene.json"), value.to_string()).unwrap();
+    assert!(Scene::read(folder.path().join("scene.json")).unwrap().build().is_ok());
+    // Text alone has no folder: the name starts from the current one.
+    let error = Scene::from_json(&value.to_string(), "scene").unwrap().build().unwrap_err();
+    assert!(matches!(&error, Error::File { action: "read", path, .. } if path.ends_with("parts/block.msh")), "{error}");
+}
+
+#[test]
+fn faults_of_a_mesh_keep_their_file_and_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let meshes = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes");
+    let text = std::fs::read_to_string(meshes.join("block-t3.msh")).unwrap();
+    std::fs::write(folder.path().join("cut.msh"), &text[..text.len() / 2]).unwrap();
+    let value = pressed("plane-strain", json!({"gmsh": {"file": "cut.msh"}}), "y", &[("bottom", "y")]);
+    let read = Scene::from_json(&value.to_string(), "scene").unwrap();
+    let error = Scene { folder: Some(folder.path().into()), ..read }.build().unwrap_err();
+    assert!(matches!(&error, Error::FileSyntax { line, .. } if *line > 20), "{error}");
+    assert!(error.to_string().contains("cut.msh:"), "{error}");
+}
+
+#[test]
+fn values_that_describe_no_body_are_refused_at_their_path() {
+    let on = |model: &str, body: Value| {
+        let value = pressed(model, body, if model == "space" { "z" } else { "y" }, &[("bottom", "y")]);
+        scene(&value).build().unwrap_err()
+    };
+    let gmsh = |change: Value| {
+        let mut spec = json!({"file": "block-t3.msh"});
+        change.as_object().unwrap().iter().for_each(|(key, value)| spec[key] = value.clone());
+        json!({"gmsh": spec})
+    };
+    let disc = |radius: f64, zone: Value| json!({"half-disc": {"radius": radius, "zone": zone}});
+    let ball = |radius: f64| json!({"half-ball": {"radius": radius, "zone": {"width": 0.1, "divisions": 2}}});
+    let ring = |radius: Value, angle: Value| json!({"ring": {"radius": radius, "angle": angle}});
+    let axis = |points: [f64; 2]| json!({"points": points, "divisions": [3]});
+    let cases = [
+        (on("plane-strain", gmsh(json!({"scale": 0}))), "body.gmsh.scale", "positive and finite"),
+        (on("plane-strain", gmsh(json!({"group": "bulk"}))), "body.gmsh", "bottom, right, top, left, body"),
+        (on("space", gmsh(json!({}))), "body.gmsh.file", "the mesh is plane, which is no body of the model `space`"),
+        (on("plane-strain", gmsh(json!({"file": "box-hex8.msh"}))), "body.gmsh.file", "in space"),
+        (on("plane-strain", gmsh(json!({"integration": "mean-dilatation"}))), "body.gmsh.integration", "T3"),
+        (on("plane-strain", ball(1.0)), "body.half-ball", "half-disc, ring or gmsh"),
+        (on("space", disc(1.0, json!({"width": 0.1, "divisions": 2}))), "body.half-disc", "box, half-ball or gmsh"),
+        (on("plane-strain", disc(0.0, json!({"width": 0.1, "divisions": 2}))), "body.half-disc.radius", "positive"),
+        (on("plane-strain", disc(1.0, json!({"width": 2, "divisions": 2}))), "body.half-disc.zone.width", "the radius"),
+        (
+            on("plane-strain", disc(1.0, json!({"width": 1, "divisions": 0}))),
+            "body.half-disc.zone.divisions",
+            "at least",
+        ),
+        (on("space", ball(-1.0)), "body.half-ball.radius", "-1"),
+        (on("plane-strain", ring(axis([2.0, 1.0]), axis([0.0, 90.0]))), "body.ring.radius.points[1]", "increase"),
+        (on("plane-strain", ring(axis([0.0, 1.0]), axis([0.0, 90.0]))), "body.ring", "inner radius is 0"),
+        (on("plane-strain", ring(axis([1.0, 2.0]), axis([0.0, 400.0]))), "body.ring", "span 400 degrees"),
+        (on("axisymmetric", disc(1.0, json!({"width": 0.1, "divisions": 2}))), "body.half-disc", "x must be >= 0"),
+    ];
+    for (error, path, phrase) in cases {
+        let Error::Scene { path: found, message } = &error else { panic!("{path}: {error}") };
+        assert!(found == path && message.contains(phrase), "{error}\n  expected {path}: {phrase}");
+    }
+}
+
+#[test]
+fn a_missing_group_is_told_with_those_that_exist() {
+    let body = json!({"gmsh": {"file": "block-t3.msh"}});
+    let mut value = pressed("plane-strain", body, "y", &[("floor", "y")]);
+    let message = scene(&value).build().unwrap_err().to_string();
+    assert!(message.contains("`supports[0].on.boundary`") && message.contains("no boundary `floor`"), "{message}");
+    assert!(message.contains("bottom, right, top, left"), "{message}");
+    value["supports"] = json!([{"on": {"boundary": "bottom"}, "y": 0}]);
+    value["obstacles"][0]["boundary"] = json!("stray");
+    let message = scene(&value).build().unwrap_err().to_string();
+    assert!(message.contains("`obstacles[0].boundary`") && message.contains("no boundary `stray`"), "{message}");
+}
