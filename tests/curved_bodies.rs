@@ -8,7 +8,8 @@ use signorini::mesh::{ElementKind, Mesh, Zone, half_ball, half_disc, ring};
 
 const PLANE: [ElementKind; 4] = [ElementKind::T3, ElementKind::T6, ElementKind::Q4, ElementKind::Q8];
 
-/// Area or volume, and the smallest determinant over the largest one within any element, at nodes and quadrature points.
+/// Area or volume, and the smallest determinant over the largest one within any element, at nodes and quadrature
+/// points.
 fn measure(mesh: &Mesh) -> (f64, f64) {
     let reference = mesh.kind().reference();
     let table = Tabulated::new(reference, false);

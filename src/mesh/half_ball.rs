@@ -1,4 +1,5 @@
-//! The lower half of a ball: a core of bricks, and shells of bricks around it out to the sphere, fine at the lowest point.
+//! The lower half of a ball: a core of bricks, and shells of bricks around it out to the sphere, fine at the lowest
+//! point.
 
 use super::half_disc::{Grading, mirrored};
 use super::lattice::Lattice;

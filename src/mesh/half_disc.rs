@@ -7,8 +7,8 @@ use crate::error::Error;
 /// Half the width of the core over the radius: cells neither flat at its corners nor small in its middle.
 pub(super) const CORE: f64 = 0.4;
 
-/// The lower half of the disc of `radius` about `centre`, of T3, T6, Q4 or Q8, graded towards its lowest point; only the
-/// part right of the centre where `symmetric`.
+/// The lower half of the disc of `radius` about `centre`, of T3, T6, Q4 or Q8, graded towards its lowest point; only
+/// the part right of the centre where `symmetric`.
 ///
 /// The boundaries are `cut` (the flat side, y = centre), `arc` and, where `symmetric`, `symmetry-x` (x = centre). The
 /// mid-sides of quadratic elements stand on the arc.
@@ -117,8 +117,8 @@ impl Grading {
         if angle.abs() >= std::f64::consts::FRAC_PI_4 { angle.signum() } else { angle.tan() }
     }
 
-    /// The place, seen from the centre, of a point of the core, given in halves of its width, that is moved `outward` from
-    /// there (0) to the surface (1) along its ray.
+    /// The place, seen from the centre, of a point of the core, given in halves of its width, that is moved `outward`
+    /// from there (0) to the surface (1) along its ray.
     pub fn place(&self, core: [f64; 3], outward: f64) -> [f64; 3] {
         if outward == 0.0 {
             return core.map(|value| value * CORE * self.radius);

@@ -44,8 +44,8 @@ impl Mesh {
     /// The mesh of `nodes` (coordinates x, y, z in the unit of length; those beyond the dimension of the element are
     /// zero) and elements of one `kind`.
     ///
-    /// `connectivity` lists the nodes of element 0, then of element 1, ..., each in the order of [`ElementKind`], indices
-    /// from 0.
+    /// `connectivity` lists the nodes of element 0, then of element 1, ..., each in the order of [`ElementKind`],
+    /// indices from 0.
     ///
     /// # Errors
     /// [`Error::Mesh`] for a mesh without elements, coordinates that are not finite or lie outside the space of the

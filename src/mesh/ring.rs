@@ -4,8 +4,8 @@ use super::lattice::{Lattice, half_steps};
 use super::{ElementKind, Mesh, check_lines, fail};
 use crate::error::Error;
 
-/// The mesh of the circles of radius `radii` and the rays at `angles` (degrees, counterclockwise from x) about `centre`:
-/// T3, T6, Q4 or Q8, the mid-sides on the circles.
+/// The mesh of the circles of radius `radii` and the rays at `angles` (degrees, counterclockwise from x) about
+/// `centre`: T3, T6, Q4 or Q8, the mid-sides on the circles.
 ///
 /// The boundaries are `inner` and `outer`, and where the ring does not close `start` (first angle) and `end` (last
 /// angle). It closes where the angles span 360 degrees.

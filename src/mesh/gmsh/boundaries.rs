@@ -8,7 +8,8 @@ use crate::error::Error;
 use crate::mesh::outline::chained;
 use crate::mesh::{Boundary, Mesh};
 
-/// The boundaries of `mesh`, in the order of the file. Groups off the body are a fault, unless it is a part of the file.
+/// The boundaries of `mesh`, in the order of the file. Groups off the body are a fault, unless it is a part of the
+/// file.
 pub(super) fn of(file: &GmshFile, mesh: &Mesh, numbers: &Numbers, is_part: bool) -> Result<Vec<Boundary>, Error> {
     let dimension = mesh.dimension() - 1;
     let mut boundaries = Vec::new();

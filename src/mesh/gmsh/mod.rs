@@ -101,9 +101,10 @@ impl GmshFile {
     /// Reads the text of a file; `file` is named in errors.
     ///
     /// # Errors
-    /// [`Error::FileSyntax`] with the line: for a version other than 4.1 and 2.2, a binary file, a section that is missing
-    /// or ends early or announces another number of lines than it has, a number of the wrong kind, coordinates that are
-    /// not finite, an element type that is not known, an element whose node does not exist, a group without elements.
+    /// [`Error::FileSyntax`] with the line: for a version other than 4.1 and 2.2, a binary file, a section that is
+    /// missing or ends early or announces another number of lines than it has, a number of the wrong kind, coordinates
+    /// that are not finite, an element type that is not known, an element whose node does not exist, a group without
+    /// elements.
     pub fn parse(text: &str, file: impl AsRef<Path>) -> Result<Self, Error> {
         sections::read(file.as_ref(), text)
     }
@@ -113,13 +114,13 @@ impl GmshFile {
         &self.groups
     }
 
-    /// The mesh of the body: of the elements in the physical group called `domain`, or else of all elements of the highest
-    /// dimension. Coordinates are multiplied by `scale`.
+    /// The mesh of the body: of the elements in the physical group called `domain`, or else of all elements of the
+    /// highest dimension. Coordinates are multiplied by `scale`.
     ///
     /// Nodes that no element of the body uses are left out; the others keep the order of the file. A plane mesh lies in
-    /// any plane z = const, a bar along x. Elements that run clockwise are turned, if all of them do. Facets of a boundary
-    /// run along each other, with the body to the left of edges, and counterclockwise seen from outside in space. With a
-    /// `domain`, groups elsewhere are left out.
+    /// any plane z = const, a bar along x. Elements that run clockwise are turned, if all of them do. Facets of a
+    /// boundary run along each other, with the body to the left of edges, and counterclockwise seen from outside in
+    /// space. With a `domain`, groups elsewhere are left out.
     ///
     /// # Errors
     /// [`Error::FileSyntax`] with the line: for elements of more than one kind, or of a kind that carries no contact, a

@@ -18,8 +18,8 @@ pub enum BodySpec {
     /// A box with a structured mesh; its boundaries are `left`, `right` (along x), `front`, `back` (along y), `bottom`,
     /// `top` (along z).
     Box(#[serde(deserialize_with = "object")] BoxSpec),
-    /// The lower half of a disc, graded towards its lowest point; its boundaries are `cut` (flat), `arc` and, where it is
-    /// symmetric, `symmetry-x`. In an axisymmetric model, symmetric about x = 0, half a ball.
+    /// The lower half of a disc, graded towards its lowest point; its boundaries are `cut` (flat), `arc` and, where it
+    /// is symmetric, `symmetry-x`. In an axisymmetric model, symmetric about x = 0, half a ball.
     HalfDisc(#[serde(deserialize_with = "object")] HalfDiscSpec),
     /// The lower half of a ball, or a quarter or an eighth of one, graded towards its lowest point; its boundaries are
     /// `cut` (flat), `round` and the planes `symmetry-x` and `symmetry-y`.
