@@ -17,7 +17,6 @@ step "tests, release";              cargo test --quiet --release
 step "examples";                    cargo build --quiet --release --examples --bins
 cargo run --quiet --release --example two_springs
 cargo run --quiet --release --example verification
-cargo run --quiet --release --example assembly_speed
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 for scene in examples/*.json; do
