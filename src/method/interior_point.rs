@@ -66,7 +66,8 @@ pub fn solve(scaled: &ScaledProblem, tolerance: f64) -> Result<InteriorPoint, Er
     let problem = scaled.problem;
     let mut unit = Unit { displacement: 0, force: exponent(largest(problem.load())) };
     let mut iterations = 0;
-    for attempt in 0.. {
+    let mut corrections = 0;
+    loop {
         let mut found = solve_in_unit(problem, tolerance, unit)?;
         iterations += found.iterations;
         found.iterations = iterations;
@@ -74,12 +75,12 @@ pub fn solve(scaled: &ScaledProblem, tolerance: f64) -> Result<InteriorPoint, Er
         let displacement = exponent(size) - unit.displacement;
         let force = exponent(largest(&found.multiplier).max(largest(problem.load()))) - unit.force;
         let fits = displacement.abs().max(force.abs()) <= UNIT_EXPONENT;
-        if fits || size == 0.0 || displacement < -NOTHING_EXPONENT || attempt == UNIT_CORRECTIONS {
+        if fits || size == 0.0 || displacement < -NOTHING_EXPONENT || corrections == UNIT_CORRECTIONS {
             return Ok(found);
         }
         unit = Unit { displacement: unit.displacement + displacement, force: unit.force + force };
+        corrections += 1;
     }
-    unreachable!("the loop returns after {UNIT_CORRECTIONS} corrections")
 }
 
 /// Units in which the answer is of order one, as exponents of two: where a fine mesh makes the stiffness large beside

@@ -64,8 +64,8 @@ impl SparseMatrix {
             let of_column = &mut entries[starts[column]..starts[column + 1]];
             of_column.sort_by_key(|entry| entry.0);
             for &(row, value) in of_column.iter() {
-                match matrix.row_indices[start..].last() {
-                    Some(&last) if last == row => *matrix.values.last_mut().expect("an entry was pushed") += value,
+                match (matrix.row_indices[start..].last(), matrix.values.last_mut()) {
+                    (Some(&last), Some(sum)) if last == row => *sum += value,
                     _ => {
                         matrix.row_indices.push(row);
                         matrix.values.push(value);
