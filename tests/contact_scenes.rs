@@ -355,3 +355,23 @@ fn pressure_on_the_axis_of_revolution_is_finite_and_the_largest() {
     // Hertz: p0 = 2 E* a / (pi R) = 0.07 with a = 0.1; the coarse mesh and the finite block cost some per cent.
     assert!(peaks.iter().all(|peak| (peak / 0.07 - 1.0).abs() < 0.1), "{peaks:?}");
 }
+
+/// A half cylinder of radius 1 whose cut moves rigidly by delta = 0.01 onto a plane, free to widen: with E = 1, nu = 0.3
+/// delta = F/(pi E*) (2 ln(4R/a) - 1) and p0 = a E*/(2R) give F = 4.983922e-3, p0 = 0.041753222.
+#[test]
+fn half_cylinder_of_quadratic_elements_reaches_the_force_and_the_pressure_of_hertz() {
+    for element in ["q8", "t6"] {
+        let model = model(&json!({
+            "body": {"half-disc": {"radius": 1, "zone": {"width": 0.1, "divisions": 8}, "element": element}},
+            "material": {"young": 1.0, "poisson": 0.3},
+            "supports": [{"on": {"boundary": "cut"}, "y": -0.01}, {"on": {"point": [0, 0]}, "x": 0}],
+            "obstacles":
+                [{"boundary": "arc", "approach": "-y", "shape": {"plane": {"point": [0, -1], "normal": [0, -1]}}}],
+        }));
+        let solution = answer(&model, Method::Qp);
+        let peak = model.pressure(&solution.multiplier).unwrap().into_iter().fold(0.0, f64::max);
+        // The theory is that of a half space under a small contact: 0.1 % in the force, 1 % in the pressure.
+        close(solution.contact_force(), 4.983922e-3, 4.983922e-3, 1e-3, &format!("{element}: F"));
+        close(peak, 0.041753222, 0.041753222, 1e-2, &format!("{element}: p0"));
+    }
+}
