@@ -1,8 +1,9 @@
 //! Norms of the error against an exact solution: `||u - u_h||` in energy and in L2.
 
-use crate::body::{ElasticBody, Symmetric, trace};
+use crate::body::{BodyElement, ElasticBody, Symmetric, trace};
 use crate::element::Tabulated;
 use crate::error::Error;
+use crate::material::Lame;
 
 /// An exact solution at one point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,15 +56,15 @@ pub fn error_norms(
 ) -> Result<ErrorNorms, Error> {
     body.check_nodal("nodal displacement", displacement.len())?;
     let table = Tabulated::fine(body.mesh().kind().reference());
-    let energy_of = |strain: &Symmetric, dilatation: f64| {
-        let stress = body.stress(strain, dilatation);
+    let energy_of = |lame: Lame, strain: &Symmetric, dilatation: f64| {
+        let stress = body.stress(lame, strain, dilatation);
         let weighted =
             |axis: usize| if axis < 3 { stress[axis] * strain[axis] } else { 2.0 * stress[axis] * strain[axis] };
         (0..6).map(weighted).sum::<f64>()
     };
     let square = |vector: &[f64; 3]| vector.iter().map(|component| component * component).sum::<f64>();
     let (mut energy, mut l2) = ([0.0; 2], [0.0; 2]);
-    for (nodes, cell) in body.cells() {
+    for BodyElement { nodes, cell, lame } in body.elements() {
         let local = body.gather(displacement, nodes);
         let scale = cell.unit().powi(body.dimension() as i32);
         for at in &table.points {
@@ -77,8 +78,8 @@ pub fn error_norms(
             let mut difference = exact.strain;
             difference.iter_mut().zip(strain).for_each(|(entry, component)| *entry -= component);
             let weight = point.weight * scale;
-            energy[0] += weight * energy_of(&difference, trace(&difference));
-            energy[1] += weight * energy_of(&exact.strain, trace(&exact.strain));
+            energy[0] += weight * energy_of(lame, &difference, trace(&difference));
+            energy[1] += weight * energy_of(lame, &exact.strain, trace(&exact.strain));
             l2[0] += weight * square(&away);
             l2[1] += weight * square(&exact.displacement);
         }

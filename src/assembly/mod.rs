@@ -17,4 +17,4 @@ pub use element_stiffness::{ElementStiffness, element_stiffness};
 pub use internal_force::internal_force;
 pub use load::{add_body_force, add_body_force_field, add_pressure, add_traction, add_traction_field, free_load};
 pub use stiffness::stiffness;
-pub use surface::tributary_areas;
+pub use surface::{node_normals, tributary_areas};

@@ -2,7 +2,7 @@
 
 use super::pattern::lower_pattern;
 use super::{DofMap, element_stiffness};
-use crate::body::ElasticBody;
+use crate::body::{BodyElement, ElasticBody};
 use crate::element::MAX_NODES;
 use crate::error::Error;
 use crate::sparse::{SparseMatrix, SymmetricMatrix};
@@ -41,8 +41,8 @@ pub fn stiffness(body: &ElasticBody, dofs: &DofMap) -> Result<SymmetricMatrix, E
     let (starts, rows) = lower_pattern(body.mesh(), dofs);
     let mut values = vec![0.0; rows.len()];
     let table = body.tabulated();
-    for (nodes, cell) in body.cells() {
-        let element = element_stiffness(body, &table, &cell);
+    for BodyElement { nodes, cell, lame } in body.elements() {
+        let element = element_stiffness(body, lame, &table, &cell);
         let mut free = [FreeAxes::default(); MAX_NODES];
         for (of_node, &node) in free.iter_mut().zip(nodes) {
             *of_node = FreeAxes::of(node, dimension, dofs);

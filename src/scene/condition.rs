@@ -132,12 +132,20 @@ pub(super) fn boundary<'a>(mesh: &'a Mesh, name: &str, path: &str) -> Result<&'a
 fn node_at(mesh: &Mesh, at: &[f64], path: &str) -> Result<usize, Error> {
     let dimension = mesh.dimension();
     let place = vector(path, at, dimension)?;
-    match mesh.nearest_node(place) {
-        Some((node, distance)) if distance <= PLACE_TOLERANCE * mesh.size() => Ok(node),
-        Some((node, _)) => {
+    let away = |node: &[f64; 3]| (node[0] - place[0]).hypot(node[1] - place[1]).hypot(node[2] - place[2]);
+    let tolerance = PLACE_TOLERANCE * mesh.size();
+    let there: Vec<usize> = (0..mesh.nodes().len()).filter(|&node| away(&mesh.nodes()[node]) <= tolerance).collect();
+    match (&there[..], mesh.nearest_node(place)) {
+        ([node], _) => Ok(*node),
+        ([one, other, ..], _) => {
+            let message =
+                format!("nodes {one} and {other} of two bodies lie at {}; name a boundary instead", point(at));
+            Err(wrong(path, message))
+        }
+        ([], Some((node, _))) => {
             let nearest = point(&mesh.nodes()[node][..dimension]);
             Err(wrong(path, format!("there is no node at {}; the nearest is node {node} at {nearest}", point(at))))
         }
-        None => Err(wrong(path, "the mesh has no nodes")),
+        ([], None) => Err(wrong(path, "the mesh has no nodes")),
     }
 }

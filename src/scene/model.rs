@@ -101,7 +101,7 @@ impl Model {
         self.gap
     }
 
-    /// The body: mesh, material, thickness.
+    /// The body, or all of them in one: mesh, materials, thickness.
     pub fn body(&self) -> &ElasticBody {
         &self.parts.body
     }
@@ -179,7 +179,7 @@ impl Model {
         Ok(self.rows.iter().enumerate().map(pressure).collect())
     }
 
-    /// Nodal contact forces on the body, `lambda n`, in force.
+    /// Nodal contact forces, `lambda n`, in force; with two bodies the opposite on the other one.
     ///
     /// # Errors
     /// As [`Model::pressure`].
@@ -188,8 +188,10 @@ impl Model {
         let dimension = self.body().dimension();
         let mut forces = vec![0.0; self.parts.dofs.nodal_count()];
         for (row, lambda) in self.rows.iter().zip(multiplier) {
-            let entries = &mut forces[dimension * row.node..dimension * (row.node + 1)];
-            entries.iter_mut().zip(row.normal).for_each(|(entry, component)| *entry += lambda * component);
+            for (node, sign) in row.ends() {
+                let entries = &mut forces[dimension * node..dimension * (node + 1)];
+                entries.iter_mut().zip(row.normal).for_each(|(entry, component)| *entry += sign * lambda * component);
+            }
         }
         Ok(forces)
     }
@@ -216,8 +218,8 @@ impl Model {
         &self.parts.load
     }
 
-    /// The imbalance of loads, support reactions and contact forces on the whole body: the largest of the virtual works
-    /// on its unit rigid motions (the resultant forces, and the resultant moments over half the body's size), relative
+    /// The imbalance of loads, support reactions and contact forces on each body: the largest of the virtual works
+    /// on its unit rigid motions (the resultant forces, and the resultant moments over half its size), relative
     /// to the sum of all force magnitudes. A body of revolution has one rigid motion, and its forces count along the
     /// axis.
     ///
