@@ -70,11 +70,20 @@ impl RigidMotions {
         components
     }
 
-    /// The component of each unit motion at a nodal dof.
-    fn at_dof(&self, nodes: &[[f64; 3]], dof: usize) -> Amplitudes {
+    /// The component of each unit motion along a coordinate of a node.
+    fn at_coordinate(&self, nodes: &[[f64; 3]], index: usize) -> Amplitudes {
         let mut direction = [0.0; 3];
-        direction[dof % self.dimension] = 1.0;
-        self.along(nodes[dof / self.dimension], direction)
+        direction[index % self.dimension] = 1.0;
+        self.along(nodes[index / self.dimension], direction)
+    }
+
+    /// The component of each unit motion at a nodal dof: along an axis of the node's frame where it has one.
+    fn at_dof(&self, parts: &Parts, dof: usize) -> Amplitudes {
+        let (nodes, node) = (parts.body.mesh().nodes(), dof / self.dimension);
+        match parts.dofs.frame(node) {
+            Some(frame) => self.along(nodes[node], frame.axes()[dof % self.dimension]),
+            None => self.at_coordinate(nodes, dof),
+        }
     }
 
     /// Refuses a body with a rigid motion that neither supports nor contact rows resist.
@@ -85,8 +94,7 @@ impl RigidMotions {
         let free = self.free(parts, rows);
         let Some(first) = free.first() else { return Ok(()) };
         let names: Vec<String> = free.iter().map(|motion| self.name(motion, false)).collect();
-        let nodes = parts.body.mesh().nodes();
-        let direction = parts.dofs.free().iter().map(|&dof| dot(&self.at_dof(nodes, dof), first)).collect();
+        let direction = parts.dofs.free().iter().map(|&dof| dot(&self.at_dof(parts, dof), first)).collect();
         Err(Error::UnderHeld { motion: format!("{}: {}", names.join(", "), advice(!rows.is_empty())), direction })
     }
 
@@ -94,7 +102,7 @@ impl RigidMotions {
     fn free(&self, parts: &Parts, rows: &[ContactRow]) -> Vec<Amplitudes> {
         let nodes = parts.body.mesh().nodes();
         let supported = (0..parts.dofs.nodal_count()).filter(|&dof| parts.dofs.number(dof).is_none());
-        let of_supports = supported.map(|dof| self.at_dof(nodes, dof));
+        let of_supports = supported.map(|dof| self.at_dof(parts, dof));
         let of_rows = rows.iter().map(|row| self.along(nodes[row.node], row.normal));
         let mut resisted: Vec<Amplitudes> = of_supports.chain(of_rows).collect();
         let count = self.modes.len();
@@ -138,7 +146,7 @@ impl RigidMotions {
             return None;
         }
         // Least squares on the unit motions.
-        let parts: Vec<Amplitudes> = (0..motion.len()).map(|dof| self.at_dof(nodes, dof)).collect();
+        let parts: Vec<Amplitudes> = (0..motion.len()).map(|index| self.at_coordinate(nodes, index)).collect();
         let design = DMatrix::from_fn(motion.len(), self.modes.len(), |dof, mode| parts[dof][self.modes[mode]]);
         let target = DMatrix::from_column_slice(motion.len(), 1, motion);
         let fitted = design.clone().svd(true, true).solve(&target, f64::EPSILON).ok()?;

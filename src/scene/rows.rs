@@ -52,18 +52,10 @@ pub(super) fn build(parts: &Parts, scene_gap: f64) -> Result<Rows, Error> {
             })?;
             let Some(way) = way else { continue };
             reached = true;
-            let (mut remaining, mut free) = (way.distance, false);
-            for (axis, &component) in way.normal[..dimension].iter().enumerate().filter(|entry| *entry.1 != 0.0) {
-                let dof = dimension * node + axis;
-                match dofs.number(dof) {
-                    Some(column) => {
-                        entries.push((rows.len(), column, component));
-                        free = true;
-                    }
-                    None => remaining -= component * dofs.prescribed(dof).unwrap_or(0.0),
-                }
-            }
-            if free || remaining < -rounding {
+            let along = dofs.along(node, &way.normal[..dimension]);
+            let remaining = way.distance - along.prescribed;
+            if !along.free.is_empty() || remaining < -rounding {
+                entries.extend(along.free.into_iter().map(|(column, component)| (rows.len(), column, component)));
                 rows.push(ContactRow { node, obstacle: index, normal: way.normal, gap: way.distance, tributary_area });
                 gap.push(remaining);
             }
