@@ -155,23 +155,22 @@ fn contradiction(component: &Component, implied: f64, before: &[Component]) -> S
         Some(other) => vec![other],
         None => before.iter().collect(),
     };
+    let mut supports: Vec<usize> = Vec::new();
     let mut names: Vec<String> = Vec::new();
-    for component in prescribing {
-        let name = match component.by {
-            Holder::Axis => "the axis of revolution".into(),
-            Holder::Support { index, .. } => format!("supports[{index}]"),
-        };
-        if !names.contains(&name) {
-            names.push(name);
+    for other in prescribing {
+        match other.by {
+            Holder::Axis => names.push("the axis of revolution".into()),
+            Holder::Support { index, .. } => supports.push(index),
         }
     }
+    supports.sort_unstable();
+    supports.dedup();
+    names.extend(supports.iter().map(|index| format!("supports[{index}]")));
     let verb = if names.len() == 1 { "prescribes" } else { "prescribe" };
-    format!(
-        "{} contradicts the {} that {} {verb} for",
-        number(component.value),
-        number(implied + 0.0),
-        names.join(" and ")
-    )
+    let last = names.pop().unwrap_or_default();
+    let names = if names.is_empty() { last } else { format!("{} and {last}", names.join(", ")) };
+    let (value, implied) = (number(component.value), number(implied + 0.0));
+    format!("{value} contradicts the {implied} that {names} {verb} for")
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {

@@ -127,6 +127,7 @@ impl RigidMotions {
                 basis.push(unit);
             }
         }
+        let units = basis.len();
         for mode in &mut null {
             for known in &basis {
                 let part = dot(mode, known);
@@ -137,6 +138,8 @@ impl RigidMotions {
                 basis.push(mode.map(|part| part / length));
             }
         }
+        let rest = basis.split_off(units);
+        basis.extend(translations_first(&rest));
         basis
     }
 
@@ -209,6 +212,18 @@ impl RigidMotions {
     }
 }
 
+/// The same space of motions, its translations before what turns: orthonormal before and after.
+fn translations_first(motions: &[Amplitudes]) -> Vec<Amplitudes> {
+    let turning = DMatrix::from_fn(motions.len(), 6, |row, part| if part < 3 { 0.0 } else { motions[row][part] });
+    let mix = if motions.len() > 1 { turning.svd(true, false).u } else { None };
+    let Some(mix) = mix else { return motions.to_vec() };
+    let mixed = |column: usize| {
+        [0, 1, 2, 3, 4, 5].map(|part| (0..motions.len()).map(|row| mix[(row, column)] * motions[row][part]).sum())
+    };
+    // Singular values decrease: what turns least stands last.
+    (0..motions.len()).rev().map(mixed).collect()
+}
+
 /// What to do about a free motion.
 pub(super) fn advice(has_rows: bool) -> &'static str {
     if has_rows { "a frictionless obstacle does not hold it, add a guide" } else { "add a support" }
@@ -227,7 +242,9 @@ fn along_one_axis(vector: [f64; 3]) -> Option<usize> {
 /// A direction in words, of length 1.
 fn direction(vector: &[f64]) -> String {
     let length = dot(vector, vector).sqrt();
-    let components: Vec<String> = vector.iter().map(|part| format!("{:.3}", part / length)).collect();
+    // Adding zero takes the sign off a part that is rounded to nothing.
+    let three_digits = |part: &f64| (part / length * 1e3).round() / 1e3 + 0.0;
+    let components: Vec<String> = vector.iter().map(|part| format!("{:.3}", three_digits(part))).collect();
     format!("({})", components.join(", "))
 }
 
