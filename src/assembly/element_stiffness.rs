@@ -9,7 +9,7 @@ use crate::material::Lame;
 const PAIRS: usize = MAX_NODES * (MAX_NODES + 1) / 2;
 
 /// A block of a pair of nodes: row axis, column axis.
-type Block = [[f64; 3]; 3];
+pub(super) type Block = [[f64; 3]; 3];
 
 /// The stiffness of one element, in force per length: a block for every pair of its nodes.
 #[derive(Clone, Debug)]

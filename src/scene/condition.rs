@@ -1,7 +1,8 @@
 //! Supports and loads of a scene, at the nodes.
 
-use super::schema::{LoadSpec, Place, Scene};
-use super::{PLACE_TOLERANCE, finite, number, point, vector, wrong};
+use super::held::{COORDINATES, Component, Held, Holder, unit_normal};
+use super::schema::{LoadSpec, Place, Scene, SupportSpec};
+use super::{PLACE_TOLERANCE, finite, point, vector, wrong};
 use crate::assembly::{DofMap, add_body_force, add_pressure, add_traction};
 use crate::body::ElasticBody;
 use crate::error::Error;
@@ -10,60 +11,69 @@ use crate::mesh::{Boundary, Mesh};
 /// Radii below this times the body's size lie on the axis of revolution.
 const ON_THE_AXIS: f64 = 1e-12;
 
-/// Prescribed displacements, and what prescribes each.
-struct Held {
-    prescribed: Vec<Option<f64>>,
-    by: Vec<Holder>,
-}
-
-#[derive(Clone, Copy)]
-enum Holder {
-    Nothing,
-    /// On the axis of revolution nothing moves radially.
-    Axis,
-    Support(usize),
-}
-
 impl Scene {
     pub(super) fn dofs(&self, body: &ElasticBody) -> Result<DofMap, Error> {
-        let (mesh, dimension) = (body.mesh(), body.dimension());
-        let mut held = Held { prescribed: vec![None; body.nodal_dofs()], by: vec![Holder::Nothing; body.nodal_dofs()] };
+        let mesh = body.mesh();
+        let mut held = Held::default();
         if body.formulation().is_axisymmetric() {
             let near = ON_THE_AXIS * mesh.size();
             for node in (0..mesh.nodes().len()).filter(|&node| mesh.nodes()[node][0] <= near) {
-                (held.prescribed[2 * node], held.by[2 * node]) = (Some(0.0), Holder::Axis);
+                held.prescribe(node, Component { direction: COORDINATES[0], value: 0.0, by: Holder::Axis });
             }
         }
         for (index, support) in self.supports.iter().enumerate() {
             let path = format!("supports[{index}]");
-            let components = [("x", support.x), ("y", support.y), ("z", support.z)];
-            if components.iter().all(|component| component.1.is_none()) {
-                let names = ["x", "x or y, or both", "x, y or z, or several of them"][dimension - 1];
-                return Err(wrong(path, format!("holds nothing; give {names}")));
-            }
+            let components = self.components(index, support)?;
             let nodes = match &support.on {
                 Place::Boundary(name) => boundary(mesh, name, &format!("{path}.on.boundary"))?.nodes(),
                 Place::Point(at) => vec![node_at(mesh, at, &format!("{path}.on.point"))?],
             };
-            for (axis, (name, value)) in components.into_iter().enumerate() {
-                let Some(value) = value else { continue };
-                let path = format!("{path}.{name}");
-                if axis >= dimension {
-                    return Err(wrong(path, format!("the model `{}` has no {name}", self.model.name())));
-                }
-                finite(path.as_str(), value)?;
-                for &node in &nodes {
-                    held.hold(dimension * node + axis, value, index).map_err(|other| {
-                        let at = point(&mesh.nodes()[node][..dimension]);
-                        wrong(path.as_str(), format!("{} contradicts {other} node {node} at {at}", number(value)))
-                    })?;
-                }
+            for component in components {
+                nodes.iter().for_each(|&node| held.prescribe(node, component));
             }
         }
-        if held.prescribed.iter().all(Option::is_some) {
-            return Err(wrong("supports", "every node is held in all directions: nothing is left to solve for"));
+        held.dofs(mesh)
+    }
+
+    /// The components that support number `index` prescribes.
+    fn components(&self, index: usize, support: &SupportSpec) -> Result<Vec<Component>, Error> {
+        let path = format!("supports[{index}]");
+        let by = |field| Holder::Support { index, field };
+        let dimension = self.model.dimension();
+        let mut components = Vec::new();
+        for (axis, (field, value)) in [("x", support.x), ("y", support.y), ("z", support.z)].into_iter().enumerate() {
+            let Some(value) = value else { continue };
+            if axis >= dimension {
+                return Err(wrong(
+                    format!("{path}.{field}"),
+                    format!("the model `{}` has no {field}", self.model.name()),
+                ));
+            }
+            finite(format!("{path}.{field}"), value)?;
+            components.push(Component { direction: COORDINATES[axis], value, by: by(field) });
         }
-        DofMap::new(held.prescribed)
+        match (&support.normal, support.value) {
+            (Some(normal), value) => {
+                let field = format!("{path}.normal");
+                let direction = unit_normal(vector(&field, normal, dimension)?).ok_or_else(|| {
+                    wrong(field, format!("{} has no direction; the normal needs a length", point(normal)))
+                })?;
+                let value = value.unwrap_or(0.0);
+                finite(format!("{path}.value"), value)?;
+                components.push(Component { direction, value, by: by("normal") });
+            }
+            (None, Some(_)) => {
+                let message = "a value is that along a normal; give the normal too, or x, y or z instead";
+                return Err(wrong(format!("{path}.value"), message));
+            }
+            (None, None) => {}
+        }
+        if components.is_empty() {
+            let names =
+                ["x", "x or y, or both, or a normal", "x, y or z, or several of them, or a normal"][dimension - 1];
+            return Err(wrong(path, format!("holds nothing; give {names}")));
+        }
+        Ok(components)
     }
 
     pub(super) fn load(&self, body: &ElasticBody) -> Result<Vec<f64>, Error> {
@@ -96,28 +106,6 @@ impl Scene {
         match load.iter().all(|value| value.is_finite()) {
             true => Ok(load),
             false => Err(wrong("loads", "the loads add up to a force that is not finite")),
-        }
-    }
-}
-
-impl Held {
-    /// Prescribes `value` at a dof by support `support`.
-    ///
-    /// # Errors
-    /// What holds the dof at another value, in words.
-    fn hold(&mut self, dof: usize, value: f64, support: usize) -> Result<(), String> {
-        match (self.prescribed[dof], self.by[dof]) {
-            (Some(other), holder) if other != value => Err(match holder {
-                Holder::Support(other_support) => {
-                    format!("the {} that supports[{other_support}] prescribes for", number(other))
-                }
-                _ => "the axis of revolution, where nothing moves radially, at".into(),
-            }),
-            (Some(_), Holder::Axis) => Ok(()),
-            _ => {
-                (self.prescribed[dof], self.by[dof]) = (Some(value), Holder::Support(support));
-                Ok(())
-            }
         }
     }
 }

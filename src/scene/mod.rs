@@ -18,6 +18,7 @@ mod body;
 mod build;
 mod condition;
 mod explain;
+mod held;
 mod mesh;
 mod model;
 mod motion;

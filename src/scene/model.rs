@@ -196,7 +196,7 @@ impl Model {
         Ok(forces)
     }
 
-    /// Nodal support reactions on the body, in force; zero at free dofs.
+    /// Nodal support reactions on the body, in force; zero along free dofs, so that a roller pushes along its normal.
     ///
     /// What the stress in the elements asks for at the supported dofs, less load and contact force there. The
     /// multiplier enters because a contact row may press on a supported dof.
@@ -205,12 +205,10 @@ impl Model {
     /// [`Error::Length`] where `displacement` or `multiplier` do not fit.
     pub fn reactions(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Vec<f64>, Error> {
         let contact = self.contact_forces(multiplier)?;
-        let mut reactions = internal_force(self.body(), &self.nodal_displacement(displacement)?)?;
-        for (dof, reaction) in reactions.iter_mut().enumerate() {
-            let supported = self.parts.dofs.number(dof).is_none();
-            *reaction = if supported { *reaction - self.parts.load[dof] - contact[dof] } else { 0.0 };
-        }
-        Ok(reactions)
+        let mut forces = internal_force(self.body(), &self.nodal_displacement(displacement)?)?;
+        let acting = self.parts.load.iter().zip(&contact);
+        forces.iter_mut().zip(acting).for_each(|(force, (load, contact))| *force = *force - load - contact);
+        self.parts.dofs.supported_part(&forces)
     }
 
     /// External loads at all nodes, in force, length `dim * n_nodes`.

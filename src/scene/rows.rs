@@ -69,20 +69,14 @@ pub(super) fn build(parts: &Parts, scene_gap: f64) -> Result<Rows, Error> {
                 gap: way.distance,
                 tributary_area,
             };
-            let (mut remaining, mut free) = (row.gap, false);
+            let (mut remaining, mut free) = (row.gap, Vec::new());
             for (node, sign) in row.ends() {
-                for (axis, &component) in row.normal[..dimension].iter().enumerate().filter(|entry| *entry.1 != 0.0) {
-                    let dof = dimension * node + axis;
-                    match dofs.number(dof) {
-                        Some(column) => {
-                            entries.push((rows.len(), column, sign * component));
-                            free = true;
-                        }
-                        None => remaining -= sign * component * dofs.prescribed(dof).unwrap_or(0.0),
-                    }
-                }
+                let along = dofs.along(node, &row.normal[..dimension]);
+                remaining -= sign * along.prescribed;
+                free.extend(along.free.into_iter().map(|(column, component)| (rows.len(), column, sign * component)));
             }
-            if free || remaining < -rounding {
+            if !free.is_empty() || remaining < -rounding {
+                entries.extend(free);
                 rows.push(row);
                 gap.push(remaining);
             }

@@ -49,11 +49,11 @@ impl RigidMotions {
         self.bodies.iter().flat_map(of_body).collect()
     }
 
-    /// The component of each unit motion at a nodal dof.
-    fn at_dof(&self, nodes: &[[f64; 3]], dof: usize) -> Vec<f64> {
-        let mut direction = [0.0; 3];
-        direction[dof % self.dimension] = 1.0;
-        self.along(nodes, dof / self.dimension, direction)
+    /// The component of each unit motion at a nodal dof: along an axis of the node's frame where it has one.
+    fn at_dof(&self, parts: &Parts, dof: usize) -> Vec<f64> {
+        let (nodes, node, axis) = (parts.body.mesh().nodes(), dof / self.dimension, dof % self.dimension);
+        let direction = parts.dofs.frame(node).map_or_else(|| unit::along_axis(axis), |frame| frame.axes()[axis]);
+        self.along(nodes, node, direction)
     }
 
     /// The component of each unit motion along a contact row: how much it closes the row.
@@ -74,8 +74,7 @@ impl RigidMotions {
         let free = self.free(parts, rows);
         let Some(first) = free.first() else { return Ok(()) };
         let names: Vec<String> = free.iter().map(|motion| self.describe(motion, false)).collect();
-        let nodes = parts.body.mesh().nodes();
-        let direction = parts.dofs.free().iter().map(|&dof| dot(&self.at_dof(nodes, dof), first)).collect();
+        let direction = parts.dofs.free().iter().map(|&dof| dot(&self.at_dof(parts, dof), first)).collect();
         Err(Error::UnderHeld { motion: format!("{}: {}", names.join(", "), advice(!rows.is_empty())), direction })
     }
 
@@ -83,7 +82,7 @@ impl RigidMotions {
     fn free(&self, parts: &Parts, rows: &[ContactRow]) -> Vec<Vec<f64>> {
         let nodes = parts.body.mesh().nodes();
         let supported = (0..parts.dofs.nodal_count()).filter(|&dof| parts.dofs.number(dof).is_none());
-        let of_supports = supported.map(|dof| self.at_dof(nodes, dof));
+        let of_supports = supported.map(|dof| self.at_dof(parts, dof));
         let of_rows = rows.iter().map(|row| self.in_row(nodes, row));
         let mut resisted: Vec<Vec<f64>> = of_supports.chain(of_rows).collect();
         let (modes, amplitudes) = (self.modes(), 6 * self.bodies.len());
@@ -108,6 +107,7 @@ impl RigidMotions {
                 basis.push(unit);
             }
         }
+        let units = basis.len();
         for motion in &mut null {
             for known in &basis {
                 let part = dot(motion, known);
@@ -118,6 +118,8 @@ impl RigidMotions {
                 basis.push(motion.iter().map(|part| part / length).collect());
             }
         }
+        let rest = basis.split_off(units);
+        basis.extend(translations_first(&rest));
         basis
     }
 
@@ -178,6 +180,19 @@ impl RigidMotions {
         }
         if magnitude == 0.0 { 0.0 } else { largest / magnitude }
     }
+}
+
+/// The same space of motions, its translations before what turns: orthonormal before and after.
+fn translations_first(motions: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let amplitudes = motions.first().map_or(0, Vec::len);
+    let turning = |row: usize, part: usize| if part % 6 < 3 { 0.0 } else { motions[row][part] };
+    let turning = DMatrix::from_fn(motions.len(), amplitudes, turning);
+    let mix = if motions.len() > 1 { turning.svd(true, false).u } else { None };
+    let Some(mix) = mix else { return motions.to_vec() };
+    let part = |column: usize, part: usize| (0..motions.len()).map(|row| mix[(row, column)] * motions[row][part]).sum();
+    let mixed = |column: usize| (0..amplitudes).map(|place| part(column, place)).collect();
+    // Singular values decrease: what turns least stands last.
+    (0..motions.len()).rev().map(mixed).collect()
 }
 
 /// What to do about a free motion.

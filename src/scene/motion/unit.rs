@@ -112,6 +112,11 @@ impl UnitMotions {
     }
 }
 
+/// The unit vector along an axis.
+pub(super) fn along_axis(axis: usize) -> [f64; 3] {
+    [0, 1, 2].map(|other| if other == axis { 1.0 } else { 0.0 })
+}
+
 /// The axis along which a vector lies, but for rounding.
 fn along_one_axis(vector: [f64; 3]) -> Option<usize> {
     let length = dot(&vector, &vector).sqrt();
@@ -121,7 +126,9 @@ fn along_one_axis(vector: [f64; 3]) -> Option<usize> {
 /// A direction in words, of length 1.
 fn direction(vector: &[f64]) -> String {
     let length = dot(vector, vector).sqrt();
-    let components: Vec<String> = vector.iter().map(|part| format!("{:.3}", part / length)).collect();
+    // Adding zero takes the sign off a part that is rounded to nothing.
+    let three_digits = |part: &f64| (part / length * 1e3).round() / 1e3 + 0.0;
+    let components: Vec<String> = vector.iter().map(|part| format!("{:.3}", three_digits(part))).collect();
     format!("({})", components.join(", "))
 }
 
