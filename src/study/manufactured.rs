@@ -12,6 +12,7 @@ use crate::material::Material;
 use crate::mesh::rectangle;
 use crate::norm::{ErrorNorms, ExactState, error_norms};
 use crate::problem::ContactProblem;
+use crate::recovery::{discretisation_error, stress};
 use crate::solve::solve_qp;
 use crate::sparse::SparseMatrix;
 
@@ -33,6 +34,8 @@ pub struct BlockErrors {
     pub unknowns: usize,
     /// Relative errors of the displacement.
     pub errors: ErrorNorms,
+    /// The relative error in energy as it is estimated from the stresses, without the exact solution.
+    pub estimated_energy: f64,
     /// The pressure at the contact rows, in increasing x.
     pub pressure: Vec<NodalPressure>,
     /// Assembly and solve, without the norms, in seconds.
@@ -97,8 +100,9 @@ pub fn solve_block(
         let displacement = in_space(exact.displacement([x, y]));
         ExactState { displacement, strain: [xx, yy, 0.0, (xy + yx) / 2.0, 0.0, 0.0] }
     })?;
+    let estimated_energy = discretisation_error(&body, &nodal, &stress(&body, &nodal)?)?;
     let compared =
         |(&(x, area), lambda): (&(f64, f64), &f64)| NodalPressure { x, ours: -lambda / area, exact: exact.pressure(x) };
     let pressure = places.iter().zip(&solution.multiplier).map(compared).collect();
-    Ok(BlockErrors { unknowns: problem.dofs(), errors, pressure, seconds })
+    Ok(BlockErrors { unknowns: problem.dofs(), errors, estimated_energy, pressure, seconds })
 }

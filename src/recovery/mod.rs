@@ -1,4 +1,8 @@
-//! Stress recovery: at the centroids, and extrapolated to the nodes and averaged there.
+//! Stress recovery: at the centroids, and extrapolated to the nodes and averaged there; the error of the mesh from it.
+
+mod discretisation;
+
+pub use discretisation::discretisation_error;
 
 use nalgebra::Matrix3;
 
