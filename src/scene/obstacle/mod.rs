@@ -6,6 +6,7 @@ mod frame;
 mod half_space;
 mod height_map;
 mod parabola;
+mod patch;
 mod plane;
 mod polyline;
 mod profile;
