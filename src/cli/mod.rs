@@ -6,6 +6,7 @@ mod input;
 mod options;
 mod solve;
 mod sweep;
+mod tradeoff;
 mod verify;
 
 use std::ffi::OsString;
@@ -49,6 +50,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Solve(options) => solve::run(&options),
         Command::Compare(options) => compare::run(&options),
         Command::Sweep(options) => sweep::run(&options),
+        Command::Tradeoff(options) => tradeoff::run(&options),
         Command::Export(options) => export::run(&options),
         Command::Verify(options) => verify::run(&options),
         Command::Schema => Ok(Outcome::certified(format!("{:#}\n", Scene::json_schema()))),

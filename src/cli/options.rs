@@ -26,6 +26,8 @@ pub(super) enum Command {
     Compare(Compare),
     /// Solve a scene at several gaps
     Sweep(Sweep),
+    /// Solve a scene in every way, and say what each digit costs
+    Tradeoff(Tradeoff),
     /// Write the problem of a scene as Matrix Market files
     Export(Export),
     /// Certify an answer that came from elsewhere
@@ -139,6 +141,27 @@ pub(super) struct Common {
 }
 
 #[derive(Debug, Args)]
+pub(super) struct Tradeoff {
+    /// Scene (a JSON file)
+    pub scene: PathBuf,
+    /// Finer meshes beside the scene's own, each with half the cells
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u8).range(0..=8))]
+    pub refinements: u8,
+    /// Runs of each point, of which the fastest counts
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    pub runs: u16,
+    /// Meshes of more dofs are solved on the contact boundary only
+    #[arg(long, value_name = "DOFS", default_value_t = 10_000)]
+    pub most_full_dofs: usize,
+    /// Folder for the table, its values and the picture
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Form of the report
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub format: Format,
+}
+
+#[derive(Debug, Args)]
 pub(super) struct Export {
     /// Scene (a JSON file)
     pub scene: PathBuf,
@@ -171,6 +194,7 @@ impl Command {
             Command::Solve(Solve { common, .. })
             | Command::Compare(Compare { common, .. })
             | Command::Sweep(Sweep { common, .. }) => common.format,
+            Command::Tradeoff(options) => options.format,
             Command::Verify(options) => options.format,
             Command::Export(_) | Command::Schema => Format::Text,
         }

@@ -20,6 +20,7 @@ pub mod plot;
 mod report;
 mod style;
 pub mod ticks;
+mod tradeoff;
 mod typeface;
 pub mod vtu;
 
@@ -33,4 +34,5 @@ pub use report::{
     verify_text,
 };
 pub use ticks::{Quantity, Scale};
+pub use tradeoff::{tradeoff_csv, tradeoff_json, tradeoff_plot, tradeoff_text};
 pub use vtu::{Array, CellType, Unstructured};

@@ -25,7 +25,7 @@ fn quantity(value: f64, unit: &str) -> String {
     format!("{value:.6e} {}", printable(unit)).trim_end().to_string()
 }
 
-fn plural(count: usize, noun: &str) -> String {
+pub(crate) fn plural(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 

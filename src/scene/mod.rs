@@ -24,6 +24,7 @@ mod model;
 mod motion;
 mod obstacle;
 mod parse;
+mod refine;
 mod rows;
 mod schema;
 mod warning;

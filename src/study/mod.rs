@@ -4,6 +4,7 @@ mod compare;
 mod manufactured;
 mod scene;
 mod summary;
+mod tradeoff;
 
 pub use compare::{Agreement, Comparison, Difference, MethodAnswer, compare};
 pub use manufactured::{BlockErrors, NodalPressure, solve_block};
@@ -12,3 +13,4 @@ pub use scene::{
     scene_summary, sweep,
 };
 pub use summary::{CertificateSummary, ContactSummary, HistoryEntry, ModelSize, SecondsSummary, Summary, Verification};
+pub use tradeoff::{Advice, Tradeoff, TradeoffGrid, TradeoffMesh, TradeoffPoint, tradeoff};

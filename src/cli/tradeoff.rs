@@ -1,0 +1,33 @@
+//! `signorini tradeoff`: one scene in every way, and what each digit costs.
+
+use super::input::{scene_title, warnings};
+use super::options::{Format, Tradeoff};
+use super::{Outcome, warn};
+use crate::error::Error;
+use crate::output::{tradeoff_csv, tradeoff_json, tradeoff_plot, tradeoff_text, write_files, write_picture};
+use crate::scene::Scene;
+use crate::study::{TradeoffGrid, tradeoff};
+
+pub(super) fn run(options: &Tradeoff) -> Result<Outcome, Error> {
+    let scene = Scene::read(&options.scene)?;
+    let model = scene.build()?;
+    warn(&warnings(&model));
+    let title = scene_title(&model, &options.scene);
+    let grid = TradeoffGrid {
+        refinements: options.refinements.into(),
+        runs: options.runs.into(),
+        most_full_dofs: options.most_full_dofs,
+    };
+    let measured = tradeoff(&scene, &grid)?;
+    let (text, json) = (tradeoff_text(&title, &measured), format!("{:#}\n", tradeoff_json(&measured)));
+    if let Some(folder) = &options.out {
+        let files =
+            [("tradeoff.txt", text.clone()), ("tradeoff.csv", tradeoff_csv(&measured)), ("report.json", json.clone())];
+        write_files(folder, &files)?;
+        write_picture(folder, "tradeoff", &tradeoff_plot(&title, &measured))?;
+    }
+    Ok(Outcome::certified(match options.format {
+        Format::Text => text,
+        Format::Json => json,
+    }))
+}

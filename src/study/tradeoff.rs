@@ -1,0 +1,257 @@
+//! What a digit costs: every method at every accuracy that it can be told, timed, against the exact discrete answer.
+
+use std::time::Instant;
+
+use serde::Serialize;
+
+use super::discretisation_error;
+use crate::error::Error;
+use crate::scene::{Model, Scene};
+use crate::solution::Solution;
+use crate::solve::{Condense, Method, Settings, solve};
+use crate::sparse::dot;
+
+/// Tolerances that the interior point is given.
+const TOLERANCES: [f64; 6] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
+
+/// Last rungs that the penalty ladder is given, in multiples of the local stiffness; the best is 1e8.
+const PENALTIES: [f64; 9] = [1e0, 1e2, 1e4, 1e6, 1e7, 1e8, 1e10, 1e12, 1e14];
+
+/// Accuracies for which the cheapest way is told.
+const WANTED: [f64; 3] = [1e-2, 1e-4, 1e-8];
+
+/// The usual way is the QP to this tolerance on all dofs, or condensed where all dofs are too many.
+const USUAL_TOLERANCE: f64 = 1e-8;
+
+/// Share of the time of the usual way for which the most accurate one is told.
+const HURRY: f64 = 0.1;
+
+/// The QP whose contact set is settled by active-set steps.
+const POLISHED: &str = "qp, polished";
+
+/// What is varied, and how well it is timed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TradeoffGrid {
+    /// Meshes: the scene's own, and so many whose cells are cut in two again and again.
+    pub refinements: usize,
+    /// Runs of each point, of which the fastest counts; at least 1.
+    pub runs: usize,
+    /// Points of more dofs than this are solved on the contact boundary only.
+    pub most_full_dofs: usize,
+}
+
+impl Default for TradeoffGrid {
+    fn default() -> Self {
+        TradeoffGrid { refinements: 1, runs: 5, most_full_dofs: 10_000 }
+    }
+}
+
+/// One mesh of a trade-off.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct TradeoffMesh {
+    /// Cells of the scene's mesh are cut into so many along each edge.
+    pub divided_by: usize,
+    /// Unknown displacements.
+    pub dofs: usize,
+    /// Contact rows.
+    pub contact_rows: usize,
+    /// Estimated error of the mesh, relative in energy.
+    pub discretisation_error: f64,
+}
+
+/// One way to an answer, what it cost, and how far it is from the exact answer of its mesh.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TradeoffPoint {
+    /// Index of the mesh.
+    pub mesh: usize,
+    /// `qp`, `qp, polished`, `active-set` or `penalty`.
+    pub method: &'static str,
+    /// Tolerance of the interior point, last penalty of the ladder; none where the method has nothing to choose.
+    pub knob: Option<f64>,
+    /// Was the problem condensed onto its contact boundary?
+    pub condensed: bool,
+    /// The fastest run, in seconds, from the checked problem to the certificate.
+    pub seconds: f64,
+    /// Energy norm of the error of the displacement, relative.
+    pub energy_error: f64,
+    /// Error of the contact force, relative.
+    pub force_error: f64,
+    /// Error of the largest pressure, relative.
+    pub pressure_error: f64,
+    /// Rows in one contact set and not in the other.
+    pub rows_wrong: usize,
+    /// Bound of the energy error by the certificate.
+    pub energy_error_bound: f64,
+    /// Is no other point of this mesh both faster and more accurate?
+    pub best: bool,
+}
+
+/// What to choose.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Advice {
+    /// The energy error that is wanted; none where the time is.
+    pub accuracy: Option<f64>,
+    /// Seconds to spend; none where the accuracy is wanted.
+    pub seconds: Option<f64>,
+    /// The point to choose, by its index; none where no point is good enough.
+    pub point: Option<usize>,
+}
+
+/// A scene in every way.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Tradeoff {
+    /// The meshes, the scene's own first.
+    pub meshes: Vec<TradeoffMesh>,
+    /// The points, mesh by mesh.
+    pub points: Vec<TradeoffPoint>,
+    /// What to choose on the scene's own mesh.
+    pub advice: Vec<Advice>,
+    /// Runs of each point.
+    pub runs: usize,
+}
+
+/// Solves a scene in every way of `grid`.
+///
+/// The exact answer of a mesh is that of the active set on the contact boundary, which ends with a linear solve.
+///
+/// # Errors
+/// As [`Scene::refined`], [`Scene::build`] and [`solve`]; an answer that is not certified is an answer here.
+pub fn tradeoff(scene: &Scene, grid: &TradeoffGrid) -> Result<Tradeoff, Error> {
+    let mut result = Tradeoff { meshes: Vec::new(), points: Vec::new(), advice: Vec::new(), runs: grid.runs.max(1) };
+    for refinement in 0..=grid.refinements {
+        let divided_by = 1_usize << refinement.min(usize::BITS as usize - 1);
+        let model = scene.refined(divided_by)?.build()?;
+        let explained = |error| model.explain(error);
+        let exact = solve(model.problem(), &Settings::with_method(Method::ActiveSet)).map_err(explained)?;
+        let full = model.problem().dofs() <= grid.most_full_dofs;
+        let condensed = [Condense::Auto, Condense::Never].into_iter().filter(|way| full || *way == Condense::Auto);
+        let ways: Vec<Way> = condensed.flat_map(ways).collect();
+        for (way, (solution, seconds)) in ways.iter().zip(timed(&model, &ways, result.runs).map_err(explained)?) {
+            result.points.push(TradeoffPoint {
+                mesh: refinement,
+                method: way.method,
+                knob: way.knob,
+                condensed: way.settings.condense == Condense::Auto,
+                seconds,
+                ..errors(&model, &solution, &exact)?
+            });
+        }
+        result.meshes.push(TradeoffMesh {
+            divided_by,
+            dofs: model.problem().dofs(),
+            contact_rows: model.rows().len(),
+            discretisation_error: discretisation_error(&model, &exact)?,
+        });
+    }
+    mark_best(&mut result.points);
+    result.advice = advice(&result.points);
+    Ok(result)
+}
+
+/// One way to an answer.
+struct Way {
+    method: &'static str,
+    knob: Option<f64>,
+    settings: Settings,
+}
+
+/// Every way to an answer, condensed or not.
+fn ways(condense: Condense) -> Vec<Way> {
+    let base = |method| {
+        let mut settings = Settings::with_method(method);
+        settings.condense = condense;
+        settings
+    };
+    let mut ways = Vec::new();
+    for (method, polish) in [("qp", false), (POLISHED, true)] {
+        for tolerance in TOLERANCES {
+            let mut settings = base(Method::Qp);
+            (settings.polish, settings.interior_point_tolerance) = (polish, tolerance);
+            ways.push(Way { method, knob: Some(tolerance), settings });
+        }
+    }
+    ways.push(Way { method: "active-set", knob: None, settings: base(Method::ActiveSet) });
+    for last in PENALTIES {
+        let mut settings = base(Method::Penalty);
+        (settings.last_penalty, settings.penetration_threshold) = (last, 0.0);
+        ways.push(Way { method: "penalty", knob: Some(last), settings });
+    }
+    ways
+}
+
+/// The answer of each way, certified or not, and the seconds of its fastest run. All ways run once before any runs
+/// again, so that what else the machine does meets them alike.
+fn timed(model: &Model, ways: &[Way], runs: usize) -> Result<Vec<(Solution, f64)>, Error> {
+    let run = |way: &Way| {
+        let clock = Instant::now();
+        let solved = solve(model.problem(), &way.settings);
+        let seconds = clock.elapsed().as_secs_f64();
+        match solved {
+            Ok(solution) => Ok((solution, seconds)),
+            Err(Error::NotCertified { solution, .. }) => Ok((*solution, seconds)),
+            Err(error) => Err(error),
+        }
+    };
+    let mut fastest = ways.iter().map(run).collect::<Result<Vec<_>, Error>>()?;
+    for _ in 1..runs {
+        for (way, (_, least)) in ways.iter().zip(&mut fastest) {
+            *least = least.min(run(way)?.1);
+        }
+    }
+    Ok(fastest)
+}
+
+/// How far an answer is from the exact one.
+fn errors(model: &Model, solution: &Solution, exact: &Solution) -> Result<TradeoffPoint, Error> {
+    let norm = |u: &[f64]| dot(u, &model.problem().stiffness().mul(u)).max(0.0).sqrt();
+    let relative = |value: f64, scale: f64| if value == 0.0 { 0.0 } else { (value / scale).abs() };
+    let away: Vec<f64> = solution.displacement.iter().zip(&exact.displacement).map(|(u, v)| u - v).collect();
+    let peak = |solution: &Solution| -> Result<f64, Error> {
+        Ok(model.pressure(&solution.multiplier)?.into_iter().fold(0.0, f64::max))
+    };
+    let (force, pressure) = (exact.contact_force(), peak(exact)?);
+    let differs = |row: &usize| solution.contact_set.contains(*row) != exact.contact_set.contains(*row);
+    Ok(TradeoffPoint {
+        mesh: 0,
+        method: "",
+        knob: None,
+        condensed: false,
+        seconds: 0.0,
+        energy_error: relative(norm(&away), norm(&exact.displacement)),
+        force_error: relative(solution.contact_force() - force, force),
+        pressure_error: relative(peak(solution)? - pressure, pressure),
+        rows_wrong: (0..model.rows().len()).filter(differs).count(),
+        energy_error_bound: solution.certificate.energy_error_bound,
+        best: false,
+    })
+}
+
+/// Marks the Pareto front of each mesh.
+fn mark_best(points: &mut [TradeoffPoint]) {
+    let beats = |one: &TradeoffPoint, other: &TradeoffPoint| {
+        let no_worse = one.seconds <= other.seconds && one.energy_error <= other.energy_error;
+        one.mesh == other.mesh && no_worse && (one.seconds < other.seconds || one.energy_error < other.energy_error)
+    };
+    let best: Vec<bool> = points.iter().map(|point| !points.iter().any(|other| beats(other, point))).collect();
+    points.iter_mut().zip(best).for_each(|(point, best)| point.best = best);
+}
+
+fn advice(points: &[TradeoffPoint]) -> Vec<Advice> {
+    let own = || points.iter().enumerate().filter(|(_, point)| point.mesh == 0);
+    let cheapest = |accuracy: f64| {
+        let good = own().filter(|(_, point)| point.energy_error <= accuracy);
+        good.min_by(|a, b| a.1.seconds.total_cmp(&b.1.seconds)).map(|(index, _)| index)
+    };
+    let mut advice: Vec<Advice> = WANTED
+        .iter()
+        .map(|&accuracy| Advice { accuracy: Some(accuracy), seconds: None, point: cheapest(accuracy) })
+        .collect();
+    let usual = own().filter(|(_, point)| point.method == POLISHED && point.knob == Some(USUAL_TOLERANCE)).last();
+    if let Some((_, usual)) = usual {
+        let seconds = HURRY * usual.seconds;
+        let quick = own().filter(|(_, point)| point.seconds <= seconds);
+        let point = quick.min_by(|a, b| a.1.energy_error.total_cmp(&b.1.energy_error)).map(|(index, _)| index);
+        advice.push(Advice { accuracy: None, seconds: Some(seconds), point });
+    }
+    advice
+}
