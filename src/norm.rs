@@ -1,8 +1,9 @@
 //! Norms of the error against an exact solution: `||u - u_h||` in energy and in L2.
 
-use crate::body::{ElasticBody, Symmetric, trace};
-use crate::element::{Cell, Part, PerNode, QuadraturePoint, ReferenceElement, Tabulated};
+use crate::body::{BodyElement, ElasticBody, Symmetric, trace};
+use crate::element::{Part, PerNode, QuadraturePoint, ReferenceElement, Tabulated};
 use crate::error::Error;
+use crate::material::Lame;
 
 /// An exact solution at one point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,12 +67,12 @@ pub fn error_norms(
     let squares = Squares { body, exact };
     let reference = body.mesh().kind().reference();
     let table = Tabulated::fine(reference);
-    let elements = || body.cells().map(|(nodes, cell)| (body.gather(displacement, nodes), cell));
-    let coarse: Vec<Sums> = elements().map(|(local, cell)| squares.over(&cell, &local, &table)).collect();
+    let elements = || body.elements().map(|element| (body.gather(displacement, element.nodes), element));
+    let coarse: Vec<Sums> = elements().map(|(local, element)| squares.over(&element, &local, &table)).collect();
     let allowed = Sums::total(&coarse).allowed();
     let halves = Halves::of(reference, Part::WHOLE, HALVINGS);
     let fine: Vec<Sums> = (elements().zip(&coarse))
-        .map(|((local, cell), sums)| squares.refined(&cell, &local, *sums, &halves, allowed))
+        .map(|((local, element), sums)| squares.refined(&element, &local, *sums, &halves, allowed))
         .collect();
     Ok(Sums::total(&fine).norms())
 }
@@ -89,8 +90,8 @@ pub fn error_norms_by(
     body.check_nodal("nodal displacement", displacement.len())?;
     let squares = Squares { body, exact };
     let table = Tabulated::with_rule(body.mesh().kind().reference(), rule.to_vec());
-    let of_element = |(nodes, cell): (&[usize], Cell)| squares.over(&cell, &body.gather(displacement, nodes), &table);
-    Ok(Sums::total(&body.cells().map(of_element).collect::<Vec<_>>()).norms())
+    let of_element = |element: BodyElement| squares.over(&element, &body.gather(displacement, element.nodes), &table);
+    Ok(Sums::total(&body.elements().map(of_element).collect::<Vec<_>>()).norms())
 }
 
 /// Integrals of squares: of the error and of the exact solution.
@@ -149,7 +150,8 @@ struct Squares<'a, F> {
 
 impl<F: Fn([f64; 3]) -> ExactState> Squares<'_, F> {
     /// Over the points of a table of one element with the given displacement of its nodes.
-    fn over(&self, cell: &Cell, local: &PerNode<[f64; 3]>, table: &Tabulated) -> Sums {
+    fn over(&self, element: &BodyElement, local: &PerNode<[f64; 3]>, table: &Tabulated) -> Sums {
+        let BodyElement { cell, lame, .. } = element;
         let scale = cell.unit().powi(self.body.dimension() as i32);
         let mut sums = Sums::default();
         for at in &table.points {
@@ -165,7 +167,7 @@ impl<F: Fn([f64; 3]) -> ExactState> Squares<'_, F> {
             let weight = point.weight * scale;
             let square = |vector: &[f64; 3]| vector.iter().map(|component| component * component).sum::<f64>();
             let here = Sums {
-                energy: [self.energy(&difference), self.energy(&exact.strain)],
+                energy: [self.energy(*lame, &difference), self.energy(*lame, &exact.strain)],
                 l2: [square(&away), square(&exact.displacement)],
             };
             sums = sums.plus(&here, weight);
@@ -174,22 +176,29 @@ impl<F: Fn([f64; 3]) -> ExactState> Squares<'_, F> {
     }
 
     /// Over a part of an element that has `sums` by its own points: those of its halves, halved on where they differ.
-    fn refined(&self, cell: &Cell, local: &PerNode<[f64; 3]>, sums: Sums, halves: &Halves, allowed: [f64; 2]) -> Sums {
-        let parts = halves.tables.iter().map(|table| self.over(cell, local, table)).collect::<Vec<_>>();
+    fn refined(
+        &self,
+        element: &BodyElement,
+        local: &PerNode<[f64; 3]>,
+        sums: Sums,
+        halves: &Halves,
+        allowed: [f64; 2],
+    ) -> Sums {
+        let parts = halves.tables.iter().map(|table| self.over(element, local, table)).collect::<Vec<_>>();
         let total = Sums::total(&parts);
         if halves.left == 0 || !total.away(&sums, allowed) {
             return total;
         }
         let further = |(&half, &sums): (&Part, &Sums)| {
             let reference = self.body.mesh().kind().reference();
-            self.refined(cell, local, sums, &Halves::of(reference, half, halves.left - 1), allowed)
+            self.refined(element, local, sums, &Halves::of(reference, half, halves.left - 1), allowed)
         };
         Sums::total(&halves.parts.iter().zip(&parts).map(further).collect::<Vec<_>>())
     }
 
     /// Twice the density of the strain energy, `sigma : eps`.
-    fn energy(&self, strain: &Symmetric) -> f64 {
-        let stress = self.body.stress(strain, trace(strain));
+    fn energy(&self, lame: Lame, strain: &Symmetric) -> f64 {
+        let stress = self.body.stress(lame, strain, trace(strain));
         (0..6).map(|axis| if axis < 3 { 1.0 } else { 2.0 } * stress[axis] * strain[axis]).sum()
     }
 }

@@ -42,6 +42,8 @@ fn scenes_that_describe_no_problem() {
     let mut deep = shape(json!({"circle": {"apex": [0.4, 0.5], "radius": 0.2}}));
     deep["obstacles"][0]["rule"] = json!("closest-point");
     deep["gap"] = json!(-0.3);
+    let mut rolling = with("/supports", json!([{"on": {"boundary": "bottom"}, "normal": [1, 2]}]));
+    rolling["obstacles"] = json!([]);
     let cases: Vec<(Value, i32, &[&str])> = vec![
         (with("/thicknes", json!(1)), 1, &["at `thicknes`", "unknown field `thicknes`", "`thickness`"]),
         (with("/material/nu", json!(0.3)), 1, &["at `material.nu`", "expected `young` or `poisson`"]),
@@ -86,6 +88,18 @@ fn scenes_that_describe_no_problem() {
         (plane_stress(with("/material/poisson", json!(0.51))), 1, &["at `material.poisson`", "0.51", "at most 0.5"]),
         (with("/supports/0/x", json!(null)), 1, &["at `supports[0].x`", "null is no number", "leave the field out"]),
         (with("/supports/0", json!({"on": {"boundary": "bottom"}})), 1, &["at `supports[0]`", "holds nothing"]),
+        (with("/supports/0/normal", json!([0, 0])), 1, &["at `supports[0].normal`", "(0, 0) has no direction"]),
+        (with("/supports/0/normal", json!([1])), 1, &["at `supports[0].normal`", "has 1 entries", "[x, y]"]),
+        (with("/supports/0/normal", json!([1, 2, 3])), 1, &["at `supports[0].normal`", "has 3 entries"]),
+        (with("/supports/0/normal", json!(null)), 1, &["at `supports[0].normal`", "null", "expected an array"]),
+        (with("/supports/0/normal", json!(["1", 0])), 1, &["at `supports[0].normal[0]`", "expected a number"]),
+        (with("/supports/0/value", json!(1)), 1, &["at `supports[0].value`", "give the normal too"]),
+        (
+            with("/supports/0", json!({"on": {"boundary": "bottom"}, "x": 0, "y": 0, "normal": [1, 1], "value": 0.1})),
+            1,
+            &["at `supports[0].normal`", "0.1 contradicts the 0 that supports[0] prescribes for node 0 at (0, 0)"],
+        ),
+        (rolling, 3, &["held by neither supports nor obstacle", "translation along", "0.894", "0.447"]),
         (with("/supports/0/on", json!({"point": [0.1, 0.1]})), 1, &["no node at (0.1, 0.1)", "nearest is node"]),
         (table(json!([[0, 1], [0.7, 1], [0.6, 1]])), 1, &["table.points[2]", "0.6", "must increase"]),
         (table(json!([[0, 1], [0.7, 1]])), 1, &["table.points", "from x = 0 to 0.7", "needs it at x = 0.75"]),

@@ -237,7 +237,7 @@ fn what_does_not_fit_the_dimension_is_refused_at_its_path() {
         (with(space(), "/loads", json!([{"body-force": [1]}])), "loads[0].body-force", "[x, y, z]"),
         (with(ring(), "/obstacles/0/approach", json!("+z")), "obstacles[0].approach", "which has x and y"),
         (with(space(), "/obstacles/0/shape", circle.clone()), "obstacles[0].shape", "`circle` is a shape of the plane"),
-        (with(line(), "/obstacles/0/shape", circle), "obstacles[0].shape", "on a line there is `plane`"),
+        (with(line(), "/obstacles/0/shape", circle), "obstacles[0].shape", "on a line there are `plane` and `body`"),
         (
             with(space(), "/obstacles/0/shape/plane/normal", json!([0, 1, 0])),
             "obstacles[0].shape.plane.normal",

@@ -22,7 +22,7 @@ fn every_example_builds_without_a_warning() {
             count += 1;
         }
     }
-    assert!(count >= 6);
+    assert!(count >= 7);
 }
 
 #[test]
@@ -52,4 +52,14 @@ fn the_body_between_two_obstacles_is_held_by_them_alone_along_y() {
     let supported_y = (0..model.mesh().nodes().len()).filter(|node| model.dofs().number(2 * node + 1).is_none());
     assert_eq!(supported_y.count(), 0);
     assert!(model.rows().iter().any(|row| row.obstacle == 0) && model.rows().iter().any(|row| row.obstacle == 1));
+}
+
+#[test]
+fn the_two_cylinders_face_each_other_node_to_node() {
+    let model = scene("two_cylinders").build().unwrap();
+    assert_eq!(model.body().regions().len(), 2);
+    for row in model.rows() {
+        let [one, other] = [row.node, row.partner.unwrap()].map(|node| model.mesh().nodes()[node]);
+        assert!((one[0] - other[0]).abs() < 1e-12 && (row.gap - (one[1] - other[1])).abs() < 1e-12);
+    }
 }

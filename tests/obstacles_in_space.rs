@@ -33,39 +33,40 @@ fn top(rule: &str, shape: Value, gap: f64) -> Model {
 
 type Height = Box<dyn Fn(f64, f64) -> f64>;
 
-/// Shapes above and partly inside the cube, each with its height z(x, y).
-fn shapes() -> Vec<(Value, Height)> {
+/// Shapes above and partly inside the cube, moved by `shift`, each with its height z(x, y).
+fn shapes([dx, dy, dz]: [f64; 3]) -> Vec<(Value, Height)> {
     let mut shapes: Vec<(Value, Height)> = Vec::new();
-    for z in [1.2, 0.95] {
-        let sphere = move |x: f64, y: f64| z + 1.5 - (2.25 - (x - 0.43).powi(2) - (y - 0.37).powi(2)).sqrt();
-        shapes.push((json!({"sphere": {"apex": [0.43, 0.37, z], "radius": 1.5}}), Box::new(sphere)));
-        shapes.push((json!({"sphere": {"centre": [0.43, 0.37, z + 1.5], "radius": 1.5}}), Box::new(sphere)));
+    for z in [1.2 + dz, 0.95 + dz] {
+        let (cx, cy) = (0.43 + dx, 0.37 + dy);
+        let sphere = move |x: f64, y: f64| z + 1.5 - (2.25 - (x - cx).powi(2) - (y - cy).powi(2)).sqrt();
+        shapes.push((json!({"sphere": {"apex": [cx, cy, z], "radius": 1.5}}), Box::new(sphere)));
+        shapes.push((json!({"sphere": {"centre": [cx, cy, z + 1.5], "radius": 1.5}}), Box::new(sphere)));
         // Across the axis (3, 4): the coordinate is (4 x - 3 y)/5.
-        let across = |x: f64, y: f64| 0.8 * (x - 0.43) - 0.6 * (y - 0.37);
+        let across = move |x: f64, y: f64| 0.8 * (x - cx) - 0.6 * (y - cy);
         let cylinder = move |x: f64, y: f64| z + 1.5 - (2.25 - across(x, y).powi(2)).sqrt();
-        let spec = json!({"cylinder": {"apex": [0.43, 0.37, z], "axis": [3, 4, 0], "radius": 1.5}});
+        let spec = json!({"cylinder": {"apex": [cx, cy, z], "axis": [3, 4, 0], "radius": 1.5}});
         shapes.push((spec, Box::new(cylinder)));
-        let cone = move |x: f64, y: f64| z + 0.6 * (x - 0.43).hypot(y - 0.37);
-        shapes.push((json!({"cone": {"apex": [0.43, 0.37, z], "slope": 0.6}}), Box::new(cone)));
+        let cone = move |x: f64, y: f64| z + 0.6 * (x - cx).hypot(y - cy);
+        shapes.push((json!({"cone": {"apex": [cx, cy, z], "slope": 0.6}}), Box::new(cone)));
         // One bilinear cell: heights z + 0.1 x - 0.2 y + 0.15 x y.
-        let bilinear = move |x: f64, y: f64| z + 0.1 * x - 0.2 * y + 0.15 * x * y;
-        let heights: Vec<Vec<f64>> =
-            [-2.0, 3.0].iter().map(|&x| [-2.0, 3.0].iter().map(|&y| bilinear(x, y)).collect()).collect();
-        let map = json!({"height-map": {"x": [-2, 3], "y": [-2, 3], "heights": heights}});
-        shapes.push((map, Box::new(bilinear)));
+        let bilinear = move |x: f64, y: f64| z + 0.1 * (x - dx) - 0.2 * (y - dy) + 0.15 * (x - dx) * (y - dy);
+        shapes.push((height_map(&[-2.0 + dx, 3.0 + dx], &[-2.0 + dy, 3.0 + dy], &bilinear), Box::new(bilinear)));
         // Creases along x = 0.4 and y = 0.6.
-        let roof = move |x: f64, y: f64| z + 0.5 * (x - 0.4).abs() - 0.3 * (y - 0.6).abs();
-        let lines = ([-2.0, 0.4, 3.0], [-2.0, 0.6, 3.0]);
-        let heights: Vec<Vec<f64>> = lines.0.iter().map(|&x| lines.1.iter().map(|&y| roof(x, y)).collect()).collect();
-        let map = json!({"height-map": {"x": lines.0, "y": lines.1, "heights": heights}});
-        shapes.push((map, Box::new(roof)));
+        let roof = move |x: f64, y: f64| z + 0.5 * (x - dx - 0.4).abs() - 0.3 * (y - dy - 0.6).abs();
+        let lines = ([-2.0 + dx, 0.4 + dx, 3.0 + dx], [-2.0 + dy, 0.6 + dy, 3.0 + dy]);
+        shapes.push((height_map(&lines.0, &lines.1, &roof), Box::new(roof)));
     }
     shapes
 }
 
+fn height_map(x: &[f64], y: &[f64], height: &dyn Fn(f64, f64) -> f64) -> Value {
+    let heights: Vec<Vec<f64>> = x.iter().map(|&x| y.iter().map(|&y| height(x, y)).collect()).collect();
+    json!({"height-map": {"x": x, "y": y, "heights": heights}})
+}
+
 #[test]
 fn along_the_approach_direction_the_gap_is_the_height_above_the_node() {
-    for (shape, height) in shapes() {
+    for (shape, height) in shapes([0.0; 3]) {
         let model = top("approach", shape.clone(), -0.03);
         assert_eq!(model.rows().len(), 25, "{shape}");
         assert_eq!(model.problem().contact().entries(), 25, "one entry a row: {shape}");
@@ -98,7 +99,7 @@ fn searched_distance(node: [f64; 3], height: &Height) -> f64 {
 
 #[test]
 fn closest_points_are_the_nearest_of_all_and_lie_on_the_surface_along_the_unit_normal() {
-    for (shape, height) in shapes() {
+    for (shape, height) in shapes([0.0; 3]) {
         let model = top("closest-point", shape.clone(), 0.0);
         assert_eq!(model.rows().len(), 25, "{shape}");
         for row in model.rows() {
@@ -112,6 +113,119 @@ fn closest_points_are_the_nearest_of_all_and_lie_on_the_surface_along_the_unit_n
             assert!((height(foot[0], foot[1]) - foot[2]).abs() < SEARCHED, "{shape} {row:?}");
         }
     }
+}
+
+#[test]
+fn the_gap_grows_against_the_normal_as_the_obstacle_moves() {
+    // Central differences: the obstacle moved by h along an axis changes the gap by h times the normal's part there.
+    let h = 1e-5;
+    let gaps = |shift: [f64; 3]| -> Vec<Vec<f64>> {
+        let models = shapes(shift).into_iter().map(|(shape, _)| top("closest-point", shape, 0.0));
+        models.map(|model| model.rows().iter().map(|row| row.gap).collect()).collect()
+    };
+    let differences: Vec<[Vec<Vec<f64>>; 2]> = (0..3)
+        .map(|axis| {
+            [h, -h].map(|step| {
+                let mut shift = [0.0; 3];
+                shift[axis] = step;
+                gaps(shift)
+            })
+        })
+        .collect();
+    for (index, (shape, _)) in shapes([0.0; 3]).into_iter().enumerate() {
+        for (row, contact) in top("closest-point", shape.clone(), 0.0).rows().iter().enumerate() {
+            for (axis, [ahead, behind]) in differences.iter().enumerate() {
+                let slope = (ahead[index][row] - behind[index][row]) / (2.0 * h);
+                // Third derivatives of the distance are below 100, and rounding over the step below 1e-10.
+                assert!((slope - contact.normal[axis]).abs() < 1e-8, "{shape} {contact:?} axis {axis}: {slope}");
+            }
+        }
+    }
+}
+
+/// Where a point or a direction of the scene under the top goes in the scene of another side: the two coordinates across
+/// keep their order, the height becomes the coordinate along the side's outward normal.
+fn placed([x, y, z]: [f64; 3], axis: usize, sense: f64, origin: f64) -> [f64; 3] {
+    let mut placed = [[0.0, x, y], [x, 0.0, y], [x, y, 0.0]][axis];
+    placed[axis] = if sense > 0.0 { z } else { origin - z };
+    placed
+}
+
+#[test]
+fn every_approach_direction_is_the_same_scene_turned() {
+    let shape = |name: &str, axis: usize, sense: f64| {
+        let point = |at: [f64; 3]| json!(placed(at, axis, sense, 1.0));
+        match name {
+            "sphere" => json!({"sphere": {"apex": point([0.43, 0.37, 0.97]), "radius": 1.5}}),
+            "centred" => json!({"sphere": {"centre": point([0.43, 0.37, 2.4]), "radius": 1.5}}),
+            "cylinder" => json!({"cylinder": {
+                "apex": point([0.43, 0.37, 0.97]), "axis": placed([3.0, 4.0, 0.0], axis, sense, 0.0), "radius": 1.5}}),
+            "cone" => json!({"cone": {"apex": point([0.43, 0.37, 0.97]), "slope": 0.6}}),
+            _ => height_map(&[-1.0, 0.4, 2.0], &[-1.0, 0.55, 2.0], &|x, y| {
+                placed([x, y, 0.98 + 0.4 * (x - 0.4).abs() + 0.2 * (y - 0.55) + 0.1 * x * y], axis, sense, 1.0)[axis]
+            }),
+        }
+    };
+    for name in ["sphere", "centred", "cylinder", "cone", "height-map"] {
+        for rule in ["approach", "closest-point"] {
+            let reference = top(rule, shape(name, 2, 1.0), -0.02);
+            for (boundary, approach, axis, sense) in [
+                ("left", "-x", 0, -1.0),
+                ("right", "+x", 0, 1.0),
+                ("front", "-y", 1, -1.0),
+                ("back", "+y", 1, 1.0),
+                ("bottom", "-z", 2, -1.0),
+            ] {
+                let mut scene = scene(rule, shape(name, axis, sense), -0.02);
+                scene["supports"] = json!([{"on": {"point": [0.5, 0.5, 0.5]}, "x": 0, "y": 0, "z": 0},
+                    {"on": {"point": [0.75, 0.5, 0.5]}, "y": 0, "z": 0}, {"on": {"point": [0.5, 0.75, 0.5]}, "z": 0}]);
+                (scene["obstacles"][0]["boundary"], scene["obstacles"][0]["approach"]) =
+                    (json!(boundary), json!(approach));
+                let model = built(&scene);
+                assert_eq!(model.rows().len(), 25, "{name} {approach}");
+                for row in reference.rows() {
+                    let at = placed(reference.mesh().nodes()[row.node], axis, sense, 1.0);
+                    let found = model.rows().iter().find(|found| model.mesh().nodes()[found.node] == at).unwrap();
+                    assert!((found.gap - row.gap).abs() < ROUNDING, "{name} {rule} {approach}: {found:?} {row:?}");
+                    let normal = placed(row.normal, axis, sense, 0.0);
+                    let off = (0..3).map(|i| (found.normal[i] - normal[i]).abs()).fold(0.0, f64::max);
+                    assert!(off < ROUNDING, "{name} {rule} {approach}: {found:?}, expected {normal:?}");
+                }
+            }
+        }
+    }
+}
+
+/// The row of the node at (x, y, 1) under a height map on these grid lines.
+fn row_under(x: &[f64], y: &[f64], height: &dyn Fn(f64, f64) -> f64, at: [f64; 2]) -> ([f64; 3], f64) {
+    let model = top("closest-point", height_map(x, y, height), 0.0);
+    let row = model.rows().iter().find(|row| model.mesh().nodes()[row.node] == [at[0], at[1], 1.0]).unwrap();
+    (row.normal, row.gap)
+}
+
+#[test]
+fn a_node_equally_close_to_several_points_of_a_height_map_takes_their_mean_normal() {
+    let straight = |(normal, gap): ([f64; 3], f64), expected: f64, what: &str| {
+        let level = normal[0].abs().max(normal[1].abs());
+        assert!(level < SEARCHED && (normal[2] - 1.0).abs() < SEARCHED, "{what}: {normal:?}");
+        assert!((gap - expected).abs() < SEARCHED, "{what}: {gap}");
+    };
+    let (wide, mid) = ([-2.0, 0.5, 3.0], [0.5, 0.5]);
+    let folded = |x: f64| (x - 0.5).abs();
+    // Inside a wedge, and inside a pyramid: straight back over two flanks, and over four.
+    straight(row_under(&wide, &wide, &|x, _| 0.9 + folded(x), mid), -0.1, "wedge");
+    straight(row_under(&wide, &wide, &|x, y| 0.9 + folded(x) + folded(y), mid), -0.1, "pyramid");
+    // In a notch and in a funnel: straight ahead until it meets the flanks.
+    straight(row_under(&wide, &wide, &|x, _| 1.2 - folded(x), mid), 0.2, "notch");
+    straight(row_under(&wide, &wide, &|x, y| 1.2 - 0.5 * (folded(x) + folded(y)), mid), 0.2, "funnel");
+    // Grid lines through one of the feet alone, at x = 0.4: a foot that two cells share counts once.
+    let uneven = [-2.0, 0.4, 0.5, 3.0];
+    straight(row_under(&uneven, &wide, &|x, _| 1.2 - folded(x), mid), 0.2, "shared foot");
+    // A saddle in one cell has two closest points, one on either side.
+    let saddle = |x: f64, y: f64| 1.3 - 8.0 * (x - 0.5) * (y - 0.5);
+    let ends = [-0.5, 1.5];
+    let (normal, _) = row_under(&ends, &ends, &saddle, mid);
+    assert!(normal[0].abs().max(normal[1].abs()) < SEARCHED, "saddle: {normal:?}");
 }
 
 #[test]

@@ -202,6 +202,7 @@ fn texts_that_are_no_scene_are_refused_at_path_line_and_column() {
         // Text that is no JSON.
         (raw("\"gap\":0.0", "\"gap\":NaN"), "gap", "expected"),
         (raw("\"gap\":0.0", "\"gap\":1e999"), "gap", "number out of range"),
+        (raw("\"x\":0,\"y\":0", "\"normal\":[1,1e999]"), "supports[0].normal[1]", "number out of range"),
         (raw("\"gap\":0.0", "\"gap\":0.0,\"gap\":1"), ".", "duplicate field `gap`"),
         (raw("\"young\":1000", "\"young\":1000,\"young\":1"), "material", "duplicate field `young`"),
         (format!("{text} x"), ".", "more text behind the scene"),
@@ -287,4 +288,9 @@ fn numbers_that_json_cannot_say_are_refused_in_scenes_made_by_hand() {
     refused(&|scene| scene.thickness = f64::INFINITY, "thickness");
     refused(&|scene| scene.material.young = f64::NAN, "material.young");
     refused(&|scene| scene.supports[0].x = Some(f64::NAN), "supports[0].x");
+    refused(&|scene| scene.supports[0].normal = Some(vec![1.0, f64::INFINITY]), "supports[0].normal[1]");
+    let value = |scene: &mut Scene| {
+        (scene.supports[0].normal, scene.supports[0].value) = (Some(vec![1.0, 1.0]), Some(f64::NAN));
+    };
+    refused(&value, "supports[0].value");
 }

@@ -3,12 +3,13 @@
 
 use crate::body::{ElasticBody, Integration};
 use crate::element::{Cell, MAX_NODES, Tabulated};
+use crate::material::Lame;
 
 /// Pairs of nodes a >= b.
 const PAIRS: usize = MAX_NODES * (MAX_NODES + 1) / 2;
 
 /// A block of a pair of nodes: row axis, column axis.
-type Block = [[f64; 3]; 3];
+pub(super) type Block = [[f64; 3]; 3];
 
 /// The stiffness of one element, in force per length: a block for every pair of its nodes.
 #[derive(Clone, Debug)]
@@ -30,15 +31,15 @@ fn pair(a: usize, b: usize) -> usize {
     a * (a + 1) / 2 + b
 }
 
-/// The stiffness of the element `cell` of `body`; `table` is the body's [`tabulated`](ElasticBody::tabulated) element.
+/// The stiffness of the element `cell` of `body` in a material; `table` is the body's [`tabulated`](ElasticBody::tabulated) element.
 ///
 /// In a body of revolution d_a has the hoop part N_a/r along r, which brings `2 mu h_a h_b`, h = N/r, too. With mean
 /// dilatation d is its mean over the element.
-pub fn element_stiffness(body: &ElasticBody, table: &Tabulated, cell: &Cell) -> ElementStiffness {
+pub fn element_stiffness(body: &ElasticBody, lame: Lame, table: &Tabulated, cell: &Cell) -> ElementStiffness {
     let nodes = table.reference.nodes.len();
     let mean = body.integration() == Integration::MeanDilatation;
     let revolved = body.formulation().is_axisymmetric();
-    let (lambda, mu) = (body.lame().lambda, body.lame().mu);
+    let Lame { lambda, mu } = lame;
     // Gradients are per unit of the cell and determinants in units: what is left of it.
     let scale = cell.unit().powi(table.reference.dimension as i32 - 2);
     let mut products = [[[0.0; 3]; 3]; PAIRS];

@@ -2,7 +2,7 @@
 
 use super::surface::for_each_point;
 use super::{DofMap, internal_force};
-use crate::body::ElasticBody;
+use crate::body::{BodyElement, ElasticBody};
 use crate::element::Tabulated;
 use crate::error::Error;
 use crate::mesh::Boundary;
@@ -46,7 +46,7 @@ pub fn add_body_force_field(body: &ElasticBody, field: impl Fn([f64; 3]) -> [f64
 }
 
 fn add_force_at(body: &ElasticBody, table: &Tabulated, field: impl Fn([f64; 3]) -> [f64; 3], load: &mut [f64]) {
-    for (nodes, cell) in body.cells() {
+    for BodyElement { nodes, cell, .. } in body.elements() {
         let scale = cell.unit().powi(body.dimension() as i32);
         for at in &table.points {
             let volume = body.point(&cell, at).weight * scale;

@@ -2,19 +2,23 @@
 //!
 //! Nodal vectors have length `dim * n_nodes` and the order `[x_0, y_0, x_1, y_1, ...]` (in space `[x_0, y_0, z_0,
 //! ...]`, in a bar `[x_0, x_1, ...]`); vectors of the problem have one entry per free dof, in the same order with the
-//! supported dofs left out.
+//! supported dofs left out. At a node with a [`Frame`], as an inclined support makes it, the dofs of the problem run along
+//! the axes of the frame.
 
 mod dofs;
 mod element_stiffness;
+mod frame;
 mod internal_force;
 mod load;
 mod pattern;
 mod stiffness;
 mod surface;
 
-pub use dofs::DofMap;
+pub use dofs::{Along, DofMap};
 pub use element_stiffness::{ElementStiffness, element_stiffness};
+pub use frame::Frame;
+pub(crate) use frame::perpendicular;
 pub use internal_force::internal_force;
 pub use load::{add_body_force, add_body_force_field, add_pressure, add_traction, add_traction_field, free_load};
 pub use stiffness::stiffness;
-pub use surface::tributary_areas;
+pub use surface::{node_normals, tributary_areas};

@@ -1,23 +1,25 @@
 //! K = sum of the element stiffnesses, in the free dofs; straight into the lower triangle in compressed columns.
 
+use super::element_stiffness::Block;
 use super::pattern::lower_pattern;
-use super::{DofMap, element_stiffness};
-use crate::body::ElasticBody;
+use super::{DofMap, Frame, element_stiffness};
+use crate::body::{BodyElement, ElasticBody};
 use crate::element::MAX_NODES;
 use crate::error::Error;
 use crate::sparse::{SparseMatrix, SymmetricMatrix};
 
-/// The free dofs of one node: the number of the first, how many, and the axis of each.
+/// The free dofs of one node: the number of the first, how many, and the axis of each, of the frame where there is one.
 #[derive(Clone, Copy, Default)]
-struct FreeAxes {
+struct FreeAxes<'a> {
     first: usize,
     count: usize,
     axes: [usize; 3],
+    frame: Option<&'a Frame>,
 }
 
-impl FreeAxes {
-    fn of(node: usize, dimension: usize, dofs: &DofMap) -> Self {
-        let mut free = FreeAxes::default();
+impl<'a> FreeAxes<'a> {
+    fn of(node: usize, dimension: usize, dofs: &'a DofMap) -> Self {
+        let mut free = FreeAxes { frame: dofs.frame(node), ..FreeAxes::default() };
         for axis in 0..dimension {
             if let Some(number) = dofs.number(dimension * node + axis) {
                 if free.count == 0 {
@@ -41,8 +43,8 @@ pub fn stiffness(body: &ElasticBody, dofs: &DofMap) -> Result<SymmetricMatrix, E
     let (starts, rows) = lower_pattern(body.mesh(), dofs);
     let mut values = vec![0.0; rows.len()];
     let table = body.tabulated();
-    for (nodes, cell) in body.cells() {
-        let element = element_stiffness(body, &table, &cell);
+    for BodyElement { nodes, cell, lame } in body.elements() {
+        let element = element_stiffness(body, lame, &table, &cell);
         let mut free = [FreeAxes::default(); MAX_NODES];
         for (of_node, &node) in free.iter_mut().zip(nodes) {
             *of_node = FreeAxes::of(node, dimension, dofs);
@@ -57,7 +59,14 @@ pub fn stiffness(body: &ElasticBody, dofs: &DofMap) -> Result<SymmetricMatrix, E
                 }
                 let of_first = &rows[starts[column.first]..starts[column.first + 1]];
                 let Ok(place) = of_first.binary_search(&row.first) else { continue };
-                let block = element.block(a, b);
+                let turned;
+                let block = match (free[a].frame, free[b].frame) {
+                    (None, None) => element.block(a, b),
+                    frames => {
+                        turned = turn(element.block(a, b), frames.0, frames.1);
+                        &turned
+                    }
+                };
                 for (j, &along) in column.axes[..column.count].iter().enumerate() {
                     // Each column of a node starts one row further down; rows of one node follow each other.
                     let start = starts[column.first + j] + place;
@@ -76,4 +85,20 @@ pub fn stiffness(body: &ElasticBody, dofs: &DofMap) -> Result<SymmetricMatrix, E
         return Err(Error::NotFinite { name: "stiffness", at, value: values[entry], allowed: "finite" });
     }
     SymmetricMatrix::from_lower(SparseMatrix::from_parts(dofs.free().len(), starts, rows, values))
+}
+
+/// T_a K_ab T_b', where the rows of T are the axes of a frame.
+fn turn(block: &Block, of_rows: Option<&Frame>, of_columns: Option<&Frame>) -> Block {
+    let mut turned = *block;
+    if let Some(frame) = of_columns {
+        turned.iter_mut().for_each(|row| frame.turn_in(row));
+    }
+    if let Some(frame) = of_rows {
+        for j in 0..3 {
+            let mut column = turned.map(|row| row[j]);
+            frame.turn_in(&mut column);
+            turned.iter_mut().zip(column).for_each(|(row, entry)| row[j] = entry);
+        }
+    }
+    turned
 }

@@ -77,3 +77,22 @@ pub fn tributary_areas(body: &ElasticBody, boundary: &Boundary) -> Vec<(usize, f
     });
     nodes.into_iter().map(|node| (node, area.get(node).copied().unwrap_or(0.0))).collect()
 }
+
+/// The nodes of a boundary in its order, each with its outward unit normal: the mean over the facets around the node.
+/// Zero where these cancel.
+pub fn node_normals(body: &ElasticBody, boundary: &Boundary) -> Vec<(usize, [f64; 3])> {
+    let nodes = boundary.nodes();
+    let mut sums = vec![[0.0; 3]; body.mesh().nodes().len()];
+    for_each_point(body, boundary, &mut |point| {
+        for (&node, share) in point.nodes.iter().zip(point.shape) {
+            // The square, because the shape functions of the ends of a quadratic edge change sign.
+            let weight = share * share * point.area;
+            sums[node].iter_mut().zip(point.normal).for_each(|(sum, component)| *sum += weight * component);
+        }
+    });
+    let unit = |sum: [f64; 3]| {
+        let length = sum[0].hypot(sum[1]).hypot(sum[2]);
+        if length > 0.0 { sum.map(|component| component / length) } else { sum }
+    };
+    nodes.into_iter().map(|node| (node, unit(sums.get(node).copied().unwrap_or_default()))).collect()
+}

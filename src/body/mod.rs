@@ -1,9 +1,11 @@
 //! The elastic body: a mesh, its elements, a material, a formulation; strains and stresses in it.
 
 mod point;
+mod region;
 
 pub(crate) use point::trace;
 pub use point::{LocalPoint, Symmetric};
+pub use region::Region;
 
 use crate::element::{Cell, ElementKind, MAX_NODES, PerNode, Tabulated};
 use crate::error::Error;
@@ -24,14 +26,25 @@ pub enum Integration {
     MeanDilatation,
 }
 
-/// A homogeneous elastic body, checked once, when it is built.
+/// A homogeneous elastic body, or several that only contact joins, checked once, when it is built.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ElasticBody {
     mesh: Mesh,
-    material: Material,
     formulation: Formulation,
     integration: Integration,
-    lame: Lame,
+    /// In the order of their nodes and elements; one where there is one body.
+    regions: Vec<Region>,
+}
+
+/// An element in place.
+#[derive(Clone, Copy, Debug)]
+pub struct BodyElement<'a> {
+    /// Its nodes, in the order of its kind.
+    pub nodes: &'a [usize],
+    /// The element in place.
+    pub cell: Cell,
+    /// The Lamé constants of its material in the formulation.
+    pub lame: Lame,
 }
 
 impl ElasticBody {
@@ -56,9 +69,10 @@ impl ElasticBody {
                 return fail(format!("node {node} lies at the radius x = {radius:e}; about the y axis x must be >= 0"));
             }
         }
-        let body = ElasticBody { mesh, material, formulation, integration: Integration::Standard, lame };
+        let regions = vec![Region::whole(&mesh, material, lame)];
+        let body = ElasticBody { mesh, formulation, integration: Integration::Standard, regions };
         let table = body.tabulated();
-        for (index, (nodes, cell)) in body.cells().enumerate() {
+        for (index, BodyElement { nodes, cell, .. }) in body.elements().enumerate() {
             if let Err(reason) = cell.check(&table) {
                 return fail(format!("element {index} (nodes {nodes:?}, from 0): {reason}"));
             }
@@ -87,14 +101,40 @@ impl ElasticBody {
         Ok(self)
     }
 
+    /// This body and `other` in one: two bodies that no element joins, so that nothing but contact can.
+    ///
+    /// Nodes and elements of `other` follow those of this body; its boundaries are called `name.boundary`.
+    ///
+    /// # Errors
+    /// [`Error::Mesh`] where formulation, element or integration of the two differ, or a boundary of that name exists.
+    pub fn beside(mut self, other: &ElasticBody, name: &str) -> Result<Self, Error> {
+        let fail = |message| Err(Error::Mesh { message });
+        if self.formulation != other.formulation {
+            let (one, two) = (self.formulation.name(), other.formulation.name());
+            return fail(format!("bodies of one model have one formulation and cross-section; here {one} and {two}"));
+        }
+        let (kind, other_kind) = (self.mesh.kind(), other.mesh.kind());
+        if kind != other_kind {
+            let (one, two) = (kind.name(), other_kind.name());
+            return fail(format!("bodies of one model have one kind of element; here {one} and {two}"));
+        }
+        if self.integration != other.integration {
+            return fail("bodies of one model have one integration".into());
+        }
+        let (nodes, elements) = (self.mesh.nodes().len(), self.mesh.element_count());
+        self.mesh = self.mesh.beside(&other.mesh, name)?;
+        self.regions.extend(other.regions.iter().map(|region| region.shifted(name, nodes, elements)));
+        Ok(self)
+    }
+
     /// The mesh.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
     }
 
-    /// The material.
-    pub fn material(&self) -> &Material {
-        &self.material
+    /// The bodies that it is made of: one, but for [`ElasticBody::beside`].
+    pub fn regions(&self) -> &[Region] {
+        &self.regions
     }
 
     /// The formulation.
@@ -105,11 +145,6 @@ impl ElasticBody {
     /// How the stiffness is integrated.
     pub fn integration(&self) -> Integration {
         self.integration
-    }
-
-    /// The Lamé constants in the formulation.
-    pub fn lame(&self) -> Lame {
-        self.lame
     }
 
     /// Number of coordinates, and of dofs per node.
@@ -127,10 +162,15 @@ impl ElasticBody {
         Tabulated::new(self.mesh.kind().reference(), self.formulation.is_axisymmetric())
     }
 
-    /// Every element: its nodes, and the element in place.
-    pub fn cells(&self) -> impl Iterator<Item = (&[usize], Cell)> + '_ {
+    /// Every element in place, region by region.
+    pub fn elements(&self) -> impl Iterator<Item = BodyElement<'_>> + '_ {
         let reference = self.mesh.kind().reference();
-        self.mesh.elements().map(move |nodes| (nodes, Cell::new(reference, &self.coordinates(nodes))))
+        let materials =
+            self.regions.iter().flat_map(|region| std::iter::repeat_n(region.lame(), region.elements().len()));
+        self.mesh.elements().zip(materials).map(move |(nodes, lame)| {
+            let cell = Cell::new(reference, &self.coordinates(nodes));
+            BodyElement { nodes, cell, lame }
+        })
     }
 
     /// The coordinates of up to [`MAX_NODES`] nodes.
@@ -152,9 +192,9 @@ impl ElasticBody {
         values
     }
 
-    /// The stress of a strain; `dilatation` stands for its trace, which a mean over the element may replace.
-    pub fn stress(&self, strain: &Symmetric, dilatation: f64) -> Symmetric {
-        let Lame { lambda, mu } = self.lame;
+    /// The stress of a strain in a material; `dilatation` stands for its trace, which a mean over the element may
+    /// replace.
+    pub fn stress(&self, Lame { lambda, mu }: Lame, strain: &Symmetric, dilatation: f64) -> Symmetric {
         let mut stress = strain.map(|component| 2.0 * mu * component);
         stress[..3].iter_mut().for_each(|normal| *normal += lambda * dilatation);
         if let Formulation::PlaneStress { .. } = self.formulation {

@@ -6,6 +6,7 @@ use super::{Outcome, warn};
 use crate::error::Error;
 use crate::output::{gallery, solve_json, solve_text, write_files};
 use crate::solve::{Condense, Method, Settings, solve};
+use crate::study::discretisation_error;
 
 pub(super) fn settings(method: Method, common: &Common) -> Settings {
     let mut settings = Settings::with_method(method);
@@ -27,7 +28,10 @@ pub(super) fn run(options: &Solve) -> Result<Outcome, Error> {
         }
         Err(error) => return Err(input.explain(error)),
     };
-    let summary = input.summary(&solution, common.tolerance)?;
+    let mut summary = input.summary(&solution, common.tolerance)?;
+    if let Content::Scene(model) = &input.content {
+        summary.discretisation_error = Some(discretisation_error(model, &solution)?);
+    }
     if let Some(folder) = &common.out {
         match &input.content {
             Content::Scene(model) => gallery::write_solve(folder, model, &solution)?,

@@ -65,3 +65,16 @@ pub struct ReferenceElement {
     /// Reference coordinates of the centroid.
     pub centroid: [f64; 3],
 }
+
+impl ReferenceElement {
+    /// The local nodes in the order that a mirrored element has: that of the cell with xi and eta exchanged, or, on a
+    /// line, with xi reversed.
+    pub fn mirrored(&self) -> Vec<usize> {
+        let mirror = |[xi, eta, zeta]: [f64; 3]| match self.dimension {
+            1 => [-xi, eta, zeta],
+            _ => [eta, xi, zeta],
+        };
+        let place = |at: [f64; 3]| self.nodes.iter().position(|&node| node == at);
+        self.nodes.iter().enumerate().map(|(local, &at)| place(mirror(at)).unwrap_or(local)).collect()
+    }
+}

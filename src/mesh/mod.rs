@@ -68,9 +68,6 @@ impl Mesh {
             return fail("there are no elements; a mesh needs at least one".into());
         }
         let (nodes, dimension) = (&self.nodes, self.dimension());
-        if self.connectivity.is_empty() {
-            return fail("there are no elements; a mesh needs at least one".into());
-        }
         for (node, at) in nodes.iter().enumerate() {
             if !at.iter().all(|value| value.is_finite()) {
                 return fail(format!("node {node} lies at {:?}; coordinates must be finite", &at[..dimension]));
@@ -163,16 +160,41 @@ impl Mesh {
         self.boundaries.iter().find(|boundary| boundary.name == name)
     }
 
+    /// The mirror image across the plane where the coordinate `axis` (0, 1, 2 for x, y, z) is `plane`; boundaries keep
+    /// their names.
+    pub fn mirrored(mut self, axis: usize, plane: f64) -> Self {
+        self.nodes.iter_mut().filter_map(|at| at.get_mut(axis)).for_each(|value| *value = 2.0 * plane - *value);
+        let order = self.kind.reference().mirrored();
+        for element in self.connectivity.chunks_exact_mut(order.len()) {
+            let nodes: Vec<usize> = order.iter().map(|&local| element[local]).collect();
+            element.copy_from_slice(&nodes);
+        }
+        self
+    }
+
+    /// This mesh and `other` in one, sharing no node: nodes and elements of `other` follow those of this mesh, and its
+    /// boundaries are called `name.boundary`.
+    ///
+    /// # Errors
+    /// [`Error::Mesh`] for meshes of two kinds, or a boundary name that exists.
+    pub fn beside(mut self, other: &Mesh, name: &str) -> Result<Self, Error> {
+        if self.kind != other.kind {
+            let (one, two) = (self.kind.name(), other.kind.name());
+            return fail(format!("a mesh has one kind of element; here {one} and {two}"));
+        }
+        let first = self.nodes.len();
+        let behind = |nodes: &[usize]| nodes.iter().map(|node| first + node).collect::<Vec<usize>>();
+        self.nodes.extend_from_slice(&other.nodes);
+        self.connectivity.extend(behind(&other.connectivity));
+        self.boundaries.extend(other.boundaries.iter().map(|boundary| {
+            Boundary::new(format!("{name}.{}", boundary.name), boundary.kind, behind(&boundary.connectivity))
+        }));
+        Self::new(self.nodes, self.kind, self.connectivity, self.boundaries)
+    }
+
     /// The smallest and the largest coordinates, `([x_min, y_min, z_min], [x_max, y_max, z_max])`.
     pub fn extent(&self) -> ([f64; 3], [f64; 3]) {
-        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for node in &self.nodes {
-            for axis in 0..3 {
-                low[axis] = low[axis].min(node[axis]);
-                high[axis] = high[axis].max(node[axis]);
-            }
-        }
-        (low, high)
+        extent(&self.nodes)
     }
 
     /// The diagonal of the extent: the body's size, in the unit of length.
@@ -186,6 +208,18 @@ impl Mesh {
         let away = |&node: &[f64; 3]| distance(node, point);
         self.nodes.iter().map(away).enumerate().min_by(|a, b| a.1.total_cmp(&b.1))
     }
+}
+
+/// The smallest and the largest coordinates of `nodes`.
+pub(crate) fn extent(nodes: &[[f64; 3]]) -> ([f64; 3], [f64; 3]) {
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for node in nodes {
+        for axis in 0..3 {
+            low[axis] = low[axis].min(node[axis]);
+            high[axis] = high[axis].max(node[axis]);
+        }
+    }
+    (low, high)
 }
 
 fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {

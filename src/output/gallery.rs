@@ -230,7 +230,7 @@ impl Scene {
             elements: model.mesh().elements().map(|nodes| nodes[..corners].to_vec()).collect(),
             displacement: model.nodal_displacement(displacement)?,
             field: model.stress(displacement)?.nodes.iter().map(|stress| stress.sigma_2).collect(),
-            outlines: (0..model.obstacles().len()).map(outline).collect(),
+            outlines: (0..model.obstacles().len()).filter(|&i| model.obstacles()[i].is_rigid()).map(outline).collect(),
             closed: candidates.iter().map(|node| closed_nodes.contains(node)).collect(),
             candidates,
         })
@@ -285,10 +285,12 @@ fn fields(model: &Model, solution: &Solution) -> Result<String, Error> {
     let mut flag = vec![NO_CANDIDATE; nodes.len()];
     let row_pressure = model.pressure(&solution.multiplier)?;
     for (index, row) in model.rows().iter().enumerate() {
-        let is_first = flag[row.node] == NO_CANDIDATE;
-        gap[row.node] = if is_first { row.gap } else { row.gap.min(gap[row.node]) };
-        pressure[row.node] += row_pressure[index];
-        flag[row.node] = f64::from(solution.contact_set.contains(index)).max(flag[row.node]);
+        for (node, _) in row.ends() {
+            let is_first = flag[node] == NO_CANDIDATE;
+            gap[node] = if is_first { row.gap } else { row.gap.min(gap[node]) };
+            pressure[node] += row_pressure[index];
+            flag[node] = f64::from(solution.contact_set.contains(index)).max(flag[node]);
+        }
     }
     let components: [fn(&Stress) -> f64; 4] = [|s| s.sigma_1, |s| s.sigma_2, |s| s.von_mises, |s| s.sigma_3];
     let of = |stresses: &[Stress]| components.map(|component| stresses.iter().map(component).collect::<Vec<f64>>());

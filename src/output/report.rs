@@ -29,6 +29,9 @@ fn plural(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
+/// An algebraic error below this times that of the mesh does not show in the sum of both.
+const FAR_BELOW: f64 = 1e-2;
+
 /// The report of one answer, in lines of at most 100 characters.
 pub fn solve_text(title: &str, summary: &Summary, units: &UnitNames) -> String {
     let Summary { contact, model, seconds, .. } = summary;
@@ -59,6 +62,7 @@ pub fn solve_text(title: &str, summary: &Summary, units: &UnitNames) -> String {
         line("", format!("loads, reactions and contact forces balance to {balance:.1e}"));
     }
     text += &certificate_text(&summary.certificate, summary.is_certified(), summary.tolerance);
+    text += &mesh_text(summary);
     text += &entry(
         "seconds",
         &format!(
@@ -66,6 +70,19 @@ pub fn solve_text(title: &str, summary: &Summary, units: &UnitNames) -> String {
             seconds.assemble, seconds.factor, seconds.solve, seconds.total
         ),
     );
+    text
+}
+
+/// What the mesh is worth, and whether the algebra is worth more.
+fn mesh_text(summary: &Summary) -> String {
+    let Some(of_mesh) = summary.discretisation_error else { return String::new() };
+    let mut text = entry("mesh", &format!("about {of_mesh:.1e} of the energy norm off, by its stresses"));
+    let bound = summary.certificate.energy_error_bound;
+    if bound < of_mesh * FAR_BELOW {
+        text += &entry("", "the solver is far below that: more of its digits buy nothing, a finer mesh does");
+    } else if bound > of_mesh {
+        text += &entry("", "the solver may be further off: a tighter tolerance comes before a finer mesh");
+    }
     text
 }
 

@@ -1,6 +1,6 @@
-//! The body of a scene: mesh, material, formulation.
+//! The bodies of a scene: mesh, material, formulation.
 
-use super::schema::{BodySpec, IntegrationSpec, ModelSpec, Scene};
+use super::schema::{BodySpec, IntegrationSpec, MaterialSpec, ModelSpec, Scene};
 use super::{Warning, located, wrong};
 use crate::body::{ElasticBody, Integration};
 use crate::error::Error;
@@ -10,17 +10,55 @@ use crate::material::Material;
 /// Above this ratio linear elements are known to lock noticeably; measured, quadratic ones do above the second.
 const LOCKING_POISSON: [f64; 2] = [0.49, 0.499];
 
+/// A body as a scene describes it, and where.
+pub(super) struct DescribedBody<'a> {
+    pub scene: &'a Scene,
+    pub spec: &'a BodySpec,
+    material: &'a MaterialSpec,
+    /// What stands before its JSON paths.
+    place: String,
+}
+
 impl Scene {
-    fn formulation(&self) -> Result<Formulation, Error> {
-        let thickness = self.thickness;
-        if self.body.dimension().is_some_and(|dimension| dimension != self.model.dimension()) {
-            let fitting =
-                ["bar", "rectangle, half-disc, ring or gmsh", "box, half-ball or gmsh"][self.model.dimension() - 1];
-            let (body, model) = (self.body.name(), self.model.name());
-            let message = format!("a {body} is no body of the model `{model}`; there it is a {fitting}");
-            return Err(wrong(format!("body.{body}"), message));
+    /// All bodies of the scene in one.
+    pub(super) fn elastic_body(&self) -> Result<ElasticBody, Error> {
+        let first = DescribedBody { scene: self, spec: &self.body, material: &self.material, place: String::new() };
+        let mut body = first.elastic_body()?;
+        for (index, further) in self.further_bodies.iter().enumerate() {
+            let path = format!("further-bodies[{index}]");
+            let name = &further.name;
+            if name.is_empty() || self.further_bodies[..index].iter().any(|other| other.name == *name) {
+                let message = format!("`{name}` is not allowed: every further body needs a name of its own");
+                return Err(wrong(format!("{path}.name"), message));
+            }
+            let described = DescribedBody {
+                scene: self,
+                spec: &further.body,
+                material: &further.material,
+                place: format!("{path}."),
+            };
+            body = body.beside(&described.elastic_body()?, name).map_err(|error| described.at_body(error))?;
         }
-        let formulation = match (self.model, &self.body) {
+        Ok(body)
+    }
+}
+
+impl DescribedBody<'_> {
+    /// The JSON path of a field of the body.
+    pub(super) fn path(&self, field: &str) -> String {
+        format!("{}body.{}{field}", self.place, self.spec.name())
+    }
+
+    fn formulation(&self) -> Result<Formulation, Error> {
+        let (thickness, model) = (self.scene.thickness, self.scene.model);
+        if self.spec.dimension().is_some_and(|dimension| dimension != model.dimension()) {
+            let fitting =
+                ["bar", "rectangle, half-disc, ring or gmsh", "box, half-ball or gmsh"][model.dimension() - 1];
+            let (body, model) = (self.spec.name(), model.name());
+            let message = format!("a {body} is no body of the model `{model}`; there it is a {fitting}");
+            return Err(wrong(self.path(""), message));
+        }
+        let formulation = match (model, self.spec) {
             (ModelSpec::Bar, BodySpec::Bar(spec)) => Formulation::Bar { area: spec.area },
             // A mesh file says nothing of the cross-section.
             (ModelSpec::Bar, _) => Formulation::Bar { area: 1.0 },
@@ -31,15 +69,15 @@ impl Scene {
         };
         let plane = matches!(formulation, Formulation::PlaneStrain { .. } | Formulation::PlaneStress { .. });
         if !plane && thickness != 1.0 {
-            let message = format!("the model `{}` has no thickness; leave it out", self.model.name());
+            let message = format!("the model `{}` has no thickness; leave it out", model.name());
             return Err(wrong("thickness", message));
         }
-        let prefix = if self.model == ModelSpec::Bar { "body.bar." } else { "" };
-        formulation.check().map_err(|error| located(error, prefix))?;
+        let prefix = if model == ModelSpec::Bar { self.path(".") } else { String::new() };
+        formulation.check().map_err(|error| located(error, &prefix))?;
         Ok(formulation)
     }
 
-    pub(super) fn elastic_body(&self) -> Result<ElasticBody, Error> {
+    fn elastic_body(&self) -> Result<ElasticBody, Error> {
         let material = Material::new(self.material.young, self.material.poisson);
         let material = material.map_err(|error| self.in_material(error))?;
         let formulation = self.formulation()?;
@@ -50,11 +88,11 @@ impl Scene {
             other => self.at_body(other),
         };
         let body = ElasticBody::new(self.mesh()?, material, formulation).map_err(at_body)?;
-        match self.body.integration() {
+        match self.spec.integration() {
             IntegrationSpec::Standard => Ok(body),
             IntegrationSpec::MeanDilatation => {
                 body.with_integration(Integration::MeanDilatation).map_err(|error| match error {
-                    Error::Mesh { message } => wrong(format!("body.{}.integration", self.body.name()), message),
+                    Error::Mesh { message } => wrong(self.path(".integration"), message),
                     other => other,
                 })
             }
@@ -63,7 +101,8 @@ impl Scene {
 
     /// An error of the material at its place; the allowed range is that of the model.
     fn in_material(&self, error: Error) -> Error {
-        let allowed = match self.model {
+        let prefix = format!("{}material.", self.place);
+        let allowed = match self.scene.model {
             ModelSpec::Bar => "above -1 and at most 0.5 in a bar",
             ModelSpec::PlaneStrain => "above -1 and below 0.5 in plane strain",
             ModelSpec::PlaneStress => "above -1 and at most 0.5 in plane stress",
@@ -72,16 +111,17 @@ impl Scene {
         };
         match error {
             Error::Setting { name: "poisson", value, .. } => {
-                located(Error::Setting { name: "poisson", value, allowed }, "material.")
+                located(Error::Setting { name: "poisson", value, allowed }, &prefix)
             }
-            other => located(other, "material."),
+            other => located(other, &prefix),
         }
     }
 }
 
 /// The warning of a body whose elements lock.
 pub(super) fn locking(body: &ElasticBody) -> Option<Warning> {
-    let (kind, poisson) = (body.mesh().kind(), body.material().poisson());
+    let kind = body.mesh().kind();
+    let poisson = body.regions().iter().map(|region| region.material().poisson()).fold(f64::NEG_INFINITY, f64::max);
     let limit = LOCKING_POISSON[usize::from(kind.is_quadratic())];
     let locks = body.formulation().can_lock() && body.integration() == Integration::Standard && poisson > limit;
     locks.then(|| Warning::NearlyIncompressible { poisson, element: kind.name() })

@@ -22,7 +22,7 @@ impl Scene {
         for (index, spec) in self.obstacles.iter().enumerate() {
             let path = format!("obstacles[{index}]");
             let boundary = boundary(body.mesh(), &spec.boundary, &format!("{path}.boundary"))?;
-            obstacles.push(Obstacle::new(spec, &path, body.mesh(), tributary_areas(&body, boundary))?);
+            obstacles.push(Obstacle::new(spec, &path, &body, tributary_areas(&body, boundary))?);
         }
         let warnings = locking(&body).into_iter().collect();
         let (title, units) = (self.title.clone(), self.units.clone());

@@ -1,7 +1,8 @@
 //! Supports and loads of a scene, at the nodes.
 
-use super::schema::{LoadSpec, Place, Scene};
-use super::{PLACE_TOLERANCE, finite, number, point, vector, wrong};
+use super::held::{COORDINATES, Component, Held, Holder, unit_normal};
+use super::schema::{LoadSpec, Place, Scene, SupportSpec};
+use super::{PLACE_TOLERANCE, finite, point, vector, wrong};
 use crate::assembly::{DofMap, add_body_force, add_pressure, add_traction};
 use crate::body::ElasticBody;
 use crate::error::Error;
@@ -10,60 +11,69 @@ use crate::mesh::{Boundary, Mesh};
 /// Radii below this times the body's size lie on the axis of revolution.
 const ON_THE_AXIS: f64 = 1e-12;
 
-/// Prescribed displacements, and what prescribes each.
-struct Held {
-    prescribed: Vec<Option<f64>>,
-    by: Vec<Holder>,
-}
-
-#[derive(Clone, Copy)]
-enum Holder {
-    Nothing,
-    /// On the axis of revolution nothing moves radially.
-    Axis,
-    Support(usize),
-}
-
 impl Scene {
     pub(super) fn dofs(&self, body: &ElasticBody) -> Result<DofMap, Error> {
-        let (mesh, dimension) = (body.mesh(), body.dimension());
-        let mut held = Held { prescribed: vec![None; body.nodal_dofs()], by: vec![Holder::Nothing; body.nodal_dofs()] };
+        let mesh = body.mesh();
+        let mut held = Held::default();
         if body.formulation().is_axisymmetric() {
             let near = ON_THE_AXIS * mesh.size();
             for node in (0..mesh.nodes().len()).filter(|&node| mesh.nodes()[node][0] <= near) {
-                (held.prescribed[2 * node], held.by[2 * node]) = (Some(0.0), Holder::Axis);
+                held.prescribe(node, Component { direction: COORDINATES[0], value: 0.0, by: Holder::Axis });
             }
         }
         for (index, support) in self.supports.iter().enumerate() {
             let path = format!("supports[{index}]");
-            let components = [("x", support.x), ("y", support.y), ("z", support.z)];
-            if components.iter().all(|component| component.1.is_none()) {
-                let names = ["x", "x or y, or both", "x, y or z, or several of them"][dimension - 1];
-                return Err(wrong(path, format!("holds nothing; give {names}")));
-            }
+            let components = self.components(index, support)?;
             let nodes = match &support.on {
                 Place::Boundary(name) => boundary(mesh, name, &format!("{path}.on.boundary"))?.nodes(),
                 Place::Point(at) => vec![node_at(mesh, at, &format!("{path}.on.point"))?],
             };
-            for (axis, (name, value)) in components.into_iter().enumerate() {
-                let Some(value) = value else { continue };
-                let path = format!("{path}.{name}");
-                if axis >= dimension {
-                    return Err(wrong(path, format!("the model `{}` has no {name}", self.model.name())));
-                }
-                finite(path.as_str(), value)?;
-                for &node in &nodes {
-                    held.hold(dimension * node + axis, value, index).map_err(|other| {
-                        let at = point(&mesh.nodes()[node][..dimension]);
-                        wrong(path.as_str(), format!("{} contradicts {other} node {node} at {at}", number(value)))
-                    })?;
-                }
+            for component in components {
+                nodes.iter().for_each(|&node| held.prescribe(node, component));
             }
         }
-        if held.prescribed.iter().all(Option::is_some) {
-            return Err(wrong("supports", "every node is held in all directions: nothing is left to solve for"));
+        held.dofs(mesh)
+    }
+
+    /// The components that support number `index` prescribes.
+    fn components(&self, index: usize, support: &SupportSpec) -> Result<Vec<Component>, Error> {
+        let path = format!("supports[{index}]");
+        let by = |field| Holder::Support { index, field };
+        let dimension = self.model.dimension();
+        let mut components = Vec::new();
+        for (axis, (field, value)) in [("x", support.x), ("y", support.y), ("z", support.z)].into_iter().enumerate() {
+            let Some(value) = value else { continue };
+            if axis >= dimension {
+                return Err(wrong(
+                    format!("{path}.{field}"),
+                    format!("the model `{}` has no {field}", self.model.name()),
+                ));
+            }
+            finite(format!("{path}.{field}"), value)?;
+            components.push(Component { direction: COORDINATES[axis], value, by: by(field) });
         }
-        DofMap::new(held.prescribed)
+        match (&support.normal, support.value) {
+            (Some(normal), value) => {
+                let field = format!("{path}.normal");
+                let direction = unit_normal(vector(&field, normal, dimension)?).ok_or_else(|| {
+                    wrong(field, format!("{} has no direction; the normal needs a length", point(normal)))
+                })?;
+                let value = value.unwrap_or(0.0);
+                finite(format!("{path}.value"), value)?;
+                components.push(Component { direction, value, by: by("normal") });
+            }
+            (None, Some(_)) => {
+                let message = "a value is that along a normal; give the normal too, or x, y or z instead";
+                return Err(wrong(format!("{path}.value"), message));
+            }
+            (None, None) => {}
+        }
+        if components.is_empty() {
+            let names =
+                ["x", "x or y, or both, or a normal", "x, y or z, or several of them, or a normal"][dimension - 1];
+            return Err(wrong(path, format!("holds nothing; give {names}")));
+        }
+        Ok(components)
     }
 
     pub(super) fn load(&self, body: &ElasticBody) -> Result<Vec<f64>, Error> {
@@ -100,28 +110,6 @@ impl Scene {
     }
 }
 
-impl Held {
-    /// Prescribes `value` at a dof by support `support`.
-    ///
-    /// # Errors
-    /// What holds the dof at another value, in words.
-    fn hold(&mut self, dof: usize, value: f64, support: usize) -> Result<(), String> {
-        match (self.prescribed[dof], self.by[dof]) {
-            (Some(other), holder) if other != value => Err(match holder {
-                Holder::Support(other_support) => {
-                    format!("the {} that supports[{other_support}] prescribes for", number(other))
-                }
-                _ => "the axis of revolution, where nothing moves radially, at".into(),
-            }),
-            (Some(_), Holder::Axis) => Ok(()),
-            _ => {
-                (self.prescribed[dof], self.by[dof]) = (Some(value), Holder::Support(support));
-                Ok(())
-            }
-        }
-    }
-}
-
 pub(super) fn boundary<'a>(mesh: &'a Mesh, name: &str, path: &str) -> Result<&'a Boundary, Error> {
     mesh.boundary(name).ok_or_else(|| {
         let names: Vec<&str> = mesh.boundaries().iter().map(|boundary| boundary.name.as_str()).collect();
@@ -132,12 +120,20 @@ pub(super) fn boundary<'a>(mesh: &'a Mesh, name: &str, path: &str) -> Result<&'a
 fn node_at(mesh: &Mesh, at: &[f64], path: &str) -> Result<usize, Error> {
     let dimension = mesh.dimension();
     let place = vector(path, at, dimension)?;
-    match mesh.nearest_node(place) {
-        Some((node, distance)) if distance <= PLACE_TOLERANCE * mesh.size() => Ok(node),
-        Some((node, _)) => {
+    let away = |node: &[f64; 3]| (node[0] - place[0]).hypot(node[1] - place[1]).hypot(node[2] - place[2]);
+    let tolerance = PLACE_TOLERANCE * mesh.size();
+    let there: Vec<usize> = (0..mesh.nodes().len()).filter(|&node| away(&mesh.nodes()[node]) <= tolerance).collect();
+    match (&there[..], mesh.nearest_node(place)) {
+        ([node], _) => Ok(*node),
+        ([one, other, ..], _) => {
+            let message =
+                format!("nodes {one} and {other} of two bodies lie at {}; name a boundary instead", point(at));
+            Err(wrong(path, message))
+        }
+        ([], Some((node, _))) => {
             let nearest = point(&mesh.nodes()[node][..dimension]);
             Err(wrong(path, format!("there is no node at {}; the nearest is node {node} at {nearest}", point(at))))
         }
-        None => Err(wrong(path, "the mesh has no nodes")),
+        ([], None) => Err(wrong(path, "the mesh has no nodes")),
     }
 }

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use super::body::DescribedBody;
 use super::schema::{
-    AxisSpec, BodySpec, ElementSpec, GmshSpec, IntegrationSpec, Scene, SolidElementSpec, SymmetrySpec, ZoneSpec,
+    AxisSpec, BodySpec, ElementSpec, GmshSpec, HalfSpec, IntegrationSpec, SolidElementSpec, SymmetrySpec, ZoneSpec,
 };
 use super::{located, wrong};
 use crate::error::Error;
@@ -47,15 +48,14 @@ impl BodySpec {
     }
 }
 
-impl Scene {
+impl DescribedBody<'_> {
     pub(super) fn mesh(&self) -> Result<Mesh, Error> {
-        let name = self.body.name();
         let lines = |spec: &AxisSpec, axis: &str| {
             let of =
                 Axis { points: spec.points.clone(), divisions: spec.divisions.clone(), ratios: spec.ratios.clone() };
-            of.coordinates().map_err(|error| wrong(format!("body.{name}.{axis}.{}", error.field), error.message))
+            of.coordinates().map_err(|error| wrong(self.path(&format!(".{axis}.{}", error.field)), error.message))
         };
-        let mesh = match &self.body {
+        let mesh = match self.spec {
             BodySpec::Bar(spec) => mesh::bar(&lines(&spec.x, "x")?),
             BodySpec::Rectangle(spec) => {
                 mesh::rectangle(&lines(&spec.x, "x")?, &lines(&spec.y, "y")?, spec.element.kind())
@@ -69,10 +69,12 @@ impl Scene {
             }
             BodySpec::HalfDisc(spec) => {
                 mesh::half_disc(spec.centre, spec.radius, &spec.zone.zone(), spec.symmetric, spec.element.kind())
+                    .map(|mesh| spec.half.of(mesh, 1, spec.centre[1]))
             }
             BodySpec::HalfBall(spec) => {
                 let symmetric = [SymmetrySpec::X, SymmetrySpec::Y].map(|axis| spec.symmetric.contains(&axis));
                 mesh::half_ball(spec.centre, spec.radius, &spec.zone.zone(), symmetric)
+                    .map(|mesh| spec.half.of(mesh, 2, spec.centre[2]))
             }
             BodySpec::Ring(spec) => {
                 let (radii, angles) = (lines(&spec.radius, "radius")?, lines(&spec.angle, "angle")?);
@@ -85,24 +87,23 @@ impl Scene {
 
     /// An error of the mesh at its place in the scene; what has a file and a line of its own stays there.
     pub(super) fn at_body(&self, error: Error) -> Error {
-        let name = self.body.name();
         match error {
-            Error::Mesh { message } => wrong(format!("body.{name}"), message),
-            other => located(other, &format!("body.{name}.")),
+            Error::Mesh { message } => wrong(self.path(""), message),
+            other => located(other, &self.path(".")),
         }
     }
 
     fn gmsh(&self, spec: &GmshSpec) -> Result<Mesh, Error> {
-        let file = match &self.folder {
+        let file = match &self.scene.folder {
             Some(folder) => folder.join(&spec.file),
             None => Path::new(&spec.file).to_path_buf(),
         };
         let mesh = GmshFile::read(file)?.mesh(spec.group.as_deref(), spec.scale)?;
-        let (found, model) = (mesh.dimension(), self.model.name());
-        if found != self.model.dimension() {
+        let (found, model) = (mesh.dimension(), self.scene.model.name());
+        if found != self.scene.model.dimension() {
             let body = ["a bar", "plane", "in space"][found - 1];
             return Err(wrong(
-                "body.gmsh.file",
+                self.path(".file"),
                 format!("the mesh is {body}, which is no body of the model `{model}`"),
             ));
         }
@@ -117,6 +118,16 @@ impl ElementSpec {
             ElementSpec::T6 => ElementKind::T6,
             ElementSpec::Q4 => ElementKind::Q4,
             ElementSpec::Q8 => ElementKind::Q8,
+        }
+    }
+}
+
+impl HalfSpec {
+    /// The half of a body of which `lower` is the lower one, the cut lying where the coordinate `axis` is `centre`.
+    fn of(self, lower: Mesh, axis: usize, centre: f64) -> Mesh {
+        match self {
+            HalfSpec::Lower => lower,
+            HalfSpec::Upper => lower.mirrored(axis, centre),
         }
     }
 }

@@ -18,6 +18,7 @@ mod body;
 mod build;
 mod condition;
 mod explain;
+mod held;
 mod mesh;
 mod model;
 mod motion;
@@ -31,10 +32,11 @@ pub use model::Model;
 pub use obstacle::Obstacle;
 pub use rows::ContactRow;
 pub use schema::{
-    Approach, AxisSpec, BarSpec, BodySpec, BoxSpec, CircleSpec, ConeSpec, CylinderSpec, ElementSpec, ForceSpec,
-    GmshSpec, HalfBallSpec, HalfDiscSpec, HeightMapSpec, IntegrationSpec, LoadSpec, MaterialSpec, ModelSpec,
-    ObstacleSpec, ParabolaSpec, Place, PlaneSpec, PressureSpec, RectangleSpec, RingSpec, Rule, Scene, ShapeSpec,
-    SolidElementSpec, SphereSpec, SupportSpec, SymmetrySpec, TableSpec, TractionSpec, Units, WedgeSpec, ZoneSpec,
+    Approach, AxisSpec, BarSpec, BodySpec, BoxSpec, CircleSpec, ConeSpec, CylinderSpec, ElementSpec, FacingSpec,
+    ForceSpec, FurtherBodySpec, GmshSpec, HalfBallSpec, HalfDiscSpec, HalfSpec, HeightMapSpec, IntegrationSpec,
+    LoadSpec, MaterialSpec, ModelSpec, ObstacleSpec, ParabolaSpec, Place, PlaneSpec, PressureSpec, RectangleSpec,
+    RingSpec, Rule, Scene, ShapeSpec, SolidElementSpec, SphereSpec, SupportSpec, SymmetrySpec, TableSpec, TractionSpec,
+    Units, WedgeSpec, ZoneSpec,
 };
 pub use warning::Warning;
 

@@ -101,7 +101,7 @@ impl Model {
         self.gap
     }
 
-    /// The body: mesh, material, thickness.
+    /// The body, or all of them in one: mesh, materials, thickness.
     pub fn body(&self) -> &ElasticBody {
         &self.parts.body
     }
@@ -183,7 +183,7 @@ impl Model {
         Ok(self.rows.iter().enumerate().map(pressure).collect())
     }
 
-    /// Nodal contact forces on the body, `lambda n`, in force.
+    /// Nodal contact forces, `lambda n`, in force; with two bodies the opposite on the other one.
     ///
     /// # Errors
     /// As [`Model::pressure`].
@@ -192,13 +192,15 @@ impl Model {
         let dimension = self.body().dimension();
         let mut forces = vec![0.0; self.parts.dofs.nodal_count()];
         for (row, lambda) in self.rows.iter().zip(multiplier) {
-            let entries = &mut forces[dimension * row.node..dimension * (row.node + 1)];
-            entries.iter_mut().zip(row.normal).for_each(|(entry, component)| *entry += lambda * component);
+            for (node, sign) in row.ends() {
+                let entries = &mut forces[dimension * node..dimension * (node + 1)];
+                entries.iter_mut().zip(row.normal).for_each(|(entry, component)| *entry += sign * lambda * component);
+            }
         }
         Ok(forces)
     }
 
-    /// Nodal support reactions on the body, in force; zero at free dofs.
+    /// Nodal support reactions on the body, in force; zero along free dofs, so that a roller pushes along its normal.
     ///
     /// What the stress in the elements asks for at the supported dofs, less load and contact force there. The
     /// multiplier enters because a contact row may press on a supported dof.
@@ -207,12 +209,10 @@ impl Model {
     /// [`Error::Length`] where `displacement` or `multiplier` do not fit.
     pub fn reactions(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Vec<f64>, Error> {
         let contact = self.contact_forces(multiplier)?;
-        let mut reactions = internal_force(self.body(), &self.nodal_displacement(displacement)?)?;
-        for (dof, reaction) in reactions.iter_mut().enumerate() {
-            let supported = self.parts.dofs.number(dof).is_none();
-            *reaction = if supported { *reaction - self.parts.load[dof] - contact[dof] } else { 0.0 };
-        }
-        Ok(reactions)
+        let mut forces = internal_force(self.body(), &self.nodal_displacement(displacement)?)?;
+        let acting = self.parts.load.iter().zip(&contact);
+        forces.iter_mut().zip(acting).for_each(|(force, (load, contact))| *force = *force - load - contact);
+        self.parts.dofs.supported_part(&forces)
     }
 
     /// External loads at all nodes, in force, length `dim * n_nodes`.
@@ -220,8 +220,8 @@ impl Model {
         &self.parts.load
     }
 
-    /// The imbalance of loads, support reactions and contact forces on the whole body: the largest of the virtual works
-    /// on its unit rigid motions (the resultant forces, and the resultant moments over half the body's size), relative
+    /// The imbalance of loads, support reactions and contact forces on each body: the largest of the virtual works
+    /// on its unit rigid motions (the resultant forces, and the resultant moments over half its size), relative
     /// to the sum of all force magnitudes. A body of revolution has one rigid motion, and its forces count along the
     /// axis.
     ///

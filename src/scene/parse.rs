@@ -195,3 +195,8 @@ pub(super) fn number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Optio
         None => Err(D::Error::custom("null is no number; leave the field out to leave the direction free")),
     }
 }
+
+/// Accepts a value, and no `null`.
+pub(super) fn given<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {
+    T::deserialize(deserializer).map(Some)
+}

@@ -5,22 +5,31 @@ use super::{ROUNDING, Warning, finite, point, wrong};
 use crate::error::Error;
 use crate::sparse::SparseMatrix;
 
-/// One contact row: `normal . u <= gap` at a node.
+/// One contact row: `normal . u <= gap` at a node, or `normal . (u - u_partner) <= gap` between two.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactRow {
     /// The node.
     pub node: usize,
+    /// The node across it, where the obstacle is another body.
+    pub partner: Option<usize>,
     /// The obstacle, from 0 in the order of the scene.
     pub obstacle: usize,
     /// Unit vector [x, y, z] into the obstacle; zero beyond the dimension of the model.
     pub normal: [f64; 3],
-    /// Signed distance of the undeformed node to the obstacle along `normal`, in length; negative inside.
+    /// Signed distance of the undeformed node to the obstacle, or to its partner, along `normal`, in length; negative inside.
     ///
-    /// The gap of the problem is this less what prescribed displacements of the node take up.
+    /// The gap of the problem is this less what prescribed displacements of its nodes take up.
     pub gap: f64,
     /// Integral of the node's shape function over the candidate boundary, in area: thickness, cross-section or
     /// circumference included.
     pub tributary_area: f64,
+}
+
+impl ContactRow {
+    /// The nodes that the row ties: its own with the sign 1, and the partner with -1.
+    pub fn ends(&self) -> impl Iterator<Item = (usize, f64)> {
+        [(Some(self.node), 1.0), (self.partner, -1.0)].into_iter().filter_map(|(node, sign)| Some((node?, sign)))
+    }
 }
 
 /// The rows of all obstacles, and the matrix B and the vector g that they make in the free dofs.
@@ -43,28 +52,32 @@ pub(super) fn build(parts: &Parts, scene_gap: f64) -> Result<Rows, Error> {
     let (mut rows, mut gap, mut entries, mut warnings) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (index, obstacle) in parts.obstacles.iter().enumerate() {
         let mut reached = false;
-        for &(node, tributary_area) in obstacle.candidates() {
+        for (candidate, &(node, tributary_area)) in obstacle.candidates().iter().enumerate() {
             let at = mesh.nodes()[node];
-            let way = obstacle.row(at, scene_gap).map_err(|reason| {
+            let way = obstacle.row(candidate, at, scene_gap).map_err(|reason| {
                 let message =
                     format!("node {node} at {} {reason}; move the obstacle away from it", point(&at[..dimension]));
                 wrong(format!("obstacles[{index}]"), message)
             })?;
             let Some(way) = way else { continue };
             reached = true;
-            let (mut remaining, mut free) = (way.distance, false);
-            for (axis, &component) in way.normal[..dimension].iter().enumerate().filter(|entry| *entry.1 != 0.0) {
-                let dof = dimension * node + axis;
-                match dofs.number(dof) {
-                    Some(column) => {
-                        entries.push((rows.len(), column, component));
-                        free = true;
-                    }
-                    None => remaining -= component * dofs.prescribed(dof).unwrap_or(0.0),
-                }
+            let row = ContactRow {
+                node,
+                partner: obstacle.partner(candidate),
+                obstacle: index,
+                normal: way.normal,
+                gap: way.distance,
+                tributary_area,
+            };
+            let (mut remaining, mut free) = (row.gap, Vec::new());
+            for (node, sign) in row.ends() {
+                let along = dofs.along(node, &row.normal[..dimension]);
+                remaining -= sign * along.prescribed;
+                free.extend(along.free.into_iter().map(|(column, component)| (rows.len(), column, sign * component)));
             }
-            if free || remaining < -rounding {
-                rows.push(ContactRow { node, obstacle: index, normal: way.normal, gap: way.distance, tributary_area });
+            if !free.is_empty() || remaining < -rounding {
+                entries.extend(free);
+                rows.push(row);
                 gap.push(remaining);
             }
         }

@@ -12,6 +12,7 @@ use crate::material::Material;
 use crate::mesh::rectangle;
 use crate::norm::{ErrorNorms, ExactState, error_norms, error_norms_by};
 use crate::problem::ContactProblem;
+use crate::recovery::{discretisation_error, stress};
 use crate::solve::solve_qp;
 use crate::sparse::SparseMatrix;
 
@@ -55,6 +56,14 @@ impl SolvedBlock<'_> {
     /// None for a block that [`solve_block`] made.
     pub fn errors_by(&self, rule: &[QuadraturePoint]) -> Result<ErrorNorms, Error> {
         error_norms_by(rule, &self.body, &self.displacement, |at| state(self.exact, at))
+    }
+
+    /// The relative error in energy as it is estimated from the stresses, without the exact solution.
+    ///
+    /// # Errors
+    /// None for a block that [`solve_block`] made.
+    pub fn estimated_energy_error(&self) -> Result<f64, Error> {
+        discretisation_error(&self.body, &self.displacement, &stress(&self.body, &self.displacement)?)
     }
 
     /// The largest nodal pressure, and that of the exact solution at a node.

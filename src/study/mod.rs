@@ -8,6 +8,7 @@ mod summary;
 pub use compare::{Agreement, Comparison, Difference, MethodAnswer, compare};
 pub use manufactured::{NodalPressure, SolvedBlock, solve_block};
 pub use scene::{
-    Sweep, SweepCorner, SweepEvent, SweepPoint, contact_area, contact_width, even_gaps, scene_summary, sweep,
+    Sweep, SweepCorner, SweepEvent, SweepPoint, contact_area, contact_width, discretisation_error, even_gaps,
+    scene_summary, sweep,
 };
 pub use summary::{CertificateSummary, ContactSummary, HistoryEntry, ModelSize, SecondsSummary, Summary, Verification};

@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::{ModelSize, Summary};
 use crate::error::Error;
 use crate::formulation::Formulation;
+use crate::recovery;
 use crate::scene::Model;
 use crate::solution::{ContactSet, Solution};
 use crate::solve::{Event, Prepared, Settings, solve};
@@ -37,6 +38,18 @@ pub fn scene_summary(
     summary.contact.area = Some(contact_area(model, &solution.contact_set));
     summary.contact.force_balance = Some(model.force_balance(&solution.displacement, &solution.multiplier)?);
     Ok(summary)
+}
+
+/// The error of the mesh, relative in energy, estimated from the stress of the answer.
+///
+/// # Errors
+/// [`Error::Length`] where the answer is not one to this model.
+///
+/// # Source
+/// [`recovery::discretisation_error`].
+pub fn discretisation_error(model: &Model, solution: &Solution) -> Result<f64, Error> {
+    let nodal = model.nodal_displacement(&solution.displacement)?;
+    recovery::discretisation_error(model.body(), &nodal, &model.stress(&solution.displacement)?)
 }
 
 /// Area of the boundary that the closed rows stand for; thickness, cross-section or circumference included.

@@ -20,6 +20,9 @@ pub struct Summary {
     pub contact: ContactSummary,
     /// The recomputed conditions.
     pub certificate: CertificateSummary,
+    /// The error of the mesh, estimated, relative in energy; only in a scene, where it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub discretisation_error: Option<f64>,
     /// Sizes of the model.
     pub model: ModelSize,
     /// What it cost.
@@ -159,6 +162,7 @@ impl Summary {
                 force_balance: None,
             },
             certificate: (&solution.certificate).into(),
+            discretisation_error: None,
             model,
             seconds: SecondsSummary {
                 assemble: assemble_seconds,

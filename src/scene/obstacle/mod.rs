@@ -1,10 +1,12 @@
 //! Obstacles: a surface in a frame, the rule of its contact rows, and the candidates that may touch it.
 
 mod circle;
+mod facing;
 mod frame;
 mod half_space;
 mod height_map;
 mod parabola;
+mod patch;
 mod plane;
 mod polyline;
 mod profile;
@@ -13,8 +15,9 @@ mod surface;
 
 use super::schema::{ObstacleSpec, PlaneSpec, Rule, ShapeSpec};
 use super::{finite, number, point, vector, wrong};
+use crate::body::ElasticBody;
 use crate::error::Error;
-use crate::mesh::Mesh;
+use facing::Facing;
 use frame::Frame;
 use half_space::HalfSpace;
 use profile::Profile;
@@ -32,7 +35,7 @@ pub(super) struct Approachable {
     pub distance: f64,
 }
 
-/// A rigid obstacle of a model.
+/// An obstacle of a model: rigid, or the surface of another body.
 #[derive(Clone, Debug)]
 pub struct Obstacle {
     boundary: String,
@@ -51,6 +54,8 @@ enum Geometry {
     HalfSpace(HalfSpace),
     /// In space: a graph over the two coordinates across the approach direction.
     Solid(Solid),
+    /// The nodes of another body.
+    Facing(Facing),
 }
 
 impl Obstacle {
@@ -58,9 +63,10 @@ impl Obstacle {
     pub(super) fn new(
         spec: &ObstacleSpec,
         path: &str,
-        mesh: &Mesh,
+        body: &ElasticBody,
         candidates: Vec<(usize, f64)>,
     ) -> Result<Self, Error> {
+        let mesh = body.mesh();
         let dimension = mesh.dimension();
         let (axis, sense) = spec.approach.axis();
         if axis >= dimension {
@@ -73,6 +79,9 @@ impl Obstacle {
         let shape_path = format!("{path}.shape");
         let geometry = match (&spec.shape, Frame::of(spec.approach).filter(|_| dimension == 2)) {
             (shape, _) if !fits(shape, dimension) => return Err(misfit(shape, shape_path, dimension)),
+            (ShapeSpec::Body(facing), _) => {
+                Geometry::Facing(Facing::new(facing, spec, path, body, approach, &candidates)?)
+            }
             (_, Some(frame)) => Geometry::Profile(Profile::new(spec, &shape_path, mesh, frame)?),
             (ShapeSpec::Plane(plane), None) => {
                 let (point, normal) = plane_of(plane, &format!("{shape_path}.plane"), dimension, approach)?;
@@ -98,6 +107,11 @@ impl Obstacle {
         &self.boundary
     }
 
+    /// Is it no body of its own?
+    pub fn is_rigid(&self) -> bool {
+        !matches!(self.geometry, Geometry::Facing(_))
+    }
+
     /// How its contact rows are made.
     pub fn rule(&self) -> Rule {
         self.rule
@@ -115,24 +129,34 @@ impl Obstacle {
 
     /// The surface as a polyline [x, y] for pictures: over the body's extent and a little more, shifted by `gap`
     /// along the approach direction, in `segments` pieces (10,000 at most), corners met exactly. The obstacle lies on
-    /// the side that [`approach`](Self::approach) points to. Empty where the surface does not reach over the body, and
-    /// outside the plane.
+    /// the side that [`approach`](Self::approach) points to. Empty where the surface does not reach over the body, for
+    /// another body, and outside the plane.
     pub fn outline(&self, gap: f64, segments: usize) -> Vec<[f64; 2]> {
         match &self.geometry {
             Geometry::Profile(profile) => profile.outline(gap, segments),
-            Geometry::HalfSpace(_) | Geometry::Solid(_) => Vec::new(),
+            Geometry::HalfSpace(_) | Geometry::Solid(_) | Geometry::Facing(_) => Vec::new(),
         }
     }
 
-    /// The way from `node` to the surface shifted by `gap`, or `None` where it is out of reach.
+    /// The node of another body across the candidate of this index; `None` where the obstacle is rigid.
+    pub(super) fn partner(&self, candidate: usize) -> Option<usize> {
+        match &self.geometry {
+            Geometry::Facing(facing) => facing.partner(candidate),
+            _ => None,
+        }
+    }
+
+    /// The way from the candidate of this index, which lies at `node`, to the surface shifted by `gap`, or `None` where
+    /// it is out of reach.
     ///
     /// # Errors
     /// A predicate of the node, where it lies so deep that the rule makes no sense.
-    pub(super) fn row(&self, node: [f64; 3], gap: f64) -> Result<Option<Approachable>, &'static str> {
+    pub(super) fn row(&self, candidate: usize, node: [f64; 3], gap: f64) -> Result<Option<Approachable>, &'static str> {
         let way = match &self.geometry {
             Geometry::Profile(profile) => profile.row(node, gap, self.rule)?,
             Geometry::HalfSpace(half_space) => Some(half_space.row(node, gap, self.approach, self.rule)),
             Geometry::Solid(solid) => solid.row(node, gap, self.rule)?,
+            Geometry::Facing(facing) => facing.row(candidate, gap, self.approach),
         };
         match way {
             Some(way) if way.distance.is_nan() => Err("has no distance that could be computed"),
@@ -148,7 +172,7 @@ impl Obstacle {
 /// Whether a model of `dimension` coordinates has the shape.
 fn fits(shape: &ShapeSpec, dimension: usize) -> bool {
     match shape {
-        ShapeSpec::Plane(_) => true,
+        ShapeSpec::Plane(_) | ShapeSpec::Body(_) => true,
         ShapeSpec::Parabola(_) | ShapeSpec::Circle(_) | ShapeSpec::Wedge(_) | ShapeSpec::Table(_) => dimension == 2,
         ShapeSpec::Sphere(_) | ShapeSpec::Cylinder(_) | ShapeSpec::Cone(_) | ShapeSpec::HeightMap(_) => dimension == 3,
     }
@@ -158,9 +182,9 @@ fn fits(shape: &ShapeSpec, dimension: usize) -> bool {
 fn misfit(shape: &ShapeSpec, path: String, dimension: usize) -> Error {
     let of = if fits(shape, 2) { "the plane" } else { "space" };
     let there = [
-        "on a line there is `plane`",
-        "in the plane there are `plane`, `parabola`, `circle`, `wedge` and `table`",
-        "in space there are `plane`, `sphere`, `cylinder`, `cone` and `height-map`",
+        "on a line there are `plane` and `body`",
+        "in the plane there are `plane`, `parabola`, `circle`, `wedge`, `table` and `body`",
+        "in space there are `plane`, `sphere`, `cylinder`, `cone`, `height-map` and `body`",
     ][dimension - 1];
     wrong(path, format!("`{}` is a shape of {of}; {there}", shape.name()))
 }

@@ -146,7 +146,11 @@ fn surface_of(shape: &ShapeSpec, path: &str, frame: Frame, size: f64) -> Result<
                 .ok_or_else(|| wrong(path, format!("a table needs at least two points, but there are {found}")))?;
             ([0.0, 0.0], Arc::new(table))
         }
-        ShapeSpec::Sphere(_) | ShapeSpec::Cylinder(_) | ShapeSpec::Cone(_) | ShapeSpec::HeightMap(_) => {
+        ShapeSpec::Sphere(_)
+        | ShapeSpec::Cylinder(_)
+        | ShapeSpec::Cone(_)
+        | ShapeSpec::HeightMap(_)
+        | ShapeSpec::Body(_) => {
             return Err(misfit(shape, path.into(), 2));
         }
     })

@@ -10,7 +10,7 @@ use super::{Approachable, misfit, positive};
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::scene::schema::{Approach, Rule, ShapeSpec};
-use crate::scene::{PLACE_TOLERANCE, ROUNDING, number, point, vector, wrong};
+use crate::scene::{ROUNDING, number, point, vector, wrong};
 
 /// An axis of a cylinder may lean by the rounding of its written components.
 const PERPENDICULAR: f64 = 1e-9;
@@ -64,7 +64,7 @@ impl Solid {
             }
             ShapeSpec::HeightMap(spec) => {
                 let names = across.map(|axis| ["x", "y", "z"][axis]);
-                let map = HeightMap::new(spec, &path, names, sense, PLACE_TOLERANCE * size)?;
+                let map = HeightMap::new(spec, &path, names, sense, size)?;
                 ([0.0; 3], Form::Grid(Arc::new(map)))
             }
             shape => return Err(misfit(shape, path, 3)),

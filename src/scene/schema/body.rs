@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::super::parse::{object, word};
+use super::super::parse::{choice, object, word};
 use super::{GmshSpec, HalfBallSpec, HalfDiscSpec, RingSpec, one};
 
 /// The elastic body.
@@ -18,10 +18,10 @@ pub enum BodySpec {
     /// A box with a structured mesh; its boundaries are `left`, `right` (along x), `front`, `back` (along y), `bottom`,
     /// `top` (along z).
     Box(#[serde(deserialize_with = "object")] BoxSpec),
-    /// The lower half of a disc, graded towards its lowest point; its boundaries are `cut` (flat), `arc` and, where it
+    /// Half of a disc, graded towards its lowest (highest) point; its boundaries are `cut` (flat), `arc` and, where it
     /// is symmetric, `symmetry-x`. In an axisymmetric model, symmetric about x = 0, half a ball.
     HalfDisc(#[serde(deserialize_with = "object")] HalfDiscSpec),
-    /// The lower half of a ball, or a quarter or an eighth of one, graded towards its lowest point; its boundaries are
+    /// Half of a ball, or a quarter or an eighth of one, graded towards its lowest (highest) point; its boundaries are
     /// `cut` (flat), `round` and the planes `symmetry-x` and `symmetry-y`.
     HalfBall(#[serde(deserialize_with = "object")] HalfBallSpec),
     /// A ring or a sector of it; its boundaries are `inner`, `outer` and, where it does not close, `start` and `end`.
@@ -140,4 +140,18 @@ pub struct MaterialSpec {
     pub young: f64,
     /// Poisson's ratio: above -1, at most 0.5 in a bar and in plane stress, below 0.5 elsewhere.
     pub poisson: f64,
+}
+
+/// An elastic body beside the first: of the same model, thickness and element.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FurtherBodySpec {
+    /// Its name; its boundaries are called `name.boundary`.
+    pub name: String,
+    /// The body.
+    #[serde(deserialize_with = "choice")]
+    pub body: BodySpec,
+    /// Its material.
+    #[serde(deserialize_with = "object")]
+    pub material: MaterialSpec,
 }

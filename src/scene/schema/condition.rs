@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::super::parse::{choice, number, object};
+use super::super::parse::{choice, given, number, object};
 
 /// Where on the body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -16,6 +16,9 @@ pub enum Place {
 }
 
 /// A support: a direction that is left out is free, a number is the prescribed displacement.
+///
+/// A `normal` makes it a roller on an inclined plane: the component of the displacement along it is prescribed, those
+/// along the plane are free. About an axis the plane is a cone.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SupportSpec {
@@ -31,6 +34,12 @@ pub struct SupportSpec {
     /// Prescribed displacement along z.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub z: Option<f64>,
+    /// Normal of an inclined plane, of either sense and of any length but zero.
+    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    pub normal: Option<Vec<f64>>,
+    /// Prescribed displacement along the normal, in length; 0 where it is left out.
+    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    pub value: Option<f64>,
 }
 
 /// An external load.

@@ -10,20 +10,21 @@ mod shape;
 mod solid;
 
 pub use body::{
-    AxisSpec, BarSpec, BodySpec, BoxSpec, ElementSpec, IntegrationSpec, MaterialSpec, RectangleSpec, SolidElementSpec,
+    AxisSpec, BarSpec, BodySpec, BoxSpec, ElementSpec, FurtherBodySpec, IntegrationSpec, MaterialSpec, RectangleSpec,
+    SolidElementSpec,
 };
 pub use condition::{ForceSpec, LoadSpec, Place, PressureSpec, SupportSpec, TractionSpec};
 pub use obstacle::{
-    Approach, CircleSpec, ObstacleSpec, ParabolaSpec, PlaneSpec, Rule, ShapeSpec, TableSpec, WedgeSpec,
+    Approach, CircleSpec, FacingSpec, ObstacleSpec, ParabolaSpec, PlaneSpec, Rule, ShapeSpec, TableSpec, WedgeSpec,
 };
-pub use shape::{GmshSpec, HalfBallSpec, HalfDiscSpec, RingSpec, SymmetrySpec, ZoneSpec};
+pub use shape::{GmshSpec, HalfBallSpec, HalfDiscSpec, HalfSpec, RingSpec, SymmetrySpec, ZoneSpec};
 pub use solid::{ConeSpec, CylinderSpec, HeightMapSpec, SphereSpec};
 
 use std::path::PathBuf;
 
 use super::parse::{choice, choices, object, objects, word};
 
-/// A contact scene: one elastic body, its supports and loads, and the rigid obstacles around it.
+/// A contact scene: an elastic body, its supports and loads, and the obstacles around it.
 ///
 /// Any consistent system of units. Points and vectors have as many entries as the model has coordinates: `[x]` in a
 /// bar, `[x, y]` in the plane and about an axis, `[x, y, z]` in space.
@@ -51,13 +52,16 @@ pub struct Scene {
     /// Its material.
     #[serde(deserialize_with = "object")]
     pub material: MaterialSpec,
+    /// Further elastic bodies, that only contact joins to the first and to each other.
+    #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
+    pub further_bodies: Vec<FurtherBodySpec>,
     /// Prescribed displacements.
     #[serde(default, deserialize_with = "objects")]
     pub supports: Vec<SupportSpec>,
     /// External loads; they add up.
     #[serde(default, deserialize_with = "choices")]
     pub loads: Vec<LoadSpec>,
-    /// Rigid, frictionless obstacles.
+    /// Frictionless obstacles: rigid ones, or the surfaces of other bodies.
     #[serde(default, deserialize_with = "objects")]
     pub obstacles: Vec<ObstacleSpec>,
     /// Shift of every obstacle along its own approach direction; negative moves it towards, and into, the body.

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::super::parse::{choice, object, word};
 use super::solid::{ConeSpec, CylinderSpec, HeightMapSpec, SphereSpec};
 
-/// A rigid, frictionless obstacle and the boundary that may touch it.
+/// A frictionless obstacle and the boundary that may touch it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ObstacleSpec {
@@ -105,6 +105,8 @@ pub enum ShapeSpec {
     Cone(#[serde(deserialize_with = "object")] ConeSpec),
     /// In space: heights on a grid, bilinear in between.
     HeightMap(#[serde(deserialize_with = "object")] HeightMapSpec),
+    /// The surface of another elastic body, node to node.
+    Body(#[serde(deserialize_with = "object")] FacingSpec),
 }
 
 impl ShapeSpec {
@@ -120,8 +122,17 @@ impl ShapeSpec {
             ShapeSpec::Cylinder(_) => "cylinder",
             ShapeSpec::Cone(_) => "cone",
             ShapeSpec::HeightMap(_) => "height-map",
+            ShapeSpec::Body(_) => "body",
         }
     }
+}
+
+/// The surface of another elastic body: across every candidate lies one of its nodes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FacingSpec {
+    /// The boundary of the other body, as `name.boundary`.
+    pub boundary: String,
 }
 
 /// A plane.

@@ -23,16 +23,19 @@ pub struct GmshSpec {
     pub integration: IntegrationSpec,
 }
 
-/// The lower half of a disc.
+/// Half of a disc, the lower one where not said otherwise.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HalfDiscSpec {
     /// The centre [x, y].
     #[serde(default)]
     pub centre: [f64; 2],
+    /// Which half; the upper one is the mirror image of the lower one, graded towards its highest point.
+    #[serde(default, deserialize_with = "word", skip_serializing_if = "HalfSpec::is_lower")]
+    pub half: HalfSpec,
     /// Radius, positive.
     pub radius: f64,
-    /// The finely meshed zone around the lowest point.
+    /// The finely meshed zone around the lowest (highest) point.
     #[serde(deserialize_with = "object")]
     pub zone: ZoneSpec,
     /// Only the part right of the centre; the plane x = centre becomes the boundary `symmetry-x`.
@@ -46,16 +49,19 @@ pub struct HalfDiscSpec {
     pub integration: IntegrationSpec,
 }
 
-/// The lower half of a ball, of `hex8`.
+/// Half of a ball, the lower one where not said otherwise, of `hex8`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HalfBallSpec {
     /// The centre [x, y, z].
     #[serde(default)]
     pub centre: [f64; 3],
+    /// Which half; the upper one is the mirror image of the lower one, graded towards its highest point.
+    #[serde(default, deserialize_with = "word", skip_serializing_if = "HalfSpec::is_lower")]
+    pub half: HalfSpec,
     /// Radius, positive.
     pub radius: f64,
-    /// The finely meshed zone around the lowest point.
+    /// The finely meshed zone around the lowest (highest) point.
     #[serde(deserialize_with = "object")]
     pub zone: ZoneSpec,
     /// Axes along which only the part beyond the centre is meshed; the planes through the centre become the boundaries
@@ -65,6 +71,23 @@ pub struct HalfBallSpec {
     /// How its stiffness is integrated.
     #[serde(default, deserialize_with = "word")]
     pub integration: IntegrationSpec,
+}
+
+/// The half of a disc or a ball.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum HalfSpec {
+    /// Below the centre.
+    #[default]
+    Lower,
+    /// Above the centre.
+    Upper,
+}
+
+impl HalfSpec {
+    fn is_lower(&self) -> bool {
+        *self == HalfSpec::Lower
+    }
 }
 
 /// The axis across a plane of symmetry.
@@ -98,7 +121,7 @@ pub struct RingSpec {
     pub integration: IntegrationSpec,
 }
 
-/// The finely meshed zone around the lowest point of a round body.
+/// The finely meshed zone around the lowest (highest) point of a round body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ZoneSpec {

@@ -1,8 +1,12 @@
-//! Stress recovery: at the centroids, and extrapolated to the nodes and averaged there.
+//! Stress recovery: at the centroids, and extrapolated to the nodes and averaged there; the error of the mesh from it.
+
+mod discretisation;
+
+pub use discretisation::discretisation_error;
 
 use nalgebra::Matrix3;
 
-use crate::body::{ElasticBody, Symmetric, trace};
+use crate::body::{BodyElement, ElasticBody, Symmetric, trace};
 use crate::error::Error;
 use crate::formulation::Formulation;
 
@@ -86,12 +90,12 @@ pub fn stress(body: &ElasticBody, displacement: &[f64]) -> Result<StressField, E
     };
     let mut elements = Vec::with_capacity(body.mesh().element_count());
     let mut sums: Vec<(Symmetric, usize)> = vec![([0.0; 6], 0); node_count];
-    for (nodes, cell) in body.cells() {
+    for BodyElement { nodes, cell, lame } in body.elements() {
         let local = body.gather(displacement, nodes);
         let mean = body.mean_dilatation(&cell, &table, &local);
         let stress_at = |at| {
             let strain = body.point(&cell, at).strain(&local, cell.unit());
-            body.stress(&strain, mean.unwrap_or_else(|| trace(&strain)))
+            body.stress(lame, &strain, mean.unwrap_or_else(|| trace(&strain)))
         };
         elements.push(finished(stress_at(&table.centroid)));
         for (index, at) in table.points.iter().enumerate() {

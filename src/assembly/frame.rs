@@ -1,0 +1,92 @@
+//! The frame of a node at an inclined support: orthonormal axes, the supported ones first.
+
+use crate::error::Error;
+
+/// Axes of unit length and right angles, however they were computed, are so to within this.
+const ORTHONORMAL: f64 = 1e-12;
+
+/// The orthonormal axes along which the local dofs of a node are counted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    axes: [[f64; 3]; 3],
+}
+
+impl Frame {
+    /// The frame of a node in `dimension` coordinates whose first axes are `given`: unit vectors [x, y, z] at right
+    /// angles, zero beyond the dimension.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] where they are not, or where there are more of them than coordinates.
+    pub fn completing(given: &[[f64; 3]], dimension: usize) -> Result<Self, Error> {
+        let wrong = |value: f64| Error::Setting { name: "frame", value, allowed: "orthonormal: off by 1e-12 at most" };
+        let dimension = dimension.min(3);
+        if given.len() > dimension {
+            let allowed = "of as many axes as there are coordinates at most";
+            return Err(Error::Setting { name: "frame", value: given.len() as f64, allowed });
+        }
+        for (i, a) in given.iter().enumerate() {
+            for (j, b) in given[..=i].iter().enumerate() {
+                let off = dot(*a, *b) - f64::from(u8::from(i == j));
+                if off.is_nan() || off.abs() > ORTHONORMAL {
+                    return Err(wrong(off));
+                }
+            }
+            if let Some(&beyond) = a[dimension..].iter().find(|part| **part != 0.0) {
+                return Err(wrong(beyond));
+            }
+        }
+        let mut axes = given.to_vec();
+        for space in [dimension, 3] {
+            while axes.len() < space {
+                // The coordinate axis that leans least on those so far: all of it but that is left.
+                let rests = (0..space).map(|axis| {
+                    let mut unit = [0.0; 3];
+                    unit[axis] = 1.0;
+                    perpendicular(unit, &axes)
+                });
+                let Some(rest) = rests.max_by(|a, b| dot(*a, *a).total_cmp(&dot(*b, *b))) else { break };
+                axes.push(unit(perpendicular(unit(rest), &axes)));
+            }
+        }
+        let mut frame = Frame { axes: [[0.0; 3]; 3] };
+        frame.axes.iter_mut().zip(axes).for_each(|(place, axis)| *place = axis);
+        Ok(frame)
+    }
+
+    /// The axes, unit vectors [x, y, z]; in the plane the third is across it.
+    pub fn axes(&self) -> &[[f64; 3]; 3] {
+        &self.axes
+    }
+
+    /// Turns the entries of a node from the coordinate axes, one each, to those of the frame.
+    pub(super) fn turn_in(&self, entries: &mut [f64]) {
+        let local = self.axes.map(|axis| entries.iter().zip(axis).map(|(entry, part)| entry * part).sum());
+        entries.iter_mut().zip(local).for_each(|(entry, value): (_, f64)| *entry = value);
+    }
+
+    /// Turns the entries of a node from the axes of the frame back to the coordinate axes.
+    pub(super) fn turn_back(&self, entries: &mut [f64]) {
+        let mut global = [0.0; 3];
+        for (&entry, axis) in entries.iter().zip(self.axes) {
+            global.iter_mut().zip(axis).for_each(|(sum, part)| *sum += entry * part);
+        }
+        entries.iter_mut().zip(global).for_each(|(entry, value)| *entry = value);
+    }
+}
+
+/// What is left of a vector after its parts along orthonormal `axes` are taken away.
+pub(crate) fn perpendicular(vector: [f64; 3], axes: &[[f64; 3]]) -> [f64; 3] {
+    axes.iter().fold(vector, |rest, axis| {
+        let along = dot(rest, *axis);
+        [0, 1, 2].map(|i| rest[i] - along * axis[i])
+    })
+}
+
+fn unit(vector: [f64; 3]) -> [f64; 3] {
+    let length = dot(vector, vector).sqrt();
+    vector.map(|part| part / length)
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}

@@ -1,0 +1,178 @@
+//! What holds the nodes: prescribed components of their displacement, combined in one frame a node.
+
+use std::collections::BTreeMap;
+
+use super::{number, point, wrong};
+use crate::assembly::{DofMap, Frame, perpendicular};
+use crate::error::Error;
+use crate::mesh::Mesh;
+
+/// A normal that leans by less than this out of those before it depends on them: the rounding of written components.
+const DEPENDENT: f64 = 1e-9;
+
+/// Dependent normals must agree in their values to within this, relative to the largest of them.
+const AGREEING: f64 = 1e-9;
+
+/// A component of a unit normal below this is rounding.
+const NO_COMPONENT: f64 = 1e-14;
+
+pub(super) const COORDINATES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+/// Who prescribes a component.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Holder {
+    /// On the axis of revolution nothing moves radially.
+    Axis,
+    /// A field of a support.
+    Support { index: usize, field: &'static str },
+}
+
+/// A prescribed component of a displacement: `direction . u = value`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Component {
+    /// Of unit length.
+    pub direction: [f64; 3],
+    /// In length.
+    pub value: f64,
+    pub by: Holder,
+}
+
+/// The space that the directions of a node's components span.
+#[derive(Debug, Default)]
+struct Span {
+    /// Orthonormal.
+    axes: Vec<[f64; 3]>,
+    /// The displacement along each.
+    values: Vec<f64>,
+}
+
+/// The prescribed components of all nodes.
+#[derive(Debug, Default)]
+pub(super) struct Held {
+    nodes: BTreeMap<usize, Vec<Component>>,
+}
+
+impl Held {
+    pub fn prescribe(&mut self, node: usize, component: Component) {
+        self.nodes.entry(node).or_default().push(component);
+    }
+
+    /// The dofs of `mesh`: a node that is held along coordinate axes alone, or fully, needs no frame.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for components of a node that contradict each other.
+    pub fn dofs(self, mesh: &Mesh) -> Result<DofMap, Error> {
+        let dimension = mesh.dimension();
+        let mut prescribed = vec![None; dimension * mesh.nodes().len()];
+        let mut frames = BTreeMap::new();
+        for (node, components) in self.nodes {
+            let span = Span::of(components).map_err(|(by, message)| {
+                let path = match by {
+                    Holder::Axis => "supports".into(),
+                    Holder::Support { index, field } => format!("supports[{index}].{field}"),
+                };
+                wrong(path, format!("{message} node {node} at {}", point(&mesh.nodes()[node][..dimension])))
+            })?;
+            let own = &mut prescribed[dimension * node..dimension * (node + 1)];
+            let coordinates: Option<Vec<usize>> = span.axes.iter().map(|&axis| coordinate_of(axis)).collect();
+            if let Some(coordinates) = coordinates {
+                coordinates.into_iter().zip(span.values).for_each(|(coordinate, value)| own[coordinate] = Some(value));
+            } else if span.axes.len() == dimension {
+                own.iter_mut().zip(COORDINATES).for_each(|(place, axis)| *place = Some(span.along(axis)));
+            } else {
+                own.iter_mut().zip(span.values).for_each(|(place, value)| *place = Some(value));
+                frames.insert(node, Frame::completing(&span.axes, dimension)?);
+            }
+        }
+        if prescribed.iter().all(Option::is_some) {
+            return Err(wrong("supports", "every node is held in all directions: nothing is left to solve for"));
+        }
+        DofMap::with_frames(prescribed, dimension, frames)
+    }
+}
+
+/// The unit vector of a normal; one along a coordinate axis is exactly that axis, or its opposite. `None` for zero.
+pub(super) fn unit_normal(normal: [f64; 3]) -> Option<[f64; 3]> {
+    let largest = normal.iter().fold(0.0_f64, |largest, part| largest.max(part.abs()));
+    let scaled = normal.map(|part| part / largest);
+    let length = dot(scaled, scaled).sqrt();
+    let unit = scaled.map(|part| if part.abs() < NO_COMPONENT * length { 0.0 } else { part / length });
+    (largest > 0.0).then_some(unit)
+}
+
+impl Span {
+    /// The coordinate axes go first: what is prescribed along them stays as it was written.
+    ///
+    /// # Errors
+    /// Which component contradicts others, and in words which, but for the node.
+    fn of(mut components: Vec<Component>) -> Result<Self, (Holder, String)> {
+        components.sort_by_key(|component| coordinate_of(component.direction).is_none());
+        let mut span = Span::default();
+        for (index, component) in components.iter().enumerate() {
+            let implied = span.along(component.direction);
+            let rest = perpendicular(component.direction, &span.axes);
+            if dot(rest, rest).sqrt() > DEPENDENT {
+                span.extend(component, implied, rest);
+                continue;
+            }
+            let largest = span.values.iter().fold(component.value.abs(), |largest, value| largest.max(value.abs()));
+            if (component.value - implied).abs() > AGREEING * largest {
+                return Err((component.by, contradiction(component, implied, &components[..index])));
+            }
+        }
+        Ok(span)
+    }
+
+    /// The displacement along a vector of the span.
+    fn along(&self, vector: [f64; 3]) -> f64 {
+        self.axes.iter().zip(&self.values).map(|(axis, value)| dot(vector, *axis) * value).sum()
+    }
+
+    /// Adds the axis along `rest`, the part of the component's direction at right angles to the span.
+    fn extend(&mut self, component: &Component, implied: f64, rest: [f64; 3]) {
+        // Once more: what is left of a direction close to the others is at right angles to them only roughly.
+        let Some(axis) = unit_normal(rest).and_then(|rest| unit_normal(perpendicular(rest, &self.axes))) else {
+            return;
+        };
+        let axis = coordinate_of(axis).map_or(axis, |coordinate| COORDINATES[coordinate]);
+        self.values.push((component.value - implied) / dot(component.direction, axis));
+        self.axes.push(axis);
+    }
+}
+
+/// The coordinate along which a vector lies, in either sense.
+fn coordinate_of(vector: [f64; 3]) -> Option<usize> {
+    (0..3).find(|&axis| (0..3).all(|other| (vector[other] != 0.0) == (other == axis)))
+}
+
+/// A contradiction in words, up to the node.
+fn contradiction(component: &Component, implied: f64, before: &[Component]) -> String {
+    let parallel = |other: &&Component| {
+        let rest = perpendicular(component.direction, &[other.direction]);
+        dot(rest, rest).sqrt() <= DEPENDENT
+    };
+    let prescribing: Vec<&Component> = match before.iter().find(parallel) {
+        Some(other) => vec![other],
+        None => before.iter().collect(),
+    };
+    let mut supports: Vec<usize> = Vec::new();
+    let mut names: Vec<String> = Vec::new();
+    for other in prescribing {
+        match other.by {
+            Holder::Axis => names.push("the axis of revolution".into()),
+            Holder::Support { index, .. } => supports.push(index),
+        }
+    }
+    supports.sort_unstable();
+    supports.dedup();
+    names.extend(supports.iter().map(|index| format!("supports[{index}]")));
+    let verb = if names.len() == 1 { "prescribes" } else { "prescribe" };
+    let last = names.pop().unwrap_or_default();
+    let names = if names.is_empty() { last } else { format!("{} and {last}", names.join(", ")) };
+    let (value, implied) = (number(component.value), number(implied + 0.0));
+    format!("{value} contradicts the {implied} that {names} {verb} for")
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}

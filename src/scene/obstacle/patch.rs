@@ -1,0 +1,163 @@
+//! One bilinear cell of a height map: the points of it that are closest to a node.
+
+/// A cell is cut into so many strips to find the valleys of the distance over it: one cell has a handful at most.
+const STRIPS: usize = 16;
+
+/// Golden sections of a strip: they end at the square root of rounding, from where Newton's method goes on.
+const SECTIONS: usize = 40;
+
+/// Newton's method doubles eight digits in one step and has all in the next; the third is for safety.
+const NEWTON_STEPS: usize = 3;
+
+/// A longer step, in the cell's own coordinates, does not come from the rounding of a search: inside the cell the
+/// distance has no curvature there, and the search has the last word.
+const LONG_STEP: f64 = 1e-3;
+
+/// A search that ends at an edge ends this near to it, in the cell's own coordinates.
+const AT_EDGE: f64 = 1e-7;
+
+/// A point of a cell that is closer to a node than those around it in the cell.
+pub(super) struct Foot {
+    pub at: [f64; 3],
+    pub distance: f64,
+    /// Found on an edge of the cell.
+    pub on_edge: bool,
+}
+
+/// One cell: heights at its corners (0, 0), (1, 0), (0, 1), (1, 1) in its own coordinates u, v from 0 to 1.
+pub(super) struct Patch {
+    pub low: [f64; 2],
+    pub size: [f64; 2],
+    pub corners: [f64; 4],
+}
+
+impl Patch {
+    fn point(&self, [u, v]: [f64; 2]) -> [f64; 3] {
+        let [a, b, c, d] = self.corners;
+        let height = (1.0 - v) * ((1.0 - u) * a + u * b) + v * ((1.0 - u) * c + u * d);
+        [self.low[0] + u * self.size[0], self.low[1] + v * self.size[1], height]
+    }
+
+    pub fn height(&self, at: [f64; 2]) -> f64 {
+        self.point([0, 1].map(|axis| (at[axis] - self.low[axis]) / self.size[axis]))[2]
+    }
+
+    /// Derivatives of the height by u and v.
+    fn slopes(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+        let [a, b, c, d] = self.corners;
+        [(1.0 - v) * (b - a) + v * (d - c), (1.0 - u) * (c - a) + u * (d - b)]
+    }
+
+    pub fn normal(&self, at: [f64; 2]) -> [f64; 3] {
+        let own = [0, 1].map(|axis| (at[axis] - self.low[axis]) / self.size[axis]);
+        let slopes = self.slopes(own);
+        let normal = [-slopes[0] / self.size[0], -slopes[1] / self.size[1], 1.0];
+        let length = dot(normal, normal).sqrt();
+        normal.map(|part| part / length)
+    }
+
+    /// Distance to the box around the cell.
+    pub fn box_distance(&self, node: [f64; 3]) -> f64 {
+        let low = self.corners.iter().fold(f64::INFINITY, |low: f64, &height| low.min(height));
+        let high = self.corners.iter().fold(f64::NEG_INFINITY, |high: f64, &height| high.max(height));
+        let outside = |at: f64, low: f64, high: f64| (low - at).max(at - high).max(0.0);
+        let across = [0, 1].map(|axis| outside(node[axis], self.low[axis], self.low[axis] + self.size[axis]));
+        across[0].hypot(across[1]).hypot(outside(node[2], low, high))
+    }
+
+    /// The closest u on the ruling at v, a segment.
+    fn on_ruling(&self, node: [f64; 3], v: f64) -> [f64; 2] {
+        let [low, high] = [[0.0, v], [1.0, v]];
+        [self.along_segment(node, low, high), v]
+    }
+
+    /// The closest place on the straight line of the surface between two places of its own coordinates, from 0 to 1.
+    fn along_segment(&self, node: [f64; 3], from: [f64; 2], to: [f64; 2]) -> f64 {
+        let (start, end) = (self.point(from), self.point(to));
+        let along = [0, 1, 2].map(|axis| end[axis] - start[axis]);
+        let to_node = [0, 1, 2].map(|axis| node[axis] - start[axis]);
+        (dot(to_node, along) / dot(along, along)).clamp(0.0, 1.0)
+    }
+
+    fn foot(&self, node: [f64; 3], own: [f64; 2], on_edge: bool) -> Foot {
+        let at = self.point(own);
+        let way = [0, 1, 2].map(|axis| at[axis] - node[axis]);
+        Foot { at, distance: way[0].hypot(way[1]).hypot(way[2]), on_edge }
+    }
+
+    /// The closest points of the four edges, and all points inside the cell that are closer than those around them.
+    ///
+    /// The edges are straight. For the inside, the distance to the closest point of each ruling is searched in strips,
+    /// every valley by golden section, and settled by Newton's method.
+    pub fn feet(&self, node: [f64; 3]) -> Vec<Foot> {
+        let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        let mut feet: Vec<Foot> = (0..4)
+            .map(|edge| {
+                let (from, to) = (corners[edge], corners[(edge + 1) % 4]);
+                let t = self.along_segment(node, from, to);
+                self.foot(node, [0, 1].map(|axis| (1.0 - t) * from[axis] + t * to[axis]), true)
+            })
+            .collect();
+        let at_v = |v: f64| self.foot(node, self.on_ruling(node, v), false).distance;
+        let strip = |index: usize| index as f64 / STRIPS as f64;
+        let sampled: Vec<f64> = (0..=STRIPS).map(|index| at_v(strip(index))).collect();
+        for index in 0..=STRIPS {
+            let (before, after) = (index.saturating_sub(1), (index + 1).min(STRIPS));
+            if sampled[index] > sampled[before] || sampled[index] > sampled[after] {
+                continue;
+            }
+            let (mut low, mut high) = (strip(before), strip(after));
+            let golden = (5_f64.sqrt() - 1.0) / 2.0;
+            for _ in 0..SECTIONS {
+                let (a, b) = (high - golden * (high - low), low + golden * (high - low));
+                if at_v(a) < at_v(b) { high = b } else { low = a }
+            }
+            let found = self.on_ruling(node, (low + high) / 2.0);
+            feet.extend(self.settled(node, found).map(|own| self.foot(node, own, false)));
+        }
+        feet
+    }
+
+    /// Newton's method on the gradient of half the squared distance, while it comes no farther away; `None` where the
+    /// foot lies on an edge.
+    fn settled(&self, node: [f64; 3], start: [f64; 2]) -> Option<[f64; 2]> {
+        let [a, b, c, d] = self.corners;
+        let twist = a - b - c + d;
+        let distance = |own: [f64; 2]| self.foot(node, own, false).distance;
+        // A distance is as exact as the coordinates that it comes from, however short it is.
+        let far = [0, 1].map(|axis| self.low[axis] + self.size[axis]);
+        let coordinates = node.iter().chain(&self.low).chain(&far).chain(&self.corners);
+        let slack = 4.0 * f64::EPSILON * coordinates.fold(0.0_f64, |largest, part| largest.max(part.abs()));
+        let mut own = start;
+        for _ in 0..NEWTON_STEPS {
+            let (at, [hu, hv]) = (self.point(own), self.slopes(own));
+            let rest = [0, 1, 2].map(|axis| at[axis] - node[axis]);
+            let gradient = [rest[0] * self.size[0] + rest[2] * hu, rest[1] * self.size[1] + rest[2] * hv];
+            let (uu, vv) = (self.size[0].powi(2) + hu * hu, self.size[1].powi(2) + hv * hv);
+            let uv = hu * hv + rest[2] * twist;
+            let determinant = uu * vv - uv * uv;
+            let step = [
+                (vv * gradient[0] - uv * gradient[1]) / determinant,
+                (uu * gradient[1] - uv * gradient[0]) / determinant,
+            ];
+            let (next, length) = ([own[0] - step[0], own[1] - step[1]], step[0].hypot(step[1]));
+            // Where the determinant is zero the step is no number.
+            if length.is_nan() || length > LONG_STEP {
+                let inside = own.iter().all(|part| (AT_EDGE..=1.0 - AT_EDGE).contains(part));
+                return inside.then_some(own);
+            }
+            if !next.iter().all(|part| (0.0..=1.0).contains(part)) {
+                return None;
+            }
+            if distance(next) > distance(own) + slack {
+                break;
+            }
+            own = next;
+        }
+        Some(own)
+    }
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
