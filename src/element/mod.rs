@@ -19,7 +19,7 @@ mod tet4;
 
 pub use cell::{Cell, Mapping, NonPositiveJacobian};
 pub use kind::{ElementKind, FacetKind};
-pub use quadrature::QuadraturePoint;
+pub use quadrature::{Part, QuadraturePoint};
 pub use tabulated::{Tabulated, TabulatedPoint};
 
 /// The largest number of nodes that an element here has.

@@ -102,7 +102,7 @@ pub(super) const TRIANGLE_6: [QuadraturePoint; 6] = {
 /// The centroid of the tetrahedron (0,0,0), (1,0,0), (0,1,0), (0,0,1), exact for linear functions.
 pub(super) const TETRAHEDRON_1: [QuadraturePoint; 1] = [point(0.25, 0.25, 0.25, 1.0 / 6.0)];
 
-/// Points and weights of five Gauss points on [-1, 1], exact for degree nine.
+/// Abscissas and weights of five Gauss points on [-1, 1], exact for degree nine.
 const GAUSS_5: [(f64, f64); 5] = [
     (-0.906_179_845_938_664, 0.236_926_885_056_189_1),
     (-0.538_469_310_105_683_1, 0.478_628_670_499_366_5),
@@ -111,17 +111,41 @@ const GAUSS_5: [(f64, f64); 5] = [
     (0.906_179_845_938_664, 0.236_926_885_056_189_1),
 ];
 
-/// Five Gauss points in each direction of the cell; on a simplex those of the product of intervals that is folded onto it.
-/// Exact for polynomials of total degree six and more.
-pub(super) fn fine(form: Shape, dimension: usize) -> Vec<QuadraturePoint> {
+/// A cube inside [-1, 1]^dimension, which halving gets to any point of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Part {
+    /// Its lowest corner.
+    low: [f64; 3],
+    /// The length of its edges.
+    size: f64,
+}
+
+impl Part {
+    /// All of the cube.
+    pub const WHOLE: Part = Part { low: [-1.0; 3], size: 2.0 };
+
+    /// Its 2^dimension halves along every axis.
+    pub fn halves(self, dimension: usize) -> impl Iterator<Item = Part> {
+        let size = self.size / 2.0;
+        (0..1_usize << dimension).map(move |choice| {
+            let mut low = self.low;
+            (0..dimension).filter(|axis| choice >> axis & 1 == 1).for_each(|axis| low[axis] += size);
+            Part { low, size }
+        })
+    }
+}
+
+/// Five Gauss points in each direction of a part of the cell; on a simplex those of the product of intervals that is
+/// folded onto it. Exact for polynomials of total degree six and more.
+pub(super) fn fine(form: Shape, dimension: usize, part: Part) -> Vec<QuadraturePoint> {
     let mut points = vec![point(0.0, 0.0, 0.0, 1.0)];
     for axis in 0..dimension {
         let along = |start: &QuadraturePoint| {
             let start = *start;
             GAUSS_5.map(move |(at, weight)| {
                 let mut next = start;
-                next.at[axis] = at;
-                next.weight *= weight;
+                next.at[axis] = part.low[axis] + (1.0 + at) / 2.0 * part.size;
+                next.weight *= weight * part.size / 2.0;
                 next
             })
         };

@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use super::{PerNode, QuadraturePoint, ReferenceElement, Shape, quadrature};
+use super::{Part, PerNode, QuadraturePoint, ReferenceElement, Shape, quadrature};
 
 /// The shape functions at one reference point.
 #[derive(Clone, Copy, Debug)]
@@ -33,15 +33,21 @@ impl Tabulated {
     /// Tabulates `reference` at the points of its quadrature; of that for bodies of revolution where `revolved`.
     pub fn new(reference: &'static ReferenceElement, revolved: bool) -> Self {
         let rule = if revolved { reference.quadrature_revolved } else { reference.quadrature };
-        Self::at(reference, rule.to_vec())
+        Self::with_rule(reference, rule.to_vec())
     }
 
     /// Tabulates `reference` at five points in each direction, for functions that are no polynomials of the element.
     pub fn fine(reference: &'static ReferenceElement) -> Self {
-        Self::at(reference, quadrature::fine(reference.form, reference.dimension))
+        Self::fine_in(reference, Part::WHOLE)
     }
 
-    fn at(reference: &'static ReferenceElement, rule: Vec<QuadraturePoint>) -> Self {
+    /// Tabulates `reference` at five points in each direction of a part of it.
+    pub fn fine_in(reference: &'static ReferenceElement, part: Part) -> Self {
+        Self::with_rule(reference, quadrature::fine(reference.form, reference.dimension, part))
+    }
+
+    /// Tabulates `reference` at the points of a quadrature rule for it.
+    pub fn with_rule(reference: &'static ReferenceElement, rule: Vec<QuadraturePoint>) -> Self {
         let at = |at: [f64; 3], weight| TabulatedPoint {
             weight,
             shape: (reference.shape)(at),

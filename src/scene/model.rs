@@ -13,7 +13,7 @@ use crate::problem::ContactProblem;
 use crate::recovery::{self, StressField};
 use crate::sparse::SymmetricMatrix;
 
-/// Tributary areas below this, relative to the largest, are rounding of zero.
+/// Tributary areas below this, relative to the largest, are rounding of zero; radii, relative to the size of the body.
 const NO_AREA: f64 = 1e-12;
 
 /// What a change of the gap leaves alone.
@@ -153,17 +153,21 @@ impl Model {
 
     /// Contact pressure of each row, `-lambda / tributary area`, in force per area, `>= 0` in compression.
     ///
-    /// The end of a quadratic edge on an axis of revolution has no tributary area; it shows the pressure of the
-    /// candidate next to it.
+    /// The end of a quadratic edge on an axis of revolution has no tributary area, or next to none where the edge is
+    /// curved; it shows the pressure of the candidate next to it.
     ///
     /// # Errors
     /// [`Error::Length`] where `multiplier` does not have one entry per contact row.
     pub fn pressure(&self, multiplier: &[f64]) -> Result<Vec<f64>, Error> {
         self.check_multiplier(multiplier)?;
         let largest = self.rows.iter().fold(0.0, |largest: f64, row| largest.max(row.tributary_area));
-        let has_area = |row: &ContactRow| row.tributary_area > NO_AREA * largest;
+        let (mesh, nodes) = (self.mesh(), self.mesh().nodes());
+        let ends_on_axis = self.body().formulation().is_axisymmetric() && mesh.kind().is_quadratic();
+        let reach = NO_AREA * mesh.size();
+        let has_area = |row: &ContactRow| {
+            row.tributary_area > NO_AREA * largest && !(ends_on_axis && nodes[row.node][0].abs() <= reach)
+        };
         let of_row = |index: usize| -multiplier[index] / self.rows[index].tributary_area;
-        let nodes = self.mesh().nodes();
         let pressure = |(index, row): (usize, &ContactRow)| {
             if has_area(row) {
                 return of_row(index);

@@ -7,7 +7,7 @@ mod summary;
 mod tradeoff;
 
 pub use compare::{Agreement, Comparison, Difference, MethodAnswer, compare};
-pub use manufactured::{BlockErrors, NodalPressure, solve_block};
+pub use manufactured::{NodalPressure, SolvedBlock, solve_block};
 pub use scene::{
     Sweep, SweepCorner, SweepEvent, SweepPoint, contact_area, contact_width, discretisation_error, even_gaps,
     scene_summary, sweep,

@@ -1,0 +1,91 @@
+//! One line of the table of answers, and the tables as text.
+
+use std::time::Instant;
+
+use serde_json::Value;
+use signorini::{Error, Model, Scene, Solution, solve_qp};
+
+/// A number that the program found, beside the one that it should be.
+#[derive(Clone)]
+pub struct Answer {
+    pub case: String,
+    pub element: &'static str,
+    pub unknowns: usize,
+    pub quantity: String,
+    pub ours: f64,
+    pub exact: f64,
+    pub seconds: f64,
+}
+
+impl Answer {
+    pub const HEADING: &str = "case | element | unknowns | quantity | ours | exact | relative error | seconds";
+
+    /// The cells of its row. Where the exact value is zero the error is that of ours.
+    pub fn row(&self) -> String {
+        let Answer { case, element, unknowns, quantity, ours, exact, seconds } = self;
+        let value = |value: &f64| if *value == 0.0 { "0".into() } else { format!("{value:.6e}") };
+        let error = (ours - exact).abs() / if *exact == 0.0 { 1.0 } else { exact.abs() };
+        let (ours, exact) = (value(ours), value(exact));
+        format!("{case} | {element} | {unknowns} | {quantity} | {ours} | {exact} | {error:.1e} | {seconds:.3}")
+    }
+}
+
+/// A table as Markdown: a heading and rows, their cells set apart by bars.
+pub fn markdown(heading: &str, rows: &[String]) -> String {
+    let line = heading.split(" | ").map(|_| "---").collect::<Vec<_>>().join(" | ");
+    [heading.to_owned(), line].iter().chain(rows).map(|row| format!("| {row} |\n")).collect()
+}
+
+/// The same as comma-separated values.
+pub fn csv(heading: &str, rows: &[String]) -> String {
+    let quoted = |row: &String| row.split(" | ").map(|cell| format!("\"{cell}\"")).collect::<Vec<_>>().join(",") + "\n";
+    [heading.to_owned()].iter().chain(rows).map(quoted).collect()
+}
+
+/// A scene that was built and solved.
+pub struct Solved {
+    pub model: Model,
+    pub solution: Solution,
+    pub pressure: Vec<f64>,
+    /// Assembly and solve.
+    pub seconds: f64,
+}
+
+impl Solved {
+    pub fn of(scene: &Value) -> Result<Self, Error> {
+        let clock = Instant::now();
+        let model = Scene::from_json(&scene.to_string(), "verification")?.build()?;
+        let solution = solve_qp(model.problem())?;
+        let seconds = clock.elapsed().as_secs_f64();
+        let pressure = model.pressure(&solution.multiplier)?;
+        Ok(Solved { model, solution, pressure, seconds })
+    }
+
+    pub fn force(&self) -> f64 {
+        self.solution.contact_force()
+    }
+
+    pub fn peak_pressure(&self) -> f64 {
+        self.pressure.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// The node of a contact row that is nearest to `x`, and the pressure there.
+    pub fn pressure_near(&self, x: f64) -> [f64; 2] {
+        let at = self.model.rows().iter().map(|row| self.model.mesh().nodes()[row.node][0]);
+        let near = at.zip(&self.pressure).min_by(|a, b| (a.0 - x).abs().total_cmp(&(b.0 - x).abs()));
+        near.map_or([f64::NAN; 2], |(at, &pressure)| [at, pressure])
+    }
+
+    /// A line of the table.
+    pub fn answer(&self, case: &str, quantity: impl Into<String>, ours: f64, exact: f64) -> Answer {
+        Answer {
+            case: case.into(),
+            element: self.model.mesh().kind().name(),
+            unknowns: self.model.problem().dofs(),
+            quantity: quantity.into(),
+            ours,
+            exact,
+            seconds: self.seconds,
+        }
+    }
+}

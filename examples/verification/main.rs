@@ -1,0 +1,79 @@
+//! Prints the tables of what is verified: answers against exact values, and errors of manufactured blocks with their rates.
+//!
+//! `cargo run --release --example verification [-- --out DIR]`; a folder gets the tables as Markdown and CSV, and plots of
+//! the errors over the cell size.
+
+mod answer;
+mod blocks;
+#[path = "../../tests/bodies/mod.rs"]
+mod bodies;
+mod closed_forms;
+mod contact_patch;
+mod punches;
+mod reference_errors;
+mod round_bodies;
+
+use std::path::Path;
+use std::time::Instant;
+
+use answer::{Answer, csv, markdown};
+use blocks::{AGAINST_REFERENCE, BLOCKS, ERRORS, error_plots, error_rows, families, reference_rows};
+use contact_patch::{VARIANTS, contact_patch};
+use signorini::Error;
+use signorini::body::Integration;
+use signorini::output::{write_files, write_picture};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let answers = [
+        closed_forms::bars()?,
+        patches()?,
+        closed_forms::obstacle_problems()?,
+        closed_forms::stored_answers()?,
+        punches::punches()?,
+        round_bodies::half_cylinders()?,
+        round_bodies::half_balls(&round_bodies::quarter_ball(8, 1.5))?,
+        blocks::near_incompressibility()?,
+        round_bodies::nearly_incompressible_half_balls()?,
+    ]
+    .concat();
+    let families = families()?;
+    let tables = [
+        ("answers", Answer::HEADING, answers.iter().map(Answer::row).collect::<Vec<_>>()),
+        ("errors", ERRORS, error_rows(&families)),
+        ("errors-against-reference", AGAINST_REFERENCE, reference_rows(&families)),
+    ];
+    let text = tables.iter().map(|(_, heading, rows)| markdown(heading, rows)).collect::<Vec<_>>().join("\n");
+    print!("{text}");
+    let mut arguments = std::env::args().skip(1);
+    if let (Some("--out"), Some(folder)) = (arguments.next().as_deref(), arguments.next()) {
+        let folder = Path::new(&folder);
+        let files: Vec<_> =
+            tables.iter().map(|(name, heading, rows)| (format!("{name}.csv"), csv(heading, rows))).collect();
+        let named: Vec<_> = files.iter().map(|(name, text)| (name.as_str(), text.clone())).collect();
+        write_files(folder, &[("verification.md", text)])?;
+        write_files(folder, &named)?;
+        for block in BLOCKS {
+            write_picture(folder, &block.to_lowercase().replace(' ', "-"), &error_plots(block, &families))?;
+        }
+    }
+    Ok(())
+}
+
+/// A row for every element and formulation, with the worst of its errors.
+fn patches() -> Result<Vec<Answer>, Error> {
+    let row = |(kind, formulation, integration)| {
+        let clock = Instant::now();
+        let errors = contact_patch(kind, formulation, integration)?;
+        let mean = if integration == Integration::MeanDilatation { ", mean dilatation" } else { "" };
+        Ok(Answer {
+            case: format!("contact patch, {}{mean}", formulation.name()),
+            element: kind.name(),
+            unknowns: errors.unknowns,
+            quantity: "worst of pressure, displacement, stress".into(),
+            ours: errors.worst(),
+            exact: 0.0,
+            seconds: clock.elapsed().as_secs_f64(),
+        })
+    };
+    VARIANTS.into_iter().map(row).collect()
+}
