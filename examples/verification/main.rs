@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         closed_forms::stored_answers()?,
         punches::punches()?,
         round_bodies::half_cylinders()?,
-        round_bodies::half_balls(&round_bodies::quarter_ball(8, 1.5))?,
+        round_bodies::half_balls(&round_bodies::quarter_ball(9, 1.4))?,
         blocks::near_incompressibility()?,
         round_bodies::nearly_incompressible_half_balls()?,
     ]

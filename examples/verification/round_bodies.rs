@@ -61,7 +61,7 @@ pub fn half_ball_about_the_axis() -> Value {
     json!({
         "model": "axisymmetric",
         "body": {"half-disc": {"radius": 1, "symmetric": true,
-            "zone": {"width": 1.2 * APPROACH.sqrt(), "divisions": 5, "growth": 2}, "element": "q8"}},
+            "zone": {"width": 1.2 * APPROACH.sqrt(), "divisions": 4, "growth": 3}, "element": "q8"}},
         "material": {"young": 1, "poisson": 0.3},
         "supports": [{"on": {"boundary": "cut"}, "y": -APPROACH}, {"on": {"boundary": "symmetry-x"}, "x": 0}],
         "obstacles": [{"boundary": "arc", "approach": "-y", "shape": {"plane": {"point": [0, -1], "normal": [0, -1]}}}],
