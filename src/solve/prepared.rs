@@ -86,6 +86,11 @@ impl Prepared {
         self.condensation.as_ref().map_or(self.problem.dofs(), |condensed| condensed.stiffness().dim())
     }
 
+    /// Number of values of the factor of the stiffness; zero where the methods factorise by themselves.
+    pub fn factor_entries(&self) -> usize {
+        self.condensation.as_ref().map_or(0, Condensation::factor_entries)
+    }
+
     /// What the preparation cost.
     pub fn seconds(&self) -> Seconds {
         self.seconds

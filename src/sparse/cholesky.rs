@@ -146,6 +146,11 @@ impl Cholesky {
         self.analysis.symbolic.nrows()
     }
 
+    /// Number of values of the factor, zeros inside supernodes included.
+    pub fn entries(&self) -> usize {
+        self.values.len()
+    }
+
     /// The solution x of A x = b, length `dim`.
     pub fn solve(&self, b: &[f64]) -> Vec<f64> {
         let mut x = b.to_vec();

@@ -87,6 +87,11 @@ impl Condensation {
         Ok(Condensation { contact_dofs, cholesky, trailing, stiffness, contact })
     }
 
+    /// Number of values of the factor.
+    pub fn factor_entries(&self) -> usize {
+        self.cholesky.entries()
+    }
+
     /// The condensed stiffness S.
     pub fn stiffness(&self) -> &SymmetricMatrix {
         &self.stiffness
