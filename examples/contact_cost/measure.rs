@@ -3,7 +3,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use signorini::{Condense, Error, Method, Model, Prepared, Settings};
+use signorini::{Condense, ContactSet, Error, Method, Model, Prepared, Settings};
 
 use crate::case::{Case, FIRST_GAP};
 use crate::linear::{self, Ordering};
@@ -26,8 +26,12 @@ enum Work {
     Linear(Ordering),
     /// From the checked problem to the certified answer.
     Contact(Method, Condense),
+    /// As `Contact`, with the certificate of the condensed problem alone.
+    Uncertified,
+    /// The next gap, mean of nine: contact set and forces.
+    NextForces,
     /// The next gap, mean of nine: displacement of the whole body, certified.
-    NextGap,
+    NextDisplacement,
     /// Everything that happens over ten gaps, preparation included, with the contact forces at each.
     Sweep,
 }
@@ -46,14 +50,16 @@ const fn full(name: &'static str, method: Method, most_dofs: [usize; 2]) -> Task
     task(name, Work::Contact(method, Condense::Never), most_dofs)
 }
 
-pub const TASKS: [Task; 11] = [
+pub const TASKS: [Task; 13] = [
     task("assembly", Work::Assembly, ALL),
     task("linear solve", Work::Linear(Ordering::Amd), ALL),
     task("linear solve, dissected", Work::Linear(Ordering::NestedDissection(3)), [0, usize::MAX]),
     contact("active set", Method::ActiveSet),
     contact("QP", Method::Qp),
     contact("penalty", Method::Penalty),
-    task("next gap, displacement", Work::NextGap, ALL),
+    task("active set, uncertified", Work::Uncertified, ALL),
+    task("next gap, forces", Work::NextForces, ALL),
+    task("next gap, displacement", Work::NextDisplacement, ALL),
     task("sweep of ten gaps", Work::Sweep, ALL),
     full("active set, full", Method::ActiveSet, [40_000, 10_000]),
     full("QP, full", Method::Qp, [140_000, 10_000]),
@@ -87,14 +93,20 @@ impl Task {
                     Err(error) => return Err(error),
                 }
             }
-            Work::NextGap => {
+            Work::Uncertified => {
                 let prepared = bench.prepared()?;
-                let mut closed = prepared.solve(&active_set())?.contact_set;
-                let clock = Instant::now();
-                for gap in &bench.gaps {
-                    closed = prepared.solve_gap(gap.clone(), Some(&closed), &active_set())?.contact_set;
-                }
-                return Ok(clock.elapsed().as_secs_f64() / NEXT_GAPS as f64);
+                let boundary = prepared.boundary_at_gap(problem.gap().to_vec(), None, &active_set())?;
+                black_box(boundary.displacement());
+            }
+            Work::NextForces => {
+                return bench.walk(|prepared, gap, closed| {
+                    Ok(prepared.boundary_at_gap(gap, Some(closed), &active_set())?.contact_set)
+                });
+            }
+            Work::NextDisplacement => {
+                return bench.walk(|prepared, gap, closed| {
+                    Ok(prepared.solve_gap(gap, Some(closed), &active_set())?.contact_set)
+                });
             }
             Work::Sweep => {
                 let prepared = bench.prepared()?;
@@ -128,6 +140,17 @@ impl Bench {
 
     fn prepared(&self) -> Result<Prepared, Error> {
         Prepared::new(self.model.problem(), Condense::Auto)
+    }
+
+    /// Mean seconds of `step` over the next gaps, each from the contact set of the one before.
+    fn walk(&self, step: impl Fn(&Prepared, Vec<f64>, &ContactSet) -> Result<ContactSet, Error>) -> Result<f64, Error> {
+        let prepared = self.prepared()?;
+        let mut closed = prepared.solve(&active_set())?.contact_set;
+        let clock = Instant::now();
+        for gap in &self.gaps {
+            closed = step(&prepared, gap.clone(), &closed)?;
+        }
+        Ok(clock.elapsed().as_secs_f64() / NEXT_GAPS as f64)
     }
 
     fn last_gap(&self) -> &[f64] {

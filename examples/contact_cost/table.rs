@@ -8,7 +8,7 @@ const RATIOS: [(&str, &str, &str, &str, f64, f64); 9] = [
     ("contact / linear solve", "Q4 512", "active set", "linear solve", 1.0, 0.8),
     ("contact / linear solve", "Hex8 28", "active set", "linear solve", 0.45, 0.35),
     ("contact / linear solve, dissected", "Hex8 28", "active set", "linear solve, dissected", 1.35, 1.15),
-    ("contact without certificate / linear solve", "Q4 256", "active set, uncertified", "linear solve", 1.15, 1.0),
+    ("contact, condensed certificate / linear solve", "Q4 256", "active set, uncertified", "linear solve", 1.15, 1.0),
     ("next gap, forces / first gap", "Q4 256", "next gap, forces", "active set", 0.02, 0.005),
     ("next gap, displacement / first gap", "Q4 256", "next gap, displacement", "active set", 0.15, 0.1),
     ("QP / QP, full", "Q4 256", "QP", "QP, full", 1.0 / 15.0, 1.0 / 30.0),

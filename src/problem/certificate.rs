@@ -154,7 +154,8 @@ impl ContactProblem {
         let mu: Vec<f64> =
             (0..self.rows()).map(|row| if self.gap[row].is_finite() { lambda[row].min(0.0) } else { 0.0 }).collect();
         let Some(repair) = self.repair(u) else { return f64::INFINITY };
-        let elastic_repair = self.stiffness.mul(&repair);
+        let is_feasible = repair.iter().all(|&change| change == 0.0);
+        let elastic_repair = if is_feasible { repair.clone() } else { self.stiffness.mul(&repair) };
         let contact = self.contact.mul_transposed(&mu);
         let residual: Vec<f64> =
             (0..self.dofs()).map(|dof| self.load[dof] + contact[dof] - elastic[dof] - elastic_repair[dof]).collect();

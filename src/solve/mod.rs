@@ -1,10 +1,13 @@
 //! From a contact problem to a certified answer: select rows, scale, condense, method, expand, certify.
 
+mod boundary;
+mod loading;
 mod path;
 mod prepared;
 mod settings;
 
 pub use crate::method::parametric::{Event, Piece};
+pub use boundary::BoundarySolution;
 pub use path::Path;
 pub use prepared::Prepared;
 pub use settings::{Condense, Method, Settings};
