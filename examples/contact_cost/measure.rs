@@ -1,6 +1,7 @@
 //! What is measured.
 
 use std::hint::black_box;
+use std::sync::OnceLock;
 use std::time::Instant;
 
 use signorini::{Condense, ContactSet, Error, Method, Model, Prepared, Settings};
@@ -62,7 +63,7 @@ pub const TASKS: [Task; 13] = [
     task("next gap, displacement", Work::NextDisplacement, ALL),
     task("sweep of ten gaps", Work::Sweep, ALL),
     full("active set, full", Method::ActiveSet, [40_000, 10_000]),
-    full("QP, full", Method::Qp, [140_000, 10_000]),
+    full("QP, full", Method::Qp, [40_000, 10_000]),
     full("penalty, full", Method::Penalty, [40_000, 10_000]),
 ];
 
@@ -79,7 +80,7 @@ impl Task {
     /// Does it, and returns the seconds that it took.
     pub fn seconds(&self, case: &Case, bench: &Bench) -> Result<f64, Error> {
         let problem = bench.model.problem();
-        let clock = Instant::now();
+        let start = processor_seconds();
         match self.work {
             Work::Assembly => drop(black_box(case.model()?)),
             Work::Linear(ordering) => drop(black_box(linear::solve(problem.stiffness(), problem.load(), ordering))),
@@ -116,7 +117,7 @@ impl Task {
                 }
             }
         }
-        Ok(clock.elapsed().as_secs_f64())
+        Ok(processor_seconds() - start)
     }
 }
 
@@ -146,11 +147,11 @@ impl Bench {
     fn walk(&self, step: impl Fn(&Prepared, Vec<f64>, &ContactSet) -> Result<ContactSet, Error>) -> Result<f64, Error> {
         let prepared = self.prepared()?;
         let mut closed = prepared.solve(&active_set())?.contact_set;
-        let clock = Instant::now();
+        let start = processor_seconds();
         for gap in &self.gaps {
             closed = step(&prepared, gap.clone(), &closed)?;
         }
-        Ok(clock.elapsed().as_secs_f64() / NEXT_GAPS as f64)
+        Ok((processor_seconds() - start) / NEXT_GAPS as f64)
     }
 
     fn last_gap(&self) -> &[f64] {
@@ -175,6 +176,17 @@ impl Bench {
         let problem = self.model.problem();
         linear::solve(problem.stiffness(), problem.load(), ordering).map(|(_, values)| 8.0 * values as f64)
     }
+}
+
+/// Seconds that this thread has had a processor: other programs do not count. Wall-clock seconds where the system does
+/// not tell.
+fn processor_seconds() -> f64 {
+    static START: OnceLock<Instant> = OnceLock::new();
+    let from_system = || -> Option<f64> {
+        let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+        Some(1e-9 * text.split_whitespace().next()?.parse::<f64>().ok()?)
+    };
+    from_system().unwrap_or_else(|| START.get_or_init(Instant::now).elapsed().as_secs_f64())
 }
 
 /// Bytes of the greatest memory that this process ever had; nothing where the system has no such file.
