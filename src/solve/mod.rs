@@ -42,7 +42,7 @@ pub fn solve_qp(problem: &ContactProblem) -> Result<Solution, Error> {
 /// * [`Error::Numerical`] where memory does not suffice.
 pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
     settings.check()?;
-    let prepared = Prepared::new(problem, settings.condense)?;
+    let prepared = Prepared::with_threads(problem, settings.condense, settings.threads)?;
     let with_preparation = |mut solution: Solution| {
         solution.seconds.factor += prepared.seconds().factor;
         solution.seconds.solve += prepared.seconds().solve;

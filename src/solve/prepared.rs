@@ -11,7 +11,7 @@ use crate::method::parametric::Compliance;
 use crate::method::{ScaledProblem, active_set, interior_point};
 use crate::problem::{ContactProblem, EnergyNorm, check_gap};
 use crate::solution::{ContactSet, Iteration, Seconds, Solution};
-use crate::sparse::{AugmentedMatrix, Cholesky, Equilibration, FactorError, largest, ldexp};
+use crate::sparse::{Analysis, AugmentedMatrix, Cholesky, Equilibration, FactorError, largest, ldexp};
 use crate::transform::{Condensation, RowSelection, Scaling};
 
 /// A contact problem, scaled, condensed where that pays, factorised, its load swept through the factor.
@@ -37,6 +37,14 @@ impl Prepared {
     /// [`Error::Infeasible`] for rows that contradict each other at the gaps of `problem`, [`Error::NotConvex`],
     /// [`Error::Numerical`] where memory does not suffice.
     pub fn new(problem: &ContactProblem, condense: Condense) -> Result<Self, Error> {
+        Self::with_threads(problem, condense, 1)
+    }
+
+    /// As [`Prepared::new`], with so many threads for the sparse factorisations.
+    ///
+    /// # Errors
+    /// As [`Prepared::new`].
+    pub fn with_threads(problem: &ContactProblem, condense: Condense, threads: usize) -> Result<Self, Error> {
         let clock = Instant::now();
         let selection = RowSelection::of(problem.contact(), problem.gap())?;
         let scaling = Scaling::of(problem.stiffness(), &selection.contact(problem.contact()))?;
@@ -46,7 +54,8 @@ impl Prepared {
         let analysis = match condense {
             Condense::Auto => Condensation::analyse(scaling.stiffness(), &contact_dofs)?,
             Condense::Never => None,
-        };
+        }
+        .map(|analysis| analysis.with_threads(threads));
         let definite = |factor: Result<Cholesky, FactorError>| match factor {
             Ok(cholesky) if cholesky.is_definite(scaling.stiffness()) => Ok(Some(cholesky)),
             Ok(_) | Err(FactorError::NotPositiveDefinite) => Ok(None),
@@ -55,14 +64,14 @@ impl Prepared {
         let cholesky = match &analysis {
             _ if has_empty_diagonal => None,
             Some(analysis) => definite(analysis.factor(scaling.stiffness()))?,
-            None => definite(Cholesky::of(scaling.stiffness()))?,
+            None => definite(Analysis::of(scaling.stiffness())?.with_threads(threads).factor(scaling.stiffness()))?,
         };
         let mut condensation = None;
         if analysis.is_some() {
             let shifted = cholesky.is_none();
             let factor = match &cholesky {
                 Some(cholesky) => Some(cholesky.clone()),
-                None => factor_with_rows(&scaling, &contact_dofs)?,
+                None => factor_with_rows(&scaling, &contact_dofs, threads)?,
             };
             // Where even all rows together do not hold the body, the full problem tells why.
             if let Some(factor) = factor {
@@ -71,7 +80,7 @@ impl Prepared {
         }
         let augmented = match &condensation {
             Some(condensed) => AugmentedMatrix::new(condensed.stiffness(), condensed.contact())?,
-            None => AugmentedMatrix::new(scaling.stiffness(), scaling.contact())?,
+            None => AugmentedMatrix::new(scaling.stiffness(), scaling.contact())?.with_threads(threads),
         };
         let norm = cholesky.map(|cholesky| EnergyNorm::new(cholesky, scaling.equilibration().clone()));
         let factor = factor_clock.elapsed().as_secs_f64();
@@ -368,8 +377,9 @@ impl Prepared {
 }
 
 /// The factor of `K + B'B` with the contact dofs last, or `None` where it is not safely definite.
-fn factor_with_rows(scaling: &Scaling, contact_dofs: &[usize]) -> Result<Option<Cholesky>, Error> {
-    let augmented = AugmentedMatrix::with_last(scaling.stiffness(), scaling.contact(), contact_dofs)?;
+fn factor_with_rows(scaling: &Scaling, contact_dofs: &[usize], threads: usize) -> Result<Option<Cholesky>, Error> {
+    let augmented =
+        AugmentedMatrix::with_last(scaling.stiffness(), scaling.contact(), contact_dofs)?.with_threads(threads);
     let matrix = augmented.matrix(|_| 1.0, 0.0);
     match augmented.factor(&matrix) {
         Ok(cholesky) if cholesky.is_definite(&matrix) => Ok(Some(cholesky)),

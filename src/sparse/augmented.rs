@@ -74,6 +74,11 @@ impl AugmentedMatrix {
         Ok(Self { pattern, stiffness_slots, diagonal_slots, row_starts, products, stiffness, analysis })
     }
 
+    /// The same matrices, whose factorisations use so many threads.
+    pub fn with_threads(self, threads: usize) -> Self {
+        AugmentedMatrix { analysis: self.analysis.with_threads(threads), ..self }
+    }
+
     /// The matrix K + shift I + B' diag(weight(i)) B.
     pub fn matrix(&self, weight: impl Fn(usize) -> f64, shift: f64) -> SymmetricMatrix {
         let mut values = vec![0.0; self.pattern.entries()];

@@ -17,6 +17,7 @@ use crate::error::Error;
 pub struct Analysis {
     symbolic: Arc<fc::SymbolicCholesky<usize>>,
     trailing: usize,
+    threads: usize,
 }
 
 /// The factor L of a positive definite matrix.
@@ -95,7 +96,12 @@ impl Analysis {
             fc::SymmetricOrdering::Custom(PermRef::new_checked(&order, &place, order.len())),
             fc::CholeskySymbolicParams { supernodal_flop_ratio_threshold: threshold, ..Default::default() },
         )?;
-        Ok(Analysis { symbolic: Arc::new(symbolic), trailing: last.len() })
+        Ok(Analysis { symbolic: Arc::new(symbolic), trailing: last.len(), threads: 1 })
+    }
+
+    /// The same analysis, whose factorisations use so many threads.
+    pub fn with_threads(self, threads: usize) -> Self {
+        Analysis { threads, ..self }
     }
 
     /// Number of values of the factor, zeros inside supernodes included.
@@ -113,7 +119,8 @@ impl Analysis {
         let request = Vec::<f64>::new().try_reserve_exact(size);
         request.map_err(|_| FactorError::Failed("out of memory".into()))?;
         let mut values = vec![0.0; size];
-        let mut buffer = memory(self.symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default()))?;
+        let par = if self.threads > 1 { Par::rayon(self.threads) } else { Par::Seq };
+        let mut buffer = memory(self.symbolic.factorize_numeric_llt_scratch::<f64>(par, Default::default()))?;
         let lower = matrix.lower();
         self.symbolic
             .factorize_numeric_llt(
@@ -121,7 +128,7 @@ impl Analysis {
                 SparseColMatRef::new(structure(lower), lower.values()),
                 Side::Lower,
                 Default::default(),
-                Par::Seq,
+                par,
                 MemStack::new(&mut buffer),
                 Default::default(),
             )
