@@ -1,12 +1,14 @@
 //! GOAL: condensed onto the contact dofs, a problem has the same answer, and the next gap or load needs no factorisation.
 //!
-//! CONDITIONS: every example scene, inclined and two-sided rows, bodies that only their rows hold, redundant rows.
+//! CONDITIONS: every example scene, the reference gaps, a body in space, inclined and two-sided rows, bodies that only their
+//! rows hold, redundant rows; one thread and two.
 
 mod oracles;
 
 use std::path::Path;
 
 use oracles::{Draws, random};
+use signorini::sparse::Cholesky;
 use signorini::{
     Condense, ContactProblem, Error, Method, Prepared, Scene, Settings, Solution, SparseMatrix, SymmetricMatrix, solve,
 };
@@ -39,28 +41,141 @@ fn example(name: &str) -> ContactProblem {
     Scene::read(path).unwrap().build().unwrap().problem().clone()
 }
 
-#[test]
-fn condensed_and_full_problem_give_the_same_answer_and_the_same_search() {
-    for name in ["indentation", "inclined", "between", "block", "circle"] {
-        let problem = example(name);
-        for method in EXACT {
-            let full = answer(&problem, &settings(method, Condense::Never));
-            let condensed = answer(&problem, &settings(method, Condense::Auto));
-            let what = format!("{name}, {method:?}");
-            assert!(condensed.condensed_dofs < problem.dofs() / 4, "{what}: {} dofs", condensed.condensed_dofs);
-            assert_eq!(full.condensed_dofs, problem.dofs());
-            same(&condensed.displacement, &full.displacement, &what);
-            same(&condensed.multiplier, &full.multiplier, &what);
-            assert_eq!(condensed.contact_set, full.contact_set, "{what}");
-            if method == Method::ActiveSet {
-                let sets = |solution: &Solution| {
-                    solution.history.iter().map(|step| step.contact_set.clone()).collect::<Vec<_>>()
-                };
-                // A body that only its rows hold starts from springs, which are measured in condensed stiffness there.
-                if problem.certify(&full.displacement, &full.multiplier).unwrap().energy_error_bound.is_finite() {
-                    assert_eq!(sets(&condensed), sets(&full), "{what}: history");
-                }
+/// Answers and, for the active set, the search for them: condensed and full.
+#[track_caller]
+fn check_both_ways(problem: &ContactProblem, name: &str) {
+    for method in EXACT {
+        let full = answer(problem, &settings(method, Condense::Never));
+        let condensed = answer(problem, &settings(method, Condense::Auto));
+        let what = format!("{name}, {method:?}");
+        assert!(condensed.condensed_dofs < problem.dofs() / 4, "{what}: {} dofs", condensed.condensed_dofs);
+        assert_eq!(full.condensed_dofs, problem.dofs());
+        same(&condensed.displacement, &full.displacement, &what);
+        same(&condensed.multiplier, &full.multiplier, &what);
+        assert_eq!(condensed.contact_set, full.contact_set, "{what}");
+        if method == Method::ActiveSet {
+            let sets =
+                |solution: &Solution| solution.history.iter().map(|step| step.contact_set.clone()).collect::<Vec<_>>();
+            // A body that only its rows hold starts from springs, which are measured in condensed stiffness there.
+            if full.certificate.energy_error_bound.is_finite() {
+                assert_eq!(sets(&condensed), sets(&full), "{what}: history");
             }
+        }
+    }
+}
+
+#[test]
+fn every_example_scene_has_the_same_answer_and_the_same_search() {
+    let folder = std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples")).unwrap();
+    let mut count = 0;
+    for entry in folder {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|extension| extension == "json") {
+            let model = Scene::read(&path).unwrap().build().unwrap();
+            check_both_ways(model.problem(), &path.display().to_string());
+            count += 1;
+        }
+    }
+    assert!(count >= 6);
+}
+
+#[test]
+fn the_gaps_of_the_reference_have_the_same_answer_and_the_same_search() {
+    let problem = example("indentation");
+    for step in 0..10 {
+        let gap = problem.gap().iter().map(|gap| gap - 0.01 * f64::from(step)).collect();
+        check_both_ways(&problem.with_gap(gap).unwrap(), &format!("step {step}"));
+    }
+}
+
+/// A cube under a sphere, large enough to be ordered by nested dissection.
+fn cube(divisions: usize) -> ContactProblem {
+    let axis = serde_json::json!({"points": [0, 1], "divisions": [divisions]});
+    let scene = serde_json::json!({
+        "model": "space",
+        "body": {"box": {"x": axis, "y": axis, "z": axis, "element": "hex8"}},
+        "material": {"young": 1e7, "poisson": 0.3},
+        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0, "z": 0}],
+        "obstacles": [{"boundary": "top", "approach": "+z", "shape": {"sphere": {"apex": [0.5, 0.5, 1], "radius": 1}}}],
+        "gap": -0.01,
+    });
+    Scene::from_json(&scene.to_string(), "scene").unwrap().build().unwrap().problem().clone()
+}
+
+#[test]
+fn body_in_space_has_the_same_answer_and_the_same_search() {
+    check_both_ways(&cube(5), "cube");
+}
+
+/// The columns of a supernode are split among the threads, never a sum: the answers are the same bit by bit.
+#[test]
+fn two_threads_give_the_answer_of_one_bit_by_bit() {
+    let mut settings = settings(Method::ActiveSet, Condense::Auto);
+    for problem in [cube(12), example("indentation")] {
+        settings.threads = 1;
+        let one = answer(&problem, &settings);
+        settings.threads = 2;
+        let two = answer(&problem, &settings);
+        assert_eq!(one.displacement, two.displacement);
+        assert_eq!(one.multiplier, two.multiplier);
+        assert_eq!(one.certificate, two.certificate);
+    }
+    settings.threads = 0;
+    assert!(matches!(solve(&example("block"), &settings), Err(Error::Setting { name: "threads", .. })));
+}
+
+#[test]
+fn boundary_alone_agrees_with_the_whole_answer() {
+    let problem = example("indentation");
+    let prepared = Prepared::new(&problem, Condense::Auto).unwrap();
+    for method in EXACT {
+        let settings = settings(method, Condense::Auto);
+        let closed = prepared.solve(&settings).unwrap().contact_set;
+        let gap: Vec<f64> = problem.gap().iter().map(|gap| gap - 0.02).collect();
+        let whole = prepared.solve_gap(gap.clone(), Some(&closed), &settings).unwrap();
+        let boundary = prepared.boundary_at_gap(gap, Some(&closed), &settings).unwrap();
+        assert_eq!(boundary.multiplier, whole.multiplier);
+        assert_eq!(boundary.contact_set, whole.contact_set);
+        assert_eq!(boundary.contact_force(), whole.contact_force());
+        assert_eq!(boundary.displacement(), whole.displacement);
+        assert!(boundary.condensed_certificate.meets(1e-12), "{:?}", boundary.condensed_certificate);
+        assert!(boundary.condensed_certificate.energy_error_bound < 1e-12);
+        assert_eq!(boundary.solution(&settings).unwrap().certificate, whole.certificate);
+
+        let load: Vec<f64> = (0..problem.dofs()).map(|dof| if dof % 2 == 1 { 30.0 } else { 5.0 }).collect();
+        let whole = prepared.solve_load(load.clone(), None, &settings).unwrap();
+        let boundary = prepared.boundary_at_load(load, None, &settings).unwrap();
+        assert_eq!(boundary.multiplier, whole.multiplier);
+        assert_eq!(boundary.displacement(), whole.displacement);
+    }
+    let message = prepared.boundary_at_gap(vec![f64::NAN; 41], None, &Settings::default()).unwrap_err().to_string();
+    assert!(message.contains("gap vector has the value NaN at entry 0"), "{message}");
+}
+
+/// An answer that is not exact is refused on the boundary as it is on the whole.
+#[test]
+fn boundary_of_a_poor_answer_is_not_certified() {
+    let problem = example("indentation");
+    let prepared = Prepared::new(&problem, Condense::Auto).unwrap();
+    let mut settings = settings(Method::Penalty, Condense::Auto);
+    settings.last_penalty = 1e3;
+    let refused = prepared.boundary_at_gap(problem.gap().to_vec(), None, &settings);
+    assert!(matches!(refused, Err(Error::NotCertified { .. })), "{refused:?}");
+}
+
+/// Neither a diagonal, nor a chain, nor a full matrix trips the orderings.
+#[test]
+fn matrices_without_edges_and_with_all_of_them_are_factorised() {
+    for n in [1, 2, 3, 7, 64, 1000] {
+        let reach = if n < 100 { n } else { 3 };
+        for width in [1, 2, reach] {
+            let entries: Vec<_> = (0..n)
+                .flat_map(|i| (i..n.min(i + width)).map(move |j| (j, i, if i == j { n as f64 } else { -0.5 })))
+                .collect();
+            let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(n, n, &entries).unwrap()).unwrap();
+            let x: Vec<f64> = (0..n).map(|i| 1.0 + i as f64 / n as f64).collect();
+            let solved = Cholesky::of(&stiffness).unwrap().solve(&stiffness.mul(&x));
+            same(&solved, &x, &format!("n = {n}, width {width}"));
         }
     }
 }

@@ -123,6 +123,16 @@ fn parse_tolerance(text: &str) -> Result<f64, String> {
     }
 }
 
+/// More threads than any machine has would only cost memory.
+const MOST_THREADS: usize = 1024;
+
+fn parse_threads(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(threads) if (1..=MOST_THREADS).contains(&threads) => Ok(threads),
+        _ => Err(format!("it must be a whole number from 1 to {MOST_THREADS}")),
+    }
+}
+
 /// What every solving command takes.
 #[derive(Debug, Args)]
 pub(super) struct Common {
@@ -132,6 +142,9 @@ pub(super) struct Common {
     /// Let the methods work on all dofs instead of those of the contact rows
     #[arg(long)]
     pub no_condense: bool,
+    /// Threads of the sparse factorisations
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = parse_threads)]
+    pub threads: usize,
     /// Folder for pictures, fields and answers
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,

@@ -11,6 +11,7 @@ use crate::study::discretisation_error;
 pub(super) fn settings(method: Method, common: &Common) -> Settings {
     let mut settings = Settings::with_method(method);
     settings.tolerance = common.tolerance;
+    settings.threads = common.threads;
     settings.condense = if common.no_condense { Condense::Never } else { Condense::Auto };
     settings
 }

@@ -43,7 +43,7 @@ pub fn solve_text(title: &str, summary: &Summary, units: &UnitNames) -> String {
     let mut line = |name: &str, content: String| text += &entry(name, &content);
     line("model", format!("{mesh}{} dofs, {}", model.dofs, plural(model.contact_rows, "contact row")));
     let unknowns = match model.condensed_dofs {
-        all if all == model.dofs => String::new(),
+        all if all == model.dofs => ", on all dofs".to_string(),
         condensed => format!(", condensed to {condensed} dofs"),
     };
     line("method", format!("{}, {}{unknowns}", summary.method, plural(summary.iterations, "iteration")));

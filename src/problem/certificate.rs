@@ -45,14 +45,6 @@ impl EnergyNorm {
         EnergyNorm { cholesky, equilibration }
     }
 
-    /// The displacement K^-1 f of the body without obstacle.
-    pub fn free_displacement(&self, load: &[f64]) -> Vec<f64> {
-        let scale = |values: &[f64], factor: i32| -> Vec<f64> {
-            values.iter().zip(&self.equilibration.diagonal).map(|(&value, &d)| ldexp(value, d + factor)).collect()
-        };
-        scale(&self.cholesky.solve(&scale(load, 0)), self.equilibration.factor)
-    }
-
     /// The displacement of the equilibrated stiffness under an equilibrated load.
     pub fn scaled_displacement(&self, load: &[f64]) -> Vec<f64> {
         self.cholesky.solve(load)
@@ -60,7 +52,9 @@ impl EnergyNorm {
 
     /// `sqrt(r' K^-1 r)`: the energy norm of the displacement that the force r causes.
     fn of_force(&self, residual: &[f64]) -> f64 {
-        dot(residual, &self.free_displacement(residual)).max(0.0).sqrt()
+        // K^-1 = c D (c D K D)^-1 D
+        let scaled: Vec<f64> = residual.iter().zip(&self.equilibration.diagonal).map(|(&r, &d)| ldexp(r, d)).collect();
+        ldexp(self.cholesky.inverse_product(&scaled), self.equilibration.factor).max(0.0).sqrt()
     }
 }
 
@@ -160,7 +154,8 @@ impl ContactProblem {
         let mu: Vec<f64> =
             (0..self.rows()).map(|row| if self.gap[row].is_finite() { lambda[row].min(0.0) } else { 0.0 }).collect();
         let Some(repair) = self.repair(u) else { return f64::INFINITY };
-        let elastic_repair = self.stiffness.mul(&repair);
+        let is_feasible = repair.iter().all(|&change| change == 0.0);
+        let elastic_repair = if is_feasible { repair.clone() } else { self.stiffness.mul(&repair) };
         let contact = self.contact.mul_transposed(&mu);
         let residual: Vec<f64> =
             (0..self.dofs()).map(|dof| self.load[dof] + contact[dof] - elastic[dof] - elastic_repair[dof]).collect();

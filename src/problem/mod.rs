@@ -47,19 +47,11 @@ impl ContactProblem {
             let (found, expected) = ((contact.rows(), contact.columns()), (contact.rows(), dofs));
             return Err(Error::Shape { name: "contact matrix", found, expected });
         }
-        let (found, expected) = (gap.len(), contact.rows());
-        if found != expected {
-            return Err(Error::Length { name: "gap vector", found, expected, of: "contact rows" });
+        if let Some((index, &value)) = load.iter().enumerate().find(|entry| !entry.1.is_finite()) {
+            let at = format!("entry {index}");
+            return Err(Error::NotFinite { name: "load vector", at, value, allowed: "finite" });
         }
-        let bad = |name, (index, &value): (usize, &f64), allowed| {
-            Err(Error::NotFinite { name, at: format!("entry {index}"), value, allowed })
-        };
-        if let Some(entry) = load.iter().enumerate().find(|entry| !entry.1.is_finite()) {
-            return bad("load vector", entry, "finite");
-        }
-        if let Some(entry) = gap.iter().enumerate().find(|entry| entry.1.is_nan() || *entry.1 == f64::NEG_INFINITY) {
-            return bad("gap vector", entry, "finite, or +inf for a row without obstacle");
-        }
+        check_gap(&gap, contact.rows())?;
         if let Some((dof, value)) = stiffness.diagonal().iter().enumerate().find(|entry| *entry.1 < 0.0) {
             return Err(Error::NotConvex { evidence: format!("diagonal entry {dof} is {value:e}, indices from 0") });
         }
@@ -119,5 +111,22 @@ impl ContactProblem {
             *value -= gap;
         }
         violation
+    }
+}
+
+/// Is `gap` one of so many rows?
+///
+/// # Errors
+/// [`Error::Length`], [`Error::NotFinite`] for a gap that is NaN or minus infinity.
+pub(crate) fn check_gap(gap: &[f64], rows: usize) -> Result<(), Error> {
+    if gap.len() != rows {
+        return Err(Error::Length { name: "gap vector", found: gap.len(), expected: rows, of: "contact rows" });
+    }
+    match gap.iter().enumerate().find(|entry| entry.1.is_nan() || *entry.1 == f64::NEG_INFINITY) {
+        Some((index, &value)) => {
+            let allowed = "finite, or +inf for a row without obstacle";
+            Err(Error::NotFinite { name: "gap vector", at: format!("entry {index}"), value, allowed })
+        }
+        None => Ok(()),
     }
 }

@@ -1,10 +1,13 @@
 //! From a contact problem to a certified answer: select rows, scale, condense, method, expand, certify.
 
+mod boundary;
+mod loading;
 mod path;
 mod prepared;
 mod settings;
 
 pub use crate::method::parametric::{Event, Piece};
+pub use boundary::BoundarySolution;
 pub use path::Path;
 pub use prepared::Prepared;
 pub use settings::{Condense, Method, Settings};
@@ -39,7 +42,7 @@ pub fn solve_qp(problem: &ContactProblem) -> Result<Solution, Error> {
 /// * [`Error::Numerical`] where memory does not suffice.
 pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
     settings.check()?;
-    let prepared = Prepared::new(problem, settings.condense)?;
+    let prepared = Prepared::with_threads(problem, settings.condense, settings.threads)?;
     let with_preparation = |mut solution: Solution| {
         solution.seconds.factor += prepared.seconds().factor;
         solution.seconds.solve += prepared.seconds().solve;

@@ -1,35 +1,33 @@
 //! A problem with everything done that does not depend on load and gap: factor once, contact many.
 
+use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
+use super::boundary::{BoundarySolution, Found};
+use super::loading::Loading;
 use super::{Condense, Path, Settings, run};
 use crate::error::Error;
 use crate::method::parametric::Compliance;
 use crate::method::{ScaledProblem, active_set, interior_point};
-use crate::problem::{ContactProblem, EnergyNorm};
+use crate::problem::{ContactProblem, EnergyNorm, check_gap};
 use crate::solution::{ContactSet, Iteration, Seconds, Solution};
-use crate::sparse::{AugmentedMatrix, Cholesky, FactorError, exponent, largest, ldexp};
+use crate::sparse::{Analysis, AugmentedMatrix, Cholesky, Equilibration, FactorError, largest, ldexp};
 use crate::transform::{Condensation, RowSelection, Scaling};
 
-/// A contact problem, scaled, condensed where that pays, factorised.
+/// A contact problem, scaled, condensed where that pays, factorised, its load swept through the factor.
 #[derive(Clone, Debug)]
 pub struct Prepared {
-    problem: ContactProblem,
+    pub(super) problem: ContactProblem,
     selection: RowSelection,
-    scaling: Scaling,
-    norm: Option<EnergyNorm>,
-    condensation: Option<Condensation>,
+    pub(super) scaling: Scaling,
+    pub(super) norm: Option<EnergyNorm>,
+    pub(super) condensation: Option<Condensation>,
     augmented: AugmentedMatrix,
+    /// Energy norm of the condensed stiffness, made when it is first asked for.
+    condensed_norm: OnceLock<Option<EnergyNorm>>,
+    /// The load of the problem, swept when it is first solved with.
+    loading: OnceLock<Arc<Loading>>,
     seconds: Seconds,
-}
-
-/// Load and gap of one solve in scaled quantities, condensed where the body is.
-struct Scaled {
-    problem: ContactProblem,
-    /// Exponent of the reference displacement.
-    unit: i32,
-    /// Forward sweep of the load, where the body is condensed.
-    sweep: Vec<f64>,
 }
 
 impl Prepared {
@@ -39,6 +37,14 @@ impl Prepared {
     /// [`Error::Infeasible`] for rows that contradict each other at the gaps of `problem`, [`Error::NotConvex`],
     /// [`Error::Numerical`] where memory does not suffice.
     pub fn new(problem: &ContactProblem, condense: Condense) -> Result<Self, Error> {
+        Self::with_threads(problem, condense, 1)
+    }
+
+    /// As [`Prepared::new`], with so many threads for the sparse factorisations.
+    ///
+    /// # Errors
+    /// As [`Prepared::new`].
+    pub fn with_threads(problem: &ContactProblem, condense: Condense, threads: usize) -> Result<Self, Error> {
         let clock = Instant::now();
         let selection = RowSelection::of(problem.contact(), problem.gap())?;
         let scaling = Scaling::of(problem.stiffness(), &selection.contact(problem.contact()))?;
@@ -48,7 +54,8 @@ impl Prepared {
         let analysis = match condense {
             Condense::Auto => Condensation::analyse(scaling.stiffness(), &contact_dofs)?,
             Condense::Never => None,
-        };
+        }
+        .map(|analysis| analysis.with_threads(threads));
         let definite = |factor: Result<Cholesky, FactorError>| match factor {
             Ok(cholesky) if cholesky.is_definite(scaling.stiffness()) => Ok(Some(cholesky)),
             Ok(_) | Err(FactorError::NotPositiveDefinite) => Ok(None),
@@ -57,14 +64,14 @@ impl Prepared {
         let cholesky = match &analysis {
             _ if has_empty_diagonal => None,
             Some(analysis) => definite(analysis.factor(scaling.stiffness()))?,
-            None => definite(Cholesky::of(scaling.stiffness()))?,
+            None => definite(Analysis::of(scaling.stiffness())?.with_threads(threads).factor(scaling.stiffness()))?,
         };
         let mut condensation = None;
         if analysis.is_some() {
             let shifted = cholesky.is_none();
             let factor = match &cholesky {
                 Some(cholesky) => Some(cholesky.clone()),
-                None => factor_with_rows(&scaling, &contact_dofs)?,
+                None => factor_with_rows(&scaling, &contact_dofs, threads)?,
             };
             // Where even all rows together do not hold the body, the full problem tells why.
             if let Some(factor) = factor {
@@ -73,17 +80,31 @@ impl Prepared {
         }
         let augmented = match &condensation {
             Some(condensed) => AugmentedMatrix::new(condensed.stiffness(), condensed.contact())?,
-            None => AugmentedMatrix::new(scaling.stiffness(), scaling.contact())?,
+            None => AugmentedMatrix::new(scaling.stiffness(), scaling.contact())?.with_threads(threads),
         };
         let norm = cholesky.map(|cholesky| EnergyNorm::new(cholesky, scaling.equilibration().clone()));
         let factor = factor_clock.elapsed().as_secs_f64();
-        let seconds = Seconds { factor, solve: clock.elapsed().as_secs_f64() };
-        Ok(Prepared { problem: problem.clone(), selection, scaling, norm, condensation, augmented, seconds })
+        Ok(Prepared {
+            problem: problem.clone(),
+            selection,
+            scaling,
+            norm,
+            condensation,
+            augmented,
+            condensed_norm: OnceLock::new(),
+            loading: OnceLock::new(),
+            seconds: Seconds { factor, solve: clock.elapsed().as_secs_f64() },
+        })
     }
 
     /// Number of unknowns that the methods work on.
     pub fn condensed_dofs(&self) -> usize {
         self.condensation.as_ref().map_or(self.problem.dofs(), |condensed| condensed.stiffness().dim())
+    }
+
+    /// Number of values of the factor of the stiffness; zero where the methods factorise by themselves.
+    pub fn factor_entries(&self) -> usize {
+        self.condensation.as_ref().map_or(0, Condensation::factor_entries)
     }
 
     /// What the preparation cost.
@@ -96,7 +117,7 @@ impl Prepared {
     /// # Errors
     /// As [`solve`](super::solve).
     pub fn solve(&self, settings: &Settings) -> Result<Solution, Error> {
-        self.solve_from(&self.problem, None, settings)
+        self.solve_gap(self.problem.gap().to_vec(), None, settings)
     }
 
     /// Solves with other gaps, the active-set steps starting from `start` where it is given.
@@ -105,7 +126,7 @@ impl Prepared {
     /// As [`solve`](super::solve); [`Error::Length`] and [`Error::NotFinite`] for gaps that do not fit, or that are
     /// infinite in other rows than those of the problem that was prepared.
     pub fn solve_gap(&self, gap: Vec<f64>, start: Option<&ContactSet>, settings: &Settings) -> Result<Solution, Error> {
-        self.solve_from(&self.problem.with_gap(gap)?, start, settings)
+        self.complete(self.find(self.own_load(), gap, start, settings)?, settings)
     }
 
     /// Solves with another load, the active-set steps starting from `start` where it is given.
@@ -118,7 +139,37 @@ impl Prepared {
         start: Option<&ContactSet>,
         settings: &Settings,
     ) -> Result<Solution, Error> {
-        self.solve_from(&self.problem.with_load(load)?, start, settings)
+        let loading = self.other_load(load)?;
+        self.complete(self.find(loading, self.problem.gap().to_vec(), start, settings)?, settings)
+    }
+
+    /// Contact set, multipliers and forces with other gaps, the active-set steps starting from `start` where it is given.
+    ///
+    /// The displacement of the body is not computed, so that a condensed problem costs what its contact boundary costs.
+    ///
+    /// # Errors
+    /// As [`Prepared::solve_gap`]; the tolerance is held against the certificate of the condensed problem.
+    pub fn boundary_at_gap(
+        &self,
+        gap: Vec<f64>,
+        start: Option<&ContactSet>,
+        settings: &Settings,
+    ) -> Result<BoundarySolution<'_>, Error> {
+        self.on_boundary(self.find(self.own_load(), gap, start, settings)?, settings)
+    }
+
+    /// As [`Prepared::boundary_at_gap`], with another load, which costs one sweep through the factor of the body.
+    ///
+    /// # Errors
+    /// As [`Prepared::boundary_at_gap`], for the load.
+    pub fn boundary_at_load(
+        &self,
+        load: Vec<f64>,
+        start: Option<&ContactSet>,
+        settings: &Settings,
+    ) -> Result<BoundarySolution<'_>, Error> {
+        let loading = self.other_load(load)?;
+        self.on_boundary(self.find(loading, self.problem.gap().to_vec(), start, settings)?, settings)
     }
 
     /// The exact path of the answer while the gaps move from `from` to `to` (length m each) on a straight line.
@@ -130,18 +181,19 @@ impl Prepared {
         let Some(condensed) = self.condensation.as_ref().filter(|_| self.norm.is_some()) else {
             return Err(Error::NotCondensed { step: "the exact path" });
         };
-        let (first, last) = (self.problem.with_gap(from.to_vec())?, self.problem.with_gap(to.to_vec())?);
-        self.check_rows(&last)?;
-        let start = self.solve_from(&first, None, settings)?;
-        let scaled = self.scale(&first)?;
-        let free = condensed.contact().mul(&condensed.free_displacement(&scaled.sweep));
-        let at_end = self.scaling.gap(&self.selection.gap(to), scaled.unit);
-        let constant = free.iter().zip(scaled.problem.gap()).map(|(free, gap)| free - gap).collect();
-        let slope = scaled.problem.gap().iter().zip(&at_end).map(|(first, last)| first - last).collect();
+        self.check_gap(to)?;
+        let found = self.find(self.own_load(), from.to_vec(), None, settings)?;
+        let start = self.on_boundary(found, settings)?;
+        let Found { loading, unit, problem, .. } = &start.found;
+        let free = condensed.contact().mul(&condensed.free_displacement(&loading.sweep));
+        let at_end = self.scaling.gap(&self.selection.gap(to), *unit);
+        let constant =
+            free.iter().zip(problem.gap()).map(|(&free, gap)| ldexp(free, loading.unit - unit) - gap).collect();
+        let slope = problem.gap().iter().zip(&at_end).map(|(first, last)| first - last).collect();
         let compliance = Compliance::new(condensed.compliance(), constant, slope);
         let (pieces, mut events) = compliance.walk(&self.selection.restrict_set(&start.contact_set))?;
         events.iter_mut().for_each(|event| event.row = self.selection.kept()[event.row]);
-        Ok(Path { prepared: self, from: from.to_vec(), to: to.to_vec(), unit: scaled.unit, pieces, events })
+        Ok(Path { prepared: self, from: from.to_vec(), to: to.to_vec(), unit: *unit, pieces, events })
     }
 
     pub(super) fn expand_multiplier(&self, multiplier: &[f64], unit: i32) -> Vec<f64> {
@@ -152,22 +204,66 @@ impl Prepared {
         self.selection.expand_set(set)
     }
 
-    fn solve_from(
+    /// Runs the method of `settings`, on the contact boundary where the problem is condensed.
+    fn find(
         &self,
-        problem: &ContactProblem,
+        loading: Arc<Loading>,
+        gap: Vec<f64>,
         start: Option<&ContactSet>,
         settings: &Settings,
-    ) -> Result<Solution, Error> {
+    ) -> Result<Found, Error> {
         settings.check()?;
         let clock = Instant::now();
-        self.check_rows(problem)?;
-        let scaled = self.scale(problem)?;
-        let task = ScaledProblem::new(&scaled.problem, &self.augmented, self.norm.is_some());
+        self.check_gap(&gap)?;
+        let (problem, unit) = self.scaled(&loading, &gap)?;
+        let task = ScaledProblem::new(&problem, &self.augmented, self.norm.is_some());
         let start = start.map(|set| self.selection.restrict_set(set));
-        let outcome = run(&task, start, settings).map_err(|error| self.expand_error(error, &scaled))?;
+        let outcome = run(&task, start, settings).map_err(|error| self.expand_error(error))?;
+        let seconds = Seconds { factor: task.factor_seconds(), solve: clock.elapsed().as_secs_f64() };
+        Ok(Found { loading, gap, problem, unit, outcome, seconds })
+    }
 
-        let displacement = self.expand(&scaled, &outcome.displacement);
-        let multiplier = self.expand_multiplier(&outcome.multiplier, scaled.unit);
+    /// The answer on the boundary, certified there.
+    fn on_boundary(&self, found: Found, settings: &Settings) -> Result<BoundarySolution<'_>, Error> {
+        let Found { problem, unit, outcome, .. } = &found;
+        let norm = self.condensed_norm(problem)?;
+        let condensed_certificate = problem.certify_in(norm, &outcome.displacement, &outcome.multiplier)?;
+        if !condensed_certificate.meets(settings.tolerance) {
+            // The certificate of the whole answer tells what is wrong, unless it knows better.
+            self.complete(found.clone(), settings)?;
+        }
+        Ok(BoundarySolution {
+            multiplier: self.expand_multiplier(&outcome.multiplier, *unit),
+            contact_set: self.selection.expand_set(&outcome.contact_set),
+            iterations: outcome.iterations,
+            condensed_certificate,
+            prepared: self,
+            found,
+        })
+    }
+
+    /// The energy norm of the problem that the methods work on.
+    fn condensed_norm(&self, problem: &ContactProblem) -> Result<Option<&EnergyNorm>, Error> {
+        if self.condensation.is_none() || self.norm.is_none() {
+            return Ok(self.norm.as_ref().filter(|_| self.condensation.is_none()));
+        }
+        if self.condensed_norm.get().is_none() {
+            let unscaled = Equilibration { diagonal: vec![0; problem.dofs()], factor: 0 };
+            let factor = self.augmented.factor(&self.augmented.matrix(|_| 0.0, 0.0)).ok();
+            // Another thread may have been faster, with the same result.
+            let _ = self.condensed_norm.set(factor.map(|factor| EnergyNorm::new(factor, unscaled)));
+        }
+        Ok(self.condensed_norm.get().and_then(Option::as_ref))
+    }
+
+    /// The whole answer, certified.
+    pub(super) fn complete(&self, found: Found, settings: &Settings) -> Result<Solution, Error> {
+        let clock = Instant::now();
+        let Found { loading, gap, problem: condensed, unit, outcome, seconds } = found;
+        let displacement = self.expand(&loading, unit, &outcome.displacement);
+        let multiplier = self.expand_multiplier(&outcome.multiplier, unit);
+        let (stiffness, contact) = (self.problem.stiffness().clone(), self.problem.contact().clone());
+        let problem = ContactProblem::new(stiffness, loading.load.clone(), contact, gap)?;
         let certificate = problem.certify_in(self.norm.as_ref(), &displacement, &multiplier)?;
         let expand_iteration = |step: Iteration| Iteration {
             contact_set: self.selection.expand_set(&step.contact_set),
@@ -182,92 +278,84 @@ impl Prepared {
             history: outcome.history.into_iter().map(expand_iteration).collect(),
             certificate,
             condensed_dofs: self.condensed_dofs(),
-            seconds: Seconds { factor: task.factor_seconds(), solve: clock.elapsed().as_secs_f64() },
+            seconds: Seconds { solve: seconds.solve + clock.elapsed().as_secs_f64(), ..seconds },
         };
         if solution.certificate.meets(settings.tolerance) {
             return Ok(solution);
         }
+        let task = ScaledProblem::new(&condensed, &self.augmented, self.norm.is_some());
         interior_point::check_feasible(&task, settings.interior_point_tolerance)
-            .map_err(|error| self.expand_error(error, &scaled))?;
+            .map_err(|error| self.expand_error(error))?;
         let (condition, value) = solution.certificate.worst();
         Err(Error::NotCertified { solution: Box::new(solution), condition, value, tolerance: settings.tolerance })
     }
 
     /// Displacement and multiplier with the rows of `closed` held at their gaps.
     pub(super) fn with_contact_set(&self, closed: &ContactSet) -> Result<(Vec<f64>, Vec<f64>), Error> {
-        let scaled = self.scale(&self.problem)?;
-        let task = ScaledProblem::new(&scaled.problem, &self.augmented, self.norm.is_some());
+        let loading = self.own_load();
+        let (problem, unit) = self.scaled(&loading, self.problem.gap())?;
+        let task = ScaledProblem::new(&problem, &self.augmented, self.norm.is_some());
         let held = active_set::with_contact_set(&task, &self.selection.restrict_set(closed))
-            .map_err(|error| self.expand_error(error, &scaled))?;
-        let multiplier = self.expand_multiplier(&held.multiplier, scaled.unit);
-        Ok((self.expand(&scaled, &held.displacement), multiplier))
+            .map_err(|error| self.expand_error(error))?;
+        Ok((self.expand(&loading, unit, &held.displacement), self.expand_multiplier(&held.multiplier, unit)))
     }
 
     /// Rows that were left out when the problem was prepared must still be no constraints, and no others.
-    fn check_rows(&self, problem: &ContactProblem) -> Result<(), Error> {
-        if RowSelection::of(problem.contact(), problem.gap())? == self.selection {
+    fn check_gap(&self, gap: &[f64]) -> Result<(), Error> {
+        check_gap(gap, self.problem.rows())?;
+        if self.selection.under(gap)?.kept() == self.selection.kept() {
             return Ok(());
         }
-        let (row, &value) = (problem.gap().iter().enumerate())
+        let (row, &value) = (gap.iter().enumerate())
             .find(|(row, gap)| gap.is_finite() != self.problem.gap()[*row].is_finite())
             .unwrap_or((0, &f64::NAN));
         let allowed = "infinite in the same rows as when the problem was prepared";
         Err(Error::NotFinite { name: "gap vector", at: format!("entry {row}"), value, allowed })
     }
 
-    /// Scales load and gap, and condenses the load.
-    ///
-    /// The reference displacement is what the load alone does or the obstacle enforces, where the stiffness is definite,
-    /// but no more than the gaps and the load over the stiffness, where a soft support would let the free body run away.
-    fn scale(&self, problem: &ContactProblem) -> Result<Scaled, Error> {
-        let gap = self.selection.gap(problem.gap());
-        let stiffness = largest(&problem.stiffness().diagonal());
-        let static_reach = if stiffness > 0.0 { largest(problem.load()) / stiffness } else { 0.0 };
-        let local = largest(&gap).max(static_reach);
-        let mut unit = exponent(local);
+    fn load(&self, load: Vec<f64>, gap: &[f64]) -> Arc<Loading> {
+        Arc::new(Loading::of(self, load, &self.selection.gap(gap)))
+    }
 
-        let mut load = self.scaling.load(problem.load(), unit);
-        let mut sweep = self.condensation.as_ref().map_or_else(Vec::new, |condensed| condensed.sweep(&load));
-        if let Some(norm) = &self.norm {
-            let free = match &self.condensation {
-                Some(condensed) => largest(&condensed.free_displacement(&sweep)),
-                None => largest(&norm.scaled_displacement(&load)),
-            };
-            let enforced = gap.iter().fold(0.0, |enforced: f64, gap| enforced.max(-gap));
-            let reach = ldexp(free, unit).max(enforced);
-            if reach > 0.0 && reach < local {
-                let finer = exponent(reach);
-                load.iter_mut().chain(&mut sweep).for_each(|value| *value = ldexp(*value, unit - finer));
-                unit = finer;
-            }
-        }
-        let gap = self.scaling.gap(&gap, unit);
-        let problem = match &self.condensation {
-            Some(condensed) => {
-                let load = condensed.load(&sweep);
-                ContactProblem::new(condensed.stiffness().clone(), load, condensed.contact().clone(), gap)
-            }
-            None => ContactProblem::new(self.scaling.stiffness().clone(), load, self.scaling.contact().clone(), gap),
-        }?;
-        Ok(Scaled { problem, unit, sweep })
+    fn own_load(&self) -> Arc<Loading> {
+        self.loading.get_or_init(|| self.load(self.problem.load().to_vec(), self.problem.gap())).clone()
+    }
+
+    fn other_load(&self, load: Vec<f64>) -> Result<Arc<Loading>, Error> {
+        let checked = self.problem.with_load(load)?;
+        Ok(self.load(checked.load().to_vec(), self.problem.gap()))
+    }
+
+    /// The problem that the methods work on, and the exponent of its reference displacement.
+    fn scaled(&self, loading: &Loading, gap: &[f64]) -> Result<(ContactProblem, i32), Error> {
+        let gap = self.selection.gap(gap);
+        let unit = loading.unit_with(&gap);
+        let (stiffness, contact) = match &self.condensation {
+            Some(condensed) => (condensed.stiffness(), condensed.contact()),
+            None => (self.scaling.stiffness(), self.scaling.contact()),
+        };
+        let (load, gap) = (loading.scaled(unit), self.scaling.gap(&gap, unit));
+        Ok((ContactProblem::new(stiffness.clone(), load, contact.clone(), gap)?, unit))
     }
 
     /// The displacement of the whole body, in its own unit.
-    fn expand(&self, scaled: &Scaled, displacement: &[f64]) -> Vec<f64> {
+    pub(super) fn expand(&self, loading: &Loading, unit: i32, displacement: &[f64]) -> Vec<f64> {
         match &self.condensation {
             Some(condensed) => {
-                self.scaling.expand_displacement(&condensed.expand(&scaled.sweep, displacement), scaled.unit)
+                // In the unit of the sweep.
+                let moved: Vec<f64> = displacement.iter().map(|&v| ldexp(v, unit - loading.unit)).collect();
+                self.scaling.expand_displacement(&condensed.expand(&loading.sweep, &moved), loading.unit)
             }
-            None => self.scaling.expand_displacement(displacement, scaled.unit),
+            None => self.scaling.expand_displacement(displacement, unit),
         }
     }
 
     /// Rows and directions of an error in the terms of the original problem.
-    fn expand_error(&self, error: Error, scaled: &Scaled) -> Error {
+    fn expand_error(&self, error: Error) -> Error {
         let normalised = |direction: Vec<f64>| {
             let whole = match &self.condensation {
                 // A free motion moves the interior along without force.
-                Some(condensed) => condensed.expand(&vec![0.0; scaled.sweep.len()], &direction),
+                Some(condensed) => condensed.expand(&vec![0.0; self.problem.dofs()], &direction),
                 None => direction,
             };
             let mut direction = self.scaling.expand_displacement(&whole, 0);
@@ -289,8 +377,9 @@ impl Prepared {
 }
 
 /// The factor of `K + B'B` with the contact dofs last, or `None` where it is not safely definite.
-fn factor_with_rows(scaling: &Scaling, contact_dofs: &[usize]) -> Result<Option<Cholesky>, Error> {
-    let augmented = AugmentedMatrix::with_last(scaling.stiffness(), scaling.contact(), contact_dofs)?;
+fn factor_with_rows(scaling: &Scaling, contact_dofs: &[usize], threads: usize) -> Result<Option<Cholesky>, Error> {
+    let augmented =
+        AugmentedMatrix::with_last(scaling.stiffness(), scaling.contact(), contact_dofs)?.with_threads(threads);
     let matrix = augmented.matrix(|_| 1.0, 0.0);
     match augmented.factor(&matrix) {
         Ok(cholesky) if cholesky.is_definite(&matrix) => Ok(Some(cholesky)),

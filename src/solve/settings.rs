@@ -47,6 +47,8 @@ pub struct Settings {
     pub method: Method,
     /// Is the problem condensed onto its contact dofs?
     pub condense: Condense,
+    /// Threads of the sparse factorisations, at least 1.
+    pub threads: usize,
     /// Tolerance of the certificate, relative: what `Ok` promises.
     pub tolerance: f64,
     /// Is the contact set of the QP settled by the active-set loop?
@@ -68,6 +70,7 @@ impl Default for Settings {
         Settings {
             method: Method::Auto,
             condense: Condense::Auto,
+            threads: 1,
             tolerance: 1e-9,
             polish: true,
             interior_point_tolerance: 1e-9,
@@ -105,6 +108,9 @@ impl Settings {
         if self.penetration_threshold.is_nan() || self.penetration_threshold < 0.0 {
             let value = self.penetration_threshold;
             return Err(Error::Setting { name: "penetration_threshold", value, allowed: "zero or positive" });
+        }
+        if self.threads == 0 {
+            return Err(Error::Setting { name: "threads", value: 0.0, allowed: "at least 1" });
         }
         if self.max_iterations == 0 {
             return Err(Error::Setting { name: "max_iterations", value: 0.0, allowed: "at least 1" });

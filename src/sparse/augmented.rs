@@ -14,7 +14,7 @@ pub struct AugmentedMatrix {
     /// Row i of B adds `products[k].1 * w_i` to slot `products[k].0`, for k in `row_starts[i]..row_starts[i + 1]`.
     row_starts: Vec<usize>,
     products: Vec<(usize, f64)>,
-    stiffness_values: Vec<f64>,
+    stiffness: SparseMatrix,
     analysis: Analysis,
 }
 
@@ -70,15 +70,19 @@ impl AugmentedMatrix {
         let zeros = vec![0.0; indices.len()];
         let pattern = SparseMatrix::from_parts(dim, starts, indices, zeros);
         let analysis = Analysis::with_last(&SymmetricMatrix::from_sorted_lower(pattern.clone()), last)?;
-        let stiffness_values = stiffness.lower().values().to_vec();
-        Ok(Self { pattern, stiffness_slots, diagonal_slots, row_starts, products, stiffness_values, analysis })
+        let stiffness = stiffness.lower().clone();
+        Ok(Self { pattern, stiffness_slots, diagonal_slots, row_starts, products, stiffness, analysis })
+    }
+
+    /// The same matrices, whose factorisations use so many threads.
+    pub fn with_threads(self, threads: usize) -> Self {
+        AugmentedMatrix { analysis: self.analysis.with_threads(threads), ..self }
     }
 
     /// The matrix K + shift I + B' diag(weight(i)) B.
     pub fn matrix(&self, weight: impl Fn(usize) -> f64, shift: f64) -> SymmetricMatrix {
-        let mut sum = self.pattern.clone();
-        let values = &mut sum.values;
-        for (&slot, &value) in self.stiffness_slots.iter().zip(&self.stiffness_values) {
+        let mut values = vec![0.0; self.pattern.entries()];
+        for (&slot, &value) in self.stiffness_slots.iter().zip(self.stiffness.values()) {
             values[slot] += value;
         }
         for row in 0..self.row_starts.len() - 1 {
@@ -94,7 +98,7 @@ impl AugmentedMatrix {
                 values[slot] += shift;
             }
         }
-        SymmetricMatrix::from_sorted_lower(sum)
+        SymmetricMatrix::from_sorted_lower(self.pattern.with_values(values))
     }
 
     /// Factorises a matrix that [`AugmentedMatrix::matrix`] returned.

@@ -9,7 +9,7 @@ use faer::sparse::linalg::{SupernodalThreshold, cholesky as fc};
 use faer::sparse::{FaerError, SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 
-use super::{SparseMatrix, SymmetricMatrix, ordering};
+use super::{SparseMatrix, SymmetricMatrix, dot, ordering};
 use crate::error::Error;
 
 /// Fill-reducing ordering and structure of the factor, for all matrices of one sparsity pattern.
@@ -17,6 +17,7 @@ use crate::error::Error;
 pub struct Analysis {
     symbolic: Arc<fc::SymbolicCholesky<usize>>,
     trailing: usize,
+    threads: usize,
 }
 
 /// The factor L of a positive definite matrix.
@@ -25,6 +26,7 @@ pub struct Cholesky {
     analysis: Analysis,
     /// Shared, because a factor is the largest thing there is.
     values: Arc<Vec<f64>>,
+    smallest_pivot: f64,
 }
 
 /// Why a factorisation did not end with a factor.
@@ -94,7 +96,12 @@ impl Analysis {
             fc::SymmetricOrdering::Custom(PermRef::new_checked(&order, &place, order.len())),
             fc::CholeskySymbolicParams { supernodal_flop_ratio_threshold: threshold, ..Default::default() },
         )?;
-        Ok(Analysis { symbolic: Arc::new(symbolic), trailing: last.len() })
+        Ok(Analysis { symbolic: Arc::new(symbolic), trailing: last.len(), threads: 1 })
+    }
+
+    /// The same analysis, whose factorisations use so many threads.
+    pub fn with_threads(self, threads: usize) -> Self {
+        Analysis { threads, ..self }
     }
 
     /// Number of values of the factor, zeros inside supernodes included.
@@ -108,10 +115,12 @@ impl Analysis {
     /// [`FactorError::NotPositiveDefinite`] for a pivot that is not positive.
     pub fn factor(&self, matrix: &SymmetricMatrix) -> Result<Cholesky, FactorError> {
         let size = self.symbolic.len_val();
-        let mut values = Vec::new();
-        values.try_reserve_exact(size).map_err(|_| FactorError::Failed("out of memory".into()))?;
-        values.resize(size, 0.0);
-        let mut buffer = memory(self.symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default()))?;
+        // Asked for first, because a vector of zeros would end the program; the zeros come untouched from the system.
+        let request = Vec::<f64>::new().try_reserve_exact(size);
+        request.map_err(|_| FactorError::Failed("out of memory".into()))?;
+        let mut values = vec![0.0; size];
+        let par = if self.threads > 1 { Par::rayon(self.threads) } else { Par::Seq };
+        let mut buffer = memory(self.symbolic.factorize_numeric_llt_scratch::<f64>(par, Default::default()))?;
         let lower = matrix.lower();
         self.symbolic
             .factorize_numeric_llt(
@@ -119,13 +128,14 @@ impl Analysis {
                 SparseColMatRef::new(structure(lower), lower.values()),
                 Side::Lower,
                 Default::default(),
-                Par::Seq,
+                par,
                 MemStack::new(&mut buffer),
                 Default::default(),
             )
             .map_err(|LltError::NonPositivePivot { .. }| FactorError::NotPositiveDefinite)?;
-        if values.iter().all(|value| value.is_finite()) {
-            Ok(Cholesky { analysis: self.clone(), values: Arc::new(values) })
+        let (smallest_pivot, finite) = pivots(&self.symbolic, &values);
+        if finite {
+            Ok(Cholesky { analysis: self.clone(), values: Arc::new(values), smallest_pivot })
         } else {
             Err(FactorError::NotPositiveDefinite)
         }
@@ -146,6 +156,11 @@ impl Cholesky {
         self.analysis.symbolic.nrows()
     }
 
+    /// Number of values of the factor, zeros inside supernodes included.
+    pub fn entries(&self) -> usize {
+        self.values.len()
+    }
+
     /// The solution x of A x = b, length `dim`.
     pub fn solve(&self, b: &[f64]) -> Vec<f64> {
         let mut x = b.to_vec();
@@ -159,6 +174,17 @@ impl Cholesky {
             MemStack::new(&mut buffer),
         );
         x
+    }
+
+    /// `b' A^-1 b`: the squared length of L^-1 P b, by one sweep where a solution takes two.
+    pub fn inverse_product(&self, b: &[f64]) -> f64 {
+        match self.supernodes() {
+            Some(_) => {
+                let y = self.forward(b);
+                dot(&y, &y)
+            }
+            None => dot(b, &self.solve(b)),
+        }
     }
 
     /// The sweep L y = P b through the factor, in the order of elimination; its last entries belong to the columns that
@@ -215,7 +241,7 @@ impl Cholesky {
 
     fn supernodes(&self) -> Option<fc::supernodal::SupernodalLltRef<'_, usize, f64>> {
         match self.analysis.symbolic.raw() {
-            fc::SymbolicCholeskyRaw::Supernodal(inner) if self.analysis.trailing > 0 => {
+            fc::SymbolicCholeskyRaw::Supernodal(inner) => {
                 Some(fc::supernodal::SupernodalLltRef::new(inner, &self.values))
             }
             _ => None,
@@ -224,19 +250,28 @@ impl Cholesky {
 
     /// The smallest pivot, min over j of L_jj^2: small against the diagonal of A when A is close to singular.
     pub fn smallest_pivot(&self) -> f64 {
-        let symbolic = &*self.analysis.symbolic;
-        let diagonal: Box<dyn Iterator<Item = f64>> = match symbolic.raw() {
-            fc::SymbolicCholeskyRaw::Simplicial(inner) => {
-                Box::new(inner.col_ptr()[..inner.ncols()].iter().map(|&start| self.values[start]))
-            }
-            fc::SymbolicCholeskyRaw::Supernodal(inner) => {
-                let factor = fc::supernodal::SupernodalLltRef::new(inner, &self.values);
-                Box::new((0..inner.n_supernodes()).flat_map(move |node| {
-                    let block = factor.supernode(node).val();
-                    (0..block.ncols()).map(move |j| block[(j, j)])
-                }))
-            }
-        };
-        diagonal.map(|pivot| pivot * pivot).fold(f64::INFINITY, f64::min)
+        self.smallest_pivot
     }
+}
+
+/// The smallest pivot, and are all entries finite? Every entry enters the pivot of its row, which tells.
+fn pivots(symbolic: &fc::SymbolicCholesky<usize>, values: &[f64]) -> (f64, bool) {
+    let (mut smallest, mut finite) = (f64::INFINITY, true);
+    let mut see = |entry: f64| {
+        smallest = smallest.min(entry * entry);
+        finite &= entry.is_finite();
+    };
+    match symbolic.raw() {
+        fc::SymbolicCholeskyRaw::Simplicial(inner) => {
+            inner.col_ptr()[..inner.ncols()].iter().for_each(|&start| see(values[start]));
+        }
+        fc::SymbolicCholeskyRaw::Supernodal(inner) => {
+            let factor = fc::supernodal::SupernodalLltRef::new(inner, values);
+            for node in 0..inner.n_supernodes() {
+                let block = factor.supernode(node).val();
+                (0..block.ncols()).for_each(|j| see(block[(j, j)]));
+            }
+        }
+    }
+    (smallest, finite)
 }

@@ -3,8 +3,10 @@
 mod augmented;
 mod cholesky;
 mod definite;
+mod elimination;
 mod ordering;
 mod power_of_two;
+mod quotient;
 mod symmetric;
 mod vector;
 
@@ -14,15 +16,25 @@ pub use power_of_two::{Equilibration, exponent, ldexp};
 pub use symmetric::SymmetricMatrix;
 pub use vector::{dot, largest};
 
+use std::sync::Arc;
+
 use crate::error::Error;
 
 /// A real matrix in compressed columns: rows sorted within each column, no duplicates, all values finite.
+///
+/// Clones share their memory, and so do matrices of one pattern: a stiffness and its scaled form keep one set of indices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SparseMatrix {
     rows: usize,
+    pattern: Arc<Pattern>,
+    values: Arc<Vec<f64>>,
+}
+
+/// Where the entries are, column by column.
+#[derive(Debug, PartialEq, Eq)]
+struct Pattern {
     column_starts: Vec<usize>,
     row_indices: Vec<usize>,
-    values: Vec<f64>,
 }
 
 impl SparseMatrix {
@@ -52,29 +64,25 @@ impl SparseMatrix {
             entries[place[column]] = (row, value);
             place[column] += 1;
         }
-        let mut matrix = SparseMatrix {
-            rows,
-            column_starts: Vec::with_capacity(columns + 1),
-            row_indices: Vec::with_capacity(triplets.len()),
-            values: Vec::with_capacity(triplets.len()),
-        };
-        matrix.column_starts.push(0);
+        let mut column_starts = Vec::with_capacity(columns + 1);
+        let (mut row_indices, mut values) = (Vec::with_capacity(triplets.len()), Vec::with_capacity(triplets.len()));
+        column_starts.push(0);
         for column in 0..columns {
-            let start = matrix.row_indices.len();
+            let start = row_indices.len();
             let of_column = &mut entries[starts[column]..starts[column + 1]];
             of_column.sort_by_key(|entry| entry.0);
             for &(row, value) in of_column.iter() {
-                match (matrix.row_indices[start..].last(), matrix.values.last_mut()) {
+                match (row_indices[start..].last(), values.last_mut()) {
                     (Some(&last), Some(sum)) if last == row => *sum += value,
                     _ => {
-                        matrix.row_indices.push(row);
-                        matrix.values.push(value);
+                        row_indices.push(row);
+                        values.push(value);
                     }
                 }
             }
-            matrix.column_starts.push(matrix.row_indices.len());
+            column_starts.push(row_indices.len());
         }
-        Ok(matrix)
+        Ok(Self::from_parts(rows, column_starts, row_indices, values))
     }
 
     /// The matrix with given compressed columns, trusted to be sorted and in range.
@@ -84,7 +92,13 @@ impl SparseMatrix {
         row_indices: Vec<usize>,
         values: Vec<f64>,
     ) -> Self {
-        SparseMatrix { rows, column_starts, row_indices, values }
+        let pattern = Arc::new(Pattern { column_starts, row_indices });
+        SparseMatrix { rows, pattern, values: Arc::new(values) }
+    }
+
+    /// The matrix with other values in the same places.
+    pub(crate) fn with_values(&self, values: Vec<f64>) -> Self {
+        SparseMatrix { rows: self.rows, pattern: self.pattern.clone(), values: Arc::new(values) }
     }
 
     /// Number of rows.
@@ -94,7 +108,7 @@ impl SparseMatrix {
 
     /// Number of columns.
     pub fn columns(&self) -> usize {
-        self.column_starts.len() - 1
+        self.pattern.column_starts.len() - 1
     }
 
     /// Number of stored entries.
@@ -104,12 +118,12 @@ impl SparseMatrix {
 
     /// Start of each column in [`row_indices`](Self::row_indices) and [`values`](Self::values), length `columns + 1`.
     pub fn column_starts(&self) -> &[usize] {
-        &self.column_starts
+        &self.pattern.column_starts
     }
 
     /// Row of each entry, column by column.
     pub fn row_indices(&self) -> &[usize] {
-        &self.row_indices
+        &self.pattern.row_indices
     }
 
     /// Value of each entry, column by column.
@@ -119,8 +133,8 @@ impl SparseMatrix {
 
     /// The entries `(row, value)` of one column.
     pub fn column(&self, column: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let range = self.column_starts[column]..self.column_starts[column + 1];
-        self.row_indices[range.clone()].iter().copied().zip(self.values[range].iter().copied())
+        let range = self.pattern.column_starts[column]..self.pattern.column_starts[column + 1];
+        self.pattern.row_indices[range.clone()].iter().copied().zip(self.values[range].iter().copied())
     }
 
     /// All entries `(row, column, value)`, column by column.
@@ -144,13 +158,13 @@ impl SparseMatrix {
 
     /// The matrix with every entry replaced by its magnitude.
     pub fn abs(&self) -> Self {
-        SparseMatrix { values: self.values.iter().map(|value| value.abs()).collect(), ..self.clone() }
+        self.with_values(self.values.iter().map(|value| value.abs()).collect())
     }
 
     /// The transposed matrix: its columns are the rows of this one.
     pub fn transposed(&self) -> Self {
         let mut starts = vec![0_usize; self.rows + 1];
-        for &row in &self.row_indices {
+        for &row in self.row_indices() {
             starts[row + 1] += 1;
         }
         for row in 0..self.rows {
@@ -164,13 +178,12 @@ impl SparseMatrix {
             values[place[row]] = value;
             place[row] += 1;
         }
-        SparseMatrix { rows: self.columns(), column_starts: starts, row_indices, values }
+        Self::from_parts(self.columns(), starts, row_indices, values)
     }
 
     /// The matrix diag(left) A diag(right).
     pub fn scaled(&self, left: &[f64], right: &[f64]) -> Self {
-        let values = self.triplets().map(|(row, column, value)| left[row] * value * right[column]).collect();
-        SparseMatrix { values, ..self.clone() }
+        self.with_values(self.triplets().map(|(row, column, value)| left[row] * value * right[column]).collect())
     }
 
     /// The rows listed in `kept` (increasing), as a matrix of `kept.len()` rows.
@@ -179,16 +192,16 @@ impl SparseMatrix {
         for (new, &old) in kept.iter().enumerate() {
             new_row[old] = new;
         }
-        let mut selected = SparseMatrix::from_parts(kept.len(), vec![0], Vec::new(), Vec::new());
+        let (mut starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
         for column in 0..self.columns() {
             for (row, value) in self.column(column) {
                 if new_row[row] != usize::MAX {
-                    selected.row_indices.push(new_row[row]);
-                    selected.values.push(value);
+                    rows.push(new_row[row]);
+                    values.push(value);
                 }
             }
-            selected.column_starts.push(selected.row_indices.len());
+            starts.push(rows.len());
         }
-        selected
+        Self::from_parts(kept.len(), starts, rows, values)
     }
 }

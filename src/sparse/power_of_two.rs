@@ -18,6 +18,10 @@ pub fn exponent(x: f64) -> i32 {
 /// `x 2^e`, exact unless the result itself leaves the range of double precision.
 pub fn ldexp(x: f64, e: i32) -> f64 {
     const STEP: i32 = 1000;
+    if e.abs() <= STEP {
+        // The bits of 2^e: this is called once for each entry of the stiffness.
+        return x * f64::from_bits(((1023 + e) as u64) << 52);
+    }
     let mut result = x;
     let mut rest = e.clamp(-4 * STEP, 4 * STEP);
     while rest != 0 {
@@ -54,10 +58,11 @@ impl Equilibration {
     pub fn apply(&self, matrix: &SymmetricMatrix) -> SymmetricMatrix {
         let scale = &self.diagonal;
         let lower = matrix.lower();
-        let values = lower
-            .triplets()
-            .map(|(row, column, value)| ldexp(value, self.factor + scale[row] + scale[column]))
-            .collect();
-        SymmetricMatrix::from_sorted_lower(super::SparseMatrix { values, ..lower.clone() })
+        let mut values = Vec::with_capacity(lower.entries());
+        for column in 0..lower.columns() {
+            let factor = self.factor + scale[column];
+            values.extend(lower.column(column).map(|(row, value)| ldexp(value, factor + scale[row])));
+        }
+        SymmetricMatrix::from_sorted_lower(lower.with_values(values))
     }
 }

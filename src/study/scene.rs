@@ -135,7 +135,8 @@ pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, 
         return Ok(Sweep { points: Vec::new(), events: Vec::new(), corners: Vec::new() });
     };
     let at_first = model.with_gap(first)?;
-    let prepared = Prepared::new(at_first.problem(), settings.condense).map_err(|error| at_first.explain(error))?;
+    let prepared = Prepared::with_threads(at_first.problem(), settings.condense, settings.threads)
+        .map_err(|error| at_first.explain(error))?;
     let mut points: Vec<SweepPoint> = Vec::new();
     for &gap in gaps {
         let clock = Instant::now();

@@ -20,6 +20,12 @@ const LARGEST_SHARE: f64 = 0.25;
 /// A dense factorisation on the contact dofs may cost this many times the estimate for the sparse one, which is low.
 const DENSE_WORK: f64 = 3.0;
 
+/// Dense matrices on the contact dofs that exist at one time, in the memory of their values.
+const DENSE_MATRICES: f64 = 5.0;
+
+/// Values that are not worth counting.
+const FEW_VALUES: f64 = 1e6;
+
 /// The condensed stiffness, with the way back to the whole body.
 #[derive(Clone, Debug)]
 pub struct Condensation {
@@ -49,7 +55,9 @@ impl Condensation {
         // The work of the interior is at least the square of its entries over its columns.
         let interior_entries = (analysis.factor_entries() as f64 - count * count / 2.0).max(0.0);
         let interior_work = interior_entries * interior_entries / (dim - count);
-        Ok((count.powi(3) / 3.0 <= DENSE_WORK * interior_work).then_some(analysis))
+        let quick = count.powi(3) / 3.0 <= DENSE_WORK * interior_work;
+        let small = DENSE_MATRICES * count * count <= FEW_VALUES.max(analysis.factor_entries() as f64);
+        Ok((quick && small).then_some(analysis))
     }
 
     /// Condenses with a factorisation of K (`shifted` false) or K + B'B (`shifted` true) that put `contact_dofs` last.
@@ -85,6 +93,11 @@ impl Condensation {
             (0..size).flat_map(|j| (j..size).map(move |i| (i, j))).map(|(i, j)| (i, j, schur[j * size + i])).collect();
         let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(size, size, &entries)?)?;
         Ok(Condensation { contact_dofs, cholesky, trailing, stiffness, contact })
+    }
+
+    /// Number of values of the factor.
+    pub fn factor_entries(&self) -> usize {
+        self.cholesky.entries()
     }
 
     /// The condensed stiffness S.

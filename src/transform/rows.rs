@@ -18,7 +18,8 @@ type Nearest = [Option<(usize, f64)>; 2];
 /// The rows that can close: those with an obstacle (finite gap) and with a dof to move.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RowSelection {
-    rows: usize,
+    /// The transposed contact rows: the entries of a row are a column.
+    by_row: SparseMatrix,
     kept: Vec<usize>,
 }
 
@@ -28,7 +29,18 @@ impl RowSelection {
     /// # Errors
     /// [`Error::Infeasible`] for a row without dofs whose gap is negative, and for two opposed rows whose gaps overlap.
     pub fn of(contact: &SparseMatrix, gap: &[f64]) -> Result<Self, Error> {
-        let by_row = contact.transposed();
+        Self::of_transposed(contact.transposed(), gap)
+    }
+
+    /// The selection from the same rows under another gap.
+    ///
+    /// # Errors
+    /// As [`RowSelection::of`].
+    pub fn under(&self, gap: &[f64]) -> Result<Self, Error> {
+        Self::of_transposed(self.by_row.clone(), gap)
+    }
+
+    fn of_transposed(by_row: SparseMatrix, gap: &[f64]) -> Result<Self, Error> {
         let is_empty = |row: usize| by_row.column(row).all(|(_, value)| value == 0.0);
         if let Some(row) = (0..gap.len()).find(|&row| gap[row] < 0.0 && is_empty(row)) {
             let reason =
@@ -59,7 +71,7 @@ impl RowSelection {
             let reason = format!("contact rows {a} and {b} oppose each other and overlap by {:e}", -overlap);
             return Err(Error::Infeasible { reason, rows: vec![a, b] });
         }
-        Ok(RowSelection { rows: gap.len(), kept })
+        Ok(RowSelection { by_row, kept })
     }
 
     /// The index in the original problem of each selected row.
@@ -79,7 +91,7 @@ impl RowSelection {
 
     /// Multipliers of all rows from those of the selected ones: a row that cannot close carries none.
     pub fn expand_multiplier(&self, multiplier: &[f64]) -> Vec<f64> {
-        let mut all = vec![0.0; self.rows];
+        let mut all = vec![0.0; self.by_row.columns()];
         for (&row, &value) in self.kept.iter().zip(multiplier) {
             all[row] = value;
         }
@@ -88,7 +100,7 @@ impl RowSelection {
 
     /// The contact set in the original rows.
     pub fn expand_set(&self, set: &ContactSet) -> ContactSet {
-        let mut all = ContactSet::open(self.rows);
+        let mut all = ContactSet::open(self.by_row.columns());
         set.iter().for_each(|row| all.set(self.kept[row], true));
         all
     }

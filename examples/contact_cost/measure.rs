@@ -1,0 +1,211 @@
+//! What is measured.
+
+use std::hint::black_box;
+use std::sync::OnceLock;
+use std::time::Instant;
+
+use signorini::{Condense, ContactSet, Error, Method, Model, Prepared, Settings};
+
+use crate::case::{Case, FIRST_GAP};
+use crate::linear::{self, Ordering};
+
+/// The first gap is followed by this many, each a tenth further.
+const NEXT_GAPS: usize = 9;
+
+/// Something that is done with a model.
+#[derive(Clone, Copy, PartialEq)]
+pub struct Task {
+    pub name: &'static str,
+    work: Work,
+    /// The most dofs in the plane and in space that it is done with: methods on all dofs take long.
+    most_dofs: [usize; 2],
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Work {
+    Assembly,
+    Linear(Ordering),
+    /// From the checked problem to the certified answer.
+    Contact(Method, Condense),
+    /// As `Contact`, with the certificate of the condensed problem alone.
+    Uncertified,
+    /// As `Contact` with so many threads, by the clock on the wall.
+    Threads(usize),
+    /// The next gap, mean of nine: contact set and forces.
+    NextForces,
+    /// The next gap, mean of nine: displacement of the whole body, certified.
+    NextDisplacement,
+    /// Everything that happens over ten gaps, preparation included, with the contact forces at each.
+    Sweep,
+}
+
+const ALL: [usize; 2] = [usize::MAX; 2];
+
+const fn task(name: &'static str, work: Work, most_dofs: [usize; 2]) -> Task {
+    Task { name, work, most_dofs }
+}
+
+const fn contact(name: &'static str, method: Method) -> Task {
+    task(name, Work::Contact(method, Condense::Auto), ALL)
+}
+
+const fn full(name: &'static str, method: Method, most_dofs: [usize; 2]) -> Task {
+    task(name, Work::Contact(method, Condense::Never), most_dofs)
+}
+
+pub const TASKS: [Task; 15] = [
+    task("assembly", Work::Assembly, ALL),
+    task("linear solve", Work::Linear(Ordering::Amd), ALL),
+    task("linear solve, dissected", Work::Linear(Ordering::NestedDissection(3)), [0, usize::MAX]),
+    contact("active set", Method::ActiveSet),
+    contact("QP", Method::Qp),
+    contact("penalty", Method::Penalty),
+    task("active set, uncertified", Work::Uncertified, ALL),
+    task("active set, wall clock", Work::Threads(1), ALL),
+    task("active set, two threads", Work::Threads(2), ALL),
+    task("next gap, forces", Work::NextForces, ALL),
+    task("next gap, displacement", Work::NextDisplacement, ALL),
+    task("sweep of ten gaps", Work::Sweep, ALL),
+    full("active set, full", Method::ActiveSet, [40_000, 10_000]),
+    full("QP, full", Method::Qp, [140_000, 10_000]),
+    full("penalty, full", Method::Penalty, [40_000, 10_000]),
+];
+
+impl Task {
+    pub fn runs(&self, case: &Case) -> bool {
+        case.dofs() <= self.most_dofs[usize::from(case.space)]
+    }
+
+    /// Is it done once instead of in every round?
+    pub fn is_slow(&self) -> bool {
+        matches!(self.work, Work::Contact(_, Condense::Never))
+    }
+
+    /// Does it, and returns the seconds that it took.
+    pub fn seconds(&self, case: &Case, bench: &Bench) -> Result<f64, Error> {
+        let problem = bench.model.problem();
+        let start = processor_seconds();
+        match self.work {
+            Work::Assembly => drop(black_box(case.model()?)),
+            Work::Linear(ordering) => drop(black_box(linear::solve(problem.stiffness(), problem.load(), ordering))),
+            Work::Contact(method, condense) => {
+                let mut settings = Settings::with_method(method);
+                settings.condense = condense;
+                match signorini::solve(problem, &settings) {
+                    Ok(solution) => drop(black_box(solution)),
+                    // The penalty method ends where its best accuracy is reached.
+                    Err(Error::NotCertified { solution, .. }) => drop(black_box(solution)),
+                    Err(error) => return Err(error),
+                }
+            }
+            Work::Uncertified => {
+                let prepared = bench.prepared()?;
+                let boundary = prepared.boundary_at_gap(problem.gap().to_vec(), None, &active_set())?;
+                black_box(boundary.displacement());
+            }
+            Work::Threads(threads) => {
+                let mut settings = active_set();
+                settings.threads = threads;
+                let clock = Instant::now();
+                black_box(signorini::solve(problem, &settings)?);
+                return Ok(clock.elapsed().as_secs_f64());
+            }
+            Work::NextForces => {
+                return bench.walk(|prepared, gap, closed| {
+                    Ok(prepared.boundary_at_gap(gap, Some(closed), &active_set())?.contact_set)
+                });
+            }
+            Work::NextDisplacement => {
+                return bench.walk(|prepared, gap, closed| {
+                    Ok(prepared.solve_gap(gap, Some(closed), &active_set())?.contact_set)
+                });
+            }
+            Work::Sweep => {
+                let prepared = bench.prepared()?;
+                let path = prepared.path(problem.gap(), bench.last_gap(), &active_set())?;
+                for step in 0..=NEXT_GAPS {
+                    black_box(path.multiplier(step as f64 / NEXT_GAPS as f64));
+                }
+            }
+        }
+        Ok(processor_seconds() - start)
+    }
+}
+
+fn active_set() -> Settings {
+    Settings::with_method(Method::ActiveSet)
+}
+
+/// A model with the gaps that follow its own.
+pub struct Bench {
+    model: Model,
+    gaps: Vec<Vec<f64>>,
+}
+
+impl Bench {
+    pub fn of(case: &Case) -> Result<Self, Error> {
+        let model = case.model()?;
+        let deeper = |step: usize| FIRST_GAP * step as f64 / 10.0;
+        let gaps = (1..=NEXT_GAPS).map(|step| model.problem().gap().iter().map(|gap| gap + deeper(step)).collect());
+        Ok(Bench { gaps: gaps.collect(), model })
+    }
+
+    fn prepared(&self) -> Result<Prepared, Error> {
+        Prepared::new(self.model.problem(), Condense::Auto)
+    }
+
+    /// Mean seconds of `step` over the next gaps, each from the contact set of the one before.
+    fn walk(&self, step: impl Fn(&Prepared, Vec<f64>, &ContactSet) -> Result<ContactSet, Error>) -> Result<f64, Error> {
+        let prepared = self.prepared()?;
+        let mut closed = prepared.solve(&active_set())?.contact_set;
+        let start = processor_seconds();
+        for gap in &self.gaps {
+            closed = step(&prepared, gap.clone(), &closed)?;
+        }
+        Ok((processor_seconds() - start) / NEXT_GAPS as f64)
+    }
+
+    fn last_gap(&self) -> &[f64] {
+        self.gaps.last().map_or(self.model.problem().gap(), Vec::as_slice)
+    }
+
+    pub fn rows(&self) -> usize {
+        self.model.problem().rows()
+    }
+
+    pub fn condensed_dofs(&self) -> Result<usize, Error> {
+        Ok(self.prepared()?.condensed_dofs())
+    }
+
+    /// Bytes of the values of the factor that the contact solve makes.
+    pub fn contact_factor_bytes(&self) -> Result<f64, Error> {
+        Ok(8.0 * self.prepared()?.factor_entries() as f64)
+    }
+
+    /// Bytes of the values of the factor that the linear solve makes.
+    pub fn factor_bytes(&self, ordering: Ordering) -> Option<f64> {
+        let problem = self.model.problem();
+        linear::solve(problem.stiffness(), problem.load(), ordering).map(|(_, values)| 8.0 * values as f64)
+    }
+}
+
+/// Seconds that this thread has had a processor: other programs do not count. Wall-clock seconds where the system does
+/// not tell.
+fn processor_seconds() -> f64 {
+    static START: OnceLock<Instant> = OnceLock::new();
+    let from_system = || -> Option<f64> {
+        // The account of a running thread is brought up to date when it gives way.
+        std::thread::yield_now();
+        let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+        Some(1e-9 * text.split_whitespace().next()?.parse::<f64>().ok()?)
+    };
+    from_system().unwrap_or_else(|| START.get_or_init(Instant::now).elapsed().as_secs_f64())
+}
+
+/// Bytes of the greatest memory that this process ever had; nothing where the system has no such file.
+pub fn peak_bytes() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = text.lines().find(|line| line.starts_with("VmHWM"))?;
+    let kilobytes: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(kilobytes * 1024.0)
+}

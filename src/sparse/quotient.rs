@@ -1,0 +1,168 @@
+//! The graph of a symmetric matrix with alike columns taken as one: for a stiffness, the graph of its nodes.
+
+use super::SparseMatrix;
+
+/// No group has this number.
+const NONE: u32 = u32::MAX;
+
+/// Groups of columns with the same neighbours, and which groups meet.
+pub(super) struct Quotient {
+    /// Group of each column.
+    of_column: Vec<u32>,
+    /// Members of a group follow each other.
+    member_starts: Vec<u32>,
+    columns: Vec<usize>,
+    /// Neighbours of a group, on both sides, in no order.
+    starts: Vec<u32>,
+    neighbours: Vec<u32>,
+}
+
+impl Quotient {
+    /// The quotient graph of a matrix given by its lower triangle.
+    pub fn of(lower: &SparseMatrix) -> Self {
+        let (of_column, count) = groups(lower);
+        let mut member_starts = vec![0_u32; count + 1];
+        of_column.iter().for_each(|&group| member_starts[group as usize + 1] += 1);
+        (0..count).for_each(|group| member_starts[group + 1] += member_starts[group]);
+        let mut place = member_starts.clone();
+        let mut columns = vec![0; lower.columns()];
+        for (column, &group) in of_column.iter().enumerate() {
+            columns[place[group as usize] as usize] = column;
+            place[group as usize] += 1;
+        }
+        let mut quotient = Quotient { of_column, member_starts, columns, starts: Vec::new(), neighbours: Vec::new() };
+        quotient.connect(lower);
+        quotient
+    }
+
+    /// Finds the neighbours: one member stands for all, those above the diagonal come from their own columns.
+    fn connect(&mut self, lower: &SparseMatrix) {
+        let count = self.count();
+        let (mut below_starts, mut below) = (vec![0], Vec::new());
+        let mut seen = vec![NONE; count];
+        let mut starts = vec![0_u32; count + 1];
+        for group in 0..count as u32 {
+            for (row, _) in lower.column(self.members(group)[0]) {
+                let neighbour = self.of_column[row];
+                if neighbour != group && seen[neighbour as usize] != group {
+                    seen[neighbour as usize] = group;
+                    below.push(neighbour);
+                    starts[neighbour as usize + 1] += 1;
+                    starts[group as usize + 1] += 1;
+                }
+            }
+            below_starts.push(below.len());
+        }
+        (0..count).for_each(|group| starts[group + 1] += starts[group]);
+        let mut place = starts.clone();
+        let mut neighbours = vec![0; 2 * below.len()];
+        let mut put = |at: u32, neighbour: u32| {
+            neighbours[place[at as usize] as usize] = neighbour;
+            place[at as usize] += 1;
+        };
+        for group in 0..count {
+            for &neighbour in &below[below_starts[group]..below_starts[group + 1]] {
+                put(group as u32, neighbour);
+                put(neighbour, group as u32);
+            }
+        }
+        (self.starts, self.neighbours) = (starts, neighbours);
+    }
+
+    /// Number of groups.
+    pub fn count(&self) -> usize {
+        self.member_starts.len() - 1
+    }
+
+    /// Number of pairs of groups that meet.
+    pub fn edges(&self) -> usize {
+        self.neighbours.len() / 2
+    }
+
+    /// The columns of a group.
+    pub fn members(&self, group: u32) -> &[usize] {
+        &self.columns[self.member_starts[group as usize] as usize..self.member_starts[group as usize + 1] as usize]
+    }
+
+    /// The groups that meet a group.
+    pub fn neighbours(&self, group: u32) -> &[u32] {
+        &self.neighbours[self.starts[group as usize] as usize..self.starts[group as usize + 1] as usize]
+    }
+
+    /// Where the neighbours of each group start in [`all_neighbours`](Self::all_neighbours).
+    pub fn starts(&self) -> &[u32] {
+        &self.starts
+    }
+
+    /// The neighbours of all groups.
+    pub fn all_neighbours(&self) -> &[u32] {
+        &self.neighbours
+    }
+
+    /// Takes columns out of their groups, which may become empty; the graph stays.
+    pub fn remove(&mut self, columns: &[usize]) {
+        let mut is_kept = vec![true; self.of_column.len()];
+        columns.iter().for_each(|&column| is_kept[column] = false);
+        let mut kept = Vec::with_capacity(self.columns.len());
+        for group in 0..self.count() {
+            let members = self.member_starts[group] as usize..self.member_starts[group + 1] as usize;
+            self.member_starts[group] = kept.len() as u32;
+            kept.extend(self.columns[members].iter().copied().filter(|&column| is_kept[column]));
+        }
+        let count = self.count();
+        self.member_starts[count] = kept.len() as u32;
+        self.columns = kept;
+    }
+}
+
+/// The group of each column and the number of groups. Groups are numbered by their first column.
+fn groups(lower: &SparseMatrix) -> (Vec<u32>, usize) {
+    let dim = lower.columns();
+    // A sum of scrambled indices stands for the set of neighbours; a collision costs fill, not correctness.
+    let mut signature: Vec<u64> = (0..dim).map(scramble).collect();
+    for column in 0..dim {
+        let own = scramble(column);
+        let mut sum = signature[column];
+        for (row, _) in lower.column(column).filter(|entry| entry.0 != column) {
+            sum = sum.wrapping_add(scramble(row));
+            signature[row] = signature[row].wrapping_add(own);
+        }
+        signature[column] = sum;
+    }
+    // Alike columns mostly follow each other; the runs are sorted, which leaves less than the columns to be sorted.
+    let mut runs: Vec<(u64, u32)> = Vec::new();
+    for (column, &of_column) in signature.iter().enumerate() {
+        if column == 0 || signature[column - 1] != of_column {
+            runs.push((of_column, column as u32));
+        }
+    }
+    runs.sort_unstable();
+    let mut first_of = vec![NONE; dim];
+    let mut first = 0;
+    for place in 0..runs.len() {
+        if place == 0 || runs[place].0 != runs[place - 1].0 {
+            first = runs[place].1;
+        }
+        first_of[runs[place].1 as usize] = first;
+    }
+    let mut of_column = vec![NONE; dim];
+    let mut count = 0;
+    for column in 0..dim {
+        of_column[column] = match first_of[column] {
+            NONE => of_column[column - 1],
+            first if first as usize == column => {
+                count += 1;
+                count - 1
+            }
+            first => of_column[first as usize],
+        };
+    }
+    (of_column, count as usize)
+}
+
+fn scramble(index: usize) -> u64 {
+    let mut z = (index as u64).wrapping_add(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
