@@ -1,8 +1,10 @@
 //! The contact problem as a convex QP, checked once, and the certificate of an answer to it.
 
 mod certificate;
+mod energy_bound;
+mod energy_norm;
 
-pub use certificate::EnergyNorm;
+pub use energy_norm::EnergyNorm;
 
 use crate::error::Error;
 use crate::sparse::{SparseMatrix, SymmetricMatrix};

@@ -56,6 +56,10 @@ impl Prepared {
             Condense::Never => None,
         }
         .map(|analysis| analysis.with_threads(threads));
+        let last = match &analysis {
+            Some(_) => contact_dofs.clone(),
+            None => EnergyNorm::last_dofs(scaling.contact()),
+        };
         let definite = |factor: Result<Cholesky, FactorError>| match factor {
             Ok(cholesky) if cholesky.is_definite(scaling.stiffness()) => Ok(Some(cholesky)),
             Ok(_) | Err(FactorError::NotPositiveDefinite) => Ok(None),
@@ -64,7 +68,10 @@ impl Prepared {
         let cholesky = match &analysis {
             _ if has_empty_diagonal => None,
             Some(analysis) => definite(analysis.factor(scaling.stiffness()))?,
-            None => definite(Analysis::of(scaling.stiffness())?.with_threads(threads).factor(scaling.stiffness()))?,
+            None => {
+                let analysis = Analysis::with_last(scaling.stiffness(), &last)?;
+                definite(analysis.with_threads(threads).factor(scaling.stiffness()))?
+            }
         };
         let mut condensation = None;
         if analysis.is_some() {
@@ -82,7 +89,7 @@ impl Prepared {
             Some(condensed) => AugmentedMatrix::new(condensed.stiffness(), condensed.contact())?,
             None => AugmentedMatrix::new(scaling.stiffness(), scaling.contact())?.with_threads(threads),
         };
-        let norm = cholesky.map(|cholesky| EnergyNorm::new(cholesky, scaling.equilibration().clone()));
+        let norm = cholesky.map(|cholesky| EnergyNorm::new(cholesky, scaling.equilibration().clone(), last));
         let factor = factor_clock.elapsed().as_secs_f64();
         Ok(Prepared {
             problem: problem.clone(),
@@ -251,7 +258,7 @@ impl Prepared {
             let unscaled = Equilibration { diagonal: vec![0; problem.dofs()], factor: 0 };
             let factor = self.augmented.factor(&self.augmented.matrix(|_| 0.0, 0.0)).ok();
             // Another thread may have been faster, with the same result.
-            let _ = self.condensed_norm.set(factor.map(|factor| EnergyNorm::new(factor, unscaled)));
+            let _ = self.condensed_norm.set(factor.map(|factor| EnergyNorm::new(factor, unscaled, Vec::new())));
         }
         Ok(self.condensed_norm.get().and_then(Option::as_ref))
     }

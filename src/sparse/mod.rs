@@ -1,5 +1,6 @@
 //! Sparse matrices in compressed columns, and their Cholesky factorisation.
 
+mod accumulator;
 mod augmented;
 mod cholesky;
 mod definite;
@@ -10,6 +11,7 @@ mod quotient;
 mod symmetric;
 mod vector;
 
+pub use accumulator::Accumulator;
 pub use augmented::AugmentedMatrix;
 pub use cholesky::{Analysis, Cholesky, FactorError};
 pub use power_of_two::{Equilibration, exponent, ldexp};
