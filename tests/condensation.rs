@@ -107,7 +107,7 @@ fn body_in_space_has_the_same_answer_and_the_same_search() {
     check_both_ways(&cube(5), "cube");
 }
 
-/// The columns of a supernode are split among the threads, never a sum: the answers are the same bit by bit.
+/// Threads share the columns of a block among them, not the terms of a sum.
 #[test]
 fn two_threads_give_the_answer_of_one_bit_by_bit() {
     let mut settings = settings(Method::ActiveSet, Condense::Auto);
