@@ -21,6 +21,9 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// Sweeps over the rows when a displacement is repaired row by row.
 const REPAIR_SWEEPS: usize = 50;
 
+/// Steps in which the rest of the body follows rows that were put at their gaps; each costs a product with K.
+const RELAXATIONS: usize = 20;
+
 /// Times that the rows which look closed are corrected on the boundary; from then on rows are only added.
 const EXCHANGES: usize = 10;
 
@@ -147,9 +150,9 @@ impl ContactProblem {
     fn bound_row_by_row(&self, norm: &EnergyNorm, answer: &Answer, closed: Option<&[bool]>) -> f64 {
         let by_row = self.contact.transposed();
         let is_closed = |row: usize| closed.is_some_and(|closed| closed[row]);
-        let Some(repair) = self.repair(&by_row, answer, is_closed) else { return f64::INFINITY };
+        let Some(mut repair) = self.repair(&by_row, answer, is_closed) else { return f64::INFINITY };
         let is_moved = repair.iter().any(|&change| change != 0.0);
-        let elastic = if is_moved { self.stiffness.mul(&repair) } else { repair.clone() };
+        let mut elastic = if is_moved { self.stiffness.mul(&repair) } else { repair.clone() };
         let mut multiplier: Vec<f64> = (0..self.rows())
             .map(|row| if closed.is_none() || is_closed(row) { answer.multiplier[row].min(0.0) } else { 0.0 })
             .collect();
@@ -159,6 +162,21 @@ impl ContactProblem {
             residual.iter_mut().zip(elastic.iter().zip(self.contact.mul_transposed(&dropped)))
         {
             *entry += force - elastic;
+        }
+        if closed.is_some() && is_moved {
+            let mut held = vec![false; self.dofs()];
+            for row in (0..self.rows()).filter(|&row| is_closed(row)) {
+                by_row.column(row).filter(|entry| entry.1 != 0.0).for_each(|(dof, _)| held[dof] = true);
+            }
+            let (follow, force) = self.relaxed(&residual, &held);
+            let both: Vec<f64> = repair.iter().zip(&follow).map(|(a, b)| a + b).collect();
+            let (moved_by, negligible) = (self.contact.mul(&both), self.negligible(answer.displacement));
+            let is_feasible = |row: usize| is_closed(row) || answer.violation[row] + moved_by[row] <= negligible[row];
+            if (0..self.rows()).all(is_feasible) {
+                repair = both;
+                residual.iter_mut().zip(&force).for_each(|(entry, force)| *entry -= force);
+                elastic.iter_mut().zip(&force).for_each(|(entry, force)| *entry += force);
+            }
         }
         // A row on a single dof takes what is out of balance there, as far as it may push.
         for row in (0..self.rows()).filter(|&row| is_closed(row)) {
@@ -179,6 +197,38 @@ impl ContactProblem {
         distance + dot(&repair, &elastic).max(0.0).sqrt()
     }
 
+    /// A displacement d that follows the force `residual` where nothing is `held`, by a few steps of conjugate gradients,
+    /// and K d.
+    fn relaxed(&self, residual: &[f64], held: &[bool]) -> (Vec<f64>, Vec<f64>) {
+        let diagonal = self.stiffness.diagonal();
+        let free = |values: Vec<f64>| -> Vec<f64> {
+            values.into_iter().zip(held).map(|(value, &held)| if held { 0.0 } else { value }).collect()
+        };
+        let scaled = |rest: &[f64]| -> Vec<f64> { rest.iter().zip(&diagonal).map(|(r, d)| r / d).collect() };
+        let (mut moved, mut force) = (vec![0.0; self.dofs()], vec![0.0; self.dofs()]);
+        let mut rest = free(residual.to_vec());
+        let mut preconditioned = scaled(&rest);
+        let mut direction = preconditioned.clone();
+        let mut work = dot(&rest, &preconditioned);
+        for _ in 0..RELAXATIONS {
+            let elastic = self.stiffness.mul(&direction);
+            let step = work / dot(&direction, &elastic);
+            if !step.is_finite() {
+                break;
+            }
+            moved.iter_mut().zip(&direction).for_each(|(entry, d)| *entry += step * d);
+            force.iter_mut().zip(&elastic).for_each(|(entry, k)| *entry += step * k);
+            let change = free(elastic);
+            rest.iter_mut().zip(&change).for_each(|(entry, k)| *entry -= step * k);
+            preconditioned = scaled(&rest);
+            let next = dot(&rest, &preconditioned);
+            let share = next / work;
+            direction.iter_mut().zip(&preconditioned).for_each(|(d, z)| *d = z + share * *d);
+            work = next;
+        }
+        (moved, force)
+    }
+
     /// A change of u that puts the closed rows at their gaps and removes all penetration, by projections row after
     /// row; `None` where rows contradict.
     fn repair(&self, by_row: &SparseMatrix, answer: &Answer, is_closed: impl Fn(usize) -> bool) -> Option<Vec<f64>> {
@@ -186,12 +236,12 @@ impl ContactProblem {
         let negligible = self.negligible(answer.displacement);
         for sweep in 0..REPAIR_SWEEPS {
             let mut clean = true;
-            for row in 0..self.rows() {
+            for (row, &negligible) in negligible.iter().enumerate() {
                 let moved = by_row.column(row).map(|(dof, b)| b * change[dof]).sum::<f64>();
                 let excess = answer.violation[row] + moved;
                 // Rows that contradict a closed one as an equality may still be met as what they are.
                 let open = excess < 0.0 && (!is_closed(row) || sweep > REPAIR_SWEEPS / 2);
-                if excess.abs() <= negligible[row] || open {
+                if excess.abs() <= negligible || open {
                     continue;
                 }
                 let square: f64 = by_row.column(row).map(|(_, b)| b * b).sum();

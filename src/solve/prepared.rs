@@ -52,7 +52,7 @@ impl Prepared {
         let factor_clock = Instant::now();
         let contact_dofs = Condensation::contact_dofs(scaling.contact());
         let analysis = match condense {
-            Condense::Auto => Condensation::analyse(scaling.stiffness(), &contact_dofs)?,
+            Condense::Auto => Condensation::analyse(problem.stiffness(), &contact_dofs)?,
             Condense::Never => None,
         }
         .map(|analysis| analysis.with_threads(threads));
@@ -60,18 +60,18 @@ impl Prepared {
             Some(_) => contact_dofs.clone(),
             None => EnergyNorm::last_dofs(scaling.contact()),
         };
-        let definite = |factor: Result<Cholesky, FactorError>| match factor {
-            Ok(cholesky) if cholesky.is_definite(scaling.stiffness()) => Ok(Some(cholesky)),
-            Ok(_) | Err(FactorError::NotPositiveDefinite) => Ok(None),
-            Err(error) => Err(Error::from(error)),
-        };
+        let definite =
+            |analysis: &Analysis| match analysis.factor_equilibrated(problem.stiffness(), scaling.equilibration()) {
+                Ok(cholesky) if cholesky.is_safely_definite() || cholesky.is_definite(scaling.stiffness()) => {
+                    Ok(Some(cholesky))
+                }
+                Ok(_) | Err(FactorError::NotPositiveDefinite) => Ok(None),
+                Err(error) => Err(Error::from(error)),
+            };
         let cholesky = match &analysis {
             _ if has_empty_diagonal => None,
-            Some(analysis) => definite(analysis.factor(scaling.stiffness()))?,
-            None => {
-                let analysis = Analysis::with_last(scaling.stiffness(), &last)?;
-                definite(analysis.with_threads(threads).factor(scaling.stiffness()))?
-            }
+            Some(analysis) => definite(analysis)?,
+            None => definite(&Analysis::with_last(problem.stiffness(), &last)?.with_threads(threads))?,
         };
         let mut condensation = None;
         if analysis.is_some() {

@@ -5,11 +5,12 @@ use std::sync::Arc;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::solvers::LltError;
 use faer::perm::PermRef;
-use faer::sparse::linalg::{SupernodalThreshold, cholesky as fc};
+use faer::sparse::linalg::SupernodalThreshold;
+use faer::sparse::linalg::cholesky::{self as fc, supernodal};
 use faer::sparse::{FaerError, SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 
-use super::{SparseMatrix, SymmetricMatrix, dot, ordering};
+use super::{Equilibration, SparseMatrix, SymmetricMatrix, dot, ldexp, ordering};
 use crate::error::Error;
 
 /// Fill-reducing ordering and structure of the factor, for all matrices of one sparsity pattern.
@@ -88,13 +89,14 @@ impl Analysis {
         let order = ordering::order(lower, last)?;
         let mut place = vec![0; order.len()];
         order.iter().enumerate().for_each(|(position, &column)| place[column] = position);
-        // The sweeps that stop at the trailing block need supernodes.
-        let threshold = if last.is_empty() { SupernodalThreshold::AUTO } else { SupernodalThreshold::FORCE_SUPERNODAL };
         let symbolic = fc::factorize_symbolic_cholesky(
             structure(lower),
             Side::Lower,
             fc::SymmetricOrdering::Custom(PermRef::new_checked(&order, &place, order.len())),
-            fc::CholeskySymbolicParams { supernodal_flop_ratio_threshold: threshold, ..Default::default() },
+            fc::CholeskySymbolicParams {
+                supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+                ..Default::default()
+            },
         )?;
         Ok(Analysis { symbolic: Arc::new(symbolic), trailing: last.len(), threads: 1 })
     }
@@ -114,30 +116,95 @@ impl Analysis {
     /// # Errors
     /// [`FactorError::NotPositiveDefinite`] for a pivot that is not positive.
     pub fn factor(&self, matrix: &SymmetricMatrix) -> Result<Cholesky, FactorError> {
+        self.factor_entries_of(matrix, |_, _, value| value)
+    }
+
+    /// Factorises the equilibrated `c D A D` of `matrix` without building it.
+    ///
+    /// # Errors
+    /// As [`Analysis::factor`].
+    pub fn factor_equilibrated(
+        &self,
+        matrix: &SymmetricMatrix,
+        equilibration: &Equilibration,
+    ) -> Result<Cholesky, FactorError> {
+        let scale = &equilibration.diagonal;
+        let entry = |row: usize, column: usize, value| ldexp(value, equilibration.factor + scale[row] + scale[column]);
+        self.factor_entries_of(matrix, entry)
+    }
+
+    fn factor_entries_of(
+        &self,
+        matrix: &SymmetricMatrix,
+        entry: impl Fn(usize, usize, f64) -> f64,
+    ) -> Result<Cholesky, FactorError> {
         let size = self.symbolic.len_val();
         // Asked for first, because a vector of zeros would end the program; the zeros come untouched from the system.
         let request = Vec::<f64>::new().try_reserve_exact(size);
         request.map_err(|_| FactorError::Failed("out of memory".into()))?;
         let mut values = vec![0.0; size];
         let par = if self.threads > 1 { Par::rayon(self.threads) } else { Par::Seq };
-        let mut buffer = memory(self.symbolic.factorize_numeric_llt_scratch::<f64>(par, Default::default()))?;
-        let lower = matrix.lower();
-        self.symbolic
-            .factorize_numeric_llt(
-                &mut values,
-                SparseColMatRef::new(structure(lower), lower.values()),
-                Side::Lower,
-                Default::default(),
-                par,
-                MemStack::new(&mut buffer),
-                Default::default(),
-            )
-            .map_err(|LltError::NonPositivePivot { .. }| FactorError::NotPositiveDefinite)?;
-        let (smallest_pivot, finite) = pivots(&self.symbolic, &values);
+        let Some(supernodes) = self.supernodes() else {
+            // Only a matrix without columns has none.
+            return Ok(Cholesky { analysis: self.clone(), values: Arc::new(values), smallest_pivot: f64::INFINITY });
+        };
+        let mut buffer = memory(supernodal::factorize_supernodal_numeric_llt_scratch::<usize, f64>(
+            supernodes,
+            par,
+            Default::default(),
+        ))?;
+        let permuted = self.permuted(matrix.lower(), entry);
+        // faer takes columns in any order of their rows.
+        let structure = SymbolicSparseColMatRef::new_unsorted_checked(
+            permuted.rows(),
+            permuted.columns(),
+            permuted.column_starts(),
+            None,
+            permuted.row_indices(),
+        );
+        supernodal::factorize_supernodal_numeric_llt(
+            &mut values,
+            SparseColMatRef::new(structure, permuted.values()),
+            Default::default(),
+            supernodes,
+            par,
+            MemStack::new(&mut buffer),
+            Default::default(),
+        )
+        .map_err(|LltError::NonPositivePivot { .. }| FactorError::NotPositiveDefinite)?;
+        let (smallest_pivot, finite) = pivots(supernodes, &values);
         if finite {
             Ok(Cholesky { analysis: self.clone(), values: Arc::new(values), smallest_pivot })
         } else {
             Err(FactorError::NotPositiveDefinite)
+        }
+    }
+
+    /// The lower triangle of P A P', rows in no order, each entry as `entry(row, column, value)` makes it.
+    fn permuted(&self, lower: &SparseMatrix, entry: impl Fn(usize, usize, f64) -> f64) -> SparseMatrix {
+        let place = self.symbolic.perm().map_or(&[][..], |perm| perm.arrays().1);
+        let mut starts = vec![0_usize; lower.columns() + 1];
+        for (column, &to) in place.iter().enumerate() {
+            lower.column(column).for_each(|(row, _)| starts[to.min(place[row]) + 1] += 1);
+        }
+        (0..lower.columns()).for_each(|column| starts[column + 1] += starts[column]);
+        let mut next = starts.clone();
+        let (mut rows, mut values) = (vec![0; lower.entries()], vec![0.0; lower.entries()]);
+        for (column, &to) in place.iter().enumerate() {
+            for (row, value) in lower.column(column) {
+                let (first, second) = (to.min(place[row]), to.max(place[row]));
+                rows[next[first]] = second;
+                values[next[first]] = entry(row, column, value);
+                next[first] += 1;
+            }
+        }
+        SparseMatrix::from_parts(lower.rows(), starts, rows, values)
+    }
+
+    fn supernodes(&self) -> Option<&supernodal::SymbolicSupernodalCholesky<usize>> {
+        match self.symbolic.raw() {
+            fc::SymbolicCholeskyRaw::Supernodal(inner) => Some(inner),
+            fc::SymbolicCholeskyRaw::Simplicial(_) => None,
         }
     }
 }
@@ -188,7 +255,7 @@ impl Cholesky {
     }
 
     /// The sweep L y = P b through the factor, in the order of elimination; its last entries belong to the columns that
-    /// were put last. Empty unless the analysis put columns last.
+    /// were put last.
     pub fn forward(&self, b: &[f64]) -> Vec<f64> {
         let Some(factor) = self.supernodes() else { return Vec::new() };
         let mut y: Vec<f64> = self.order().iter().map(|&column| b[column]).collect();
@@ -239,13 +306,8 @@ impl Cholesky {
         self.analysis.symbolic.perm().map_or(&[], |perm| perm.arrays().0)
     }
 
-    fn supernodes(&self) -> Option<fc::supernodal::SupernodalLltRef<'_, usize, f64>> {
-        match self.analysis.symbolic.raw() {
-            fc::SymbolicCholeskyRaw::Supernodal(inner) => {
-                Some(fc::supernodal::SupernodalLltRef::new(inner, &self.values))
-            }
-            _ => None,
-        }
+    fn supernodes(&self) -> Option<supernodal::SupernodalLltRef<'_, usize, f64>> {
+        self.analysis.supernodes().map(|inner| supernodal::SupernodalLltRef::new(inner, &self.values))
     }
 
     /// The smallest pivot, min over j of L_jj^2: small against the diagonal of A when A is close to singular.
@@ -255,22 +317,15 @@ impl Cholesky {
 }
 
 /// The smallest pivot, and are all entries finite? Every entry enters the pivot of its row, which tells.
-fn pivots(symbolic: &fc::SymbolicCholesky<usize>, values: &[f64]) -> (f64, bool) {
+fn pivots(supernodes: &supernodal::SymbolicSupernodalCholesky<usize>, values: &[f64]) -> (f64, bool) {
     let (mut smallest, mut finite) = (f64::INFINITY, true);
-    let mut see = |entry: f64| {
-        smallest = smallest.min(entry * entry);
-        finite &= entry.is_finite();
-    };
-    match symbolic.raw() {
-        fc::SymbolicCholeskyRaw::Simplicial(inner) => {
-            inner.col_ptr()[..inner.ncols()].iter().for_each(|&start| see(values[start]));
-        }
-        fc::SymbolicCholeskyRaw::Supernodal(inner) => {
-            let factor = fc::supernodal::SupernodalLltRef::new(inner, values);
-            for node in 0..inner.n_supernodes() {
-                let block = factor.supernode(node).val();
-                (0..block.ncols()).for_each(|j| see(block[(j, j)]));
-            }
+    let factor = supernodal::SupernodalLltRef::new(supernodes, values);
+    for node in 0..supernodes.n_supernodes() {
+        let block = factor.supernode(node).val();
+        for j in 0..block.ncols() {
+            let entry: f64 = block[(j, j)];
+            smallest = smallest.min(entry * entry);
+            finite &= entry.is_finite();
         }
     }
     (smallest, finite)

@@ -12,9 +12,14 @@ const NULL_ROUNDING: f64 = 64.0 * f64::EPSILON;
 const STEPS: usize = 5;
 
 impl Cholesky {
+    /// Is a matrix with a diagonal of order one definite beyond doubt, by the pivots of this factor alone?
+    pub fn is_safely_definite(&self) -> bool {
+        self.smallest_pivot() > SAFE_PIVOT
+    }
+
     /// Is `matrix`, whose diagonal is of order one and whose factor this is, definite beyond rounding?
     pub fn is_definite(&self, matrix: &SymmetricMatrix) -> bool {
-        if self.smallest_pivot() > SAFE_PIVOT {
+        if self.is_safely_definite() {
             return true;
         }
         let softest = self.softest_vector();

@@ -8,10 +8,10 @@ const NONE: u32 = u32::MAX;
 /// The elimination of the groups of a quotient graph in some order.
 pub(super) struct Elimination {
     order: Vec<u32>,
+    /// Position of each group in the order; none for those left out.
+    place: Vec<u32>,
     /// Parent of each group in the elimination tree, both by position in the order.
     parent: Vec<u32>,
-    /// Multiplications of the factorisation, about.
-    pub multiplications: f64,
 }
 
 impl Elimination {
@@ -24,31 +24,44 @@ impl Elimination {
         order.retain(|&group| !quotient.members(group).is_empty());
         let mut place = vec![NONE; quotient.count()];
         order.iter().enumerate().for_each(|(position, &group)| place[group as usize] = position as u32);
-        let mut parent = vec![NONE; order.len()];
-        let mut walked = vec![NONE; order.len()];
-        // Columns below each group in the factor, counted as the rows of the factor are walked through the tree.
-        let mut height = vec![0_u32; order.len()];
+        let (mut parent, mut ancestor) = (vec![NONE; order.len()], vec![NONE; order.len()]);
         for (position, &group) in order.iter().enumerate() {
-            let (row, size) = (position as u32, quotient.members(group).len() as u32);
-            walked[position] = row;
+            let row = position as u32;
             for &neighbour in quotient.neighbours(group) {
                 let mut at = place[neighbour as usize];
-                while at < row && walked[at as usize] != row {
-                    if parent[at as usize] == NONE {
+                while at < row {
+                    let above = std::mem::replace(&mut ancestor[at as usize], row);
+                    if above == NONE {
                         parent[at as usize] = row;
                     }
-                    height[at as usize] += size;
-                    walked[at as usize] = row;
-                    at = parent[at as usize];
+                    at = above;
                 }
             }
         }
-        let work = |(position, &group): (usize, &u32)| {
-            let (size, below) = (quotient.members(group).len() as f64, f64::from(height[position]));
-            size * (below + size / 2.0) * (below + size / 2.0) / 2.0
+        Elimination { order, place, parent }
+    }
+
+    /// Multiplications of the factorisation, about. The rows of the factor are walked through the tree, which takes one
+    /// step for each entry of the factor of the quotient graph.
+    pub fn multiplications(&self, quotient: &Quotient) -> f64 {
+        let mut walked = vec![NONE; self.order.len()];
+        let mut below = vec![0_u32; self.order.len()];
+        for (position, &group) in self.order.iter().enumerate() {
+            let (row, size) = (position as u32, quotient.members(group).len() as u32);
+            for &neighbour in quotient.neighbours(group) {
+                let mut at = self.place[neighbour as usize];
+                while at < row && walked[at as usize] != row {
+                    below[at as usize] += size;
+                    walked[at as usize] = row;
+                    at = self.parent[at as usize];
+                }
+            }
+        }
+        let work = |(&group, &below): (&u32, &u32)| {
+            let size = quotient.members(group).len() as f64;
+            size * (f64::from(below) + size / 2.0).powi(2) / 2.0
         };
-        let multiplications = order.iter().enumerate().map(work).sum();
-        Elimination { order, parent, multiplications }
+        self.order.iter().zip(&below).map(work).sum()
     }
 
     /// The groups with every one behind all of its descendants and these next to each other.

@@ -27,12 +27,12 @@ const DIAGONALS: usize = 4;
 /// [`FactorError::Failed`] when memory or the index range does not suffice.
 pub(super) fn order(lower: &SparseMatrix, last: &[usize]) -> Result<Vec<usize>, FactorError> {
     let mut quotient = Quotient::of(lower);
-    let by_degree = minimum_degree(&quotient)?;
+    let (by_degree, multiplications) = minimum_degree(&quotient)?;
     quotient.remove(last);
     let mut elimination = Elimination::of(&quotient, by_degree);
-    if elimination.multiplications > WORTH_DISSECTING * quotient.edges() as f64 {
+    if multiplications > WORTH_DISSECTING * quotient.edges() as f64 {
         let dissected = Elimination::of(&quotient, nested_dissection(&quotient)?);
-        if dissected.multiplications < elimination.multiplications {
+        if dissected.multiplications(&quotient) < elimination.multiplications(&quotient) {
             elimination = dissected;
         }
     }
@@ -42,8 +42,8 @@ pub(super) fn order(lower: &SparseMatrix, last: &[usize]) -> Result<Vec<usize>, 
     Ok(columns)
 }
 
-/// Approximate minimum degree.
-fn minimum_degree(quotient: &Quotient) -> Result<Vec<u32>, FactorError> {
+/// Approximate minimum degree, with the multiplications of the factorisation, about, for groups of average size.
+fn minimum_degree(quotient: &Quotient) -> Result<(Vec<u32>, f64), FactorError> {
     let count = quotient.count();
     let graph =
         SymbolicSparseColMatRef::new_unsorted_checked(count, count, quotient.starts(), None, quotient.all_neighbours());
@@ -53,8 +53,8 @@ fn minimum_degree(quotient: &Quotient) -> Result<Vec<u32>, FactorError> {
     let mut buffer = MemBuffer::try_new(request).map_err(|_| FactorError::Failed("out of memory".into()))?;
     let (mut order, mut place) = (vec![0; count], vec![0; count]);
     let stack = MemStack::new(&mut buffer);
-    amd::order_maybe_unsorted(&mut order, &mut place, graph, amd::Control::default(), stack)?;
-    Ok(order)
+    let work = amd::order_maybe_unsorted(&mut order, &mut place, graph, amd::Control::default(), stack)?;
+    Ok((order, work.n_mult_subs_ldl * quotient.mean_size().powi(3)))
 }
 
 /// Multilevel nested dissection.

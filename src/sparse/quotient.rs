@@ -79,6 +79,11 @@ impl Quotient {
         self.neighbours.len() / 2
     }
 
+    /// Columns of a group, on average.
+    pub fn mean_size(&self) -> f64 {
+        self.columns.len() as f64 / self.count().max(1) as f64
+    }
+
     /// The columns of a group.
     pub fn members(&self, group: u32) -> &[usize] {
         &self.columns[self.member_starts[group as usize] as usize..self.member_starts[group as usize + 1] as usize]

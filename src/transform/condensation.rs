@@ -112,7 +112,8 @@ impl Condensation {
 
     /// The forward sweep y of a load, to be kept for [`load`](Self::load) and [`expand`](Self::expand).
     pub fn sweep(&self, load: &[f64]) -> Vec<f64> {
-        self.cholesky.forward(load)
+        // Many a body is loaded by its obstacle alone.
+        if load.iter().all(|&force| force == 0.0) { load.to_vec() } else { self.cholesky.forward(load) }
     }
 
     /// The condensed load L_tt y_t.

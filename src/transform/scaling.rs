@@ -10,6 +10,8 @@
 //! powers of two: the scaled problem is the same problem in other units, bit by bit. u0 belongs to a load and a gap; the
 //! rest belongs to the body and is made once.
 
+use std::sync::OnceLock;
+
 use crate::error::Error;
 use crate::sparse::{Equilibration, SparseMatrix, SymmetricMatrix, exponent, ldexp};
 
@@ -19,7 +21,9 @@ pub struct Scaling {
     equilibration: Equilibration,
     /// Exponent of each entry of R.
     rows: Vec<i32>,
-    stiffness: SymmetricMatrix,
+    /// The stiffness as it came, and scaled, which is made when it is first asked for.
+    unscaled: SymmetricMatrix,
+    stiffness: OnceLock<SymmetricMatrix>,
     contact: SparseMatrix,
 }
 
@@ -39,7 +43,7 @@ impl Scaling {
         let entries: Vec<_> =
             contact.triplets().map(|(row, dof, value)| (row, dof, ldexp(value, rows[row] + d[dof]))).collect();
         let contact = SparseMatrix::from_triplets(contact.rows(), contact.columns(), &entries)?;
-        Ok(Scaling { stiffness: equilibration.apply(stiffness), equilibration, rows, contact })
+        Ok(Scaling { equilibration, rows, unscaled: stiffness.clone(), stiffness: OnceLock::new(), contact })
     }
 
     /// The equilibration of the stiffness.
@@ -49,7 +53,7 @@ impl Scaling {
 
     /// The scaled stiffness.
     pub fn stiffness(&self) -> &SymmetricMatrix {
-        &self.stiffness
+        self.stiffness.get_or_init(|| self.equilibration.apply(&self.unscaled))
     }
 
     /// The scaled contact rows.
