@@ -246,7 +246,7 @@ fn advice(points: &[TradeoffPoint]) -> Vec<Advice> {
         .iter()
         .map(|&accuracy| Advice { accuracy: Some(accuracy), seconds: None, point: cheapest(accuracy) })
         .collect();
-    let usual = own().filter(|(_, point)| point.method == POLISHED && point.knob == Some(USUAL_TOLERANCE)).next_back();
+    let usual = own().rfind(|(_, point)| point.method == POLISHED && point.knob == Some(USUAL_TOLERANCE));
     if let Some((_, usual)) = usual {
         let seconds = HURRY * usual.seconds;
         let quick = own().filter(|(_, point)| point.seconds <= seconds);
