@@ -13,9 +13,6 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// One unit in the last place, as a share of [`ROUNDING`].
 const UNIT_ROUNDING: f64 = 1.0 / 8.0;
 
-/// A relative bound above this, where rounding is all that the residual shows, is worth a residual of twice the precision.
-const ROUGH: f64 = 1e-12;
-
 /// A displacement below this share of force over stiffness is zero but for rounding.
 const NOTHING: f64 = 1e-3;
 
@@ -98,13 +95,14 @@ impl ContactProblem {
             duality_gap: relative(gap_of_energies.abs(), energy_scale),
             energy_error_bound: match norm {
                 Some(norm) => {
-                    let bound = |residual: Vec<f64>| {
-                        let answer = Answer { displacement: u, multiplier: lambda, residual, violation: &violation };
-                        relative(self.energy_error_bound(norm, &answer), (2.0 * strain_energy).sqrt())
-                    };
-                    let rough = bound(with_rounding(&residual, &rounding));
                     let is_rounding = excess.iter().all(|&value| value == 0.0);
-                    if is_rounding && rough > ROUGH { bound(self.accurate_residual(u, lambda)) } else { rough }
+                    let residual = if is_rounding {
+                        self.accurate_residual(u, lambda)
+                    } else {
+                        with_rounding(&residual, &rounding)
+                    };
+                    let answer = Answer { displacement: u, multiplier: lambda, residual, violation: &violation };
+                    relative(self.energy_error_bound(norm, &answer), (2.0 * strain_energy).sqrt())
                 }
                 None => f64::INFINITY,
             },
@@ -114,13 +112,15 @@ impl ContactProblem {
     /// `f + B' lambda - K u` of the given doubles, with twice the working precision.
     fn accurate_residual(&self, u: &[f64], lambda: &[f64]) -> Vec<f64> {
         let mut sums = Accumulator::new(&self.load);
-        for (row, column, value) in self.stiffness.lower().triplets() {
-            sums.add_product(row, -value, u[column]);
-            if row != column {
-                sums.add_product(column, -value, u[row]);
+        for (column, &at_column) in u.iter().enumerate() {
+            for (row, value) in self.stiffness.lower().column(column) {
+                sums.add_product(row, -value, at_column);
+                if row != column {
+                    sums.add_product(column, -value, u[row]);
+                }
             }
+            self.contact.column(column).for_each(|(row, b)| sums.add_product(column, b, lambda[row]));
         }
-        self.contact.triplets().for_each(|(row, dof, b)| sums.add_product(dof, b, lambda[row]));
         sums.into_sums()
     }
 

@@ -6,6 +6,8 @@ mod energy_norm;
 
 pub use energy_norm::EnergyNorm;
 
+use std::sync::Arc;
+
 use crate::error::Error;
 use crate::sparse::{SparseMatrix, SymmetricMatrix};
 
@@ -20,9 +22,10 @@ use crate::sparse::{SparseMatrix, SymmetricMatrix};
 /// supports and obstacle hold the body, is found out when it is solved.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactProblem {
-    stiffness: SymmetricMatrix,
+    // Shared: another gap or load is the same body and the same rows.
+    stiffness: Arc<SymmetricMatrix>,
     load: Vec<f64>,
-    contact: SparseMatrix,
+    contact: Arc<SparseMatrix>,
     gap: Vec<f64>,
 }
 
@@ -36,11 +39,12 @@ impl ContactProblem {
     /// [`Error::Length`] and [`Error::Shape`] for sizes that do not fit, [`Error::NotFinite`] for a load that is not
     /// finite or a gap that is NaN or minus infinity, [`Error::NotConvex`] for a negative diagonal entry of K.
     pub fn new(
-        stiffness: SymmetricMatrix,
+        stiffness: impl Into<Arc<SymmetricMatrix>>,
         load: Vec<f64>,
-        contact: SparseMatrix,
+        contact: impl Into<Arc<SparseMatrix>>,
         gap: Vec<f64>,
     ) -> Result<Self, Error> {
+        let (stiffness, contact) = (stiffness.into(), contact.into());
         let dofs = stiffness.dim();
         if load.len() != dofs {
             return Err(Error::Length { name: "load vector", found: load.len(), expected: dofs, of: "dofs" });
@@ -95,7 +99,7 @@ impl ContactProblem {
     /// # Errors
     /// As [`ContactProblem::new`].
     pub fn with_gap(&self, gap: Vec<f64>) -> Result<Self, Error> {
-        Self::new(self.stiffness.clone(), self.load.clone(), self.contact.clone(), gap)
+        self.with(self.load.clone(), gap)
     }
 
     /// The same body and obstacle under another load.
@@ -103,7 +107,15 @@ impl ContactProblem {
     /// # Errors
     /// As [`ContactProblem::new`].
     pub fn with_load(&self, load: Vec<f64>) -> Result<Self, Error> {
-        Self::new(self.stiffness.clone(), load, self.contact.clone(), self.gap.clone())
+        self.with(load, self.gap.clone())
+    }
+
+    /// The same body and contact rows with another load and other gaps; nothing is copied.
+    ///
+    /// # Errors
+    /// As [`ContactProblem::new`].
+    pub fn with(&self, load: Vec<f64>, gap: Vec<f64>) -> Result<Self, Error> {
+        Self::new(Arc::clone(&self.stiffness), load, Arc::clone(&self.contact), gap)
     }
 
     /// The violation B u - g of each row, length m: positive is penetration; `-inf` where there is no obstacle.

@@ -269,8 +269,7 @@ impl Prepared {
         let Found { loading, gap, problem: condensed, unit, outcome, seconds } = found;
         let displacement = self.expand(&loading, unit, &outcome.displacement);
         let multiplier = self.expand_multiplier(&outcome.multiplier, unit);
-        let (stiffness, contact) = (self.problem.stiffness().clone(), self.problem.contact().clone());
-        let problem = ContactProblem::new(stiffness, loading.load.clone(), contact, gap)?;
+        let problem = self.problem.with(loading.load.clone(), gap)?;
         let certificate = problem.certify_in(self.norm.as_ref(), &displacement, &multiplier)?;
         let expand_iteration = |step: Iteration| Iteration {
             contact_set: self.selection.expand_set(&step.contact_set),

@@ -134,6 +134,7 @@ impl SparseMatrix {
     }
 
     /// The entries `(row, value)` of one column.
+    #[inline]
     pub fn column(&self, column: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let range = self.pattern.column_starts[column]..self.pattern.column_starts[column + 1];
         self.pattern.row_indices[range.clone()].iter().copied().zip(self.values[range].iter().copied())
