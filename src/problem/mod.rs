@@ -3,6 +3,7 @@
 mod certificate;
 mod energy_bound;
 mod energy_norm;
+mod proof;
 
 pub use energy_norm::EnergyNorm;
 

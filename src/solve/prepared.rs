@@ -271,6 +271,8 @@ impl Prepared {
         let multiplier = self.expand_multiplier(&outcome.multiplier, unit);
         let problem = self.problem.with(loading.load.clone(), gap)?;
         let certificate = problem.certify_in(self.norm.as_ref(), &displacement, &multiplier)?;
+        let proven = self.norm.as_ref().filter(|_| settings.prove);
+        let proven = proven.and_then(|norm| problem.prove_in(norm, &displacement, &multiplier));
         let expand_iteration = |step: Iteration| Iteration {
             contact_set: self.selection.expand_set(&step.contact_set),
             penalty: step.penalty,
@@ -283,6 +285,7 @@ impl Prepared {
             iterations: outcome.iterations,
             history: outcome.history.into_iter().map(expand_iteration).collect(),
             certificate,
+            proven,
             condensed_dofs: self.condensed_dofs(),
             seconds: Seconds { solve: seconds.solve + clock.elapsed().as_secs_f64(), ..seconds },
         };
