@@ -60,14 +60,17 @@ impl Prepared {
             Some(_) => contact_dofs.clone(),
             None => EnergyNorm::last_dofs(scaling.contact()),
         };
-        let definite =
-            |analysis: &Analysis| match analysis.factor_equilibrated(problem.stiffness(), scaling.equilibration()) {
-                Ok(cholesky) if cholesky.is_safely_definite() || cholesky.is_definite(scaling.stiffness()) => {
-                    Ok(Some(cholesky))
-                }
-                Ok(_) | Err(FactorError::NotPositiveDefinite) => Ok(None),
-                Err(error) => Err(Error::from(error)),
-            };
+        let definite = |analysis: &Analysis| match analysis.factor_equilibrated(
+            problem.stiffness(),
+            scaling.equilibration(),
+            false,
+        ) {
+            Ok(cholesky) if cholesky.is_safely_definite() || cholesky.is_definite(scaling.stiffness()) => {
+                Ok(Some(cholesky))
+            }
+            Ok(_) | Err(FactorError::NotPositiveDefinite) => Ok(None),
+            Err(error) => Err(Error::from(error)),
+        };
         let cholesky = match &analysis {
             _ if has_empty_diagonal => None,
             Some(analysis) => definite(analysis)?,
