@@ -83,6 +83,6 @@ pub mod transform;
 pub use error::Error;
 pub use problem::ContactProblem;
 pub use scene::{Model, Scene};
-pub use solution::{Certificate, ContactSet, ProvenSet, Solution};
-pub use solve::{BoundarySolution, Condense, Method, Path, Prepared, Settings, solve, solve_qp};
+pub use solution::{Certificate, ContactSet, Goal, ProvenSet, Solution};
+pub use solve::{BoundarySolution, Condense, Method, Path, Precision, Prepared, Settings, solve, solve_qp};
 pub use sparse::{SparseMatrix, SymmetricMatrix};

@@ -142,6 +142,48 @@ impl Certificate {
     }
 }
 
+/// What an answer is held against.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Goal {
+    /// Relative tolerance of the conditions.
+    pub tolerance: f64,
+    /// Relative error in the energy norm that is good enough; where one is named and a bound is known, the bound decides
+    /// alone.
+    pub accuracy: Option<f64>,
+}
+
+impl From<f64> for Goal {
+    fn from(tolerance: f64) -> Self {
+        Goal { tolerance, accuracy: None }
+    }
+}
+
+impl Goal {
+    /// The accuracy, where `certificate` has a bound to hold against it.
+    fn accuracy_for(&self, certificate: &Certificate) -> Option<f64> {
+        self.accuracy.filter(|_| !certificate.energy_error_bound.is_infinite())
+    }
+
+    /// Does an answer with this certificate reach the goal?
+    pub fn is_met_by(&self, certificate: &Certificate) -> bool {
+        match self.accuracy_for(certificate) {
+            Some(accuracy) => certificate.energy_error_bound <= accuracy,
+            None => certificate.meets(self.tolerance),
+        }
+    }
+
+    /// What decides: the condition, its value, and what is allowed.
+    pub fn decisive(&self, certificate: &Certificate) -> (&'static str, f64, f64) {
+        match self.accuracy_for(certificate) {
+            Some(accuracy) => ("energy_error_bound", certificate.energy_error_bound, accuracy),
+            None => {
+                let (condition, value) = certificate.worst();
+                (condition, value, self.tolerance)
+            }
+        }
+    }
+}
+
 /// Rows that an answer proves to be open or closed in the exact answer of the same problem.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ProvenSet {
@@ -196,6 +238,8 @@ pub struct Solution {
     /// The rows whose contact is beyond doubt, where [`Settings::prove`](crate::Settings::prove) asks for them and
     /// an energy bound is known.
     pub proven: Option<ProvenSet>,
+    /// Steps of refinement, where the factor was in single precision.
+    pub refinements: Option<usize>,
     /// Unknowns that the method worked on; fewer than all where the problem was condensed.
     pub condensed_dofs: usize,
     /// What it cost.

@@ -8,7 +8,7 @@ use crate::matrix_market;
 use crate::output::UnitNames;
 use crate::problem::ContactProblem;
 use crate::scene::{Model, Scene};
-use crate::solution::Solution;
+use crate::solution::{Goal, Solution};
 use crate::study::{ModelSize, Summary, scene_summary};
 
 /// What there is to solve.
@@ -46,11 +46,11 @@ impl Input {
     }
 
     /// The numbers of an answer, with what only a scene can tell.
-    pub fn summary(&self, solution: &Solution, tolerance: f64) -> Result<Summary, Error> {
+    pub fn summary(&self, solution: &Solution, goal: impl Into<Goal>) -> Result<Summary, Error> {
         match &self.content {
-            Content::Scene(model) => scene_summary(model, solution, tolerance, self.assemble_seconds),
+            Content::Scene(model) => scene_summary(model, solution, goal, self.assemble_seconds),
             Content::Directory(problem) => {
-                Ok(Summary::new(solution, ModelSize::of(problem), tolerance, self.assemble_seconds))
+                Ok(Summary::new(solution, ModelSize::of(problem), goal, self.assemble_seconds))
             }
         }
     }

@@ -31,7 +31,7 @@ pub(super) fn run(options: &Solve) -> Result<Outcome, Error> {
         }
         Err(error) => return Err(input.explain(error)),
     };
-    let mut summary = input.summary(&solution, common.tolerance)?;
+    let mut summary = input.summary(&solution, settings.goal())?;
     if let Content::Scene(model) = &input.content {
         summary.discretisation_error = Some(discretisation_error(model, &solution)?);
     }

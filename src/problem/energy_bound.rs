@@ -45,10 +45,11 @@ impl ContactProblem {
     pub(super) fn energy_error_bound(&self, norm: &EnergyNorm, answer: &Answer) -> f64 {
         let closed = self.rows_that_look_closed(answer);
         let on_boundary = norm.boundary().and_then(|boundary| self.bound_on_boundary(norm, boundary, answer, &closed));
-        on_boundary.unwrap_or_else(|| {
-            let as_it_stands = self.bound_row_by_row(norm, answer, None);
-            self.bound_row_by_row(norm, answer, Some(&closed)).min(as_it_stands)
-        })
+        norm.widening()
+            * on_boundary.unwrap_or_else(|| {
+                let as_it_stands = self.bound_row_by_row(norm, answer, None);
+                self.bound_row_by_row(norm, answer, Some(&closed)).min(as_it_stands)
+            })
     }
 
     /// Rows whose force, times their compliance if all else stood still, exceeds their distance.

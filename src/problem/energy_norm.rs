@@ -1,5 +1,7 @@
 //! The energy norm of a definite stiffness, and what it knows of the contact boundary.
 
+use std::sync::Arc;
+
 use crate::error::Error;
 use crate::sparse::{Analysis, Cholesky, Equilibration, FactorError, SparseMatrix, SymmetricMatrix, dot, ldexp};
 
@@ -9,6 +11,9 @@ const LARGEST_SHARE: f64 = 0.25;
 /// So few contact dofs are ordered last whatever their share: a dense factor of them costs milliseconds.
 const FEW_DOFS: usize = 300;
 
+/// A contraction that is measured may be so many times larger.
+const MEASURED: f64 = 10.0;
+
 /// Values of a dense matrix on the boundary that are not worth counting.
 const FEW_VALUES: usize = 1_000_000;
 
@@ -17,7 +22,9 @@ const FEW_VALUES: usize = 1_000_000;
 pub struct EnergyNorm {
     cholesky: Cholesky,
     equilibration: Equilibration,
-    boundary: Option<Boundary>,
+    boundary: Option<Arc<Boundary>>,
+    /// What a bound in this norm is multiplied with, because the factor is not quite that of K.
+    widening: f64,
 }
 
 /// The contact dofs t, eliminated last: their block of the factor is that of the Schur complement.
@@ -63,8 +70,18 @@ impl EnergyNorm {
     pub fn new(cholesky: Cholesky, equilibration: Equilibration, last: Vec<usize>) -> Self {
         let values = last.len().saturating_mul(last.len());
         let worth = !last.is_empty() && values <= FEW_VALUES.max(cholesky.entries());
-        let boundary = worth.then(|| Boundary { block: cholesky.trailing_block(), dofs: last });
-        EnergyNorm { cholesky, equilibration, boundary }
+        let boundary = worth.then(|| Arc::new(Boundary { block: cholesky.trailing_block(), dofs: last }));
+        EnergyNorm { cholesky, equilibration, boundary, widening: 1.0 }
+    }
+
+    /// The same norm, for a factor K~ whose contraction `|I - K~^-1 K|` is measured to be this.
+    pub fn off_by(&self, contraction: f64) -> Self {
+        EnergyNorm { widening: 1.0 + MEASURED * contraction, ..self.clone() }
+    }
+
+    /// What a bound in this norm is multiplied with.
+    pub(super) fn widening(&self) -> f64 {
+        self.widening
     }
 
     /// The displacement of the equilibrated stiffness under an equilibrated load.
@@ -80,7 +97,7 @@ impl EnergyNorm {
 
     /// The contact boundary, where it is known.
     pub(super) fn boundary(&self) -> Option<&Boundary> {
-        self.boundary.as_ref()
+        self.boundary.as_deref()
     }
 
     /// `L^-1 D r`, whose length times [`unit`](Self::unit) is the energy norm of the displacement that the force r

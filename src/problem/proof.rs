@@ -51,7 +51,7 @@ impl ContactProblem {
         let negligible = self.negligible(displacement);
         let is_open = |row: usize| {
             let distance = -violation[row] - negligible[row];
-            distance > 0.0 && (distance.is_infinite() || distance > halves.reach(row) * error)
+            distance > 0.0 && (distance.is_infinite() || distance > norm.widening() * halves.reach(row) * error)
         };
         let open = ContactSet::from_fn(rows, is_open);
 
@@ -59,10 +59,10 @@ impl ContactProblem {
         let dropped: Vec<f64> = (0..rows).map(|row| if open.contains(row) { -multiplier[row] } else { 0.0 }).collect();
         let force: Vec<f64> =
             answer.residual.iter().zip(self.contact.mul_transposed(&dropped)).map(|(r, part)| r + part).collect();
-        let imbalance = ROUNDED * norm.of_force(&force) + error;
+        let imbalance = ROUNDED * norm.widening() * norm.of_force(&force) + error;
         let mut closed = ContactSet::open(rows);
         let alone = self.moved_alone(&in_question);
-        let proven = |row: usize, length: f64| -multiplier[row] > length * imbalance;
+        let proven = |row: usize, length: f64| -multiplier[row] > norm.widening() * length * imbalance;
         let mut doubtful = false;
         for (&row, &length) in in_question.iter().zip(&alone) {
             closed.set(row, proven(row, length));

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::loading::Loading;
+use super::refinement::Refined;
 use super::{Prepared, Settings};
 use crate::error::Error;
 use crate::method::Outcome;
@@ -38,6 +39,8 @@ pub(super) struct Found {
     pub unit: i32,
     pub outcome: Outcome,
     pub seconds: Seconds,
+    /// Where the factor is in single precision.
+    pub refined: Option<Refined>,
 }
 
 impl BoundarySolution<'_> {
@@ -48,7 +51,7 @@ impl BoundarySolution<'_> {
 
     /// The displacement u of the whole body, one entry per dof, in the problem's unit of length; not certified.
     pub fn displacement(&self) -> Vec<f64> {
-        self.prepared.expand(&self.found.loading, self.found.unit, &self.found.outcome.displacement)
+        self.prepared.displacement(&self.found)
     }
 
     /// The whole answer, with the certificate of the problem itself.

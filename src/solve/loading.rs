@@ -42,6 +42,20 @@ impl Loading {
         Loading { load, unit, sweep, scaled, free: free.map(|free| ldexp(free, unit)), statics }
     }
 
+    /// The load together with a force (length n) on contact dofs alone, which no sweep has to carry.
+    pub fn with_contact_force(mut self, prepared: &Prepared, force: &[f64]) -> Self {
+        if let Some(condensed) = &prepared.condensation {
+            let scaled = prepared.scaling.load(force, self.unit);
+            self.scaled.iter_mut().zip(condensed.dofs()).for_each(|(entry, &dof)| *entry += scaled[dof]);
+        }
+        self
+    }
+
+    /// The same forms, said to be those of another load.
+    pub fn with_load(&self, load: Vec<f64>) -> Self {
+        Loading { load, ..self.clone() }
+    }
+
     /// The exponent of the reference displacement with the gaps of the selected rows.
     ///
     /// The reference displacement is what the load alone does or the obstacle enforces, where the stiffness is definite,

@@ -4,13 +4,14 @@ mod boundary;
 mod loading;
 mod path;
 mod prepared;
+mod refinement;
 mod settings;
 
 pub use crate::method::parametric::{Event, Piece};
 pub use boundary::BoundarySolution;
 pub use path::Path;
 pub use prepared::Prepared;
-pub use settings::{Condense, Method, Settings};
+pub use settings::{Condense, Method, Precision, Settings};
 
 use crate::error::Error;
 use crate::method::interior_point::{self, InteriorPoint};
@@ -41,15 +42,20 @@ pub fn solve_qp(problem: &ContactProblem) -> Result<Solution, Error> {
 /// * [`Error::NotCertified`] with the best answer, where it does not meet the tolerance,
 /// * [`Error::Numerical`] where memory does not suffice.
 pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
-    settings.check()?;
-    let prepared = Prepared::with_threads(problem, settings.condense, settings.threads)?;
+    let prepared = Prepared::with_settings(problem, settings)?;
+    let preparation = prepared.seconds();
     let with_preparation = |mut solution: Solution| {
-        solution.seconds.factor += prepared.seconds().factor;
-        solution.seconds.solve += prepared.seconds().solve;
+        solution.seconds.factor += preparation.factor;
+        solution.seconds.solve += preparation.solve;
         solution
     };
     match prepared.solve(settings) {
         Ok(solution) => Ok(with_preparation(solution)),
+        Err(Error::Numerical { .. } | Error::NotCertified { .. }) if prepared.is_single() => {
+            drop(prepared);
+            // Beyond single precision: the time that it took is part of the answer's.
+            solve(problem, &Settings { precision: Precision::Double, ..*settings }).map(with_preparation)
+        }
         Err(Error::NotCertified { solution, condition, value, tolerance }) => {
             let solution = Box::new(with_preparation(*solution));
             Err(Error::NotCertified { solution, condition, value, tolerance })

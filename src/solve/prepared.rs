@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use super::boundary::{BoundarySolution, Found};
 use super::loading::Loading;
-use super::{Condense, Path, Settings, run};
+use super::{Condense, Path, Precision, Settings, run};
 use crate::error::Error;
 use crate::method::parametric::Compliance;
 use crate::method::{ScaledProblem, active_set, interior_point};
@@ -14,11 +14,14 @@ use crate::solution::{ContactSet, Iteration, Seconds, Solution};
 use crate::sparse::{Analysis, AugmentedMatrix, Cholesky, Equilibration, FactorError, largest, ldexp};
 use crate::transform::{Condensation, RowSelection, Scaling};
 
+/// A pivot of the equilibrated stiffness below this is too uncertain in single precision.
+const SINGLE_PIVOT: f64 = 1e-4;
+
 /// A contact problem, scaled, condensed where that pays, factorised, its load swept through the factor.
 #[derive(Clone, Debug)]
 pub struct Prepared {
     pub(super) problem: ContactProblem,
-    selection: RowSelection,
+    pub(super) selection: RowSelection,
     pub(super) scaling: Scaling,
     pub(super) norm: Option<EnergyNorm>,
     pub(super) condensation: Option<Condensation>,
@@ -37,14 +40,16 @@ impl Prepared {
     /// [`Error::Infeasible`] for rows that contradict each other at the gaps of `problem`, [`Error::NotConvex`],
     /// [`Error::Numerical`] where memory does not suffice.
     pub fn new(problem: &ContactProblem, condense: Condense) -> Result<Self, Error> {
-        Self::with_threads(problem, condense, 1)
+        Self::with_settings(problem, &Settings { condense, ..Settings::default() })
     }
 
-    /// As [`Prepared::new`], with so many threads for the sparse factorisations.
+    /// As [`Prepared::new`], with the threads and the precision of `settings`.
     ///
     /// # Errors
-    /// As [`Prepared::new`].
-    pub fn with_threads(problem: &ContactProblem, condense: Condense, threads: usize) -> Result<Self, Error> {
+    /// As [`Prepared::new`], and [`Error::Setting`].
+    pub fn with_settings(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
+        settings.check()?;
+        let Settings { condense, threads, .. } = *settings;
         let clock = Instant::now();
         let selection = RowSelection::of(problem.contact(), problem.gap())?;
         let scaling = Scaling::of(problem.stiffness(), &selection.contact(problem.contact()))?;
@@ -60,16 +65,22 @@ impl Prepared {
             Some(_) => contact_dofs.clone(),
             None => EnergyNorm::last_dofs(scaling.contact()),
         };
-        let definite = |analysis: &Analysis| match analysis.factor_equilibrated(
+        let single = settings.precision == Precision::Mixed && analysis.is_some();
+        let factor = |analysis: &Analysis, single| match analysis.factor_equilibrated(
             problem.stiffness(),
             scaling.equilibration(),
-            false,
+            single,
         ) {
+            Ok(cholesky) if single && cholesky.smallest_pivot() <= SINGLE_PIVOT => Ok(None),
             Ok(cholesky) if cholesky.is_safely_definite() || cholesky.is_definite(scaling.stiffness()) => {
                 Ok(Some(cholesky))
             }
             Ok(_) | Err(FactorError::NotPositiveDefinite) => Ok(None),
             Err(error) => Err(Error::from(error)),
+        };
+        let definite = |analysis: &Analysis| match single.then(|| factor(analysis, true)).transpose()?.flatten() {
+            Some(cholesky) => Ok(Some(cholesky)),
+            None => factor(analysis, false),
         };
         let cholesky = match &analysis {
             _ if has_empty_diagonal => None,
@@ -115,6 +126,11 @@ impl Prepared {
     /// Number of values of the factor of the stiffness; zero where the methods factorise by themselves.
     pub fn factor_entries(&self) -> usize {
         self.condensation.as_ref().map_or(0, Condensation::factor_entries)
+    }
+
+    /// Bytes of these values.
+    pub fn factor_bytes(&self) -> usize {
+        self.factor_entries() * if self.is_single() { size_of::<f32>() } else { size_of::<f64>() }
     }
 
     /// What the preparation cost.
@@ -188,7 +204,7 @@ impl Prepared {
     /// As [`Prepared::solve_gap`] for both ends; [`Error::NotCondensed`] for a problem that was not condensed or whose
     /// stiffness is not definite by itself.
     pub fn path(&self, from: &[f64], to: &[f64], settings: &Settings) -> Result<Path<'_>, Error> {
-        let Some(condensed) = self.condensation.as_ref().filter(|_| self.norm.is_some()) else {
+        let Some(condensed) = self.condensation.as_ref().filter(|_| self.norm.is_some() && !self.is_single()) else {
             return Err(Error::NotCondensed { step: "the exact path" });
         };
         self.check_gap(to)?;
@@ -223,22 +239,39 @@ impl Prepared {
         settings: &Settings,
     ) -> Result<Found, Error> {
         settings.check()?;
-        let clock = Instant::now();
         self.check_gap(&gap)?;
+        let found = self.find_step(loading, gap, start, settings)?;
+        if self.is_single() { self.refined(found, settings) } else { Ok(found) }
+    }
+
+    /// One run of the method.
+    pub(super) fn find_step(
+        &self,
+        loading: Arc<Loading>,
+        gap: Vec<f64>,
+        start: Option<&ContactSet>,
+        settings: &Settings,
+    ) -> Result<Found, Error> {
+        let clock = Instant::now();
         let (problem, unit) = self.scaled(&loading, &gap)?;
         let task = ScaledProblem::new(&problem, &self.augmented, self.norm.is_some());
         let start = start.map(|set| self.selection.restrict_set(set));
         let outcome = run(&task, start, settings).map_err(|error| self.expand_error(error))?;
         let seconds = Seconds { factor: task.factor_seconds(), solve: clock.elapsed().as_secs_f64() };
-        Ok(Found { loading, gap, problem, unit, outcome, seconds })
+        Ok(Found { loading, gap, problem, unit, outcome, seconds, refined: None })
     }
 
     /// The answer on the boundary, certified there.
     fn on_boundary(&self, found: Found, settings: &Settings) -> Result<BoundarySolution<'_>, Error> {
         let Found { problem, unit, outcome, .. } = &found;
-        let norm = self.condensed_norm(problem)?;
-        let condensed_certificate = problem.certify_in(norm, &outcome.displacement, &outcome.multiplier)?;
-        if !condensed_certificate.meets(settings.tolerance) {
+        let condensed_certificate = if self.is_single() {
+            // The condensed problem is that of the last step only.
+            self.complete(found.clone(), settings)?.certificate
+        } else {
+            let norm = self.condensed_norm(problem)?;
+            problem.certify_in(norm, &outcome.displacement, &outcome.multiplier)?
+        };
+        if !settings.goal().is_met_by(&condensed_certificate) {
             // The certificate of the whole answer tells what is wrong, unless it knows better.
             self.complete(found.clone(), settings)?;
         }
@@ -269,12 +302,16 @@ impl Prepared {
     /// The whole answer, certified.
     pub(super) fn complete(&self, found: Found, settings: &Settings) -> Result<Solution, Error> {
         let clock = Instant::now();
-        let Found { loading, gap, problem: condensed, unit, outcome, seconds } = found;
-        let displacement = self.expand(&loading, unit, &outcome.displacement);
+        let displacement = self.displacement(&found);
+        let Found { loading, gap, problem: condensed, unit, outcome, seconds, refined } = found;
+        let norm = match &refined {
+            Some(refined) => self.norm.as_ref().map(|norm| norm.off_by(refined.contraction)),
+            None => self.norm.clone(),
+        };
         let multiplier = self.expand_multiplier(&outcome.multiplier, unit);
         let problem = self.problem.with(loading.load.clone(), gap)?;
-        let certificate = problem.certify_in(self.norm.as_ref(), &displacement, &multiplier)?;
-        let proven = self.norm.as_ref().filter(|_| settings.prove);
+        let certificate = problem.certify_in(norm.as_ref(), &displacement, &multiplier)?;
+        let proven = norm.as_ref().filter(|_| settings.prove);
         let proven = proven.and_then(|norm| problem.prove_in(norm, &displacement, &multiplier));
         let expand_iteration = |step: Iteration| Iteration {
             contact_set: self.selection.expand_set(&step.contact_set),
@@ -289,17 +326,18 @@ impl Prepared {
             history: outcome.history.into_iter().map(expand_iteration).collect(),
             certificate,
             proven,
+            refinements: refined.map(|refined| refined.steps),
             condensed_dofs: self.condensed_dofs(),
             seconds: Seconds { solve: seconds.solve + clock.elapsed().as_secs_f64(), ..seconds },
         };
-        if solution.certificate.meets(settings.tolerance) {
+        if settings.goal().is_met_by(&solution.certificate) {
             return Ok(solution);
         }
         let task = ScaledProblem::new(&condensed, &self.augmented, self.norm.is_some());
         interior_point::check_feasible(&task, settings.interior_point_tolerance)
             .map_err(|error| self.expand_error(error))?;
-        let (condition, value) = solution.certificate.worst();
-        Err(Error::NotCertified { solution: Box::new(solution), condition, value, tolerance: settings.tolerance })
+        let (condition, value, tolerance) = settings.goal().decisive(&solution.certificate);
+        Err(Error::NotCertified { solution: Box::new(solution), condition, value, tolerance })
     }
 
     /// Displacement and multiplier with the rows of `closed` held at their gaps.
@@ -310,6 +348,20 @@ impl Prepared {
         let held = active_set::with_contact_set(&task, &self.selection.restrict_set(closed))
             .map_err(|error| self.expand_error(error))?;
         Ok((self.expand(&loading, unit, &held.displacement), self.expand_multiplier(&held.multiplier, unit)))
+    }
+
+    /// The displacement of the whole body.
+    pub(super) fn displacement(&self, found: &Found) -> Vec<f64> {
+        let mut displacement = self.expand(&found.loading, found.unit, &found.outcome.displacement);
+        if let Some(refined) = &found.refined {
+            displacement.iter_mut().zip(&refined.base).for_each(|(step, base)| *step += base);
+        }
+        displacement
+    }
+
+    /// Is the factor in single precision?
+    pub fn is_single(&self) -> bool {
+        self.norm.is_some() && self.condensation.as_ref().is_some_and(Condensation::is_single)
     }
 
     /// Rows that were left out when the problem was prepared must still be no constraints, and no others.

@@ -1,12 +1,13 @@
 //! What a solve may be told.
 
 use crate::error::Error;
+use crate::solution::Goal;
 
 /// The method that finds the contact set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Method {
-    /// The program chooses; today the QP.
+    /// The program chooses, by rules fitted to measured times.
     #[default]
     Auto,
     /// Convex QP by Clarabel, its contact set settled by the active-set loop.
@@ -39,6 +40,20 @@ pub enum Condense {
     Never,
 }
 
+/// Precision of the sparse factor; everything else is in double precision.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Precision {
+    /// Double, unless [`Method::Auto`] is told an accuracy that the other reaches in less time.
+    #[default]
+    Auto,
+    /// Double precision.
+    Double,
+    /// Single precision with half the memory, the answer refined in double precision; where the problem is not condensed,
+    /// or too ill-conditioned, the factor is in double precision after all.
+    Mixed,
+}
+
 /// Settings of a solve; start from [`Settings::default`] or [`Settings::with_method`] and change fields.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -49,8 +64,13 @@ pub struct Settings {
     pub condense: Condense,
     /// Threads of the sparse factorisations, at least 1.
     pub threads: usize,
+    /// Precision of the sparse factor.
+    pub precision: Precision,
     /// Tolerance of the certificate, relative: what `Ok` promises.
     pub tolerance: f64,
+    /// Relative error in the energy norm that is good enough: where a bound is known, `Ok` promises that it is below, and
+    /// nothing else.
+    pub accuracy: Option<f64>,
     /// Are the rows named whose contact is beyond doubt?
     pub prove: bool,
     /// Is the contact set of the QP settled by the active-set loop?
@@ -73,7 +93,9 @@ impl Default for Settings {
             method: Method::Auto,
             condense: Condense::Auto,
             threads: 1,
+            precision: Precision::Auto,
             tolerance: 1e-9,
+            accuracy: None,
             prove: false,
             polish: true,
             interior_point_tolerance: 1e-9,
@@ -91,6 +113,16 @@ impl Settings {
         Settings { method, ..Settings::default() }
     }
 
+    /// The program chooses how; `Ok` promises a relative error in the energy norm of at most `accuracy`.
+    pub fn for_accuracy(accuracy: f64) -> Self {
+        Settings { accuracy: Some(accuracy), ..Settings::default() }
+    }
+
+    /// What an answer is held against.
+    pub fn goal(&self) -> Goal {
+        Goal { tolerance: self.tolerance, accuracy: self.accuracy }
+    }
+
     /// Are all settings in their ranges?
     ///
     /// # Errors
@@ -101,6 +133,9 @@ impl Settings {
             false => Err(Error::Setting { name, value, allowed: "positive and finite" }),
         };
         positive("tolerance", self.tolerance)?;
+        if let Some(accuracy) = self.accuracy {
+            positive("accuracy", accuracy)?;
+        }
         positive("interior_point_tolerance", self.interior_point_tolerance)?;
         positive("first_penalty", self.first_penalty)?;
         positive("last_penalty", self.last_penalty)?;

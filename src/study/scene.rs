@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::formulation::Formulation;
 use crate::recovery;
 use crate::scene::Model;
-use crate::solution::{ContactSet, Solution};
+use crate::solution::{ContactSet, Goal, Solution};
 use crate::solve::{Event, Prepared, Settings, solve};
 
 /// Gaps half way that differ by this from the mean of the ends, relative, are not on a straight line.
@@ -22,7 +22,7 @@ const STRAIGHT: f64 = 1e-12;
 pub fn scene_summary(
     model: &Model,
     solution: &Solution,
-    tolerance: f64,
+    goal: impl Into<Goal>,
     assemble_seconds: f64,
 ) -> Result<Summary, Error> {
     let mesh = model.mesh();
@@ -31,7 +31,7 @@ pub fn scene_summary(
         elements: Some(mesh.element_count()),
         ..ModelSize::of(model.problem())
     };
-    let mut summary = Summary::new(solution, size, tolerance, assemble_seconds);
+    let mut summary = Summary::new(solution, size, goal, assemble_seconds);
     let pressure = model.pressure(&solution.multiplier)?;
     summary.contact.pressure_max = Some(pressure.iter().copied().fold(0.0, f64::max));
     summary.contact.width = contact_width(model, &solution.contact_set);
@@ -135,8 +135,7 @@ pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, 
         return Ok(Sweep { points: Vec::new(), events: Vec::new(), corners: Vec::new() });
     };
     let at_first = model.with_gap(first)?;
-    let prepared = Prepared::with_threads(at_first.problem(), settings.condense, settings.threads)
-        .map_err(|error| at_first.explain(error))?;
+    let prepared = Prepared::with_settings(at_first.problem(), settings).map_err(|error| at_first.explain(error))?;
     let mut points: Vec<SweepPoint> = Vec::new();
     for &gap in gaps {
         let clock = Instant::now();
@@ -153,7 +152,7 @@ pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, 
             Err(Error::NotCertified { solution, .. }) => *solution,
             Err(error) => return Err(model.explain(error)),
         };
-        let summary = scene_summary(&model, &solution, settings.tolerance, assemble_seconds)?;
+        let summary = scene_summary(&model, &solution, settings.goal(), assemble_seconds)?;
         points.push(SweepPoint { gap, summary, model, solution });
     }
     let (events, corners) = between(&prepared, &at_first, first, last, settings)?;

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::problem::ContactProblem;
-use crate::solution::{Certificate, Iteration, Solution};
+use crate::solution::{Certificate, Goal, Iteration, Solution};
 
 /// One answer in numbers.
 #[derive(Clone, Debug, Serialize)]
@@ -12,10 +12,16 @@ pub struct Summary {
     pub status: &'static str,
     /// Relative tolerance that the certificate was held against.
     pub tolerance: f64,
+    /// Relative energy error that was asked for, which the bound is held against instead.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub accuracy: Option<f64>,
     /// `qp`, `active-set` or `penalty`, with a suffix where a variant ran.
     pub method: String,
     /// Iterations of the method.
     pub iterations: usize,
+    /// Steps of refinement, where the factor was in single precision.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub refinements: Option<usize>,
     /// Closed rows and forces.
     pub contact: ContactSummary,
     /// Rows whose contact is beyond doubt, where they were asked for.
@@ -148,14 +154,15 @@ impl From<&Certificate> for CertificateSummary {
     }
 }
 
-/// `certified` or `not_certified`, as the certificate meets the tolerance.
-pub(crate) fn status(certificate: &Certificate, tolerance: f64) -> &'static str {
-    if certificate.meets(tolerance) { "certified" } else { "not_certified" }
+/// `certified` or `not_certified`, as the certificate meets the goal.
+pub(crate) fn status(certificate: &Certificate, goal: Goal) -> &'static str {
+    if goal.is_met_by(certificate) { "certified" } else { "not_certified" }
 }
 
 impl Summary {
     /// The numbers of `solution` to a raw problem; a scene adds what it knows to `contact` and `model`.
-    pub fn new(solution: &Solution, model: ModelSize, tolerance: f64, assemble_seconds: f64) -> Self {
+    pub fn new(solution: &Solution, model: ModelSize, goal: impl Into<Goal>, assemble_seconds: f64) -> Self {
+        let goal = goal.into();
         let model = ModelSize { condensed_dofs: solution.condensed_dofs, ..model };
         let entry = |step: &Iteration| HistoryEntry {
             closed: step.contact_set.count(),
@@ -163,10 +170,12 @@ impl Summary {
         };
         let seconds = solution.seconds;
         Summary {
-            status: status(&solution.certificate, tolerance),
-            tolerance,
+            status: status(&solution.certificate, goal),
+            tolerance: goal.tolerance,
+            accuracy: goal.accuracy,
             method: solution.method.clone(),
             iterations: solution.iterations,
+            refinements: solution.refinements,
             contact: ContactSummary {
                 count: solution.contact_set.count(),
                 force: solution.contact_force(),
@@ -193,7 +202,7 @@ impl Summary {
         }
     }
 
-    /// Does the answer meet its tolerance?
+    /// Does the answer meet its goal?
     pub fn is_certified(&self) -> bool {
         self.status == "certified"
     }
@@ -220,7 +229,7 @@ impl Verification {
         let force = -multiplier.iter().sum::<f64>();
         let count = multiplier.iter().filter(|&&lambda| lambda != 0.0).count();
         let contact = ContactSummary { count, force, pressure_max: None, width: None, area: None, force_balance: None };
-        let status = status(certificate, tolerance);
+        let status = status(certificate, tolerance.into());
         Verification { status, tolerance, contact, certificate: certificate.into(), model }
     }
 

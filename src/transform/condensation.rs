@@ -100,6 +100,16 @@ impl Condensation {
         self.cholesky.entries()
     }
 
+    /// The contact dofs, in increasing order.
+    pub fn dofs(&self) -> &[usize] {
+        &self.contact_dofs
+    }
+
+    /// Is the factor in single precision?
+    pub fn is_single(&self) -> bool {
+        self.cholesky.is_single()
+    }
+
     /// The condensed stiffness S.
     pub fn stiffness(&self) -> &SymmetricMatrix {
         &self.stiffness

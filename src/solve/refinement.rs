@@ -1,0 +1,114 @@
+//! Refinement: the answer of a factor in single precision brought to that of doubles, or to the accuracy asked for.
+//!
+//! With the factor K~ of single precision, every step solves the contact problem of what is left,
+//!
+//! ```text
+//! minimise 1/2 d' K~ d - (f - K u)' d   subject to   B d <= g - B u
+//! ```
+//!
+//! condensed, by the same method, and adds d to u. What is left is computed in double precision. Where d is zero the
+//! conditions are those of the problem itself; until then the error shrinks by `|I - K~^-1 K|` from step to step. That
+//! contraction is measured, and widens the bound of the certificate, which knows K~ only.
+
+use std::sync::Arc;
+
+use super::boundary::Found;
+use super::loading::Loading;
+use super::{Prepared, Settings};
+use crate::error::Error;
+use crate::sparse::dot;
+
+/// Steps after which there is nothing more to gain.
+const MOST_STEPS: usize = 30;
+
+/// A contraction above this makes the bound of the certificate worthless.
+const LARGEST_CONTRACTION: f64 = 0.2;
+
+/// Steps below this share of the displacement are rounding, and say nothing of the contraction.
+const ROUNDING: f64 = 1e-9;
+
+/// A step of this share of the displacement changes it no more.
+const NOTHING: f64 = 4.0 * f64::EPSILON;
+
+/// The accuracy that is aimed at is this share of the one asked for, because the contraction is an estimate.
+const AIM: f64 = 0.1;
+
+/// What refinement has done so far.
+#[derive(Clone, Debug)]
+pub(super) struct Refined {
+    /// The displacement before the last step, length n.
+    pub base: Vec<f64>,
+    /// The largest measured contraction.
+    pub contraction: f64,
+    /// Steps after the first answer.
+    pub steps: usize,
+}
+
+impl Prepared {
+    /// Refines what the method found with the factor in single precision.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] where the stiffness is too ill-conditioned for it, and those of the method.
+    pub(super) fn refined(&self, first: Found, settings: &Settings) -> Result<Found, Error> {
+        let (load, gap, start) = (first.loading.load.clone(), first.gap.clone(), first.seconds);
+        let mut rest = load.clone();
+        let mut found = first;
+        let mut refined = Refined { base: vec![0.0; self.problem.dofs()], contraction: 0.0, steps: 0 };
+        let mut last_length = f64::INFINITY;
+        loop {
+            let step = self.expand(&found.loading, found.unit, &found.outcome.displacement);
+            let displacement: Vec<f64> = refined.base.iter().zip(&step).map(|(u, d)| u + d).collect();
+            // K~ d is what is left of the load and the contact force.
+            let multiplier = self.expand_multiplier(&found.outcome.multiplier, found.unit);
+            let contact = self.problem.contact().mul_transposed(&multiplier);
+            let work: f64 = step.iter().zip(rest.iter().zip(&contact)).map(|(d, (r, c))| d * (r + c)).sum();
+            let elastic = self.problem.stiffness().mul(&displacement);
+            let (length, size) = (work.max(0.0).sqrt(), dot(&displacement, &elastic).max(0.0).sqrt());
+            let ratio = if last_length > 0.0 { length / last_length } else { 0.0 };
+            if last_length.is_finite() && last_length > ROUNDING * size {
+                refined.contraction = refined.contraction.max(ratio);
+            }
+            if refined.contraction > LARGEST_CONTRACTION {
+                let reason = "the stiffness is too ill-conditioned for it; take double precision".to_string();
+                return Err(Error::Numerical { step: "refinement of a factor in single precision", reason });
+            }
+            let good_enough = settings
+                .accuracy
+                .is_some_and(|accuracy| refined.steps > 0 && length * refined.contraction <= AIM * accuracy * size);
+            let no_gain = refined.steps > 0 && (length <= NOTHING * size || ratio > 0.5);
+            if good_enough || no_gain || refined.steps == MOST_STEPS {
+                found.seconds.factor += start.factor;
+                return Ok(Found {
+                    gap,
+                    loading: Arc::new(found.loading.with_load(load)),
+                    refined: Some(refined),
+                    ..found
+                });
+            }
+            rest = load.iter().zip(&elastic).map(|(f, k)| f - k).collect();
+            // The contact force is balanced on its own dofs, in double precision; only what is out of balance is swept.
+            let imbalance: Vec<f64> = rest.iter().zip(&contact).map(|(r, c)| r + c).collect();
+            let released: Vec<f64> = contact.iter().map(|force| -force).collect();
+            let left: Vec<f64> =
+                gap.iter().zip(self.problem.contact().mul(&displacement)).map(|(g, moved)| g - moved).collect();
+            let loading = Loading::of(self, imbalance, &self.selection.gap(&left));
+            let (history, iterations) = (found.outcome.history, found.outcome.iterations);
+            let (set, seconds) = (self.expand_set(&found.outcome.contact_set), found.seconds);
+            found =
+                self.find_step(Arc::new(loading.with_contact_force(self, &released)), left, Some(&set), settings)?;
+            // Of a step that keeps the set there is nothing to tell.
+            let kept = found
+                .outcome
+                .history
+                .iter()
+                .all(|entry| Some(&entry.contact_set) == history.last().map(|last| &last.contact_set));
+            found.outcome.history = if kept { history } else { [history, found.outcome.history].concat() };
+            found.outcome.iterations = iterations;
+            found.seconds.factor += seconds.factor;
+            found.seconds.solve += seconds.solve;
+            refined.base = displacement;
+            refined.steps += 1;
+            last_length = length;
+        }
+    }
+}
