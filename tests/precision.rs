@@ -22,7 +22,7 @@ fn energy(problem: &ContactProblem, u: &[f64]) -> f64 {
 
 fn error(problem: &ContactProblem, found: &Solution, exact: &Solution) -> f64 {
     let away: Vec<f64> = found.displacement.iter().zip(&exact.displacement).map(|(u, v)| u - v).collect();
-    energy(problem, &away) / energy(problem, &exact.displacement)
+    energy(problem, &away) / energy(problem, &found.displacement)
 }
 
 #[test]

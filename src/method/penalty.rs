@@ -21,18 +21,34 @@ use crate::sparse::{Cholesky, largest};
 pub const BEST_PENALTY: f64 = 1e8;
 
 /// The ladder of penalties, in multiples of the local stiffness, and where it may end early.
-#[derive(Clone, Copy, Debug)]
-pub struct Ladder {
+#[derive(Clone, Copy)]
+pub struct Ladder<'a> {
     /// First penalty.
     pub first: f64,
     /// Last penalty.
     pub last: f64,
     /// Penetration, relative to the largest displacement of a contact row, at which the ladder ends.
     pub threshold: f64,
+    /// Are answers extrapolated to an infinite penalty, from two rungs with one set?
+    pub extrapolate: bool,
+    /// The relative energy error at which the ladder ends, if any.
+    pub goal: Option<Goal<'a>>,
+}
+
+/// An accuracy, with the bound that is held against it.
+#[derive(Clone, Copy)]
+pub struct Goal<'a> {
+    /// Relative error in the energy norm.
+    pub accuracy: f64,
+    /// The bound of an answer (displacement, multiplier).
+    pub bound: &'a dyn Fn(&[f64], &[f64]) -> f64,
 }
 
 /// Factor from rung to rung.
 const RUNG: f64 = 10.0;
+
+/// A rung whose bound is above this share of the one before is the floor: more penalty only adds rounding.
+const FLOOR: f64 = 0.5;
 
 /// Solves on the last rung after the set has settled: in the second the shift is the displacement itself.
 const FINAL_SOLVES: usize = 2;
@@ -55,6 +71,9 @@ pub fn solve(
     let mut history = Vec::new();
     let mut penalty = ladder.first;
     let mut settled;
+    let mut answer;
+    let mut rung_before: Option<Rung> = None;
+    let mut last_bound = f64::INFINITY;
     loop {
         let mut seen = HashSet::new();
         settled = false;
@@ -81,17 +100,79 @@ pub fn solve(
         let penetration = closed.iter().map(|row| state.violation[row]).fold(0.0, f64::max);
         let reach = largest(&problem.contact().mul(&state.displacement));
         let small = settled && penetration <= ladder.threshold * reach;
+        let rung = Rung::new(&state, closed.clone(), penalty);
+        answer = match (&rung_before, ladder.extrapolate && settled) {
+            (Some(before), true) if before.closed == rung.closed => rung.extrapolated(before),
+            (_, true) => rung.extrapolated(&rung_below(scaled, &rung)?),
+            (_, false) => rung.clone(),
+        };
+        if let Some(goal) = ladder.goal.filter(|_| settled) {
+            let bound = (goal.bound)(&answer.displacement, &answer.multiplier);
+            if bound <= goal.accuracy || (bound > FLOOR * last_bound && bound.is_finite()) {
+                break;
+            }
+            last_bound = bound;
+        }
+        rung_before = Some(rung);
         if small || penalty * RUNG > ladder.last || history.len() >= max_iterations {
             break;
         }
         penalty *= RUNG;
     }
-    let multiplier = (0..problem.rows())
-        .map(|row| if closed.contains(row) { -penalty * state.violation[row].max(0.0) } else { 0.0 })
-        .collect();
-    let (iterations, variant) = (history.len(), if settled { "" } else { "-unsettled" });
-    let displacement = state.displacement;
+    let (iterations, variant) = match (settled, ladder.extrapolate) {
+        (false, _) => (history.len(), "-unsettled"),
+        (true, false) => (history.len(), ""),
+        (true, true) => (history.len(), "-extrapolated"),
+    };
+    let Rung { displacement, multiplier, .. } = answer;
     Ok(Outcome { displacement, multiplier, contact_set: closed, iterations, history, settled, variant })
+}
+
+/// The answer of one penalty.
+#[derive(Clone)]
+struct Rung {
+    penalty: f64,
+    closed: ContactSet,
+    displacement: Vec<f64>,
+    multiplier: Vec<f64>,
+}
+
+impl Rung {
+    fn new(state: &State, closed: ContactSet, penalty: f64) -> Self {
+        let force = |(row, violation): (usize, &f64)| {
+            if closed.contains(row) { -penalty * violation.max(0.0) } else { 0.0 }
+        };
+        let multiplier = state.violation.iter().enumerate().map(force).collect();
+        Rung { penalty, displacement: state.displacement.clone(), multiplier, closed }
+    }
+
+    /// Richardson's extrapolation to an infinite penalty: the error of either answer is one over its penalty, to the
+    /// first order.
+    fn extrapolated(&self, before: &Rung) -> Rung {
+        let share = before.penalty / (self.penalty - before.penalty);
+        let beyond = |now: &[f64], before: &[f64]| -> Vec<f64> {
+            now.iter().zip(before).map(|(now, before)| now + share * (now - before)).collect()
+        };
+        let multiplier = beyond(&self.multiplier, &before.multiplier);
+        Rung {
+            displacement: beyond(&self.displacement, &before.displacement),
+            multiplier: multiplier.into_iter().map(|value| value.min(0.0)).collect(),
+            ..self.clone()
+        }
+    }
+}
+
+/// The answer with the same set and a tenth of the penalty.
+fn rung_below(scaled: &ScaledProblem, rung: &Rung) -> Result<Rung, Error> {
+    let penalty = rung.penalty / RUNG;
+    let mut state = State { displacement: rung.displacement.clone(), violation: Vec::new() };
+    match scaled.hold(&rung.closed, penalty)? {
+        Holding::Held(cholesky) => {
+            (0..=FINAL_SOLVES).for_each(|_| state.advance(scaled, &cholesky, &rung.closed, penalty));
+            Ok(Rung::new(&state, rung.closed.clone(), penalty))
+        }
+        Holding::Free(motion) => Err(motion.into_error()),
+    }
 }
 
 /// A displacement with the violation B u - g of each row, kept to the relative precision of the change that made it.

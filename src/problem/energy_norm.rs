@@ -74,6 +74,11 @@ impl EnergyNorm {
         EnergyNorm { cholesky, equilibration, boundary, widening: 1.0 }
     }
 
+    /// The energy norm of the equilibrated stiffness itself.
+    pub fn equilibrated(&self) -> Self {
+        EnergyNorm { equilibration: Equilibration::none(self.cholesky.dim()), ..self.clone() }
+    }
+
     /// The same norm, for a factor K~ whose contraction `|I - K~^-1 K|` is measured to be this.
     pub fn off_by(&self, contraction: f64) -> Self {
         EnergyNorm { widening: 1.0 + MEASURED * contraction, ..self.clone() }

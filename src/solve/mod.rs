@@ -74,7 +74,14 @@ pub fn with_contact_set(problem: &ContactProblem, closed: &ContactSet) -> Result
 }
 
 /// Runs the method of `settings`; the active-set steps start from `start` where it is given.
-fn run(scaled: &ScaledProblem, start: Option<ContactSet>, settings: &Settings) -> Result<Outcome, Error> {
+///
+/// `bound` is that of the energy error of an answer to the scaled problem.
+fn run(
+    scaled: &ScaledProblem,
+    start: Option<ContactSet>,
+    settings: &Settings,
+    bound: &dyn Fn(&[f64], &[f64]) -> f64,
+) -> Result<Outcome, Error> {
     let cold = scaled.start()?;
     let outcome = match settings.method {
         Method::Auto | Method::Qp if settings.polish && start.is_some() => {
@@ -94,6 +101,8 @@ fn run(scaled: &ScaledProblem, start: Option<ContactSet>, settings: &Settings) -
                 first: settings.first_penalty,
                 last: settings.last_penalty,
                 threshold: settings.penetration_threshold,
+                extrapolate: settings.extrapolate,
+                goal: settings.accuracy.map(|accuracy| penalty::Goal { accuracy, bound }),
             };
             penalty::solve(scaled, start.unwrap_or(cold), ladder, settings.max_iterations)?
         }
@@ -115,7 +124,7 @@ fn settle(scaled: &ScaledProblem, start: ContactSet, settings: &Settings) -> Res
     if first.settled || settings.max_iterations <= PATIENCE {
         return Ok(first);
     }
-    let ladder = Ladder { first: 1.0, last: BEST_PENALTY, threshold: 0.0 };
+    let ladder = Ladder { first: 1.0, last: BEST_PENALTY, threshold: 0.0, extrapolate: false, goal: None };
     let approach = penalty::solve(scaled, first.contact_set, ladder, settings.max_iterations)?;
     let mut second = active_set::solve(scaled, approach.contact_set, settings.max_iterations)?;
     second.history = [first.history, approach.history, second.history].concat();

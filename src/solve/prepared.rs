@@ -11,7 +11,7 @@ use crate::method::parametric::Compliance;
 use crate::method::{ScaledProblem, active_set, interior_point};
 use crate::problem::{ContactProblem, EnergyNorm, check_gap};
 use crate::solution::{ContactSet, Iteration, Seconds, Solution};
-use crate::sparse::{Analysis, AugmentedMatrix, Cholesky, Equilibration, FactorError, largest, ldexp};
+use crate::sparse::{Analysis, AugmentedMatrix, Cholesky, Equilibration, FactorError, dot, largest, ldexp};
 use crate::transform::{Condensation, RowSelection, Scaling};
 
 /// A pivot of the equilibrated stiffness below this is too uncertain in single precision.
@@ -100,7 +100,11 @@ impl Prepared {
             }
         }
         let augmented = match &condensation {
-            Some(condensed) => AugmentedMatrix::new(condensed.stiffness(), condensed.contact())?,
+            Some(condensed) => {
+                // Dense: the order is of no matter to the factor, and its last block is all of it.
+                let all: Vec<usize> = (0..condensed.stiffness().dim()).collect();
+                AugmentedMatrix::with_last(condensed.stiffness(), condensed.contact(), &all)?
+            }
             None => AugmentedMatrix::new(scaling.stiffness(), scaling.contact())?.with_threads(threads),
         };
         let norm = cholesky.map(|cholesky| EnergyNorm::new(cholesky, scaling.equilibration().clone(), last));
@@ -256,7 +260,13 @@ impl Prepared {
         let (problem, unit) = self.scaled(&loading, &gap)?;
         let task = ScaledProblem::new(&problem, &self.augmented, self.norm.is_some());
         let start = start.map(|set| self.selection.restrict_set(set));
-        let outcome = run(&task, start, settings).map_err(|error| self.expand_error(error))?;
+        let bound = |displacement: &[f64], multiplier: &[f64]| {
+            let norm = self.condensed_norm(&problem).ok().flatten();
+            let certificate = problem.certify_in(norm, displacement, multiplier);
+            let of_whole = self.share_of_boundary(&loading, unit, &problem, displacement);
+            certificate.map_or(f64::INFINITY, |certificate| certificate.energy_error_bound * of_whole)
+        };
+        let outcome = run(&task, start, settings, &bound).map_err(|error| self.expand_error(error))?;
         let seconds = Seconds { factor: task.factor_seconds(), solve: clock.elapsed().as_secs_f64() };
         Ok(Found { loading, gap, problem, unit, outcome, seconds, refined: None })
     }
@@ -287,16 +297,28 @@ impl Prepared {
 
     /// The energy norm of the problem that the methods work on.
     fn condensed_norm(&self, problem: &ContactProblem) -> Result<Option<&EnergyNorm>, Error> {
-        if self.condensation.is_none() || self.norm.is_none() {
-            return Ok(self.norm.as_ref().filter(|_| self.condensation.is_none()));
-        }
+        let Some(norm) = &self.norm else { return Ok(None) };
         if self.condensed_norm.get().is_none() {
-            let unscaled = Equilibration { diagonal: vec![0; problem.dofs()], factor: 0 };
-            let factor = self.augmented.factor(&self.augmented.matrix(|_| 0.0, 0.0)).ok();
+            let of_problem = match &self.condensation {
+                None => Some(norm.equilibrated()),
+                Some(_) => {
+                    let unscaled = Equilibration::none(problem.dofs());
+                    let factor = self.augmented.factor(&self.augmented.matrix(|_| 0.0, 0.0)).ok();
+                    factor.map(|factor| EnergyNorm::new(factor, unscaled, (0..problem.dofs()).collect()))
+                }
+            };
             // Another thread may have been faster, with the same result.
-            let _ = self.condensed_norm.set(factor.map(|factor| EnergyNorm::new(factor, unscaled, Vec::new())));
+            let _ = self.condensed_norm.set(of_problem);
         }
         Ok(self.condensed_norm.get().and_then(Option::as_ref))
+    }
+
+    /// The energy norm of a displacement of the condensed problem over that of the whole body.
+    fn share_of_boundary(&self, loading: &Loading, unit: i32, problem: &ContactProblem, displacement: &[f64]) -> f64 {
+        let Some(condensed) = &self.condensation else { return 1.0 };
+        let on_boundary = dot(displacement, &problem.stiffness().mul(displacement));
+        let interior = ldexp(condensed.interior_energy(&loading.sweep), 2 * (loading.unit - unit));
+        if interior > 0.0 { (on_boundary / (on_boundary + interior)).max(0.0).sqrt() } else { 1.0 }
     }
 
     /// The whole answer, certified.

@@ -83,6 +83,8 @@ pub struct Settings {
     pub first_penalty: f64,
     /// Last penalty, in multiples of the local stiffness; 1e8 balances penetration and rounding.
     pub last_penalty: f64,
+    /// Is the penalty answer extrapolated to an infinite penalty, from two rungs of the ladder?
+    pub extrapolate: bool,
     /// Penetration at which the penalty loop stops, relative to the largest displacement of a contact row.
     pub penetration_threshold: f64,
 }
@@ -102,6 +104,7 @@ impl Default for Settings {
             max_iterations: 20_000,
             first_penalty: 1.0,
             last_penalty: 1e8,
+            extrapolate: false,
             penetration_threshold: 1e-10,
         }
     }

@@ -45,6 +45,11 @@ pub struct Equilibration {
 }
 
 impl Equilibration {
+    /// That of a matrix which needs none.
+    pub fn none(dim: usize) -> Self {
+        Equilibration { diagonal: vec![0; dim], factor: 0 }
+    }
+
     /// The equilibration of a matrix with non-negative diagonal; a row with a zero diagonal gets the scale of the
     /// largest.
     pub fn of(matrix: &SymmetricMatrix) -> Self {

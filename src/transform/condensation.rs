@@ -139,6 +139,12 @@ impl Condensation {
         load
     }
 
+    /// The square of the energy norm that the load alone adds inside the body, whatever the contact dofs do.
+    pub fn interior_energy(&self, sweep: &[f64]) -> f64 {
+        let interior = &sweep[..sweep.len() - self.contact_dofs.len()];
+        dot(interior, interior)
+    }
+
     /// The displacement of the contact dofs that the load alone causes, where K is definite.
     pub fn free_displacement(&self, sweep: &[f64]) -> Vec<f64> {
         let size = self.contact_dofs.len();
