@@ -99,6 +99,14 @@ pub enum Error {
         /// The free direction, one entry per dof.
         direction: Vec<f64>,
     },
+    /// A factorisation would take longer than there is time.
+    #[error("one factorisation takes about {needed:.1e} s, and {time:.1e} s are left")]
+    OutOfTime {
+        /// Seconds that it takes, estimated.
+        needed: f64,
+        /// Seconds that are left.
+        time: f64,
+    },
     /// An answer was found, but it does not meet the tolerance.
     #[error("not certified: {condition} is {value:.3e}, above the tolerance {tolerance:.1e} ({})", solution.method)]
     NotCertified {

@@ -4,7 +4,7 @@
 mod oracles;
 
 use oracles::{Dense, Draws, random};
-use signorini::{Certificate, ContactProblem, Settings, SparseMatrix, SymmetricMatrix, solve, solve_qp};
+use signorini::{Certificate, ContactProblem, Method, Settings, SparseMatrix, SymmetricMatrix, solve, solve_qp};
 
 const TOLERANCE: f64 = 1e-9;
 
@@ -110,7 +110,7 @@ fn answer_moved_by_ten_tolerances_is_refused() {
 
 #[test]
 fn not_certified_answers_come_back_with_their_numbers() {
-    let mut settings = Settings::default();
+    let mut settings = Settings::with_method(Method::Qp);
     settings.polish = false;
     settings.interior_point_tolerance = 1e-2;
     match solve(&two_springs().0, &settings) {

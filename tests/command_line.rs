@@ -61,7 +61,7 @@ fn solve_prints_one_object_of_the_promised_form_for_every_example() {
     for name in examples() {
         let answer = desk.run(&["solve", &example(&name), "--format", "json"]).ends_with(0).json();
         is_answer(&answer, true);
-        assert_eq!((&answer["status"], &answer["method"]), (&json!("certified"), &json!("qp")), "{name}");
+        assert_eq!((&answer["status"], &answer["method"]), (&json!("certified"), &json!("active-set")), "{name}");
     }
 }
 
@@ -83,7 +83,7 @@ fn each_method_answers_under_its_own_name() {
     let desk = Desk::new();
     desk.problem("p", &Problem::right());
     for (method, name, tolerance) in [
-        ("auto", "qp", "1e-9"),
+        ("auto", "active-set", "1e-9"),
         ("qp", "qp", "1e-9"),
         ("active-set", "active-set", "1e-9"),
         ("penalty", "penalty", "1e-4"),

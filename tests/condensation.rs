@@ -247,7 +247,7 @@ fn inclined_two_sided_and_redundant_rows_condense() {
 fn next_gap_and_next_load_agree_with_independent_solves() {
     let problem = example("indentation");
     let prepared = Prepared::new(&problem, Condense::Auto).unwrap();
-    let default = Settings::default();
+    let default = Settings::with_method(Method::Qp);
     let mut last = prepared.solve(&default).unwrap();
     for step in 1..8 {
         let gap: Vec<f64> = problem.gap().iter().map(|gap| gap - 0.006 * f64::from(step)).collect();

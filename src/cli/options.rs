@@ -56,6 +56,16 @@ pub(super) enum MethodName {
     Penalty,
 }
 
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum PrecisionName {
+    /// Double, unless an accuracy is asked for that single precision reaches sooner
+    Auto,
+    /// Double precision
+    Double,
+    /// Single precision, half the memory, refined in double precision
+    Mixed,
+}
+
 #[derive(Debug, Args)]
 pub(super) struct Solve {
     /// Scene (a JSON file) or problem directory (with K.mtx, f.mtx, B.mtx, g.mtx)
@@ -63,6 +73,18 @@ pub(super) struct Solve {
     /// Method that finds the contact set
     #[arg(long, value_enum, default_value_t = MethodName::Auto)]
     pub method: MethodName,
+    /// Relative error in the energy norm that is good enough, certified
+    #[arg(long, value_name = "A", allow_negative_numbers = true, value_parser = parse_tolerance)]
+    pub accuracy: Option<f64>,
+    /// Seconds after which the best answer so far is returned
+    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = parse_tolerance)]
+    pub time: Option<f64>,
+    /// Precision of the sparse factor
+    #[arg(long, value_enum, default_value_t = PrecisionName::Auto)]
+    pub precision: PrecisionName,
+    /// Extrapolate the penalty answer to an infinite penalty
+    #[arg(long)]
+    pub extrapolate: bool,
     #[command(flatten)]
     pub common: Common,
 }
@@ -210,6 +232,17 @@ impl Command {
             Command::Tradeoff(options) => options.format,
             Command::Verify(options) => options.format,
             Command::Export(_) | Command::Schema => Format::Text,
+        }
+    }
+}
+
+impl PrecisionName {
+    /// The precision of the library.
+    pub fn precision(self) -> solve::Precision {
+        match self {
+            PrecisionName::Auto => solve::Precision::Auto,
+            PrecisionName::Double => solve::Precision::Double,
+            PrecisionName::Mixed => solve::Precision::Mixed,
         }
     }
 }

@@ -22,6 +22,8 @@ pub(super) fn run(options: &Solve) -> Result<Outcome, Error> {
     warn(&input.warnings());
     let mut settings = settings(options.method.method(), common);
     settings.prove = true;
+    (settings.accuracy, settings.time) = (options.accuracy, options.time);
+    (settings.precision, settings.extrapolate) = (options.precision.precision(), options.extrapolate);
     let solution = match solve(input.problem(), &settings) {
         Ok(solution) => solution,
         Err(error @ Error::NotCertified { .. }) => {

@@ -66,7 +66,7 @@ pub fn solve(scaled: &ScaledProblem, start: ContactSet, max_iterations: usize) -
     let mut rule = Rule::Exchange;
     let mut compliant = false;
     let mut settled = false;
-    while !settled && history.len() < max_iterations {
+    while !settled && history.len() < max_iterations && (history.is_empty() || !scaled.is_out_of_time()) {
         let cholesky = match scaled.hold(&closed, if compliant { COMPLIANT_WEIGHT } else { WEIGHT })? {
             Holding::Held(cholesky) => cholesky,
             Holding::Free(motion) => match scaled.stopping_rows(&motion, &displacement, &closed) {

@@ -68,14 +68,19 @@ pub fn solve(scaled: &ScaledProblem, tolerance: f64) -> Result<InteriorPoint, Er
     let mut iterations = 0;
     let mut corrections = 0;
     loop {
-        let mut found = solve_in_unit(problem, tolerance, unit)?;
+        let mut found = solve_in_unit(problem, tolerance, unit, scaled.time_left())?;
         iterations += found.iterations;
         found.iterations = iterations;
         let size = largest(&found.displacement);
         let displacement = exponent(size) - unit.displacement;
         let force = exponent(largest(&found.multiplier).max(largest(problem.load()))) - unit.force;
         let fits = displacement.abs().max(force.abs()) <= UNIT_EXPONENT;
-        if fits || size == 0.0 || displacement < -NOTHING_EXPONENT || corrections == UNIT_CORRECTIONS {
+        if fits
+            || size == 0.0
+            || scaled.is_out_of_time()
+            || displacement < -NOTHING_EXPONENT
+            || corrections == UNIT_CORRECTIONS
+        {
             return Ok(found);
         }
         unit = Unit { displacement: unit.displacement + displacement, force: unit.force + force };
@@ -97,10 +102,15 @@ struct Unit {
 /// [`Error::Infeasible`] if so.
 pub fn check_feasible(scaled: &ScaledProblem, tolerance: f64) -> Result<(), Error> {
     let unit = Unit { displacement: 0, force: exponent(largest(scaled.problem.load())) };
-    solve_in_unit(scaled.problem, tolerance, unit).map(|_| ())
+    solve_in_unit(scaled.problem, tolerance, unit, scaled.time_left()).map(|_| ())
 }
 
-fn solve_in_unit(problem: &ContactProblem, tolerance: f64, unit: Unit) -> Result<InteriorPoint, Error> {
+fn solve_in_unit(
+    problem: &ContactProblem,
+    tolerance: f64,
+    unit: Unit,
+    time: Option<f64>,
+) -> Result<InteriorPoint, Error> {
     let gap: Vec<f64> = problem.gap().iter().map(|&g| ldexp(g, -unit.displacement)).collect();
     let rows: Vec<usize> = (0..gap.len()).filter(|&row| gap[row] < OUT_OF_REACH).collect();
     let near_gap: Vec<f64> = rows.iter().map(|&row| gap[row]).collect();
@@ -114,6 +124,7 @@ fn solve_in_unit(problem: &ContactProblem, tolerance: f64, unit: Unit) -> Result
         tol_feas: tolerance,
         max_iter: MAX_STEPS,
         max_threads: 1,
+        time_limit: time.unwrap_or(f64::INFINITY),
         ..DefaultSettings::default()
     };
     let cones = [SupportedConeT::NonnegativeConeT(rows.len())];

@@ -31,12 +31,28 @@ pub struct ScaledProblem<'a> {
     pub definite: bool,
     augmented: &'a AugmentedMatrix,
     factor_seconds: Cell<f64>,
+    deadline: Option<Instant>,
 }
 
 impl<'a> ScaledProblem<'a> {
     /// The problem with the analysed pattern of its K + B'B.
     pub fn new(problem: &'a ContactProblem, augmented: &'a AugmentedMatrix, definite: bool) -> Self {
-        ScaledProblem { problem, definite, augmented, factor_seconds: Cell::new(0.0) }
+        ScaledProblem { problem, definite, augmented, factor_seconds: Cell::new(0.0), deadline: None }
+    }
+
+    /// The same problem, whose loops end with what they have at `deadline`.
+    pub fn until(self, deadline: Option<Instant>) -> Self {
+        ScaledProblem { deadline, ..self }
+    }
+
+    /// Seconds until the deadline, if there is one.
+    pub(super) fn time_left(&self) -> Option<f64> {
+        self.deadline.map(|deadline| deadline.saturating_duration_since(Instant::now()).as_secs_f64())
+    }
+
+    /// Has the deadline passed?
+    pub(super) fn is_out_of_time(&self) -> bool {
+        self.time_left() == Some(0.0)
     }
 
     /// Seconds spent in factorisations so far.

@@ -77,7 +77,11 @@ pub fn solve(
     loop {
         let mut seen = HashSet::new();
         settled = false;
-        while !settled && seen.insert(closed.clone()) && history.len() < max_iterations {
+        while !settled
+            && seen.insert(closed.clone())
+            && history.len() < max_iterations
+            && (history.is_empty() || !scaled.is_out_of_time())
+        {
             let cholesky = match scaled.hold(&closed, penalty)? {
                 Holding::Held(cholesky) => cholesky,
                 Holding::Free(motion) => match scaled.stopping_rows(&motion, &state.displacement, &closed) {
@@ -114,7 +118,7 @@ pub fn solve(
             last_bound = bound;
         }
         rung_before = Some(rung);
-        if small || penalty * RUNG > ladder.last || history.len() >= max_iterations {
+        if small || scaled.is_out_of_time() || penalty * RUNG > ladder.last || history.len() >= max_iterations {
             break;
         }
         penalty *= RUNG;

@@ -49,6 +49,12 @@ pub fn solve_text(title: &str, summary: &Summary, units: &UnitNames) -> String {
         condensed => format!(", condensed to {condensed} dofs"),
     };
     line("method", format!("{}, {}{unknowns}", summary.method, plural(summary.iterations, "iteration")));
+    if let Some(steps) = summary.refinements {
+        line("", format!("factor in single precision, {}", plural(steps, "refinement")));
+    }
+    if let Some(penalty) = summary.history.last().and_then(|step| step.penalty) {
+        line("", format!("the penalty went up to {penalty:.0e} times the local stiffness"));
+    }
     line(
         "contact",
         format!("{}, force {}", plural(contact.count, "closed row"), quantity(contact.force, &units.force)),
@@ -66,7 +72,10 @@ pub fn solve_text(title: &str, summary: &Summary, units: &UnitNames) -> String {
     if let Some(balance) = contact.force_balance {
         line("", format!("loads, reactions and contact forces balance to {balance:.1e}"));
     }
-    text += &certificate_text(&summary.certificate, summary.is_certified(), summary.tolerance);
+    text += &match summary.accuracy.filter(|_| summary.certificate.energy_error_bound.is_finite()) {
+        Some(accuracy) => accuracy_text(&summary.certificate, summary.is_certified(), accuracy),
+        None => certificate_text(&summary.certificate, summary.is_certified(), summary.tolerance),
+    };
     text += &mesh_text(summary);
     text += &entry(
         "seconds",
@@ -121,6 +130,13 @@ fn certificate_text(certificate: &CertificateSummary, certified: bool, tolerance
         text += &entry("", &format!("{name:<18}{formula:<38}{value}"));
     }
     text
+}
+
+/// The certificate of an answer that was asked for by its accuracy.
+fn accuracy_text(certificate: &CertificateSummary, certified: bool, accuracy: f64) -> String {
+    let verdict = if certified { "certified to" } else { "NOT certified to" };
+    let bound = certificate.energy_error_bound;
+    entry("certificate", &format!("{verdict} {accuracy:.1e} of the energy norm: the error is at most {bound:.1e}"))
 }
 
 /// The report of a verification.

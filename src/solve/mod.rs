@@ -5,6 +5,7 @@ mod loading;
 mod path;
 mod prepared;
 mod refinement;
+mod rules;
 mod settings;
 
 pub use crate::method::parametric::{Event, Piece};
@@ -23,12 +24,12 @@ use crate::solution::{ContactSet, Iteration, Solution};
 /// Iterations of the active-set loop after which its start is taken for a poor one.
 const PATIENCE: usize = 100;
 
-/// Solves a contact problem by the QP method, polished, certified to 1e-9.
+/// Solves a contact problem as a QP by the interior-point method, polished, certified to 1e-9.
 ///
 /// # Errors
 /// As [`solve`].
 pub fn solve_qp(problem: &ContactProblem) -> Result<Solution, Error> {
-    solve(problem, &Settings::default())
+    solve(problem, &Settings::with_method(Method::Qp))
 }
 
 /// Solves a contact problem; `Ok` means that the answer is certified to `settings.tolerance`.
@@ -42,19 +43,25 @@ pub fn solve_qp(problem: &ContactProblem) -> Result<Solution, Error> {
 /// * [`Error::NotCertified`] with the best answer, where it does not meet the tolerance,
 /// * [`Error::Numerical`] where memory does not suffice.
 pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
-    let prepared = Prepared::with_settings(problem, settings)?;
+    let prepared = match Prepared::with_settings(problem, settings) {
+        Err(Error::OutOfTime { needed, time }) => return Err(nothing_found(problem, needed, time)?),
+        prepared => prepared?,
+    };
     let preparation = prepared.seconds();
     let with_preparation = |mut solution: Solution| {
         solution.seconds.factor += preparation.factor;
         solution.seconds.solve += preparation.solve;
         solution
     };
-    match prepared.solve(settings) {
+    let left = settings.time.map(|time| (time - preparation.solve).max(0.0));
+    match prepared.solve(&Settings { time: left, ..*settings }) {
         Ok(solution) => Ok(with_preparation(solution)),
-        Err(Error::Numerical { .. } | Error::NotCertified { .. }) if prepared.is_single() => {
+        Err(Error::Numerical { .. } | Error::NotCertified { .. }) if prepared.is_a_shortcut() => {
             drop(prepared);
-            // Beyond single precision: the time that it took is part of the answer's.
-            solve(problem, &Settings { precision: Precision::Double, ..*settings }).map(with_preparation)
+            // The time that the shortcut took is part of the answer's.
+            let method = if settings.method == Method::Auto { Method::ActiveSet } else { settings.method };
+            let safe = Settings { method, precision: Precision::Double, ..*settings };
+            solve(problem, &Settings { time: left, ..safe }).map(with_preparation)
         }
         Err(Error::NotCertified { solution, condition, value, tolerance }) => {
             let solution = Box::new(with_preparation(*solution));
@@ -62,6 +69,30 @@ pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, 
         }
         Err(error) => Err(error),
     }
+}
+
+/// The answer before anything is found: no displacement and no force, and how far that is off.
+///
+/// # Errors
+/// Those of the certificate.
+fn nothing_found(problem: &ContactProblem, needed: f64, time: f64) -> Result<Error, Error> {
+    let (displacement, multiplier) = (vec![0.0; problem.dofs()], vec![0.0; problem.rows()]);
+    let certificate = problem.certify_in(None, &displacement, &multiplier)?;
+    let solution = Solution {
+        displacement,
+        multiplier,
+        contact_set: ContactSet::open(problem.rows()),
+        method: "none".to_string(),
+        iterations: 0,
+        history: Vec::new(),
+        certificate,
+        proven: None,
+        refinements: None,
+        condensed_dofs: problem.dofs(),
+        seconds: Default::default(),
+    };
+    let condition = "the time of one factorisation (s)";
+    Ok(Error::NotCertified { solution: Box::new(solution), condition, value: needed, tolerance: time })
 }
 
 /// Displacement and multiplier of the body with the rows of `closed` held at their gaps and all others free: one
@@ -84,18 +115,18 @@ fn run(
 ) -> Result<Outcome, Error> {
     let cold = scaled.start()?;
     let outcome = match settings.method {
-        Method::Auto | Method::Qp if settings.polish && start.is_some() => {
+        Method::Qp if settings.polish && start.is_some() => {
             let outcome = settle(scaled, start.unwrap_or(cold), settings)?;
             Outcome { variant: if outcome.settled { "-warm" } else { outcome.variant }, ..outcome }
         }
-        Method::Auto | Method::Qp => {
+        Method::Qp => {
             let found = match scaled.problem.rows() {
                 0 => InteriorPoint::nothing_found(scaled.problem),
                 _ => interior_point::solve(scaled, settings.interior_point_tolerance)?,
             };
             if settings.polish { polish(scaled, found, settings)? } else { unpolished(found) }
         }
-        Method::ActiveSet => settle(scaled, start.unwrap_or(cold), settings)?,
+        Method::Auto | Method::ActiveSet => settle(scaled, start.unwrap_or(cold), settings)?,
         Method::Penalty => {
             let ladder = Ladder {
                 first: settings.first_penalty,

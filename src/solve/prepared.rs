@@ -1,11 +1,12 @@
 //! A problem with everything done that does not depend on load and gap: factor once, contact many.
 
 use std::sync::{Arc, OnceLock};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use super::boundary::{BoundarySolution, Found};
 use super::loading::Loading;
-use super::{Condense, Path, Precision, Settings, run};
+use super::rules::{Way, factor_seconds};
+use super::{Condense, Method, Path, Precision, Settings, run};
 use crate::error::Error;
 use crate::method::parametric::Compliance;
 use crate::method::{ScaledProblem, active_set, interior_point};
@@ -30,6 +31,9 @@ pub struct Prepared {
     condensed_norm: OnceLock<Option<EnergyNorm>>,
     /// The load of the problem, swept when it is first solved with.
     loading: OnceLock<Arc<Loading>>,
+    /// What was chosen, where the choice was left to the program.
+    way: Option<Way>,
+    multiplications: f64,
     seconds: Seconds,
 }
 
@@ -65,7 +69,27 @@ impl Prepared {
             Some(_) => contact_dofs.clone(),
             None => EnergyNorm::last_dofs(scaling.contact()),
         };
-        let single = settings.precision == Precision::Mixed && analysis.is_some();
+        let of_all = match analysis {
+            Some(_) => None,
+            None => Some(Analysis::with_last(problem.stiffness(), &last)?.with_threads(threads)),
+        };
+        let work = analysis.as_ref().or(of_all.as_ref()).map_or(0.0, Analysis::multiplications);
+        let mut way = Way::chosen(settings, analysis.is_some(), work);
+        if let Some(time) = settings.time {
+            let values = analysis.as_ref().or(of_all.as_ref()).map_or(0, Analysis::factor_entries);
+            let [double, single] = factor_seconds(work, values);
+            let left = (time - clock.elapsed().as_secs_f64()).max(0.0);
+            let may_be_single = settings.precision != Precision::Double && analysis.is_some();
+            match way {
+                Some(_) if double > left && single <= left && may_be_single => way = Some(Way::ActiveSetMixed),
+                _ if double.min(if may_be_single { single } else { double }) > left => {
+                    return Err(Error::OutOfTime { needed: double, time });
+                }
+                _ => {}
+            }
+        }
+        let precision = way.map_or(settings.precision, |way| way.settings(settings).precision);
+        let single = precision == Precision::Mixed && analysis.is_some();
         let factor = |analysis: &Analysis, single| match analysis.factor_equilibrated(
             problem.stiffness(),
             scaling.equilibration(),
@@ -82,11 +106,11 @@ impl Prepared {
             Some(cholesky) => Ok(Some(cholesky)),
             None => factor(analysis, false),
         };
-        let cholesky = match &analysis {
-            _ if has_empty_diagonal => None,
-            Some(analysis) => definite(analysis)?,
-            None => definite(&Analysis::with_last(problem.stiffness(), &last)?.with_threads(threads))?,
+        let cholesky = match analysis.as_ref().or(of_all.as_ref()) {
+            Some(analysis) if !has_empty_diagonal => definite(analysis)?,
+            _ => None,
         };
+        drop(of_all);
         let mut condensation = None;
         if analysis.is_some() {
             let shifted = cholesky.is_none();
@@ -116,6 +140,8 @@ impl Prepared {
             norm,
             condensation,
             augmented,
+            way,
+            multiplications: work,
             condensed_norm: OnceLock::new(),
             loading: OnceLock::new(),
             seconds: Seconds { factor, solve: clock.elapsed().as_secs_f64() },
@@ -135,6 +161,16 @@ impl Prepared {
     /// Bytes of these values.
     pub fn factor_bytes(&self) -> usize {
         self.factor_entries() * if self.is_single() { size_of::<f32>() } else { size_of::<f64>() }
+    }
+
+    /// Multiplications of the factorisation of the stiffness.
+    pub fn multiplications(&self) -> f64 {
+        self.multiplications
+    }
+
+    /// May the answer fall short of its goal where a slower way would not?
+    pub(super) fn is_a_shortcut(&self) -> bool {
+        self.is_single() || self.way.is_some_and(|way| way != Way::ActiveSet)
     }
 
     /// What the preparation cost.
@@ -243,9 +279,18 @@ impl Prepared {
         settings: &Settings,
     ) -> Result<Found, Error> {
         settings.check()?;
+        let settings = &self.resolved(settings);
         self.check_gap(&gap)?;
         let found = self.find_step(loading, gap, start, settings)?;
         if self.is_single() { self.refined(found, settings) } else { Ok(found) }
+    }
+
+    /// The settings with the method that was chosen, where they leave the choice.
+    fn resolved(&self, settings: &Settings) -> Settings {
+        match settings.method {
+            Method::Auto => self.way.unwrap_or(Way::ActiveSet).settings(settings),
+            _ => *settings,
+        }
     }
 
     /// One run of the method.
@@ -258,7 +303,8 @@ impl Prepared {
     ) -> Result<Found, Error> {
         let clock = Instant::now();
         let (problem, unit) = self.scaled(&loading, &gap)?;
-        let task = ScaledProblem::new(&problem, &self.augmented, self.norm.is_some());
+        let deadline = settings.time.and_then(|time| clock.checked_add(Duration::try_from_secs_f64(time).ok()?));
+        let task = ScaledProblem::new(&problem, &self.augmented, self.norm.is_some()).until(deadline);
         let start = start.map(|set| self.selection.restrict_set(set));
         let bound = |displacement: &[f64], multiplier: &[f64]| {
             let norm = self.condensed_norm(&problem).ok().flatten();
@@ -325,6 +371,7 @@ impl Prepared {
     pub(super) fn complete(&self, found: Found, settings: &Settings) -> Result<Solution, Error> {
         let clock = Instant::now();
         let displacement = self.displacement(&found);
+        let method = self.resolved(settings).method;
         let Found { loading, gap, problem: condensed, unit, outcome, seconds, refined } = found;
         let norm = match &refined {
             Some(refined) => self.norm.as_ref().map(|norm| norm.off_by(refined.contraction)),
@@ -343,7 +390,7 @@ impl Prepared {
             displacement,
             multiplier,
             contact_set: self.selection.expand_set(&outcome.contact_set),
-            method: format!("{}{}", settings.method.name(), outcome.variant),
+            method: format!("{}{}", method.name(), outcome.variant),
             iterations: outcome.iterations,
             history: outcome.history.into_iter().map(expand_iteration).collect(),
             certificate,

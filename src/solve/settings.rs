@@ -19,10 +19,11 @@ pub enum Method {
 }
 
 impl Method {
-    /// The name in reports: `qp`, `active-set` or `penalty`.
+    /// The name in reports: `qp`, `active-set` or `penalty`; what chooses among them is `auto`.
     pub fn name(self) -> &'static str {
         match self {
-            Method::Auto | Method::Qp => "qp",
+            Method::Auto => "auto",
+            Method::Qp => "qp",
             Method::ActiveSet => "active-set",
             Method::Penalty => "penalty",
         }
@@ -73,6 +74,9 @@ pub struct Settings {
     pub accuracy: Option<f64>,
     /// Are the rows named whose contact is beyond doubt?
     pub prove: bool,
+    /// Wall-clock seconds after which the best answer so far is returned, as [`Error::NotCertified`] if it falls short;
+    /// a factorisation that is under way is ended first.
+    pub time: Option<f64>,
     /// Is the contact set of the QP settled by the active-set loop?
     pub polish: bool,
     /// Tolerance of the interior-point method, on data of order one.
@@ -99,6 +103,7 @@ impl Default for Settings {
             tolerance: 1e-9,
             accuracy: None,
             prove: false,
+            time: None,
             polish: true,
             interior_point_tolerance: 1e-9,
             max_iterations: 20_000,
@@ -121,6 +126,11 @@ impl Settings {
         Settings { accuracy: Some(accuracy), ..Settings::default() }
     }
 
+    /// The program chooses how; the best answer that so many seconds allow.
+    pub fn within(seconds: f64) -> Self {
+        Settings { time: Some(seconds), ..Settings::default() }
+    }
+
     /// What an answer is held against.
     pub fn goal(&self) -> Goal {
         Goal { tolerance: self.tolerance, accuracy: self.accuracy }
@@ -138,6 +148,9 @@ impl Settings {
         positive("tolerance", self.tolerance)?;
         if let Some(accuracy) = self.accuracy {
             positive("accuracy", accuracy)?;
+        }
+        if let Some(time) = self.time.filter(|time| time.is_nan() || *time < 0.0) {
+            return Err(Error::Setting { name: "time", value: time, allowed: "zero or positive" });
         }
         positive("interior_point_tolerance", self.interior_point_tolerance)?;
         positive("first_penalty", self.first_penalty)?;

@@ -122,6 +122,18 @@ impl Analysis {
         self.symbolic.len_val()
     }
 
+    /// Number of multiplications of a factorisation, as if each column went through its own.
+    pub fn multiplications(&self) -> f64 {
+        let Some(nodes) = self.supernodes() else { return 0.0 };
+        let (starts, below) = (nodes.supernode_begin(), nodes.col_ptr_for_row_idx());
+        (0..nodes.n_supernodes())
+            .map(|node| {
+                let (columns, rows) = (nodes.supernode_end()[node] - starts[node], below[node + 1] - below[node]);
+                (0..columns).map(|column| ((columns - column + rows) as f64).powi(2) / 2.0).sum::<f64>()
+            })
+            .sum()
+    }
+
     /// Factorises `matrix`, whose pattern must be the analysed one.
     ///
     /// # Errors

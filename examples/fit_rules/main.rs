@@ -1,0 +1,74 @@
+//! Fits the rules of `Method::Auto` to measured times, and checks them on scenes that they were not fitted to.
+//!
+//! `cargo run --release --example fit_rules` measures the training problems, writes `examples/fit_rules/measured.csv` and
+//! fits `src/solve/fitted.json` to it; `-- --fit` fits to the times that are there; `-- --check` measures the others.
+
+mod fit;
+mod measure;
+mod training;
+
+use std::fs;
+use std::process::ExitCode;
+
+const MEASURED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/fit_rules/measured.csv");
+const FITTED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/src/solve/fitted.json");
+
+fn main() -> ExitCode {
+    let argument = std::env::args().nth(1);
+    let done = match argument.as_deref() {
+        None => training().and_then(|()| fitted()),
+        Some("--fit") => fitted(),
+        Some("--check") => check(),
+        Some(other) => Err(format!("{other}: it must be --fit, --check or nothing").into()),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+type Anything = Box<dyn std::error::Error>;
+
+fn training() -> Result<(), Anything> {
+    let mut table = measure::HEADING.to_string();
+    for (name, problem) in training::training()? {
+        let lines = measure::measured(&name, &problem)?;
+        print!("{lines}");
+        table += &lines;
+    }
+    fs::write(MEASURED, table)?;
+    Ok(())
+}
+
+fn fitted() -> Result<(), Anything> {
+    let points = measure::read(&fs::read_to_string(MEASURED)?)?;
+    fs::write(FITTED, fit::fitted(&points))?;
+    println!("{FITTED} is fitted to {} times", points.len());
+    Ok(())
+}
+
+/// Auto against the best way that reaches the same accuracy, condensed or not.
+fn check() -> Result<(), Anything> {
+    println!(
+        "| problem | dofs | rows | accuracy | best way | seconds | auto | seconds | ratio |\n|{}",
+        "---|".repeat(9)
+    );
+    let mut worst = 0.0_f64;
+    for (name, problem) in training::others()? {
+        for accuracy in measure::ACCURACIES {
+            let (best, least) = measure::best(&problem, accuracy)?;
+            let (auto, seconds) = measure::auto(&problem, accuracy)?;
+            let ratio = seconds / least;
+            worst = worst.max(ratio);
+            let (dofs, rows) = (problem.dofs(), problem.rows());
+            println!(
+                "| {name} | {dofs} | {rows} | {accuracy:.0e} | {best} | {least:.6} | {auto} | {seconds:.6} | {ratio:.2} |"
+            );
+        }
+    }
+    println!("\nauto takes at most {worst:.2} times as long as the best");
+    Ok(())
+}

@@ -1,0 +1,163 @@
+//! Ways to an answer, timed.
+
+use std::time::Instant;
+
+use signorini::solve::{Condense, Method, Precision, Prepared, Settings};
+use signorini::{ContactProblem, Error, Solution, solve};
+
+/// The accuracies that rules are fitted for; zero is all that double precision gives.
+pub const ACCURACIES: [f64; 4] = [1e-2, 1e-4, 1e-8, 0.0];
+
+pub const HEADING: &str = "problem,dofs,rows,condensed,multiplications,values,accuracy,way,seconds\n";
+
+/// Each point takes at least this long in all, and so many runs.
+const LEAST_SECONDS: f64 = 0.05;
+const LEAST_RUNS: usize = 5;
+const MOST_RUNS: usize = 200;
+
+/// One measured time.
+pub struct Point {
+    pub problem: String,
+    pub condensed: bool,
+    pub multiplications: f64,
+    pub values: f64,
+    pub accuracy: f64,
+    pub way: String,
+    /// Infinite where the way does not reach the accuracy.
+    pub seconds: f64,
+}
+
+/// The ways that a rule can name, told an accuracy.
+pub fn ways(accuracy: f64) -> Vec<(&'static str, Settings)> {
+    let base = |method, precision| {
+        let mut settings = Settings::with_method(method);
+        (settings.precision, settings.accuracy) = (precision, (accuracy > 0.0).then_some(accuracy));
+        settings
+    };
+    let mut unpolished = base(Method::Qp, Precision::Double);
+    (unpolished.polish, unpolished.interior_point_tolerance) = (false, 0.1 * accuracy);
+    let mut ways = vec![
+        ("active-set", base(Method::ActiveSet, Precision::Double)),
+        ("active-set-mixed", base(Method::ActiveSet, Precision::Mixed)),
+        ("qp", base(Method::Qp, Precision::Double)),
+    ];
+    if accuracy > 0.0 {
+        ways.extend([("qp-unpolished", unpolished), ("penalty", base(Method::Penalty, Precision::Double))]);
+    }
+    ways
+}
+
+/// The fastest of several runs of each way, in turn, so that what else the machine does meets them alike; infinite where
+/// it does not reach its accuracy, or where the answer came another way.
+fn timed(problem: &ContactProblem, ways: &[Settings]) -> Vec<(f64, String)> {
+    let mut least: Vec<(f64, String)> = vec![(f64::INFINITY, String::new()); ways.len()];
+    let mut spent = vec![0.0; ways.len()];
+    for run in 0..MOST_RUNS {
+        let mut ran = false;
+        for (way, (settings, (least, method))) in ways.iter().zip(&mut least).enumerate() {
+            if run >= LEAST_RUNS && spent[way] > LEAST_SECONDS {
+                continue;
+            }
+            ran = true;
+            let clock = Instant::now();
+            let answer = solve(problem, settings);
+            let seconds = clock.elapsed().as_secs_f64();
+            spent[way] += seconds;
+            if let Ok(solution) = answer
+                && came_as_told(&solution, settings)
+            {
+                *least = least.min(seconds);
+                *method = solution.method + if solution.refinements.is_some() { ", mixed" } else { "" };
+            }
+        }
+        if !ran {
+            break;
+        }
+    }
+    least
+}
+
+fn came_as_told(solution: &Solution, settings: &Settings) -> bool {
+    settings.precision != Precision::Mixed || solution.refinements.is_some()
+}
+
+/// All ways of a problem, a line each.
+pub fn measured(name: &str, problem: &ContactProblem) -> Result<String, Error> {
+    let prepared = Prepared::with_settings(problem, &Settings::with_method(Method::ActiveSet))?;
+    let condensed = prepared.condensed_dofs() < problem.dofs();
+    let (multiplications, values) = (prepared.multiplications(), prepared.factor_entries());
+    drop(prepared);
+    let mut lines = String::new();
+    for accuracy in ACCURACIES {
+        let (names, settings): (Vec<_>, Vec<_>) = ways(accuracy).into_iter().unzip();
+        for (way, (seconds, _)) in names.iter().zip(timed(problem, &settings)) {
+            lines += &format!(
+                "{name},{},{},{},{multiplications:e},{values},{accuracy:e},{way},{seconds:.7}\n",
+                problem.dofs(),
+                problem.rows(),
+                u8::from(condensed)
+            );
+        }
+    }
+    Ok(lines)
+}
+
+pub fn read(table: &str) -> Result<Vec<Point>, Box<dyn std::error::Error>> {
+    let point = |line: &str| -> Result<Point, Box<dyn std::error::Error>> {
+        let fields: Vec<&str> = line.split(',').collect();
+        let [problem, _, _, condensed, multiplications, values, accuracy, way, seconds] = fields[..] else {
+            return Err(format!("`{line}` has not nine fields").into());
+        };
+        Ok(Point {
+            problem: problem.to_string(),
+            condensed: condensed == "1",
+            multiplications: multiplications.parse()?,
+            values: values.parse()?,
+            accuracy: accuracy.parse()?,
+            way: way.to_string(),
+            seconds: seconds.parse()?,
+        })
+    };
+    table.lines().skip(1).map(point).collect()
+}
+
+/// The largest problem that is solved on all dofs by every way.
+const MOST_FULL_DOFS: usize = 10_000;
+
+/// The fastest way to an accuracy, condensed or not, told an accuracy or run with the knobs of the trade-off.
+pub fn best(problem: &ContactProblem, accuracy: f64) -> Result<(String, f64), Error> {
+    let mut grid: Vec<(String, Settings)> = Vec::new();
+    for condense in [Condense::Auto, Condense::Never] {
+        if condense == Condense::Never && problem.dofs() > MOST_FULL_DOFS {
+            continue;
+        }
+        for (name, mut settings) in ways(accuracy) {
+            settings.condense = condense;
+            grid.push((format!("{name}{}", if condense == Condense::Never { ", all dofs" } else { "" }), settings));
+            if name == "penalty" {
+                // The last rung alone, where the error of the penalty is likely below the accuracy.
+                for rung in [1.0, 10.0, 100.0] {
+                    (settings.first_penalty, settings.last_penalty) = (rung / accuracy, rung / accuracy);
+                    grid.push((format!("penalty {:.0e}", rung / accuracy), settings));
+                }
+            }
+            if name == "qp-unpolished" {
+                for tolerance in [1.0, 1e-2] {
+                    settings.interior_point_tolerance = tolerance * accuracy;
+                    grid.push((format!("qp to {:.0e}", tolerance * accuracy), settings));
+                }
+            }
+        }
+    }
+    let (names, settings): (Vec<_>, Vec<_>) = grid.into_iter().unzip();
+    let times = timed(problem, &settings);
+    let fastest = (0..times.len()).min_by(|&a, &b| times[a].0.total_cmp(&times[b].0)).unwrap_or(0);
+    Ok((names[fastest].clone(), times[fastest].0))
+}
+
+/// What the rules choose, and how long it takes.
+pub fn auto(problem: &ContactProblem, accuracy: f64) -> Result<(String, f64), Error> {
+    let settings = if accuracy > 0.0 { Settings::for_accuracy(accuracy) } else { Settings::default() };
+    let (seconds, method) = timed(problem, &[settings]).swap_remove(0);
+    Ok((method, seconds))
+}
