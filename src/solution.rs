@@ -175,7 +175,7 @@ impl Goal {
     /// What decides: the condition, its value, and what is allowed.
     pub fn decisive(&self, certificate: &Certificate) -> (&'static str, f64, f64) {
         match self.accuracy_for(certificate) {
-            Some(accuracy) => ("energy_error_bound", certificate.energy_error_bound, accuracy),
+            Some(accuracy) => ("reachable energy_error_bound", certificate.energy_error_bound, accuracy),
             None => {
                 let (condition, value) = certificate.worst();
                 (condition, value, self.tolerance)

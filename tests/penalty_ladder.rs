@@ -78,7 +78,7 @@ fn the_ladder_ends_at_its_floor_and_says_so() {
         (settings.accuracy, settings.last_penalty) = (Some(1e-15), 1e18);
         match solve(&problem, &settings) {
             Err(Error::NotCertified { solution, condition, value, tolerance }) => {
-                assert_eq!((condition, tolerance), ("energy_error_bound", 1e-15), "{name}");
+                assert_eq!((condition, tolerance), ("reachable energy_error_bound", 1e-15), "{name}");
                 assert_eq!(value, solution.certificate.energy_error_bound);
                 assert!(value < 1e-6, "{name}: floor {value:e}");
                 // Where more penalty would only add rounding, long before the last rung.

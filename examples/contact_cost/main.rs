@@ -5,6 +5,7 @@
 //! peak of memory is that of one more process for each task, which builds the model and does the task once.
 
 mod case;
+mod clock;
 mod linear;
 mod measure;
 mod table;

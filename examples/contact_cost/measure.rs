@@ -1,12 +1,12 @@
 //! What is measured.
 
 use std::hint::black_box;
-use std::sync::OnceLock;
 use std::time::Instant;
 
 use signorini::{Condense, ContactSet, Error, Method, Model, Prepared, Settings};
 
 use crate::case::{Case, FIRST_GAP};
+use crate::clock::processor_seconds;
 use crate::linear::{self, Ordering};
 
 /// The first gap is followed by this many, each a tenth further.
@@ -187,19 +187,6 @@ impl Bench {
         let problem = self.model.problem();
         linear::solve(problem.stiffness(), problem.load(), ordering).map(|(_, values)| 8.0 * values as f64)
     }
-}
-
-/// Seconds that this thread has had a processor: other programs do not count. Wall-clock seconds where the system does
-/// not tell.
-fn processor_seconds() -> f64 {
-    static START: OnceLock<Instant> = OnceLock::new();
-    let from_system = || -> Option<f64> {
-        // The account of a running thread is brought up to date when it gives way.
-        std::thread::yield_now();
-        let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-        Some(1e-9 * text.split_whitespace().next()?.parse::<f64>().ok()?)
-    };
-    from_system().unwrap_or_else(|| START.get_or_init(Instant::now).elapsed().as_secs_f64())
 }
 
 /// Bytes of the greatest memory that this process ever had; nothing where the system has no such file.

@@ -3,6 +3,8 @@
 //! `cargo run --release --example fit_rules` measures the training problems, writes `examples/fit_rules/measured.csv` and
 //! fits `src/solve/fitted.json` to it; `-- --fit` fits to the times that are there; `-- --check` measures the others.
 
+#[path = "../contact_cost/clock.rs"]
+mod clock;
 mod fit;
 mod measure;
 mod training;

@@ -51,7 +51,7 @@ impl<'a> ScaledProblem<'a> {
     }
 
     /// Has the deadline passed?
-    pub(super) fn is_out_of_time(&self) -> bool {
+    pub fn is_out_of_time(&self) -> bool {
         self.time_left() == Some(0.0)
     }
 

@@ -10,8 +10,18 @@ use crate::study::{Tradeoff, TradeoffMesh, TradeoffPoint};
 const ROUNDING: f64 = 1e-16;
 
 /// The columns of the table.
-const HEADING: [&str; 9] =
-    ["method", "told", "unknowns", "seconds", "energy error", "bound", "force error", "pressure error", "rows wrong"];
+const HEADING: [&str; 10] = [
+    "method",
+    "told",
+    "unknowns",
+    "precision",
+    "seconds",
+    "energy error",
+    "bound",
+    "force error",
+    "pressure error",
+    "rows wrong",
+];
 
 /// The tables of a trade-off, mesh by mesh, and what to choose. A star marks what no other way beats.
 pub fn tradeoff_text(title: &str, tradeoff: &Tradeoff) -> String {
@@ -45,6 +55,7 @@ fn row(point: &TradeoffPoint) -> Vec<String> {
         format!("{}{star}", point.method),
         point.knob.map_or_else(|| "-".to_string(), |knob| format!("{knob:.0e}")),
         unknowns(point).to_string(),
+        precision(point).to_string(),
         format!("{:.5}", point.seconds),
         number(point.energy_error),
         if point.energy_error_bound.is_finite() { number(point.energy_error_bound) } else { "none".to_string() },
@@ -58,6 +69,10 @@ fn unknowns(point: &TradeoffPoint) -> &'static str {
     if point.condensed { "contact" } else { "all" }
 }
 
+fn precision(point: &TradeoffPoint) -> &'static str {
+    if point.mixed { "mixed" } else { "double" }
+}
+
 /// A way in words.
 fn way(point: &TradeoffPoint) -> String {
     let told = match (point.method, point.knob) {
@@ -65,7 +80,8 @@ fn way(point: &TradeoffPoint) -> String {
         ("penalty", Some(knob)) => format!(" up to {knob:.0e} times the stiffness"),
         (_, Some(knob)) => format!(" to {knob:.0e}"),
     };
-    format!("{}{told} on {} dofs", point.method, unknowns(point))
+    let mixed = if point.mixed { ", mixed precision" } else { "" };
+    format!("{}{told} on {} dofs{mixed}", point.method, unknowns(point))
 }
 
 fn advice(tradeoff: &Tradeoff) -> String {
@@ -89,13 +105,14 @@ fn advice(tradeoff: &Tradeoff) -> String {
 
 /// The points as comma-separated values, a line each under a heading.
 pub fn tradeoff_csv(tradeoff: &Tradeoff) -> String {
-    let mut text = "mesh,divided_by,dofs,contact_rows,discretisation_error,method,knob,unknowns,seconds,energy_error,\
+    let mut text =
+        "mesh,divided_by,dofs,contact_rows,discretisation_error,method,knob,unknowns,precision,seconds,energy_error,\
                     energy_error_bound,force_error,pressure_error,rows_wrong,best\n"
-        .to_string();
+            .to_string();
     for point in &tradeoff.points {
         let Some(mesh) = tradeoff.meshes.get(point.mesh) else { continue };
         text += &format!(
-            "{},{},{},{},{:e},\"{}\",{},{},{:e},{:e},{:e},{:e},{:e},{},{}\n",
+            "{},{},{},{},{:e},\"{}\",{},{},{},{:e},{:e},{:e},{:e},{:e},{},{}\n",
             point.mesh,
             mesh.divided_by,
             mesh.dofs,
@@ -104,6 +121,7 @@ pub fn tradeoff_csv(tradeoff: &Tradeoff) -> String {
             point.method,
             point.knob.map_or_else(String::new, |knob| format!("{knob:e}")),
             unknowns(point),
+            precision(point),
             point.seconds,
             point.energy_error,
             point.energy_error_bound,
@@ -128,7 +146,8 @@ pub fn tradeoff_plot(title: &str, tradeoff: &Tradeoff) -> Drawing {
         let place = |point: &TradeoffPoint| [point.seconds, point.energy_error.max(ROUNDING)];
         let mut series: Vec<Series> = Vec::new();
         for point in of_mesh() {
-            let name = format!("{}, {} dofs", point.method, unknowns(point));
+            let mixed = if point.mixed { ", mixed" } else { "" };
+            let name = format!("{}, {} dofs{mixed}", point.method, unknowns(point));
             match series.iter_mut().find(|series| series.name == name) {
                 Some(series) => series.points.push(place(point)),
                 None => series.push(Series::new(name, vec![place(point)])),

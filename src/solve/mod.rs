@@ -152,7 +152,7 @@ fn run(
 /// (2003) 41-62.
 fn settle(scaled: &ScaledProblem, start: ContactSet, settings: &Settings) -> Result<Outcome, Error> {
     let first = active_set::solve(scaled, start, settings.max_iterations.min(PATIENCE))?;
-    if first.settled || settings.max_iterations <= PATIENCE {
+    if first.settled || settings.max_iterations <= PATIENCE || scaled.is_out_of_time() {
         return Ok(first);
     }
     let ladder = Ladder { first: 1.0, last: BEST_PENALTY, threshold: 0.0, extrapolate: false, goal: None };

@@ -8,7 +8,7 @@ use super::discretisation_error;
 use crate::error::Error;
 use crate::scene::{Model, Scene};
 use crate::solution::Solution;
-use crate::solve::{Condense, Method, Settings, solve};
+use crate::solve::{Condense, Method, Precision, Settings, solve};
 use crate::sparse::dot;
 
 /// Tolerances that the interior point is given.
@@ -66,10 +66,13 @@ pub struct TradeoffPoint {
     pub mesh: usize,
     /// `qp`, `qp, polished`, `active-set` or `penalty`.
     pub method: &'static str,
-    /// Tolerance of the interior point, last penalty of the ladder; none where the method has nothing to choose.
+    /// Tolerance of the interior point, last penalty of the ladder, accuracy of the refinement; none where there is nothing
+    /// to tell.
     pub knob: Option<f64>,
     /// Was the problem condensed onto its contact boundary?
     pub condensed: bool,
+    /// Was the factor in single precision, and the answer refined?
+    pub mixed: bool,
     /// The fastest run, in seconds, from the checked problem to the certificate.
     pub seconds: f64,
     /// Energy norm of the error of the displacement over that of the displacement, as the bound has it.
@@ -124,11 +127,20 @@ pub fn tradeoff(scene: &Scene, grid: &TradeoffGrid) -> Result<Tradeoff, Error> {
         let explained = |error| model.explain(error);
         let exact = solve(model.problem(), &Settings::with_method(Method::ActiveSet)).map_err(explained)?;
         let full = model.problem().dofs() <= grid.most_full_dofs;
-        let condensed = [Condense::Auto, Condense::Never].into_iter().filter(|way| full || *way == Condense::Auto);
-        let ways: Vec<Way> = condensed.flat_map(ways).collect();
+        let mut ways = ways(Condense::Auto, Precision::Double);
+        ways.extend(self::ways(Condense::Auto, Precision::Mixed));
+        if full {
+            ways.extend(self::ways(Condense::Never, Precision::Double));
+        }
         for (way, (solution, seconds)) in ways.iter().zip(timed(&model, &ways, result.runs).map_err(explained)?) {
+            let mixed = way.settings.precision == Precision::Mixed;
+            if mixed && solution.refinements.is_none() {
+                // Single precision was not enough: the answer is that of another point.
+                continue;
+            }
             result.points.push(TradeoffPoint {
                 mesh: refinement,
+                mixed,
                 method: way.method,
                 knob: way.knob,
                 condensed: way.settings.condense == Condense::Auto,
@@ -155,15 +167,17 @@ struct Way {
     settings: Settings,
 }
 
-/// Every way to an answer, condensed or not.
-fn ways(condense: Condense) -> Vec<Way> {
+/// Every way to an answer with this condensation and precision.
+fn ways(condense: Condense, precision: Precision) -> Vec<Way> {
     let base = |method| {
         let mut settings = Settings::with_method(method);
-        settings.condense = condense;
+        (settings.condense, settings.precision) = (condense, precision);
         settings
     };
     let mut ways = Vec::new();
-    for (method, polish) in [("qp", false), (POLISHED, true)] {
+    let mixed = precision == Precision::Mixed;
+    // What an interior point leaves undone is more than single precision does.
+    for (method, polish) in [("qp", false), (POLISHED, true)].into_iter().filter(|way| way.1 || !mixed) {
         for tolerance in TOLERANCES {
             let mut settings = base(Method::Qp);
             (settings.polish, settings.interior_point_tolerance) = (polish, tolerance);
@@ -171,6 +185,10 @@ fn ways(condense: Condense) -> Vec<Way> {
         }
     }
     ways.push(Way { method: "active-set", knob: None, settings: base(Method::ActiveSet) });
+    for accuracy in WANTED.into_iter().filter(|_| mixed) {
+        let settings = Settings { accuracy: Some(accuracy), ..base(Method::ActiveSet) };
+        ways.push(Way { method: "active-set", knob: Some(accuracy), settings });
+    }
     for last in PENALTIES {
         let mut settings = base(Method::Penalty);
         (settings.last_penalty, settings.penetration_threshold) = (last, 0.0);
@@ -216,6 +234,7 @@ fn errors(model: &Model, solution: &Solution, exact: &Solution) -> Result<Tradeo
         method: "",
         knob: None,
         condensed: false,
+        mixed: false,
         seconds: 0.0,
         energy_error: relative(norm(&away), norm(&solution.displacement)),
         force_error: relative(solution.contact_force() - force, force),
