@@ -1,5 +1,4 @@
-//! The fit: for each class and accuracy the pair of ways, and the size between them, whose worst loss against the best
-//! way is least; and the cost of a factorisation by least squares.
+//! The fit: for each class and accuracy the ways by size whose loss against the best way is least; and the cost of a factorisation by least squares.
 
 use serde_json::{Value, json};
 
@@ -7,6 +6,9 @@ use super::measure::{ACCURACIES, Point};
 
 /// The way that wins ties: exact, and without a second thought.
 const FIRST: &str = "active-set";
+
+/// Percent of loss that a step more has to save.
+const PRICE_OF_A_STEP: f64 = 5.0;
 
 pub fn fitted(points: &[Point]) -> String {
     let mut rules = Vec::new();
@@ -32,10 +34,20 @@ pub fn fitted(points: &[Point]) -> String {
 
 /// A problem in one class: its size, and the loss of each way against the best.
 struct Losses<'a> {
-    multiplications: f64,
+    size: f64,
     of: Vec<(&'a str, f64)>,
 }
 
+impl Losses<'_> {
+    fn of(&self, way: &str) -> f64 {
+        self.of.iter().find(|(name, _)| *name == way).map_or(f64::INFINITY, |entry| entry.1)
+    }
+}
+
+/// Ways in the order of size: each from the first problem that the one before leaves out.
+type Steps<'a> = Vec<(usize, &'a str)>;
+
+/// The steps of at most three ways whose worst loss is least, then the mean, both to a percent; then the fewest.
 fn rule(points: &[&Point], condensed: bool, accuracy: f64) -> Value {
     let mut problems: Vec<&str> = points.iter().map(|point| point.problem.as_str()).collect();
     problems.dedup();
@@ -45,53 +57,51 @@ fn rule(points: &[&Point], condensed: bool, accuracy: f64) -> Value {
             let own: Vec<&&Point> = points.iter().filter(|point| point.problem == *problem).collect();
             let best = own.iter().map(|point| point.seconds).fold(f64::INFINITY, f64::min);
             Losses {
-                multiplications: own[0].multiplications,
+                size: own[0].multiplications / if condensed { 1.0 } else { own[0].rows },
                 of: own.iter().map(|point| (point.way.as_str(), point.seconds / best)).collect(),
             }
         })
         .collect();
-    losses.sort_by(|a, b| a.multiplications.total_cmp(&b.multiplications));
+    losses.sort_by(|a, b| a.size.total_cmp(&b.size));
     let ways: Vec<&str> = losses.first().map_or(Vec::new(), |first| first.of.iter().map(|(way, _)| *way).collect());
-    let loss =
-        |losses: &Losses, way: &str| losses.of.iter().find(|(name, _)| *name == way).map_or(f64::INFINITY, |l| l.1);
-    // The worst loss decides, then the mean; both to a percent, so that a split has to be worth something.
-    let mut best = (f64::INFINITY, f64::INFINITY, FIRST, 0.0, FIRST);
-    for split in 0..losses.len().max(1) {
+    let count = losses.len();
+    let mut candidates: Vec<Steps> = ways.iter().map(|&way| vec![(0, way)]).collect();
+    for first in 1..count {
         for &small in &ways {
-            for &large in &ways {
-                if (split == 0) != (small == large) {
-                    continue;
-                }
-                let of = |(index, entry): (usize, &Losses)| loss(entry, if index < split { small } else { large });
-                let all: Vec<f64> = losses.iter().enumerate().map(of).collect();
-                let worst = (100.0 * all.iter().copied().fold(0.0, f64::max)).round();
-                let mean = (100.0 * all.iter().sum::<f64>() / all.len() as f64).round();
-                let simpler = small == FIRST && large == FIRST;
-                if (worst, mean) < (best.0, best.1) || ((worst, mean) == (best.0, best.1) && simpler) {
-                    let between = match split {
-                        0 => 0.0,
-                        _ => (losses[split - 1].multiplications * losses[split].multiplications).sqrt(),
-                    };
-                    best = (worst, mean, small, between, large);
+            for &large in ways.iter().filter(|&&large| large != small) {
+                candidates.push(vec![(0, small), (first, large)]);
+                for second in first + 1..count {
+                    for &largest in ways.iter().filter(|&&largest| largest != large) {
+                        candidates.push(vec![(0, small), (first, large), (second, largest)]);
+                    }
                 }
             }
         }
     }
-    let (worst, mean, small, multiplications, large) = best;
+    let judged = |steps: &Steps| {
+        let way = |index: usize| steps.iter().rfind(|step| step.0 <= index).map_or(FIRST, |step| step.1);
+        let all: Vec<f64> = losses.iter().enumerate().map(|(index, entry)| entry.of(way(index))).collect();
+        let percent = |loss: f64| (100.0 * loss).round();
+        (percent(all.iter().copied().fold(0.0, f64::max)), percent(all.iter().sum::<f64>() / count.max(1) as f64))
+    };
+    // A step more has to gain more than measurements differ.
+    let price = |steps: &Steps| {
+        let (worst, mean) = judged(steps);
+        worst + mean + PRICE_OF_A_STEP * steps.len() as f64
+    };
+    let best = candidates.into_iter().min_by(|a, b| price(a).total_cmp(&price(b))).unwrap_or_default();
+    let (worst, mean) = judged(&best);
+    let between = |index: usize| (losses[index - 1].size * losses[index].size).sqrt();
+    let steps: Vec<Value> = (0..best.len())
+        .map(|step| json!({ "up_to": best.get(step + 1).map(|next| between(next.0)), "way": best[step].1 }))
+        .collect();
     println!(
-        "condensed {condensed}, accuracy {accuracy:.0e}, {} problems: {small} up to {multiplications:.1e} multiplications, \
-         then {large}; at most {:.2}, in the mean {:.2} times the best",
-        losses.len(),
+        "condensed {condensed}, accuracy {accuracy:.0e}, {count} problems: {}; at most {:.2}, in the mean {:.2} times the best",
+        steps.iter().map(Value::to_string).collect::<Vec<_>>().join(" "),
         worst / 100.0,
         mean / 100.0
     );
-    json!({
-        "condensed": condensed,
-        "accuracy": accuracy,
-        "small": small,
-        "multiplications": multiplications,
-        "large": large,
-    })
+    json!({ "condensed": condensed, "accuracy": accuracy, "steps": steps })
 }
 
 /// Seconds as a constant and a share of multiplications and values: least squares of the relative error, no term below

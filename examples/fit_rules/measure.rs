@@ -18,6 +18,7 @@ const MOST_RUNS: usize = 200;
 /// One measured time.
 pub struct Point {
     pub problem: String,
+    pub rows: f64,
     pub condensed: bool,
     pub multiplications: f64,
     pub values: f64,
@@ -105,11 +106,12 @@ pub fn measured(name: &str, problem: &ContactProblem) -> Result<String, Error> {
 pub fn read(table: &str) -> Result<Vec<Point>, Box<dyn std::error::Error>> {
     let point = |line: &str| -> Result<Point, Box<dyn std::error::Error>> {
         let fields: Vec<&str> = line.split(',').collect();
-        let [problem, _, _, condensed, multiplications, values, accuracy, way, seconds] = fields[..] else {
+        let [problem, _, rows, condensed, multiplications, values, accuracy, way, seconds] = fields[..] else {
             return Err(format!("`{line}` has not nine fields").into());
         };
         Ok(Point {
             problem: problem.to_string(),
+            rows: rows.parse()?,
             condensed: condensed == "1",
             multiplications: multiplications.parse()?,
             values: values.parse()?,

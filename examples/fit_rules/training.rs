@@ -19,13 +19,13 @@ pub fn training() -> Result<Problems, Error> {
     for cells in [8, 16, 32, 64] {
         problems.push((format!("block Q8 {cells}"), scene(&block(cells, "q8"))?));
     }
-    for cells in [4, 6, 8, 12, 16, 20] {
+    for cells in [4, 6, 8, 12, 16] {
         problems.push((format!("block Hex8 {cells}"), scene(&brick(cells))?));
     }
-    for nodes in [20, 60, 200, 600] {
+    for nodes in [20, 60, 120, 250, 600] {
         problems.push((format!("string {nodes}"), string(nodes, 0.2)?));
     }
-    for nodes in [10, 20, 40, 80] {
+    for nodes in [10, 20, 40, 80, 120] {
         problems.push((format!("membrane {nodes}"), membrane(nodes, 8.0)?));
     }
     Ok(problems)

@@ -22,7 +22,7 @@ use crate::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration, Solution};
 
 /// Iterations of the active-set loop after which its start is taken for a poor one.
-const PATIENCE: usize = 100;
+const PATIENCE: usize = 16;
 
 /// Solves a contact problem as a QP by the interior-point method, polished, certified to 1e-9.
 ///

@@ -74,7 +74,7 @@ impl Prepared {
             None => Some(Analysis::with_last(problem.stiffness(), &last)?.with_threads(threads)),
         };
         let work = analysis.as_ref().or(of_all.as_ref()).map_or(0.0, Analysis::multiplications);
-        let mut way = Way::chosen(settings, analysis.is_some(), work);
+        let mut way = Way::chosen(settings, analysis.is_some(), work, problem.rows());
         if let Some(time) = settings.time {
             let values = analysis.as_ref().or(of_all.as_ref()).map_or(0, Analysis::factor_entries);
             let [double, single] = factor_seconds(work, values);

@@ -30,15 +30,24 @@ pub(super) enum Way {
     Penalty,
 }
 
-/// For an accuracy, and all that are less: one way up to so many multiplications of the factor, another beyond.
-#[derive(Clone, Copy, Debug, Deserialize)]
+/// For an accuracy, and all that are less: the ways by size.
+///
+/// The size of a condensed problem is the multiplications of its factor. That of an uncondensed one, where every
+/// iteration is a factorisation, is the multiplications for each row: it tells how wide a factor is beside its contact.
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Rule {
     condensed: bool,
     accuracy: f64,
-    small: Way,
-    multiplications: f64,
-    large: Way,
+    steps: Vec<Step>,
+}
+
+/// A way for all sizes up to one that the steps before do not cover; without a size, for all.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Step {
+    up_to: Option<f64>,
+    way: Way,
 }
 
 /// Seconds that a step takes: a constant, and one for each multiplication and each value of the factor.
@@ -61,17 +70,16 @@ const INTERIOR_POINT_SHARE: f64 = 0.1;
 
 impl Way {
     /// The way for the method, accuracy and precision of `settings`; `None` where these leave no choice.
-    pub fn chosen(settings: &Settings, condensed: bool, multiplications: f64) -> Option<Way> {
+    pub fn chosen(settings: &Settings, condensed: bool, multiplications: f64, rows: usize) -> Option<Way> {
         if settings.method != Method::Auto {
             return None;
         }
         let accuracy = settings.accuracy.unwrap_or(0.0);
         let rule = FITTED.rules.iter().filter(|rule| rule.condensed == condensed && rule.accuracy <= accuracy);
-        let way = match rule.max_by(|a, b| a.accuracy.total_cmp(&b.accuracy)) {
-            Some(rule) if multiplications > rule.multiplications => rule.large,
-            Some(rule) => rule.small,
-            None => Way::ActiveSet,
-        };
+        let size = if condensed { multiplications } else { multiplications / rows.max(1) as f64 };
+        let rule = rule.max_by(|a, b| a.accuracy.total_cmp(&b.accuracy));
+        let step = rule.and_then(|rule| rule.steps.iter().find(|step| step.up_to.is_none_or(|most| size <= most)));
+        let way = step.map_or(Way::ActiveSet, |step| step.way);
         Some(match (way, settings.precision) {
             (Way::ActiveSetMixed, Precision::Double) => Way::ActiveSet,
             (Way::ActiveSet, Precision::Mixed) => Way::ActiveSetMixed,
