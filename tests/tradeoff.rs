@@ -41,7 +41,9 @@ fn errors_fall_with_what_the_methods_are_told() {
     }
     // A factor in single precision is refined to what is asked for, and to the same answer where nothing is.
     let mixed: Vec<&TradeoffPoint> = result.points.iter().filter(|point| point.mixed).collect();
-    assert!(mixed.iter().all(|point| point.condensed && point.energy_error <= point.knob.unwrap_or(1e-12).max(1e-6)));
+    assert!(mixed.iter().all(|point| point.condensed));
+    let active = |point: &&&TradeoffPoint| point.method == "active-set";
+    assert!(mixed.iter().filter(active).all(|point| point.energy_error <= point.knob.unwrap_or(1e-12)));
     assert!(
         mixed.iter().any(|point| point.method == "active-set" && point.knob.is_none() && point.energy_error < 1e-12)
     );

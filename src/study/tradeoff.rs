@@ -8,7 +8,7 @@ use super::discretisation_error;
 use crate::error::Error;
 use crate::scene::{Model, Scene};
 use crate::solution::Solution;
-use crate::solve::{Condense, Method, Precision, Settings, solve};
+use crate::solve::{Condense, Method, Precision, Prepared, Settings, solve};
 use crate::sparse::dot;
 
 /// Tolerances that the interior point is given.
@@ -132,15 +132,11 @@ pub fn tradeoff(scene: &Scene, grid: &TradeoffGrid) -> Result<Tradeoff, Error> {
         if full {
             ways.extend(self::ways(Condense::Never, Precision::Double));
         }
-        for (way, (solution, seconds)) in ways.iter().zip(timed(&model, &ways, result.runs).map_err(explained)?) {
-            let mixed = way.settings.precision == Precision::Mixed;
-            if mixed && solution.refinements.is_none() {
-                // Single precision was not enough: the answer is that of another point.
-                continue;
-            }
+        for (way, timed) in ways.iter().zip(timed(&model, &ways, result.runs).map_err(explained)?) {
+            let Some((solution, seconds)) = timed else { continue };
             result.points.push(TradeoffPoint {
                 mesh: refinement,
-                mixed,
+                mixed: way.settings.precision == Precision::Mixed,
                 method: way.method,
                 knob: way.knob,
                 condensed: way.settings.condense == Condense::Auto,
@@ -199,21 +195,32 @@ fn ways(condense: Condense, precision: Precision) -> Vec<Way> {
 
 /// The answer of each way, certified or not, and the seconds of its fastest run. All ways run once before any runs
 /// again, so that what else the machine does meets them alike.
-fn timed(model: &Model, ways: &[Way], runs: usize) -> Result<Vec<(Solution, f64)>, Error> {
+///
+/// A way whose precision does not suffice has no answer.
+fn timed(model: &Model, ways: &[Way], runs: usize) -> Result<Vec<Option<(Solution, f64)>>, Error> {
     let run = |way: &Way| {
         let clock = Instant::now();
-        let solved = solve(model.problem(), &way.settings);
+        let solved =
+            Prepared::with_settings(model.problem(), &way.settings).and_then(|prepared| prepared.solve(&way.settings));
         let seconds = clock.elapsed().as_secs_f64();
+        let mixed = way.settings.precision == Precision::Mixed;
         match solved {
-            Ok(solution) => Ok((solution, seconds)),
-            Err(Error::NotCertified { solution, .. }) => Ok((*solution, seconds)),
+            Ok(solution) => Ok((solution.refinements.is_some() == mixed).then_some((solution, seconds))),
+            Err(Error::NotCertified { solution, .. }) => {
+                Ok((solution.refinements.is_some() == mixed).then_some((*solution, seconds)))
+            }
+            Err(Error::Numerical { .. }) if mixed => Ok(None),
             Err(error) => Err(error),
         }
     };
     let mut fastest = ways.iter().map(run).collect::<Result<Vec<_>, Error>>()?;
     for _ in 1..runs {
-        for (way, (_, least)) in ways.iter().zip(&mut fastest) {
-            *least = least.min(run(way)?.1);
+        for (way, fastest) in ways.iter().zip(&mut fastest) {
+            if let Some((_, least)) = fastest
+                && let Some((_, seconds)) = run(way)?
+            {
+                *least = least.min(seconds);
+            }
         }
     }
     Ok(fastest)
