@@ -43,7 +43,10 @@ pub fn ways(accuracy: f64) -> Vec<(&'static str, Settings)> {
         ("qp", base(Method::Qp, Precision::Double)),
     ];
     if accuracy > 0.0 {
-        ways.extend([("qp-unpolished", unpolished), ("penalty", base(Method::Penalty, Precision::Double))]);
+        let penalty = base(Method::Penalty, Precision::Double);
+        let mut rung = penalty;
+        (rung.first_penalty, rung.last_penalty) = (100.0 / accuracy, 100.0 / accuracy);
+        ways.extend([("qp-unpolished", unpolished), ("penalty", penalty), ("penalty-rung", rung)]);
     }
     ways
 }

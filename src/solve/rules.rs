@@ -28,6 +28,7 @@ pub(super) enum Way {
     Qp,
     QpUnpolished,
     Penalty,
+    PenaltyRung,
 }
 
 /// For an accuracy, and all that are less: the ways by size.
@@ -68,6 +69,9 @@ impl Cost {
 /// The interior point is told this share of the accuracy that is asked for.
 const INTERIOR_POINT_SHARE: f64 = 0.1;
 
+/// The one rung of a ladder that is expected to reach an accuracy is this over it.
+const PENALTY_OVER_ACCURACY: f64 = 100.0;
+
 impl Way {
     /// The way for the method, accuracy and precision of `settings`; `None` where these leave no choice.
     pub fn chosen(settings: &Settings, condensed: bool, multiplications: f64, rows: usize) -> Option<Way> {
@@ -93,12 +97,16 @@ impl Way {
             Way::ActiveSet => (Method::ActiveSet, Precision::Double),
             Way::ActiveSetMixed => (Method::ActiveSet, Precision::Mixed),
             Way::Qp | Way::QpUnpolished => (Method::Qp, settings.precision),
-            Way::Penalty => (Method::Penalty, settings.precision),
+            Way::Penalty | Way::PenaltyRung => (Method::Penalty, settings.precision),
         };
         let mut settings = Settings { method, precision, ..*settings };
         if let (Way::QpUnpolished, Some(accuracy)) = (self, settings.accuracy) {
             settings.polish = false;
             settings.interior_point_tolerance = INTERIOR_POINT_SHARE * accuracy;
+        }
+        if let (Way::PenaltyRung, Some(accuracy)) = (self, settings.accuracy) {
+            settings.first_penalty = PENALTY_OVER_ACCURACY / accuracy;
+            settings.last_penalty = settings.first_penalty;
         }
         settings
     }
