@@ -104,6 +104,11 @@ impl Prepared {
         })
     }
 
+    /// Number of dofs of the problem.
+    pub fn dofs(&self) -> usize {
+        self.problem.dofs()
+    }
+
     /// Number of unknowns that the methods work on.
     pub fn condensed_dofs(&self) -> usize {
         self.condensation.as_ref().map_or(self.problem.dofs(), |condensed| condensed.stiffness().dim())
@@ -175,8 +180,22 @@ impl Prepared {
         start: Option<&ContactSet>,
         settings: &Settings,
     ) -> Result<BoundarySolution<'_>, Error> {
-        let loading = self.other_load(load)?;
-        self.on_boundary(self.find(loading, self.problem.gap().to_vec(), start, settings)?, settings)
+        self.boundary_at(load, self.problem.gap().to_vec(), start, settings)
+    }
+
+    /// As [`Prepared::boundary_at_load`], with other gaps too.
+    ///
+    /// # Errors
+    /// As [`Prepared::boundary_at_gap`], for load and gaps.
+    pub fn boundary_at(
+        &self,
+        load: Vec<f64>,
+        gap: Vec<f64>,
+        start: Option<&ContactSet>,
+        settings: &Settings,
+    ) -> Result<BoundarySolution<'_>, Error> {
+        let loading = self.load(self.problem.with(load, gap.clone())?.load().to_vec(), &gap);
+        self.on_boundary(self.find(loading, gap, start, settings)?, settings)
     }
 
     /// The exact path of the answer while the gaps move from `from` to `to` (length m each) on a straight line.

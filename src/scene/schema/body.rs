@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::super::parse::{choice, object, word};
+use super::super::parse::{choice, given, object, word};
 use super::{GmshSpec, HalfBallSpec, HalfDiscSpec, RingSpec, one};
 
 /// The elastic body.
@@ -140,6 +140,9 @@ pub struct MaterialSpec {
     pub young: f64,
     /// Poisson's ratio: above -1, at most 0.5 in a bar and in plane stress, below 0.5 elsewhere.
     pub poisson: f64,
+    /// Density, positive, in mass per volume; only a dynamic analysis asks for it.
+    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    pub density: Option<f64>,
 }
 
 /// An elastic body beside the first: of the same model, thickness and element.
