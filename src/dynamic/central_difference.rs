@@ -12,7 +12,7 @@
 //! J. J. Moreau, *Numerical aspects of the sweeping process*, Comput. Methods Appl. Mech. Eng. 177 (1999) 329-349: the
 //! impact law.
 
-use super::integrator::{Advance, plus, remaining_gap};
+use super::integrator::{Advance, plus};
 use super::projection::MassProjection;
 use super::stable_step::check_step;
 use super::{DynamicProblem, State};
@@ -51,7 +51,7 @@ impl Advance for CentralDifference {
         let contact = problem.contact();
         let mut velocity = plus(&state.velocity, step / 2.0, &state.acceleration);
         let approach = contact.contact().mul(&velocity);
-        let room = remaining_gap(contact, &state.displacement);
+        let room = problem.remaining_gap(&state.displacement);
         let bound = room.iter().zip(&approach).map(|(room, &approach)| {
             let crosses = step * approach > *room && approach > 0.0;
             let allowed = if crosses && self.restitution > 0.0 { -self.restitution * approach } else { room / step };

@@ -9,7 +9,7 @@
 //! P. Deuflhard, R. Krause, S. Ertel, *A contact-stabilized Newmark method for dynamical contact problems*, Int. J.
 //! Numer. Methods Eng. 73 (2008) 1274-1290.
 
-use super::integrator::{Advance, Stepping, plus, remaining_gap};
+use super::integrator::{Advance, Stepping, plus};
 use super::projection::MassProjection;
 use super::{DynamicProblem, State};
 use crate::error::Error;
@@ -40,7 +40,7 @@ impl Advance for ContactStabilised {
 
     fn advance(&self, problem: &DynamicProblem, step: f64, state: &State) -> Result<State, Error> {
         let mut predicted = plus(&state.displacement, step, &state.velocity);
-        let bound = remaining_gap(problem.contact(), &predicted);
+        let bound = problem.remaining_gap(&predicted);
         if let Some(correction) = self.mass.smallest(bound, &state.contact_set)? {
             predicted = plus(&predicted, 1.0, &correction.change);
         }
@@ -49,7 +49,7 @@ impl Advance for ContactStabilised {
         let load = problem.load_at((state.steps as f64 + 0.5) * step);
         let mut force: Vec<f64> = load.iter().zip(&elastic).map(|(f, k)| 2.0 * f - k).collect();
         problem.damp(2.0, &state.velocity, &mut force);
-        let gap = remaining_gap(problem.contact(), &predicted);
+        let gap = problem.remaining_gap(&predicted);
         let found = self.stepping.solve(force, gap, &state.contact_set)?;
         let displacement = plus(&predicted, 1.0, &found.change);
         Ok(State {

@@ -189,12 +189,17 @@ impl Stepping {
     }
 }
 
+impl Stepping {
+    /// The change of the displacement alone; certified only where the method did not settle on a set.
+    pub fn change(&self, force: Vec<f64>, gap: Vec<f64>, start: &ContactSet) -> Result<Vec<f64>, Error> {
+        match self.prepared.settled_at(force.clone(), gap.clone(), start, &self.settings)? {
+            Some(change) => Ok(change),
+            None => Ok(self.solve(force, gap, start)?.change),
+        }
+    }
+}
+
 /// `a + factor b`, entry by entry.
 pub(super) fn plus(a: &[f64], factor: f64, b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a + factor * b).collect()
-}
-
-/// What is left of the gaps after a displacement: `g - B u`.
-pub(super) fn remaining_gap(problem: &ContactProblem, displacement: &[f64]) -> Vec<f64> {
-    problem.violation(displacement).into_iter().map(|violation| -violation).collect()
 }

@@ -8,7 +8,7 @@
 //! Where contact nodes have no mass the rest moves under forces that are continuous in its displacement, which the
 //! midpoint rule integrates without chatter; the end of a step satisfies every constraint.
 
-use super::integrator::{Advance, Stepping, plus, remaining_gap};
+use super::integrator::{Advance, Stepping, plus};
 use super::{DynamicProblem, State};
 use crate::error::Error;
 use crate::problem::ContactProblem;
@@ -88,16 +88,17 @@ impl Massless {
             problem.damp(1.0, &state.velocity, &mut residual);
         }
         let force = self.dofs.iter().map(|&dof| residual[dof]).collect();
-        let room = remaining_gap(problem.contact(), &state.displacement);
+        let room = problem.remaining_gap(&state.displacement);
         let gap = self.rows.iter().map(|&row| room[row]).collect();
         let start = ContactSet::from_fn(self.rows.len(), |row| state.contact_set.contains(self.rows[row]));
-        let change = self.stepping.solve(force, gap, &start)?.change;
+        let change = self.stepping.change(force, gap, &start)?;
         for (&dof, change) in self.dofs.iter().zip(&change) {
             state.displacement[dof] += change;
             state.velocity[dof] = (state.displacement[dof] - before[dof]) / step;
         }
-        let elastic = self.columns.mul(&change);
-        state.elastic.iter_mut().zip(elastic).for_each(|(sum, part)| *sum += part);
+        for (dof, column, value) in self.columns.triplets() {
+            state.elastic[dof] += value * change[column];
+        }
         Ok(())
     }
 }
@@ -121,9 +122,10 @@ impl Advance for Midpoint {
         let load = problem.load_at((state.steps as f64 + 0.5) * step);
         let mut force = plus(&load, -1.0, &stiffness.mul(&predicted));
         problem.damp(1.0, &velocity, &mut force);
-        let gap = remaining_gap(problem.contact(), &predicted);
+        let gap = problem.remaining_gap(&predicted);
         let found = self.stepping.solve(force, gap, &state.contact_set)?;
-        let mut displacement = plus(&plus(&state.displacement, step, &velocity), 2.0, &found.change);
+        let moves = state.displacement.iter().zip(&velocity).zip(&found.change);
+        let mut displacement: Vec<f64> = moves.map(|((u, v), w)| u + step * v + 2.0 * w).collect();
         massless
             .iter()
             .flat_map(|massless| &massless.dofs)

@@ -9,7 +9,7 @@
 //! H. M. Hilber, T. J. R. Hughes, R. L. Taylor, *Improved numerical dissipation for time integration algorithms in
 //! structural dynamics*, Earthq. Eng. Struct. Dyn. 5 (1977) 283-292.
 
-use super::integrator::{Advance, Stepping, plus, remaining_gap};
+use super::integrator::{Advance, Stepping, plus};
 use super::projection::MassProjection;
 use super::{DynamicProblem, State};
 use crate::error::Error;
@@ -56,7 +56,7 @@ impl Advance for Newmark {
         let mut force = plus(&problem.load_at(0.0), -1.0, &state.elastic);
         problem.damp(1.0, &state.velocity, &mut force);
         let coasting = plus(&state.displacement, step, &state.velocity);
-        let room = remaining_gap(problem.contact(), &coasting);
+        let room = problem.remaining_gap(&coasting);
         let bound = room.into_iter().map(|gap| 2.0 * gap.max(0.0) / (step * step)).collect();
         let acceleration = self.mass.solve(force, bound, &state.contact_set)?.change;
         Ok(State { acceleration, ..state })
@@ -76,7 +76,7 @@ impl Advance for Newmark {
             problem.damp(1.0, &state.velocity, &mut before);
             force.iter_mut().zip(before).for_each(|(f, before)| *f = (1.0 + alpha) * *f - alpha * before);
         }
-        let gap = remaining_gap(problem.contact(), &predicted);
+        let gap = problem.remaining_gap(&predicted);
         let found = self.stepping.solve(force, gap, &state.contact_set)?;
         let displacement = plus(&predicted, 1.0, &found.change);
         Ok(State {

@@ -16,6 +16,8 @@ use crate::sparse::{SparseMatrix, SymmetricMatrix, dot};
 #[derive(Clone, Debug, PartialEq)]
 pub struct DynamicProblem {
     contact: ContactProblem,
+    /// Transposed contact rows: the entries of a row are a column.
+    by_row: SparseMatrix,
     mass: SymmetricMatrix,
     /// c_m and c_k.
     damping: [f64; 2],
@@ -42,6 +44,7 @@ impl DynamicProblem {
         }
         let zeros = vec![0.0; dofs];
         Ok(DynamicProblem {
+            by_row: contact.contact().transposed(),
             contact,
             mass,
             damping: [0.0; 2],
@@ -144,7 +147,13 @@ impl DynamicProblem {
 
     /// The deepest penetration, `max(B u - g, 0)`, in length.
     pub fn penetration(&self, displacement: &[f64]) -> f64 {
-        self.contact.violation(displacement).into_iter().fold(0.0, f64::max)
+        self.remaining_gap(displacement).into_iter().fold(0.0, |deepest, gap| (-gap).max(deepest))
+    }
+
+    /// What is left of the gaps after a displacement, `g - B u`, one entry per row.
+    pub(super) fn remaining_gap(&self, displacement: &[f64]) -> Vec<f64> {
+        let moved = |row: usize| self.by_row.column(row).map(|(dof, b)| b * displacement[dof]).sum::<f64>();
+        self.contact.gap().iter().enumerate().map(|(row, gap)| gap - moved(row)).collect()
     }
 
     /// `mass M + damping C + stiffness K`.

@@ -46,17 +46,11 @@ impl ContactProblem {
     ) -> Result<Self, Error> {
         let (stiffness, contact) = (stiffness.into(), contact.into());
         let dofs = stiffness.dim();
-        if load.len() != dofs {
-            return Err(Error::Length { name: "load vector", found: load.len(), expected: dofs, of: "dofs" });
-        }
         if contact.columns() != dofs {
             let (found, expected) = ((contact.rows(), contact.columns()), (contact.rows(), dofs));
             return Err(Error::Shape { name: "contact matrix", found, expected });
         }
-        if let Some((index, &value)) = load.iter().enumerate().find(|entry| !entry.1.is_finite()) {
-            let at = format!("entry {index}");
-            return Err(Error::NotFinite { name: "load vector", at, value, allowed: "finite" });
-        }
+        check_load(&load, dofs)?;
         check_gap(&gap, contact.rows())?;
         if let Some((dof, value)) = stiffness.diagonal().iter().enumerate().find(|entry| *entry.1 < 0.0) {
             return Err(Error::NotConvex { evidence: format!("diagonal entry {dof} is {value:e}, indices from 0") });
@@ -115,7 +109,10 @@ impl ContactProblem {
     /// # Errors
     /// As [`ContactProblem::new`].
     pub fn with(&self, load: Vec<f64>, gap: Vec<f64>) -> Result<Self, Error> {
-        Self::new(Arc::clone(&self.stiffness), load, Arc::clone(&self.contact), gap)
+        check_load(&load, self.dofs())?;
+        check_gap(&gap, self.rows())?;
+        let (stiffness, contact) = (Arc::clone(&self.stiffness), Arc::clone(&self.contact));
+        Ok(ContactProblem { stiffness, load, contact, gap })
     }
 
     /// The violation B u - g of each row, length m: positive is penetration; `-inf` where there is no obstacle.
@@ -125,6 +122,20 @@ impl ContactProblem {
             *value -= gap;
         }
         violation
+    }
+}
+
+/// Is `load` one of so many dofs?
+fn check_load(load: &[f64], dofs: usize) -> Result<(), Error> {
+    if load.len() != dofs {
+        return Err(Error::Length { name: "load vector", found: load.len(), expected: dofs, of: "dofs" });
+    }
+    match load.iter().enumerate().find(|entry| !entry.1.is_finite()) {
+        Some((index, &value)) => {
+            let at = format!("entry {index}");
+            Err(Error::NotFinite { name: "load vector", at, value, allowed: "finite" })
+        }
+        None => Ok(()),
     }
 }
 

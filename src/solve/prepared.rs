@@ -20,6 +20,8 @@ pub struct Prepared {
     pub(super) problem: ContactProblem,
     selection: RowSelection,
     pub(super) scaling: Scaling,
+    /// The largest diagonal entry of the stiffness.
+    pub(super) stiffest: f64,
     pub(super) norm: Option<EnergyNorm>,
     pub(super) condensation: Option<Condensation>,
     augmented: AugmentedMatrix,
@@ -48,7 +50,8 @@ impl Prepared {
         let clock = Instant::now();
         let selection = RowSelection::of(problem.contact(), problem.gap())?;
         let scaling = Scaling::of(problem.stiffness(), &selection.contact(problem.contact()))?;
-        let has_empty_diagonal = problem.stiffness().diagonal().contains(&0.0);
+        let diagonal = problem.stiffness().diagonal();
+        let (has_empty_diagonal, stiffest) = (diagonal.contains(&0.0), largest(&diagonal));
         let factor_clock = Instant::now();
         let contact_dofs = Condensation::contact_dofs(scaling.contact());
         let analysis = match condense {
@@ -95,6 +98,7 @@ impl Prepared {
             problem: problem.clone(),
             selection,
             scaling,
+            stiffest,
             norm,
             condensation,
             augmented,
@@ -196,6 +200,23 @@ impl Prepared {
     ) -> Result<BoundarySolution<'_>, Error> {
         let loading = self.load(self.problem.with(load, gap.clone())?.load().to_vec(), &gap);
         self.on_boundary(self.find(loading, gap, start, settings)?, settings)
+    }
+
+    /// The displacement with another load and other gaps, without a certificate; `None` where the method did not settle on
+    /// a set.
+    ///
+    /// # Errors
+    /// As [`Prepared::boundary_at`].
+    pub(crate) fn settled_at(
+        &self,
+        load: Vec<f64>,
+        gap: Vec<f64>,
+        start: &ContactSet,
+        settings: &Settings,
+    ) -> Result<Option<Vec<f64>>, Error> {
+        let loading = self.load(self.problem.with(load, gap.clone())?.load().to_vec(), &gap);
+        let Found { loading, unit, outcome, .. } = self.find(loading, gap, Some(start), settings)?;
+        Ok(outcome.settled.then(|| self.expand(&loading, unit, &outcome.displacement)))
     }
 
     /// The exact path of the answer while the gaps move from `from` to `to` (length m each) on a straight line.
