@@ -63,6 +63,9 @@ pub(super) struct Solve {
     /// Method that finds the contact set
     #[arg(long, value_enum, default_value_t = MethodName::Auto)]
     pub method: MethodName,
+    /// Go on with the motion that stands in the folder of --out
+    #[arg(long, requires = "out")]
+    pub resume: bool,
     #[command(flatten)]
     pub common: Common,
 }

@@ -146,7 +146,7 @@ impl Integrator {
         let [strain, potential] = self.problem.energies(displacement, elastic, self.time());
         Observation {
             time: self.time(),
-            force: -multiplier.iter().sum::<f64>(),
+            force: multiplier.iter().fold(0.0, |force, lambda| force - lambda),
             closed: contact_set.count(),
             penetration: self.problem.penetration(displacement),
             kinetic: dot(velocity, &self.problem.mass().mul(velocity)) / 2.0,

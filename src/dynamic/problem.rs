@@ -185,6 +185,6 @@ impl DynamicProblem {
         let (forces, energy) = &self.held;
         let of_held = dot(forces, displacement);
         let strain = dot(displacement, elastic) / 2.0 - of_held + energy;
-        [strain, of_held - dot(&self.load_at(t), displacement)]
+        [strain, 0.0 + of_held - dot(&self.load_at(t), displacement)]
     }
 }

@@ -53,7 +53,7 @@ impl DescribedBody<'_> {
         let (thickness, model) = (self.scene.thickness, self.scene.model);
         if self.spec.dimension().is_some_and(|dimension| dimension != model.dimension()) {
             let fitting =
-                ["bar", "rectangle, half-disc, ring or gmsh", "box, half-ball or gmsh"][model.dimension() - 1];
+                ["bar", "rectangle, disc, half-disc, ring or gmsh", "box, half-ball or gmsh"][model.dimension() - 1];
             let (body, model) = (self.spec.name(), model.name());
             let message = format!("a {body} is no body of the model `{model}`; there it is a {fitting}");
             return Err(wrong(self.path(""), message));

@@ -36,11 +36,11 @@ pub use obstacle::Obstacle;
 pub use rows::ContactRow;
 pub use schema::{
     AnalysisSpec, Approach, AxisSpec, BarSpec, BodySpec, BoxSpec, CircleSpec, ConeSpec, CylinderSpec, DampingSpec,
-    DynamicSpec, ElementSpec, FacingSpec, FactorSpec, FactorTableSpec, FieldSpec, ForceSpec, FurtherBodySpec, GmshSpec,
-    HalfBallSpec, HalfDiscSpec, HalfSpec, HeightMapSpec, InitialSpec, IntegrationSpec, IntervalSpec, LoadInTimeSpec,
-    LoadSpec, MassSpec, MaterialSpec, ModelSpec, ObstacleSpec, ParabolaSpec, PenetrationSpec, Place, PlaneSpec,
-    PressureSpec, RectangleSpec, RingSpec, Rule, Scene, SchemeSpec, ShapeSpec, SineSpec, SolidElementSpec, SphereSpec,
-    SupportSpec, SymmetrySpec, TableSpec, TractionSpec, Units, WedgeSpec, ZoneSpec,
+    DiscSpec, DynamicSpec, ElementSpec, FacingSpec, FactorSpec, FactorTableSpec, FieldSpec, ForceSpec, FurtherBodySpec,
+    GmshSpec, HalfBallSpec, HalfDiscSpec, HalfSpec, HeightMapSpec, InitialSpec, IntegrationSpec, IntervalSpec,
+    LoadInTimeSpec, LoadSpec, MassSpec, MaterialSpec, ModelSpec, ObstacleSpec, ParabolaSpec, PenetrationSpec, Place,
+    PlaneSpec, PressureSpec, RectangleSpec, RingSpec, Rule, Scene, SchemeSpec, ShapeSpec, SineSpec, SolidElementSpec,
+    SphereSpec, SupportSpec, SymmetrySpec, TableSpec, TractionSpec, Units, WedgeSpec, ZoneSpec,
 };
 pub use warning::Warning;
 

@@ -2,12 +2,14 @@
 
 mod compare;
 mod manufactured;
+mod motion;
 mod scene;
 mod summary;
 mod tradeoff;
 
 pub use compare::{Agreement, Comparison, Difference, MethodAnswer, compare};
 pub use manufactured::{NodalPressure, SolvedBlock, solve_block};
+pub use motion::MotionSummary;
 pub use scene::{
     Sweep, SweepCorner, SweepEvent, SweepPoint, contact_area, contact_width, discretisation_error, even_gaps,
     scene_summary, sweep,

@@ -22,7 +22,7 @@ pub use condition::{ForceSpec, LoadSpec, Place, PressureSpec, SupportSpec, Tract
 pub use obstacle::{
     Approach, CircleSpec, FacingSpec, ObstacleSpec, ParabolaSpec, PlaneSpec, Rule, ShapeSpec, TableSpec, WedgeSpec,
 };
-pub use shape::{GmshSpec, HalfBallSpec, HalfDiscSpec, HalfSpec, RingSpec, SymmetrySpec, ZoneSpec};
+pub use shape::{DiscSpec, GmshSpec, HalfBallSpec, HalfDiscSpec, HalfSpec, RingSpec, SymmetrySpec, ZoneSpec};
 pub use solid::{ConeSpec, CylinderSpec, HeightMapSpec, SphereSpec};
 
 use std::path::PathBuf;
