@@ -56,7 +56,7 @@ fn scenes_that_describe_no_problem() {
         (with("/loads", json!(null)), 1, &["at `loads`", "null", "expected an array"]),
         (with("/body", json!([])), 1, &["at `body`", "array", "expected an object with a single key"]),
         (with("/body", json!({})), 1, &["at `body`", "empty", "expected a single key"]),
-        (with("/body", json!({"disc": {}})), 1, &["at `body.disc`", "unknown choice `disc`", "`rectangle`"]),
+        (with("/body", json!({"blob": {}})), 1, &["at `body.blob`", "unknown choice `blob`", "`rectangle`"]),
         (with("/supports/0/on", json!("bottom")), 1, &["at `supports[0].on`", "\"bottom\"", "single key"]),
         (
             with("/supports/0/on", json!({"boundary": "bottom", "point": [0, 0]})),

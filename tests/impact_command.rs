@@ -199,3 +199,19 @@ fn a_free_body_may_move_though_nothing_holds_it_at_rest() {
         assert!((report["energy"][moment]["kinetic"].as_f64().unwrap() / 6250.0 - 1.0).abs() < 1e-9, "{report}");
     }
 }
+
+#[test]
+fn a_trade_off_of_a_motion_runs_every_scheme_and_marks_the_best() {
+    let desk = Desk::new();
+    desk.write("bar.json", bar().to_string());
+    let report = desk.run(&["tradeoff", "bar.json", "--out", "out", "--format", "json"]).ends_with(0).json();
+    let points = report["points"].as_array().unwrap();
+    let schemes: std::collections::BTreeSet<_> = points.iter().map(|point| point["scheme"].as_str().unwrap()).collect();
+    assert_eq!(schemes.len(), 6);
+    assert!(points.iter().any(|point| point["best"] == json!(true)));
+    let errors: Vec<f64> = points[..4].iter().map(|point| point["displacement_error"].as_f64().unwrap()).collect();
+    assert!(errors[3] < errors[0] && errors[3] > 0.0, "the default scheme gains by smaller steps: {errors:?}");
+    for name in ["tradeoff.txt", "tradeoff.csv", "tradeoff.png"] {
+        assert!(desk.path(&format!("out/{name}")).exists());
+    }
+}

@@ -11,6 +11,7 @@ use crate::dynamic::Integrator;
 use crate::error::Error;
 use crate::output::{MotionFolder, MotionSeconds, motion_is_certified, motion_json, motion_text, write_files};
 use crate::scene::Scene;
+use crate::solve::Method;
 use crate::study::MotionSummary;
 
 /// Energy beyond this, relative to the largest of the motion, is told even of a scheme that should keep it.
@@ -25,7 +26,10 @@ pub(super) fn run(options: &Solve, scene: &Scene) -> Result<Outcome, Error> {
     let assemble = clock.elapsed().as_secs_f64();
 
     let clock = Instant::now();
-    let settings = settings(options.method.method(), &options.common);
+    let mut settings = settings(options.method.method(), &options.common);
+    if settings.method == Method::Auto {
+        settings.method = Method::ActiveSet;
+    }
     let explained = |error| model.explain(error);
     let mut integrator =
         Integrator::new(dynamics.problem.clone(), dynamics.scheme, dynamics.step, &settings).map_err(explained)?;
@@ -72,7 +76,7 @@ pub(super) fn run(options: &Solve, scene: &Scene) -> Result<Outcome, Error> {
         warn(&format!("warning: the energy grew by {percent:.1} % of its largest: do not trust this motion\n"));
     }
     let seconds = MotionSeconds { assemble, factor, steps: clock.elapsed().as_secs_f64() };
-    let json = format!("{:#}\n", motion_json(&model, &dynamics, &summary, &seconds));
+    let json = format!("{:#}\n", motion_json(&model, &dynamics, settings.method, &summary, &seconds));
     if let (Some(folder), Some(path)) = (&folder, &options.common.out) {
         folder.draw(&model)?;
         write_files(path, &[("report.json", json.clone())])?;
@@ -82,7 +86,7 @@ pub(super) fn run(options: &Solve, scene: &Scene) -> Result<Outcome, Error> {
         Format::Text => motion_text(&title, &model, &dynamics, &summary, &seconds, &unit_names(&model)),
         Format::Json => json,
     };
-    Ok(Outcome::judged(text, motion_is_certified(&dynamics)))
+    Ok(Outcome::judged(text, motion_is_certified(&dynamics, settings.method)))
 }
 
 /// A bar on standard error, where that is a terminal.

@@ -16,6 +16,7 @@ pub mod gallery;
 mod legend;
 mod motion;
 mod motion_report;
+mod motion_tradeoff;
 mod obstacle;
 mod paint;
 mod panels;
@@ -34,6 +35,7 @@ pub use drawing::{Anchor, Drawing, Paint};
 pub use file::{write_atomically, write_files, write_picture};
 pub use motion::MotionFolder;
 pub use motion_report::{MotionSeconds, motion_is_certified, motion_json, motion_text};
+pub use motion_tradeoff::{motion_tradeoff_csv, motion_tradeoff_json, motion_tradeoff_plot, motion_tradeoff_text};
 pub use plot::{Plot, Series, line_plots};
 pub use report::{
     UnitNames, compare_json, compare_text, printable, solve_json, solve_text, sweep_json, sweep_text, verify_json,

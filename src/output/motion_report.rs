@@ -3,7 +3,9 @@
 use serde_json::{Value, json};
 
 use super::report::{UnitNames, entry, plural, printable, quantity};
+use crate::dynamic::Scheme;
 use crate::scene::{Dynamics, Model};
+use crate::solve::Method;
 use crate::study::MotionSummary;
 
 /// What a run cost, in seconds.
@@ -18,8 +20,8 @@ pub struct MotionSeconds {
 }
 
 /// Are the contact problems of all steps of this motion certified? Not where springs stand for closed rows.
-pub fn motion_is_certified(dynamics: &Dynamics) -> bool {
-    !matches!(dynamics.scheme, crate::dynamic::Scheme::Penalty { .. })
+pub fn motion_is_certified(dynamics: &Dynamics, method: Method) -> bool {
+    !matches!(dynamics.scheme, Scheme::Penalty { .. }) && method != Method::Penalty
 }
 
 /// The report of a run, in lines of at most 100 characters.
@@ -58,11 +60,18 @@ pub fn motion_text(
 }
 
 /// The same as one object.
-pub fn motion_json(model: &Model, dynamics: &Dynamics, summary: &MotionSummary, seconds: &MotionSeconds) -> Value {
+pub fn motion_json(
+    model: &Model,
+    dynamics: &Dynamics,
+    method: Method,
+    summary: &MotionSummary,
+    seconds: &MotionSeconds,
+) -> Value {
     let energies = |[kinetic, strain, potential]: [f64; 3]| json!({"kinetic": kinetic, "strain": strain, "potential": potential, "total": kinetic + strain + potential});
     let MotionSeconds { assemble, factor, steps } = seconds;
     json!({
-        "status": if motion_is_certified(dynamics) { "certified" } else { "not_certified" },
+        "status": if motion_is_certified(dynamics, method) { "certified" } else { "not_certified" },
+        "method": method.name(),
         "scheme": dynamics.scheme.name(),
         "gains_energy": dynamics.scheme.gains_energy(),
         "step": dynamics.step,
