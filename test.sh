@@ -20,9 +20,15 @@ cargo run --quiet --release --example verification
 cargo run --quiet --release --example contact_cost -- --only "Q4 64,Hex8 12" --rounds 1
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
+cargo run --quiet --release --example impact
+cargo run --quiet --release --example dynamic_cost
 for scene in examples/*.json; do
     echo "-- $scene"
     target/release/signorini compare "$scene" --out "$out/$(basename "$scene" .json)"
+done
+for scene in examples/impact/*.json; do
+    echo "-- $scene"
+    target/release/signorini solve "$scene" --out "$out/$(basename "$scene" .json)"
 done
 target/release/signorini sweep examples/indentation.json --gaps -0.01:-0.10:10 --out "$out/sweep"
 

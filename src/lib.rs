@@ -50,10 +50,11 @@
 //! | 4 | [`problem`], [`body`] |
 //! | 5 | [`transform`], [`method`], [`assembly`], [`recovery`], [`norm`] |
 //! | 6 | [`mod@solve`] |
-//! | 7 | [`scene`], [`matrix_market`] |
-//! | 8 | [`study`] |
-//! | 9 | [`output`] |
-//! | 10 | [`cli`] |
+//! | 7 | [`dynamic`] |
+//! | 8 | [`scene`], [`matrix_market`] |
+//! | 9 | [`study`] |
+//! | 10 | [`output`] |
+//! | 11 | [`cli`] |
 
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
@@ -62,6 +63,7 @@ pub mod analytical;
 pub mod assembly;
 pub mod body;
 pub mod cli;
+pub mod dynamic;
 pub mod element;
 pub mod error;
 pub mod formulation;

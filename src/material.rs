@@ -8,6 +8,7 @@ use crate::formulation::Formulation;
 pub struct Material {
     young: f64,
     poisson: f64,
+    density: Option<f64>,
 }
 
 /// The Lamé constants of a material in a formulation, in force per area.
@@ -31,7 +32,23 @@ impl Material {
         if !(poisson > -1.0 && poisson <= 0.5) {
             return Err(Error::Setting { name: "poisson", value: poisson, allowed: "above -1 and at most 0.5" });
         }
-        Ok(Material { young, poisson })
+        Ok(Material { young, poisson, density: None })
+    }
+
+    /// The same material with a density (mass per volume), which only dynamics asks for.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for a density that is not positive and finite.
+    pub fn with_density(self, density: f64) -> Result<Self, Error> {
+        if !(density.is_normal() && density > 0.0) {
+            return Err(Error::Setting { name: "density", value: density, allowed: "positive and finite" });
+        }
+        Ok(Material { density: Some(density), ..self })
+    }
+
+    /// The density, in mass per volume, where there is one.
+    pub fn density(&self) -> Option<f64> {
+        self.density
     }
 
     /// Young's modulus E.

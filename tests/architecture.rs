@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms of each floor, from the ground up. `lib` re-exports and `main` calls: they stand on the roof.
-const FLOORS: [&[&str]; 11] = [
+const FLOORS: [&[&str]; 12] = [
     &["analytical", "solution"],
     &["error"],
     &["sparse", "element", "formulation"],
@@ -13,6 +13,7 @@ const FLOORS: [&[&str]; 11] = [
     &["problem", "body"],
     &["transform", "method", "assembly", "recovery", "norm"],
     &["solve"],
+    &["dynamic"],
     &["scene", "matrix_market"],
     &["study"],
     &["output"],

@@ -46,7 +46,7 @@ fn scenes_that_describe_no_problem() {
     rolling["obstacles"] = json!([]);
     let cases: Vec<(Value, i32, &[&str])> = vec![
         (with("/thicknes", json!(1)), 1, &["at `thicknes`", "unknown field `thicknes`", "`thickness`"]),
-        (with("/material/nu", json!(0.3)), 1, &["at `material.nu`", "expected `young` or `poisson`"]),
+        (with("/material/nu", json!(0.3)), 1, &["at `material.nu`", "expected one of `young`, `poisson`, `density`"]),
         (with("/material/young", json!("steel")), 1, &["at `material.young`", "string \"steel\"", "expected a number"]),
         (with("/gap", json!(null)), 1, &["at `gap`", "null", "expected a number"]),
         (with("/gap", json!(true)), 1, &["at `gap`", "boolean `true`", "expected a number"]),
@@ -56,7 +56,7 @@ fn scenes_that_describe_no_problem() {
         (with("/loads", json!(null)), 1, &["at `loads`", "null", "expected an array"]),
         (with("/body", json!([])), 1, &["at `body`", "array", "expected an object with a single key"]),
         (with("/body", json!({})), 1, &["at `body`", "empty", "expected a single key"]),
-        (with("/body", json!({"disc": {}})), 1, &["at `body.disc`", "unknown choice `disc`", "`rectangle`"]),
+        (with("/body", json!({"blob": {}})), 1, &["at `body.blob`", "unknown choice `blob`", "`rectangle`"]),
         (with("/supports/0/on", json!("bottom")), 1, &["at `supports[0].on`", "\"bottom\"", "single key"]),
         (
             with("/supports/0/on", json!({"boundary": "bottom", "point": [0, 0]})),

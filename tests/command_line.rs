@@ -483,7 +483,7 @@ fn every_example_conforms_to_the_printed_schema_and_a_misspelt_one_does_not() {
     conforms(&scene(), &schema, &schema).unwrap();
     for (pointer, value) in [
         ("/material", json!({"young": 1e7, "nu": 0.3})),
-        ("/body", json!({"disc": {}})),
+        ("/body", json!({"blob": {}})),
         ("/supports/0/on", json!("bottom")),
         ("/obstacles/0/approach", json!("up")),
         ("/loads/0", json!({"traction": {"boundary": "top"}})),

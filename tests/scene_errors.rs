@@ -147,7 +147,7 @@ fn texts_that_are_no_scene_are_refused_at_path_line_and_column() {
     };
     let cases = [
         (with("/thicknes", json!(1)), "thicknes", "unknown field `thicknes`"),
-        (with("/material/yuong", json!(1)), "material.yuong", "expected `young` or `poisson`"),
+        (with("/material/yuong", json!(1)), "material.yuong", "expected one of `young`, `poisson`, `density`"),
         (with("/material/young", json!("1000")), "material.young", "expected a number"),
         (with("/material/young", json!(null)), "material.young", "expected a number"),
         (with("/model", json!("plain-strain")), "model", "expected one of `bar`, `plane-strain`, `plane-stress`"),
@@ -160,9 +160,9 @@ fn texts_that_are_no_scene_are_refused_at_path_line_and_column() {
         (with("/body/rectangle/x/divisions", json!([1.5, 2])), "body.rectangle.x.divisions[0]", "whole number"),
         (with("/body/rectangle/x/points", json!(3)), "body.rectangle.x.points", "expected an array"),
         (
-            with("/body", json!({"disc": {}})),
-            "body.disc",
-            "unknown choice `disc`, expected one of `rectangle`, `bar`, `box`",
+            with("/body", json!({"blob": {}})),
+            "body.blob",
+            "unknown choice `blob`, expected one of `rectangle`, `bar`, `box`",
         ),
         (with("/obstacles/0/approach", json!("up")), "obstacles[0].approach", "`+x`, `-x`, `+y`, `-y`"),
         (with("/obstacles/0/rule", json!("closest")), "obstacles[0].rule", "`closest-point`"),

@@ -1,8 +1,9 @@
 //! Closed-form contact solutions, to hold answers against: bars and blocks, Hertz contacts, punches, obstacle problems,
-//! and bodies whose displacement is known at every point.
+//! bars in impact, and bodies whose displacement is known at every point.
 
 mod bar;
 mod hertz;
+mod impact;
 pub mod manufactured;
 mod obstacle_problem;
 mod patch;
@@ -10,6 +11,7 @@ mod punch;
 
 pub use bar::Bar;
 pub use hertz::{LineContact, PointContact};
+pub use impact::{BouncingBar, ImpactingBar};
 pub use obstacle_problem::{DiscMembrane, ObstacleString};
 pub use patch::{ContactPatch, Sides};
 pub use punch::{Cone, FlatDisc, FlatStrip, Wedge};

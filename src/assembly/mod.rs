@@ -1,4 +1,4 @@
-//! Assembly in the free dofs: stiffness, loads, internal forces.
+//! Assembly in the free dofs: stiffness, mass, loads, internal forces.
 //!
 //! Nodal vectors have length `dim * n_nodes` and the order `[x_0, y_0, x_1, y_1, ...]` (in space `[x_0, y_0, z_0,
 //! ...]`, in a bar `[x_0, x_1, ...]`); vectors of the problem have one entry per free dof, in the same order with the
@@ -10,7 +10,9 @@ mod element_stiffness;
 mod frame;
 mod internal_force;
 mod load;
+mod mass;
 mod pattern;
+mod redistribution;
 mod stiffness;
 mod surface;
 
@@ -20,5 +22,6 @@ pub use frame::Frame;
 pub(crate) use frame::perpendicular;
 pub use internal_force::internal_force;
 pub use load::{add_body_force, add_body_force_field, add_pressure, add_traction, add_traction_field, free_load};
+pub use mass::{MassForm, mass};
 pub use stiffness::stiffness;
 pub use surface::{node_normals, tributary_areas};

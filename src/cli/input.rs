@@ -32,7 +32,7 @@ impl Input {
             let title = format!("Problem directory {}", path.display());
             (title, UnitNames::default(), Content::Directory(matrix_market::read_problem(path)?))
         } else {
-            let model = Scene::read(path)?.build()?;
+            let model = still_model(path)?;
             (scene_title(&model, path), unit_names(&model), Content::Scene(Box::new(model)))
         };
         Ok(Input { title, units, assemble_seconds: clock.elapsed().as_secs_f64(), content })
@@ -70,6 +70,25 @@ impl Input {
             Content::Directory(_) => String::new(),
         }
     }
+}
+
+/// The scene at `path`, if its motion is asked for.
+pub(super) fn moving_scene(path: &Path) -> Result<Option<Scene>, Error> {
+    if path.is_dir() {
+        return Ok(None);
+    }
+    Ok(Some(Scene::read(path)?).filter(|scene| scene.analysis.is_some()))
+}
+
+/// The model of a scene at rest.
+pub(super) fn still_model(path: &Path) -> Result<Model, Error> {
+    let scene = Scene::read(path)?;
+    if scene.analysis.is_some() {
+        let message =
+            "the scene moves; only `solve` and `tradeoff` can do with that: leave the analysis out for its rest";
+        return Err(Error::Scene { path: "analysis".into(), message: message.into() });
+    }
+    scene.build()
 }
 
 /// The title of a scene, or its file where it has none.

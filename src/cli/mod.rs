@@ -1,6 +1,7 @@
 //! The command line: arguments in, text or JSON out, and one exit code for each kind of ending.
 
 mod compare;
+mod dynamic;
 mod export;
 mod input;
 mod options;

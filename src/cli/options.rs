@@ -85,6 +85,9 @@ pub(super) struct Solve {
     /// Extrapolate the penalty answer to an infinite penalty
     #[arg(long)]
     pub extrapolate: bool,
+    /// Go on with the motion that stands in the folder of --out
+    #[arg(long, requires = "out")]
+    pub resume: bool,
     #[command(flatten)]
     pub common: Common,
 }

@@ -1,8 +1,8 @@
 //! `signorini solve`: one answer.
 
-use super::input::{Content, Input};
+use super::input::{Content, Input, moving_scene};
 use super::options::{Common, Format, Solve};
-use super::{Outcome, warn};
+use super::{Outcome, dynamic, warn};
 use crate::error::Error;
 use crate::output::{gallery, solve_json, solve_text, write_files};
 use crate::solve::{Condense, Method, Settings, solve};
@@ -18,6 +18,13 @@ pub(super) fn settings(method: Method, common: &Common) -> Settings {
 
 pub(super) fn run(options: &Solve) -> Result<Outcome, Error> {
     let common = &options.common;
+    if let Some(scene) = moving_scene(&options.input)? {
+        return dynamic::run(options, &scene);
+    }
+    if options.resume {
+        let path = "analysis".into();
+        return Err(Error::Scene { path, message: "nothing moves here, so that there is nothing to resume".into() });
+    }
     let input = Input::read(&options.input)?;
     warn(&input.warnings());
     let mut settings = settings(options.method.method(), common);

@@ -4,12 +4,19 @@ use super::input::{scene_title, warnings};
 use super::options::{Format, Tradeoff};
 use super::{Outcome, warn};
 use crate::error::Error;
-use crate::output::{tradeoff_csv, tradeoff_json, tradeoff_plot, tradeoff_text, write_files, write_picture};
+use crate::output::{
+    motion_tradeoff_csv, motion_tradeoff_json, motion_tradeoff_plot, motion_tradeoff_text, tradeoff_csv, tradeoff_json,
+    tradeoff_plot, tradeoff_text, write_files, write_picture,
+};
 use crate::scene::Scene;
-use crate::study::{TradeoffGrid, tradeoff};
+use crate::solve::Settings;
+use crate::study::{TradeoffGrid, motion_tradeoff, tradeoff};
 
 pub(super) fn run(options: &Tradeoff) -> Result<Outcome, Error> {
     let scene = Scene::read(&options.scene)?;
+    if scene.analysis.is_some() {
+        return of_motion(options, &scene);
+    }
     let model = scene.build()?;
     warn(&warnings(&model));
     let title = scene_title(&model, &options.scene);
@@ -25,6 +32,28 @@ pub(super) fn run(options: &Tradeoff) -> Result<Outcome, Error> {
             [("tradeoff.txt", text.clone()), ("tradeoff.csv", tradeoff_csv(&measured)), ("report.json", json.clone())];
         write_files(folder, &files)?;
         write_picture(folder, "tradeoff", &tradeoff_plot(&title, &measured))?;
+    }
+    Ok(Outcome::certified(match options.format {
+        Format::Text => text,
+        Format::Json => json,
+    }))
+}
+
+/// Every scheme at several steps.
+fn of_motion(options: &Tradeoff, scene: &Scene) -> Result<Outcome, Error> {
+    let model = scene.build()?;
+    warn(&warnings(&model));
+    let title = scene_title(&model, &options.scene);
+    let measured = motion_tradeoff(scene, &Settings::default())?;
+    let (text, json) = (motion_tradeoff_text(&title, &measured), format!("{:#}\n", motion_tradeoff_json(&measured)));
+    if let Some(folder) = &options.out {
+        let files = [
+            ("tradeoff.txt", text.clone()),
+            ("tradeoff.csv", motion_tradeoff_csv(&measured)),
+            ("report.json", json.clone()),
+        ];
+        write_files(folder, &files)?;
+        write_picture(folder, "tradeoff", &motion_tradeoff_plot(&title, &measured))?;
     }
     Ok(Outcome::certified(match options.format {
         Format::Text => text,

@@ -161,12 +161,21 @@ impl ContactPicture<'_> {
         [0, 1].map(|axis| node[axis] + self.magnification * displacement[axis])
     }
 
+    fn is_displaced(&self) -> bool {
+        self.displacement.iter().any(|&component| component != 0.0)
+    }
+
     fn field_title(&self) -> String {
-        format!("{} on the undeformed body", self.quantity.name)
+        // Where nothing is displaced, the nodes are where the body is.
+        let of = if self.is_displaced() { "the undeformed body" } else { "the body" };
+        format!("{} on {of}", self.quantity.name)
     }
 
     fn moved_title(&self) -> String {
-        format!("moved mesh, displacement × {}", brief(self.magnification))
+        match self.is_displaced() {
+            true => format!("moved mesh, displacement × {}", brief(self.magnification)),
+            false => "mesh".into(),
+        }
     }
 
     /// Two frames with the same window and the same scale in both directions.

@@ -162,6 +162,12 @@ impl Drawing {
     /// [`Error::Setting`] where the scale is not positive or makes an image of more than 1e8 pixels,
     /// [`Error::Numerical`] where the rasteriser fails.
     pub fn png(&self, scale: f64) -> Result<Vec<u8>, Error> {
+        let failed = |reason: String| Error::Numerical { step: "rasterising a picture", reason };
+        self.pixels(scale)?.encode_png().map_err(|error| failed(error.to_string()))
+    }
+
+    /// The same picture as pixels.
+    pub(super) fn pixels(&self, scale: f64) -> Result<tiny_skia::Pixmap, Error> {
         let [width, height] = [self.width, self.height].map(|side| (side * scale).round());
         if !(scale > 0.0 && width >= 1.0 && height >= 1.0 && width * height <= MOST_PIXELS) {
             let allowed = "positive, and an image of at least one and at most 1e8 pixels must come of it";
@@ -174,7 +180,7 @@ impl Drawing {
             .ok_or_else(|| failed(format!("no image of {width} x {height} pixels")))?;
         let transform = tiny_skia::Transform::from_scale((width / self.width) as f32, (height / self.height) as f32);
         resvg::render(&tree, transform, &mut pixels.as_mut());
-        pixels.encode_png().map_err(|error| failed(error.to_string()))
+        Ok(pixels)
     }
 }
 

@@ -39,7 +39,10 @@ pub fn write_answer(folder: &Path, solution: &Solution) -> Result<(), Error> {
 /// [`Error::File`], and those of the recovery of stresses.
 pub fn write_solve(folder: &Path, model: &Model, solution: &Solution) -> Result<(), Error> {
     write_answer(folder, solution)?;
-    write_atomically(&folder.join("solution.vtu"), fields(model, solution)?.as_bytes())?;
+    write_atomically(
+        &folder.join("solution.vtu"),
+        fields(model, &solution.displacement, &solution.multiplier, &solution.contact_set)?.as_bytes(),
+    )?;
     if !is_plane(model) {
         return Ok(());
     }
@@ -195,7 +198,7 @@ fn pressure_line(model: &Model, obstacle: usize, solution: &Solution) -> Result<
 }
 
 /// What one picture shows, as plain data that it owns.
-struct Scene {
+pub(super) struct Scene {
     title: String,
     length_unit: String,
     stress_unit: String,
@@ -209,7 +212,7 @@ struct Scene {
 }
 
 impl Scene {
-    fn new(model: &Model, displacement: &[f64], set: &ContactSet, title: String) -> Result<Self, Error> {
+    pub(super) fn new(model: &Model, displacement: &[f64], set: &ContactSet, title: String) -> Result<Self, Error> {
         let candidates: Vec<usize> = {
             let mut nodes: Vec<usize> = model.rows().iter().map(|row| row.node).collect();
             nodes.sort_unstable();
@@ -236,11 +239,24 @@ impl Scene {
         })
     }
 
-    fn obstacles(&self) -> Vec<ObstacleLine<'_>> {
+    /// The same with the body where it has moved to in both panels: for one that flies.
+    pub(super) fn in_place(mut self) -> Self {
+        for (node, moved) in self.nodes.iter_mut().zip(self.displacement.chunks_exact(2)) {
+            *node = [node[0] + moved[0], node[1] + moved[1]];
+        }
+        self.displacement.fill(0.0);
+        self
+    }
+
+    pub(super) fn field(&self) -> &[f64] {
+        &self.field
+    }
+
+    pub(super) fn obstacles(&self) -> Vec<ObstacleLine<'_>> {
         self.outlines.iter().map(|(points, inside)| ObstacleLine { points, inside: *inside }).collect()
     }
 
-    fn picture<'a>(&'a self, obstacles: &'a [ObstacleLine<'a>]) -> ContactPicture<'a> {
+    pub(super) fn picture<'a>(&'a self, obstacles: &'a [ObstacleLine<'a>]) -> ContactPicture<'a> {
         ContactPicture {
             title: &self.title,
             length_unit: &self.length_unit,
@@ -274,22 +290,27 @@ fn draw_series(folder: &Path, series: &[(String, Scene)]) -> Result<(), Error> {
 }
 
 /// The text of the `.vtu` file: displacement, stresses, and at the candidates gap, pressure and contact flag.
-fn fields(model: &Model, solution: &Solution) -> Result<String, Error> {
+pub(super) fn fields(
+    model: &Model,
+    free_displacement: &[f64],
+    multiplier: &[f64],
+    set: &ContactSet,
+) -> Result<String, Error> {
     let nodes = model.mesh().nodes();
     let elements: Vec<Vec<usize>> = model.mesh().elements().map(<[usize]>::to_vec).collect();
     let cell_types = vec![cell_type(model.mesh().kind()); elements.len()];
-    let displacement = in_space(&model.nodal_displacement(&solution.displacement)?, model.mesh().dimension());
-    let stress = model.stress(&solution.displacement)?;
+    let displacement = in_space(&model.nodal_displacement(free_displacement)?, model.mesh().dimension());
+    let stress = model.stress(free_displacement)?;
     // A node between two obstacles shows the sum of its pressures and the smaller of its gaps.
     let (mut pressure, mut gap) = (vec![0.0; nodes.len()], vec![0.0; nodes.len()]);
     let mut flag = vec![NO_CANDIDATE; nodes.len()];
-    let row_pressure = model.pressure(&solution.multiplier)?;
+    let row_pressure = model.pressure(multiplier)?;
     for (index, row) in model.rows().iter().enumerate() {
         for (node, _) in row.ends() {
             let is_first = flag[node] == NO_CANDIDATE;
             gap[node] = if is_first { row.gap } else { row.gap.min(gap[node]) };
             pressure[node] += row_pressure[index];
-            flag[node] = f64::from(solution.contact_set.contains(index)).max(flag[node]);
+            flag[node] = f64::from(set.contains(index)).max(flag[node]);
         }
     }
     let components: [fn(&Stress) -> f64; 4] = [|s| s.sigma_1, |s| s.sigma_2, |s| s.von_mises, |s| s.sigma_3];

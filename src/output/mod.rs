@@ -4,6 +4,7 @@
 //! methods; [`gallery`] alone fills them from a model and its answer. A picture is a [`Drawing`]: its SVG text is the
 //! truth, the PNG is that text rasterised with an embedded typeface, so that both show the same on every machine.
 
+mod animation;
 mod axes;
 pub mod body;
 mod colour;
@@ -13,6 +14,9 @@ pub mod drawing;
 pub mod file;
 pub mod gallery;
 mod legend;
+mod motion;
+mod motion_report;
+mod motion_tradeoff;
 mod obstacle;
 mod paint;
 mod panels;
@@ -24,10 +28,14 @@ mod tradeoff;
 mod typeface;
 pub mod vtu;
 
+pub use animation::animate;
 pub use body::{ContactPicture, ObstacleLine, common_limits, common_window};
 pub use colour::Colour;
 pub use drawing::{Anchor, Drawing, Paint};
 pub use file::{write_atomically, write_files, write_picture};
+pub use motion::MotionFolder;
+pub use motion_report::{MotionSeconds, motion_is_certified, motion_json, motion_text};
+pub use motion_tradeoff::{motion_tradeoff_csv, motion_tradeoff_json, motion_tradeoff_plot, motion_tradeoff_text};
 pub use plot::{Plot, Series, line_plots};
 pub use report::{
     UnitNames, compare_json, compare_text, printable, solve_json, solve_text, sweep_json, sweep_text, verify_json,

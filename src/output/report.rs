@@ -23,7 +23,7 @@ pub fn printable(text: &str) -> String {
 }
 
 /// A number with its unit.
-fn quantity(value: f64, unit: &str) -> String {
+pub(super) fn quantity(value: f64, unit: &str) -> String {
     format!("{value:.6e} {}", printable(unit)).trim_end().to_string()
 }
 
@@ -119,7 +119,7 @@ fn mesh_text(summary: &Summary) -> String {
     text
 }
 
-fn entry(name: &str, content: &str) -> String {
+pub(super) fn entry(name: &str, content: &str) -> String {
     format!("  {name:<14}{content}\n")
 }
 

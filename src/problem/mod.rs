@@ -43,17 +43,11 @@ impl ContactProblem {
         gap: Vec<f64>,
     ) -> Result<Self, Error> {
         let dofs = stiffness.dim();
-        if load.len() != dofs {
-            return Err(Error::Length { name: "load vector", found: load.len(), expected: dofs, of: "dofs" });
-        }
         if contact.columns() != dofs {
             let (found, expected) = ((contact.rows(), contact.columns()), (contact.rows(), dofs));
             return Err(Error::Shape { name: "contact matrix", found, expected });
         }
-        if let Some((index, &value)) = load.iter().enumerate().find(|entry| !entry.1.is_finite()) {
-            let at = format!("entry {index}");
-            return Err(Error::NotFinite { name: "load vector", at, value, allowed: "finite" });
-        }
+        check_load(&load, dofs)?;
         check_gap(&gap, contact.rows())?;
         if let Some((dof, value)) = stiffness.diagonal().iter().enumerate().find(|entry| *entry.1 < 0.0) {
             return Err(Error::NotConvex { evidence: format!("diagonal entry {dof} is {value:e}, indices from 0") });
@@ -112,7 +106,10 @@ impl ContactProblem {
     /// # Errors
     /// As [`ContactProblem::new`].
     pub fn with(&self, load: Vec<f64>, gap: Vec<f64>) -> Result<Self, Error> {
-        Self::new(self.stiffness.clone(), load, self.contact.clone(), gap)
+        check_load(&load, self.dofs())?;
+        check_gap(&gap, self.rows())?;
+        let (stiffness, contact) = (self.stiffness.clone(), self.contact.clone());
+        Ok(ContactProblem { stiffness, load, contact, gap })
     }
 
     /// The violation B u - g of each row, length m: positive is penetration; `-inf` where there is no obstacle.
@@ -122,6 +119,20 @@ impl ContactProblem {
             *value -= gap;
         }
         violation
+    }
+}
+
+/// Is `load` one of so many dofs?
+fn check_load(load: &[f64], dofs: usize) -> Result<(), Error> {
+    if load.len() != dofs {
+        return Err(Error::Length { name: "load vector", found: load.len(), expected: dofs, of: "dofs" });
+    }
+    match load.iter().enumerate().find(|entry| !entry.1.is_finite()) {
+        Some((index, &value)) => {
+            let at = format!("entry {index}");
+            Err(Error::NotFinite { name: "load vector", at, value, allowed: "finite" })
+        }
+        None => Ok(()),
     }
 }
 

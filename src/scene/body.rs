@@ -53,7 +53,7 @@ impl DescribedBody<'_> {
         let (thickness, model) = (self.scene.thickness, self.scene.model);
         if self.spec.dimension().is_some_and(|dimension| dimension != model.dimension()) {
             let fitting =
-                ["bar", "rectangle, half-disc, ring or gmsh", "box, half-ball or gmsh"][model.dimension() - 1];
+                ["bar", "rectangle, disc, half-disc, ring or gmsh", "box, half-ball or gmsh"][model.dimension() - 1];
             let (body, model) = (self.spec.name(), model.name());
             let message = format!("a {body} is no body of the model `{model}`; there it is a {fitting}");
             return Err(wrong(self.path(""), message));
@@ -80,6 +80,13 @@ impl DescribedBody<'_> {
     fn elastic_body(&self) -> Result<ElasticBody, Error> {
         let material = Material::new(self.material.young, self.material.poisson);
         let material = material.map_err(|error| self.in_material(error))?;
+        let material = match self.material.density {
+            Some(density) => material.with_density(density).map_err(|error| self.in_material(error))?,
+            None if self.scene.analysis.is_some() => {
+                return Err(wrong(format!("{}material", self.place), "a dynamic analysis needs a `density`; give it"));
+            }
+            None => material,
+        };
         let formulation = self.formulation()?;
         material.lame(&formulation).map_err(|error| self.in_material(error))?;
         let at_body = |error| match error {

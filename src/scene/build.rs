@@ -26,7 +26,8 @@ impl Scene {
         }
         let warnings = locking(&body).into_iter().collect();
         let (title, units) = (self.title.clone(), self.units.clone());
-        Model::new(Parts { title, units, body, dofs, load, obstacles, warnings }, self.gap)
+        let moves = self.analysis.is_some();
+        Model::new(Parts { title, units, body, dofs, load, obstacles, warnings, moves }, self.gap)
     }
 }
 

@@ -77,36 +77,42 @@ impl Scene {
     }
 
     pub(super) fn load(&self, body: &ElasticBody) -> Result<Vec<f64>, Error> {
-        let (mesh, dimension) = (body.mesh(), body.dimension());
         let mut load = vec![0.0; body.nodal_dofs()];
-        for (index, spec) in self.loads.iter().enumerate() {
-            let path = format!("loads[{index}]");
-            match spec {
-                LoadSpec::Traction(spec) => {
-                    let boundary = boundary(mesh, &spec.boundary, &format!("{path}.traction.boundary"))?;
-                    let traction = vector(&format!("{path}.traction.value"), &spec.value, dimension)?;
-                    add_traction(body, boundary, traction, &mut load);
-                }
-                LoadSpec::Pressure(spec) => {
-                    let boundary = boundary(mesh, &spec.boundary, &format!("{path}.pressure.boundary"))?;
-                    finite(format!("{path}.pressure.value"), spec.value)?;
-                    add_pressure(body, boundary, spec.value, &mut load);
-                }
-                LoadSpec::Force(spec) => {
-                    let node = node_at(mesh, &spec.at, &format!("{path}.force.at"))?;
-                    let force = vector(&format!("{path}.force.value"), &spec.value, dimension)?;
-                    let entries = &mut load[dimension * node..dimension * (node + 1)];
-                    entries.iter_mut().zip(force).for_each(|(entry, component)| *entry += component);
-                }
-                LoadSpec::BodyForce(value) => {
-                    add_body_force(body, vector(&format!("{path}.body-force"), value, dimension)?, &mut load);
-                }
-            }
+        for index in 0..self.loads.len() {
+            self.add_load(body, index, &mut load)?;
         }
         match load.iter().all(|value| value.is_finite()) {
             true => Ok(load),
             false => Err(wrong("loads", "the loads add up to a force that is not finite")),
         }
+    }
+
+    /// Adds load number `index` to the nodal load.
+    pub(super) fn add_load(&self, body: &ElasticBody, index: usize, load: &mut [f64]) -> Result<(), Error> {
+        let (mesh, dimension) = (body.mesh(), body.dimension());
+        let path = format!("loads[{index}]");
+        match &self.loads[index] {
+            LoadSpec::Traction(spec) => {
+                let boundary = boundary(mesh, &spec.boundary, &format!("{path}.traction.boundary"))?;
+                let traction = vector(&format!("{path}.traction.value"), &spec.value, dimension)?;
+                add_traction(body, boundary, traction, load);
+            }
+            LoadSpec::Pressure(spec) => {
+                let boundary = boundary(mesh, &spec.boundary, &format!("{path}.pressure.boundary"))?;
+                finite(format!("{path}.pressure.value"), spec.value)?;
+                add_pressure(body, boundary, spec.value, load);
+            }
+            LoadSpec::Force(spec) => {
+                let node = node_at(mesh, &spec.at, &format!("{path}.force.at"))?;
+                let force = vector(&format!("{path}.force.value"), &spec.value, dimension)?;
+                let entries = &mut load[dimension * node..dimension * (node + 1)];
+                entries.iter_mut().zip(force).for_each(|(entry, component)| *entry += component);
+            }
+            LoadSpec::BodyForce(value) => {
+                add_body_force(body, vector(&format!("{path}.body-force"), value, dimension)?, load);
+            }
+        }
+        Ok(())
     }
 }
 

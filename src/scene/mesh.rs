@@ -18,6 +18,7 @@ impl BodySpec {
             BodySpec::Rectangle(_) => "rectangle",
             BodySpec::Bar(_) => "bar",
             BodySpec::Box(_) => "box",
+            BodySpec::Disc(_) => "disc",
             BodySpec::HalfDisc(_) => "half-disc",
             BodySpec::HalfBall(_) => "half-ball",
             BodySpec::Ring(_) => "ring",
@@ -29,7 +30,7 @@ impl BodySpec {
     pub(super) fn dimension(&self) -> Option<usize> {
         match self {
             BodySpec::Bar(_) => Some(1),
-            BodySpec::Rectangle(_) | BodySpec::HalfDisc(_) | BodySpec::Ring(_) => Some(2),
+            BodySpec::Rectangle(_) | BodySpec::Disc(_) | BodySpec::HalfDisc(_) | BodySpec::Ring(_) => Some(2),
             BodySpec::Box(_) | BodySpec::HalfBall(_) => Some(3),
             BodySpec::Gmsh(_) => None,
         }
@@ -40,6 +41,7 @@ impl BodySpec {
             BodySpec::Bar(_) => IntegrationSpec::Standard,
             BodySpec::Rectangle(spec) => spec.integration,
             BodySpec::Box(spec) => spec.integration,
+            BodySpec::Disc(spec) => spec.integration,
             BodySpec::HalfDisc(spec) => spec.integration,
             BodySpec::HalfBall(spec) => spec.integration,
             BodySpec::Ring(spec) => spec.integration,
@@ -66,6 +68,9 @@ impl DescribedBody<'_> {
                     SolidElementSpec::Hex8 => ElementKind::Hex8,
                 };
                 mesh::cuboid(&lines(&spec.x, "x")?, &lines(&spec.y, "y")?, &lines(&spec.z, "z")?, kind)
+            }
+            BodySpec::Disc(spec) => {
+                mesh::disc(spec.centre, spec.radius, &spec.zone.zone(), spec.symmetric, spec.element.kind())
             }
             BodySpec::HalfDisc(spec) => {
                 mesh::half_disc(spec.centre, spec.radius, &spec.zone.zone(), spec.symmetric, spec.element.kind())

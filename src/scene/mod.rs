@@ -17,6 +17,7 @@
 mod body;
 mod build;
 mod condition;
+mod dynamics;
 mod explain;
 mod held;
 mod mesh;
@@ -29,15 +30,17 @@ mod rows;
 mod schema;
 mod warning;
 
+pub use dynamics::Dynamics;
 pub use model::Model;
 pub use obstacle::Obstacle;
 pub use rows::ContactRow;
 pub use schema::{
-    Approach, AxisSpec, BarSpec, BodySpec, BoxSpec, CircleSpec, ConeSpec, CylinderSpec, ElementSpec, FacingSpec,
-    ForceSpec, FurtherBodySpec, GmshSpec, HalfBallSpec, HalfDiscSpec, HalfSpec, HeightMapSpec, IntegrationSpec,
-    LoadSpec, MaterialSpec, ModelSpec, ObstacleSpec, ParabolaSpec, Place, PlaneSpec, PressureSpec, RectangleSpec,
-    RingSpec, Rule, Scene, ShapeSpec, SolidElementSpec, SphereSpec, SupportSpec, SymmetrySpec, TableSpec, TractionSpec,
-    Units, WedgeSpec, ZoneSpec,
+    AnalysisSpec, Approach, AxisSpec, BarSpec, BodySpec, BoxSpec, CircleSpec, ConeSpec, CylinderSpec, DampingSpec,
+    DiscSpec, DynamicSpec, ElementSpec, FacingSpec, FactorSpec, FactorTableSpec, FieldSpec, ForceSpec, FurtherBodySpec,
+    GmshSpec, HalfBallSpec, HalfDiscSpec, HalfSpec, HeightMapSpec, InitialSpec, IntegrationSpec, IntervalSpec,
+    LoadInTimeSpec, LoadSpec, MassSpec, MaterialSpec, ModelSpec, ObstacleSpec, ParabolaSpec, PenetrationSpec, Place,
+    PlaneSpec, PressureSpec, RectangleSpec, RingSpec, Rule, Scene, SchemeSpec, ShapeSpec, SineSpec, SolidElementSpec,
+    SphereSpec, SupportSpec, SymmetrySpec, TableSpec, TractionSpec, Units, WedgeSpec, ZoneSpec,
 };
 pub use warning::Warning;
 

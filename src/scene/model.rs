@@ -27,6 +27,8 @@ pub(super) struct Parts {
     pub load: Vec<f64>,
     pub obstacles: Vec<Obstacle>,
     pub warnings: Vec<Warning>,
+    /// Is its motion asked for? Inertia then resists what nothing holds.
+    pub moves: bool,
 }
 
 /// A discretised scene: mesh, contact problem, and what its rows and dofs mean.
@@ -46,7 +48,9 @@ impl Model {
     /// Rows first, since they tell whether the body is held, before anything expensive is built.
     pub(super) fn new(parts: Parts, gap: f64) -> Result<Self, Error> {
         let built = rows::build(&parts, gap)?;
-        RigidMotions::of(&parts.body).check_held(&parts, &built.rows)?;
+        if !parts.moves {
+            RigidMotions::of(&parts.body).check_held(&parts, &built.rows)?;
+        }
         let stiffness = stiffness(&parts.body, &parts.dofs).map_err(|error| match error {
             Error::NotFinite { .. } => {
                 let message = "the stiffness that it makes with body and thickness overflows; choose other units";
@@ -77,7 +81,9 @@ impl Model {
     /// [`Error::UnderHeld`] where the new rows leave a rigid motion free.
     pub fn with_gap(&self, gap: f64) -> Result<Self, Error> {
         let built = rows::build(&self.parts, gap)?;
-        RigidMotions::of(&self.parts.body).check_held(&self.parts, &built.rows)?;
+        if !self.parts.moves {
+            RigidMotions::of(&self.parts.body).check_held(&self.parts, &built.rows)?;
+        }
         let (stiffness, load) = (self.problem.stiffness().clone(), self.problem.load().to_vec());
         Self::with_rows(self.parts.clone(), gap, built, stiffness, load)
     }

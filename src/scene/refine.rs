@@ -28,6 +28,7 @@ impl Scene {
                 BodySpec::Ring(spec) => {
                     [&mut spec.radius, &mut spec.angle].into_iter().for_each(|axis| axis.refine(times));
                 }
+                BodySpec::Disc(spec) => spec.zone.refine(times),
                 BodySpec::HalfDisc(spec) => spec.zone.refine(times),
                 BodySpec::HalfBall(spec) => spec.zone.refine(times),
                 BodySpec::Gmsh(_) => {

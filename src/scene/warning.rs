@@ -25,4 +25,13 @@ pub enum Warning {
         /// Which obstacle, from 0.
         obstacle: usize,
     },
+    /// The scheme can gain energy.
+    #[error(
+        "the scheme `{scheme}` can gain energy at every blow: it is there for comparison; take `midpoint` or \
+         `contact-stabilised` for answers"
+    )]
+    GainsEnergy {
+        /// The scheme, as `trapezoidal`.
+        scheme: &'static str,
+    },
 }

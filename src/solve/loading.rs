@@ -23,7 +23,7 @@ pub(super) struct Loading {
 impl Loading {
     /// Scales `load` (length n) in a unit that fits it and `gap`, the gaps of the selected rows, and sweeps it.
     pub fn of(prepared: &Prepared, load: Vec<f64>, gap: &[f64]) -> Self {
-        let stiffness = largest(&prepared.problem.stiffness().diagonal());
+        let stiffness = prepared.stiffest;
         let statics = if stiffness > 0.0 { largest(&load) / stiffness } else { 0.0 };
         let unit = exponent(largest(gap).max(statics));
         let scaled = prepared.scaling.load(&load, unit);

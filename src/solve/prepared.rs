@@ -24,6 +24,8 @@ pub struct Prepared {
     pub(super) problem: ContactProblem,
     pub(super) selection: RowSelection,
     pub(super) scaling: Scaling,
+    /// The largest diagonal entry of the stiffness.
+    pub(super) stiffest: f64,
     pub(super) norm: Option<EnergyNorm>,
     pub(super) condensation: Option<Condensation>,
     augmented: AugmentedMatrix,
@@ -57,7 +59,8 @@ impl Prepared {
         let clock = Instant::now();
         let selection = RowSelection::of(problem.contact(), problem.gap())?;
         let scaling = Scaling::of(problem.stiffness(), &selection.contact(problem.contact()))?;
-        let has_empty_diagonal = problem.stiffness().diagonal().contains(&0.0);
+        let diagonal = problem.stiffness().diagonal();
+        let (has_empty_diagonal, stiffest) = (diagonal.contains(&0.0), largest(&diagonal));
         let factor_clock = Instant::now();
         let contact_dofs = Condensation::contact_dofs(scaling.contact());
         let analysis = match condense {
@@ -137,6 +140,7 @@ impl Prepared {
             problem: problem.clone(),
             selection,
             scaling,
+            stiffest,
             norm,
             condensation,
             augmented,
@@ -146,6 +150,11 @@ impl Prepared {
             loading: OnceLock::new(),
             seconds: Seconds { factor, solve: clock.elapsed().as_secs_f64() },
         })
+    }
+
+    /// Number of dofs of the problem.
+    pub fn dofs(&self) -> usize {
+        self.problem.dofs()
     }
 
     /// Number of unknowns that the methods work on.
@@ -234,8 +243,39 @@ impl Prepared {
         start: Option<&ContactSet>,
         settings: &Settings,
     ) -> Result<BoundarySolution<'_>, Error> {
-        let loading = self.other_load(load)?;
-        self.on_boundary(self.find(loading, self.problem.gap().to_vec(), start, settings)?, settings)
+        self.boundary_at(load, self.problem.gap().to_vec(), start, settings)
+    }
+
+    /// As [`Prepared::boundary_at_load`], with other gaps too.
+    ///
+    /// # Errors
+    /// As [`Prepared::boundary_at_gap`], for load and gaps.
+    pub fn boundary_at(
+        &self,
+        load: Vec<f64>,
+        gap: Vec<f64>,
+        start: Option<&ContactSet>,
+        settings: &Settings,
+    ) -> Result<BoundarySolution<'_>, Error> {
+        let loading = self.load(self.problem.with(load, gap.clone())?.load().to_vec(), &gap);
+        self.on_boundary(self.find(loading, gap, start, settings)?, settings)
+    }
+
+    /// The displacement with another load and other gaps, without a certificate; `None` where the method did not settle on
+    /// a set.
+    ///
+    /// # Errors
+    /// As [`Prepared::boundary_at`].
+    pub(crate) fn settled_at(
+        &self,
+        load: Vec<f64>,
+        gap: Vec<f64>,
+        start: &ContactSet,
+        settings: &Settings,
+    ) -> Result<Option<Vec<f64>>, Error> {
+        let loading = self.load(self.problem.with(load, gap.clone())?.load().to_vec(), &gap);
+        let Found { loading, unit, outcome, .. } = self.find(loading, gap, Some(start), settings)?;
+        Ok(outcome.settled.then(|| self.expand(&loading, unit, &outcome.displacement)))
     }
 
     /// The exact path of the answer while the gaps move from `from` to `to` (length m each) on a straight line.

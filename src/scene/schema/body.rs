@@ -3,8 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::super::parse::{choice, object, word};
-use super::{GmshSpec, HalfBallSpec, HalfDiscSpec, RingSpec, one};
+use super::super::parse::{choice, given, object, word};
+use super::{DiscSpec, GmshSpec, HalfBallSpec, HalfDiscSpec, RingSpec, one};
 
 /// The elastic body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -18,6 +18,9 @@ pub enum BodySpec {
     /// A box with a structured mesh; its boundaries are `left`, `right` (along x), `front`, `back` (along y), `bottom`,
     /// `top` (along z).
     Box(#[serde(deserialize_with = "object")] BoxSpec),
+    /// A disc, graded towards its lowest and its highest point; its boundaries are `lower` and `upper` and, where it is
+    /// symmetric, `symmetry-x`. In an axisymmetric model, symmetric about x = 0, a ball.
+    Disc(#[serde(deserialize_with = "object")] DiscSpec),
     /// Half of a disc, graded towards its lowest (highest) point; its boundaries are `cut` (flat), `arc` and, where it
     /// is symmetric, `symmetry-x`. In an axisymmetric model, symmetric about x = 0, half a ball.
     HalfDisc(#[serde(deserialize_with = "object")] HalfDiscSpec),
@@ -140,6 +143,9 @@ pub struct MaterialSpec {
     pub young: f64,
     /// Poisson's ratio: above -1, at most 0.5 in a bar and in plane stress, below 0.5 elsewhere.
     pub poisson: f64,
+    /// Density, positive, in mass per volume; only a dynamic analysis asks for it.
+    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    pub density: Option<f64>,
 }
 
 /// An elastic body beside the first: of the same model, thickness and element.

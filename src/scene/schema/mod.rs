@@ -3,12 +3,17 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+mod analysis;
 mod body;
 mod condition;
 mod obstacle;
 mod shape;
 mod solid;
 
+pub use analysis::{
+    AnalysisSpec, DampingSpec, DynamicSpec, FactorSpec, FactorTableSpec, FieldSpec, InitialSpec, IntervalSpec,
+    LoadInTimeSpec, MassSpec, PenetrationSpec, SchemeSpec, SineSpec,
+};
 pub use body::{
     AxisSpec, BarSpec, BodySpec, BoxSpec, ElementSpec, FurtherBodySpec, IntegrationSpec, MaterialSpec, RectangleSpec,
     SolidElementSpec,
@@ -17,7 +22,7 @@ pub use condition::{ForceSpec, LoadSpec, Place, PressureSpec, SupportSpec, Tract
 pub use obstacle::{
     Approach, CircleSpec, FacingSpec, ObstacleSpec, ParabolaSpec, PlaneSpec, Rule, ShapeSpec, TableSpec, WedgeSpec,
 };
-pub use shape::{GmshSpec, HalfBallSpec, HalfDiscSpec, HalfSpec, RingSpec, SymmetrySpec, ZoneSpec};
+pub use shape::{DiscSpec, GmshSpec, HalfBallSpec, HalfDiscSpec, HalfSpec, RingSpec, SymmetrySpec, ZoneSpec};
 pub use solid::{ConeSpec, CylinderSpec, HeightMapSpec, SphereSpec};
 
 use std::path::PathBuf;
@@ -67,6 +72,9 @@ pub struct Scene {
     /// Shift of every obstacle along its own approach direction; negative moves it towards, and into, the body.
     #[serde(default)]
     pub gap: f64,
+    /// What is to be found out: the equilibrium where it is left out.
+    #[serde(default, deserialize_with = "analysis::given_choice", skip_serializing_if = "Option::is_none")]
+    pub analysis: Option<AnalysisSpec>,
     /// The folder of the file that the scene was read from: where relative file names start. Not part of the text.
     #[serde(skip)]
     pub folder: Option<PathBuf>,

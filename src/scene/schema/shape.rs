@@ -49,6 +49,29 @@ pub struct HalfDiscSpec {
     pub integration: IntegrationSpec,
 }
 
+/// A disc, graded towards its lowest and its highest point.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DiscSpec {
+    /// The centre [x, y].
+    #[serde(default)]
+    pub centre: [f64; 2],
+    /// Radius, positive.
+    pub radius: f64,
+    /// The finely meshed zone around the lowest and the highest point.
+    #[serde(deserialize_with = "object")]
+    pub zone: ZoneSpec,
+    /// Only the part right of the centre; the plane x = centre becomes the boundary `symmetry-x`.
+    #[serde(default)]
+    pub symmetric: bool,
+    /// The element.
+    #[serde(default, deserialize_with = "word")]
+    pub element: ElementSpec,
+    /// How its stiffness is integrated.
+    #[serde(default, deserialize_with = "word")]
+    pub integration: IntegrationSpec,
+}
+
 /// Half of a ball, the lower one where not said otherwise, of `hex8`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

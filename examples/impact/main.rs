@@ -1,0 +1,68 @@
+//! Prints how every scheme of time integration does on two bars whose impact is known exactly.
+//!
+//! `cargo run --release --example impact [-- --out DIR]`; a folder gets the table and plots of pressure and energy over
+//! time.
+
+mod cases;
+mod measure;
+mod table;
+
+use std::path::Path;
+
+use cases::cases;
+use measure::{Run, run};
+use signorini::Error;
+use signorini::output::{write_files, write_picture};
+use signorini::scene::SchemeSpec;
+
+/// The schemes, the default first.
+const SCHEMES: [SchemeSpec; 6] = [
+    SchemeSpec::Midpoint,
+    SchemeSpec::ContactStabilised,
+    SchemeSpec::Hht,
+    SchemeSpec::Trapezoidal,
+    SchemeSpec::Penalty,
+    SchemeSpec::CentralDifference,
+];
+
+/// Time steps in the time of a wave through a cell.
+const COURANT: [f64; 3] = [0.5, 1.0, 1.5];
+
+/// The same of central differences, whose highest mode is no longer bounded at 1.
+const EXPLICIT_COURANT: [f64; 2] = [0.5, 0.9];
+
+const CELLS: usize = 100;
+
+/// Meshes on which the errors of the default scheme fall.
+const REFINED: [usize; 4] = [50, 100, 200, 400];
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let mut text = String::new();
+    let mut arguments = std::env::args().skip(1);
+    let folder = match (arguments.next().as_deref(), arguments.next()) {
+        (Some("--out"), Some(folder)) => Some(folder),
+        _ => None,
+    };
+    for case in &cases() {
+        let mut runs = Vec::new();
+        for scheme in SCHEMES {
+            let steps = if scheme == SchemeSpec::CentralDifference { &EXPLICIT_COURANT[..] } else { &COURANT };
+            for &courant in steps {
+                runs.push(run(case, scheme, courant, CELLS)?);
+            }
+        }
+        text += &table::of_runs(case, &runs);
+        for courant in COURANT {
+            let refined = REFINED.into_iter().map(|cells| run(case, SchemeSpec::Midpoint, courant, cells));
+            text += &table::of_meshes(case, courant, &REFINED, &refined.collect::<Result<Vec<Run>, Error>>()?);
+        }
+        if let Some(folder) = &folder {
+            write_picture(Path::new(folder), case.scene, &table::plots(case, &runs))?;
+        }
+    }
+    print!("{text}");
+    if let Some(folder) = &folder {
+        write_files(Path::new(folder), &[("impact.md", text)])?;
+    }
+    Ok(())
+}

@@ -1,0 +1,83 @@
+//! Runs as a table and as plots over time.
+
+use signorini::output::{Drawing, Plot, Quantity, Series, line_plots};
+
+use crate::measure::{Case, Run};
+
+const HEADING: &str = "| scheme | CFL | displacement error | contact time | pressure | spread | impulse | rebound | energy at the end | largest energy | penetration |\n\
+                       | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
+
+fn row(case: &Case, name: &str, courant: &str, run: &Run) -> String {
+    let rebound = case.rebound.map_or("-".to_string(), |_| format!("{:.5}", run.rebound));
+    let [mean, spread] = run.pressure;
+    let [end, most] = run.energy;
+    format!(
+        "| {name} | {courant} | {:.2e} | {:.4} | {mean:.5} | {spread:.1e} | {:.5} | {rebound} | {end:.5} | {most:.5} | {:.1e} |\n",
+        run.displacement_error, run.duration, run.impulse, run.penetration
+    )
+}
+
+/// Every scheme at every step, under the closed form.
+pub fn of_runs(case: &Case, runs: &[Run]) -> String {
+    let [begin, end] = case.contact;
+    let rebound = case.rebound.map_or("-".to_string(), |speed| format!("{speed:.5}"));
+    let mut text = format!("{}, 100 cells\n\n{HEADING}", case.name);
+    text += &format!(
+        "| exact | | 0 | {:.4} | {:.5} | 0 | {:.5} | {rebound} | 1 | 1 | 0 |\n",
+        end - begin,
+        case.pressure,
+        case.pressure * (end - begin)
+    );
+    for run in runs {
+        let gains = if run.scheme.gains_energy() { ", gains energy" } else { "" };
+        text += &row(case, &format!("{}{gains}", run.scheme.name()), &format!("{:.1}", run.courant), run);
+    }
+    text + "\n"
+}
+
+/// The default scheme on finer and finer meshes, with the rate at which its displacement error falls.
+pub fn of_meshes(case: &Case, courant: f64, cells: &[usize], runs: &[Run]) -> String {
+    let mut text = format!(
+        "{}, midpoint, CFL {:.1}\n\n{}",
+        case.name,
+        courant,
+        HEADING.replace("| scheme | CFL |", "| cells | rate |")
+    );
+    for (index, run) in runs.iter().enumerate() {
+        let rate = match index.checked_sub(1) {
+            Some(before) => {
+                let halvings = (cells[index] as f64 / cells[before] as f64).log2();
+                format!("{:.2}", (runs[before].displacement_error / run.displacement_error).log2() / halvings)
+            }
+            None => String::new(),
+        };
+        text += &row(case, &cells[index].to_string(), &rate, run);
+    }
+    text + "\n"
+}
+
+/// Pressure and energy over time at CFL 1, of central differences at 0.9.
+pub fn plots(case: &Case, runs: &[Run]) -> Drawing {
+    let at_one = || runs.iter().filter(|run| (0.9..=1.0).contains(&run.courant));
+    let [begin, end] = case.contact;
+    let last = runs[0].history.last().map_or(end, |seen| seen.time).min(end + (end - begin) / 2.0);
+    let first = begin - (end - begin) / 4.0;
+    let line = |run: &Run, value: &dyn Fn(&signorini::dynamic::Observation) -> f64| {
+        let shown = run.history.iter().filter(|seen| (first..=last).contains(&seen.time));
+        Series::new(run.scheme.name(), shown.map(|seen| [seen.time, value(seen)]).collect())
+    };
+    // Beyond three times the pressure lines say no more than that they are wrong.
+    let cut = |value: f64| value.min(3.0 * case.pressure);
+    let exact = vec![[first, 0.0], [begin, 0.0], [begin, case.pressure], [end, case.pressure], [end, 0.0], [last, 0.0]];
+    let pressure = |gaining: bool| {
+        let chosen = at_one().filter(|run| run.scheme.gains_energy() == gaining);
+        let mut lines: Vec<Series> = chosen.map(|run| line(run, &|seen| cut(seen.force))).collect();
+        lines.push(Series::new("exact", exact.clone()));
+        Plot::new(Quantity::new("time", ""), Quantity::new("pressure", ""), lines)
+    };
+    let mut energy: Vec<Series> =
+        at_one().map(|run| line(run, &|seen| (seen.energy() / run.history[0].energy()).min(4.0))).collect();
+    energy.push(Series::new("exact", vec![[first, 1.0], [last, 1.0]]));
+    let energy = Plot::new(Quantity::new("time", ""), Quantity::new("energy over that at the start", ""), energy);
+    line_plots(&format!("{}, CFL 1", case.name), &[pressure(false), pressure(true), energy])
+}

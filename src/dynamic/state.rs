@@ -1,0 +1,49 @@
+//! What a step starts from and what it leaves.
+
+use crate::solution::ContactSet;
+
+/// The state of a body after some steps: all that the next step depends on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// Steps so far.
+    pub steps: usize,
+    /// Displacement u, one entry per dof, in length.
+    pub displacement: Vec<f64>,
+    /// Velocity v, one entry per dof, in length over time; of a dof without mass the mean over the last step.
+    pub velocity: Vec<f64>,
+    /// Acceleration a, one entry per dof, in length over time squared; only schemes of Newmark's kind and central
+    /// differences keep one.
+    pub acceleration: Vec<f64>,
+    /// Elastic forces K u, one entry per dof, in force.
+    pub elastic: Vec<f64>,
+    /// Contact multiplier of the last step, one entry per contact row, in force, `<= 0`.
+    pub multiplier: Vec<f64>,
+    /// Rows that were closed in the last step: where the search of the next one starts.
+    pub contact_set: ContactSet,
+}
+
+/// Numbers of a state.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Observation {
+    /// Time.
+    pub time: f64,
+    /// Total contact force of the last step, `-sum(lambda)`, `>= 0`.
+    pub force: f64,
+    /// Closed rows of the last step.
+    pub closed: usize,
+    /// Deepest penetration, in length.
+    pub penetration: f64,
+    /// Kinetic energy, `v'M v / 2`.
+    pub kinetic: f64,
+    /// Strain energy, `u'K u / 2` where nothing is prescribed but zero.
+    pub strain: f64,
+    /// Potential of the loads, `-f'u`.
+    pub potential: f64,
+}
+
+impl Observation {
+    /// The sum of the three energies: constant while loads are constant and nothing damps.
+    pub fn energy(&self) -> f64 {
+        self.kinetic + self.strain + self.potential
+    }
+}

@@ -1,0 +1,47 @@
+//! Drawings one after another as an animated PNG: it shows wherever a PNG does, in full colour.
+
+use resvg::tiny_skia::Pixmap;
+
+use super::Drawing;
+use crate::error::Error;
+
+/// An animated PNG of drawings, each shown for `milliseconds`; with `scale` pixels of the image for one pixel of a
+/// drawing, and the size of the first. `frame(index)` draws one after another, so that no two need memory together.
+///
+/// # Errors
+/// [`Error::Numerical`] where the encoder fails; those of [`Drawing::png`] and of `frame`.
+pub fn animate(
+    count: usize,
+    scale: f64,
+    milliseconds: u16,
+    mut frame: impl FnMut(usize) -> Result<Drawing, Error>,
+) -> Result<Vec<u8>, Error> {
+    let failed = |reason: String| Error::Numerical { step: "writing an animation", reason };
+    let mut bytes = Vec::new();
+    if count == 0 {
+        return Err(failed("it has no frames".into()));
+    }
+    let first = frame(0)?.pixels(scale)?;
+    let (width, height) = (first.width(), first.height());
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::High);
+    let frames = u32::try_from(count).map_err(|error| failed(error.to_string()))?;
+    encoder.set_animated(frames, 0).map_err(|error| failed(error.to_string()))?;
+    encoder.set_frame_delay(milliseconds, 1000).map_err(|error| failed(error.to_string()))?;
+    let mut writer = encoder.write_header().map_err(|error| failed(error.to_string()))?;
+    for index in 0..count {
+        let pixels = if index == 0 { first.clone() } else { frame(index)?.pixels(scale)? };
+        writer.write_image_data(&cut(&pixels, width, height)).map_err(|error| failed(error.to_string()))?;
+    }
+    writer.finish().map_err(|error| failed(error.to_string()))?;
+    Ok(bytes)
+}
+
+/// Red, green and blue of each pixel of the upper left `width` x `height`, white where there is none.
+fn cut(pixels: &Pixmap, width: u32, height: u32) -> Vec<u8> {
+    let pixel =
+        |x: u32, y: u32| pixels.pixel(x, y).map_or([255; 3], |colour| [colour.red(), colour.green(), colour.blue()]);
+    (0..height).flat_map(|y| (0..width).flat_map(move |x| pixel(x, y))).collect()
+}

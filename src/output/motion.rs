@@ -1,0 +1,297 @@
+//! What a motion leaves in a folder, as it goes: its history, a series of fields for ParaView, and where it stands.
+//!
+//! Everything is written at the end of a frame: the lines of the history since the last one, the fields, the list of the
+//! series, and last of all the checkpoint. Whenever a run is stopped, what is there can be read, and can be gone on from.
+
+use std::fmt::Write as _;
+use std::fs::OpenOptions;
+use std::io::{BufRead, BufReader, Write};
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::animation::animate;
+use super::gallery::{Scene, fields};
+use super::{
+    ContactPicture, Plot, Quantity, Series, common_limits, common_window, line_plots, write_atomically, write_picture,
+};
+use crate::dynamic::{Observation, State};
+use crate::error::Error;
+use crate::scene::Model;
+use crate::solution::ContactSet;
+use crate::study::MotionSummary;
+
+const HISTORY: &str = "history.csv";
+const CHECKPOINT: &str = "checkpoint.json";
+const HEADING: &str = "time,force,closed,penetration,kinetic,strain,potential,energy\n";
+
+/// Points of a plot over time; of more steps some are left out.
+const MOST_POINTS: usize = 4000;
+
+/// Pixels of the animation for one of the drawing, and how long one frame stands.
+const SCALE: f64 = 0.5;
+const MILLISECONDS: u16 = 80;
+
+/// The folder of a run.
+#[derive(Debug)]
+pub struct MotionFolder {
+    folder: PathBuf,
+    /// The scene in one line: a run goes on from its own checkpoint only.
+    scene: String,
+    /// Lines that are not written yet.
+    lines: String,
+    written: u64,
+    /// Times of the frames so far.
+    times: Vec<f64>,
+}
+
+/// A state that was written.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Frame {
+    time: f64,
+    displacement: Vec<f64>,
+    multiplier: Vec<f64>,
+    closed: Vec<usize>,
+}
+
+/// Where a run stands.
+#[derive(Debug, Serialize, Deserialize)]
+struct Checkpoint {
+    scene: String,
+    steps: usize,
+    displacement: Vec<f64>,
+    velocity: Vec<f64>,
+    acceleration: Vec<f64>,
+    elastic: Vec<f64>,
+    multiplier: Vec<f64>,
+    closed: Vec<usize>,
+    history_bytes: u64,
+    frame_times: Vec<f64>,
+    summary: MotionSummary,
+}
+
+impl MotionFolder {
+    /// A new run of `scene` (its text) in `folder`; what an earlier one left there is overwritten.
+    ///
+    /// # Errors
+    /// [`Error::File`].
+    pub fn new(folder: &Path, scene: String, first: &Observation) -> Result<Self, Error> {
+        let mut run =
+            MotionFolder { folder: folder.into(), scene, lines: String::new(), written: 0, times: Vec::new() };
+        run.written = HEADING.len() as u64;
+        // A checkpoint of an earlier run would belong to another history.
+        match std::fs::remove_file(folder.join(CHECKPOINT)) {
+            Err(source) if source.kind() != std::io::ErrorKind::NotFound && folder.exists() => {
+                return Err(Error::File { action: "remove", path: folder.join(CHECKPOINT), source });
+            }
+            _ => {}
+        }
+        write_atomically(&folder.join(HISTORY), HEADING.as_bytes())?;
+        run.observe(first);
+        Ok(run)
+    }
+
+    /// The run of `scene` that stands in `folder`, with its state and its numbers; lines behind its checkpoint are cut off.
+    ///
+    /// # Errors
+    /// [`Error::File`] where there is none, [`Error::Scene`] for the run of another scene or a checkpoint that cannot be
+    /// read.
+    pub fn resume(folder: &Path, scene: String) -> Result<(Self, State, MotionSummary), Error> {
+        let path = folder.join(CHECKPOINT);
+        let fail = |action, source| Error::File { action, path: path.clone(), source };
+        let text = std::fs::read_to_string(&path).map_err(|source| fail("resume from", source))?;
+        let wrong = |message: String| Error::FileSyntax { file: path.clone(), line: 1, message };
+        let found: Checkpoint = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
+        if found.scene != scene {
+            return Err(wrong("it belongs to another scene; take its own, or another folder".into()));
+        }
+        let history = folder.join(HISTORY);
+        let cut = OpenOptions::new().write(true).open(&history).and_then(|file| {
+            let length = file.metadata()?.len();
+            if length < found.history_bytes {
+                return Err(std::io::Error::new(
+                    std::io::ErrorKind::InvalidData,
+                    "it is shorter than its checkpoint says",
+                ));
+            }
+            file.set_len(found.history_bytes)
+        });
+        cut.map_err(|source| Error::File { action: "resume", path: history, source })?;
+        let rows = found.multiplier.len();
+        let mut contact_set = ContactSet::open(rows);
+        found.closed.iter().for_each(|&row| contact_set.set(row, true));
+        let state = State {
+            steps: found.steps,
+            displacement: found.displacement,
+            velocity: found.velocity,
+            acceleration: found.acceleration,
+            elastic: found.elastic,
+            multiplier: found.multiplier,
+            contact_set,
+        };
+        let run = MotionFolder {
+            folder: folder.into(),
+            scene,
+            lines: String::new(),
+            written: found.history_bytes,
+            times: found.frame_times,
+        };
+        Ok((run, state, found.summary))
+    }
+
+    /// One more line of the history.
+    pub fn observe(&mut self, seen: &Observation) {
+        let Observation { time, force, closed, penetration, kinetic, strain, potential } = seen;
+        let energy = seen.energy();
+        let _ = writeln!(
+            self.lines,
+            "{time:e},{force:e},{closed},{penetration:e},{kinetic:e},{strain:e},{potential:e},{energy:e}"
+        );
+    }
+
+    /// Writes a frame of the series, the lines of the history up to it, and the checkpoint.
+    ///
+    /// # Errors
+    /// [`Error::File`], and those of the recovery of stresses.
+    pub fn frame(&mut self, model: &Model, time: f64, state: &State, summary: &MotionSummary) -> Result<(), Error> {
+        let path = self.folder.join(HISTORY);
+        let appended = OpenOptions::new().append(true).open(&path).and_then(|mut file| {
+            file.write_all(self.lines.as_bytes())?;
+            file.sync_data()
+        });
+        appended.map_err(|source| Error::File { action: "write", path, source })?;
+        self.written += self.lines.len() as u64;
+        self.lines.clear();
+
+        let (number, closed) = (self.times.len(), state.contact_set.iter().collect::<Vec<usize>>());
+        let vtu = fields(model, &state.displacement, &state.multiplier, &state.contact_set)?;
+        write_atomically(&self.folder.join(vtu_name(number)), vtu.as_bytes())?;
+        let frame = Frame {
+            time,
+            displacement: state.displacement.clone(),
+            multiplier: state.multiplier.clone(),
+            closed: closed.clone(),
+        };
+        write_atomically(&self.frame_path(number), json(&frame)?.as_bytes())?;
+        self.times.push(time);
+        write_atomically(&self.folder.join("series.pvd"), self.series().as_bytes())?;
+        let checkpoint = Checkpoint {
+            scene: self.scene.clone(),
+            steps: state.steps,
+            displacement: state.displacement.clone(),
+            velocity: state.velocity.clone(),
+            acceleration: state.acceleration.clone(),
+            elastic: state.elastic.clone(),
+            multiplier: state.multiplier.clone(),
+            closed,
+            history_bytes: self.written,
+            frame_times: self.times.clone(),
+            summary: summary.clone(),
+        };
+        write_atomically(&self.folder.join(CHECKPOINT), json(&checkpoint)?.as_bytes())
+    }
+
+    /// The list of the series for ParaView.
+    fn series(&self) -> String {
+        let mut text = String::from(
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n",
+        );
+        for (number, time) in self.times.iter().enumerate() {
+            let _ = writeln!(text, "<DataSet timestep=\"{:e}\" part=\"0\" file=\"{}\"/>", time, vtu_name(number));
+        }
+        text + "</Collection>\n</VTKFile>\n"
+    }
+
+    fn frame_path(&self, number: usize) -> PathBuf {
+        self.folder.join(format!("frames/{number:05}.json"))
+    }
+
+    fn read_frame(&self, number: usize) -> Result<Frame, Error> {
+        let path = self.frame_path(number);
+        let text = std::fs::read_to_string(&path).map_err(|source| Error::File {
+            action: "read",
+            path: path.clone(),
+            source,
+        })?;
+        serde_json::from_str(&text).map_err(|error| Error::FileSyntax {
+            file: path,
+            line: error.line(),
+            message: error.to_string(),
+        })
+    }
+
+    /// Draws force and energies over time (`history`), and of a body in the plane an animation (`motion.png`).
+    ///
+    /// # Errors
+    /// [`Error::File`], and those of the recovery of stresses and of the rasteriser.
+    pub fn draw(&self, model: &Model) -> Result<(), Error> {
+        let history = self.read_history()?;
+        let line =
+            |name: &str, column: usize| Series::new(name, history.iter().map(|row| [row[0], row[column]]).collect());
+        let units = model.units();
+        let work = format!("{} {}", units.force, units.length);
+        let energies = vec![line("kinetic", 4), line("strain", 5), line("potential", 6), line("total", 7)];
+        let time = || Quantity::new("time", "");
+        let plots = [
+            Plot::new(time(), Quantity::new("contact force F", &units.force), vec![line("force", 1)]),
+            Plot::new(time(), Quantity::new("energy", work.trim()), energies),
+        ];
+        write_picture(&self.folder, "history", &line_plots(model.title(), &plots))?;
+        if model.mesh().dimension() != 2 {
+            return Ok(());
+        }
+        let scene = |number: usize| -> Result<Scene, Error> {
+            let frame = self.read_frame(number)?;
+            let mut set = ContactSet::open(model.rows().len());
+            frame.closed.iter().for_each(|&row| set.set(row, true));
+            let title = format!("{}, t = {:.4}", model.title(), frame.time);
+            Ok(Scene::new(model, &frame.displacement, &set, title)?.in_place())
+        };
+        // First what all frames share, then one after another: no two are in memory together.
+        let (mut limits, mut window) = ([f64::INFINITY, f64::NEG_INFINITY], None);
+        for number in 0..self.times.len() {
+            let shown = scene(number)?;
+            let [low, high] = common_limits([shown.field()]);
+            limits = [limits[0].min(low), limits[1].max(high)];
+            let lines = shown.obstacles();
+            window = Some(common_window(window.into_iter().chain([shown.picture(&lines).window()])));
+        }
+        let animation = animate(self.times.len(), SCALE, MILLISECONDS, |number| {
+            let shown = scene(number)?;
+            let lines = shown.obstacles();
+            ContactPicture { limits, window, ..shown.picture(&lines) }.draw()
+        })?;
+        write_atomically(&self.folder.join("motion.png"), &animation)
+    }
+
+    /// The rows of the history, of a long one every so many, each with the largest force since the last.
+    fn read_history(&self) -> Result<Vec<[f64; 8]>, Error> {
+        let path = self.folder.join(HISTORY);
+        let fail = |source| Error::File { action: "read", path: path.clone(), source };
+        let open = || std::fs::File::open(&path).map(BufReader::new).map_err(fail);
+        let count = open()?.lines().count();
+        let every = count.div_ceil(MOST_POINTS).max(1);
+        let (mut rows, mut force) = (Vec::new(), 0.0_f64);
+        for (number, line) in open()?.lines().enumerate().skip(1) {
+            let line = line.map_err(fail)?;
+            let mut row = [f64::NAN; 8];
+            row.iter_mut().zip(line.split(',')).for_each(|(value, text)| *value = text.parse().unwrap_or(f64::NAN));
+            force = force.max(row[1]);
+            if number % every == 0 || every == 1 {
+                row[1] = force;
+                force = 0.0;
+                rows.push(row);
+            }
+        }
+        Ok(rows)
+    }
+}
+
+fn vtu_name(number: usize) -> String {
+    format!("series-{number:05}.vtu")
+}
+
+fn json<T: Serialize>(value: &T) -> Result<String, Error> {
+    let failed = |error: serde_json::Error| Error::Numerical { step: "writing JSON", reason: error.to_string() };
+    serde_json::to_string(value).map_err(failed)
+}

@@ -1,0 +1,338 @@
+//! The motion that a scene asks for: mass, scheme, step, initial state, loads in time.
+
+use super::schema::{
+    AnalysisSpec, DynamicSpec, FactorSpec, FieldSpec, LoadInTimeSpec, MassSpec, PenetrationSpec, Scene, SchemeSpec,
+};
+use super::{Model, ROUNDING, Warning, finite, located, number, point, vector, wrong};
+use crate::assembly::{MassForm, free_load, internal_force, mass};
+use crate::body::ElasticBody;
+use crate::dynamic::{DynamicProblem, Scheme, TimeFunction, stable_step};
+use crate::error::Error;
+use crate::problem::ContactProblem;
+use crate::solve::{Method, Settings, solve};
+use crate::sparse::dot;
+
+/// Where the fields stand in a scene.
+const PATH: &str = "analysis.dynamic";
+
+/// Steps that no run would see the end of.
+const MOST_STEPS: f64 = 1e9;
+
+/// States that no folder would hold.
+const MOST_FRAMES: usize = 10_000;
+
+/// The usual steps, in the time of a wave through the smallest cell, and in the largest stable step.
+const COURANT: [f64; 2] = [0.5, 0.9];
+
+/// A motion to be computed: the problem, the scheme, the steps.
+#[derive(Clone, Debug)]
+pub struct Dynamics {
+    /// Mass, damping, loads in time, initial state.
+    pub problem: DynamicProblem,
+    /// The scheme.
+    pub scheme: Scheme,
+    /// The step, in time.
+    pub step: f64,
+    /// How many of them.
+    pub steps: usize,
+    /// States to be written, beside the first.
+    pub frames: usize,
+    /// What a reader of the answer should know.
+    pub warnings: Vec<Warning>,
+}
+
+impl Scene {
+    /// The specification of the motion, where the scene asks for one.
+    pub fn dynamic(&self) -> Option<&DynamicSpec> {
+        self.analysis.as_ref().map(|AnalysisSpec::Dynamic(spec)| spec)
+    }
+
+    /// The motion of `model`, which this scene built; `None` for a static scene.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for a value that describes no motion, an initial penetration, a step beyond the stable one.
+    pub fn dynamics(&self, model: &Model) -> Result<Option<Dynamics>, Error> {
+        let Some(spec) = self.dynamic() else { return Ok(None) };
+        let scheme = spec.scheme();
+        scheme.check().map_err(in_place)?;
+        if !(spec.duration.is_finite() && spec.duration > 0.0) {
+            return Err(not_positive("duration", spec.duration));
+        }
+        if !(1..=MOST_FRAMES).contains(&spec.frames) {
+            let message = format!("{} is not allowed: it must be from 1 to {MOST_FRAMES}", spec.frames);
+            return Err(wrong(format!("{PATH}.frames"), message));
+        }
+        let (body, dofs) = (model.body(), model.dofs());
+        let form = spec.mass.map_or(scheme.mass_form(), MassSpec::form);
+        if !scheme.allows(form) {
+            let message = match scheme.is_explicit() {
+                true => "central differences need a lumped mass",
+                false => "a redistributed mass leaves dofs without mass, which only the scheme `midpoint` knows",
+            };
+            return Err(wrong(format!("{PATH}.mass"), message));
+        }
+        let contact_nodes: Vec<usize> =
+            model.rows().iter().flat_map(|row| row.ends().collect::<Vec<_>>()).map(|(node, _)| node).collect();
+        let mass = |form| {
+            mass(body, dofs, form, &contact_nodes).map_err(|error| match error {
+                Error::Mesh { message } => wrong("body", message),
+                other => located(other, "material."),
+            })
+        };
+        let mut constant = vec![0.0; body.nodal_dofs()];
+        for index in (0..self.loads.len()).filter(|&index| !spec.changes(index)) {
+            self.add_load(body, index, &mut constant)?;
+        }
+        let contact = model.problem().with_load(free_load(body, dofs, &constant)?)?;
+        let lifted = dofs.expand(&vec![0.0; dofs.free().len()])?;
+        let energy = dot(&lifted, &internal_force(body, &lifted)?) / 2.0;
+        let held = free_load(body, dofs, &vec![0.0; body.nodal_dofs()])?;
+        let damping = [spec.damping.mass, spec.damping.stiffness];
+        let mut problem = DynamicProblem::new(contact, mass(form)?)?
+            .with_damping(damping[0], damping[1])
+            .map_err(|error| match error {
+                Error::Setting { name, value, allowed } => {
+                    let field = if name == "mass damping" { "mass" } else { "stiffness" };
+                    let message = format!("{} is not allowed: it must be {allowed}", number(value));
+                    wrong(format!("{PATH}.damping.{field}"), message)
+                }
+                other => other,
+            })?
+            .holding(held, energy);
+        for (entry, changing) in spec.loads_in_time.iter().enumerate() {
+            let path = format!("{PATH}.loads-in-time[{entry}]");
+            let factor = changing.function(&path, self.loads.len())?;
+            if spec.loads_in_time[..entry].iter().any(|other| other.load == changing.load) {
+                return Err(wrong(path, format!("loads[{}] has two factors; give it one", changing.load)));
+            }
+            let mut load = vec![0.0; body.nodal_dofs()];
+            self.add_load(body, changing.load, &mut load)?;
+            problem = problem.with_load(factor, dofs.restrict(&load)?)?;
+        }
+        let (displacement, velocity) = spec.initial(body)?;
+        let mut displacement = dofs.restrict(&displacement)?;
+        if let Some(deepest) = deepest(model, &displacement) {
+            if spec.initial_penetration == PenetrationSpec::Refuse {
+                return Err(deepest);
+            }
+            displacement = projected(model.problem(), mass(MassForm::Lumped)?, &displacement)?;
+        }
+        let problem = problem.starting_from(displacement, dofs.restrict(&velocity)?)?;
+        let (step, steps) = spec.steps(body, &problem, scheme)?;
+        let name = scheme.name();
+        let warnings = scheme.gains_energy().then_some(Warning::GainsEnergy { scheme: name }).into_iter().collect();
+        Ok(Some(Dynamics { problem, scheme, step, steps, frames: spec.frames, warnings }))
+    }
+}
+
+impl DynamicSpec {
+    /// The scheme with its parameters.
+    pub fn scheme(&self) -> Scheme {
+        match self.scheme {
+            SchemeSpec::Midpoint => Scheme::Midpoint,
+            SchemeSpec::Trapezoidal => Scheme::Trapezoidal,
+            SchemeSpec::ContactStabilised => Scheme::ContactStabilised,
+            SchemeSpec::Hht => Scheme::Hht { alpha: self.alpha.unwrap_or(-0.1) },
+            SchemeSpec::Penalty => Scheme::Penalty { penalty: self.penalty.unwrap_or(10.0) },
+            SchemeSpec::CentralDifference => Scheme::CentralDifference { restitution: self.restitution.unwrap_or(0.0) },
+        }
+    }
+
+    fn changes(&self, load: usize) -> bool {
+        self.loads_in_time.iter().any(|changing| changing.load == load)
+    }
+
+    /// The step and the number of steps.
+    fn steps(&self, body: &ElasticBody, problem: &DynamicProblem, scheme: Scheme) -> Result<(f64, usize), Error> {
+        let stable = if scheme.is_explicit() { Some(stable_step(problem)?) } else { None };
+        let counted = |step: f64, count: f64| {
+            if count > MOST_STEPS {
+                let message = format!("{count:.0} steps of {} never end; take a longer step", number(step));
+                return Err(wrong(format!("{PATH}.step"), message));
+            }
+            Ok((step, (count as usize).max(1)))
+        };
+        match (self.step, self.courant) {
+            (Some(_), Some(_)) => Err(wrong(format!("{PATH}.courant"), "give `step` or `courant`, not both")),
+            (Some(step), None) => {
+                if !(step.is_finite() && step > 0.0) {
+                    return Err(not_positive("step", step));
+                }
+                if let Some(stable) = stable.filter(|stable| step > stable * (1.0 + ROUNDING)) {
+                    let (step, stable) = (number(step), number(stable));
+                    let message = format!("{step} is beyond {stable}, the largest stable step of central differences");
+                    return Err(wrong(format!("{PATH}.step"), message));
+                }
+                if step > self.duration * (1.0 + ROUNDING) {
+                    let message = format!("{} is longer than the duration {}", number(step), number(self.duration));
+                    return Err(wrong(format!("{PATH}.step"), message));
+                }
+                counted(step, (self.duration / step * (1.0 - ROUNDING)).ceil())
+            }
+            (None, courant) => {
+                let courant = courant.unwrap_or(COURANT[usize::from(scheme.is_explicit())]);
+                if !(courant.is_finite() && courant > 0.0) {
+                    return Err(not_positive("courant", courant));
+                }
+                if scheme.is_explicit() && courant > 1.0 {
+                    let message = format!("{} is not allowed: at most 1, or the motion is unstable", number(courant));
+                    return Err(wrong(format!("{PATH}.courant"), message));
+                }
+                let unit = stable.unwrap_or_else(|| wave_time(body));
+                // A whole number of steps.
+                let count = (self.duration / (courant * unit) * (1.0 - ROUNDING)).ceil().max(1.0);
+                counted(self.duration / count, count)
+            }
+        }
+    }
+
+    /// The initial displacement and velocity of all nodes.
+    fn initial(&self, body: &ElasticBody) -> Result<(Vec<f64>, Vec<f64>), Error> {
+        let dimension = body.dimension();
+        let (mut displacement, mut velocity) = (vec![0.0; body.nodal_dofs()], vec![0.0; body.nodal_dofs()]);
+        for (index, initial) in self.initial.iter().enumerate() {
+            let path = format!("{PATH}.initial[{index}]");
+            let nodes = match &initial.body {
+                None => 0..body.mesh().nodes().len(),
+                Some(name) => {
+                    let region = body.regions().iter().find(|region| region.name() == name && !name.is_empty());
+                    let missing = || wrong(format!("{path}.body"), format!("there is no further body `{name}`"));
+                    region.ok_or_else(missing)?.nodes()
+                }
+            };
+            let fields = [
+                (&initial.displacement, "displacement", &mut displacement),
+                (&initial.velocity, "velocity", &mut velocity),
+            ];
+            for (field, name, values) in fields {
+                let Some(field) = field else { continue };
+                let field = field.linear(&format!("{path}.{name}"), dimension)?;
+                for node in nodes.clone() {
+                    let value = field(body.mesh().nodes()[node]);
+                    values[dimension * node..dimension * (node + 1)].copy_from_slice(&value[..dimension]);
+                }
+            }
+        }
+        Ok((displacement, velocity))
+    }
+}
+
+impl FieldSpec {
+    /// The field as a function of the point.
+    fn linear(&self, path: &str, dimension: usize) -> Result<impl Fn([f64; 3]) -> [f64; 3] + use<>, Error> {
+        let value = vector(&format!("{path}.value"), &self.value, dimension)?;
+        let mut gradient = [[0.0; 3]; 3];
+        if !self.gradient.is_empty() {
+            if self.gradient.len() != dimension {
+                let message = format!("the array has {} rows; in this model it has {dimension}", self.gradient.len());
+                return Err(wrong(format!("{path}.gradient"), message));
+            }
+            for (index, (row, entries)) in gradient.iter_mut().zip(&self.gradient).enumerate() {
+                *row = vector(&format!("{path}.gradient[{index}]"), entries, dimension)?;
+            }
+        }
+        Ok(move |at: [f64; 3]| [0, 1, 2].map(|axis| value[axis] + dot(&gradient[axis], &at)))
+    }
+}
+
+impl LoadInTimeSpec {
+    fn function(&self, path: &str, loads: usize) -> Result<TimeFunction, Error> {
+        if self.load >= loads {
+            let message = format!("there is no loads[{}]; the scene has {loads} loads, counted from 0", self.load);
+            return Err(wrong(format!("{path}.load"), message));
+        }
+        let (name, function) = match &self.factor {
+            FactorSpec::Table(table) => {
+                let path = format!("{path}.factor.table");
+                let (times, factors) = (&table.times, &table.factors);
+                if times.len() != factors.len() || times.is_empty() {
+                    let message =
+                        format!("{} times and {} factors; give as many, at least one", times.len(), factors.len());
+                    return Err(wrong(path, message));
+                }
+                for (index, &time) in times.iter().enumerate() {
+                    finite(format!("{path}.times[{index}]"), time)?;
+                    if index > 0 && time <= times[index - 1] {
+                        let message =
+                            format!("{time:?} does not lie beyond {:?}; times must increase", times[index - 1]);
+                        return Err(wrong(format!("{path}.times[{index}]"), message));
+                    }
+                    finite(format!("{path}.factors[{index}]"), factors[index])?;
+                }
+                ("table", TimeFunction::Table(times.iter().copied().zip(factors.iter().copied()).collect()))
+            }
+            FactorSpec::Sine(sine) => ("sine", TimeFunction::Sine { frequency: sine.frequency, phase: sine.phase }),
+            FactorSpec::Ramp(ramp) => ("ramp", TimeFunction::Ramp { start: ramp.start, end: ramp.end }),
+            FactorSpec::Pulse(pulse) => ("pulse", TimeFunction::Pulse { start: pulse.start, end: pulse.end }),
+        };
+        function.check().map_err(|error| located(error, &format!("{path}.factor.{name}.")))?;
+        Ok(function)
+    }
+}
+
+impl MassSpec {
+    fn form(self) -> MassForm {
+        match self {
+            MassSpec::Consistent => MassForm::Consistent,
+            MassSpec::Lumped => MassForm::Lumped,
+            MassSpec::Redistributed => MassForm::Redistributed,
+        }
+    }
+}
+
+/// A parameter of the scheme at its place.
+fn in_place(error: Error) -> Error {
+    located(error, &format!("{PATH}."))
+}
+
+fn not_positive(field: &str, value: f64) -> Error {
+    let message = format!("{} is not allowed: it must be positive and finite", number(value));
+    wrong(format!("{PATH}.{field}"), message)
+}
+
+/// The shortest time in which a pressure wave goes from one node of an element to another.
+fn wave_time(body: &ElasticBody) -> f64 {
+    let (mesh, nodes) = (body.mesh(), body.mesh().nodes());
+    let of_region = body.regions().iter().map(|region| {
+        let away = |a: usize, b: usize| (0..3).map(|axis| (nodes[a][axis] - nodes[b][axis]).powi(2)).sum::<f64>();
+        let of_element = region.elements().map(|element| {
+            let around = mesh.element(element);
+            let pairs = around.iter().enumerate().flat_map(|(k, &a)| around[..k].iter().map(move |&b| (a, b)));
+            pairs.fold(f64::INFINITY, |least, (a, b)| least.min(away(a, b)))
+        });
+        let lame = region.lame();
+        let speed = ((lame.lambda + 2.0 * lame.mu) / region.material().density().unwrap_or(f64::NAN)).sqrt();
+        of_element.fold(f64::INFINITY, f64::min).sqrt() / speed
+    });
+    of_region.fold(f64::INFINITY, f64::min)
+}
+
+/// The error of the deepest initial penetration, if there is one.
+fn deepest(model: &Model, displacement: &[f64]) -> Option<Error> {
+    let violation = model.problem().violation(displacement);
+    let (row, depth) = violation.into_iter().enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    if depth <= ROUNDING * model.mesh().size() {
+        return None;
+    }
+    let row = model.rows()[row];
+    let at = point(&model.mesh().nodes()[row.node][..model.mesh().dimension()]);
+    let message = format!(
+        "node {} at {at} starts {} inside obstacles[{}]; lift the body, move the obstacle, or set \
+         `initial-penetration` to `project`",
+        row.node,
+        number(depth),
+        row.obstacle
+    );
+    Some(wrong(format!("{PATH}.initial"), message))
+}
+
+/// The admissible displacement that is nearest to a given one in the norm of a mass.
+fn projected(
+    problem: &ContactProblem,
+    mass: crate::sparse::SymmetricMatrix,
+    displacement: &[f64],
+) -> Result<Vec<f64>, Error> {
+    let load = mass.mul(displacement);
+    let nearest = ContactProblem::new(mass, load, problem.contact().clone(), problem.gap().to_vec())?;
+    Ok(solve(&nearest, &Settings::with_method(Method::ActiveSet))?.displacement)
+}

@@ -1,0 +1,215 @@
+//! What is to be found out about a scene: its equilibrium, or, where it says so, its motion.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::super::parse::{choice, given, object, objects, word};
+
+/// The analysis; a scene without one is static.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum AnalysisSpec {
+    /// The motion from given displacements and velocities.
+    Dynamic(#[serde(deserialize_with = "object")] DynamicSpec),
+}
+
+/// The motion of the bodies: the scene integrated in time. Every material needs a density.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct DynamicSpec {
+    /// How long, positive, in time.
+    pub duration: f64,
+    /// Time step, positive. Where it is left out, `courant` chooses it.
+    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    pub step: Option<f64>,
+    /// Time step over the time in which a pressure wave crosses the shortest distance between two nodes of an element,
+    /// 0.5 where it is left out; with `central-difference` the step over the largest stable one, at most 1 and 0.9
+    /// where it is left out.
+    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    pub courant: Option<f64>,
+    /// The scheme.
+    #[serde(default, deserialize_with = "word")]
+    pub scheme: SchemeSpec,
+    /// The form of the mass; `redistributed` for `midpoint`, `lumped` for `central-difference`, `consistent` for the
+    /// others where it is left out.
+    #[serde(default, deserialize_with = "given_word", skip_serializing_if = "Option::is_none")]
+    pub mass: Option<MassSpec>,
+    /// Damping of `hht`: from -1/3 to 0, -0.1 where it is left out.
+    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    pub alpha: Option<f64>,
+    /// Stiffness of `penalty` in multiples of the local stiffness of a step, positive; 10 where it is left out.
+    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    pub penalty: Option<f64>,
+    /// Velocity of a node after over before its blow in `central-difference`, from 0 to 1; 0 where it is left out.
+    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    pub restitution: Option<f64>,
+    /// Rayleigh damping.
+    #[serde(default, deserialize_with = "object")]
+    pub damping: DampingSpec,
+    /// Initial displacements and velocities; what is left out is zero, and of two entries for one body the later one
+    /// counts.
+    #[serde(default, deserialize_with = "objects")]
+    pub initial: Vec<InitialSpec>,
+    /// What to do with nodes that start inside an obstacle.
+    #[serde(default, deserialize_with = "word")]
+    pub initial_penetration: PenetrationSpec,
+    /// How the loads of the scene change with time; a load that is not mentioned is constant.
+    #[serde(default, deserialize_with = "objects")]
+    pub loads_in_time: Vec<LoadInTimeSpec>,
+    /// States of the body that are written and shown, evenly over the duration, beside the first; at most 10000.
+    #[serde(default = "frames")]
+    pub frames: usize,
+}
+
+fn frames() -> usize {
+    60
+}
+
+/// The schemes to choose from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum SchemeSpec {
+    /// Midpoint rule, its contact nodes without mass: keeps energy, and the pressure does not chatter.
+    #[default]
+    Midpoint,
+    /// Trapezoidal Newmark with the constraint at the end of each step: gains energy at every blow. For comparison.
+    Trapezoidal,
+    /// Newmark with a contact-stabilised prediction: loses a little energy at every blow, never gains.
+    ContactStabilised,
+    /// HHT-alpha: damps what the mesh does not resolve.
+    Hht,
+    /// Trapezoidal Newmark with penalty springs: penetrates, and gains energy where they are stiff. For comparison.
+    Penalty,
+    /// Explicit central differences with Moreau's impact law; steps are small and cheap.
+    CentralDifference,
+}
+
+/// The forms of the mass to choose from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum MassSpec {
+    /// That of the shape functions.
+    Consistent,
+    /// Diagonal.
+    Lumped,
+    /// That of the shape functions without contact nodes; total mass and centre are kept.
+    Redistributed,
+}
+
+/// Rayleigh damping C = `mass` M + `stiffness` K.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct DampingSpec {
+    /// Share of the mass, zero or positive, in one over time.
+    pub mass: f64,
+    /// Share of the stiffness, zero or positive, in time.
+    pub stiffness: f64,
+}
+
+/// Initial displacement and velocity of one body or of all.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct InitialSpec {
+    /// Name of a further body; all bodies where it is left out.
+    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    pub body: Option<String>,
+    /// Initial displacement.
+    #[serde(default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
+    pub displacement: Option<FieldSpec>,
+    /// Initial velocity.
+    #[serde(default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
+    pub velocity: Option<FieldSpec>,
+}
+
+/// A linear field: `value + gradient . x`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FieldSpec {
+    /// Value at the origin, one entry for each coordinate.
+    pub value: Vec<f64>,
+    /// Rows of the gradient, one for each component of the field with one entry for each coordinate; zero where left out.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub gradient: Vec<Vec<f64>>,
+}
+
+/// What to do with nodes that start inside an obstacle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum PenetrationSpec {
+    /// An error that says where and by how much.
+    #[default]
+    Refuse,
+    /// They are moved onto its surface before the start.
+    Project,
+}
+
+/// How one load changes with time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LoadInTimeSpec {
+    /// Which entry of `loads`, from 0.
+    pub load: usize,
+    /// Its factor over time.
+    #[serde(deserialize_with = "choice")]
+    pub factor: FactorSpec,
+}
+
+/// A factor over time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum FactorSpec {
+    /// Straight lines between points; constant before the first and after the last.
+    Table(#[serde(deserialize_with = "object")] FactorTableSpec),
+    /// `sin(2 pi frequency t + phase)`.
+    Sine(#[serde(deserialize_with = "object")] SineSpec),
+    /// A straight line from 0 at `start` to 1 at `end`; constant before and after.
+    Ramp(#[serde(deserialize_with = "object")] IntervalSpec),
+    /// Half a sine wave from `start` to `end`; 0 before and after.
+    Pulse(#[serde(deserialize_with = "object")] IntervalSpec),
+}
+
+/// Points of a factor over time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FactorTableSpec {
+    /// Times, at least one, increasing.
+    pub times: Vec<f64>,
+    /// The factor at each.
+    pub factors: Vec<f64>,
+}
+
+/// A sine over time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SineSpec {
+    /// Frequency, positive, in one over time.
+    pub frequency: f64,
+    /// Phase at t = 0, in radians.
+    #[serde(default)]
+    pub phase: f64,
+}
+
+/// An interval of time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct IntervalSpec {
+    /// Its beginning.
+    #[serde(default)]
+    pub start: f64,
+    /// Its end, later.
+    pub end: f64,
+}
+
+fn given_object<'de, D: serde::Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {
+    object(deserializer).map(Some)
+}
+
+fn given_word<'de, D: serde::Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {
+    word(deserializer).map(Some)
+}
+
+pub(super) fn given_choice<'de, D: serde::Deserializer<'de>, T: Deserialize<'de>>(
+    deserializer: D,
+) -> Result<Option<T>, D::Error> {
+    choice(deserializer).map(Some)
+}

@@ -1,0 +1,186 @@
+//! What a digit of a motion costs: every scheme at several steps, timed, against the same mesh at a far smaller step.
+
+use std::time::Instant;
+
+use serde::Serialize;
+
+use crate::dynamic::Integrator;
+use crate::error::Error;
+use crate::scene::{AnalysisSpec, Dynamics, Model, Scene, SchemeSpec};
+use crate::solve::Settings;
+
+/// The schemes, the default first.
+const SCHEMES: [SchemeSpec; 6] = [
+    SchemeSpec::Midpoint,
+    SchemeSpec::ContactStabilised,
+    SchemeSpec::Hht,
+    SchemeSpec::Trapezoidal,
+    SchemeSpec::Penalty,
+    SchemeSpec::CentralDifference,
+];
+
+/// Times at which displacements are compared.
+const SAMPLES: usize = 20;
+
+/// Steps of an implicit scheme over those of the scene, and of the reference, as quarters.
+const QUARTERS: [usize; 4] = [1, 2, 4, 8];
+const REFERENCE: usize = 32;
+
+/// Steps of the explicit scheme over the fewest that are stable.
+const EXPLICIT: [usize; 2] = [1, 2];
+
+/// One scheme at one step.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MotionPoint {
+    /// The scheme.
+    pub scheme: &'static str,
+    /// The step, in time.
+    pub step: f64,
+    /// How many steps.
+    pub steps: usize,
+    /// Seconds from the assembled problem to the last step.
+    pub seconds: f64,
+    /// Root of the mean square of the displacement's error at the sampled times, relative to the way of the reference.
+    pub displacement_error: f64,
+    /// Error of the impulse, relative; that of nothing is nothing.
+    pub impulse_error: f64,
+    /// Energy at the end less that at the start, over the largest energy of motion and strain.
+    pub energy_change: f64,
+    /// Deepest penetration, in length.
+    pub penetration: f64,
+    /// Is no other point both faster and more accurate?
+    pub best: bool,
+}
+
+/// A motion by every scheme.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MotionTradeoff {
+    /// Unknown displacements.
+    pub dofs: usize,
+    /// Step of the reference, which is of the scheme `midpoint`.
+    pub reference_step: f64,
+    /// The points, scheme by scheme.
+    pub points: Vec<MotionPoint>,
+}
+
+/// Runs a scene that moves by every scheme at several steps.
+///
+/// A run that breaks down has an infinite error.
+///
+/// # Errors
+/// As [`Scene::build`] and [`Scene::dynamics`]; [`Error::Scene`] for a scene that does not move.
+pub fn motion_tradeoff(scene: &Scene, settings: &Settings) -> Result<MotionTradeoff, Error> {
+    let model = scene.build()?;
+    let Some(own) = scene.dynamics(&model)? else {
+        return Err(Error::Scene { path: "analysis".into(), message: "the scene does not move".into() });
+    };
+    // The samples fall on steps.
+    let quarter = own.steps.div_ceil(4 * SAMPLES).max(1);
+    let of = |scheme, steps: usize| with(scene, &model, scheme, steps);
+    let reference = run(of(SchemeSpec::Midpoint, SAMPLES * quarter * REFERENCE)?, settings)?;
+    let mut points = Vec::new();
+    for scheme in SCHEMES {
+        let counts: Vec<usize> = if scheme == SchemeSpec::CentralDifference {
+            let fewest = fewest_stable(scene, &model)?.div_ceil(SAMPLES);
+            EXPLICIT.iter().map(|times| SAMPLES * fewest * times).collect()
+        } else {
+            QUARTERS.iter().map(|quarters| SAMPLES * quarter * quarters).collect()
+        };
+        for steps in counts {
+            let dynamics = of(scheme, steps)?;
+            let (name, step) = (dynamics.scheme.name(), dynamics.step);
+            let found = run(dynamics, settings).unwrap_or_default();
+            points.push(MotionPoint {
+                scheme: name,
+                step,
+                steps,
+                seconds: found.seconds,
+                displacement_error: found.error(&reference),
+                impulse_error: relative(found.impulse - reference.impulse, reference.impulse),
+                energy_change: found.energy_change,
+                penetration: found.penetration,
+                best: false,
+            });
+        }
+    }
+    let beats = |one: &MotionPoint, other: &MotionPoint| {
+        let no_worse = one.seconds <= other.seconds && one.displacement_error <= other.displacement_error;
+        no_worse && (one.seconds < other.seconds || one.displacement_error < other.displacement_error)
+    };
+    let best: Vec<bool> = points.iter().map(|point| !points.iter().any(|other| beats(other, point))).collect();
+    points.iter_mut().zip(best).for_each(|(point, best)| point.best = best);
+    let steps = SAMPLES * quarter * REFERENCE;
+    let duration = own.step * own.steps as f64;
+    Ok(MotionTradeoff { dofs: model.problem().dofs(), reference_step: duration / steps as f64, points })
+}
+
+/// What a run came to.
+#[derive(Default)]
+struct Run {
+    seconds: f64,
+    samples: Vec<Vec<f64>>,
+    first: Vec<f64>,
+    impulse: f64,
+    energy_change: f64,
+    penetration: f64,
+}
+
+impl Run {
+    fn error(&self, reference: &Run) -> f64 {
+        if self.samples.len() != reference.samples.len() {
+            return f64::INFINITY;
+        }
+        let square = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+        let away: f64 = self.samples.iter().zip(&reference.samples).map(|(a, b)| square(a, b)).sum();
+        let way: f64 = reference.samples.iter().map(|sample| square(sample, &reference.first)).sum();
+        relative(away.sqrt(), way.sqrt())
+    }
+}
+
+fn relative(value: f64, scale: f64) -> f64 {
+    if value == 0.0 { 0.0 } else { (value / scale).abs() }
+}
+
+fn run(dynamics: Dynamics, settings: &Settings) -> Result<Run, Error> {
+    let clock = Instant::now();
+    let Dynamics { problem, scheme, step, steps, .. } = dynamics;
+    let first = problem.displacement().to_vec();
+    let mut integrator = Integrator::new(problem, scheme, step, settings)?;
+    let mut summary = super::MotionSummary::starting(&integrator.observe());
+    let mut samples = Vec::with_capacity(SAMPLES);
+    for number in 1..=steps {
+        integrator.advance()?;
+        summary.add(&integrator.observe(), step);
+        if number % (steps / SAMPLES).max(1) == 0 {
+            samples.push(integrator.state().displacement.clone());
+        }
+    }
+    Ok(Run {
+        seconds: clock.elapsed().as_secs_f64(),
+        samples,
+        first,
+        impulse: summary.impulse,
+        energy_change: summary.energy_change(),
+        penetration: summary.penetration_max,
+    })
+}
+
+/// The motion of the scene by a scheme with its own form of the mass, in so many steps.
+fn with(scene: &Scene, model: &Model, scheme: SchemeSpec, steps: usize) -> Result<Dynamics, Error> {
+    let mut scene = scene.clone();
+    if let Some(AnalysisSpec::Dynamic(spec)) = &mut scene.analysis {
+        (spec.scheme, spec.mass, spec.courant) = (scheme, None, None);
+        spec.step = Some(spec.duration / steps as f64);
+    }
+    let missing = || Error::Scene { path: "analysis".into(), message: "the scene does not move".into() };
+    Ok(Dynamics { steps, ..scene.dynamics(model)?.ok_or_else(missing)? })
+}
+
+/// The fewest stable steps of the explicit scheme.
+fn fewest_stable(scene: &Scene, model: &Model) -> Result<usize, Error> {
+    let mut scene = scene.clone();
+    if let Some(AnalysisSpec::Dynamic(spec)) = &mut scene.analysis {
+        (spec.scheme, spec.mass, spec.courant, spec.step) = (SchemeSpec::CentralDifference, None, None, None);
+    }
+    Ok(scene.dynamics(model)?.map_or(1, |dynamics| dynamics.steps))
+}
