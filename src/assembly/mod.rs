@@ -11,6 +11,7 @@ mod frame;
 mod internal_force;
 mod load;
 mod pattern;
+mod rigid_motions;
 mod stiffness;
 mod surface;
 
@@ -20,5 +21,6 @@ pub use frame::Frame;
 pub(crate) use frame::perpendicular;
 pub use internal_force::internal_force;
 pub use load::{add_body_force, add_body_force_field, add_pressure, add_traction, add_traction_field, free_load};
+pub use rigid_motions::rigid_motions;
 pub use stiffness::stiffness;
 pub use surface::{node_normals, tributary_areas};

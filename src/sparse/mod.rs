@@ -5,6 +5,7 @@ mod augmented;
 mod cholesky;
 mod definite;
 mod elimination;
+pub mod multigrid;
 mod ordering;
 mod power_of_two;
 mod quotient;

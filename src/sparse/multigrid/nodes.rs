@@ -1,0 +1,118 @@
+//! The dofs of a matrix in groups, one for each node, and the matrix in blocks of these.
+
+use super::super::quotient::Quotient;
+use super::super::{SymmetricMatrix, exponent, ldexp};
+use super::blocks::BlockMatrix;
+use super::real::Real;
+
+/// Dofs of a node; where more have the same neighbours, they are taken for those of several nodes.
+const MOST_DOFS: usize = 3;
+
+/// Which dofs belong to which node. Nodes with fewer dofs than others, as at a roller, are filled up with dofs that
+/// nothing touches.
+#[derive(Clone, Debug)]
+pub struct Nodes {
+    /// Places of a node.
+    pub size: usize,
+    /// Number of nodes.
+    pub count: usize,
+    /// The place `size * node + component` of each dof.
+    pub place: Vec<u32>,
+}
+
+impl Nodes {
+    /// Groups dofs with the same neighbours, and writes the matrix, times `2^exponent` so that its diagonal is of order
+    /// one, in blocks of them.
+    pub fn of<T: Real>(matrix: &SymmetricMatrix) -> (Self, BlockMatrix<T>, i32) {
+        let graph = Quotient::of(matrix.lower());
+        let groups = graph.count() as u32;
+        let size = (0..groups).map(|group| graph.members(group).len()).max().unwrap_or(1).clamp(1, MOST_DOFS);
+        let mut first_node = Vec::with_capacity(groups as usize + 1);
+        let mut place = vec![0; matrix.dim()];
+        let mut count = 0;
+        for group in 0..groups {
+            first_node.push(count as u32);
+            for part in graph.members(group).chunks(size) {
+                part.iter().enumerate().for_each(|(component, &dof)| place[dof] = (size * count + component) as u32);
+                count += 1;
+            }
+        }
+        first_node.push(count as u32);
+        let (mut starts, mut indices) = (Vec::with_capacity(count + 1), Vec::new());
+        starts.push(0);
+        let mut groups_met = Vec::new();
+        for group in 0..groups {
+            groups_met.clear();
+            groups_met.push(group);
+            groups_met.extend_from_slice(graph.neighbours(group));
+            groups_met.sort_unstable();
+            for _ in first_node[group as usize]..first_node[group as usize + 1] {
+                for &other in &groups_met {
+                    indices.extend(first_node[other as usize]..first_node[other as usize + 1]);
+                }
+                starts.push(indices.len());
+            }
+        }
+        drop(graph);
+        let values = vec![T::default(); indices.len() * size * size];
+        let mut blocks = BlockMatrix { height: size, width: size, columns: count, starts, indices, values };
+        let nodes = Nodes { size, count, place };
+        let shift = -exponent(matrix.diagonal().into_iter().fold(0.0, f64::max));
+        nodes.fill(matrix, shift, &mut blocks);
+        fill_empty_diagonal(&mut blocks);
+        (nodes, blocks, shift)
+    }
+
+    fn fill<T: Real>(&self, matrix: &SymmetricMatrix, shift: i32, blocks: &mut BlockMatrix<T>) {
+        let size = self.size;
+        let slot = |blocks: &BlockMatrix<T>, row: usize, column: usize| {
+            let range = blocks.starts[row]..blocks.starts[row + 1];
+            let place = blocks.indices[range.clone()].binary_search(&(column as u32));
+            place.ok().map(|place| (range.start + place) * size * size)
+        };
+        for dof in 0..matrix.dim() {
+            let (node, j) = (self.place[dof] as usize / size, self.place[dof] as usize % size);
+            let mut last = (usize::MAX, None, None);
+            for (row, value) in matrix.lower().column(dof) {
+                let (other, i) = (self.place[row] as usize / size, self.place[row] as usize % size);
+                if last.0 != other {
+                    last = (other, slot(blocks, other, node), slot(blocks, node, other));
+                }
+                let value = T::of(ldexp(value, shift));
+                // A pattern that the graph does not have costs quality, not correctness.
+                if let (Some(below), Some(above)) = (last.1, last.2) {
+                    blocks.values[below + i * size + j] = value;
+                    blocks.values[above + j * size + i] = value;
+                }
+            }
+        }
+    }
+
+    /// The entries of `values`, one per dof, times `2^exponent`, in their places.
+    pub fn gather<T: Real>(&self, values: &[f64], exponent: i32) -> Vec<T> {
+        let mut gathered = vec![T::default(); self.size * self.count];
+        for (&place, &value) in self.place.iter().zip(values) {
+            gathered[place as usize] = T::of(ldexp(value, exponent));
+        }
+        gathered
+    }
+
+    /// The entries of the dofs, times `2^exponent`.
+    pub fn scatter<T: Real>(&self, gathered: &[T], exponent: i32) -> Vec<f64> {
+        self.place.iter().map(|&place| ldexp(gathered[place as usize].double(), exponent)).collect()
+    }
+}
+
+/// Places that nothing touches get the diagonal entry one.
+pub fn fill_empty_diagonal<T: Real>(blocks: &mut BlockMatrix<T>) {
+    let size = blocks.height;
+    for node in 0..blocks.rows() {
+        let Some(place) = blocks.diagonal_place(node) else { continue };
+        for i in 0..size {
+            let entry = &mut blocks.values[place * size * size + i * size + i];
+            if *entry == T::default() {
+                *entry = T::of(1.0);
+            }
+        }
+    }
+}
