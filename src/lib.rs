@@ -84,5 +84,5 @@ pub use error::Error;
 pub use problem::ContactProblem;
 pub use scene::{Model, Scene};
 pub use solution::{Certificate, ContactSet, Solution};
-pub use solve::{BoundarySolution, Condense, Method, Path, Prepared, Settings, solve, solve_qp};
+pub use solve::{BoundarySolution, Condense, Iterative, Method, Path, Prepared, Settings, Start, solve, solve_qp};
 pub use sparse::{SparseMatrix, SymmetricMatrix};

@@ -1,42 +1,88 @@
-use serde_json::json;
-use signorini::sparse::multigrid::*;
-use signorini::*;
-use std::time::Instant;
-fn model(n: usize, r: f64, gap: f64) -> Result<Model, Error> {
-    let axis = json!({"points": [0, 1], "divisions": [n]});
-    let scene = json!({"model":"space","body":{"box":{"x":axis,"y":axis,"z":axis,"element":"hex8"}},
-      "material":{"young":1e7,"poisson":0.3},"supports":[{"on":{"boundary":"bottom"},"x":0,"y":0,"z":0}],
-      "obstacles":[{"boundary":"top","approach":"+z","rule":"approach","shape":{"sphere":{"apex":[0.5,0.5,1],"radius":r}}}],
-      "gap":gap});
-    Scene::from_json(&scene.to_string(), "block")?.build()
-}
-fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let args: Vec<String> = std::env::args().collect();
-    let n: usize = args[1].parse()?;
-    let threads: usize = args.get(2).map_or(1, |t| t.parse().unwrap());
-    let t = Instant::now();
-    let m = model(n, 2.0, -0.01)?;
-    let p = m.problem();
-    println!("{} dofs built {:.2}", p.dofs(), t.elapsed().as_secs_f64());
-    let t = Instant::now();
-    let y = p.stiffness().mul(p.load());
-    println!("product {:.3} {}", t.elapsed().as_secs_f64(), y.len());
-    let t = Instant::now();
-    let mg = Multigrid::new(p.stiffness(), p.near_null().unwrap(), threads)?;
-    println!("setup {:.2} s, {:?}, {:.2} GB", t.elapsed().as_secs_f64(), mg.unknowns(), mg.bytes() as f64 / 1e9);
-    let f = p.contact().mul_transposed(&vec![-1.0; p.rows()]);
-    let t = Instant::now();
-    let cg = conjugate_gradients(p.stiffness(), &f, &mg, 1e-8, 100)?;
-    println!("cg {} cycles {:.2} s {:e}", cg.cycles, t.elapsed().as_secs_f64(), cg.residual);
-    for tolerance in [1e-8, 1e-10] {
-        let t = Instant::now();
-        let o = signorini::method::mprgp::solve(p, &mg, Default::default(), signorini::method::mprgp::Limits { tolerance, most_cycles: 500 })?;
-        println!("mprgp {tolerance:e}: {} cycles, {} sets, {} closed, {} {:.2} s", o.iterations, o.history.len(), o.contact_set.count(), o.settled, t.elapsed().as_secs_f64());
-        println!("{:?}", o.history.iter().map(|h| h.contact_set.count()).collect::<Vec<_>>());
+//! What a contact solve by multigrid costs beside one linear solve by the same hierarchy, and beside the direct path:
+//! `cargo run --release --example multigrid [-- --out DIR] [--most-dofs N] [--scene SCENE.json]`.
+//!
+//! Every case is a process of its own; seconds are those of the processor, all threads together, the column of two
+//! threads is by the clock. A folder gets the table as Markdown and JSON and the plot of the growth.
+
+mod case;
+mod growth;
+mod measure;
+
+use std::path::Path;
+use std::process::{Command, ExitCode, Stdio};
+
+use case::{CASES, Case};
+use serde_json::{Value, json};
+use signorini::Scene;
+use signorini::output::{write_files, write_picture};
+
+type Failure = Box<dyn std::error::Error>;
+
+/// The direct path is not measured beyond: its factor would take tens of gigabytes.
+const MOST_DIRECT: usize = 120_000;
+
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
     }
-    if n <= 32 {
-        let s = solve(p, &Settings::with_method(Method::ActiveSet))?;
-        println!("direct {} closed {} iterations", s.contact_set.count(), s.iterations);
+}
+
+fn run() -> Result<(), Failure> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let option =
+        |name: &str| words.iter().position(|word| *word == name).and_then(|place| words.get(place + 1)).copied();
+    match words[..] {
+        ["iterative", index, threads] => {
+            println!("{}", measure::iterative(&CASES[index.parse::<usize>()?].model()?, threads.parse()?)?);
+        }
+        ["direct", index] => println!("{}", measure::direct(&CASES[index.parse::<usize>()?].model()?)?),
+        _ => match option("--scene") {
+            Some(scene) => {
+                let model = Scene::read(Path::new(scene))?.build()?;
+                println!("{}", growth::line(&measure::iterative(&model, 1)?));
+            }
+            None => measure_all(option("--out"), option("--most-dofs").unwrap_or("1000000").parse()?)?,
+        },
     }
     Ok(())
+}
+
+fn measure_all(out: Option<&str>, most_dofs: usize) -> Result<(), Failure> {
+    let dofs = |case: &Case| 3 * (case.cells + 1).pow(2) * case.cells;
+    let mut measured = Vec::new();
+    for (index, case) in CASES.iter().enumerate().filter(|entry| dofs(entry.1) <= most_dofs) {
+        eprintln!("{} dofs ...", dofs(case));
+        let index = index.to_string();
+        let mut of_case = child(&["iterative", &index, "1"])?;
+        of_case["two_threads"] = child(&["iterative", &index, "2"])?["wall"].take();
+        of_case["radius"] = json!(case.radius);
+        if dofs(case) <= MOST_DIRECT {
+            let direct = child(&["direct", &index])?;
+            of_case["same_set"] = json!(direct["closed_rows"] == of_case["closed_rows"]);
+            of_case["direct"] = direct;
+        }
+        measured.push(of_case);
+    }
+    let text = growth::table(&measured);
+    print!("{text}");
+    if let Some(folder) = out.map(Path::new) {
+        let json = format!("{:#}\n", json!({ "cases": measured }));
+        write_files(folder, &[("multigrid.md", text), ("multigrid.json", json)])?;
+        write_picture(folder, "multigrid", &growth::plot(&measured))?;
+    }
+    Ok(())
+}
+
+/// What this program prints when it is run with `arguments`.
+fn child(arguments: &[&str]) -> Result<Value, Failure> {
+    let output = Command::new(std::env::current_exe()?).args(arguments).stderr(Stdio::inherit()).output()?;
+    if !output.status.success() {
+        return Err(format!("{arguments:?} failed").into());
+    }
+    Ok(serde_json::from_slice(&output.stdout)?)
 }

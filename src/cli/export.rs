@@ -13,6 +13,9 @@ pub(super) fn run(options: &Export) -> Result<Outcome, Error> {
     warn(&warnings(&model));
     let problem = model.problem();
     write_files(&options.directory, &matrix_market::problem_files(problem))?;
+    if let Some(file) = matrix_market::near_null_file(problem) {
+        write_files(&options.directory, &[file])?;
+    }
     let text = format!(
         "{}: K.mtx, f.mtx, B.mtx, g.mtx with {} dofs and {} contact rows\n",
         options.directory.display(),

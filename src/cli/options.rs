@@ -54,6 +54,8 @@ pub(super) enum MethodName {
     ActiveSet,
     /// Penalty loop
     Penalty,
+    /// Projected conjugate gradients with multigrid, for bodies too large to factorise
+    Mprgp,
 }
 
 #[derive(Debug, Args)]
@@ -222,6 +224,7 @@ impl MethodName {
             MethodName::Qp => solve::Method::Qp,
             MethodName::ActiveSet => solve::Method::ActiveSet,
             MethodName::Penalty => solve::Method::Penalty,
+            MethodName::Mprgp => solve::Method::Mprgp,
         }
     }
 }

@@ -53,12 +53,7 @@ pub struct Limits {
 /// # Errors
 /// [`Error::Numerical`] for rows that no turning makes bounds of, [`Error::NotConvex`] for a direction of negative energy
 /// in a face, [`Error::Unbounded`] for a load that drives a motion which no row stops.
-pub fn solve(
-    problem: &ContactProblem,
-    multigrid: &Multigrid,
-    start: Start,
-    limits: Limits,
-) -> Result<Outcome, Error> {
+pub fn solve(problem: &ContactProblem, multigrid: &Multigrid, start: Start, limits: Limits) -> Result<Outcome, Error> {
     let bounds = Bounds::of(problem.contact(), problem.gap())?;
     let mut iterate = Iterate::new(problem, &bounds, start);
     let mut history = vec![iterate.step()];
@@ -270,7 +265,8 @@ impl<'a> Iterate<'a> {
     fn is_disproportionate(&self) -> bool {
         let weighted = |value: f64, unknown: usize| value * value / self.diagonal[unknown];
         let free: f64 = self.free_gradient().iter().enumerate().map(|(unknown, &g)| weighted(g, unknown)).sum();
-        let chopped = |(index, bound): (usize, &super::bounds::Bound)| weighted(self.chopped_gradient(index), bound.unknown);
+        let chopped =
+            |(index, bound): (usize, &super::bounds::Bound)| weighted(self.chopped_gradient(index), bound.unknown);
         self.bounds.bounds().iter().enumerate().map(chopped).sum::<f64>() > free
     }
 

@@ -1,13 +1,18 @@
 //! From a contact problem to a certified answer: select rows, scale, condense, method, expand, certify.
 
 mod boundary;
+mod estimate;
+mod iterative;
 mod loading;
 mod path;
 mod prepared;
 mod settings;
 
+pub use crate::method::mprgp::Start;
 pub use crate::method::parametric::{Event, Piece};
 pub use boundary::BoundarySolution;
+pub use estimate::Estimate;
+pub use iterative::Iterative;
 pub use path::Path;
 pub use prepared::Prepared;
 pub use settings::{Condense, Method, Settings};
@@ -42,6 +47,9 @@ pub fn solve_qp(problem: &ContactProblem) -> Result<Solution, Error> {
 /// * [`Error::Numerical`] where memory does not suffice.
 pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
     settings.check()?;
+    if settings.method == Method::Mprgp {
+        return iterative::solve(problem, settings);
+    }
     let prepared = Prepared::with_threads(problem, settings.condense, settings.threads)?;
     let with_preparation = |mut solution: Solution| {
         solution.seconds.factor += prepared.seconds().factor;
@@ -90,6 +98,10 @@ fn run(scaled: &ScaledProblem, start: Option<ContactSet>, settings: &Settings) -
                 threshold: settings.penetration_threshold,
             };
             penalty::solve(scaled, start.unwrap_or(cold), ladder, settings.max_iterations)?
+        }
+        Method::Mprgp => {
+            let reason = "its hierarchy stands in `Iterative`, which is prepared without a factorisation".to_string();
+            return Err(Error::Numerical { step: "MPRGP on a factorised problem", reason });
         }
     };
     scaled.check_unique(&outcome)?;

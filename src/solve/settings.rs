@@ -15,15 +15,18 @@ pub enum Method {
     ActiveSet,
     /// Penalty loop with a growing penalty.
     Penalty,
+    /// Projected conjugate gradients with a multigrid hierarchy: no factorisation of the body.
+    Mprgp,
 }
 
 impl Method {
-    /// The name in reports: `qp`, `active-set` or `penalty`.
+    /// The name in reports: `qp`, `active-set`, `penalty` or `mprgp`.
     pub fn name(self) -> &'static str {
         match self {
             Method::Auto | Method::Qp => "qp",
             Method::ActiveSet => "active-set",
             Method::Penalty => "penalty",
+            Method::Mprgp => "mprgp",
         }
     }
 }

@@ -37,14 +37,12 @@ pub fn aggregate<T: Real>(matrix: &BlockMatrix<T>, threshold: f64) -> (Vec<u32>,
         }
     }
     let roots = of_node.clone();
-    for node in 0..nodes {
-        if of_node[node] == NONE {
-            let range = graph.starts[node]..graph.starts[node + 1];
-            let joined = range.filter(|&place| roots[graph.neighbours[place] as usize] != NONE);
-            let strongest = joined.max_by(|&a, &b| graph.strengths[a].total_cmp(&graph.strengths[b]));
-            if let Some(place) = strongest {
-                of_node[node] = roots[graph.neighbours[place] as usize];
-            }
+    for (node, aggregate) in of_node.iter_mut().enumerate().filter(|entry| *entry.1 == NONE) {
+        let range = graph.starts[node]..graph.starts[node + 1];
+        let joined = range.filter(|&place| roots[graph.neighbours[place] as usize] != NONE);
+        let strongest = joined.max_by(|&a, &b| graph.strengths[a].total_cmp(&graph.strengths[b]));
+        if let Some(place) = strongest {
+            *aggregate = roots[graph.neighbours[place] as usize];
         }
     }
     for node in 0..nodes {

@@ -84,7 +84,9 @@ impl<T: Real> Chebyshev<T> {
         smoother.largest *= CHANGED;
         let (mut work, mut result) = (vec![0.0; size * size], vec![0.0; size * size]);
         for node in 0..matrix.rows() {
-            let (Some(own), Some(changed)) = (matrix.diagonal_place(node), change.diagonal_place(node)) else { continue };
+            let (Some(own), Some(changed)) = (matrix.diagonal_place(node), change.diagonal_place(node)) else {
+                continue;
+            };
             for (work, (own, changed)) in work.iter_mut().zip(matrix.block(own).iter().zip(change.block(changed))) {
                 *work = own.double() - changed.double();
             }
@@ -97,8 +99,7 @@ impl<T: Real> Chebyshev<T> {
 
     fn largest_eigenvalue(&self, operator: &Operator<T>) -> f64 {
         let golden = 0.618_033_988_749_895;
-        let mut x: Vec<T> =
-            (0..operator.dim()).map(|i| T::of((i as f64 * golden).fract() - 0.5)).collect();
+        let mut x: Vec<T> = (0..operator.dim()).map(|i| T::of((i as f64 * golden).fract() - 0.5)).collect();
         let mut moved = vec![T::default(); x.len()];
         let mut estimate = 1.0;
         for _ in 0..POWER_STEPS {

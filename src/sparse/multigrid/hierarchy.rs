@@ -14,6 +14,9 @@ use crate::sparse::{Cholesky, Equilibration, FactorError, SparseMatrix, Symmetri
 /// Strength of connection on the finest level; it is halved from level to level, as the source has it.
 const THRESHOLD: f64 = 0.02;
 
+/// Where too few connections are strong for aggregates to form, all count below this.
+const LEAST_THRESHOLD: f64 = 1e-3;
+
 /// Degree of the smoothing polynomial, before and after the coarse correction.
 const DEGREE: usize = 3;
 
@@ -21,13 +24,14 @@ const DEGREE: usize = 3;
 const COARSEST: usize = 1500;
 
 /// A level with more than this share of the nodes above it is not worth its work: the matrix is factorised there.
-const LEAST_COARSENING: f64 = 0.8;
+const LEAST_COARSENING: f64 = 0.4;
 
 /// What the smoothing of the prolongator takes of the inverse of the largest eigenvalue.
 const PROLONGATOR_STEP: f64 = 4.0 / 3.0;
 
-/// Pivots of the coarsest matrix, whose diagonal is of order one, below this are those of a body that nothing holds.
-const LEAST_PIVOT: f64 = 1e-6;
+/// Pivots of the coarsest matrix, whose diagonal is of order one, below so many units in the last place are rounding: a
+/// body that nothing holds.
+const LEAST_PIVOT: f64 = 1000.0;
 
 /// What then holds it, on a diagonal of order one: its contact will, about as stiffly as a coarse cell.
 const SHIFT: f64 = 1e-3;
@@ -78,8 +82,13 @@ impl<T: Real> Hierarchy<T> {
         let mut levels = Vec::new();
         let mut threshold = THRESHOLD;
         while blocks.rows() * blocks.height > COARSEST {
-            let (of_node, aggregates) = aggregate(&blocks, threshold);
-            if aggregates * count >= (LEAST_COARSENING * (blocks.rows() * blocks.height) as f64) as usize {
+            let most = (LEAST_COARSENING * (blocks.rows() * blocks.height) as f64) as usize;
+            let (mut of_node, mut aggregates) = aggregate(&blocks, threshold);
+            while aggregates * count > most && threshold > 0.0 {
+                threshold = if threshold > LEAST_THRESHOLD { threshold / 4.0 } else { 0.0 };
+                (of_node, aggregates) = aggregate(&blocks, threshold);
+            }
+            if aggregates * count > most {
                 break;
             }
             let smoother = Chebyshev::new(&blocks, DEGREE, threads);
@@ -172,7 +181,7 @@ impl Coarsest {
         let equilibration = Equilibration::of(&matrix);
         let matrix = equilibration.apply(&matrix);
         match Cholesky::of(&matrix) {
-            Ok(cholesky) if cholesky.smallest_pivot() > LEAST_PIVOT => {
+            Ok(cholesky) if cholesky.smallest_pivot() > LEAST_PIVOT * T::EPSILON => {
                 Ok(Coarsest { cholesky, equilibration, is_shifted: false })
             }
             Ok(_) | Err(FactorError::NotPositiveDefinite) => {

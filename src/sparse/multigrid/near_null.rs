@@ -1,7 +1,8 @@
 //! Displacements that cost next to no energy: what a hierarchy must not lose on its way down.
 
+use super::nodes::Nodes;
 use crate::error::Error;
-use crate::sparse::{dot, largest};
+use crate::sparse::{SymmetricMatrix, dot, largest};
 
 /// A vector of which less than this is left after those before it are taken off follows from them.
 const DEPENDENT: f64 = 1e-8;
@@ -24,7 +25,11 @@ impl NearNullSpace {
     pub fn new(vectors: Vec<Vec<f64>>, dofs: usize) -> Result<Self, Error> {
         if vectors.is_empty() || vectors.len() > dofs {
             let allowed = "at least 1 and at most the number of dofs";
-            return Err(Error::Setting { name: "the number of near-null vectors", value: vectors.len() as f64, allowed });
+            return Err(Error::Setting {
+                name: "the number of near-null vectors",
+                value: vectors.len() as f64,
+                allowed,
+            });
         }
         for vector in &vectors {
             if vector.len() != dofs {
@@ -51,6 +56,16 @@ impl NearNullSpace {
     pub(crate) fn of_motions(vectors: Vec<Vec<f64>>) -> Option<Self> {
         let dofs = vectors.first().map_or(0, Vec::len);
         (dofs > 0 && vectors.iter().all(|vector| vector.len() == dofs)).then_some(NearNullSpace { vectors })
+    }
+
+    /// The constants: one vector for each of the dofs that a node has, in their order, by the pattern of `matrix` alone.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for a matrix without dofs.
+    pub fn constants(matrix: &SymmetricMatrix) -> Result<Self, Error> {
+        let (size, components) = Nodes::components(matrix);
+        let vector = |of: usize| components.iter().map(|&component| f64::from(u8::from(component == of))).collect();
+        Self::new((0..size).map(vector).collect(), matrix.dim())
     }
 
     /// The vectors.

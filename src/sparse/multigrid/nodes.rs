@@ -5,7 +5,7 @@ use super::super::{SymmetricMatrix, exponent, ldexp};
 use super::blocks::BlockMatrix;
 use super::real::Real;
 
-/// Dofs of a node; where more have the same neighbours, they are taken for those of several nodes.
+/// Most dofs of a node; where more have the same neighbours, they are taken for those of several nodes.
 const MOST_DOFS: usize = 3;
 
 /// Which dofs belong to which node. Nodes with fewer dofs than others, as at a roller, are filled up with dofs that
@@ -26,7 +26,7 @@ impl Nodes {
     pub fn of<T: Real>(matrix: &SymmetricMatrix) -> (Self, BlockMatrix<T>, i32) {
         let graph = Quotient::of(matrix.lower());
         let groups = graph.count() as u32;
-        let size = (0..groups).map(|group| graph.members(group).len()).max().unwrap_or(1).clamp(1, MOST_DOFS);
+        let size = usual_dofs(&graph);
         let mut first_node = Vec::with_capacity(groups as usize + 1);
         let mut place = vec![0; matrix.dim()];
         let mut count = 0;
@@ -46,6 +46,8 @@ impl Nodes {
             groups_met.push(group);
             groups_met.extend_from_slice(graph.neighbours(group));
             groups_met.sort_unstable();
+            // Groups whose dofs do not follow each other meet from both sides.
+            groups_met.dedup();
             for _ in first_node[group as usize]..first_node[group as usize + 1] {
                 for &other in &groups_met {
                     indices.extend(first_node[other as usize]..first_node[other as usize + 1]);
@@ -61,6 +63,17 @@ impl Nodes {
         nodes.fill(matrix, shift, &mut blocks);
         fill_empty_diagonal(&mut blocks);
         (nodes, blocks, shift)
+    }
+
+    /// Dofs of a node, and which of them each dof is.
+    pub fn components(matrix: &SymmetricMatrix) -> (usize, Vec<usize>) {
+        let graph = Quotient::of(matrix.lower());
+        let mut components = vec![0; matrix.dim()];
+        let size = usual_dofs(&graph);
+        for group in 0..graph.count() as u32 {
+            graph.members(group).iter().enumerate().for_each(|(place, &dof)| components[dof] = place % size);
+        }
+        (size, components)
     }
 
     fn fill<T: Real>(&self, matrix: &SymmetricMatrix, shift: i32, blocks: &mut BlockMatrix<T>) {
@@ -101,6 +114,17 @@ impl Nodes {
     pub fn scatter<T: Real>(&self, gathered: &[T], exponent: i32) -> Vec<f64> {
         self.place.iter().map(|&place| ldexp(gathered[place as usize].double(), exponent)).collect()
     }
+}
+
+/// Dofs of the nodes of a graph: what most groups have. Nodes inside an element may share a group.
+fn usual_dofs(graph: &Quotient) -> usize {
+    let mut with = [0_usize; MOST_DOFS + 1];
+    for group in 0..graph.count() as u32 {
+        if let Some(count) = with.get_mut(graph.members(group).len()) {
+            *count += 1;
+        }
+    }
+    (1..=MOST_DOFS).max_by_key(|&size| (with[size], size)).unwrap_or(1)
 }
 
 /// Places that nothing touches get the diagonal entry one.

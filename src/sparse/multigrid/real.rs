@@ -18,6 +18,9 @@ pub trait Real:
     + SubAssign
     + 'static
 {
+    /// A unit in the last place of one.
+    const EPSILON: f64;
+
     /// The nearest value.
     fn of(value: f64) -> Self;
 
@@ -26,6 +29,8 @@ pub trait Real:
 }
 
 impl Real for f32 {
+    const EPSILON: f64 = f32::EPSILON as f64;
+
     fn of(value: f64) -> Self {
         value as f32
     }
@@ -36,6 +41,8 @@ impl Real for f32 {
 }
 
 impl Real for f64 {
+    const EPSILON: f64 = f64::EPSILON;
+
     fn of(value: f64) -> Self {
         value
     }
