@@ -28,20 +28,21 @@ impl Estimate {
         let entries = problem.stiffness().lower().entries() as f64;
         let in_space = problem.near_null().is_some_and(|near_null| near_null.count() >= MOTIONS_IN_SPACE);
         let (factor, seconds) = match in_space {
-            true => (23.0 * dofs.powf(4.0 / 3.0), 4.5e-10 * dofs.powi(2)),
+            true => (23.0 * dofs.powf(4.0 / 3.0), 6.5e-10 * dofs.powi(2)),
             false => (6.0 * dofs * dofs.max(2.0).log2(), 3.7e-9 * dofs.powf(1.5)),
         };
         Estimate {
             direct_bytes: 8.0 * factor,
             direct_seconds: seconds,
             multigrid_bytes: 16.0 * entries,
-            multigrid_seconds: 1.7e-7 * entries,
+            multigrid_seconds: 1.3e-7 * entries,
         }
     }
 
-    /// Is the iterative path the better one: several times faster, or the only one within `most_bytes`?
+    /// Is the iterative path the better one: much the faster, or the only one within `most_bytes`?
     pub fn prefers_multigrid(&self, most_bytes: f64) -> bool {
-        const CLEARLY: f64 = 4.0;
+        // The direct path bounds the error in energy; in space it is preferred up to some 160,000 dofs.
+        const CLEARLY: f64 = 20.0;
         self.direct_seconds > CLEARLY * self.multigrid_seconds
             || (self.direct_bytes > most_bytes && self.multigrid_bytes <= most_bytes)
     }

@@ -47,8 +47,15 @@ pub fn solve_qp(problem: &ContactProblem) -> Result<Solution, Error> {
 /// * [`Error::Numerical`] where memory does not suffice.
 pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
     settings.check()?;
-    if settings.method == Method::Mprgp {
-        return iterative::solve(problem, settings);
+    let is_large = || problem.near_null().is_some() && Estimate::of(problem).prefers_multigrid(f64::INFINITY);
+    match settings.method {
+        Method::Mprgp => return iterative::solve(problem, settings),
+        // What the iteration cannot take, the direct path may.
+        Method::Auto if is_large() => match iterative::solve(problem, settings) {
+            Ok(solution) => return Ok(solution),
+            Err(_) => {}
+        },
+        _ => {}
     }
     let prepared = Prepared::with_threads(problem, settings.condense, settings.threads)?;
     let with_preparation = |mut solution: Solution| {

@@ -6,7 +6,7 @@ use crate::error::Error;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Method {
-    /// The program chooses; today the QP.
+    /// The program chooses: the QP, or where the factor of a body in space would cost much more, MPRGP.
     #[default]
     Auto,
     /// Convex QP by Clarabel, its contact set settled by the active-set loop.

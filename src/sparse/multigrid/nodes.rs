@@ -76,26 +76,47 @@ impl Nodes {
         (size, components)
     }
 
+    /// Fills the blocks on and above the diagonal, row by row, then those below from them: both run through memory in
+    /// order. A pattern that the graph does not have costs quality, not correctness.
     fn fill<T: Real>(&self, matrix: &SymmetricMatrix, shift: i32, blocks: &mut BlockMatrix<T>) {
         let size = self.size;
-        let slot = |blocks: &BlockMatrix<T>, row: usize, column: usize| {
-            let range = blocks.starts[row]..blocks.starts[row + 1];
-            let place = blocks.indices[range.clone()].binary_search(&(column as u32));
-            place.ok().map(|place| (range.start + place) * size * size)
-        };
+        let diagonal: Vec<usize> =
+            (0..self.count).map(|node| blocks.diagonal_place(node).unwrap_or(blocks.starts[node])).collect();
         for dof in 0..matrix.dim() {
             let (node, j) = (self.place[dof] as usize / size, self.place[dof] as usize % size);
-            let mut last = (usize::MAX, None, None);
+            let mut cursor = diagonal[node];
             for (row, value) in matrix.lower().column(dof) {
                 let (other, i) = (self.place[row] as usize / size, self.place[row] as usize % size);
-                if last.0 != other {
-                    last = (other, slot(blocks, other, node), slot(blocks, node, other));
+                let (first, second, a, b) = if node <= other { (node, other, j, i) } else { (other, node, i, j) };
+                let end = blocks.starts[first + 1];
+                if first != node || cursor >= end || blocks.indices[cursor] as usize > second {
+                    cursor = diagonal[first];
                 }
-                let value = T::of(ldexp(value, shift));
-                // A pattern that the graph does not have costs quality, not correctness.
-                if let (Some(below), Some(above)) = (last.1, last.2) {
-                    blocks.values[below + i * size + j] = value;
-                    blocks.values[above + j * size + i] = value;
+                let ahead = &blocks.indices[cursor..end];
+                let place = cursor + ahead.iter().take_while(|&&column| (column as usize) < second).count();
+                if place < end && blocks.indices[place] as usize == second {
+                    let block = &mut blocks.values[place * size * size..(place + 1) * size * size];
+                    block[a * size + b] = T::of(ldexp(value, shift));
+                    if first == second {
+                        block[b * size + a] = block[a * size + b];
+                    }
+                    cursor = if first == node { place } else { diagonal[node] };
+                }
+            }
+        }
+        let mut next: Vec<usize> = diagonal.iter().map(|place| place + 1).collect();
+        for node in 0..self.count {
+            for place in blocks.starts[node]..diagonal[node] {
+                let other = blocks.indices[place] as usize;
+                let mirrored = next[other];
+                if mirrored < blocks.starts[other + 1] && blocks.indices[mirrored] as usize == node {
+                    next[other] += 1;
+                    for i in 0..size {
+                        for j in 0..size {
+                            blocks.values[(place * size + i) * size + j] =
+                                blocks.values[(mirrored * size + j) * size + i];
+                        }
+                    }
                 }
             }
         }
