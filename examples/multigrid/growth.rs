@@ -9,6 +9,11 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or(f64::NAN)
 }
 
+/// A number in words, or a dash.
+fn known(value: &Value, words: impl Fn(f64) -> String) -> String {
+    value.as_f64().map_or("-".into(), words)
+}
+
 fn gigabytes(value: &Value) -> f64 {
     number(value) / 1e9
 }
@@ -33,6 +38,27 @@ pub fn line(case: &Value) -> String {
         linear,
         contact,
         (set_up + contact) / (set_up + linear),
+        case["closed"],
+        number(&case["certificate"]),
+        gigabytes(&case["peak_bytes"]),
+    )
+}
+
+/// The head of a table of bodies.
+pub const BODIES_HEAD: &str = "| body | dofs | linear, cycles | contact, cycles | ratio | set-up, s | linear, s | contact, s \
+                               | closed | certificate | peak, GB |\n|---|---|---|---|---|---|---|---|---|---|---|";
+
+/// One body as a row of its table.
+pub fn body_line(name: &str, case: &Value) -> String {
+    format!(
+        "| {name} | {} | {} | {} | {} | {:.2} | {} | {:.2} | {} | {:.1e} | {:.2} |",
+        case["dofs"],
+        known(&case["linear_cycles"], |cycles| format!("{cycles}")),
+        case["contact_cycles"],
+        known(&case["linear_cycles"], |cycles| format!("{:.2}", number(&case["contact_cycles"]) / cycles)),
+        number(&case["set_up"]),
+        known(&case["linear_cycles"], |_| format!("{:.2}", number(&case["linear"]))),
+        number(&case["contact"]),
         case["closed"],
         number(&case["certificate"]),
         gigabytes(&case["peak_bytes"]),

@@ -1,9 +1,11 @@
 //! What a contact solve by multigrid costs beside one linear solve by the same hierarchy, and beside the direct path:
-//! `cargo run --release --example multigrid [-- --out DIR] [--most-dofs N] [--scene SCENE.json]`.
+//! `cargo run --release --example multigrid [-- --out DIR] [--most-dofs N]`; with `--bodies` other
+//! bodies, with `--scene SCENE.json` one's own.
 //!
 //! Every case is a process of its own; seconds are those of the processor, all threads together, the column of two
 //! threads is by the clock. A folder gets the table as Markdown and JSON and the plot of the growth.
 
+mod bodies;
 mod case;
 mod growth;
 mod measure;
@@ -41,10 +43,20 @@ fn run() -> Result<(), Failure> {
             println!("{}", measure::iterative(&CASES[index.parse::<usize>()?].model()?, threads.parse()?)?);
         }
         ["direct", index] => println!("{}", measure::direct(&CASES[index.parse::<usize>()?].model()?)?),
+        ["body", index] => {
+            let (name, scene) = bodies::bodies().swap_remove(index.parse()?);
+            println!("{}", measure::iterative(&Scene::from_json(&scene.to_string(), name)?.build()?, 1)?);
+        }
+        ["--bodies"] => {
+            println!("{}", growth::BODIES_HEAD);
+            for (index, (name, _)) in bodies::bodies().iter().enumerate() {
+                println!("{}", growth::body_line(name, &child(&["body", &index.to_string()])?));
+            }
+        }
         _ => match option("--scene") {
             Some(scene) => {
                 let model = Scene::read(Path::new(scene))?.build()?;
-                println!("{}", growth::line(&measure::iterative(&model, 1)?));
+                println!("{}\n{}", growth::BODIES_HEAD, growth::body_line(scene, &measure::iterative(&model, 1)?));
             }
             None => measure_all(option("--out"), option("--most-dofs").unwrap_or("1000000").parse()?)?,
         },

@@ -180,7 +180,7 @@ pub(super) struct Tradeoff {
 pub(super) struct Export {
     /// Scene (a JSON file)
     pub scene: PathBuf,
-    /// Folder for K.mtx, f.mtx, B.mtx and g.mtx; made if missing
+    /// Folder for K.mtx, f.mtx, B.mtx, g.mtx and near_null.mtx; made if missing
     pub directory: PathBuf,
 }
 
