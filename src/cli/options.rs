@@ -144,7 +144,7 @@ pub(super) struct Common {
     /// Let the methods work on all dofs instead of those of the contact rows
     #[arg(long)]
     pub no_condense: bool,
-    /// Threads of the sparse factorisations
+    /// Threads of the sparse factorisations and of multigrid
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = parse_threads)]
     pub threads: usize,
     /// Folder for pictures, fields and answers

@@ -48,6 +48,8 @@ impl Reflection {
 #[derive(Clone, Debug)]
 pub struct Bounds {
     reflections: Vec<Reflection>,
+    /// The reflections that touch each place.
+    touching: HashMap<usize, Vec<usize>>,
     bounds: Vec<Bound>,
     rows: usize,
 }
@@ -60,13 +62,12 @@ impl Bounds {
     /// makes bounds of them.
     pub fn of(contact: &SparseMatrix, gap: &[f64]) -> Result<Self, Error> {
         let by_row = contact.transposed();
-        let mut all = Bounds { reflections: Vec::new(), bounds: Vec::new(), rows: gap.len() };
+        let mut all = Bounds { reflections: Vec::new(), touching: HashMap::new(), bounds: Vec::new(), rows: gap.len() };
         let mut bound_of: HashMap<usize, usize> = HashMap::new();
-        let mut touching: HashMap<usize, Vec<usize>> = HashMap::new();
         for row in (0..gap.len()).filter(|&row| gap[row].is_finite()) {
             let entries: Vec<(usize, f64)> = by_row.column(row).filter(|entry| entry.1 != 0.0).collect();
             let length = entries.iter().fold(0.0, |length: f64, entry| length.hypot(entry.1));
-            let turned = all.turned(entries.iter().map(|&(place, b)| (place, b / length)).collect(), &touching);
+            let turned = all.reflected(entries.iter().map(|&(place, b)| (place, b / length)).collect(), false);
             let Some(&(first, _)) = turned.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())) else { continue };
             let taken: Vec<usize> = turned.iter().filter_map(|entry| bound_of.get(&entry.0).copied()).collect();
             let index = match (taken[..].first(), turned.len()) {
@@ -86,33 +87,33 @@ impl Bounds {
                     all.bounds.len() - 1
                 }
             };
-            let sign = if turned.len() == 1 { turned[0].1.signum() } else { all.reflect(turned, first, &mut touching) };
+            let sign = if turned.len() == 1 { turned[0].1.signum() } else { all.reflect(turned, first) };
             let coefficient = sign * length;
             all.bounds[index].take(Side { row, coefficient, value: gap[row] / coefficient });
         }
         Ok(all)
     }
 
-    /// A unit vector after those reflections that touch it, in their order.
-    fn turned(&self, vector: Direction, touching: &HashMap<usize, Vec<usize>>) -> Direction {
+    /// A unit vector after those reflections that touch it, in their order, or `back` in the opposite one.
+    fn reflected(&self, vector: Direction, back: bool) -> Direction {
         let mut entries: HashMap<usize, f64> = vector.into_iter().collect();
-        let of_place = |place: &usize| touching.get(place).into_iter().flatten().copied();
+        let of_place = |place: &usize| self.touching.get(place).into_iter().flatten().copied();
         let mut waiting: BTreeSet<usize> = entries.keys().flat_map(of_place).collect();
-        while let Some(next) = waiting.pop_first() {
+        while let Some(next) = if back { waiting.pop_last() } else { waiting.pop_first() } {
             let reflection = &self.reflections[next].vector;
             let along: f64 = reflection.iter().map(|&(p, w)| w * entries.get(&p).copied().unwrap_or(0.0)).sum();
             for &(place, w) in reflection {
                 *entries.entry(place).or_insert(0.0) -= 2.0 * along * w;
-                waiting.extend(of_place(&place).filter(|&later| later > next));
+                waiting.extend(of_place(&place).filter(|&other| if back { other < next } else { other > next }));
             }
         }
-        let mut turned: Direction = entries.into_iter().filter(|entry| entry.1.abs() > ROUNDING).collect();
-        turned.sort_unstable_by_key(|entry| entry.0);
-        turned
+        let mut reflected: Direction = entries.into_iter().filter(|entry| entry.1.abs() > ROUNDING).collect();
+        reflected.sort_unstable_by_key(|entry| entry.0);
+        reflected
     }
 
     /// Adds the reflection that turns a unit vector onto `place`, up to the sign that is returned.
-    fn reflect(&mut self, mut unit: Direction, place: usize, touching: &mut HashMap<usize, Vec<usize>>) -> f64 {
+    fn reflect(&mut self, mut unit: Direction, place: usize) -> f64 {
         let own = unit.iter().find(|entry| entry.0 == place).map_or(1.0, |entry| entry.1);
         // |u + sign e|^2 = 2 + 2 |u_place|.
         let length = (2.0 + 2.0 * own.abs()).sqrt();
@@ -121,7 +122,7 @@ impl Bounds {
                 entry.1 += own.signum();
             }
             entry.1 /= length;
-            touching.entry(entry.0).or_default().push(self.reflections.len());
+            self.touching.entry(entry.0).or_default().push(self.reflections.len());
         }
         self.reflections.push(Reflection { vector: unit });
         -own.signum()
@@ -147,31 +148,9 @@ impl Bounds {
         self.reflections.iter().rev().for_each(|reflection| reflection.apply(v));
     }
 
-    /// Column `unknown` of H': the unit vector along which it moves.
-    pub fn direction(&self, bound: &Bound, touching: &Touching) -> Direction {
-        let mut entries: HashMap<usize, f64> = HashMap::from([(bound.unknown, 1.0)]);
-        let of_place = |place: &usize| touching.of_place.get(place).into_iter().flatten().copied();
-        let mut waiting: BTreeSet<usize> = entries.keys().flat_map(of_place).collect();
-        while let Some(next) = waiting.pop_last() {
-            let reflection = &self.reflections[next].vector;
-            let along: f64 = reflection.iter().map(|&(p, w)| w * entries.get(&p).copied().unwrap_or(0.0)).sum();
-            for &(place, w) in reflection {
-                *entries.entry(place).or_insert(0.0) -= 2.0 * along * w;
-                waiting.extend(of_place(&place).filter(|&earlier| earlier < next));
-            }
-        }
-        let mut direction: Direction = entries.into_iter().filter(|entry| entry.1 != 0.0).collect();
-        direction.sort_unstable_by_key(|entry| entry.0);
-        direction
-    }
-
-    /// Which reflections touch which places.
-    pub fn touching(&self) -> Touching {
-        let mut of_place: HashMap<usize, Vec<usize>> = HashMap::new();
-        for (index, reflection) in self.reflections.iter().enumerate() {
-            reflection.vector.iter().for_each(|entry| of_place.entry(entry.0).or_default().push(index));
-        }
-        Touching { of_place }
+    /// The unit vector along which the unknown of a bound moves: its column of H'.
+    pub fn direction(&self, bound: &Bound) -> Direction {
+        self.reflected(vec![(bound.unknown, 1.0)], true)
     }
 
     /// The multipliers of the rows where the forces on the unknowns with bounds are `force` (those that are out of
@@ -194,12 +173,6 @@ impl Bounds {
     pub fn is_closed(&self, index: usize, upper: bool, closed: &ContactSet) -> bool {
         self.bounds[index].sides[usize::from(upper)].is_some_and(|side| closed.contains(side.row))
     }
-}
-
-/// Which reflections touch which places.
-#[derive(Clone, Debug)]
-pub struct Touching {
-    of_place: HashMap<usize, Vec<usize>>,
 }
 
 impl Bound {

@@ -1,6 +1,6 @@
 //! MPRGP: modified proportioning with reduced gradient projections, preconditioned in the free face.
 //!
-//! Rows are turned into bounds (see [`Bounds`]). With the gradient g = K u - f, split into the free gradient, of unknowns
+//! Rows are turned into bounds by reflections. With the gradient g = K u - f, split into the free gradient, of unknowns
 //! that may move, and the chopped gradient, of those that want to leave their bound, an iteration is one of
 //!
 //! ```text
@@ -15,7 +15,7 @@
 //! # Source
 //! Z. Dostál, *Optimal Quadratic Programming Algorithms*, Springer (2009), algorithm 5.8 and section 5.10.
 
-use super::bounds::{Bounds, Touching};
+use super::bounds::{Bound, Bounds};
 use super::holding::FreeMotion;
 use super::{Outcome, SIGN_TOLERANCE};
 use crate::error::Error;
@@ -26,6 +26,9 @@ use crate::sparse::{dot, largest};
 
 /// Iterations without a residual half as large as the best before, after which the loop has stagnated.
 const PATIENCE: usize = 60;
+
+/// Rows that are open at the start although nothing has moved keep this share of their depth as distance.
+const INSIDE: f64 = 1e-3;
 
 /// Energy of a direction below this share of its terms is rounding of zero.
 const NO_ENERGY: f64 = 1e-13;
@@ -127,7 +130,6 @@ enum At {
 struct Iterate<'a> {
     problem: &'a ContactProblem,
     bounds: &'a Bounds,
-    touching: Touching,
     load: Vec<f64>,
     /// Diagonal of K at the unknowns with bounds and at all others.
     diagonal: Vec<f64>,
@@ -154,13 +156,18 @@ impl Conjugate {
             let share = dot(&p, &last.moved) / last.energy;
             p.iter_mut().zip(&last.p).for_each(|(p, before)| *p -= share * before);
         }
+        let slope = dot(gradient, &p);
+        if slope < 0.0 {
+            // Rounding of the cycle may turn a direction uphill.
+            p.iter_mut().for_each(|p| *p = -*p);
+        }
+        let slope = slope.abs();
         let moved = iterate.product(&p);
         let energy = dot(&p, &moved);
         let terms: f64 = p.iter().zip(&moved).map(|(p, m)| (p * m).abs()).sum();
         let costs_nothing = energy.abs() <= NO_ENERGY * terms || !energy.is_finite();
         let is_free = costs_nothing && iterate.longest_step(&p).is_infinite();
         let energy = if costs_nothing { 0.0 } else { energy };
-        let slope = dot(gradient, &p);
         Conjugate { p, moved, energy, slope, is_free }
     }
 }
@@ -172,8 +179,8 @@ impl<'a> Iterate<'a> {
         let mut x = start.displacement.map_or_else(|| vec![0.0; problem.dofs()], <[f64]>::to_vec);
         bounds.turn(&mut x);
         let diagonal = problem.stiffness().diagonal();
-        let (touching, at) = (bounds.touching(), vec![At::Free; bounds.bounds().len()]);
-        let mut iterate = Iterate { problem, bounds, touching, load, diagonal, x, gradient: Vec::new(), at };
+        let at = vec![At::Free; bounds.bounds().len()];
+        let mut iterate = Iterate { problem, bounds, load, diagonal, x, gradient: Vec::new(), at };
         for (index, bound) in bounds.bounds().iter().enumerate() {
             if let Some(closed) = start.contact_set {
                 let value = &mut iterate.x[bound.unknown];
@@ -181,6 +188,10 @@ impl<'a> Iterate<'a> {
                     *value = bound.upper;
                 } else if bounds.is_closed(index, false, closed) {
                     *value = bound.lower;
+                } else if *value >= bound.upper {
+                    *value = bound.upper - INSIDE * bound.upper.abs();
+                } else if *value <= bound.lower {
+                    *value = bound.lower + INSIDE * bound.lower.abs();
                 }
             }
         }
@@ -265,8 +276,7 @@ impl<'a> Iterate<'a> {
     fn is_disproportionate(&self) -> bool {
         let weighted = |value: f64, unknown: usize| value * value / self.diagonal[unknown];
         let free: f64 = self.free_gradient().iter().enumerate().map(|(unknown, &g)| weighted(g, unknown)).sum();
-        let chopped =
-            |(index, bound): (usize, &super::bounds::Bound)| weighted(self.chopped_gradient(index), bound.unknown);
+        let chopped = |(index, bound): (usize, &Bound)| weighted(self.chopped_gradient(index), bound.unknown);
         self.bounds.bounds().iter().enumerate().map(chopped).sum::<f64>() > free
     }
 
@@ -289,7 +299,7 @@ impl<'a> Iterate<'a> {
 
     /// The longest t for which x - t d keeps within the bounds.
     fn longest_step(&self, direction: &[f64]) -> f64 {
-        let room = |bound: &super::bounds::Bound| {
+        let room = |bound: &Bound| {
             let (value, speed) = (self.x[bound.unknown], direction[bound.unknown]);
             match speed {
                 _ if speed > 0.0 => (value - bound.lower) / speed,
@@ -343,7 +353,7 @@ impl<'a> Iterate<'a> {
     /// What may not move, in the dofs of the problem.
     fn held(&self) -> Vec<Direction> {
         let closed = self.bounds.bounds().iter().zip(&self.at).filter(|entry| *entry.1 != At::Free);
-        closed.map(|(bound, _)| self.bounds.direction(bound, &self.touching)).collect()
+        closed.map(|(bound, _)| self.bounds.direction(bound)).collect()
     }
 
     fn preconditioned(&self, face: &Face, gradient: &[f64]) -> Vec<f64> {

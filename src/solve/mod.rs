@@ -51,10 +51,11 @@ pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, 
     match settings.method {
         Method::Mprgp => return iterative::solve(problem, settings),
         // What the iteration cannot take, the direct path may.
-        Method::Auto if is_large() => match iterative::solve(problem, settings) {
-            Ok(solution) => return Ok(solution),
-            Err(_) => {}
-        },
+        Method::Auto if is_large() => {
+            if let Ok(solution) = iterative::solve(problem, settings) {
+                return Ok(solution);
+            }
+        }
         _ => {}
     }
     let prepared = Prepared::with_threads(problem, settings.condense, settings.threads)?;

@@ -50,7 +50,7 @@ pub struct Settings {
     pub method: Method,
     /// Is the problem condensed onto its contact dofs?
     pub condense: Condense,
-    /// Threads of the sparse factorisations, at least 1.
+    /// Threads of the sparse factorisations and of multigrid, at least 1.
     pub threads: usize,
     /// Tolerance of the certificate, relative: what `Ok` promises.
     pub tolerance: f64,

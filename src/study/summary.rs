@@ -12,7 +12,7 @@ pub struct Summary {
     pub status: &'static str,
     /// Relative tolerance that the certificate was held against.
     pub tolerance: f64,
-    /// `qp`, `active-set` or `penalty`, with a suffix where a variant ran.
+    /// `qp`, `active-set`, `penalty` or `mprgp`, with a suffix where a variant ran.
     pub method: String,
     /// Iterations of the method.
     pub iterations: usize,

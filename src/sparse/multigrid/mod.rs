@@ -131,7 +131,7 @@ impl Multigrid {
         }
     }
 
-    /// Was the matrix singular to working precision, so that the coarsest level had to be held?
+    /// Was the matrix singular to the precision of its levels, so that the coarsest had to be held?
     pub fn is_shifted(&self) -> bool {
         match &self.levels {
             Levels::Single(hierarchy) => hierarchy.is_shifted(),

@@ -105,8 +105,8 @@ impl Nodes {
             }
         }
         let mut next: Vec<usize> = diagonal.iter().map(|place| place + 1).collect();
-        for node in 0..self.count {
-            for place in blocks.starts[node]..diagonal[node] {
+        for (node, &own) in diagonal.iter().enumerate() {
+            for place in blocks.starts[node]..own {
                 let other = blocks.indices[place] as usize;
                 let mirrored = next[other];
                 if mirrored < blocks.starts[other + 1] && blocks.indices[mirrored] as usize == node {
