@@ -18,6 +18,7 @@ step "examples";                    cargo build --quiet --release --examples --b
 cargo run --quiet --release --example two_springs
 cargo run --quiet --release --example verification
 cargo run --quiet --release --example contact_cost -- --only "Q4 64,Hex8 12" --rounds 1
+cargo run --quiet --release --example multigrid -- --most-dofs 20000
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cargo run --quiet --release --example impact

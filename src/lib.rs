@@ -86,5 +86,5 @@ pub use error::Error;
 pub use problem::ContactProblem;
 pub use scene::{Model, Scene};
 pub use solution::{Certificate, ContactSet, Goal, ProvenSet, Solution};
-pub use solve::{BoundarySolution, Condense, Method, Path, Precision, Prepared, Settings, solve, solve_qp};
+pub use solve::{BoundarySolution, Condense, Iterative, Method, Path, Precision, Prepared, Settings, Start, solve, solve_qp};
 pub use sparse::{SparseMatrix, SymmetricMatrix};

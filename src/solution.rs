@@ -85,7 +85,7 @@ impl fmt::Debug for ContactSet {
 /// | `adhesion` | `max (lambda)_+ / ls` |
 /// | `complementarity` | `max abs(lambda (B u - g)) / (ls us)` |
 /// | `duality_gap` | `abs(u'Ku - f'u - lambda'g) / es`, with the residual as far as it exceeds rounding |
-/// | `energy_error_bound` | an upper bound on `norm_K(u - u*) / norm_K(u)`, infinite where K is not positive definite |
+/// | `energy_error_bound` | an upper bound on `norm_K(u - u*) / norm_K(u)`, infinite where K is not positive definite or was not factorised |
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Certificate {
     /// Relative imbalance of forces.
@@ -227,7 +227,7 @@ pub struct Solution {
     pub multiplier: Vec<f64>,
     /// The closed rows.
     pub contact_set: ContactSet,
-    /// `qp`, `active-set` or `penalty`, with a suffix where a variant ran.
+    /// `qp`, `active-set`, `penalty` or `mprgp`, with a suffix where a variant ran.
     pub method: String,
     /// Iterations of the method itself (linear solves of a loop, or interior-point steps).
     pub iterations: usize,

@@ -12,8 +12,11 @@ pub(super) fn run(options: &Export) -> Result<Outcome, Error> {
     warn(&warnings(&model));
     let problem = model.problem();
     write_files(&options.directory, &matrix_market::problem_files(problem))?;
+    let near_null = matrix_market::near_null_file(problem);
+    let also = if near_null.is_some() { ", near_null.mtx" } else { "" };
+    write_files(&options.directory, &near_null.into_iter().collect::<Vec<_>>())?;
     let text = format!(
-        "{}: K.mtx, f.mtx, B.mtx, g.mtx with {} dofs and {} contact rows\n",
+        "{}: K.mtx, f.mtx, B.mtx, g.mtx{also} with {} dofs and {} contact rows\n",
         options.directory.display(),
         problem.dofs(),
         problem.rows()

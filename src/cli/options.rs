@@ -54,6 +54,8 @@ pub(super) enum MethodName {
     ActiveSet,
     /// Penalty loop
     Penalty,
+    /// Projected conjugate gradients with multigrid, for bodies too large to factorise
+    Mprgp,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -167,7 +169,7 @@ pub(super) struct Common {
     /// Let the methods work on all dofs instead of those of the contact rows
     #[arg(long)]
     pub no_condense: bool,
-    /// Threads of the sparse factorisations
+    /// Threads of the sparse factorisations and of multigrid
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = parse_threads)]
     pub threads: usize,
     /// Folder for pictures, fields and answers
@@ -203,7 +205,7 @@ pub(super) struct Tradeoff {
 pub(super) struct Export {
     /// Scene (a JSON file)
     pub scene: PathBuf,
-    /// Folder for K.mtx, f.mtx, B.mtx and g.mtx; made if missing
+    /// Folder for K.mtx, f.mtx, B.mtx, g.mtx and near_null.mtx; made if missing
     pub directory: PathBuf,
 }
 
@@ -258,6 +260,7 @@ impl MethodName {
             MethodName::Qp => solve::Method::Qp,
             MethodName::ActiveSet => solve::Method::ActiveSet,
             MethodName::Penalty => solve::Method::Penalty,
+            MethodName::Mprgp => solve::Method::Mprgp,
         }
     }
 }

@@ -1,12 +1,14 @@
 //! Problem directories: which file holds what.
 
-use std::path::Path;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
 
 use super::parse::{Content, Values, parse};
 use super::{format_matrix, format_symmetric, format_vector};
 use crate::error::Error;
 use crate::problem::ContactProblem;
 use crate::solution::Solution;
+use crate::sparse::multigrid::NearNullSpace;
 use crate::sparse::{SparseMatrix, SymmetricMatrix};
 
 /// Reads the problem of a directory.
@@ -22,7 +24,87 @@ pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
     let load = read_vector(&directory.join("f.mtx"))?;
     let contact = matrix(read(&directory.join("B.mtx"), Values::Finite)?)?;
     let gap = vector(&directory.join("g.mtx"), Values::FiniteOrInfinite)?;
-    ContactProblem::new(stiffness, load, contact, gap)
+    let problem = ContactProblem::new(stiffness, load, contact, gap)?;
+    match near_null(directory, problem.dofs())? {
+        Some(near_null) => problem.with_near_null(near_null),
+        None => Ok(problem),
+    }
+}
+
+/// What `near_null.mtx` says of the body, one column for each vector, or `coordinates.mtx`, one row for each node whose dofs
+/// follow each other, all of them free.
+fn near_null(directory: &Path, dofs: usize) -> Result<Option<NearNullSpace>, Error> {
+    let file = directory.join("near_null.mtx");
+    let (file, vectors) = if file.exists() {
+        let content = read(&file, Values::Finite)?;
+        if content.rows != dofs || content.columns == 0 {
+            let found = format!("it is {} x {}", content.rows, content.columns);
+            return Err(fault(
+                file,
+                format!("{found}, but it must have {dofs} rows, one per dof, and a column at least"),
+            ));
+        }
+        (file, columns(content))
+    } else {
+        let file = directory.join("coordinates.mtx");
+        if !file.exists() {
+            return Ok(None);
+        }
+        let content = read(&file, Values::Finite)?;
+        let (nodes, dimension) = (content.rows, content.columns);
+        if !(1..=3).contains(&dimension) || nodes.checked_mul(dimension) != Some(dofs) {
+            let message = format!(
+                "it is {nodes} x {dimension}, which makes {} dofs, but there are {dofs}; it must have a row for each node \
+                 and a column for each coordinate, 1 to 3 (where supports have taken dofs out, use near_null.mtx)",
+                nodes.saturating_mul(dimension)
+            );
+            return Err(fault(file, message));
+        }
+        (file, rigid_motions(&columns(content)))
+    };
+    NearNullSpace::new(vectors, dofs).map(Some).map_err(|error| fault(file, error.to_string()))
+}
+
+fn fault(file: PathBuf, message: String) -> Error {
+    Error::FileSyntax { file, line: 1, message }
+}
+
+fn columns(content: Content) -> Vec<Vec<f64>> {
+    let mut columns = vec![vec![0.0; content.rows]; content.columns];
+    content.entries.iter().for_each(|&(row, column, value)| columns[column][row] += value);
+    columns
+}
+
+/// Translations and rotations of nodes with the coordinates `axes`, node by node.
+fn rigid_motions(axes: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let (dimension, nodes) = (axes.len(), axes.first().map_or(0, Vec::len));
+    let mut motions = vec![vec![0.0; dimension * nodes]; dimension];
+    for (axis, motion) in motions.iter_mut().enumerate() {
+        (0..nodes).for_each(|node| motion[dimension * node + axis] = 1.0);
+    }
+    for first in 0..dimension {
+        for second in first + 1..dimension {
+            let mut rotation = vec![0.0; dimension * nodes];
+            let middle = [first, second].map(|axis| axes[axis].iter().sum::<f64>() / nodes.max(1) as f64);
+            for node in 0..nodes {
+                rotation[dimension * node + first] = middle[1] - axes[second][node];
+                rotation[dimension * node + second] = axes[first][node] - middle[0];
+            }
+            motions.push(rotation);
+        }
+    }
+    motions
+}
+
+/// Name and text of the file of a problem's near-null space, where it has one.
+pub fn near_null_file(problem: &ContactProblem) -> Option<(&'static str, String)> {
+    let vectors = problem.near_null()?.vectors();
+    let mut text = format!("%%MatrixMarket matrix array real general\n{} {}\n", problem.dofs(), vectors.len());
+    for value in vectors.iter().flatten() {
+        // Writing into a String cannot fail.
+        let _ = writeln!(text, "{value:e}");
+    }
+    Some(("near_null.mtx", text))
 }
 
 /// Reads a vector of finite numbers: one column, or one row.

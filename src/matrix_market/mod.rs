@@ -1,7 +1,8 @@
 //! Matrix Market files: the raw form in which problems and answers are exchanged.
 //!
 //! A problem directory holds `K.mtx` (symmetric), `f.mtx`, `B.mtx` and `g.mtx`; an answer adds `u.mtx` and `lambda.mtx`.
-//! Indices are the free dofs. A gap may be `inf`: a row without obstacle.
+//! Indices are the free dofs. A gap may be `inf`: a row without obstacle. Multigrid reads `near_null.mtx` (one column for
+//! each displacement that costs next to no energy, as the rigid motions) or `coordinates.mtx` (one row for each node).
 //!
 //! # Source
 //! R. F. Boisvert, R. Pozo, K. A. Remington, *The Matrix Market Exchange Formats: Initial Design*, NISTIR 5935 (1996).
@@ -9,7 +10,7 @@
 mod directory;
 mod parse;
 
-pub use directory::{problem_files, read_problem, read_vector, solution_files};
+pub use directory::{near_null_file, problem_files, read_problem, read_vector, solution_files};
 
 use std::fmt::Write;
 

@@ -3,8 +3,10 @@
 //! Nothing here knows what a body is: the words are those of the QP.
 
 pub mod active_set;
+mod bounds;
 mod holding;
 pub mod interior_point;
+pub mod mprgp;
 pub mod parametric;
 pub mod penalty;
 

@@ -201,7 +201,7 @@ fn conditions(certificate: &CertificateSummary) -> [(&'static str, &'static str,
     let number = |value: f64| if value == 0.0 { "0".to_string() } else { format!("{value:.1e}") };
     let bound = match certificate.energy_error_bound {
         bound if bound.is_finite() => number(bound),
-        _ => "none: K is not positive definite".to_string(),
+        _ => "none: K is not positive definite, or was not factorised".to_string(),
     };
     [
         ("stationarity", "|K u - f - B' lambda|", number(certificate.stationarity)),

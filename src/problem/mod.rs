@@ -7,7 +7,10 @@ mod proof;
 
 pub use energy_norm::EnergyNorm;
 
+use std::sync::Arc;
+
 use crate::error::Error;
+use crate::sparse::multigrid::NearNullSpace;
 use crate::sparse::{SparseMatrix, SymmetricMatrix};
 
 /// Frictionless unilateral contact as a convex quadratic program:
@@ -25,6 +28,7 @@ pub struct ContactProblem {
     load: Vec<f64>,
     contact: SparseMatrix,
     gap: Vec<f64>,
+    near_null: Option<Arc<NearNullSpace>>,
 }
 
 impl ContactProblem {
@@ -52,7 +56,26 @@ impl ContactProblem {
         if let Some((dof, value)) = stiffness.diagonal().iter().enumerate().find(|entry| *entry.1 < 0.0) {
             return Err(Error::NotConvex { evidence: format!("diagonal entry {dof} is {value:e}, indices from 0") });
         }
-        Ok(ContactProblem { stiffness, load, contact, gap })
+        Ok(ContactProblem { stiffness, load, contact, gap, near_null: None })
+    }
+
+    /// The same problem with what multigrid should know of its body: displacements that cost next to no energy, as the
+    /// rigid motions.
+    ///
+    /// # Errors
+    /// [`Error::Length`] where they are not those of so many dofs.
+    pub fn with_near_null(self, near_null: impl Into<Arc<NearNullSpace>>) -> Result<Self, Error> {
+        let near_null = near_null.into();
+        let (found, expected) = (near_null.dofs(), self.dofs());
+        if found != expected {
+            return Err(Error::Length { name: "near-null vector", found, expected, of: "dofs" });
+        }
+        Ok(ContactProblem { near_null: Some(near_null), ..self })
+    }
+
+    /// The near-null space, where one was given.
+    pub fn near_null(&self) -> Option<&Arc<NearNullSpace>> {
+        self.near_null.as_ref()
     }
 
     /// Number of dofs n.
@@ -108,8 +131,8 @@ impl ContactProblem {
     pub fn with(&self, load: Vec<f64>, gap: Vec<f64>) -> Result<Self, Error> {
         check_load(&load, self.dofs())?;
         check_gap(&gap, self.rows())?;
-        let (stiffness, contact) = (self.stiffness.clone(), self.contact.clone());
-        Ok(ContactProblem { stiffness, load, contact, gap })
+        let (stiffness, contact, near_null) = (self.stiffness.clone(), self.contact.clone(), self.near_null.clone());
+        Ok(ContactProblem { stiffness, load, contact, gap, near_null })
     }
 
     /// The violation B u - g of each row, length m: positive is penetration; `-inf` where there is no obstacle.

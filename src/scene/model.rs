@@ -5,13 +5,14 @@ use std::sync::Arc;
 use super::motion::RigidMotions;
 use super::rows::{self, ContactRow};
 use super::{Obstacle, Units, Warning, wrong};
-use crate::assembly::{DofMap, free_load, internal_force, stiffness};
+use crate::assembly::{DofMap, free_load, internal_force, rigid_motions, stiffness};
 use crate::body::ElasticBody;
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::problem::ContactProblem;
 use crate::recovery::{self, StressField};
 use crate::sparse::SymmetricMatrix;
+use crate::sparse::multigrid::NearNullSpace;
 
 /// Tributary areas below this, relative to the largest, are rounding of zero; radii, relative to the size of the body.
 const NO_AREA: f64 = 1e-12;
@@ -59,17 +60,20 @@ impl Model {
             other => other,
         })?;
         let load = free_load(&parts.body, &parts.dofs, &parts.load)?;
-        Self::with_rows(Arc::new(parts), gap, built, stiffness, load)
+        let near_null = NearNullSpace::of_motions(rigid_motions(&parts.body, &parts.dofs)).map(Arc::new);
+        Self::with_rows(Arc::new(parts), gap, built, (stiffness, load, near_null))
     }
 
     fn with_rows(
         parts: Arc<Parts>,
         gap: f64,
         built: rows::Rows,
-        stiffness: SymmetricMatrix,
-        load: Vec<f64>,
+        (stiffness, load, near_null): (SymmetricMatrix, Vec<f64>, Option<Arc<NearNullSpace>>),
     ) -> Result<Self, Error> {
-        let problem = ContactProblem::new(stiffness, load, built.contact, built.gap)?;
+        let mut problem = ContactProblem::new(stiffness, load, built.contact, built.gap)?;
+        if let Some(near_null) = near_null {
+            problem = problem.with_near_null(near_null)?;
+        }
         let warnings = parts.warnings.iter().cloned().chain(built.warnings).collect();
         Ok(Model { parts, gap, rows: built.rows, warnings, problem })
     }
@@ -85,7 +89,8 @@ impl Model {
             RigidMotions::of(&self.parts.body).check_held(&self.parts, &built.rows)?;
         }
         let (stiffness, load) = (self.problem.stiffness().clone(), self.problem.load().to_vec());
-        Self::with_rows(self.parts.clone(), gap, built, stiffness, load)
+        let near_null = self.problem.near_null().cloned();
+        Self::with_rows(self.parts.clone(), gap, built, (stiffness, load, near_null))
     }
 
     pub(super) fn parts(&self) -> &Parts {

@@ -1,6 +1,8 @@
 //! From a contact problem to a certified answer: select rows, scale, condense, method, expand, certify.
 
 mod boundary;
+mod estimate;
+mod iterative;
 mod loading;
 mod path;
 mod prepared;
@@ -8,8 +10,11 @@ mod refinement;
 mod rules;
 mod settings;
 
+pub use crate::method::mprgp::Start;
 pub use crate::method::parametric::{Event, Piece};
 pub use boundary::BoundarySolution;
+pub use estimate::Estimate;
+pub use iterative::Iterative;
 pub use path::Path;
 pub use prepared::Prepared;
 pub use settings::{Condense, Method, Precision, Settings};
@@ -43,6 +48,20 @@ pub fn solve_qp(problem: &ContactProblem) -> Result<Solution, Error> {
 /// * [`Error::NotCertified`] with the best answer, where it does not meet the tolerance,
 /// * [`Error::Numerical`] where memory does not suffice.
 pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
+    settings.check()?;
+    // Without a factor there is no bound to hold an accuracy against.
+    let is_free = settings.accuracy.is_none() && settings.time.is_none();
+    let is_large = || problem.near_null().is_some() && Estimate::of(problem).prefers_multigrid(f64::INFINITY);
+    match settings.method {
+        Method::Mprgp => return iterative::solve(problem, settings),
+        // What the iteration cannot take, the direct path may.
+        Method::Auto if is_free && is_large() => {
+            if let Ok(solution) = iterative::solve(problem, settings) {
+                return Ok(solution);
+            }
+        }
+        _ => {}
+    }
     let prepared = match Prepared::with_settings(problem, settings) {
         Err(Error::OutOfTime { needed, time }) => return Err(nothing_found(problem, needed, time)?),
         prepared => prepared?,
@@ -136,6 +155,10 @@ fn run(
                 goal: settings.accuracy.map(|accuracy| penalty::Goal { accuracy, bound }),
             };
             penalty::solve(scaled, start.unwrap_or(cold), ladder, settings.max_iterations)?
+        }
+        Method::Mprgp => {
+            let reason = "its hierarchy stands in `Iterative`, which is prepared without a factorisation".to_string();
+            return Err(Error::Numerical { step: "MPRGP on a factorised problem", reason });
         }
     };
     scaled.check_unique(&outcome)?;

@@ -7,7 +7,7 @@ use crate::solution::Goal;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Method {
-    /// The program chooses, by rules fitted to measured times.
+    /// The program chooses, by rules fitted to measured times; MPRGP where the factor of a body in space would cost much more.
     #[default]
     Auto,
     /// Convex QP by Clarabel, its contact set settled by the active-set loop.
@@ -16,16 +16,19 @@ pub enum Method {
     ActiveSet,
     /// Penalty loop with a growing penalty.
     Penalty,
+    /// Projected conjugate gradients with a multigrid hierarchy: no factorisation of the body.
+    Mprgp,
 }
 
 impl Method {
-    /// The name in reports: `qp`, `active-set` or `penalty`; what chooses among them is `auto`.
+    /// The name in reports: `qp`, `active-set`, `penalty` or `mprgp`; what chooses among them is `auto`.
     pub fn name(self) -> &'static str {
         match self {
             Method::Auto => "auto",
             Method::Qp => "qp",
             Method::ActiveSet => "active-set",
             Method::Penalty => "penalty",
+            Method::Mprgp => "mprgp",
         }
     }
 }
@@ -63,7 +66,7 @@ pub struct Settings {
     pub method: Method,
     /// Is the problem condensed onto its contact dofs?
     pub condense: Condense,
-    /// Threads of the sparse factorisations, at least 1.
+    /// Threads of the sparse factorisations and of multigrid, at least 1.
     pub threads: usize,
     /// Precision of the sparse factor.
     pub precision: Precision,

@@ -6,6 +6,7 @@ mod cholesky;
 mod definite;
 mod elimination;
 mod factor;
+pub mod multigrid;
 mod ordering;
 mod power_of_two;
 mod quotient;

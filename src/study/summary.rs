@@ -15,7 +15,7 @@ pub struct Summary {
     /// Relative energy error that was asked for, which the bound is held against instead.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub accuracy: Option<f64>,
-    /// `qp`, `active-set` or `penalty`, with a suffix where a variant ran.
+    /// `qp`, `active-set`, `penalty` or `mprgp`, with a suffix where a variant ran.
     pub method: String,
     /// Iterations of the method.
     pub iterations: usize,

@@ -104,6 +104,20 @@ pub fn clamped_square(n: usize, obstacles: Value, gap: f64) -> Value {
     })
 }
 
+/// A unit cube of n x n x n Hex8, clamped below, under a sphere of radius 2 that starts `gap` above its top.
+pub fn clamped_block(n: usize, gap: f64) -> Value {
+    let axis = json!({"points": [0, 1], "divisions": [n]});
+    json!({
+        "model": "space",
+        "body": {"box": {"x": axis, "y": axis, "z": axis, "element": "hex8"}},
+        "material": {"young": 1e7, "poisson": 0.3},
+        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0, "z": 0}],
+        "obstacles": [{"boundary": "top", "approach": "+z", "rule": "approach",
+                       "shape": {"sphere": {"apex": [0.5, 0.5, 1], "radius": 2}}}],
+        "gap": gap
+    })
+}
+
 /// Builds a scene that is known to be right.
 pub fn built(scene: &Value) -> Model {
     Scene::from_json(&scene.to_string(), "scene").unwrap().build().unwrap()

@@ -1,0 +1,39 @@
+//! The blocks that are measured: clamped below, a sphere pressed into the top.
+
+use serde_json::{Value, json};
+use signorini::{Error, Model, Scene};
+
+/// A unit block of `cells` Hex8 along each side.
+#[derive(Clone, Copy)]
+pub struct Case {
+    pub cells: usize,
+    /// Radius of the sphere: within the contact it is the paraboloid of that radius to one part in 400.
+    pub radius: f64,
+    pub gap: f64,
+}
+
+const fn block(cells: usize) -> Case {
+    Case { cells, radius: 2.0, gap: -0.01 }
+}
+
+/// 13,872 and 104,544 and 811,200 dofs, and a wide contact.
+pub const CASES: [Case; 4] = [block(16), block(32), Case { cells: 32, radius: 0.5, gap: -0.1 }, block(64)];
+
+impl Case {
+    pub fn scene(&self) -> Value {
+        let axis = json!({"points": [0, 1], "divisions": [self.cells]});
+        json!({
+            "model": "space",
+            "body": {"box": {"x": axis, "y": axis, "z": axis, "element": "hex8"}},
+            "material": {"young": 1e7, "poisson": 0.3},
+            "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0, "z": 0}],
+            "obstacles": [{"boundary": "top", "approach": "+z", "rule": "approach",
+                           "shape": {"sphere": {"apex": [0.5, 0.5, 1], "radius": self.radius}}}],
+            "gap": self.gap,
+        })
+    }
+
+    pub fn model(&self) -> Result<Model, Error> {
+        Scene::from_json(&self.scene().to_string(), "block")?.build()
+    }
+}

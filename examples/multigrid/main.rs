@@ -1,0 +1,100 @@
+//! What a contact solve by multigrid costs beside one linear solve by the same hierarchy, and beside the direct path:
+//! `cargo run --release --example multigrid [-- --out DIR] [--most-dofs N]`; with `--bodies` other
+//! bodies, with `--scene SCENE.json` one's own.
+//!
+//! Every case is a process of its own; seconds are those of the processor, all threads together, the column of two
+//! threads is by the clock. A folder gets the table as Markdown and JSON and the plot of the growth.
+
+mod bodies;
+mod case;
+mod growth;
+mod measure;
+
+use std::path::Path;
+use std::process::{Command, ExitCode, Stdio};
+
+use case::{CASES, Case};
+use serde_json::{Value, json};
+use signorini::Scene;
+use signorini::output::{write_files, write_picture};
+
+type Failure = Box<dyn std::error::Error>;
+
+/// The direct path is not measured beyond: its factor would take tens of gigabytes.
+const MOST_DIRECT: usize = 120_000;
+
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run() -> Result<(), Failure> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let option =
+        |name: &str| words.iter().position(|word| *word == name).and_then(|place| words.get(place + 1)).copied();
+    match words[..] {
+        ["iterative", index, threads] => {
+            println!("{}", measure::iterative(&CASES[index.parse::<usize>()?].model()?, threads.parse()?)?);
+        }
+        ["direct", index] => println!("{}", measure::direct(&CASES[index.parse::<usize>()?].model()?)?),
+        ["body", index] => {
+            let (name, scene) = bodies::bodies().swap_remove(index.parse()?);
+            println!("{}", measure::iterative(&Scene::from_json(&scene.to_string(), name)?.build()?, 1)?);
+        }
+        ["--bodies"] => {
+            println!("{}", growth::BODIES_HEAD);
+            for (index, (name, _)) in bodies::bodies().iter().enumerate() {
+                println!("{}", growth::body_line(name, &child(&["body", &index.to_string()])?));
+            }
+        }
+        _ => match option("--scene") {
+            Some(scene) => {
+                let model = Scene::read(Path::new(scene))?.build()?;
+                println!("{}\n{}", growth::BODIES_HEAD, growth::body_line(scene, &measure::iterative(&model, 1)?));
+            }
+            None => measure_all(option("--out"), option("--most-dofs").unwrap_or("1000000").parse()?)?,
+        },
+    }
+    Ok(())
+}
+
+fn measure_all(out: Option<&str>, most_dofs: usize) -> Result<(), Failure> {
+    let dofs = |case: &Case| 3 * (case.cells + 1).pow(2) * case.cells;
+    let mut measured = Vec::new();
+    for (index, case) in CASES.iter().enumerate().filter(|entry| dofs(entry.1) <= most_dofs) {
+        eprintln!("{} dofs ...", dofs(case));
+        let index = index.to_string();
+        let mut of_case = child(&["iterative", &index, "1"])?;
+        of_case["two_threads"] = child(&["iterative", &index, "2"])?["wall"].take();
+        of_case["radius"] = json!(case.radius);
+        if dofs(case) <= MOST_DIRECT {
+            let direct = child(&["direct", &index])?;
+            of_case["same_set"] = json!(direct["closed_rows"] == of_case["closed_rows"]);
+            of_case["direct"] = direct;
+        }
+        measured.push(of_case);
+    }
+    let text = growth::table(&measured);
+    print!("{text}");
+    if let Some(folder) = out.map(Path::new) {
+        let json = format!("{:#}\n", json!({ "cases": measured }));
+        write_files(folder, &[("multigrid.md", text), ("multigrid.json", json)])?;
+        write_picture(folder, "multigrid", &growth::plot(&measured))?;
+    }
+    Ok(())
+}
+
+/// What this program prints when it is run with `arguments`.
+fn child(arguments: &[&str]) -> Result<Value, Failure> {
+    let output = Command::new(std::env::current_exe()?).args(arguments).stderr(Stdio::inherit()).output()?;
+    if !output.status.success() {
+        return Err(format!("{arguments:?} failed").into());
+    }
+    Ok(serde_json::from_slice(&output.stdout)?)
+}

@@ -1,0 +1,78 @@
+//! What is measured, each in a process of its own.
+
+use std::time::Instant;
+
+use serde_json::{Value, json};
+use signorini::sparse::multigrid::{Multigrid, conjugate_gradients};
+use signorini::{Condense, Error, Iterative, Method, Model, Prepared, Settings, Start};
+
+/// Relative residual of the linear solve, and tolerance of the contact solve.
+const TOLERANCE: f64 = 1e-8;
+
+const MOST_CYCLES: usize = 2000;
+
+/// Seconds that all threads of this process have had a processor; wall-clock seconds where the system does not tell.
+fn processor_seconds(start: Instant) -> f64 {
+    let from_system = || -> Option<f64> {
+        let mut sum = 0.0;
+        for thread in std::fs::read_dir("/proc/self/task").ok()? {
+            let text = std::fs::read_to_string(thread.ok()?.path().join("schedstat")).ok()?;
+            sum += 1e-9 * text.split_whitespace().next()?.parse::<f64>().ok()?;
+        }
+        Some(sum)
+    };
+    std::thread::yield_now();
+    from_system().unwrap_or_else(|| start.elapsed().as_secs_f64())
+}
+
+/// Bytes of the greatest memory that this process ever had.
+fn peak_bytes() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = text.lines().find(|line| line.starts_with("VmHWM"))?;
+    Some(1024.0 * line.split_whitespace().nth(1)?.parse::<f64>().ok()?)
+}
+
+/// Hierarchy, linear solve and contact solve of a model, on so many threads.
+pub fn iterative(model: &Model, threads: usize) -> Result<Value, Error> {
+    let (problem, clock) = (model.problem(), Instant::now());
+    let start = processor_seconds(clock);
+    let since = |from: f64| processor_seconds(clock) - from;
+    let iterative = Iterative::new(problem, threads)?;
+    let (set_up, set_up_clock) = (since(start), clock.elapsed().as_secs_f64());
+    let multigrid: &Multigrid = iterative.multigrid();
+    let load = problem.contact().mul_transposed(&vec![-1.0; problem.rows()]);
+    let (from, from_clock) = (processor_seconds(clock), clock.elapsed().as_secs_f64());
+    // A body that only contact holds has no linear solve beside it.
+    let linear = match multigrid.is_shifted() {
+        true => None,
+        false => Some(conjugate_gradients(problem.stiffness(), &load, multigrid, TOLERANCE, MOST_CYCLES)?.cycles),
+    };
+    let (linear_seconds, linear_clock) = (since(from), clock.elapsed().as_secs_f64() - from_clock);
+    let mut settings = Settings::with_method(Method::Mprgp);
+    settings.tolerance = TOLERANCE;
+    let (from, from_clock) = (processor_seconds(clock), clock.elapsed().as_secs_f64());
+    let contact = iterative.solve(Start::default(), &settings)?;
+    let (contact_seconds, contact_clock) = (since(from), clock.elapsed().as_secs_f64() - from_clock);
+    let worst = contact.certificate.conditions().iter().fold(0.0, |worst: f64, entry| worst.max(entry.1));
+    Ok(json!({
+        "dofs": problem.dofs(), "rows": problem.rows(), "unknowns": multigrid.unknowns(), "bytes": multigrid.bytes(),
+        "set_up": set_up, "linear_cycles": linear, "linear": linear_seconds,
+        "contact_cycles": contact.iterations, "contact": contact_seconds, "sets": contact.history.len(),
+        "closed": contact.contact_set.count(), "certificate": worst,
+        "closed_rows": contact.contact_set.iter().collect::<Vec<_>>(),
+        "wall": {"set_up": set_up_clock, "linear": linear_clock, "contact": contact_clock},
+        "peak_bytes": peak_bytes(),
+    }))
+}
+
+/// The direct path: one factorisation, contact by the active set.
+pub fn direct(model: &Model) -> Result<Value, Error> {
+    let clock = Instant::now();
+    let start = processor_seconds(clock);
+    let prepared = Prepared::new(model.problem(), Condense::Auto)?;
+    let contact = prepared.solve(&Settings::with_method(Method::ActiveSet))?;
+    Ok(json!({
+        "dofs": model.problem().dofs(), "contact": processor_seconds(clock) - start,
+        "closed_rows": contact.contact_set.iter().collect::<Vec<_>>(), "peak_bytes": peak_bytes(),
+    }))
+}

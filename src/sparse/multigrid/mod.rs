@@ -1,0 +1,177 @@
+//! Smoothed-aggregation multigrid for symmetric matrices whose near-null space is known, as for the stiffness of a body.
+//!
+//! Nodes are gathered into aggregates along strong connections; the near-null vectors, cut into aggregates and made
+//! orthonormal, are the tentative prolongator, which one step of damped Jacobi smooths; the next matrix is the Galerkin
+//! product. One cycle smooths by a Chebyshev polynomial, corrects on the next level, and smooths again; the coarsest
+//! matrix is factorised. The cycle is a symmetric positive definite preconditioner.
+//!
+//! # Source
+//! P. Vaněk, M. Brezina, J. Mandel, *Convergence of algebraic multigrid based on smoothed aggregation*, Numer. Math. 88
+//! (2001) 559-579.
+
+mod aggregation;
+mod blocks;
+mod chebyshev;
+mod conjugate_gradients;
+mod face;
+mod hierarchy;
+mod near_null;
+mod nodes;
+mod operator;
+mod prolongator;
+mod real;
+mod threads;
+
+pub use conjugate_gradients::{ConjugateGradients, conjugate_gradients};
+pub use face::Direction;
+pub use near_null::NearNullSpace;
+
+use super::{FactorError, SymmetricMatrix, exponent, largest};
+use crate::error::Error;
+use face::FaceLevels;
+use hierarchy::Hierarchy;
+
+/// The precision in which the levels are stored; the iteration around them is in double precision always.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Precision {
+    /// Half the memory, and the same number of cycles but for nearly singular matrices.
+    #[default]
+    Single,
+    /// All digits.
+    Double,
+}
+
+/// The hierarchy of a symmetric positive (semi)definite matrix: one cycle stands for its inverse.
+#[derive(Debug)]
+pub struct Multigrid {
+    levels: Levels,
+}
+
+#[derive(Debug)]
+enum Levels {
+    Single(Hierarchy<f32>),
+    Double(Hierarchy<f64>),
+}
+
+impl Multigrid {
+    /// Builds the hierarchy of `matrix` (n x n) in single precision, or in double where rounding to single loses that the
+    /// matrix is definite.
+    ///
+    /// # Errors
+    /// [`Error::Length`] for a near-null space of other than n dofs, [`Error::NotConvex`] for a diagonal entry that is not
+    /// positive and for a coarse matrix with a negative eigenvalue, [`Error::Numerical`] for want of memory.
+    pub fn new(matrix: &SymmetricMatrix, near_null: &NearNullSpace, threads: usize) -> Result<Self, Error> {
+        match Self::with_precision(matrix, near_null, threads, Precision::Single) {
+            Err(Error::NotConvex { .. }) => Self::with_precision(matrix, near_null, threads, Precision::Double),
+            built => built,
+        }
+    }
+
+    /// As [`Multigrid::new`], in the precision given.
+    ///
+    /// # Errors
+    /// As [`Multigrid::new`].
+    pub fn with_precision(
+        matrix: &SymmetricMatrix,
+        near_null: &NearNullSpace,
+        threads: usize,
+        precision: Precision,
+    ) -> Result<Self, Error> {
+        if near_null.dofs() != matrix.dim() {
+            let (found, expected) = (near_null.dofs(), matrix.dim());
+            return Err(Error::Length { name: "near-null vector", found, expected, of: "dofs" });
+        }
+        if let Some((dof, value)) = matrix.diagonal().iter().enumerate().find(|entry| *entry.1 <= 0.0) {
+            return Err(Error::NotConvex { evidence: format!("diagonal entry {dof} is {value:e}, indices from 0") });
+        }
+        let levels = match precision {
+            Precision::Single => Hierarchy::new(matrix, near_null, threads).map(Levels::Single),
+            Precision::Double => Hierarchy::new(matrix, near_null, threads).map(Levels::Double),
+        };
+        Ok(Multigrid { levels: levels.map_err(located)? })
+    }
+
+    /// One cycle: approximately the solution x of A x = b, linear in b and symmetric.
+    pub fn cycle(&self, b: &[f64]) -> Vec<f64> {
+        match &self.levels {
+            Levels::Single(hierarchy) => hierarchy.cycle(b, to_order_one(b), None),
+            Levels::Double(hierarchy) => hierarchy.cycle(b, to_order_one(b), None),
+        }
+    }
+
+    /// The hierarchy with nothing moving along `directions`, orthonormal vectors of few dofs each.
+    ///
+    /// # Errors
+    /// As [`Multigrid::new`].
+    pub fn face(&self, directions: &[Direction]) -> Result<Face<'_>, Error> {
+        let levels = match &self.levels {
+            Levels::Single(hierarchy) => {
+                FaceLevels::new(hierarchy, directions).map(|face| LevelsInFace::Single(hierarchy, face))
+            }
+            Levels::Double(hierarchy) => {
+                FaceLevels::new(hierarchy, directions).map(|face| LevelsInFace::Double(hierarchy, face))
+            }
+        };
+        Ok(Face { levels: levels.map_err(located)? })
+    }
+
+    /// Unknowns of each level, the finest first.
+    pub fn unknowns(&self) -> Vec<usize> {
+        match &self.levels {
+            Levels::Single(hierarchy) => hierarchy.unknowns(),
+            Levels::Double(hierarchy) => hierarchy.unknowns(),
+        }
+    }
+
+    /// Bytes that it holds.
+    pub fn bytes(&self) -> usize {
+        match &self.levels {
+            Levels::Single(hierarchy) => hierarchy.bytes(),
+            Levels::Double(hierarchy) => hierarchy.bytes(),
+        }
+    }
+
+    /// Was the matrix singular to the precision of its levels, so that the coarsest had to be held?
+    pub fn is_shifted(&self) -> bool {
+        match &self.levels {
+            Levels::Single(hierarchy) => hierarchy.is_shifted(),
+            Levels::Double(hierarchy) => hierarchy.is_shifted(),
+        }
+    }
+}
+
+/// A hierarchy in a face: one cycle stands for the inverse of the matrix there.
+#[derive(Debug)]
+pub struct Face<'a> {
+    levels: LevelsInFace<'a>,
+}
+
+#[derive(Debug)]
+enum LevelsInFace<'a> {
+    Single(&'a Hierarchy<f32>, FaceLevels<f32>),
+    Double(&'a Hierarchy<f64>, FaceLevels<f64>),
+}
+
+impl Face<'_> {
+    /// One cycle: approximately the x in the face with A x - b orthogonal to it.
+    pub fn cycle(&self, b: &[f64]) -> Vec<f64> {
+        match &self.levels {
+            LevelsInFace::Single(hierarchy, face) => hierarchy.cycle(b, to_order_one(b), Some(face)),
+            LevelsInFace::Double(hierarchy, face) => hierarchy.cycle(b, to_order_one(b), Some(face)),
+        }
+    }
+}
+
+/// Single precision has a small range: the exponent that makes b of order one.
+fn to_order_one(b: &[f64]) -> i32 {
+    -exponent(largest(b))
+}
+
+fn located(error: FactorError) -> Error {
+    match error {
+        FactorError::NotPositiveDefinite => {
+            Error::NotConvex { evidence: "the coarsest matrix of its hierarchy has a negative eigenvalue".into() }
+        }
+        other => other.into(),
+    }
+}

@@ -1,0 +1,109 @@
+//! The prolongator of a level: near-null vectors cut into aggregates, made orthonormal, smoothed.
+
+use super::blocks::BlockMatrix;
+use super::real::Real;
+
+/// A near-null vector of which less than this is left within an aggregate, after those before it are taken off, is no
+/// motion of its own there: two nodes do not turn about the line through them.
+const DEPENDENT: f64 = 1e-8;
+
+/// The near-null space on a level: `count` values for each place, place by place.
+#[derive(Clone, Debug)]
+pub struct Candidates {
+    /// Number of vectors.
+    pub count: usize,
+    /// Their values.
+    pub values: Vec<f64>,
+}
+
+/// The tentative prolongator, whose columns are the vectors of `fine` within each aggregate, made orthonormal, and the
+/// near-null space in its columns. `size` is the number of places of a node.
+///
+/// Columns that follow from others stay empty.
+pub fn tentative<T: Real>(
+    fine: &Candidates,
+    size: usize,
+    of_node: &[u32],
+    aggregates: usize,
+) -> (BlockMatrix<T>, Candidates) {
+    let count = fine.count;
+    let mut starts = vec![0_usize; aggregates + 1];
+    of_node.iter().for_each(|&aggregate| starts[aggregate as usize + 1] += 1);
+    (0..aggregates).for_each(|aggregate| starts[aggregate + 1] += starts[aggregate]);
+    let mut next = starts.clone();
+    let mut members = vec![0_usize; of_node.len()];
+    for (node, &aggregate) in of_node.iter().enumerate() {
+        members[next[aggregate as usize]] = node;
+        next[aggregate as usize] += 1;
+    }
+    let mut values = vec![T::default(); of_node.len() * size * count];
+    let mut coarse = Candidates { count, values: vec![0.0; aggregates * count * count] };
+    let mut local: Vec<f64> = Vec::new();
+    for aggregate in 0..aggregates {
+        let nodes = &members[starts[aggregate]..starts[aggregate + 1]];
+        local.clear();
+        for &node in nodes {
+            local.extend_from_slice(&fine.values[node * size * count..(node + 1) * size * count]);
+        }
+        let triangle = &mut coarse.values[aggregate * count * count..(aggregate + 1) * count * count];
+        orthonormalise(&mut local, count, triangle);
+        for (&node, of_node) in nodes.iter().zip(local.chunks_exact(size * count)) {
+            let target = &mut values[node * size * count..(node + 1) * size * count];
+            target.iter_mut().zip(of_node).for_each(|(target, &value)| *target = T::of(value));
+        }
+    }
+    let starts = (0..=of_node.len()).collect();
+    let indices = of_node.to_vec();
+    (BlockMatrix { height: size, width: count, columns: aggregates, starts, indices, values }, coarse)
+}
+
+/// Q R of the rows of `local`, `count` values each, in place: twice modified Gram-Schmidt. `triangle` is R, row by row.
+fn orthonormalise(local: &mut [f64], count: usize, triangle: &mut [f64]) {
+    for column in 0..count {
+        let length = |local: &[f64]| local.iter().skip(column).step_by(count).map(|v| v * v).sum::<f64>().sqrt();
+        let whole = length(local);
+        for _ in 0..2 {
+            for before in 0..column {
+                let along: f64 = local.chunks_exact(count).map(|row| row[before] * row[column]).sum();
+                local.chunks_exact_mut(count).for_each(|row| row[column] -= along * row[before]);
+                triangle[before * count + column] += along;
+            }
+        }
+        let rest = length(local);
+        let scale = if rest > DEPENDENT * whole { 1.0 / rest } else { 0.0 };
+        local.chunks_exact_mut(count).for_each(|row| row[column] *= scale);
+        triangle[column * count + column] = if scale == 0.0 { 0.0 } else { rest };
+    }
+}
+
+/// `T - step D^-1 (A T)` from T and `moved` = A T, whose pattern holds that of T; `inverse` holds the blocks of D^-1.
+pub fn smoothed<T: Real>(
+    tentative: &BlockMatrix<T>,
+    mut moved: BlockMatrix<T>,
+    inverse: &[T],
+    step: f64,
+) -> BlockMatrix<T> {
+    let (height, width) = (moved.height, moved.width);
+    let step = T::of(step);
+    let mut column = vec![T::default(); height];
+    for node in 0..moved.rows() {
+        let of_node = &inverse[node * height * height..(node + 1) * height * height];
+        let own = tentative.indices[node];
+        for place in moved.starts[node]..moved.starts[node + 1] {
+            let is_own = moved.indices[place] == own;
+            let block = &mut moved.values[place * height * width..(place + 1) * height * width];
+            for j in 0..width {
+                column.iter_mut().enumerate().for_each(|(i, entry)| *entry = block[i * width + j]);
+                for i in 0..height {
+                    let mut sum = T::default();
+                    for (k, &entry) in column.iter().enumerate() {
+                        sum += of_node[i * height + k] * entry;
+                    }
+                    let before = if is_own { tentative.block(node)[i * width + j] } else { T::default() };
+                    block[i * width + j] = before - step * sum;
+                }
+            }
+        }
+    }
+    moved
+}
