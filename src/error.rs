@@ -129,6 +129,25 @@ pub enum Error {
         /// Which step.
         step: &'static str,
     },
+    /// A scene that needs more memory than it may take.
+    #[error(
+        "the scene needs about {} of memory, but {} are allowed: about {dofs:.0e} dofs, {stiffness_entries:.0e} entries \
+         of the stiffness, {factor_entries:.0e} of its factor; take larger cells, or allow more",
+        memory(*bytes),
+        memory(*allowed)
+    )]
+    TooLarge {
+        /// Unknowns.
+        dofs: f64,
+        /// Entries of the stiffness, both triangles.
+        stiffness_entries: f64,
+        /// Values of its Cholesky factor.
+        factor_entries: f64,
+        /// Memory that all of it takes, estimated, in bytes.
+        bytes: f64,
+        /// Memory that it may take, in bytes.
+        allowed: f64,
+    },
     /// A library step that failed for a reason of its own.
     #[error("{step} failed: {reason}")]
     Numerical {
@@ -185,4 +204,9 @@ pub enum Error {
         /// The system's reason.
         source: std::io::Error,
     },
+}
+
+/// Bytes as a reader writes them.
+fn memory(bytes: f64) -> String {
+    if bytes < 1e9 { format!("{:.0} MB", bytes / 1e6) } else { format!("{:.1} GB", bytes / 1e9) }
 }

@@ -1,15 +1,14 @@
 //! `signorini export`: the problem of a scene as Matrix Market files.
 
-use super::input::warnings;
+use super::input::{read_scene, warnings};
 use super::options::Export;
 use super::{Outcome, warn};
 use crate::error::Error;
 use crate::matrix_market;
 use crate::output::write_files;
-use crate::scene::Scene;
 
 pub(super) fn run(options: &Export) -> Result<Outcome, Error> {
-    let model = Scene::read(&options.scene)?.build()?;
+    let model = read_scene(&options.scene, &options.memory)?.build()?;
     warn(&warnings(&model));
     let problem = model.problem();
     write_files(&options.directory, &matrix_market::problem_files(problem))?;

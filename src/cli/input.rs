@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
+use super::options::Memory;
 use crate::error::Error;
 use crate::matrix_market;
 use crate::output::UnitNames;
@@ -25,14 +26,14 @@ pub(super) enum Content {
 }
 
 impl Input {
-    /// Reads a problem directory, if `path` is one, or else a scene.
-    pub fn read(path: &Path) -> Result<Self, Error> {
+    /// Reads a problem directory, if `path` is one, or else a scene that fits into so much `memory`.
+    pub fn read(path: &Path, memory: &Memory) -> Result<Self, Error> {
         let clock = Instant::now();
         let (title, units, content) = if path.is_dir() {
             let title = format!("Problem directory {}", path.display());
             (title, UnitNames::default(), Content::Directory(matrix_market::read_problem(path)?))
         } else {
-            let model = Scene::read(path)?.build()?;
+            let model = read_scene(path, memory)?.build()?;
             (scene_title(&model, path), unit_names(&model), Content::Scene(Box::new(model)))
         };
         Ok(Input { title, units, assemble_seconds: clock.elapsed().as_secs_f64(), content })
@@ -70,6 +71,13 @@ impl Input {
             Content::Directory(_) => String::new(),
         }
     }
+}
+
+/// Reads a scene and makes sure that it fits into so much `memory`.
+pub(super) fn read_scene(path: &Path, memory: &Memory) -> Result<Scene, Error> {
+    let scene = Scene::read(path)?;
+    scene.check_size(memory.most())?;
+    Ok(scene)
 }
 
 /// The title of a scene, or its file where it has none.

@@ -3,6 +3,7 @@
 mod compare;
 mod export;
 mod input;
+mod memory;
 mod options;
 mod solve;
 mod sweep;

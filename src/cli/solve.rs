@@ -18,7 +18,7 @@ pub(super) fn settings(method: Method, common: &Common) -> Settings {
 
 pub(super) fn run(options: &Solve) -> Result<Outcome, Error> {
     let common = &options.common;
-    let input = Input::read(&options.input)?;
+    let input = Input::read(&options.input, &common.memory)?;
     warn(&input.warnings());
     let solution = match solve(input.problem(), &settings(options.method.method(), common)) {
         Ok(solution) => solution,

@@ -1,18 +1,17 @@
 //! `signorini sweep`: one scene at several gaps.
 
-use super::input::{scene_title, unit_names, warnings};
+use super::input::{read_scene, scene_title, unit_names, warnings};
 use super::options::{Format, Sweep};
 use super::solve::settings;
 use super::{Outcome, warn};
 use crate::error::Error;
 use crate::output::{gallery, sweep_json, sweep_text, write_files};
-use crate::scene::Scene;
 use crate::solve::Method;
 use crate::study::{even_gaps, sweep};
 
 pub(super) fn run(options: &Sweep) -> Result<Outcome, Error> {
     let common = &options.common;
-    let model = Scene::read(&options.scene)?.build()?;
+    let model = read_scene(&options.scene, &common.memory)?.build()?;
     warn(&warnings(&model));
     let gaps = even_gaps(options.gaps.first, options.gaps.last, options.gaps.count);
     let swept = sweep(&model, &gaps, &settings(Method::Auto, common))?;

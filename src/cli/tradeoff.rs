@@ -1,15 +1,14 @@
 //! `signorini tradeoff`: one scene in every way, and what each digit costs.
 
-use super::input::{scene_title, warnings};
+use super::input::{read_scene, scene_title, warnings};
 use super::options::{Format, Tradeoff};
 use super::{Outcome, warn};
 use crate::error::Error;
 use crate::output::{tradeoff_csv, tradeoff_json, tradeoff_plot, tradeoff_text, write_files, write_picture};
-use crate::scene::Scene;
 use crate::study::{TradeoffGrid, tradeoff};
 
 pub(super) fn run(options: &Tradeoff) -> Result<Outcome, Error> {
-    let scene = Scene::read(&options.scene)?;
+    let scene = read_scene(&options.scene, &options.memory)?;
     let model = scene.build()?;
     warn(&warnings(&model));
     let title = scene_title(&model, &options.scene);

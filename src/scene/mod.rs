@@ -27,6 +27,7 @@ mod parse;
 mod refine;
 mod rows;
 mod schema;
+mod size;
 mod warning;
 
 pub use model::Model;
@@ -39,6 +40,7 @@ pub use schema::{
     RingSpec, Rule, Scene, ShapeSpec, SolidElementSpec, SphereSpec, SupportSpec, SymmetrySpec, TableSpec, TractionSpec,
     Units, WedgeSpec, ZoneSpec,
 };
+pub use size::Size;
 pub use warning::Warning;
 
 use build::located;

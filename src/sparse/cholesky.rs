@@ -11,6 +11,7 @@ use faer::sparse::{FaerError, SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 
 use super::{Equilibration, SparseMatrix, SymmetricMatrix, dot, ldexp, ordering};
+use crate::barrier::guarded;
 use crate::error::Error;
 
 /// Fill-reducing ordering and structure of the factor, for all matrices of one sparsity pattern.
@@ -66,6 +67,21 @@ fn structure(matrix: &SparseMatrix) -> SymbolicSparseColMatRef<'_, usize> {
     )
 }
 
+/// A call of faer: a panic in it is a failure like any other.
+fn call<T>(work: impl FnOnce() -> Result<T, FactorError>) -> Result<T, FactorError> {
+    guarded(work).map_err(FactorError::Failed)?
+}
+
+/// A sweep of `x` through a factor of `dim` columns. Should it fail, or `x` not fit, then nothing in it is a number, which
+/// no certificate accepts.
+fn swept(mut x: Vec<f64>, dim: usize, sweep: impl FnOnce(MatMut<'_, f64>) -> Result<(), FactorError>) -> Vec<f64> {
+    let rows = x.len();
+    if rows != dim || call(|| sweep(MatMut::from_column_major_slice_mut(&mut x, rows, 1))).is_err() {
+        x.fill(f64::NAN);
+    }
+    x
+}
+
 fn memory(request: faer::dyn_stack::StackReq) -> Result<MemBuffer, FactorError> {
     MemBuffer::try_new(request).map_err(|_| FactorError::Failed("out of memory".into()))
 }
@@ -86,18 +102,17 @@ impl Analysis {
     /// As [`Analysis::of`].
     pub fn with_last(matrix: &SymmetricMatrix, last: &[usize]) -> Result<Self, FactorError> {
         let lower = matrix.lower();
-        let order = ordering::order(lower, last)?;
+        let order = call(|| ordering::order(lower, last))?;
         let mut place = vec![0; order.len()];
         order.iter().enumerate().for_each(|(position, &column)| place[column] = position);
-        let symbolic = fc::factorize_symbolic_cholesky(
-            structure(lower),
-            Side::Lower,
-            fc::SymmetricOrdering::Custom(PermRef::new_checked(&order, &place, order.len())),
-            fc::CholeskySymbolicParams {
-                supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
-                ..Default::default()
-            },
-        )?;
+        let params = fc::CholeskySymbolicParams {
+            supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+            ..Default::default()
+        };
+        let symbolic = call(|| {
+            let order = fc::SymmetricOrdering::Custom(PermRef::new_checked(&order, &place, order.len()));
+            Ok(fc::factorize_symbolic_cholesky(structure(lower), Side::Lower, order, params)?)
+        })?;
         Ok(Analysis { symbolic: Arc::new(symbolic), trailing: last.len(), threads: 1 })
     }
 
@@ -148,30 +163,29 @@ impl Analysis {
             // Only a matrix without columns has none.
             return Ok(Cholesky { analysis: self.clone(), values: Arc::new(values), smallest_pivot: f64::INFINITY });
         };
-        let mut buffer = memory(supernodal::factorize_supernodal_numeric_llt_scratch::<usize, f64>(
-            supernodes,
-            par,
-            Default::default(),
-        ))?;
         let permuted = self.permuted(matrix.lower(), entry);
-        // faer takes columns in any order of their rows.
-        let structure = SymbolicSparseColMatRef::new_unsorted_checked(
-            permuted.rows(),
-            permuted.columns(),
-            permuted.column_starts(),
-            None,
-            permuted.row_indices(),
-        );
-        supernodal::factorize_supernodal_numeric_llt(
-            &mut values,
-            SparseColMatRef::new(structure, permuted.values()),
-            Default::default(),
-            supernodes,
-            par,
-            MemStack::new(&mut buffer),
-            Default::default(),
-        )
-        .map_err(|LltError::NonPositivePivot { .. }| FactorError::NotPositiveDefinite)?;
+        call(|| {
+            let scratch = supernodal::factorize_supernodal_numeric_llt_scratch::<usize, f64>;
+            let mut buffer = memory(scratch(supernodes, par, Default::default()))?;
+            // faer takes columns in any order of their rows.
+            let structure = SymbolicSparseColMatRef::new_unsorted_checked(
+                permuted.rows(),
+                permuted.columns(),
+                permuted.column_starts(),
+                None,
+                permuted.row_indices(),
+            );
+            let numeric = supernodal::factorize_supernodal_numeric_llt(
+                &mut values,
+                SparseColMatRef::new(structure, permuted.values()),
+                Default::default(),
+                supernodes,
+                par,
+                MemStack::new(&mut buffer),
+                Default::default(),
+            );
+            numeric.map(drop).map_err(|LltError::NonPositivePivot { .. }| FactorError::NotPositiveDefinite)
+        })?;
         let (smallest_pivot, finite) = pivots(supernodes, &values);
         if finite {
             Ok(Cholesky { analysis: self.clone(), values: Arc::new(values), smallest_pivot })
@@ -230,17 +244,13 @@ impl Cholesky {
 
     /// The solution x of A x = b, length `dim`.
     pub fn solve(&self, b: &[f64]) -> Vec<f64> {
-        let mut x = b.to_vec();
         let symbolic = &*self.analysis.symbolic;
-        let mut buffer = MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
-        let rows = x.len();
-        fc::LltRef::new(symbolic, &self.values).solve_in_place_with_conj(
-            Conj::No,
-            MatMut::from_column_major_slice_mut(&mut x, rows, 1),
-            Par::Seq,
-            MemStack::new(&mut buffer),
-        );
-        x
+        swept(b.to_vec(), self.dim(), |x| {
+            let mut buffer = memory(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq))?;
+            let stack = MemStack::new(&mut buffer);
+            fc::LltRef::new(symbolic, &self.values).solve_in_place_with_conj(Conj::No, x, Par::Seq, stack);
+            Ok(())
+        })
     }
 
     /// `b' A^-1 b`: the squared length of L^-1 P b, by one sweep where a solution takes two.
@@ -258,23 +268,22 @@ impl Cholesky {
     /// were put last.
     pub fn forward(&self, b: &[f64]) -> Vec<f64> {
         let Some(factor) = self.supernodes() else { return Vec::new() };
-        let mut y: Vec<f64> = self.order().iter().map(|&column| b[column]).collect();
-        let mut buffer = MemBuffer::new(factor.symbolic().solve_in_place_scratch::<f64>(1, Par::Seq));
-        let rows = y.len();
-        let y_column = MatMut::from_column_major_slice_mut(&mut y, rows, 1);
-        factor.l_solve_with_conj(Conj::No, y_column, Par::Seq, MemStack::new(&mut buffer));
-        y
+        swept(self.order().iter().map(|&column| b[column]).collect(), self.dim(), |y| {
+            let mut buffer = memory(factor.symbolic().solve_in_place_scratch::<f64>(1, Par::Seq))?;
+            factor.l_solve_with_conj(Conj::No, y, Par::Seq, MemStack::new(&mut buffer));
+            Ok(())
+        })
     }
 
     /// The sweep L' P x = y, `y` in the order of elimination, `x` in that of the matrix.
     pub fn backward(&self, y: &[f64]) -> Vec<f64> {
         let Some(factor) = self.supernodes() else { return Vec::new() };
-        let mut ordered = y.to_vec();
-        let mut buffer = MemBuffer::new(factor.symbolic().solve_in_place_scratch::<f64>(1, Par::Seq));
-        let rows = ordered.len();
-        let column = MatMut::from_column_major_slice_mut(&mut ordered, rows, 1);
-        factor.l_transpose_solve_with_conj(Conj::No, column, Par::Seq, MemStack::new(&mut buffer));
-        let mut x = vec![0.0; rows];
+        let ordered = swept(y.to_vec(), self.dim(), |x| {
+            let mut buffer = memory(factor.symbolic().solve_in_place_scratch::<f64>(1, Par::Seq))?;
+            factor.l_transpose_solve_with_conj(Conj::No, x, Par::Seq, MemStack::new(&mut buffer));
+            Ok(())
+        });
+        let mut x = vec![0.0; ordered.len()];
         self.order().iter().zip(&ordered).for_each(|(&column, &value)| x[column] = value);
         x
     }
