@@ -162,7 +162,7 @@ pub enum Error {
         /// Which node or element, what is wrong with it, and what is allowed.
         message: String,
     },
-    /// A scene whose JSON does not have the right form.
+    /// A scene whose JSON does not have the right form, or a value of it that is wrong, at its place in the text.
     #[error("{source_name}:{line}:{column}: at `{path}`: {message}")]
     SceneSyntax {
         /// The file, or `scene` where it came as text.
@@ -204,6 +204,33 @@ pub enum Error {
         /// The system's reason.
         source: std::io::Error,
     },
+}
+
+impl Error {
+    /// The name of the kind of error, the same in every version: for programs that tell errors apart.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Error::Length { .. } => "length",
+            Error::Shape { .. } => "shape",
+            Error::IndexOutOfRange { .. } => "index-out-of-range",
+            Error::NotFinite { .. } => "not-finite",
+            Error::NotSymmetric { .. } => "not-symmetric",
+            Error::NotConvex { .. } => "not-convex",
+            Error::Infeasible { .. } => "infeasible",
+            Error::Unbounded { .. } => "unbounded",
+            Error::UnderHeld { .. } => "under-held",
+            Error::NotCertified { .. } => "not-certified",
+            Error::Setting { .. } => "setting",
+            Error::NotCondensed { .. } => "not-condensed",
+            Error::TooLarge { .. } => "too-large",
+            Error::Numerical { .. } => "numerical",
+            Error::Mesh { .. } => "mesh",
+            Error::SceneSyntax { .. } => "scene",
+            Error::Scene { .. } => "scene",
+            Error::FileSyntax { .. } => "file-syntax",
+            Error::File { .. } => "file",
+        }
+    }
 }
 
 /// Bytes as a reader writes them.

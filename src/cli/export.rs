@@ -1,6 +1,6 @@
 //! `signorini export`: the problem of a scene as Matrix Market files.
 
-use super::input::{read_scene, warnings};
+use super::input::{build, read_scene, warnings};
 use super::options::Export;
 use super::{Outcome, warn};
 use crate::error::Error;
@@ -8,7 +8,7 @@ use crate::matrix_market;
 use crate::output::write_files;
 
 pub(super) fn run(options: &Export) -> Result<Outcome, Error> {
-    let model = read_scene(&options.scene, &options.memory)?.build()?;
+    let model = build(&read_scene(&options.scene, &options.memory)?, &options.scene)?;
     warn(&warnings(&model));
     let problem = model.problem();
     write_files(&options.directory, &matrix_market::problem_files(problem))?;

@@ -33,7 +33,7 @@ impl Input {
             let title = format!("Problem directory {}", path.display());
             (title, UnitNames::default(), Content::Directory(matrix_market::read_problem(path)?))
         } else {
-            let model = read_scene(path, memory)?.build()?;
+            let model = build(&read_scene(path, memory)?, path)?;
             (scene_title(&model, path), unit_names(&model), Content::Scene(Box::new(model)))
         };
         Ok(Input { title, units, assemble_seconds: clock.elapsed().as_secs_f64(), content })
@@ -78,6 +78,11 @@ pub(super) fn read_scene(path: &Path, memory: &Memory) -> Result<Scene, Error> {
     let scene = Scene::read(path)?;
     scene.check_size(memory.most())?;
     Ok(scene)
+}
+
+/// Builds the scene of a file; a value at fault is named with its line and column.
+pub(super) fn build(scene: &Scene, path: &Path) -> Result<Model, Error> {
+    scene.build().map_err(|error| Scene::located(error, path))
 }
 
 /// The title of a scene, or its file where it has none.

@@ -122,5 +122,5 @@ fn failure_json(error: &Error, message: &str) -> serde_json::Value {
         Error::Numerical { .. } => "failed",
         _ => "bad_input",
     };
-    serde_json::json!({ "status": status, "message": message })
+    serde_json::json!({ "status": status, "code": error.code(), "message": message })
 }

@@ -1,6 +1,6 @@
 //! `signorini sweep`: one scene at several gaps.
 
-use super::input::{read_scene, scene_title, unit_names, warnings};
+use super::input::{build, read_scene, scene_title, unit_names, warnings};
 use super::options::{Format, Sweep};
 use super::solve::settings;
 use super::{Outcome, warn};
@@ -11,7 +11,7 @@ use crate::study::{even_gaps, sweep};
 
 pub(super) fn run(options: &Sweep) -> Result<Outcome, Error> {
     let common = &options.common;
-    let model = read_scene(&options.scene, &common.memory)?.build()?;
+    let model = build(&read_scene(&options.scene, &common.memory)?, &options.scene)?;
     warn(&warnings(&model));
     let gaps = even_gaps(options.gaps.first, options.gaps.last, options.gaps.count);
     let swept = sweep(&model, &gaps, &settings(Method::Auto, common))?;

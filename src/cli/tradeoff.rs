@@ -1,6 +1,6 @@
 //! `signorini tradeoff`: one scene in every way, and what each digit costs.
 
-use super::input::{read_scene, scene_title, warnings};
+use super::input::{build, read_scene, scene_title, warnings};
 use super::options::{Format, Tradeoff};
 use super::{Outcome, warn};
 use crate::error::Error;
@@ -9,7 +9,7 @@ use crate::study::{TradeoffGrid, tradeoff};
 
 pub(super) fn run(options: &Tradeoff) -> Result<Outcome, Error> {
     let scene = read_scene(&options.scene, &options.memory)?;
-    let model = scene.build()?;
+    let model = build(&scene, &options.scene)?;
     warn(&warnings(&model));
     let title = scene_title(&model, &options.scene);
     let grid = TradeoffGrid {

@@ -19,6 +19,7 @@ mod build;
 mod condition;
 mod explain;
 mod held;
+mod locate;
 mod mesh;
 mod model;
 mod motion;
