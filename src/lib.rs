@@ -85,6 +85,6 @@ pub mod transform;
 pub use error::Error;
 pub use problem::ContactProblem;
 pub use scene::{Model, Scene};
-pub use solution::{Certificate, ContactSet, Solution};
+pub use solution::{Certificate, ContactSet, ProvenSet, Solution};
 pub use solve::{BoundarySolution, Condense, Method, Path, Prepared, Settings, solve, solve_qp};
 pub use sparse::{SparseMatrix, SymmetricMatrix};

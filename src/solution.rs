@@ -142,6 +142,22 @@ impl Certificate {
     }
 }
 
+/// Rows that an answer proves to be open or closed in the exact answer of the same problem.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ProvenSet {
+    /// Rows whose distance exceeds its own error bound.
+    pub open: ContactSet,
+    /// Rows whose force exceeds its own error bound.
+    pub closed: ContactSet,
+}
+
+impl ProvenSet {
+    /// The rows that are proven neither open nor closed, in increasing order.
+    pub fn undecided(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.open.rows()).filter(|&row| !self.open.contains(row) && !self.closed.contains(row))
+    }
+}
+
 /// Wall-clock seconds that an answer cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Seconds {
@@ -177,6 +193,9 @@ pub struct Solution {
     pub history: Vec<Iteration>,
     /// How far the answer can be trusted.
     pub certificate: Certificate,
+    /// The rows whose contact is beyond doubt, where [`Settings::prove`](crate::Settings::prove) asks for them and
+    /// an energy bound is known.
+    pub proven: Option<ProvenSet>,
     /// Unknowns that the method worked on; fewer than all where the problem was condensed.
     pub condensed_dofs: usize,
     /// What it cost.

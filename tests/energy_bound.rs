@@ -1,8 +1,10 @@
 //! The bound of the certificate against the true error: never below it, and close to it, whatever the method.
 
 mod program;
+mod random;
 
 use program::examples;
+use random::springs;
 use signorini::solve::{Condense, Method, Settings};
 use signorini::{ContactProblem, Error, Scene, Solution, SparseMatrix, SymmetricMatrix, solve};
 
@@ -101,47 +103,9 @@ fn the_bound_is_near_the_error_on_every_example() {
     check(all);
 }
 
-/// A chain of springs with springs to the ground, of random stiffness, and rows on random nodes, some of them inclined.
-fn random_problem(seed: u64) -> ContactProblem {
-    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
-    let mut random = || {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        (state >> 11) as f64 / (1_u64 << 53) as f64
-    };
-    let dofs = 4 + (random() * 30.0) as usize;
-    let mut entries = Vec::new();
-    for dof in 0..dofs {
-        entries.push((dof, dof, 0.01 + random()));
-        if dof > 0 {
-            let spring = 10_f64.powf(4.0 * random() - 1.0);
-            entries.extend([(dof, dof, spring), (dof - 1, dof - 1, spring), (dof, dof - 1, -spring)]);
-        }
-    }
-    let load = (0..dofs).map(|_| 4.0 * random() - 1.0).collect();
-    let rows = 1 + (random() * dofs as f64 * 0.8) as usize;
-    let (mut contact, mut gap) = (Vec::new(), Vec::new());
-    for row in 0..rows {
-        let dof = (random() * dofs as f64) as usize;
-        contact.push((row, dof, 1.0));
-        if random() < 0.3 {
-            contact.push((row, (dof + 1) % dofs, random() - 0.5));
-        }
-        gap.push(random() - 0.3);
-    }
-    ContactProblem::new(
-        SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &entries).unwrap()).unwrap(),
-        load,
-        SparseMatrix::from_triplets(rows, dofs, &contact).unwrap(),
-        gap,
-    )
-    .unwrap()
-}
-
 #[test]
 fn the_bound_is_near_the_error_on_a_thousand_random_problems() {
-    check((0..1000).flat_map(|seed| ratios(&format!("random {seed}"), &random_problem(seed))).collect());
+    check((0..1000).flat_map(|seed| ratios(&format!("random {seed}"), &springs(seed))).collect());
 }
 
 /// A string over an obstacle, every node a candidate: too many for a dense boundary, so that rows are repaired one by one.

@@ -20,7 +20,9 @@ pub(super) fn run(options: &Solve) -> Result<Outcome, Error> {
     let common = &options.common;
     let input = Input::read(&options.input, &common.memory)?;
     warn(&input.warnings());
-    let solution = match solve(input.problem(), &settings(options.method.method(), common)) {
+    let mut settings = settings(options.method.method(), common);
+    settings.prove = true;
+    let solution = match solve(input.problem(), &settings) {
         Ok(solution) => solution,
         Err(error @ Error::NotCertified { .. }) => {
             warn(&format!("error: {error}\n"));

@@ -2,7 +2,9 @@
 
 use serde_json::{Value, json};
 
-use crate::study::{Agreement, CertificateSummary, Summary, Sweep, SweepEvent, SweepPoint, Verification};
+use crate::study::{
+    Agreement, CertificateSummary, ProvenSummary, Summary, Sweep, SweepEvent, SweepPoint, Verification,
+};
 
 /// The unit names of a report; empty for a raw problem, whose units are the user's own.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -58,6 +60,9 @@ pub fn solve_text(title: &str, summary: &Summary, units: &UnitNames) -> String {
         };
         line("", format!("peak pressure {}, {extent}", quantity(pressure, &units.stress)));
     }
+    if let Some(proven) = &summary.proven {
+        line("", proven_text(proven));
+    }
     if let Some(balance) = contact.force_balance {
         line("", format!("loads, reactions and contact forces balance to {balance:.1e}"));
     }
@@ -71,6 +76,25 @@ pub fn solve_text(title: &str, summary: &Summary, units: &UnitNames) -> String {
         ),
     );
     text
+}
+
+/// Undecided rows that are named; the JSON report names all.
+const NAMED_ROWS: usize = 8;
+
+/// How much of the contact set is proven.
+fn proven_text(proven: &ProvenSummary) -> String {
+    let ProvenSummary { open, closed, undecided } = proven;
+    let of = format!("{closed} proven closed, {open} proven open by the bound below");
+    match undecided.len() {
+        0 => of,
+        count => {
+            let mut named: Vec<String> = undecided.iter().take(NAMED_ROWS).map(usize::to_string).collect();
+            if count > NAMED_ROWS {
+                named.push("...".to_string());
+            }
+            format!("{closed} proven closed, {open} open, {count} undecided: {}", named.join(" "))
+        }
+    }
 }
 
 /// What the mesh is worth, and whether the algebra is worth more.

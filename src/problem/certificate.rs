@@ -52,11 +52,7 @@ impl ContactProblem {
         displacement: &[f64],
         multiplier: &[f64],
     ) -> Result<Certificate, Error> {
-        let length = |name, found: usize, expected, of| {
-            if found == expected { Ok(()) } else { Err(Error::Length { name, found, expected, of }) }
-        };
-        length("displacement", displacement.len(), self.dofs(), "dofs")?;
-        length("multiplier", multiplier.len(), self.rows(), "contact rows")?;
+        self.check_answer(displacement, multiplier)?;
         let (u, lambda) = (displacement, multiplier);
 
         let elastic = self.stiffness.mul(u);
@@ -109,8 +105,17 @@ impl ContactProblem {
         })
     }
 
+    /// Do the vectors of an answer fit?
+    pub(super) fn check_answer(&self, displacement: &[f64], multiplier: &[f64]) -> Result<(), Error> {
+        let length = |name, found: usize, expected, of| {
+            if found == expected { Ok(()) } else { Err(Error::Length { name, found, expected, of }) }
+        };
+        length("displacement", displacement.len(), self.dofs(), "dofs")?;
+        length("multiplier", multiplier.len(), self.rows(), "contact rows")
+    }
+
     /// `f + B' lambda - K u` of the given doubles, with twice the working precision.
-    fn accurate_residual(&self, u: &[f64], lambda: &[f64]) -> Vec<f64> {
+    pub(super) fn accurate_residual(&self, u: &[f64], lambda: &[f64]) -> Vec<f64> {
         let mut sums = Accumulator::new(&self.load);
         for (column, &at_column) in u.iter().enumerate() {
             for (row, value) in self.stiffness.lower().column(column) {

@@ -63,7 +63,7 @@ impl ContactProblem {
     }
 
     /// What B u - g may be off by rounding, row by row.
-    fn negligible(&self, displacement: &[f64]) -> Vec<f64> {
+    pub(super) fn negligible(&self, displacement: &[f64]) -> Vec<f64> {
         let magnitude: Vec<f64> = displacement.iter().map(|value| ROUNDING * value.abs()).collect();
         self.contact.abs().mul(&magnitude)
     }

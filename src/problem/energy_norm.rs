@@ -111,6 +111,28 @@ impl EnergyNorm {
         (count == whole).then_some(rows)
     }
 
+    /// The entries of each row of `contact` in the whole body: dof, coefficient times D.
+    pub(super) fn rows_in_body(&self, contact: &SparseMatrix) -> Vec<Vec<(usize, f64)>> {
+        let mut rows = vec![Vec::new(); contact.rows()];
+        for (dof, &scale) in self.equilibration.diagonal.iter().enumerate() {
+            contact
+                .column(dof)
+                .filter(|entry| entry.1 != 0.0)
+                .for_each(|(row, b)| rows[row].push((dof, ldexp(b, scale))));
+        }
+        rows
+    }
+
+    /// Number of dofs.
+    pub(super) fn dofs(&self) -> usize {
+        self.cholesky.dim()
+    }
+
+    /// The sweep L^-1 b of a load in equilibrated units.
+    pub(super) fn forward(&self, b: &[f64]) -> Vec<f64> {
+        self.cholesky.forward(b)
+    }
+
     fn scaled(&self, force: &[f64]) -> Vec<f64> {
         force.iter().zip(&self.equilibration.diagonal).map(|(&r, &d)| ldexp(r, d)).collect()
     }

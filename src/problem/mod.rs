@@ -3,10 +3,9 @@
 mod certificate;
 mod energy_bound;
 mod energy_norm;
+mod proof;
 
 pub use energy_norm::EnergyNorm;
-
-use std::sync::Arc;
 
 use crate::error::Error;
 use crate::sparse::{SparseMatrix, SymmetricMatrix};
@@ -22,10 +21,9 @@ use crate::sparse::{SparseMatrix, SymmetricMatrix};
 /// supports and obstacle hold the body, is found out when it is solved.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactProblem {
-    // Shared: another gap or load is the same body and the same rows.
-    stiffness: Arc<SymmetricMatrix>,
+    stiffness: SymmetricMatrix,
     load: Vec<f64>,
-    contact: Arc<SparseMatrix>,
+    contact: SparseMatrix,
     gap: Vec<f64>,
 }
 
@@ -39,12 +37,11 @@ impl ContactProblem {
     /// [`Error::Length`] and [`Error::Shape`] for sizes that do not fit, [`Error::NotFinite`] for a load that is not
     /// finite or a gap that is NaN or minus infinity, [`Error::NotConvex`] for a negative diagonal entry of K.
     pub fn new(
-        stiffness: impl Into<Arc<SymmetricMatrix>>,
+        stiffness: SymmetricMatrix,
         load: Vec<f64>,
-        contact: impl Into<Arc<SparseMatrix>>,
+        contact: SparseMatrix,
         gap: Vec<f64>,
     ) -> Result<Self, Error> {
-        let (stiffness, contact) = (stiffness.into(), contact.into());
         let dofs = stiffness.dim();
         if load.len() != dofs {
             return Err(Error::Length { name: "load vector", found: load.len(), expected: dofs, of: "dofs" });
@@ -110,12 +107,12 @@ impl ContactProblem {
         self.with(load, self.gap.clone())
     }
 
-    /// The same body and contact rows with another load and other gaps; nothing is copied.
+    /// The same body and contact rows with another load and other gaps; the matrices are shared.
     ///
     /// # Errors
     /// As [`ContactProblem::new`].
     pub fn with(&self, load: Vec<f64>, gap: Vec<f64>) -> Result<Self, Error> {
-        Self::new(Arc::clone(&self.stiffness), load, Arc::clone(&self.contact), gap)
+        Self::new(self.stiffness.clone(), load, self.contact.clone(), gap)
     }
 
     /// The violation B u - g of each row, length m: positive is penetration; `-inf` where there is no obstacle.

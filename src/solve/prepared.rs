@@ -60,14 +60,17 @@ impl Prepared {
             Some(_) => contact_dofs.clone(),
             None => EnergyNorm::last_dofs(scaling.contact()),
         };
-        let definite =
-            |analysis: &Analysis| match analysis.factor_equilibrated(problem.stiffness(), scaling.equilibration()) {
-                Ok(cholesky) if cholesky.is_safely_definite() || cholesky.is_definite(scaling.stiffness()) => {
-                    Ok(Some(cholesky))
-                }
-                Ok(_) | Err(FactorError::NotPositiveDefinite) => Ok(None),
-                Err(error) => Err(Error::from(error)),
-            };
+        let definite = |analysis: &Analysis| match analysis.factor_equilibrated(
+            problem.stiffness(),
+            scaling.equilibration(),
+            false,
+        ) {
+            Ok(cholesky) if cholesky.is_safely_definite() || cholesky.is_definite(scaling.stiffness()) => {
+                Ok(Some(cholesky))
+            }
+            Ok(_) | Err(FactorError::NotPositiveDefinite) => Ok(None),
+            Err(error) => Err(Error::from(error)),
+        };
         let cholesky = match &analysis {
             _ if has_empty_diagonal => None,
             Some(analysis) => definite(analysis)?,
@@ -271,6 +274,8 @@ impl Prepared {
         let multiplier = self.expand_multiplier(&outcome.multiplier, unit);
         let problem = self.problem.with(loading.load.clone(), gap)?;
         let certificate = problem.certify_in(self.norm.as_ref(), &displacement, &multiplier)?;
+        let proven = self.norm.as_ref().filter(|_| settings.prove);
+        let proven = proven.and_then(|norm| problem.prove_in(norm, &displacement, &multiplier));
         let expand_iteration = |step: Iteration| Iteration {
             contact_set: self.selection.expand_set(&step.contact_set),
             penalty: step.penalty,
@@ -283,6 +288,7 @@ impl Prepared {
             iterations: outcome.iterations,
             history: outcome.history.into_iter().map(expand_iteration).collect(),
             certificate,
+            proven,
             condensed_dofs: self.condensed_dofs(),
             seconds: Seconds { solve: seconds.solve + clock.elapsed().as_secs_f64(), ..seconds },
         };

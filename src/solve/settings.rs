@@ -51,6 +51,8 @@ pub struct Settings {
     pub threads: usize,
     /// Tolerance of the certificate, relative: what `Ok` promises.
     pub tolerance: f64,
+    /// Are the rows named whose contact is beyond doubt?
+    pub prove: bool,
     /// Is the contact set of the QP settled by the active-set loop?
     pub polish: bool,
     /// Tolerance of the interior-point method, on data of order one.
@@ -72,6 +74,7 @@ impl Default for Settings {
             condense: Condense::Auto,
             threads: 1,
             tolerance: 1e-9,
+            prove: false,
             polish: true,
             interior_point_tolerance: 1e-9,
             max_iterations: 20_000,

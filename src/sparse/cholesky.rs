@@ -2,14 +2,13 @@
 
 use std::sync::Arc;
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::solvers::LltError;
 use faer::perm::PermRef;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{self as fc, supernodal};
-use faer::sparse::{FaerError, SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Conj, MatMut, Par, Side};
+use faer::sparse::{FaerError, SymbolicSparseColMatRef};
+use faer::{Par, Side};
 
+use super::factor::{self, Real};
 use super::{Equilibration, SparseMatrix, SymmetricMatrix, dot, ldexp, ordering};
 use crate::barrier::guarded;
 use crate::error::Error;
@@ -26,9 +25,25 @@ pub struct Analysis {
 #[derive(Clone, Debug)]
 pub struct Cholesky {
     analysis: Analysis,
-    /// Shared, because a factor is the largest thing there is.
-    values: Arc<Vec<f64>>,
+    values: Values,
     smallest_pivot: f64,
+}
+
+/// Shared, because a factor is the largest thing there is.
+#[derive(Clone, Debug)]
+enum Values {
+    Double(Arc<Vec<f64>>),
+    Single(Arc<Vec<f32>>),
+}
+
+/// Calls a function of `factor` for the values in their precision.
+macro_rules! by_precision {
+    ($values:expr, $slice:ident => $call:expr) => {
+        match &$values {
+            Values::Double($slice) => $call,
+            Values::Single($slice) => $call,
+        }
+    };
 }
 
 /// Why a factorisation did not end with a factor.
@@ -57,6 +72,11 @@ impl From<FaerError> for FactorError {
     }
 }
 
+/// A call of faer: a panic in it is a failure like any other.
+pub(super) fn call<T>(work: impl FnOnce() -> Result<T, FactorError>) -> Result<T, FactorError> {
+    guarded(work).map_err(FactorError::Failed)?
+}
+
 fn structure(matrix: &SparseMatrix) -> SymbolicSparseColMatRef<'_, usize> {
     SymbolicSparseColMatRef::new_checked(
         matrix.rows(),
@@ -65,25 +85,6 @@ fn structure(matrix: &SparseMatrix) -> SymbolicSparseColMatRef<'_, usize> {
         None,
         matrix.row_indices(),
     )
-}
-
-/// A call of faer: a panic in it is a failure like any other.
-fn call<T>(work: impl FnOnce() -> Result<T, FactorError>) -> Result<T, FactorError> {
-    guarded(work).map_err(FactorError::Failed)?
-}
-
-/// A sweep of `x` through a factor of `dim` columns. Should it fail, or `x` not fit, then nothing in it is a number, which
-/// no certificate accepts.
-fn swept(mut x: Vec<f64>, dim: usize, sweep: impl FnOnce(MatMut<'_, f64>) -> Result<(), FactorError>) -> Vec<f64> {
-    let rows = x.len();
-    if rows != dim || call(|| sweep(MatMut::from_column_major_slice_mut(&mut x, rows, 1))).is_err() {
-        x.fill(f64::NAN);
-    }
-    x
-}
-
-fn memory(request: faer::dyn_stack::StackReq) -> Result<MemBuffer, FactorError> {
-    MemBuffer::try_new(request).map_err(|_| FactorError::Failed("out of memory".into()))
 }
 
 impl Analysis {
@@ -131,71 +132,53 @@ impl Analysis {
     /// # Errors
     /// [`FactorError::NotPositiveDefinite`] for a pivot that is not positive.
     pub fn factor(&self, matrix: &SymmetricMatrix) -> Result<Cholesky, FactorError> {
-        self.factor_entries_of(matrix, |_, _, value| value)
+        let (values, smallest_pivot) = self.factor_entries_of(matrix, |_, _, value| value)?;
+        Ok(Cholesky { analysis: self.clone(), values: Values::Double(Arc::new(values)), smallest_pivot })
     }
 
-    /// Factorises the equilibrated `c D A D` of `matrix` without building it.
+    /// Factorises the equilibrated `c D A D` of `matrix` without building it, in double precision or, with half the
+    /// memory and some seven digits of each entry, in `single`.
     ///
     /// # Errors
-    /// As [`Analysis::factor`].
+    /// As [`Analysis::factor`]; in single precision a pivot may also be lost to rounding.
     pub fn factor_equilibrated(
         &self,
         matrix: &SymmetricMatrix,
         equilibration: &Equilibration,
+        single: bool,
     ) -> Result<Cholesky, FactorError> {
         let scale = &equilibration.diagonal;
         let entry = |row: usize, column: usize, value| ldexp(value, equilibration.factor + scale[row] + scale[column]);
-        self.factor_entries_of(matrix, entry)
+        let (values, smallest_pivot) = if single {
+            let rounded = |row: usize, column: usize, value| entry(row, column, value) as f32;
+            let (values, pivot) = self.factor_entries_of(matrix, rounded)?;
+            (Values::Single(Arc::new(values)), pivot)
+        } else {
+            let (values, pivot) = self.factor_entries_of(matrix, entry)?;
+            (Values::Double(Arc::new(values)), pivot)
+        };
+        Ok(Cholesky { analysis: self.clone(), values, smallest_pivot })
     }
 
-    fn factor_entries_of(
+    fn factor_entries_of<T: Real>(
         &self,
         matrix: &SymmetricMatrix,
-        entry: impl Fn(usize, usize, f64) -> f64,
-    ) -> Result<Cholesky, FactorError> {
-        let size = self.symbolic.len_val();
-        // Asked for first, because a vector of zeros would end the program; the zeros come untouched from the system.
-        let request = Vec::<f64>::new().try_reserve_exact(size);
-        request.map_err(|_| FactorError::Failed("out of memory".into()))?;
-        let mut values = vec![0.0; size];
+        entry: impl Fn(usize, usize, f64) -> T,
+    ) -> Result<(Vec<T>, f64), FactorError> {
+        // Only a matrix without columns has no supernodes.
+        let Some(supernodes) = self.supernodes() else { return Ok((Vec::new(), f64::INFINITY)) };
         let par = if self.threads > 1 { Par::rayon(self.threads) } else { Par::Seq };
-        let Some(supernodes) = self.supernodes() else {
-            // Only a matrix without columns has none.
-            return Ok(Cholesky { analysis: self.clone(), values: Arc::new(values), smallest_pivot: f64::INFINITY });
-        };
-        let permuted = self.permuted(matrix.lower(), entry);
-        call(|| {
-            let scratch = supernodal::factorize_supernodal_numeric_llt_scratch::<usize, f64>;
-            let mut buffer = memory(scratch(supernodes, par, Default::default()))?;
-            // faer takes columns in any order of their rows.
-            let structure = SymbolicSparseColMatRef::new_unsorted_checked(
-                permuted.rows(),
-                permuted.columns(),
-                permuted.column_starts(),
-                None,
-                permuted.row_indices(),
-            );
-            let numeric = supernodal::factorize_supernodal_numeric_llt(
-                &mut values,
-                SparseColMatRef::new(structure, permuted.values()),
-                Default::default(),
-                supernodes,
-                par,
-                MemStack::new(&mut buffer),
-                Default::default(),
-            );
-            numeric.map(drop).map_err(|LltError::NonPositivePivot { .. }| FactorError::NotPositiveDefinite)
-        })?;
-        let (smallest_pivot, finite) = pivots(supernodes, &values);
-        if finite {
-            Ok(Cholesky { analysis: self.clone(), values: Arc::new(values), smallest_pivot })
-        } else {
-            Err(FactorError::NotPositiveDefinite)
-        }
+        let (permuted, entries) = self.permuted(matrix.lower(), entry);
+        call(|| factor::factorise(supernodes, &permuted, &entries, par))
     }
 
-    /// The lower triangle of P A P', rows in no order, each entry as `entry(row, column, value)` makes it.
-    fn permuted(&self, lower: &SparseMatrix, entry: impl Fn(usize, usize, f64) -> f64) -> SparseMatrix {
+    /// The structure of the lower triangle of P A P', rows in no order, and its entries as `entry(row, column, value)`
+    /// makes them.
+    fn permuted<T: Real>(
+        &self,
+        lower: &SparseMatrix,
+        entry: impl Fn(usize, usize, f64) -> T,
+    ) -> (SparseMatrix, Vec<T>) {
         let place = self.symbolic.perm().map_or(&[][..], |perm| perm.arrays().1);
         let mut starts = vec![0_usize; lower.columns() + 1];
         for (column, &to) in place.iter().enumerate() {
@@ -203,7 +186,7 @@ impl Analysis {
         }
         (0..lower.columns()).for_each(|column| starts[column + 1] += starts[column]);
         let mut next = starts.clone();
-        let (mut rows, mut values) = (vec![0; lower.entries()], vec![0.0; lower.entries()]);
+        let (mut rows, mut values) = (vec![0; lower.entries()], vec![T::rounded(0.0); lower.entries()]);
         for (column, &to) in place.iter().enumerate() {
             for (row, value) in lower.column(column) {
                 let (first, second) = (to.min(place[row]), to.max(place[row]));
@@ -212,7 +195,7 @@ impl Analysis {
                 next[first] += 1;
             }
         }
-        SparseMatrix::from_parts(lower.rows(), starts, rows, values)
+        (SparseMatrix::from_parts(lower.rows(), starts, rows, Vec::new()), values)
     }
 
     fn supernodes(&self) -> Option<&supernodal::SymbolicSupernodalCholesky<usize>> {
@@ -239,50 +222,38 @@ impl Cholesky {
 
     /// Number of values of the factor, zeros inside supernodes included.
     pub fn entries(&self) -> usize {
-        self.values.len()
+        by_precision!(self.values, values => values.len())
     }
 
-    /// The solution x of A x = b, length `dim`.
+    /// Are its values in single precision?
+    pub fn is_single(&self) -> bool {
+        matches!(self.values, Values::Single(_))
+    }
+
+    /// The solution x of A x = b, length `dim`. Should faer fail, or b not fit, then nothing in x is a number, which no
+    /// certificate accepts.
     pub fn solve(&self, b: &[f64]) -> Vec<f64> {
-        let symbolic = &*self.analysis.symbolic;
-        swept(b.to_vec(), self.dim(), |x| {
-            let mut buffer = memory(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq))?;
-            let stack = MemStack::new(&mut buffer);
-            fc::LltRef::new(symbolic, &self.values).solve_in_place_with_conj(Conj::No, x, Par::Seq, stack);
-            Ok(())
-        })
+        by_precision!(self.values, values => factor::solve(&self.analysis.symbolic, values, b))
     }
 
     /// `b' A^-1 b`: the squared length of L^-1 P b, by one sweep where a solution takes two.
     pub fn inverse_product(&self, b: &[f64]) -> f64 {
-        match self.supernodes() {
-            Some(_) => {
-                let y = self.forward(b);
-                dot(&y, &y)
-            }
-            None => dot(b, &self.solve(b)),
-        }
+        let y = self.forward(b);
+        dot(&y, &y)
     }
 
     /// The sweep L y = P b through the factor, in the order of elimination; its last entries belong to the columns that
     /// were put last.
     pub fn forward(&self, b: &[f64]) -> Vec<f64> {
-        let Some(factor) = self.supernodes() else { return Vec::new() };
-        swept(self.order().iter().map(|&column| b[column]).collect(), self.dim(), |y| {
-            let mut buffer = memory(factor.symbolic().solve_in_place_scratch::<f64>(1, Par::Seq))?;
-            factor.l_solve_with_conj(Conj::No, y, Par::Seq, MemStack::new(&mut buffer));
-            Ok(())
-        })
+        let Some(nodes) = self.analysis.supernodes() else { return Vec::new() };
+        let ordered: Vec<f64> = self.order().iter().map(|&column| b.get(column).copied().unwrap_or(f64::NAN)).collect();
+        by_precision!(self.values, values => factor::forward(nodes, values, &ordered))
     }
 
     /// The sweep L' P x = y, `y` in the order of elimination, `x` in that of the matrix.
     pub fn backward(&self, y: &[f64]) -> Vec<f64> {
-        let Some(factor) = self.supernodes() else { return Vec::new() };
-        let ordered = swept(y.to_vec(), self.dim(), |x| {
-            let mut buffer = memory(factor.symbolic().solve_in_place_scratch::<f64>(1, Par::Seq))?;
-            factor.l_transpose_solve_with_conj(Conj::No, x, Par::Seq, MemStack::new(&mut buffer));
-            Ok(())
-        });
+        let Some(nodes) = self.analysis.supernodes() else { return Vec::new() };
+        let ordered = by_precision!(self.values, values => factor::backward(nodes, values, y));
         let mut x = vec![0.0; ordered.len()];
         self.order().iter().zip(&ordered).for_each(|(&column, &value)| x[column] = value);
         x
@@ -292,50 +263,16 @@ impl Cholesky {
     /// above the diagonal. Its product with its transpose is their Schur complement.
     pub fn trailing_block(&self) -> Vec<f64> {
         let (size, dim) = (self.analysis.trailing, self.analysis.symbolic.nrows());
-        let first = dim - size;
-        let mut block = vec![0.0; size * size];
-        let Some(factor) = self.supernodes() else { return block };
-        for node in 0..factor.symbolic().n_supernodes() {
-            let node = factor.supernode(node);
-            let (start, values) = (node.start(), node.val());
-            for j in first.saturating_sub(start)..values.ncols() {
-                let column = start + j - first;
-                for i in j..values.ncols() {
-                    block[column * size + start + i - first] = values[(i, j)];
-                }
-                for (i, &row) in node.pattern().iter().enumerate() {
-                    block[column * size + row - first] = values[(values.ncols() + i, j)];
-                }
-            }
-        }
-        block
+        let Some(nodes) = self.analysis.supernodes() else { return Vec::new() };
+        by_precision!(self.values, values => factor::trailing_block(nodes, values, dim - size, size))
     }
 
     fn order(&self) -> &[usize] {
         self.analysis.symbolic.perm().map_or(&[], |perm| perm.arrays().0)
     }
 
-    fn supernodes(&self) -> Option<supernodal::SupernodalLltRef<'_, usize, f64>> {
-        self.analysis.supernodes().map(|inner| supernodal::SupernodalLltRef::new(inner, &self.values))
-    }
-
     /// The smallest pivot, min over j of L_jj^2: small against the diagonal of A when A is close to singular.
     pub fn smallest_pivot(&self) -> f64 {
         self.smallest_pivot
     }
-}
-
-/// The smallest pivot, and are all entries finite? Every entry enters the pivot of its row, which tells.
-fn pivots(supernodes: &supernodal::SymbolicSupernodalCholesky<usize>, values: &[f64]) -> (f64, bool) {
-    let (mut smallest, mut finite) = (f64::INFINITY, true);
-    let factor = supernodal::SupernodalLltRef::new(supernodes, values);
-    for node in 0..supernodes.n_supernodes() {
-        let block = factor.supernode(node).val();
-        for j in 0..block.ncols() {
-            let entry: f64 = block[(j, j)];
-            smallest = smallest.min(entry * entry);
-            finite &= entry.is_finite();
-        }
-    }
-    (smallest, finite)
 }

@@ -5,6 +5,7 @@ mod augmented;
 mod cholesky;
 mod definite;
 mod elimination;
+mod factor;
 mod ordering;
 mod power_of_two;
 mod quotient;

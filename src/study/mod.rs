@@ -12,5 +12,7 @@ pub use scene::{
     Sweep, SweepCorner, SweepEvent, SweepPoint, contact_area, contact_width, discretisation_error, even_gaps,
     scene_summary, sweep,
 };
-pub use summary::{CertificateSummary, ContactSummary, HistoryEntry, ModelSize, SecondsSummary, Summary, Verification};
+pub use summary::{
+    CertificateSummary, ContactSummary, HistoryEntry, ModelSize, ProvenSummary, SecondsSummary, Summary, Verification,
+};
 pub use tradeoff::{Advice, Tradeoff, TradeoffGrid, TradeoffMesh, TradeoffPoint, tradeoff};

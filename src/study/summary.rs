@@ -18,6 +18,9 @@ pub struct Summary {
     pub iterations: usize,
     /// Closed rows and forces.
     pub contact: ContactSummary,
+    /// Rows whose contact is beyond doubt, where they were asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub proven: Option<ProvenSummary>,
     /// The recomputed conditions.
     pub certificate: CertificateSummary,
     /// The error of the mesh, estimated, relative in energy; only in a scene, where it was asked for.
@@ -60,6 +63,17 @@ pub struct ContactSummary {
     /// Imbalance of loads, reactions and contact forces, relative; only in a scene.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub force_balance: Option<f64>,
+}
+
+/// How much of a contact set is proven.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ProvenSummary {
+    /// Rows proven open.
+    pub open: usize,
+    /// Rows proven closed.
+    pub closed: usize,
+    /// All other rows, from 0.
+    pub undecided: Vec<usize>,
 }
 
 /// A certificate; a bound that is not known is null.
@@ -161,6 +175,11 @@ impl Summary {
                 area: None,
                 force_balance: None,
             },
+            proven: solution.proven.as_ref().map(|proven| ProvenSummary {
+                open: proven.open.count(),
+                closed: proven.closed.count(),
+                undecided: proven.undecided().collect(),
+            }),
             certificate: (&solution.certificate).into(),
             discretisation_error: None,
             model,

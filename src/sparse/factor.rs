@@ -1,0 +1,176 @@
+//! The values of a Cholesky factor, in double or in single precision, and the sweeps through them.
+//!
+//! Loads and answers are doubles. For a factor in single precision a load is scaled by a power of two to order one, so
+//! that it neither under- nor overflows, and rounded.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::solvers::LltError;
+use faer::sparse::linalg::cholesky::{self as fc, supernodal};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::traits::RealField;
+use faer::{Conj, MatMut, Par};
+
+use super::cholesky::{FactorError, call};
+use super::{SparseMatrix, exponent, largest, ldexp};
+
+/// `f64` or `f32`.
+pub(super) trait Real: RealField + Copy + Into<f64> {
+    /// The nearest value.
+    fn rounded(value: f64) -> Self;
+
+    /// The exponent by which loads are scaled; doubles are taken as they are.
+    fn unit(load: &[f64]) -> i32;
+}
+
+impl Real for f64 {
+    fn rounded(value: f64) -> Self {
+        value
+    }
+
+    fn unit(_: &[f64]) -> i32 {
+        0
+    }
+}
+
+impl Real for f32 {
+    fn rounded(value: f64) -> Self {
+        value as f32
+    }
+
+    fn unit(load: &[f64]) -> i32 {
+        exponent(largest(load))
+    }
+}
+
+/// Factorises the lower triangle with the structure of `permuted` and these `entries`, rows in any order.
+///
+/// # Errors
+/// [`FactorError::NotPositiveDefinite`] for a pivot that is not positive, [`FactorError::Failed`] for want of memory.
+pub(super) fn factorise<T: Real>(
+    supernodes: &supernodal::SymbolicSupernodalCholesky<usize>,
+    permuted: &SparseMatrix,
+    entries: &[T],
+    par: Par,
+) -> Result<(Vec<T>, f64), FactorError> {
+    let size = supernodes.len_val();
+    // Asked for first, because a vector of zeros would end the program; the zeros come untouched from the system.
+    let request = Vec::<T>::new().try_reserve_exact(size);
+    request.map_err(|_| FactorError::Failed("out of memory".into()))?;
+    let mut values = vec![T::rounded(0.0); size];
+    let scratch = supernodal::factorize_supernodal_numeric_llt_scratch::<usize, T>(supernodes, par, Default::default());
+    let mut buffer = MemBuffer::try_new(scratch).map_err(|_| FactorError::Failed("out of memory".into()))?;
+    // faer takes columns in any order of their rows.
+    let structure = SymbolicSparseColMatRef::new_unsorted_checked(
+        permuted.rows(),
+        permuted.columns(),
+        permuted.column_starts(),
+        None,
+        permuted.row_indices(),
+    );
+    supernodal::factorize_supernodal_numeric_llt(
+        &mut values,
+        SparseColMatRef::new(structure, entries),
+        Default::default(),
+        supernodes,
+        par,
+        MemStack::new(&mut buffer),
+        Default::default(),
+    )
+    .map_err(|LltError::NonPositivePivot { .. }| FactorError::NotPositiveDefinite)?;
+    let (smallest_pivot, finite) = pivots(supernodes, &values);
+    if finite { Ok((values, smallest_pivot)) } else { Err(FactorError::NotPositiveDefinite) }
+}
+
+/// The smallest pivot, and are all entries finite? Every entry enters the pivot of its row, which tells.
+fn pivots<T: Real>(supernodes: &supernodal::SymbolicSupernodalCholesky<usize>, values: &[T]) -> (f64, bool) {
+    let (mut smallest, mut finite) = (f64::INFINITY, true);
+    let factor = supernodal::SupernodalLltRef::new(supernodes, values);
+    for node in 0..supernodes.n_supernodes() {
+        let block = factor.supernode(node).val();
+        for j in 0..block.ncols() {
+            let entry: f64 = block[(j, j)].into();
+            smallest = smallest.min(entry * entry);
+            finite &= entry.is_finite();
+        }
+    }
+    (smallest, finite)
+}
+
+/// A vector on its way through a factor of `dim` columns: scaled and rounded on the way in, back to doubles on the way
+/// out. Should it fail, or the vector not fit, then nothing in it is a number.
+fn swept<T: Real>(
+    load: &[f64],
+    dim: usize,
+    scratch: faer::dyn_stack::StackReq,
+    sweep: impl FnOnce(MatMut<T>, &mut MemStack),
+) -> Vec<f64> {
+    let unit = T::unit(load);
+    let mut x: Vec<T> = load.iter().map(|&value| T::rounded(ldexp(value, -unit))).collect();
+    let rows = x.len();
+    if rows != dim {
+        return vec![f64::NAN; rows];
+    }
+    let done = call(|| {
+        let mut buffer = MemBuffer::try_new(scratch).map_err(|_| FactorError::Failed("out of memory".into()))?;
+        sweep(MatMut::from_column_major_slice_mut(&mut x, rows, 1), MemStack::new(&mut buffer));
+        Ok(())
+    });
+    if done.is_err() {
+        return vec![f64::NAN; rows];
+    }
+    x.into_iter().map(|value| ldexp(value.into(), unit)).collect()
+}
+
+/// The solution of L L' x = b, both in the order of the matrix.
+pub(super) fn solve<T: Real>(symbolic: &fc::SymbolicCholesky<usize>, values: &[T], b: &[f64]) -> Vec<f64> {
+    swept::<T>(b, symbolic.nrows(), symbolic.solve_in_place_scratch::<T>(1, Par::Seq), |x, stack| {
+        fc::LltRef::new(symbolic, values).solve_in_place_with_conj(Conj::No, x, Par::Seq, stack);
+    })
+}
+
+/// The solution of L y = b, both in the order of elimination.
+pub(super) fn forward<T: Real>(
+    nodes: &supernodal::SymbolicSupernodalCholesky<usize>,
+    values: &[T],
+    b: &[f64],
+) -> Vec<f64> {
+    swept::<T>(b, nodes.nrows(), nodes.solve_in_place_scratch::<T>(1, Par::Seq), |y, stack| {
+        supernodal::SupernodalLltRef::new(nodes, values).l_solve_with_conj(Conj::No, y, Par::Seq, stack);
+    })
+}
+
+/// The solution of L' x = y, both in the order of elimination.
+pub(super) fn backward<T: Real>(
+    nodes: &supernodal::SymbolicSupernodalCholesky<usize>,
+    values: &[T],
+    y: &[f64],
+) -> Vec<f64> {
+    swept::<T>(y, nodes.nrows(), nodes.solve_in_place_scratch::<T>(1, Par::Seq), |x, stack| {
+        supernodal::SupernodalLltRef::new(nodes, values).l_transpose_solve_with_conj(Conj::No, x, Par::Seq, stack);
+    })
+}
+
+/// The last `size` rows and columns of L, column by column with zeros above the diagonal.
+pub(super) fn trailing_block<T: Real>(
+    nodes: &supernodal::SymbolicSupernodalCholesky<usize>,
+    values: &[T],
+    first: usize,
+    size: usize,
+) -> Vec<f64> {
+    let mut block = vec![0.0; size * size];
+    let factor = supernodal::SupernodalLltRef::new(nodes, values);
+    for node in 0..nodes.n_supernodes() {
+        let node = factor.supernode(node);
+        let (start, values) = (node.start(), node.val());
+        for j in first.saturating_sub(start)..values.ncols() {
+            let column = start + j - first;
+            for i in j..values.ncols() {
+                block[column * size + start + i - first] = values[(i, j)].into();
+            }
+            for (i, &row) in node.pattern().iter().enumerate() {
+                block[column * size + row - first] = values[(values.ncols() + i, j)].into();
+            }
+        }
+    }
+    block
+}
