@@ -91,12 +91,12 @@ fn cases() -> Vec<(String, Dense, Ending)> {
     );
     add(
         "zero diagonal beside a coupling",
-        { problem(DMatrix::from_row_slice(2, 2, &[0.0, 1.0, 1.0, 1.0]), &[0.0, 1.0], &[&[1.0, 0.0]], &[1.0]) },
+        problem(DMatrix::from_row_slice(2, 2, &[0.0, 1.0, 1.0, 1.0]), &[0.0, 1.0], &[&[1.0, 0.0]], &[1.0]),
         Refused("not-convex"),
     );
     add(
         "slightly indefinite",
-        { problem(DMatrix::from_row_slice(2, 2, &[1.0, 1.0001, 1.0001, 1.0]), &[0.0, 1.0], &[&[1.0, 0.0]], &[1.0]) },
+        problem(DMatrix::from_row_slice(2, 2, &[1.0, 1.0001, 1.0001, 1.0]), &[0.0, 1.0], &[&[1.0, 0.0]], &[1.0]),
         Refused("not-convex"),
     );
     // Crossing bounds: infeasible by little counts as solved elsewhere.
@@ -122,7 +122,9 @@ fn cases() -> Vec<(String, Dense, Ending)> {
     for angle in [1e-1, 1e-3, 1e-6, 1e-9, 1e-12, 1e-15] {
         let angle: f64 = angle;
         let rows = [([1.0, 0.0], 0.5), ([angle.cos(), angle.sin()], 0.5)];
-        add(&format!("rows {angle:e} apart"), node([3.0, 1.0], &rows), Certified);
+        // About the tolerance apart, both rows look closed at once: the answer misses by as much, and says so.
+        let ending = if angle == 1e-9 { Either } else { Certified };
+        add(&format!("rows {angle:e} apart"), node([3.0, 1.0], &rows), ending);
     }
     add("a row of zeros", node([3.0, 1.0], &[([1.0, 0.0], 0.5), ([0.0, 0.0], 0.0)]), Certified);
     add("a row of zeros that wants something", node([3.0, 1.0], &[([0.0, 0.0], -1e-300)]), Refused("infeasible"));

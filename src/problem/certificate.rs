@@ -53,8 +53,14 @@ impl ContactProblem {
         multiplier: &[f64],
     ) -> Result<Certificate, Error> {
         self.check_answer(displacement, multiplier)?;
-        let (u, lambda) = (displacement, multiplier);
+        let Some(units) = self.far_units(displacement) else {
+            return Ok(self.recomputed(norm, displacement, multiplier));
+        };
+        let (norm, problem) = (norm.map(|norm| units.norm(norm)), self.in_units(&units)?);
+        Ok(problem.recomputed(norm.as_ref(), &units.displacement(displacement), &units.force(multiplier)))
+    }
 
+    fn recomputed(&self, norm: Option<&EnergyNorm>, u: &[f64], lambda: &[f64]) -> Certificate {
         let elastic = self.stiffness.mul(u);
         let contact = self.contact.mul_transposed(lambda);
         let rounding = self.rounding(u, lambda);
@@ -82,7 +88,7 @@ impl ContactProblem {
         let energy_scale = strain_energy.max(dot(&self.load, u).abs()).max(work_of_gap.abs());
         let gap_of_energies = dot(u, &excess) + products.iter().sum::<f64>();
 
-        Ok(Certificate {
+        Certificate {
             stationarity: relative(largest(residual.iter().copied()), force_scale),
             stationarity_excess: relative(largest(excess.iter().copied()), force_scale),
             penetration: relative(largest(violation.iter().map(|value| value.max(0.0))), length_scale),
@@ -102,7 +108,7 @@ impl ContactProblem {
                 }
                 None => f64::INFINITY,
             },
-        })
+        }
     }
 
     /// Do the vectors of an answer fit?

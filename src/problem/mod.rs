@@ -4,6 +4,7 @@ mod certificate;
 mod energy_bound;
 mod energy_norm;
 mod proof;
+mod units;
 
 pub use energy_norm::EnergyNorm;
 
