@@ -13,6 +13,10 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// One unit in the last place, as a share of [`ROUNDING`].
 const UNIT_ROUNDING: f64 = 1.0 / 8.0;
 
+/// Forces out of balance by more than this share are no balance, whatever rounding explains: the displacement is then so
+/// large that its rounding would explain anything.
+const BALANCE: f64 = 0.1;
+
 /// A displacement below this share of force over stiffness is zero but for rounding.
 const NOTHING: f64 = 1e-3;
 
@@ -65,8 +69,6 @@ impl ContactProblem {
         let contact = self.contact.mul_transposed(lambda);
         let rounding = self.rounding(u, lambda);
         let residual: Vec<f64> = (0..self.dofs()).map(|dof| elastic[dof] - self.load[dof] - contact[dof]).collect();
-        let excess: Vec<f64> =
-            residual.iter().zip(&rounding).map(|(&r, &limit)| if r.abs() <= limit { 0.0 } else { r }).collect();
         let violation = self.violation(u);
         let bound_rows = || (0..self.rows()).filter(|&row| self.gap[row].is_finite());
         // lambda (B u - g) = lambda B u - lambda g; a row without obstacle carries no multiplier.
@@ -74,6 +76,9 @@ impl ContactProblem {
             (0..self.rows()).map(|row| if lambda[row] == 0.0 { 0.0 } else { lambda[row] * violation[row] }).collect();
 
         let force_scale = largest(self.load.iter().copied()).max(largest(contact.iter().copied()));
+        let explained = |r: f64, limit: f64| r.abs() <= limit.min(BALANCE * force_scale);
+        let excess: Vec<f64> =
+            residual.iter().zip(&rounding).map(|(&r, &limit)| if explained(r, limit) { 0.0 } else { r }).collect();
         let closed_gaps = bound_rows().filter(|&row| lambda[row] != 0.0 || violation[row] > 0.0);
         // Where the displacement is zero but for rounding, errors are measured by what the forces do to the largest
         // stiffness of the body.
