@@ -88,7 +88,8 @@ fn node(force: [f64; 2], walls: &[([f64; 2], f64)]) -> Result<ContactProblem, Er
 }
 
 fn powers(exponents: impl IntoIterator<Item = i32>) -> impl Iterator<Item = f64> {
-    exponents.into_iter().map(|exponent| 10.0_f64.powi(exponent))
+    // As a reader would write it: powers by multiplication are off in the last place.
+    exponents.into_iter().map(|exponent| format!("1e{exponent}").parse().unwrap_or(f64::NAN))
 }
 
 /// All entries; those of more than `most` dofs are left out.
@@ -105,7 +106,7 @@ pub fn entries(most: usize) -> Result<Vec<Entry>, Error> {
         let wall = |stiffness: f64, gap: f64| chain(&[stiffness; 10], true, stiffness * gap / 5.0, &[(9, gap)]);
         let force = |stiffness: f64, gap: f64| Truth::Force(stiffness * gap / 10.0);
         entries.push(Entry::new("units", format!("load {scale:e}"), wall(scale, 1.0)?, force(scale, 1.0)));
-        let label = format!("load {:e}, length {scale:e}", scale * scale);
+        let label = format!("load and length {scale:e}");
         entries.push(Entry::new("units", label, wall(scale, scale)?, force(scale, scale)));
     }
     for strain in powers((-12..=0).step_by(2)) {

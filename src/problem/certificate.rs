@@ -13,9 +13,9 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// One unit in the last place, as a share of [`ROUNDING`].
 const UNIT_ROUNDING: f64 = 1.0 / 8.0;
 
-/// Forces out of balance by more than this share are no balance, whatever rounding explains: the displacement is then so
-/// large that its rounding would explain anything.
-const BALANCE: f64 = 0.1;
+/// Rounding excuses no more of an imbalance than this share of the forces: where the displacement is so large, or the
+/// stiffness so uneven, that it would explain more, the multipliers have lost as many digits.
+const EXCUSED: f64 = 1e-7;
 
 /// A displacement below this share of force over stiffness is zero but for rounding.
 const NOTHING: f64 = 1e-3;
@@ -76,7 +76,7 @@ impl ContactProblem {
             (0..self.rows()).map(|row| if lambda[row] == 0.0 { 0.0 } else { lambda[row] * violation[row] }).collect();
 
         let force_scale = largest(self.load.iter().copied()).max(largest(contact.iter().copied()));
-        let explained = |r: f64, limit: f64| r.abs() <= limit.min(BALANCE * force_scale);
+        let explained = |r: f64, limit: f64| r.abs() <= limit.min(EXCUSED * force_scale);
         let excess: Vec<f64> =
             residual.iter().zip(&rounding).map(|(&r, &limit)| if explained(r, limit) { 0.0 } else { r }).collect();
         let closed_gaps = bound_rows().filter(|&row| lambda[row] != 0.0 || violation[row] > 0.0);
