@@ -82,6 +82,11 @@ pub enum Error {
         reason: String,
         /// Contact rows that contradict each other, from 0.
         rows: Vec<usize>,
+        /// Farkas' weights of these rows, `>= 0`, under which they cancel; empty where the rows would contradict each other
+        /// only as equalities.
+        weights: Vec<f64>,
+        /// By how much they overlap, in length, for the largest weight 1.
+        overlap: f64,
     },
     /// The load moves the body away without end.
     #[error("unbounded: the load drives a motion that neither supports nor obstacle stop: {motion}")]

@@ -85,3 +85,18 @@ fn the_files_that_the_cases_change_are_right() {
         assert!(error.is_none(), "{name}: {}", error.unwrap());
     }
 }
+
+/// Found by random damage: sizes without bound made the estimate recur without end.
+#[test]
+fn sizes_without_bound_are_estimated_as_such() {
+    let text = fs::read_to_string(folder().join("round.json")).unwrap();
+    for (from, to) in [
+        ("\"width\": 0.2", "\"width\": 0"),
+        ("\"radius\": 1,", "\"radius\": 1e308,"),
+        ("\"divisions\": 2", "\"divisions\": 0"),
+    ] {
+        let scene = Scene::from_json(&text.replacen(from, to, 1), "scene").unwrap();
+        assert!(scene.size().bytes > 0.0 || scene.size().bytes.is_nan(), "{to}");
+        assert!(scene.build().is_err() || to.contains("1e308"), "{to}");
+    }
+}

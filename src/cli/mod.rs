@@ -30,6 +30,9 @@ enum Ending {
     NotCertified = 4,
 }
 
+/// The exit code of a command that was interrupted.
+const INTERRUPTED: i32 = 130;
+
 /// What a command leaves: the text for standard output, and how it ended.
 struct Outcome {
     text: String,
@@ -46,6 +49,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             return ExitCode::from(help.exit_code() as u8);
         }
     };
+    // Every file is written whole or not at all, so that the program may end anywhere.
+    let _ = ctrlc::set_handler(|| std::process::exit(INTERRUPTED));
     let format = arguments.command.format();
     let outcome = match arguments.command {
         Command::Solve(options) => solve::run(&options),

@@ -134,7 +134,7 @@ pub fn with_contact_set(scaled: &ScaledProblem, closed: &ContactSet) -> Result<E
             if balance.consistent {
                 Ok(balance)
             } else {
-                Err(Error::Infeasible { reason, rows: closed.iter().collect() })
+                Err(Error::Infeasible { reason, rows: closed.iter().collect(), weights: Vec::new(), overlap: 0.0 })
             }
         }
         Holding::Free(motion) => Err(motion.into_error()),

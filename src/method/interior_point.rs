@@ -133,8 +133,10 @@ fn solve_in_unit(problem: &ContactProblem, tolerance: f64, unit: Unit) -> Result
         SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
             verify_farkas(&near_rows, &near_gap, &answer.z).map_or(Ok(()), |contradicting| {
                 let named: Vec<usize> = contradicting.iter().map(|&row| rows[row]).collect();
+                let weights: Vec<f64> = contradicting.iter().map(|&row| answer.z[row]).collect();
+                let overlap = problem.overlap(&named, &weights).unwrap_or(0.0);
                 let reason = format!("no displacement satisfies all contact rows; those that contradict are {named:?}");
-                Err(Error::Infeasible { reason, rows: named })
+                Err(Error::Infeasible { reason, rows: named, weights, overlap })
             })?;
         }
         SolverStatus::DualInfeasible | SolverStatus::AlmostDualInfeasible => {}

@@ -1,6 +1,7 @@
 //! The contact problem as a convex QP, checked once, and the certificate of an answer to it.
 
 mod certificate;
+mod contradiction;
 mod energy_bound;
 mod energy_norm;
 mod proof;

@@ -247,6 +247,9 @@ fn filled(lattice: &[f64], around: f64) -> f64 {
     const HALF: f64 = 0.55;
     let count: f64 = lattice.iter().product();
     let longest = lattice.iter().copied().fold(0.0, f64::max);
+    if !count.is_finite() {
+        return f64::INFINITY;
+    }
     if count <= DENSE || longest < 2.0 {
         return count * count / 2.0 + count * around * MET;
     }
