@@ -55,14 +55,16 @@ pub fn solve(
     let mut history = Vec::new();
     let mut penalty = ladder.first;
     let mut settled;
+    let mut stops = 0;
     loop {
         let mut seen = HashSet::new();
         settled = false;
-        while !settled && seen.insert(closed.clone()) && history.len() < max_iterations {
+        while !settled && seen.insert(closed.clone()) && history.len() + stops < max_iterations {
             let cholesky = match scaled.hold(&closed, penalty)? {
                 Holding::Held(cholesky) => cholesky,
                 Holding::Free(motion) => match scaled.stopping_rows(&motion, &state.displacement, &closed) {
                     Some(stopped) => {
+                        stops += 1;
                         closed = stopped;
                         continue;
                     }

@@ -16,8 +16,7 @@ impl ContactProblem {
     pub fn overlap(&self, rows: &[usize], weights: &[f64]) -> Option<f64> {
         let size = largest(weights);
         let known = rows.iter().all(|&row| row < self.rows()) && rows.len() == weights.len();
-        if !known || !(size > 0.0 && size.is_finite()) || weights.iter().any(|&weight| weight.is_nan() || weight < 0.0)
-        {
+        if !(known && size > 0.0 && size.is_finite()) || weights.iter().any(|&weight| weight.is_nan() || weight < 0.0) {
             return None;
         }
         let mut y = vec![0.0; self.rows()];
