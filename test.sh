@@ -17,6 +17,8 @@ step "tests, release";              cargo test --quiet --release
 step "examples";                    cargo build --quiet --release --examples --bins
 cargo run --quiet --release --example two_springs
 cargo run --quiet --release --example verification
+cargo run --quiet --release --example extremes -- --most 10000
+for target in scene mesh matrix problem; do cargo run --quiet --release --example fuzz -- $target 20000; done
 cargo run --quiet --release --example contact_cost -- --only "Q4 64,Hex8 12" --rounds 1
 cargo run --quiet --release --example multigrid -- --most-dofs 20000
 out=$(mktemp -d)

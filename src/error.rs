@@ -82,6 +82,11 @@ pub enum Error {
         reason: String,
         /// Contact rows that contradict each other, from 0.
         rows: Vec<usize>,
+        /// Farkas' weights of these rows, `>= 0`, under which they cancel; empty where the rows would contradict each other
+        /// only as equalities.
+        weights: Vec<f64>,
+        /// By how much they overlap, in length, for the largest weight 1.
+        overlap: f64,
     },
     /// The load moves the body away without end.
     #[error("unbounded: the load drives a motion that neither supports nor obstacle stop: {motion}")]
@@ -137,6 +142,25 @@ pub enum Error {
         /// Which step.
         step: &'static str,
     },
+    /// A scene that needs more memory than it may take.
+    #[error(
+        "the scene needs about {} of memory, but {} are allowed: about {dofs:.0e} dofs, {stiffness_entries:.0e} entries \
+         of the stiffness, {factor_entries:.0e} of its factor; take larger cells, or allow more",
+        memory(*bytes),
+        memory(*allowed)
+    )]
+    TooLarge {
+        /// Unknowns.
+        dofs: f64,
+        /// Entries of the stiffness, both triangles.
+        stiffness_entries: f64,
+        /// Values of its Cholesky factor.
+        factor_entries: f64,
+        /// Memory that all of it takes, estimated, in bytes.
+        bytes: f64,
+        /// Memory that it may take, in bytes.
+        allowed: f64,
+    },
     /// A library step that failed for a reason of its own.
     #[error("{step} failed: {reason}")]
     Numerical {
@@ -151,7 +175,7 @@ pub enum Error {
         /// Which node or element, what is wrong with it, and what is allowed.
         message: String,
     },
-    /// A scene whose JSON does not have the right form.
+    /// A scene whose JSON does not have the right form, or a value of it that is wrong, at its place in the text.
     #[error("{source_name}:{line}:{column}: at `{path}`: {message}")]
     SceneSyntax {
         /// The file, or `scene` where it came as text.
@@ -193,4 +217,37 @@ pub enum Error {
         /// The system's reason.
         source: std::io::Error,
     },
+}
+
+impl Error {
+    /// The name of the kind of error, the same in every version: for programs that tell errors apart.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Error::Length { .. } => "length",
+            Error::Shape { .. } => "shape",
+            Error::IndexOutOfRange { .. } => "index-out-of-range",
+            Error::NotFinite { .. } => "not-finite",
+            Error::NotSymmetric { .. } => "not-symmetric",
+            Error::NotConvex { .. } => "not-convex",
+            Error::Infeasible { .. } => "infeasible",
+            Error::Unbounded { .. } => "unbounded",
+            Error::UnderHeld { .. } => "under-held",
+            Error::OutOfTime { .. } => "out-of-time",
+            Error::NotCertified { .. } => "not-certified",
+            Error::Setting { .. } => "setting",
+            Error::NotCondensed { .. } => "not-condensed",
+            Error::TooLarge { .. } => "too-large",
+            Error::Numerical { .. } => "numerical",
+            Error::Mesh { .. } => "mesh",
+            Error::SceneSyntax { .. } => "scene",
+            Error::Scene { .. } => "scene",
+            Error::FileSyntax { .. } => "file-syntax",
+            Error::File { .. } => "file",
+        }
+    }
+}
+
+/// Bytes as a reader writes them.
+fn memory(bytes: f64) -> String {
+    if bytes < 1e9 { format!("{:.0} MB", bytes / 1e6) } else { format!("{:.1} GB", bytes / 1e9) }
 }

@@ -43,9 +43,9 @@
 //!
 //! | floor | modules |
 //! |---|---|
-//! | 0 | [`analytical`], [`solution`] |
+//! | 0 | [`analytical`], [`barrier`], [`solution`] |
 //! | 1 | [`error`] |
-//! | 2 | [`sparse`], [`element`], [`formulation`] |
+//! | 2 | [`file`], [`sparse`], [`element`], [`formulation`] |
 //! | 3 | [`mesh`], [`material`] |
 //! | 4 | [`problem`], [`body`] |
 //! | 5 | [`transform`], [`method`], [`assembly`], [`recovery`], [`norm`] |
@@ -61,11 +61,13 @@
 
 pub mod analytical;
 pub mod assembly;
+pub mod barrier;
 pub mod body;
 pub mod cli;
 pub mod dynamic;
 pub mod element;
 pub mod error;
+pub mod file;
 pub mod formulation;
 pub mod material;
 pub mod matrix_market;
@@ -86,5 +88,7 @@ pub use error::Error;
 pub use problem::ContactProblem;
 pub use scene::{Model, Scene};
 pub use solution::{Certificate, ContactSet, Goal, ProvenSet, Solution};
-pub use solve::{BoundarySolution, Condense, Iterative, Method, Path, Precision, Prepared, Settings, Start, solve, solve_qp};
+pub use solve::{
+    BoundarySolution, Condense, Iterative, Method, Path, Precision, Prepared, Settings, Start, solve, solve_qp,
+};
 pub use sparse::{SparseMatrix, SymmetricMatrix};

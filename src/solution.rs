@@ -80,7 +80,7 @@ impl fmt::Debug for ContactSet {
 /// | field | formula |
 /// |---|---|
 /// | `stationarity` | `max abs(K u - f - B' lambda) / fs` |
-/// | `stationarity_excess` | the same over the dofs where rounding u to double precision does not explain the residual |
+/// | `stationarity_excess` | the same over the dofs where rounding u to double precision does not explain the residual, or explains more than 1e-7 of `fs` |
 /// | `penetration` | `max (B u - g)_+ / us` |
 /// | `adhesion` | `max (lambda)_+ / ls` |
 /// | `complementarity` | `max abs(lambda (B u - g)) / (ls us)` |

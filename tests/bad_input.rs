@@ -240,7 +240,7 @@ fn problem_directories_that_hold_no_problem() {
         (f(vector(&["1", "NaN"])), 1, &["p/f.mtx:4", "NaN", "must be finite"]),
         (f(vector(&["1", "-inf"])), 1, &["p/f.mtx:4", "-inf", "must be finite"]),
         (f(vector(&["1", "one"])), 1, &["p/f.mtx:4", "`one` is not a number"]),
-        (f(matrix("general", "2 2", &["1 1 1"])), 1, &["p/f.mtx:1", "one column", "2 x 2"]),
+        (f(matrix("general", "2 2", &["1 1 1"])), 1, &["p/f.mtx:2", "one column", "2 x 2"]),
         (b(matrix("general", "1 3", &["1 2 1"])), 1, &["contact matrix is 1 x 3", "must be 1 x 2"]),
         (b(matrix("general", "1 2", &["1 2 inf"])), 1, &["p/B.mtx:3", "inf", "must be finite"]),
         (b(matrix("general", "2 2", &["1 2 1"])), 1, &["gap vector has length 1", "2 contact rows"]),

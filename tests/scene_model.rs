@@ -149,7 +149,8 @@ fn a_row_on_supported_dofs_is_dropped_where_it_holds_and_kept_empty_where_it_fai
     assert_eq!((inside.rows().len(), inside.rows()[0].node), (5, 0));
     assert_eq!(inside.problem().contact().transposed().column(0).count(), 0);
     assert_eq!(inside.problem().gap()[0], -0.1);
-    let explained = inside.explain(Error::Infeasible { reason: "row 0".into(), rows: vec![0] });
+    let explained =
+        inside.explain(Error::Infeasible { reason: "row 0".into(), rows: vec![0], weights: vec![1.0], overlap: 0.0 });
     let text = explained.to_string();
     assert!(text.contains("node 0 at (0, 0) is supported inside obstacles[0] (gap -0.1)"), "{text}");
 }
@@ -164,7 +165,14 @@ fn a_node_between_two_obstacles_has_a_row_and_a_pressure_for_each() {
     let areas: Vec<f64> = model.rows().iter().map(|row| row.tributary_area).collect();
     assert_eq!(areas, [0.5, 0.25, 0.5, 0.25]);
     assert_eq!(model.pressure(&[-2.0, -2.0, -1.0, 0.0]).unwrap(), [4.0, 8.0, 2.0, 0.0]);
-    let explained = model.explain(Error::Infeasible { reason: "rows 1, 3".into(), rows: vec![1, 3] }).to_string();
+    let explained = model
+        .explain(Error::Infeasible {
+            reason: "rows 1, 3".into(),
+            rows: vec![1, 3],
+            weights: vec![1.0; 2],
+            overlap: 0.5,
+        })
+        .to_string();
     assert!(explained.contains("node 8 at (1, 1) has no room between obstacles[0]"), "{explained}");
 }
 

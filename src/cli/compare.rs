@@ -11,7 +11,7 @@ use crate::study::{Summary, compare};
 
 pub(super) fn run(options: &Compare) -> Result<Outcome, Error> {
     let common = &options.common;
-    let input = Input::read(&options.input)?;
+    let input = Input::read(&options.input, &common.memory)?;
     warn(&input.warnings());
     let comparison = compare(input.problem(), &settings(Method::Auto, common)).map_err(|error| input.explain(error))?;
     let [qp, active_set, penalty] = &comparison.answers;

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
+use super::options::Memory;
 use crate::error::Error;
 use crate::matrix_market;
 use crate::output::UnitNames;
@@ -25,14 +26,14 @@ pub(super) enum Content {
 }
 
 impl Input {
-    /// Reads a problem directory, if `path` is one, or else a scene.
-    pub fn read(path: &Path) -> Result<Self, Error> {
+    /// Reads a problem directory, if `path` is one, or else a scene that fits into so much `memory`.
+    pub fn read(path: &Path, memory: &Memory) -> Result<Self, Error> {
         let clock = Instant::now();
         let (title, units, content) = if path.is_dir() {
             let title = format!("Problem directory {}", path.display());
             (title, UnitNames::default(), Content::Directory(matrix_market::read_problem(path)?))
         } else {
-            let model = still_model(path)?;
+            let model = still_model(path, memory)?;
             (scene_title(&model, path), unit_names(&model), Content::Scene(Box::new(model)))
         };
         Ok(Input { title, units, assemble_seconds: clock.elapsed().as_secs_f64(), content })
@@ -73,22 +74,34 @@ impl Input {
 }
 
 /// The scene at `path`, if its motion is asked for.
-pub(super) fn moving_scene(path: &Path) -> Result<Option<Scene>, Error> {
+pub(super) fn moving_scene(path: &Path, memory: &Memory) -> Result<Option<Scene>, Error> {
     if path.is_dir() {
         return Ok(None);
     }
-    Ok(Some(Scene::read(path)?).filter(|scene| scene.analysis.is_some()))
+    Ok(Some(read_scene(path, memory)?).filter(|scene| scene.analysis.is_some()))
 }
 
 /// The model of a scene at rest.
-pub(super) fn still_model(path: &Path) -> Result<Model, Error> {
-    let scene = Scene::read(path)?;
+pub(super) fn still_model(path: &Path, memory: &Memory) -> Result<Model, Error> {
+    let scene = read_scene(path, memory)?;
     if scene.analysis.is_some() {
         let message =
             "the scene moves; only `solve` and `tradeoff` can do with that: leave the analysis out for its rest";
         return Err(Error::Scene { path: "analysis".into(), message: message.into() });
     }
-    scene.build()
+    build(&scene, path)
+}
+
+/// Reads a scene and makes sure that it fits into so much `memory`.
+pub(super) fn read_scene(path: &Path, memory: &Memory) -> Result<Scene, Error> {
+    let scene = Scene::read(path)?;
+    scene.check_size(memory.most())?;
+    Ok(scene)
+}
+
+/// Builds the scene of a file; a value at fault is named with its line and column.
+pub(super) fn build(scene: &Scene, path: &Path) -> Result<Model, Error> {
+    scene.build().map_err(|error| Scene::located(error, path))
 }
 
 /// The title of a scene, or its file where it has none.

@@ -4,6 +4,7 @@ mod compare;
 mod dynamic;
 mod export;
 mod input;
+mod memory;
 mod options;
 mod solve;
 mod sweep;
@@ -30,6 +31,9 @@ enum Ending {
     NotCertified = 4,
 }
 
+/// The exit code of a command that was interrupted.
+const INTERRUPTED: i32 = 130;
+
 /// What a command leaves: the text for standard output, and how it ended.
 struct Outcome {
     text: String,
@@ -46,6 +50,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             return ExitCode::from(help.exit_code() as u8);
         }
     };
+    // Every file is written whole or not at all, so that the program may end anywhere.
+    let _ = ctrlc::set_handler(|| std::process::exit(INTERRUPTED));
     let format = arguments.command.format();
     let outcome = match arguments.command {
         Command::Solve(options) => solve::run(&options),
@@ -122,5 +128,5 @@ fn failure_json(error: &Error, message: &str) -> serde_json::Value {
         Error::Numerical { .. } => "failed",
         _ => "bad_input",
     };
-    serde_json::json!({ "status": status, "message": message })
+    serde_json::json!({ "status": status, "code": error.code(), "message": message })
 }

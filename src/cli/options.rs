@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use super::memory::parse_size;
 use crate::solve;
 
 /// Frictionless contact of elastic bodies with obstacles: a convex QP, cross-checked and certified.
@@ -160,6 +161,21 @@ fn parse_threads(text: &str) -> Result<usize, String> {
     }
 }
 
+/// How much memory a scene may take.
+#[derive(Debug, Args)]
+pub(super) struct Memory {
+    /// Refuse a scene that needs more memory, as 500MB or 1.5GB [default: what the machine has available]
+    #[arg(long, value_name = "SIZE", value_parser = parse_size)]
+    pub max_memory: Option<f64>,
+}
+
+impl Memory {
+    /// In bytes.
+    pub fn most(&self) -> f64 {
+        self.max_memory.unwrap_or_else(super::memory::available)
+    }
+}
+
 /// What every solving command takes.
 #[derive(Debug, Args)]
 pub(super) struct Common {
@@ -172,6 +188,8 @@ pub(super) struct Common {
     /// Threads of the sparse factorisations and of multigrid
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = parse_threads)]
     pub threads: usize,
+    #[command(flatten)]
+    pub memory: Memory,
     /// Folder for pictures, fields and answers
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -193,6 +211,8 @@ pub(super) struct Tradeoff {
     /// Meshes of more dofs are solved on the contact boundary only
     #[arg(long, value_name = "DOFS", default_value_t = 10_000)]
     pub most_full_dofs: usize,
+    #[command(flatten)]
+    pub memory: Memory,
     /// Folder for the table, its values and the picture
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -207,6 +227,8 @@ pub(super) struct Export {
     pub scene: PathBuf,
     /// Folder for K.mtx, f.mtx, B.mtx, g.mtx and near_null.mtx; made if missing
     pub directory: PathBuf,
+    #[command(flatten)]
+    pub memory: Memory,
 }
 
 #[derive(Debug, Args)]

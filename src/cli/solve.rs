@@ -18,14 +18,14 @@ pub(super) fn settings(method: Method, common: &Common) -> Settings {
 
 pub(super) fn run(options: &Solve) -> Result<Outcome, Error> {
     let common = &options.common;
-    if let Some(scene) = moving_scene(&options.input)? {
+    if let Some(scene) = moving_scene(&options.input, &common.memory)? {
         return dynamic::run(options, &scene);
     }
     if options.resume {
         let path = "analysis".into();
         return Err(Error::Scene { path, message: "nothing moves here, so that there is nothing to resume".into() });
     }
-    let input = Input::read(&options.input)?;
+    let input = Input::read(&options.input, &common.memory)?;
     warn(&input.warnings());
     let mut settings = settings(options.method.method(), common);
     settings.prove = true;

@@ -11,7 +11,7 @@ use crate::study::{even_gaps, sweep};
 
 pub(super) fn run(options: &Sweep) -> Result<Outcome, Error> {
     let common = &options.common;
-    let model = still_model(&options.scene)?;
+    let model = still_model(&options.scene, &common.memory)?;
     warn(&warnings(&model));
     let gaps = even_gaps(options.gaps.first, options.gaps.last, options.gaps.count);
     let swept = sweep(&model, &gaps, &settings(Method::Auto, common))?;

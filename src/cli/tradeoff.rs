@@ -1,6 +1,6 @@
 //! `signorini tradeoff`: one scene in every way, and what each digit costs.
 
-use super::input::{scene_title, warnings};
+use super::input::{build, read_scene, scene_title, warnings};
 use super::options::{Format, Tradeoff};
 use super::{Outcome, warn};
 use crate::error::Error;
@@ -13,11 +13,11 @@ use crate::solve::Settings;
 use crate::study::{TradeoffGrid, motion_tradeoff, tradeoff};
 
 pub(super) fn run(options: &Tradeoff) -> Result<Outcome, Error> {
-    let scene = Scene::read(&options.scene)?;
+    let scene = read_scene(&options.scene, &options.memory)?;
     if scene.analysis.is_some() {
         return of_motion(options, &scene);
     }
-    let model = scene.build()?;
+    let model = build(&scene, &options.scene)?;
     warn(&warnings(&model));
     let title = scene_title(&model, &options.scene);
     let grid = TradeoffGrid {

@@ -7,9 +7,14 @@ use crate::error::Error;
 /// More rows or columns than this are refused before anything is allocated.
 const LARGEST_DIMENSION: usize = 100_000_000;
 
+/// Rows or columns may be empty, but not more of them than this: nothing is allocated from an announcement alone.
+const MOST_EMPTY: usize = 1_000_000;
+
 /// The content of a file: shape, entries (indices from 0), and whether only one triangle is stored.
 #[derive(Debug)]
 pub(super) struct Content {
+    /// The line with the sizes.
+    pub line: usize,
     pub rows: usize,
     pub columns: usize,
     pub symmetric: bool,
@@ -125,7 +130,14 @@ pub(super) fn parse(file: &Path, text: &str, values: Values) -> Result<Content, 
             return Err(fault(text.lines().count(), message));
         }
     }
-    Ok(Content { rows, columns, symmetric, entries })
+    Ok(Content { line, rows, columns, symmetric, entries })
+}
+
+impl Content {
+    /// Are there, for so many `lines` of a matrix, rows or columns, entries enough to believe in them?
+    pub fn believes(&self, lines: usize) -> bool {
+        lines <= self.entries.len().saturating_add(MOST_EMPTY)
+    }
 }
 
 impl Values {

@@ -36,6 +36,20 @@ impl Zone {
         Ok(())
     }
 
+    /// How many cells there will be on `length`, about, and the size of the last one.
+    pub fn count(&self, length: f64) -> (f64, f64) {
+        let size = self.width / self.divisions as f64;
+        let rest = length - self.width;
+        if rest <= 0.0 {
+            return (length / size, size);
+        }
+        let growing = match self.growth.ln() {
+            rate if rate > 0.0 => (rest * (self.growth - 1.0) / (size * self.growth)).ln_1p() / rate,
+            _ => rest / size,
+        };
+        (self.divisions as f64 + growing, size * self.growth.powf(growing))
+    }
+
     /// Lines from 0 to `length`, fine at 0; the last one is met exactly.
     pub(super) fn lines(&self, length: f64) -> Result<Vec<f64>, Error> {
         let size = self.width / self.divisions as f64;

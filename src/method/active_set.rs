@@ -28,6 +28,9 @@ const WEIGHT: f64 = 65536.0;
 /// Weight that stands for the row itself where closed rows contradict each other: a compliance of 1e-8.
 const COMPLIANT_WEIGHT: f64 = 1e8;
 
+/// Free motions that may be stopped, where there are fewer rows.
+const MOST_STOPS: usize = 100;
+
 /// Corrections of the multipliers; four or five suffice where the closed rows are consistent.
 const CORRECTIONS: usize = 25;
 
@@ -66,13 +69,19 @@ pub fn solve(scaled: &ScaledProblem, start: ContactSet, max_iterations: usize) -
     let mut rule = Rule::Exchange;
     let mut compliant = false;
     let mut settled = false;
-    while !settled && history.len() < max_iterations && (history.is_empty() || !scaled.is_out_of_time()) {
+    let mut stops = 0;
+    while !settled && history.len() + stops < max_iterations && (history.is_empty() || !scaled.is_out_of_time()) {
         let cholesky = match scaled.hold(&closed, if compliant { COMPLIANT_WEIGHT } else { WEIGHT })? {
             Holding::Held(cholesky) => cholesky,
             Holding::Free(motion) => match scaled.stopping_rows(&motion, &displacement, &closed) {
-                Some(stopped) => {
+                // A motion that rows stop again and again must not keep the loop alive.
+                Some(stopped) if stops < MOST_STOPS.max(rows) => {
+                    stops += 1;
                     closed = stopped;
                     continue;
+                }
+                Some(_) => {
+                    break;
                 }
                 None => return Err(motion.into_error()),
             },
@@ -134,7 +143,7 @@ pub fn with_contact_set(scaled: &ScaledProblem, closed: &ContactSet) -> Result<E
             if balance.consistent {
                 Ok(balance)
             } else {
-                Err(Error::Infeasible { reason, rows: closed.iter().collect() })
+                Err(Error::Infeasible { reason, rows: closed.iter().collect(), weights: Vec::new(), overlap: 0.0 })
             }
         }
         Holding::Free(motion) => Err(motion.into_error()),

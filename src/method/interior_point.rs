@@ -1,9 +1,10 @@
 //! The QP by Clarabel's interior-point method. The only place that names clarabel, and that knows z = -lambda.
 
 use clarabel::algebra::CscMatrix;
-use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
+use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverError, SolverStatus, SupportedConeT};
 
 use super::ScaledProblem;
+use crate::barrier::guarded;
 use crate::error::Error;
 use crate::problem::ContactProblem;
 use crate::solution::ContactSet;
@@ -130,18 +131,23 @@ fn solve_in_unit(
     let cones = [SupportedConeT::NonnegativeConeT(rows.len())];
     let (mut p, a) = (csc(&problem.stiffness().upper()), csc(&near_rows));
     p.nzval.iter_mut().for_each(|value| *value = ldexp(*value, unit.displacement - unit.force));
-    let mut solver = DefaultSolver::new(&p, &q, &a, &near_gap, &cones, settings)
-        .map_err(|error| Error::Numerical { step: "Clarabel's set-up", reason: error.to_string() })?;
-    solver.solve();
-    let answer = &solver.solution;
+    let solved = guarded(|| {
+        let mut solver = DefaultSolver::new(&p, &q, &a, &near_gap, &cones, settings)?;
+        solver.solve();
+        Ok(solver.solution)
+    });
+    let failed = |reason: String| Error::Numerical { step: "Clarabel", reason };
+    let answer = solved.map_err(failed)?.map_err(|error: SolverError| failed(error.to_string()))?;
     let iterations = answer.iterations as usize;
 
     match answer.status {
         SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
             verify_farkas(&near_rows, &near_gap, &answer.z).map_or(Ok(()), |contradicting| {
                 let named: Vec<usize> = contradicting.iter().map(|&row| rows[row]).collect();
+                let weights: Vec<f64> = contradicting.iter().map(|&row| answer.z[row]).collect();
+                let overlap = problem.overlap(&named, &weights).unwrap_or(0.0);
                 let reason = format!("no displacement satisfies all contact rows; those that contradict are {named:?}");
-                Err(Error::Infeasible { reason, rows: named })
+                Err(Error::Infeasible { reason, rows: named, weights, overlap })
             })?;
         }
         SolverStatus::DualInfeasible | SolverStatus::AlmostDualInfeasible => {}

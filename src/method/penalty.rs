@@ -71,6 +71,7 @@ pub fn solve(
     let mut history = Vec::new();
     let mut penalty = ladder.first;
     let mut settled;
+    let mut stops = 0;
     let mut answer;
     let mut rung_before: Option<Rung> = None;
     let mut last_bound = f64::INFINITY;
@@ -79,13 +80,14 @@ pub fn solve(
         settled = false;
         while !settled
             && seen.insert(closed.clone())
-            && history.len() < max_iterations
+            && history.len() + stops < max_iterations
             && (history.is_empty() || !scaled.is_out_of_time())
         {
             let cholesky = match scaled.hold(&closed, penalty)? {
                 Holding::Held(cholesky) => cholesky,
                 Holding::Free(motion) => match scaled.stopping_rows(&motion, &state.displacement, &closed) {
                     Some(stopped) => {
+                        stops += 1;
                         closed = stopped;
                         continue;
                     }

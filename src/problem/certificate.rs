@@ -13,6 +13,10 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// One unit in the last place, as a share of [`ROUNDING`].
 const UNIT_ROUNDING: f64 = 1.0 / 8.0;
 
+/// Rounding excuses no more of an imbalance than this share of the forces: where the displacement is so large, or the
+/// stiffness so uneven, that it would explain more, the multipliers have lost as many digits.
+const EXCUSED: f64 = 1e-7;
+
 /// A displacement below this share of force over stiffness is zero but for rounding.
 const NOTHING: f64 = 1e-3;
 
@@ -53,14 +57,18 @@ impl ContactProblem {
         multiplier: &[f64],
     ) -> Result<Certificate, Error> {
         self.check_answer(displacement, multiplier)?;
-        let (u, lambda) = (displacement, multiplier);
+        let Some(units) = self.far_units(displacement) else {
+            return Ok(self.recomputed(norm, displacement, multiplier));
+        };
+        let (norm, problem) = (norm.map(|norm| units.norm(norm)), self.in_units(&units)?);
+        Ok(problem.recomputed(norm.as_ref(), &units.displacement(displacement), &units.force(multiplier)))
+    }
 
+    fn recomputed(&self, norm: Option<&EnergyNorm>, u: &[f64], lambda: &[f64]) -> Certificate {
         let elastic = self.stiffness.mul(u);
         let contact = self.contact.mul_transposed(lambda);
         let rounding = self.rounding(u, lambda);
         let residual: Vec<f64> = (0..self.dofs()).map(|dof| elastic[dof] - self.load[dof] - contact[dof]).collect();
-        let excess: Vec<f64> =
-            residual.iter().zip(&rounding).map(|(&r, &limit)| if r.abs() <= limit { 0.0 } else { r }).collect();
         let violation = self.violation(u);
         let bound_rows = || (0..self.rows()).filter(|&row| self.gap[row].is_finite());
         // lambda (B u - g) = lambda B u - lambda g; a row without obstacle carries no multiplier.
@@ -68,6 +76,9 @@ impl ContactProblem {
             (0..self.rows()).map(|row| if lambda[row] == 0.0 { 0.0 } else { lambda[row] * violation[row] }).collect();
 
         let force_scale = largest(self.load.iter().copied()).max(largest(contact.iter().copied()));
+        let explained = |r: f64, limit: f64| r.abs() <= limit.min(EXCUSED * force_scale);
+        let excess: Vec<f64> =
+            residual.iter().zip(&rounding).map(|(&r, &limit)| if explained(r, limit) { 0.0 } else { r }).collect();
         let closed_gaps = bound_rows().filter(|&row| lambda[row] != 0.0 || violation[row] > 0.0);
         // Where the displacement is zero but for rounding, errors are measured by what the forces do to the largest
         // stiffness of the body.
@@ -82,7 +93,7 @@ impl ContactProblem {
         let energy_scale = strain_energy.max(dot(&self.load, u).abs()).max(work_of_gap.abs());
         let gap_of_energies = dot(u, &excess) + products.iter().sum::<f64>();
 
-        Ok(Certificate {
+        Certificate {
             stationarity: relative(largest(residual.iter().copied()), force_scale),
             stationarity_excess: relative(largest(excess.iter().copied()), force_scale),
             penetration: relative(largest(violation.iter().map(|value| value.max(0.0))), length_scale),
@@ -102,7 +113,7 @@ impl ContactProblem {
                 }
                 None => f64::INFINITY,
             },
-        })
+        }
     }
 
     /// Do the vectors of an answer fit?

@@ -89,6 +89,13 @@ impl EnergyNorm {
         self.widening
     }
 
+    /// The same norm with the stiffness in another unit, `2^unit`.
+    pub(super) fn with_unit(&self, unit: i32) -> Self {
+        let mut norm = self.clone();
+        norm.equilibration.factor += unit;
+        norm
+    }
+
     /// The displacement of the equilibrated stiffness under an equilibrated load.
     pub fn scaled_displacement(&self, load: &[f64]) -> Vec<f64> {
         self.cholesky.solve(load)

@@ -1,9 +1,11 @@
 //! The contact problem as a convex QP, checked once, and the certificate of an answer to it.
 
 mod certificate;
+mod contradiction;
 mod energy_bound;
 mod energy_norm;
 mod proof;
+mod units;
 
 pub use energy_norm::EnergyNorm;
 

@@ -39,6 +39,10 @@ impl ContactProblem {
 
     /// As [`ContactProblem::prove`], in an energy norm that is at hand, for vectors that fit.
     pub(crate) fn prove_in(&self, norm: &EnergyNorm, displacement: &[f64], multiplier: &[f64]) -> Option<ProvenSet> {
+        if let Some(units) = self.far_units(displacement) {
+            let problem = self.in_units(&units).ok()?;
+            return problem.prove_in(&units.norm(norm), &units.displacement(displacement), &units.force(multiplier));
+        }
         let rows = self.rows();
         let violation = self.violation(displacement);
         let residual = self.accurate_residual(displacement, multiplier);

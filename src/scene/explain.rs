@@ -22,9 +22,12 @@ impl Model {
                 let named = self.name_of(&direction).map(|name| format!("{name}: {}", advice(!self.rows().is_empty())));
                 Error::UnderHeld { motion: named.unwrap_or(motion), direction }
             }
-            Error::Infeasible { reason, rows } => {
-                let reason = self.describe_rows(&rows).unwrap_or(reason);
-                Error::Infeasible { reason, rows }
+            Error::Infeasible { reason, rows, weights, overlap } => {
+                let length = &self.units().length;
+                let by =
+                    if overlap > 0.0 { format!("; they overlap by {overlap:.3e} {length}") } else { String::new() };
+                let reason = self.describe_rows(&rows).map_or(reason, |rows| format!("{rows}{}", by.trim_end()));
+                Error::Infeasible { reason, rows, weights, overlap }
             }
             other => other,
         }

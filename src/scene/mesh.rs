@@ -52,6 +52,7 @@ impl BodySpec {
 
 impl DescribedBody<'_> {
     pub(super) fn mesh(&self) -> Result<Mesh, Error> {
+        self.spec.check_count(self.path(""))?;
         let lines = |spec: &AxisSpec, axis: &str| {
             let of =
                 Axis { points: spec.points.clone(), divisions: spec.divisions.clone(), ratios: spec.ratios.clone() };
@@ -138,7 +139,7 @@ impl HalfSpec {
 }
 
 impl ZoneSpec {
-    fn zone(&self) -> Zone {
+    pub(super) fn zone(&self) -> Zone {
         Zone { width: self.width, divisions: self.divisions, growth: self.growth }
     }
 }

@@ -20,6 +20,7 @@ mod condition;
 mod dynamics;
 mod explain;
 mod held;
+mod locate;
 mod mesh;
 mod model;
 mod motion;
@@ -28,6 +29,7 @@ mod parse;
 mod refine;
 mod rows;
 mod schema;
+mod size;
 mod warning;
 
 pub use dynamics::Dynamics;
@@ -42,6 +44,7 @@ pub use schema::{
     PlaneSpec, PressureSpec, RectangleSpec, RingSpec, Rule, Scene, SchemeSpec, ShapeSpec, SineSpec, SolidElementSpec,
     SphereSpec, SupportSpec, SymmetrySpec, TableSpec, TractionSpec, Units, WedgeSpec, ZoneSpec,
 };
+pub use size::Size;
 pub use warning::Warning;
 
 use build::located;

@@ -10,6 +10,7 @@ use serde::de::{Deserialize, Deserializer, Error as _, IgnoredAny, IntoDeseriali
 
 use super::Scene;
 use crate::error::Error;
+use crate::file::{MOST_OF_SCENE, read_text_capped};
 
 impl Scene {
     /// Reads a scene from JSON text; `source_name` stands in the error's first words.
@@ -45,11 +46,7 @@ impl Scene {
             let source = io::Error::new(io::ErrorKind::IsADirectory, "it is a folder, but a scene is a JSON file");
             return Err(Error::File { action: "read", path: path.into(), source });
         }
-        let text = std::fs::read_to_string(path).map_err(|source| Error::File {
-            action: "read",
-            path: path.into(),
-            source,
-        })?;
+        let text = read_text_capped(path, MOST_OF_SCENE)?;
         let scene = Self::from_json(&text, &path.display().to_string())?;
         Ok(Scene { folder: path.parent().map(Path::to_path_buf), ..scene })
     }

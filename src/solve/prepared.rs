@@ -352,7 +352,7 @@ impl Prepared {
             let of_whole = self.share_of_boundary(&loading, unit, &problem, displacement);
             certificate.map_or(f64::INFINITY, |certificate| certificate.energy_error_bound * of_whole)
         };
-        let outcome = run(&task, start, settings, &bound).map_err(|error| self.expand_error(error))?;
+        let outcome = run(&task, start, settings, &bound).map_err(|error| self.expand_error(error, &gap))?;
         let seconds = Seconds { factor: task.factor_seconds(), solve: clock.elapsed().as_secs_f64() };
         Ok(Found { loading, gap, problem, unit, outcome, seconds, refined: None })
     }
@@ -444,7 +444,7 @@ impl Prepared {
         }
         let task = ScaledProblem::new(&condensed, &self.augmented, self.norm.is_some());
         interior_point::check_feasible(&task, settings.interior_point_tolerance)
-            .map_err(|error| self.expand_error(error))?;
+            .map_err(|error| self.expand_error(error, problem.gap()))?;
         let (condition, value, tolerance) = settings.goal().decisive(&solution.certificate);
         Err(Error::NotCertified { solution: Box::new(solution), condition, value, tolerance })
     }
@@ -455,7 +455,7 @@ impl Prepared {
         let (problem, unit) = self.scaled(&loading, self.problem.gap())?;
         let task = ScaledProblem::new(&problem, &self.augmented, self.norm.is_some());
         let held = active_set::with_contact_set(&task, &self.selection.restrict_set(closed))
-            .map_err(|error| self.expand_error(error))?;
+            .map_err(|error| self.expand_error(error, self.problem.gap()))?;
         Ok((self.expand(&loading, unit, &held.displacement), self.expand_multiplier(&held.multiplier, unit)))
     }
 
@@ -524,7 +524,7 @@ impl Prepared {
     }
 
     /// Rows and directions of an error in the terms of the original problem.
-    fn expand_error(&self, error: Error) -> Error {
+    fn expand_error(&self, error: Error, gap: &[f64]) -> Error {
         let normalised = |direction: Vec<f64>| {
             let whole = match &self.condensation {
                 // A free motion moves the interior along without force.
@@ -539,10 +539,20 @@ impl Prepared {
         match error {
             Error::Unbounded { motion, direction } => Error::Unbounded { motion, direction: normalised(direction) },
             Error::UnderHeld { motion, direction } => Error::UnderHeld { motion, direction: normalised(direction) },
-            Error::Infeasible { rows, .. } => {
+            Error::Infeasible { rows, weights, .. } => {
+                let mut scaled = vec![0.0; self.selection.kept().len()];
+                rows.iter().zip(&weights).for_each(|(&row, &weight)| scaled[row] = weight);
                 let rows: Vec<usize> = rows.into_iter().map(|row| self.selection.kept()[row]).collect();
-                let reason = format!("no displacement satisfies the contact rows {rows:?} together (indices from 0)");
-                Error::Infeasible { reason, rows }
+                // Rows are scaled as multipliers are; the unit of weights is free.
+                let all = self.expand_multiplier(&scaled, self.scaling.equilibration().factor);
+                let weights: Vec<f64> =
+                    if weights.is_empty() { weights } else { rows.iter().map(|&row| all[row]).collect() };
+                let problem = self.problem.with(self.problem.load().to_vec(), gap.to_vec());
+                let overlap = problem.ok().and_then(|problem| problem.overlap(&rows, &weights)).unwrap_or(0.0);
+                let by = if overlap > 0.0 { format!(": they overlap by {overlap:.3e}") } else { String::new() };
+                let reason =
+                    format!("no displacement satisfies the contact rows {rows:?} together{by} (indices from 0)");
+                Error::Infeasible { reason, rows, weights, overlap }
             }
             other => other,
         }

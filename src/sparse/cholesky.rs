@@ -10,6 +10,7 @@ use faer::{Par, Side};
 
 use super::factor::{self, Real};
 use super::{Equilibration, SparseMatrix, SymmetricMatrix, dot, ldexp, ordering};
+use crate::barrier::guarded;
 use crate::error::Error;
 
 /// Fill-reducing ordering and structure of the factor, for all matrices of one sparsity pattern.
@@ -71,6 +72,11 @@ impl From<FaerError> for FactorError {
     }
 }
 
+/// A call of faer: a panic in it is a failure like any other.
+pub(super) fn call<T>(work: impl FnOnce() -> Result<T, FactorError>) -> Result<T, FactorError> {
+    guarded(work).map_err(FactorError::Failed)?
+}
+
 fn structure(matrix: &SparseMatrix) -> SymbolicSparseColMatRef<'_, usize> {
     SymbolicSparseColMatRef::new_checked(
         matrix.rows(),
@@ -97,18 +103,17 @@ impl Analysis {
     /// As [`Analysis::of`].
     pub fn with_last(matrix: &SymmetricMatrix, last: &[usize]) -> Result<Self, FactorError> {
         let lower = matrix.lower();
-        let order = ordering::order(lower, last)?;
+        let order = call(|| ordering::order(lower, last))?;
         let mut place = vec![0; order.len()];
         order.iter().enumerate().for_each(|(position, &column)| place[column] = position);
-        let symbolic = fc::factorize_symbolic_cholesky(
-            structure(lower),
-            Side::Lower,
-            fc::SymmetricOrdering::Custom(PermRef::new_checked(&order, &place, order.len())),
-            fc::CholeskySymbolicParams {
-                supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
-                ..Default::default()
-            },
-        )?;
+        let params = fc::CholeskySymbolicParams {
+            supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+            ..Default::default()
+        };
+        let symbolic = call(|| {
+            let order = fc::SymmetricOrdering::Custom(PermRef::new_checked(&order, &place, order.len()));
+            Ok(fc::factorize_symbolic_cholesky(structure(lower), Side::Lower, order, params)?)
+        })?;
         Ok(Analysis { symbolic: Arc::new(symbolic), trailing: last.len(), threads: 1 })
     }
 
@@ -176,7 +181,7 @@ impl Analysis {
         let Some(supernodes) = self.supernodes() else { return Ok((Vec::new(), f64::INFINITY)) };
         let par = if self.threads > 1 { Par::rayon(self.threads) } else { Par::Seq };
         let (permuted, entries) = self.permuted(matrix.lower(), entry);
-        factor::factorise(supernodes, &permuted, &entries, par)
+        call(|| factor::factorise(supernodes, &permuted, &entries, par))
     }
 
     /// The structure of the lower triangle of P A P', rows in no order, and its entries as `entry(row, column, value)`
@@ -237,7 +242,8 @@ impl Cholesky {
         matches!(self.values, Values::Single(_))
     }
 
-    /// The solution x of A x = b, length `dim`.
+    /// The solution x of A x = b, length `dim`. Should faer fail, or b not fit, then nothing in x is a number, which no
+    /// certificate accepts.
     pub fn solve(&self, b: &[f64]) -> Vec<f64> {
         by_precision!(self.values, values => factor::solve(&self.analysis.symbolic, values, b))
     }
@@ -252,7 +258,7 @@ impl Cholesky {
     /// were put last.
     pub fn forward(&self, b: &[f64]) -> Vec<f64> {
         let Some(nodes) = self.analysis.supernodes() else { return Vec::new() };
-        let ordered: Vec<f64> = self.order().iter().map(|&column| b[column]).collect();
+        let ordered: Vec<f64> = self.order().iter().map(|&column| b.get(column).copied().unwrap_or(f64::NAN)).collect();
         by_precision!(self.values, values => factor::forward(nodes, values, &ordered))
     }
 

@@ -10,7 +10,7 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::traits::RealField;
 use faer::{Conj, MatMut, Par};
 
-use super::cholesky::FactorError;
+use super::cholesky::{FactorError, call};
 use super::{SparseMatrix, exponent, largest, ldexp};
 
 /// `f64` or `f32`.
@@ -96,23 +96,34 @@ fn pivots<T: Real>(supernodes: &supernodal::SymbolicSupernodalCholesky<usize>, v
     (smallest, finite)
 }
 
-/// A vector on its way through a factor: scaled and rounded on the way in, back to doubles on the way out.
+/// A vector on its way through a factor of `dim` columns: scaled and rounded on the way in, back to doubles on the way
+/// out. Should it fail, or the vector not fit, then nothing in it is a number.
 fn swept<T: Real>(
     load: &[f64],
+    dim: usize,
     scratch: faer::dyn_stack::StackReq,
     sweep: impl FnOnce(MatMut<T>, &mut MemStack),
 ) -> Vec<f64> {
     let unit = T::unit(load);
     let mut x: Vec<T> = load.iter().map(|&value| T::rounded(ldexp(value, -unit))).collect();
-    let mut buffer = MemBuffer::new(scratch);
     let rows = x.len();
-    sweep(MatMut::from_column_major_slice_mut(&mut x, rows, 1), MemStack::new(&mut buffer));
+    if rows != dim {
+        return vec![f64::NAN; rows];
+    }
+    let done = call(|| {
+        let mut buffer = MemBuffer::try_new(scratch).map_err(|_| FactorError::Failed("out of memory".into()))?;
+        sweep(MatMut::from_column_major_slice_mut(&mut x, rows, 1), MemStack::new(&mut buffer));
+        Ok(())
+    });
+    if done.is_err() {
+        return vec![f64::NAN; rows];
+    }
     x.into_iter().map(|value| ldexp(value.into(), unit)).collect()
 }
 
 /// The solution of L L' x = b, both in the order of the matrix.
 pub(super) fn solve<T: Real>(symbolic: &fc::SymbolicCholesky<usize>, values: &[T], b: &[f64]) -> Vec<f64> {
-    swept::<T>(b, symbolic.solve_in_place_scratch::<T>(1, Par::Seq), |x, stack| {
+    swept::<T>(b, symbolic.nrows(), symbolic.solve_in_place_scratch::<T>(1, Par::Seq), |x, stack| {
         fc::LltRef::new(symbolic, values).solve_in_place_with_conj(Conj::No, x, Par::Seq, stack);
     })
 }
@@ -123,7 +134,7 @@ pub(super) fn forward<T: Real>(
     values: &[T],
     b: &[f64],
 ) -> Vec<f64> {
-    swept::<T>(b, nodes.solve_in_place_scratch::<T>(1, Par::Seq), |y, stack| {
+    swept::<T>(b, nodes.nrows(), nodes.solve_in_place_scratch::<T>(1, Par::Seq), |y, stack| {
         supernodal::SupernodalLltRef::new(nodes, values).l_solve_with_conj(Conj::No, y, Par::Seq, stack);
     })
 }
@@ -134,7 +145,7 @@ pub(super) fn backward<T: Real>(
     values: &[T],
     y: &[f64],
 ) -> Vec<f64> {
-    swept::<T>(y, nodes.solve_in_place_scratch::<T>(1, Par::Seq), |x, stack| {
+    swept::<T>(y, nodes.nrows(), nodes.solve_in_place_scratch::<T>(1, Par::Seq), |x, stack| {
         supernodal::SupernodalLltRef::new(nodes, values).l_transpose_solve_with_conj(Conj::No, x, Par::Seq, stack);
     })
 }

@@ -23,6 +23,9 @@ const DENSE_WORK: f64 = 3.0;
 /// Dense matrices on the contact dofs that exist at one time, in the memory of their values.
 const DENSE_MATRICES: f64 = 5.0;
 
+/// A difference below this share of its terms is rounding: the factorisation of a large body loses a few digits.
+const LEFT_OVER: f64 = 1e-12;
+
 /// Values that are not worth counting.
 const FEW_VALUES: f64 = 1e6;
 
@@ -80,12 +83,19 @@ impl Condensation {
         let contact = SparseMatrix::from_triplets(contact.rows(), size, &entries)?;
         let mut schur = lower_times_transpose(&trailing, size);
         if shifted {
+            let before = schur.clone();
             let by_row = contact.transposed();
             for row in 0..by_row.columns() {
                 for (i, a) in by_row.column(row) {
                     for (j, b) in by_row.column(row).filter(|entry| entry.0 <= i) {
                         schur[j * size + i] -= a * b;
                     }
+                }
+            }
+            // What is left of equal terms is rounding, and would hold a body that nothing holds.
+            for (entry, before) in schur.iter_mut().zip(&before) {
+                if entry.abs() <= LEFT_OVER * before.abs() {
+                    *entry = 0.0;
                 }
             }
         }

@@ -45,7 +45,7 @@ impl RowSelection {
         if let Some(row) = (0..gap.len()).find(|&row| gap[row] < 0.0 && is_empty(row)) {
             let reason =
                 format!("contact row {row} has no free dof, but its gap is {:e}: it must not be negative", gap[row]);
-            return Err(Error::Infeasible { reason, rows: vec![row] });
+            return Err(Error::Infeasible { reason, rows: vec![row], weights: vec![1.0], overlap: -gap[row] });
         }
         let kept: Vec<usize> = (0..gap.len()).filter(|&row| gap[row].is_finite() && !is_empty(row)).collect();
 
@@ -63,13 +63,18 @@ impl RowSelection {
         }
         let crossing = nearest.values().filter_map(|sides| match sides {
             [Some((a, above)), Some((b, below))] if above + below < -MEETING * above.abs().max(below.abs()) => {
-                Some(((*a).min(*b), (*a).max(*b), above + below))
+                Some((*a, *b, above + below))
             }
             _ => None,
         });
-        if let Some((a, b, overlap)) = crossing.min_by_key(|pair| pair.0) {
-            let reason = format!("contact rows {a} and {b} oppose each other and overlap by {:e}", -overlap);
-            return Err(Error::Infeasible { reason, rows: vec![a, b] });
+        if let Some((a, b, overlap)) = crossing.min_by_key(|&(a, b, _)| a.min(b)) {
+            let rows = vec![a.min(b), a.max(b)];
+            let reason =
+                format!("contact rows {} and {} oppose each other and overlap by {:e}", rows[0], rows[1], -overlap);
+            // Divided by their first entries the rows cancel.
+            let first = |row: usize| by_row.column(row).map(|entry| entry.1.abs()).find(|&value| value > 0.0);
+            let weights = rows.iter().map(|&row| first(row).map_or(0.0, |first| 1.0 / first)).collect();
+            return Err(Error::Infeasible { reason, rows, weights, overlap: -overlap });
         }
         Ok(RowSelection { by_row, kept })
     }

@@ -51,6 +51,7 @@ pub use groups::PhysicalGroup;
 
 use super::Mesh;
 use crate::error::Error;
+use crate::file::{MOST_OF_TABLE, read_capped};
 
 /// What stands in a file: nodes, elements of any type, physical groups.
 #[derive(Clone, Debug)]
@@ -93,7 +94,7 @@ impl GmshFile {
     /// [`Error::File`] for a file that cannot be read, and as [`GmshFile::parse`].
     pub fn read(file: impl AsRef<Path>) -> Result<Self, Error> {
         let path = file.as_ref();
-        let bytes = std::fs::read(path).map_err(|source| Error::File { action: "read", path: path.into(), source })?;
+        let bytes = read_capped(path, MOST_OF_TABLE)?;
         // What is no text is a binary file, and is refused by its first lines.
         Self::parse(&String::from_utf8_lossy(&bytes), path)
     }

@@ -1,0 +1,51 @@
+//! Files read up to a cap: a device without end or a file beyond all sense is refused before it fills the memory.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+use crate::error::Error;
+
+/// Most bytes of a scene: a height map of millions of points fits.
+pub const MOST_OF_SCENE: u64 = 256 << 20;
+
+/// Most bytes of a mesh or a matrix: more than any body that can be solved needs.
+pub const MOST_OF_TABLE: u64 = 4 << 30;
+
+/// Most bytes of what is no regular file, and so does not say how long it is: a pipe, a device.
+const MOST_OF_STREAM: u64 = 64 << 20;
+
+/// The bytes of a file, at most `most` of them.
+///
+/// # Errors
+/// [`Error::File`] for a file that cannot be read, and for one that is longer.
+pub fn read_capped(path: &Path, most: u64) -> Result<Vec<u8>, Error> {
+    read(path, most).map_err(|source| Error::File { action: "read", path: path.into(), source })
+}
+
+fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    let file = File::open(path)?;
+    let about = file.metadata()?;
+    let most = if about.is_file() { most } else { most.min(MOST_OF_STREAM) };
+    let too_long = || io::Error::new(io::ErrorKind::FileTooLarge, format!("it is longer than {} MB", most >> 20));
+    if about.is_file() && about.len() > most {
+        return Err(too_long());
+    }
+    let mut bytes = Vec::new();
+    if about.is_file() {
+        bytes.try_reserve_exact(about.len() as usize)?;
+    }
+    file.take(most + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > most { Err(too_long()) } else { Ok(bytes) }
+}
+
+/// The text of a file, at most `most` bytes of UTF-8.
+///
+/// # Errors
+/// As [`read_capped`], and for bytes that are no UTF-8.
+pub fn read_text_capped(path: &Path, most: u64) -> Result<String, Error> {
+    String::from_utf8(read_capped(path, most)?).map_err(|_| {
+        let source = io::Error::new(io::ErrorKind::InvalidData, "stream did not contain valid UTF-8");
+        Error::File { action: "read", path: path.into(), source }
+    })
+}

@@ -1,0 +1,119 @@
+//! Where a value stands in the text of a scene, by its JSON path.
+
+use std::path::Path;
+
+use super::Scene;
+use crate::error::Error;
+use crate::file::{MOST_OF_SCENE, read_text_capped};
+
+impl Scene {
+    /// An error of a value at its line and column, where the scene was read from a file that can be read again.
+    pub fn located(error: Error, file: &Path) -> Error {
+        let Error::Scene { path, message } = error else { return error };
+        let place = match read_text_capped(file, MOST_OF_SCENE) {
+            Ok(text) if file.is_file() => position(&text, &path),
+            _ => None,
+        };
+        match place {
+            Some((line, column)) => {
+                Error::SceneSyntax { source_name: file.display().to_string(), line, column, path, message }
+            }
+            None => Error::Scene { path, message },
+        }
+    }
+}
+
+/// Line and column, from 1, of the value at `path` as `supports[0].on.boundary`; of what it would stand in where it is
+/// missing. `None` for a text that is no JSON up to there.
+fn position(text: &str, path: &str) -> Option<(usize, usize)> {
+    let mut at = Scanner { bytes: text.as_bytes(), place: 0 };
+    at.skip_space();
+    let keys = path.split(['.', '[']).map(|key| key.trim_end_matches(']')).filter(|key| !key.is_empty());
+    for key in keys {
+        let found = Scanner { ..at }.enter(key)?;
+        match found {
+            Some(place) => at.place = place,
+            None => break,
+        }
+    }
+    let before = &text[..at.place];
+    let line = before.matches('\n').count() + 1;
+    let column = before.rsplit('\n').next().map_or(0, |line| line.chars().count()) + 1;
+    Some((line, column))
+}
+
+/// A place in a JSON text.
+struct Scanner<'a> {
+    bytes: &'a [u8],
+    place: usize,
+}
+
+impl Scanner<'_> {
+    fn peek(&self) -> Option<u8> {
+        self.bytes.get(self.place).copied()
+    }
+
+    fn skip_space(&mut self) {
+        while self.peek().is_some_and(|byte| byte.is_ascii_whitespace())
+            || self.bytes[self.place..].starts_with(b"\xef\xbb\xbf")
+        {
+            self.place += if self.peek() == Some(0xef) { 3 } else { 1 };
+        }
+    }
+
+    /// Where the value of `key`, or the item of that number, begins; `Some(None)` where there is none.
+    fn enter(mut self, key: &str) -> Option<Option<usize>> {
+        let open = self.peek()?;
+        if open != b'{' && open != b'[' {
+            return Some(None);
+        }
+        self.place += 1;
+        for index in 0.. {
+            self.skip_space();
+            if matches!(self.peek()?, b'}' | b']') {
+                return Some(None);
+            }
+            let mut found = open == b'[' && key.parse() == Ok(index);
+            if open == b'{' {
+                let start = self.place;
+                self.skip_value()?;
+                let name: Option<String> = serde_json::from_slice(&self.bytes[start..self.place]).ok();
+                found = name.as_deref() == Some(key);
+                self.skip_space();
+                // The colon.
+                self.place += 1;
+                self.skip_space();
+            }
+            if found {
+                return Some(Some(self.place));
+            }
+            self.skip_value()?;
+            self.skip_space();
+            if self.peek()? == b',' {
+                self.place += 1;
+            }
+        }
+        None
+    }
+
+    fn skip_value(&mut self) -> Option<()> {
+        let mut depth = 0_usize;
+        loop {
+            match self.peek()? {
+                b'"' => {
+                    self.place += 1;
+                    while self.peek()? != b'"' {
+                        self.place += if self.peek()? == b'\\' { 2 } else { 1 };
+                    }
+                }
+                b'{' | b'[' => depth += 1,
+                b'}' | b']' => depth = depth.checked_sub(1)?,
+                _ => {}
+            }
+            self.place += 1;
+            if depth == 0 && self.peek().is_none_or(|byte| b",:}] \t\r\n".contains(&byte)) {
+                return Some(());
+            }
+        }
+    }
+}
