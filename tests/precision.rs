@@ -119,7 +119,7 @@ fn chain(dofs: usize, soft: f64) -> ContactProblem {
 
 #[test]
 fn too_ill_conditioned_a_stiffness_is_factorised_in_double_precision() {
-    for problem in [chain(20_000, 1.0), chain(50, 1e9)] {
+    for problem in [chain(20_000, 1.0), chain(50, 1e6)] {
         let found = solve(&problem, &with(Method::ActiveSet, Precision::Mixed, None)).unwrap();
         assert_eq!(found.refinements, None);
         assert!(found.certificate.meets(1e-9));

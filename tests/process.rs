@@ -36,8 +36,12 @@ fn whole(folder: &Path) -> usize {
             Some("png") => assert!(bytes.ends_with(b"IEND\xaeB`\x82"), "{name} is broken"),
             Some("mtx") if name != "K.mtx" && name != "B.mtx" => {
                 let text = String::from_utf8(bytes).unwrap();
-                let rows: usize = text.lines().nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
-                assert!(text.lines().count() == rows + 2 && text.ends_with('\n'), "{name} is broken");
+                let size: Vec<usize> =
+                    text.lines().nth(1).unwrap().split(' ').map(|count| count.parse().unwrap()).collect();
+                assert!(
+                    text.lines().count() == size.iter().product::<usize>() + 2 && text.ends_with('\n'),
+                    "{name} is broken"
+                );
             }
             Some("mtx") => {
                 let text = String::from_utf8(bytes).unwrap();

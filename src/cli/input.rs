@@ -25,18 +25,46 @@ pub(super) enum Content {
     Directory(ContactProblem),
 }
 
-impl Input {
+/// What was read before anything is built; a pipe is read only once.
+pub(super) enum Source {
+    /// A scene, with the seconds that reading it took.
+    Scene(Box<Scene>, f64),
+    Directory(Input),
+}
+
+impl Source {
     /// Reads a problem directory, if `path` is one, or else a scene that fits into so much `memory`.
     pub fn read(path: &Path, memory: &Memory) -> Result<Self, Error> {
         let clock = Instant::now();
-        let (title, units, content) = if path.is_dir() {
-            let title = format!("Problem directory {}", path.display());
-            (title, UnitNames::default(), Content::Directory(matrix_market::read_problem(path)?))
-        } else {
-            let model = still_model(path, memory)?;
-            (scene_title(&model, path), unit_names(&model), Content::Scene(Box::new(model)))
-        };
-        Ok(Input { title, units, assemble_seconds: clock.elapsed().as_secs_f64(), content })
+        if !path.is_dir() {
+            let scene = Box::new(read_scene(path, memory)?);
+            return Ok(Source::Scene(scene, clock.elapsed().as_secs_f64()));
+        }
+        let content = Content::Directory(matrix_market::read_problem(path)?);
+        let (title, units) = (format!("Problem directory {}", path.display()), UnitNames::default());
+        Ok(Source::Directory(Input { title, units, assemble_seconds: clock.elapsed().as_secs_f64(), content }))
+    }
+}
+
+impl Input {
+    /// Reads a problem directory, if `path` is one, or else a scene that fits into so much `memory`.
+    pub fn read(path: &Path, memory: &Memory) -> Result<Self, Error> {
+        match Source::read(path, memory)? {
+            Source::Scene(scene, read_seconds) => {
+                rests(&scene)?;
+                Input::of_scene(&scene, path, read_seconds)
+            }
+            Source::Directory(input) => Ok(input),
+        }
+    }
+
+    /// The model of a scene at rest, which was read in so many seconds.
+    pub fn of_scene(scene: &Scene, path: &Path, read_seconds: f64) -> Result<Self, Error> {
+        let clock = Instant::now();
+        let model = build(scene, path)?;
+        let assemble_seconds = read_seconds + clock.elapsed().as_secs_f64();
+        let (title, units) = (scene_title(&model, path), unit_names(&model));
+        Ok(Input { title, units, assemble_seconds, content: Content::Scene(Box::new(model)) })
     }
 
     pub fn problem(&self) -> &ContactProblem {
@@ -73,23 +101,20 @@ impl Input {
     }
 }
 
-/// The scene at `path`, if its motion is asked for.
-pub(super) fn moving_scene(path: &Path, memory: &Memory) -> Result<Option<Scene>, Error> {
-    if path.is_dir() {
-        return Ok(None);
-    }
-    Ok(Some(read_scene(path, memory)?).filter(|scene| scene.analysis.is_some()))
-}
-
 /// The model of a scene at rest.
 pub(super) fn still_model(path: &Path, memory: &Memory) -> Result<Model, Error> {
     let scene = read_scene(path, memory)?;
-    if scene.analysis.is_some() {
-        let message =
-            "the scene moves; only `solve` and `tradeoff` can do with that: leave the analysis out for its rest";
-        return Err(Error::Scene { path: "analysis".into(), message: message.into() });
-    }
+    rests(&scene)?;
     build(&scene, path)
+}
+
+/// Refuses a scene whose motion is asked for.
+fn rests(scene: &Scene) -> Result<(), Error> {
+    if scene.analysis.is_none() {
+        return Ok(());
+    }
+    let message = "the scene moves; only `solve` and `tradeoff` can do with that: leave the analysis out for its rest";
+    Err(Error::Scene { path: "analysis".into(), message: message.into() })
 }
 
 /// Reads a scene and makes sure that it fits into so much `memory`.

@@ -1,6 +1,6 @@
 //! `signorini solve`: one answer.
 
-use super::input::{Content, Input, moving_scene};
+use super::input::{Content, Input, Source};
 use super::options::{Common, Format, Solve};
 use super::{Outcome, dynamic, warn};
 use crate::error::Error;
@@ -18,14 +18,20 @@ pub(super) fn settings(method: Method, common: &Common) -> Settings {
 
 pub(super) fn run(options: &Solve) -> Result<Outcome, Error> {
     let common = &options.common;
-    if let Some(scene) = moving_scene(&options.input, &common.memory)? {
-        return dynamic::run(options, &scene);
+    let source = Source::read(&options.input, &common.memory)?;
+    if let Source::Scene(scene, _) = &source
+        && scene.analysis.is_some()
+    {
+        return dynamic::run(options, scene);
     }
     if options.resume {
         let path = "analysis".into();
         return Err(Error::Scene { path, message: "nothing moves here, so that there is nothing to resume".into() });
     }
-    let input = Input::read(&options.input, &common.memory)?;
+    let input = match source {
+        Source::Scene(scene, read_seconds) => Input::of_scene(&scene, &options.input, read_seconds)?,
+        Source::Directory(input) => input,
+    };
     warn(&input.warnings());
     let mut settings = settings(options.method.method(), common);
     settings.prove = true;
