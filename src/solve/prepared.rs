@@ -114,6 +114,11 @@ impl Prepared {
             _ => None,
         };
         drop(of_all);
+        if cholesky.is_none() {
+            // Without a bound no accuracy can be held: what is exact is left.
+            let exact = Settings { accuracy: None, ..*settings };
+            way = Way::chosen(&exact, analysis.is_some(), work, problem.rows());
+        }
         let mut condensation = None;
         if analysis.is_some() {
             let shifted = cholesky.is_none();
