@@ -45,7 +45,7 @@
 //! |---|---|
 //! | 0 | [`analytical`], [`barrier`], [`solution`] |
 //! | 1 | [`error`] |
-//! | 2 | [`file`], [`sparse`], [`element`], [`formulation`] |
+//! | 2 | [`mod@file`], [`sparse`], [`element`], [`formulation`] |
 //! | 3 | [`mesh`], [`material`] |
 //! | 4 | [`problem`], [`body`] |
 //! | 5 | [`transform`], [`method`], [`assembly`], [`recovery`], [`norm`] |
