@@ -25,6 +25,10 @@ REPORT_TOLERANCE = 1e-9
 """Between the total force in a report and the one from its files, relative."""
 
 
+CONDENSATION_TOLERANCE = 1e-11
+"""Between answers on the contact dofs and on all dofs, relative: rounding times the condition of the stiffness."""
+
+
 class ProgramFailed(Exception):
     """A run that ended in an error, printed no report or left out a file."""
 
@@ -50,10 +54,10 @@ def export(program: Path, scene: Path, directory: Path) -> None:
     run(program, "export", str(scene), str(directory))
 
 
-def solve(program: Path, target: Path, method: str, out: Path) -> Run:
-    """`signorini solve TARGET --method METHOD --format json --out OUT`; exit codes 0 and 4 give an answer."""
+def solve(program: Path, target: Path, method: str, out: Path, *options: str) -> Run:
+    """`signorini solve TARGET --method METHOD --format json --out OUT OPTIONS`; exit codes 0 and 4 give an answer."""
     began = time.perf_counter()
-    done = run(program, "solve", str(target), "--method", method, "--format", "json", "--out", str(out))
+    done = run(program, "solve", str(target), "--method", method, "--format", "json", "--out", str(out), *options)
     seconds = time.perf_counter() - began
     try:
         report = json.loads(done.stdout)
@@ -95,6 +99,23 @@ def report_faults(problem: Problem, method: str, result: Run) -> list[str]:
     scale = largest(answer.multiplier) * np.sqrt(problem.rows) + WEAK * largest(problem.load)
     if not abs(contact.get("force", math.nan) - answer.force) <= REPORT_TOLERANCE * scale:
         faults.append(f"reports a force of {contact.get('force')}, its files have {answer.force:.10g}")
+    return faults
+
+
+def condensation_faults(problem: Problem, condensed: Run, full: Run) -> list[str]:
+    """Where an answer on the contact dofs differs from the one on all dofs; forces, for rows may share theirs anyhow."""
+    faults = []
+    forces = [problem.contact.T @ run.answer.multiplier for run in (condensed, full)]
+    pairs = {"u": (condensed.answer.displacement, full.answer.displacement), "B' lambda": tuple(forces)}
+    for name, (one, other) in pairs.items():
+        scale = largest(other) if name == "u" else max(largest(other), largest(problem.load))
+        difference = largest(one - other)
+        if difference > CONDENSATION_TOLERANCE * scale:
+            faults.append(f"{name} differs by {difference / scale:.1e} from that on all dofs")
+    if math.isfinite(full.energy_error_bound) and condensed.report["method"] == full.report["method"] == "active-set":
+        sets = [[step["closed"] for step in run.report["history"]] for run in (condensed, full)]
+        if sets[0] != sets[1]:
+            faults.append(f"closed rows on the way {sets[0]}, on all dofs {sets[1]}")
     return faults
 
 

@@ -90,6 +90,10 @@ class WrongProgram(WithProgram):
                 verdicts = self.verdicts(BLOCK, fault)
                 self.assertFalse(all(verdicts[f"signorini {method}"].passed for method in METHODS))
 
+    def test_an_answer_on_all_dofs_that_differs_fails(self):
+        verdicts = self.verdicts(BLOCK, "full_differs")
+        self.assertRegex(verdicts["signorini qp"].failures[0], "^u differs by .* from that on all dofs$")
+
     def test_a_refusal_shows_its_exit_code_and_sentence(self):
         verdicts = self.verdicts(BLOCK, "refused")
         self.assertEqual(verdicts["signorini qp"].failures, ["exit code 3: the body is not held"])

@@ -19,7 +19,7 @@ from cases import CLOSED_FORM_TOLERANCE, RAW_CASES, SCENE_CASES, Case, scene_fil
 from compare import EXACT, RAW, Verdict, broken, judge
 from kkt import Rejected
 from problem import Answer, Problem, read_problem, write_problem
-from program import METHODS, ProgramFailed, bound_faults, export, report_faults, solve
+from program import METHODS, ProgramFailed, bound_faults, condensation_faults, export, report_faults, solve
 from settle import Settled, Unsettled, contact_set, settle
 from solvers import SOLVERS, NoAnswer
 from twin import twin_faults
@@ -84,6 +84,9 @@ def tested(case: Case, problem: Problem, directory: Path, program: Path, referen
             faults = report_faults(problem, method, result) + bound_faults(problem, result, references)
             # The penalty answer is near and says how near; the other two are exact.
             exact = method != "penalty"
+            if exact:
+                full = solve(program, directory, method, directory / f"{method}-full", "--no-condense")
+                faults += condensation_faults(problem, result, full)
             note = f"{result.seconds:.2f} s" + ("" if exact else f", bound {result.energy_error_bound:.1e}")
             tolerances = EXACT if exact else RAW
             verdicts.append(judge(case.name, name, problem, result.answer, references, tolerances, exact, faults, note))

@@ -12,7 +12,7 @@ use cases::cases;
 use measure::run;
 use signorini::dynamic::{DynamicProblem, Integrator, Scheme, TimeFunction, stable_step};
 use signorini::scene::SchemeSpec;
-use signorini::{ContactProblem, Scene, Settings, SparseMatrix, SymmetricMatrix};
+use signorini::{ContactProblem, Precision, Scene, Settings, SparseMatrix, SymmetricMatrix};
 
 /// What the default scheme promises at its usual step, a Courant number of 0.5, on 100 cells.
 const ENERGY: f64 = 1e-3;
@@ -163,6 +163,38 @@ fn a_run_that_is_resumed_goes_on_bit_for_bit() {
         second.advance().unwrap();
     }
     assert_eq!(whole.state(), second.state());
+}
+
+#[test]
+fn a_factor_in_single_precision_gives_the_same_motion() {
+    // A block that is thrown upwards, against a parabola.
+    let axis = serde_json::json!({"points": [0, 1], "divisions": [16]});
+    let scene = serde_json::json!({
+        "body": {"rectangle": {"x": axis, "y": axis}},
+        "material": {"young": 1000, "poisson": 0.3, "density": 1},
+        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}],
+        "obstacles": [
+            {"boundary": "top", "approach": "+y", "shape": {"parabola": {"apex": [0.5, 1], "radius": 2}}}],
+        "analysis": {"dynamic": {
+            "duration": 1, "initial": [{"velocity": {"value": [0, 0], "gradient": [[0, 0], [0, 5]]}}]}}
+    });
+    let scene = Scene::from_json(&scene.to_string(), "scene").unwrap();
+    let dynamics = scene.dynamics(&scene.build().unwrap()).unwrap().unwrap();
+    let [double, mixed] = [Precision::Double, Precision::Mixed].map(|precision| {
+        let mut settings = Settings::default();
+        settings.precision = precision;
+        let mut integrator =
+            Integrator::new(dynamics.problem.clone(), dynamics.scheme, dynamics.step, &settings).unwrap();
+        for _ in 0..20 {
+            integrator.advance().unwrap();
+        }
+        assert!(integrator.observe().closed > 0);
+        integrator.state().displacement.clone()
+    });
+    let largest = double.iter().fold(0.0_f64, |largest, u| largest.max(u.abs()));
+    let apart = double.iter().zip(&mixed).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+    // Every step is refined to the rounding of double precision, which is not the same rounding.
+    assert!(apart > 0.0 && apart <= 1e-9 * largest, "{apart} of {largest}");
 }
 
 #[test]

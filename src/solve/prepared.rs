@@ -279,8 +279,8 @@ impl Prepared {
         settings: &Settings,
     ) -> Result<Option<Vec<f64>>, Error> {
         let loading = self.load(self.problem.with(load, gap.clone())?.load().to_vec(), &gap);
-        let Found { loading, unit, outcome, .. } = self.find(loading, gap, Some(start), settings)?;
-        Ok(outcome.settled.then(|| self.expand(&loading, unit, &outcome.displacement)))
+        let found = self.find(loading, gap, Some(start), settings)?;
+        Ok(found.outcome.settled.then(|| self.displacement(&found)))
     }
 
     /// The exact path of the answer while the gaps move from `from` to `to` (length m each) on a straight line.

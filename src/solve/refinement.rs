@@ -52,7 +52,7 @@ impl Prepared {
     /// [`Error::Numerical`] where the stiffness is too ill-conditioned for it, and those of the method.
     pub(super) fn refined(&self, first: Found, settings: &Settings) -> Result<Found, Error> {
         let clock = Instant::now();
-        let (load, gap, start) = (first.loading.load.clone(), first.gap.clone(), first.seconds);
+        let (load, gap) = (first.loading.load.clone(), first.gap.clone());
         let mut rest = load.clone();
         let mut found = first;
         let mut refined = Refined { base: vec![0.0; self.problem.dofs()], contraction: 0.0, steps: 0 };
@@ -80,7 +80,6 @@ impl Prepared {
             let no_gain = refined.steps > 0 && (length <= NOTHING * size || ratio > 0.5);
             let out_of_time = settings.time.is_some_and(|time| clock.elapsed().as_secs_f64() >= time);
             if good_enough || no_gain || out_of_time || refined.steps == MOST_STEPS {
-                found.seconds.factor += start.factor;
                 return Ok(Found {
                     gap,
                     loading: Arc::new(found.loading.with_load(load)),
