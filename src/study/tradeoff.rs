@@ -26,6 +26,9 @@ const USUAL_TOLERANCE: f64 = 1e-8;
 /// Share of the time of the usual way for which the most accurate one is told.
 const HURRY: f64 = 0.1;
 
+/// Errors below this are those of rounding, and one is as good as another.
+const ROUNDING: f64 = 1e-12;
+
 /// The QP whose contact set is settled by active-set steps.
 const POLISHED: &str = "qp, polished";
 
@@ -252,11 +255,18 @@ fn errors(model: &Model, solution: &Solution, exact: &Solution) -> Result<Tradeo
     })
 }
 
+impl TradeoffPoint {
+    fn error_above_rounding(&self) -> f64 {
+        self.energy_error.max(ROUNDING)
+    }
+}
+
 /// Marks the Pareto front of each mesh.
 fn mark_best(points: &mut [TradeoffPoint]) {
     let beats = |one: &TradeoffPoint, other: &TradeoffPoint| {
-        let no_worse = one.seconds <= other.seconds && one.energy_error <= other.energy_error;
-        one.mesh == other.mesh && no_worse && (one.seconds < other.seconds || one.energy_error < other.energy_error)
+        let [error, beaten] = [one, other].map(TradeoffPoint::error_above_rounding);
+        let no_worse = one.seconds <= other.seconds && error <= beaten;
+        one.mesh == other.mesh && no_worse && (one.seconds < other.seconds || error < beaten)
     };
     let best: Vec<bool> = points.iter().map(|point| !points.iter().any(|other| beats(other, point))).collect();
     points.iter_mut().zip(best).for_each(|(point, best)| point.best = best);
@@ -276,7 +286,10 @@ fn advice(points: &[TradeoffPoint]) -> Vec<Advice> {
     if let Some((_, usual)) = usual {
         let seconds = HURRY * usual.seconds;
         let quick = own().filter(|(_, point)| point.seconds <= seconds);
-        let point = quick.min_by(|a, b| a.1.energy_error.total_cmp(&b.1.energy_error)).map(|(index, _)| index);
+        let point = quick.min_by(|(_, a), (_, b)| {
+            a.error_above_rounding().total_cmp(&b.error_above_rounding()).then(a.seconds.total_cmp(&b.seconds))
+        });
+        let point = point.map(|(index, _)| index);
         advice.push(Advice { accuracy: None, seconds: Some(seconds), point });
     }
     advice
