@@ -249,6 +249,6 @@ pub struct Solution {
 impl Solution {
     /// Total contact force `-sum(lambda)`, `>= 0`, in the problem's unit of force.
     pub fn contact_force(&self) -> f64 {
-        -self.multiplier.iter().sum::<f64>()
+        self.multiplier.iter().fold(0.0, |force, lambda| force - lambda)
     }
 }

@@ -46,6 +46,12 @@ pub(super) fn run(options: &Solve) -> Result<Outcome, Error> {
         }
         Err(error) => return Err(input.explain(error)),
     };
+    if options.extrapolate && !solution.method.starts_with("penalty") {
+        let method = &solution.method;
+        warn(&format!(
+            "warning: --extrapolate changes nothing: the method is {method}; it goes with --method penalty\n"
+        ));
+    }
     let mut summary = input.summary(&solution, settings.goal())?;
     if let Content::Scene(model) = &input.content {
         summary.discretisation_error = Some(discretisation_error(model, &solution)?);

@@ -8,8 +8,8 @@ use crate::sparse::{Analysis, Cholesky, Equilibration, FactorError, SparseMatrix
 /// Contact dofs beyond this share of all are not ordered last: the boundary would be most of the body.
 const LARGEST_SHARE: f64 = 0.25;
 
-/// So few contact dofs are ordered last whatever their share: a dense factor of them costs milliseconds.
-const FEW_DOFS: usize = 300;
+/// So few contact dofs are ordered last whatever their share: dense matrices of them cost less than a millisecond.
+const FEW_DOFS: usize = 100;
 
 /// A contraction that is measured may be so many times larger.
 const MEASURED: f64 = 10.0;

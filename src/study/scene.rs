@@ -54,7 +54,7 @@ pub fn discretisation_error(model: &Model, solution: &Solution) -> Result<f64, E
 
 /// Area of the boundary that the closed rows stand for; thickness, cross-section or circumference included.
 pub fn contact_area(model: &Model, closed: &ContactSet) -> f64 {
-    closed.iter().filter_map(|row| model.rows().get(row)).map(|row| row.tributary_area).sum()
+    closed.iter().filter_map(|row| model.rows().get(row)).fold(0.0, |area, row| area + row.tributary_area)
 }
 
 /// Length of the boundary that the closed rows stand for, in the unit of length, where the model has a thickness.
