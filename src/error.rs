@@ -112,6 +112,9 @@ pub enum Error {
         /// Seconds that are left.
         time: f64,
     },
+    /// [`Watch::stop`](crate::Watch::stop) was called before anything was found.
+    #[error("interrupted before there was an answer")]
+    Interrupted,
     /// An answer was found, but it does not meet the tolerance.
     #[error("not certified: {condition} is {value:.3e}, above the tolerance {tolerance:.1e} ({})", solution.method)]
     NotCertified {
@@ -233,6 +236,7 @@ impl Error {
             Error::Unbounded { .. } => "unbounded",
             Error::UnderHeld { .. } => "under-held",
             Error::OutOfTime { .. } => "out-of-time",
+            Error::Interrupted => "interrupted",
             Error::NotCertified { .. } => "not-certified",
             Error::Setting { .. } => "setting",
             Error::NotCondensed { .. } => "not-condensed",

@@ -1,7 +1,7 @@
 //! A problem with everything done that does not depend on load and gap: factor once, contact many.
 
 use std::sync::{Arc, OnceLock};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use super::boundary::{BoundarySolution, Found};
 use super::loading::Loading;
@@ -52,11 +52,14 @@ impl Prepared {
     /// As [`Prepared::new`], with the threads and the precision of `settings`.
     ///
     /// # Errors
-    /// As [`Prepared::new`], and [`Error::Setting`].
+    /// As [`Prepared::new`], [`Error::Setting`], and [`Error::OutOfTime`] or [`Error::Interrupted`] instead of a factorisation
+    /// for which no time is left.
     pub fn with_settings(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
         settings.check()?;
-        let Settings { condense, threads, .. } = *settings;
+        let settings = &settings.started();
+        let Settings { condense, threads, watch, .. } = settings;
         let clock = Instant::now();
+        watch.step("ordering", 0);
         let selection = RowSelection::of(problem.contact(), problem.gap())?;
         let scaling = Scaling::of(problem.stiffness(), &selection.contact(problem.contact()))?;
         let diagonal = problem.stiffness().diagonal();
@@ -67,26 +70,29 @@ impl Prepared {
             Condense::Auto => Condensation::analyse(problem.stiffness(), &contact_dofs)?,
             Condense::Never => None,
         }
-        .map(|analysis| analysis.with_threads(threads));
+        .map(|analysis| analysis.with_threads(*threads));
         let last = match &analysis {
             Some(_) => contact_dofs.clone(),
             None => EnergyNorm::last_dofs(scaling.contact()),
         };
         let of_all = match analysis {
             Some(_) => None,
-            None => Some(Analysis::with_last(problem.stiffness(), &last)?.with_threads(threads)),
+            None => Some(Analysis::with_last(problem.stiffness(), &last)?.with_threads(*threads)),
         };
         let work = analysis.as_ref().or(of_all.as_ref()).map_or(0.0, Analysis::multiplications);
         let mut way = Way::chosen(settings, analysis.is_some(), work, problem.rows());
-        if let Some(time) = settings.time {
+        if watch.is_stopped() {
+            return Err(Error::Interrupted);
+        }
+        watch.step("factorisation", 0);
+        if let Some(left) = watch.time_left() {
             let values = analysis.as_ref().or(of_all.as_ref()).map_or(0, Analysis::factor_entries);
             let [double, single] = factor_seconds(work, values);
-            let left = (time - clock.elapsed().as_secs_f64()).max(0.0);
             let may_be_single = settings.precision != Precision::Double && analysis.is_some();
             match way {
                 Some(_) if double > left && single <= left && may_be_single => way = Some(Way::ActiveSetMixed),
                 _ if double.min(if may_be_single { single } else { double }) > left => {
-                    return Err(Error::OutOfTime { needed: double, time });
+                    return Err(Error::OutOfTime { needed: double, time: left });
                 }
                 _ => {}
             }
@@ -116,7 +122,7 @@ impl Prepared {
         drop(of_all);
         if cholesky.is_none() {
             // Without a bound no accuracy can be held: what is exact is left.
-            let exact = Settings { accuracy: None, ..*settings };
+            let exact = Settings { accuracy: None, ..settings.clone() };
             way = Way::chosen(&exact, analysis.is_some(), work, problem.rows());
         }
         let mut condensation = None;
@@ -124,7 +130,7 @@ impl Prepared {
             let shifted = cholesky.is_none();
             let factor = match &cholesky {
                 Some(cholesky) => Some(cholesky.clone()),
-                None => factor_with_rows(&scaling, &contact_dofs, threads)?,
+                None => factor_with_rows(&scaling, &contact_dofs, *threads)?,
             };
             // Where even all rows together do not hold the body, the full problem tells why.
             if let Some(factor) = factor {
@@ -137,7 +143,7 @@ impl Prepared {
                 let all: Vec<usize> = (0..condensed.stiffness().dim()).collect();
                 AugmentedMatrix::with_last(condensed.stiffness(), condensed.contact(), &all)?
             }
-            None => AugmentedMatrix::new(scaling.stiffness(), scaling.contact())?.with_threads(threads),
+            None => AugmentedMatrix::new(scaling.stiffness(), scaling.contact())?.with_threads(*threads),
         };
         let norm = cholesky.map(|cholesky| EnergyNorm::new(cholesky, scaling.equilibration().clone(), last));
         let factor = factor_clock.elapsed().as_secs_f64();
@@ -286,7 +292,7 @@ impl Prepared {
     /// The exact path of the answer while the gaps move from `from` to `to` (length m each) on a straight line.
     ///
     /// # Errors
-    /// As [`Prepared::solve_gap`] for both ends; [`Error::NotCondensed`] for a problem that was not condensed or whose
+    /// As [`Prepared::solve_gap`] for both ends; [`Error::Interrupted`]; [`Error::NotCondensed`] for a problem that was not condensed or whose
     /// stiffness is not definite by itself.
     pub fn path(&self, from: &[f64], to: &[f64], settings: &Settings) -> Result<Path<'_>, Error> {
         let Some(condensed) = self.condensation.as_ref().filter(|_| self.norm.is_some() && !self.is_single()) else {
@@ -302,7 +308,7 @@ impl Prepared {
             free.iter().zip(problem.gap()).map(|(&free, gap)| ldexp(free, loading.unit - unit) - gap).collect();
         let slope = problem.gap().iter().zip(&at_end).map(|(first, last)| first - last).collect();
         let compliance = Compliance::new(condensed.compliance(), constant, slope);
-        let (pieces, mut events) = compliance.walk(&self.selection.restrict_set(&start.contact_set))?;
+        let (pieces, mut events) = compliance.walk(&self.selection.restrict_set(&start.contact_set), &settings.watch)?;
         events.iter_mut().for_each(|event| event.row = self.selection.kept()[event.row]);
         Ok(Path { prepared: self, from: from.to_vec(), to: to.to_vec(), unit: *unit, pieces, events })
     }
@@ -324,7 +330,7 @@ impl Prepared {
         settings: &Settings,
     ) -> Result<Found, Error> {
         settings.check()?;
-        let settings = &self.resolved(settings);
+        let settings = &self.resolved(&settings.started());
         self.check_gap(&gap)?;
         let found = self.find_step(loading, gap, start, settings)?;
         if self.is_single() { self.refined(found, settings) } else { Ok(found) }
@@ -334,7 +340,7 @@ impl Prepared {
     fn resolved(&self, settings: &Settings) -> Settings {
         match settings.method {
             Method::Auto => self.way.unwrap_or(Way::ActiveSet).settings(settings),
-            _ => *settings,
+            _ => settings.clone(),
         }
     }
 
@@ -348,8 +354,7 @@ impl Prepared {
     ) -> Result<Found, Error> {
         let clock = Instant::now();
         let (problem, unit) = self.scaled(&loading, &gap)?;
-        let deadline = settings.time.and_then(|time| clock.checked_add(Duration::try_from_secs_f64(time).ok()?));
-        let task = ScaledProblem::new(&problem, &self.augmented, self.norm.is_some()).until(deadline);
+        let task = ScaledProblem::new(&problem, &self.augmented, self.norm.is_some()).watched(&settings.watch);
         let start = start.map(|set| self.selection.restrict_set(set));
         let bound = |displacement: &[f64], multiplier: &[f64]| {
             let norm = self.condensed_norm(&problem).ok().flatten();
@@ -415,6 +420,7 @@ impl Prepared {
     /// The whole answer, certified.
     pub(super) fn complete(&self, found: Found, settings: &Settings) -> Result<Solution, Error> {
         let clock = Instant::now();
+        settings.watch.step("certificate", 0);
         let displacement = self.displacement(&found);
         let method = self.resolved(settings).method;
         let Found { loading, gap, problem: condensed, unit, outcome, seconds, refined } = found;
@@ -425,7 +431,7 @@ impl Prepared {
         let multiplier = self.expand_multiplier(&outcome.multiplier, unit);
         let problem = self.problem.with(loading.load.clone(), gap)?;
         let certificate = problem.certify_in(norm.as_ref(), &displacement, &multiplier)?;
-        let proven = norm.as_ref().filter(|_| settings.prove);
+        let proven = norm.as_ref().filter(|_| settings.prove && !settings.watch.is_over());
         let proven = proven.and_then(|norm| problem.prove_in(norm, &displacement, &multiplier));
         let expand_iteration = |step: Iteration| Iteration {
             contact_set: self.selection.expand_set(&step.contact_set),
@@ -447,9 +453,12 @@ impl Prepared {
         if settings.goal().is_met_by(&solution.certificate) {
             return Ok(solution);
         }
-        let task = ScaledProblem::new(&condensed, &self.augmented, self.norm.is_some());
-        interior_point::check_feasible(&task, settings.interior_point_tolerance)
-            .map_err(|error| self.expand_error(error, problem.gap()))?;
+        // Of an answer that was cut short it is known why it falls short.
+        if !settings.watch.is_over() {
+            let task = ScaledProblem::new(&condensed, &self.augmented, self.norm.is_some()).watched(&settings.watch);
+            interior_point::check_feasible(&task, settings.interior_point_tolerance)
+                .map_err(|error| self.expand_error(error, problem.gap()))?;
+        }
         let (condition, value, tolerance) = settings.goal().decisive(&solution.certificate);
         Err(Error::NotCertified { solution: Box::new(solution), condition, value, tolerance })
     }

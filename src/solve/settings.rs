@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::solution::Goal;
+use crate::watch::Watch;
 
 /// The method that finds the contact set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -59,7 +60,7 @@ pub enum Precision {
 }
 
 /// Settings of a solve; start from [`Settings::default`] or [`Settings::with_method`] and change fields.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Settings {
     /// The method.
@@ -80,6 +81,9 @@ pub struct Settings {
     /// Wall-clock seconds after which the best answer so far is returned, as [`Error::NotCertified`] if it falls short;
     /// a factorisation that is under way is ended first.
     pub time: Option<f64>,
+    /// Asked from any thread, the solve ends as if its time were over, or with [`Error::Interrupted`] where it has found
+    /// nothing yet; it tells what is being done. Clones of the settings share it.
+    pub watch: Watch,
     /// Is the contact set of the QP settled by the active-set loop?
     pub polish: bool,
     /// Tolerance of the interior-point method, on data of order one.
@@ -107,6 +111,7 @@ impl Default for Settings {
             accuracy: None,
             prove: false,
             time: None,
+            watch: Watch::default(),
             polish: true,
             interior_point_tolerance: 1e-9,
             max_iterations: 20_000,
@@ -132,6 +137,12 @@ impl Settings {
     /// The program chooses how; the best answer that so many seconds allow.
     pub fn within(seconds: f64) -> Self {
         Settings { time: Some(seconds), ..Settings::default() }
+    }
+
+    /// The same with the seconds counted from now, in the deadline of the watch.
+    pub(crate) fn started(&self) -> Self {
+        let watch = self.time.map_or_else(|| self.watch.clone(), |time| self.watch.within(time));
+        Settings { time: None, watch, ..self.clone() }
     }
 
     /// What an answer is held against.

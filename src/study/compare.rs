@@ -71,7 +71,7 @@ pub struct Comparison {
 /// As [`solve`], but an answer that is not certified is an answer here.
 pub fn compare(problem: &ContactProblem, settings: &Settings) -> Result<Comparison, Error> {
     let answer = |method| {
-        let mut settings = *settings;
+        let mut settings = settings.clone();
         settings.method = method;
         match solve(problem, &settings) {
             Ok(solution) => Ok(MethodAnswer { solution, certified: true }),
