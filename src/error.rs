@@ -145,9 +145,9 @@ pub enum Error {
         /// Which step.
         step: &'static str,
     },
-    /// A scene that needs more memory than it may take.
+    /// A scene or a problem that needs more memory than it may take.
     #[error(
-        "the scene needs about {} of memory, but {} are allowed: about {dofs:.0e} dofs, {stiffness_entries:.0e} entries \
+        "it needs about {} of memory, but {} are allowed: about {dofs:.0e} dofs, {stiffness_entries:.0e} entries \
          of the stiffness, {factor_entries:.0e} of its factor; take larger cells, or allow more",
         memory(*bytes),
         memory(*allowed)

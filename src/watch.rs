@@ -1,5 +1,6 @@
 //! What the one who waits shares with the work: a request to end, a deadline, and what is being done.
 
+use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -57,18 +58,28 @@ pub struct Part {
     pub of: usize,
 }
 
+impl fmt::Display for Part {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {} of {}", self.name, self.number, self.of)
+    }
+}
+
 impl Watch {
     /// Asks the work to end with what it has.
     pub fn stop(&self) {
         self.shared.stopped.store(true, Ordering::SeqCst);
     }
 
-    /// Was the work asked to end?
+    /// Was the work asked to end? It is the work that asks this, and then ends.
     pub fn is_stopped(&self) -> bool {
-        self.shared.stopped.load(Ordering::SeqCst)
+        let stopped = self.shared.stopped.load(Ordering::SeqCst);
+        if stopped {
+            self.shared.noticed.store(true, Ordering::SeqCst);
+        }
+        stopped
     }
 
-    /// Has the work noticed that it was asked to end? A factorisation, for one, does not.
+    /// Has the work noticed that it was asked to end? While it factorises, for one, it does not.
     pub fn is_noticed(&self) -> bool {
         self.shared.noticed.load(Ordering::SeqCst)
     }
@@ -90,13 +101,9 @@ impl Watch {
         self.deadline.map(|deadline| deadline.saturating_duration_since(Instant::now()).as_secs_f64())
     }
 
-    /// Must the work end, because it was asked to or because its deadline has passed? Who asks this must end.
+    /// Must the work end, because it was asked to or because its deadline has passed?
     pub fn is_over(&self) -> bool {
-        if self.is_stopped() {
-            self.shared.noticed.store(true, Ordering::SeqCst);
-            return true;
-        }
-        self.time_left() == Some(0.0)
+        self.is_stopped() || self.time_left() == Some(0.0)
     }
 
     /// Tells which part of the work begins, from 1, `of` how many.

@@ -8,12 +8,15 @@ use crate::error::Error;
 use crate::output::{compare_json, compare_text, gallery, write_files};
 use crate::solve::Method;
 use crate::study::{Summary, compare};
+use crate::watch::Watch;
 
-pub(super) fn run(options: &Compare) -> Result<Outcome, Error> {
+pub(super) fn run(options: &Compare, watch: &Watch) -> Result<Outcome, Error> {
     let common = &options.common;
     let input = Input::read(&options.input, &common.memory)?;
     warn(&input.warnings());
-    let comparison = compare(input.problem(), &settings(Method::Auto, common)).map_err(|error| input.explain(error))?;
+    let settings = settings(Method::Auto, common, watch);
+    let comparison = compare(input.problem(), &settings).map_err(|error| input.explain(error))?;
+    watch.step("report", 0);
     let [qp, active_set, penalty] = &comparison.answers;
     let summary = |solution| input.summary(solution, common.tolerance);
     let summaries: [Summary; 3] = [summary(&qp.solution)?, summary(&active_set.solution)?, summary(&penalty.solution)?];

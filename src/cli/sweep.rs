@@ -8,13 +8,15 @@ use crate::error::Error;
 use crate::output::{gallery, sweep_json, sweep_text, write_files};
 use crate::solve::Method;
 use crate::study::{even_gaps, sweep};
+use crate::watch::Watch;
 
-pub(super) fn run(options: &Sweep) -> Result<Outcome, Error> {
+pub(super) fn run(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
     let common = &options.common;
     let model = still_model(&options.scene, &common.memory)?;
     warn(&warnings(&model));
     let gaps = even_gaps(options.gaps.first, options.gaps.last, options.gaps.count);
-    let swept = sweep(&model, &gaps, &settings(Method::Auto, common))?;
+    let swept = sweep(&model, &gaps, &settings(Method::Auto, common, watch))?;
+    watch.step("report", 0);
     let json = format!("{:#}\n", sweep_json(&swept));
     if let Some(folder) = &common.out {
         gallery::write_sweep(folder, &swept)?;

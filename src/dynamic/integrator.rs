@@ -88,6 +88,9 @@ impl Integrator {
             contact_set: ContactSet::from_fn(rows, |row| violation[row] >= -ROUNDING * reach),
         };
         let state = prepared.start(&problem, step, state)?;
+        if settings.watch.is_over() {
+            return Err(Error::Interrupted);
+        }
         Ok(Integrator { problem, step, scheme: prepared, state, watch: settings.watch })
     }
 

@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use super::Settings;
+use super::estimate::{Kept, check_memory};
 use crate::error::Error;
 use crate::method::mprgp::{self, Limits, Start};
 use crate::problem::{ContactProblem, check_gap};
@@ -126,6 +127,7 @@ pub(super) fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Sol
     if settings.watch.is_stopped() {
         return Err(Error::Interrupted);
     }
+    check_memory(problem, Kept::Multigrid, settings)?;
     settings.watch.step("multigrid hierarchy", 0);
     let iterative = Iterative::new(problem, settings.threads)?;
     let timed = |mut solution: Solution| {

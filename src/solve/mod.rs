@@ -46,6 +46,7 @@ pub fn solve_qp(problem: &ContactProblem) -> Result<Solution, Error> {
 /// * [`Error::UnderHeld`] for a motion that nothing resists: the answer would not be unique,
 /// * [`Error::NotConvex`] for a stiffness with a negative eigenvalue,
 /// * [`Error::NotCertified`] with the best answer, where it does not meet the tolerance,
+/// * [`Error::TooLarge`] where the memory that is allowed does not suffice,
 /// * [`Error::Interrupted`] where the watch was asked to stop before there was an answer,
 /// * [`Error::Numerical`] where memory does not suffice.
 pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
@@ -91,9 +92,9 @@ pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, 
     // The time that the shortcut took is part of the answer's.
     let method = if settings.method == Method::Auto { Method::ActiveSet } else { settings.method };
     let safe = Settings { method, precision: Precision::Double, ..settings.clone() };
-    match solve(problem, &safe) {
-        Err(_) if settings.watch.is_over() => Err(fell_short),
-        solved => solved.map(with_preparation),
+    match (solve(problem, &safe), fell_short) {
+        (Err(_), answer @ Error::NotCertified { .. }) if settings.watch.is_over() => Err(answer),
+        (solved, _) => solved.map(with_preparation),
     }
 }
 

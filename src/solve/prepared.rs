@@ -4,6 +4,7 @@ use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
 use super::boundary::{BoundarySolution, Found};
+use super::estimate::{Kept, check_memory};
 use super::loading::Loading;
 use super::rules::{Way, factor_seconds};
 use super::{Condense, Method, Path, Precision, Settings, run};
@@ -52,8 +53,8 @@ impl Prepared {
     /// As [`Prepared::new`], with the threads and the precision of `settings`.
     ///
     /// # Errors
-    /// As [`Prepared::new`], [`Error::Setting`], and [`Error::OutOfTime`] or [`Error::Interrupted`] instead of a factorisation
-    /// for which no time is left.
+    /// As [`Prepared::new`], [`Error::Setting`], and instead of a factorisation [`Error::OutOfTime`],
+    /// [`Error::Interrupted`] or [`Error::TooLarge`], where time or memory is not left for it.
     pub fn with_settings(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
         settings.check()?;
         let settings = &settings.started();
@@ -99,6 +100,14 @@ impl Prepared {
         }
         let precision = way.map_or(settings.precision, |way| way.settings(settings).precision);
         let single = precision == Precision::Mixed && analysis.is_some();
+        let kept = match (&analysis, &of_all) {
+            (Some(analysis), _) => {
+                let (values, contact_dofs) = (analysis.factor_entries(), contact_dofs.len());
+                Kept::Condensed { values, is_single: single, contact_dofs }
+            }
+            (None, of_all) => Kept::Factors { values: of_all.as_ref().map_or(0, Analysis::factor_entries) },
+        };
+        check_memory(problem, kept, settings)?;
         let factor = |analysis: &Analysis, single| match analysis.factor_equilibrated(
             problem.stiffness(),
             scaling.equilibration(),

@@ -81,6 +81,9 @@ pub struct Settings {
     /// Wall-clock seconds after which the best answer so far is returned, as [`Error::NotCertified`] if it falls short;
     /// a factorisation that is under way is ended first.
     pub time: Option<f64>,
+    /// Bytes that the solve may take; what would take more, by an estimate made before anything is factorised, is refused as
+    /// [`Error::TooLarge`].
+    pub memory: Option<f64>,
     /// Asked from any thread, the solve ends as if its time were over, or with [`Error::Interrupted`] where it has found
     /// nothing yet; it tells what is being done. Clones of the settings share it.
     pub watch: Watch,
@@ -111,6 +114,7 @@ impl Default for Settings {
             accuracy: None,
             prove: false,
             time: None,
+            memory: None,
             watch: Watch::default(),
             polish: true,
             interior_point_tolerance: 1e-9,
@@ -165,6 +169,9 @@ impl Settings {
         }
         if let Some(time) = self.time.filter(|time| time.is_nan() || *time < 0.0) {
             return Err(Error::Setting { name: "time", value: time, allowed: "zero or positive" });
+        }
+        if let Some(memory) = self.memory.filter(|memory| memory.is_nan() || *memory < 0.0) {
+            return Err(Error::Setting { name: "memory", value: memory, allowed: "zero or positive" });
         }
         positive("interior_point_tolerance", self.interior_point_tolerance)?;
         positive("first_penalty", self.first_penalty)?;
