@@ -4,8 +4,8 @@ mod program;
 
 use program::{Desk, scene};
 use serde_json::{Value, json};
-use signorini::{Scene, Watch};
 use signorini::study::{Tradeoff, TradeoffGrid, TradeoffPoint, tradeoff};
+use signorini::{Scene, Watch};
 
 fn measured(value: &Value) -> Tradeoff {
     let scene = Scene::from_json(&value.to_string(), "scene").unwrap();

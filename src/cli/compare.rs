@@ -21,16 +21,16 @@ pub(super) fn run(options: &Compare, watch: &Watch) -> Result<Outcome, Error> {
     let summary = |solution| input.summary(solution, common.tolerance);
     let summaries: [Summary; 3] = [summary(&qp.solution)?, summary(&active_set.solution)?, summary(&penalty.solution)?];
     let json = format!("{:#}\n", compare_json(&summaries, &comparison.agreement));
-    if let Some(folder) = &common.out {
-        match &input.content {
-            Content::Scene(model) => gallery::write_compare(folder, model, &comparison)?,
-            Content::Directory(_) => gallery::write_answer(folder, &qp.solution)?,
-        }
-        write_files(folder, &[("report.json", json.clone())])?;
-    }
     let text = match common.format {
         Format::Text => compare_text(&input.title, &summaries, &comparison.agreement, &input.units),
-        Format::Json => json,
+        Format::Json => json.clone(),
     };
-    Ok(Outcome::judged(text, comparison.agreement.exact_methods))
+    let outcome = Outcome::judged(text, comparison.agreement.exact_methods);
+    let Some(folder) = common.out.clone() else { return Ok(outcome) };
+    write_files(&folder, &[("report.json", json)])?;
+    gallery::write_answer(&folder, &qp.solution)?;
+    Ok(match input.content {
+        Content::Scene(model) => outcome.with_pictures(move || gallery::write_compare(&folder, &model, &comparison)),
+        Content::Directory(_) => outcome,
+    })
 }

@@ -83,14 +83,13 @@ pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outco
     }
     let seconds = MotionSeconds { assemble, factor, steps: clock.elapsed().as_secs_f64() };
     let json = format!("{:#}\n", motion_json(&model, &dynamics, settings.method, &summary, &seconds));
-    if let (Some(folder), Some(path)) = (&folder, &options.common.out) {
-        folder.draw(&model)?;
-        write_files(path, &[("report.json", json.clone())])?;
-    }
     let title = scene_title(&model, &options.input);
     let text = match options.common.format {
         Format::Text => motion_text(&title, &model, &dynamics, &summary, &seconds, &unit_names(&model)),
-        Format::Json => json,
+        Format::Json => json.clone(),
     };
-    Ok(Outcome::judged(text, motion_is_certified(&dynamics, settings.method, &summary)))
+    let outcome = Outcome::judged(text, motion_is_certified(&dynamics, settings.method, &summary));
+    let (Some(folder), Some(path)) = (folder, &options.common.out) else { return Ok(outcome) };
+    write_files(path, &[("report.json", json)])?;
+    Ok(outcome.with_pictures(move || folder.draw(&model)))
 }

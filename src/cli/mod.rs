@@ -36,11 +36,15 @@ enum Ending {
     NotCertified = 4,
 }
 
-/// What a command leaves: the text for standard output, and how it ended.
+/// What a command leaves: the text for standard output, how it ended, and what is drawn once the text is out.
 struct Outcome {
     text: String,
     ending: Ending,
+    pictures: Option<Pictures>,
 }
+
+/// Fields and pictures take their time, and nobody should have to wait for numbers because of them.
+type Pictures = Box<dyn FnOnce() -> Result<(), Error>>;
 
 /// Runs the program with `arguments`, the first of which is its name.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
@@ -78,16 +82,29 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             Format::Json => format!("{:#}\n", failure_json(&error, &message)),
             Format::Text => String::new(),
         };
-        Outcome { text, ending }
+        Outcome { text, ending, pictures: None }
     });
-    match io::stdout().write_all(outcome.text.as_bytes()).and_then(|()| io::stdout().flush()) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            warn(&format!("error: cannot write to standard output: {error}\n"));
-            ExitCode::from(Ending::BadInput as u8)
+    let printed = io::stdout().write_all(outcome.text.as_bytes()).and_then(|()| io::stdout().flush());
+    if let Err(error) = printed
+        && error.kind() != io::ErrorKind::BrokenPipe
+    {
+        warn(&format!("error: cannot write to standard output: {error}\n"));
+        return ExitCode::from(Ending::BadInput as u8);
+    }
+    match outcome.pictures.filter(|_| !watch.is_stopped()).map_or(Ok(()), |pictures| drawn(pictures, &watch)) {
+        Err(error) => {
+            warn(&format!("error: {}\n", sentence(&error)));
+            ExitCode::from(ending_of(&error) as u8)
         }
         _ if watch.is_stopped() => ExitCode::from(INTERRUPTED),
         _ => ExitCode::from(outcome.ending as u8),
     }
+}
+
+fn drawn(pictures: Pictures, watch: &Watch) -> Result<(), Error> {
+    watch.step("pictures", 0);
+    let _progress = Progress::of(watch);
+    pictures()
 }
 
 /// Takes the line of a terminal that is being written back.
@@ -101,12 +118,17 @@ fn warn(text: &str) {
 
 impl Outcome {
     fn certified(text: String) -> Self {
-        Outcome { text, ending: Ending::Certified }
+        Outcome::judged(text, true)
     }
 
     /// Certified or not, with that exit code.
     fn judged(text: String, certified: bool) -> Self {
-        Outcome { text, ending: if certified { Ending::Certified } else { Ending::NotCertified } }
+        let ending = if certified { Ending::Certified } else { Ending::NotCertified };
+        Outcome { text, ending, pictures: None }
+    }
+
+    fn with_pictures(self, pictures: impl FnOnce() -> Result<(), Error> + 'static) -> Self {
+        Outcome { pictures: Some(Box::new(pictures)), ..self }
     }
 }
 

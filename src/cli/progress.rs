@@ -5,7 +5,7 @@ use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use super::{ERASED, warn};
+use super::warn;
 use crate::watch::{Activity, Part, Watch};
 
 /// How often the line is drawn.
@@ -15,7 +15,7 @@ const PERIOD: Duration = Duration::from_millis(200);
 const QUIET: Duration = Duration::from_secs(1);
 
 /// Places of the bar.
-const BAR: usize = 30;
+const BAR: usize = 20;
 
 /// Fewer parts say little of those to come.
 const TELLING: usize = 5;
@@ -24,7 +24,7 @@ const TELLING: usize = 5;
 const WIDTH: usize = 79;
 
 /// The line, which follows the activity of a watch until it is dropped.
-pub(super) struct Progress(Option<(Sender<()>, JoinHandle<()>)>);
+pub(super) struct Progress(Option<(Sender<()>, JoinHandle<bool>)>);
 
 impl Progress {
     /// Shows what `watch` watches, once it takes longer than a second.
@@ -37,10 +37,12 @@ impl Progress {
         let drawing = thread::Builder::new().spawn(move || {
             let start = Instant::now();
             let mut pace = Pace::default();
+            let mut is_shown = false;
             while ended.recv_timeout(PERIOD) == Err(RecvTimeoutError::Timeout) {
                 let activity = watch.activity();
                 let left = activity.part.as_ref().and_then(|part| pace.left(part));
                 if start.elapsed() >= QUIET {
+                    is_shown = true;
                     let line = if watch.is_noticed() {
                         "interrupted: it ends with what there is, at once if interrupted again".to_string()
                     } else {
@@ -49,6 +51,7 @@ impl Progress {
                     warn(&line.chars().take(WIDTH).collect::<String>());
                 }
             }
+            is_shown
         });
         Progress(drawing.ok().map(|drawing| (end, drawing)))
     }
@@ -58,9 +61,9 @@ impl Drop for Progress {
     fn drop(&mut self) {
         if let Some((end, drawing)) = self.0.take() {
             drop(end);
-            // What it has drawn last is erased after its end.
-            let _ = drawing.join();
-            warn(ERASED);
+            if drawing.join().unwrap_or(true) {
+                warn("");
+            }
         }
     }
 }
@@ -108,7 +111,7 @@ mod tests {
         assert_eq!(line(&alone, seconds(12), None), "12 s: active set, iteration 3");
         let part = Some(Part { name: "gap", number: 16, of: 30 });
         let one_of_many = Activity { part, step: "factorisation", iteration: 0 };
-        let bar = "[###############...............] gap 16 of 30";
+        let bar = "[##########..........] gap 16 of 30";
         assert_eq!(line(&one_of_many, seconds(12), None), format!("{bar}, 12 s: factorisation"));
         assert_eq!(line(&one_of_many, seconds(12), Some(seconds(7))), format!("{bar}, 7 s left: factorisation"));
     }

@@ -51,19 +51,21 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
     };
     watch.step("report", 0);
     let mut summary = input.summary(&solution, settings.goal())?;
-    if let Content::Scene(model) = &input.content {
+    if let Content::Scene(model) = &input.content
+        && !watch.is_stopped()
+    {
         summary.discretisation_error = Some(discretisation_error(model, &solution)?);
-    }
-    if let Some(folder) = &common.out {
-        match &input.content {
-            Content::Scene(model) => gallery::write_solve(folder, model, &solution)?,
-            Content::Directory(_) => gallery::write_answer(folder, &solution)?,
-        }
-        write_files(folder, &[("report.json", format!("{:#}\n", solve_json(&summary)))])?;
     }
     let text = match common.format {
         Format::Text => solve_text(&input.title, &summary, &input.units),
         Format::Json => format!("{:#}\n", solve_json(&summary)),
     };
-    Ok(Outcome::judged(text, summary.is_certified()))
+    let outcome = Outcome::judged(text, summary.is_certified());
+    let Some(folder) = common.out.clone() else { return Ok(outcome) };
+    write_files(&folder, &[("report.json", format!("{:#}\n", solve_json(&summary)))])?;
+    gallery::write_answer(&folder, &solution)?;
+    Ok(match input.content {
+        Content::Scene(model) => outcome.with_pictures(move || gallery::write_solve(&folder, &model, &solution)),
+        Content::Directory(_) => outcome,
+    })
 }

@@ -18,13 +18,12 @@ pub(super) fn run(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
     let swept = sweep(&model, &gaps, &settings(Method::Auto, common, watch))?;
     watch.step("report", 0);
     let json = format!("{:#}\n", sweep_json(&swept));
-    if let Some(folder) = &common.out {
-        gallery::write_sweep(folder, &swept)?;
-        write_files(folder, &[("report.json", json.clone())])?;
-    }
     let text = match common.format {
         Format::Text => sweep_text(&scene_title(&model, &options.scene), &swept, &unit_names(&model)),
-        Format::Json => json,
+        Format::Json => json.clone(),
     };
-    Ok(Outcome::judged(text, swept.points.iter().all(|point| point.summary.is_certified())))
+    let outcome = Outcome::judged(text, swept.points.iter().all(|point| point.summary.is_certified()));
+    let Some(folder) = common.out.clone() else { return Ok(outcome) };
+    write_files(&folder, &[("report.json", json)])?;
+    Ok(outcome.with_pictures(move || gallery::write_sweep(&folder, &swept)))
 }

@@ -107,12 +107,7 @@ pub fn check_feasible(scaled: &ScaledProblem, tolerance: f64) -> Result<(), Erro
     solve_in_unit(scaled.problem, tolerance, unit, scaled.watch()).map(|_| ())
 }
 
-fn solve_in_unit(
-    problem: &ContactProblem,
-    tolerance: f64,
-    unit: Unit,
-    watch: &Watch,
-) -> Result<InteriorPoint, Error> {
+fn solve_in_unit(problem: &ContactProblem, tolerance: f64, unit: Unit, watch: &Watch) -> Result<InteriorPoint, Error> {
     let gap: Vec<f64> = problem.gap().iter().map(|&g| ldexp(g, -unit.displacement)).collect();
     let rows: Vec<usize> = (0..gap.len()).filter(|&row| gap[row] < OUT_OF_REACH).collect();
     let near_gap: Vec<f64> = rows.iter().map(|&row| gap[row]).collect();

@@ -96,7 +96,7 @@ pub fn solve(problem: &ContactProblem, multigrid: &Multigrid, start: Start, limi
             let step = iterate.preconditioned(&free_face, &gradient);
             face = Some(free_face);
             cycles += 1;
-            limits.watch.step("conjugate gradients with multigrid", cycles);
+            limits.watch.step("MPRGP", cycles);
             let direction = Conjugate::of(step, last.take(), &gradient, &iterate);
             if direction.is_free {
                 return Err(iterate.free_motion(direction.p));

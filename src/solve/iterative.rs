@@ -95,7 +95,8 @@ impl Iterative {
                 break certificate;
             }
             let start = Start { displacement: Some(&found.displacement), contact_set: None };
-            let mut next = mprgp::solve(&problem, &self.multigrid, start, Limits { tolerance, most_cycles: left, watch })?;
+            let mut next =
+                mprgp::solve(&problem, &self.multigrid, start, Limits { tolerance, most_cycles: left, watch })?;
             next.iterations += found.iterations;
             found.history.append(&mut next.history);
             next.history = found.history;

@@ -317,7 +317,8 @@ impl Prepared {
             free.iter().zip(problem.gap()).map(|(&free, gap)| ldexp(free, loading.unit - unit) - gap).collect();
         let slope = problem.gap().iter().zip(&at_end).map(|(first, last)| first - last).collect();
         let compliance = Compliance::new(condensed.compliance(), constant, slope);
-        let (pieces, mut events) = compliance.walk(&self.selection.restrict_set(&start.contact_set), &settings.watch)?;
+        let (pieces, mut events) =
+            compliance.walk(&self.selection.restrict_set(&start.contact_set), &settings.watch)?;
         events.iter_mut().for_each(|event| event.row = self.selection.kept()[event.row]);
         Ok(Path { prepared: self, from: from.to_vec(), to: to.to_vec(), unit: *unit, pieces, events })
     }
