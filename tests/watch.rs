@@ -9,7 +9,7 @@ use program::scene;
 use serde_json::{Value, json};
 use signorini::dynamic::Integrator;
 use signorini::study::{TradeoffGrid, compare, even_gaps, motion_tradeoff, sweep, tradeoff};
-use signorini::{Condense, Error, Iterative, Method, Prepared, Scene, Settings, Start, Watch, solve};
+use signorini::{Condense, Error, Iterative, Method, Prepared, Scene, Settings, Solution, Start, Watch, solve};
 
 /// A block of so many by so many cells under a parabola.
 fn block(cells: usize) -> Value {
@@ -22,6 +22,14 @@ fn block(cells: usize) -> Value {
 
 fn build(scene: &Value) -> signorini::Model {
     Scene::from_json(&scene.to_string(), "scene").unwrap().build().unwrap()
+}
+
+/// An answer, certified or not.
+fn found(solved: Result<Solution, Error>) -> Solution {
+    solved.unwrap_or_else(|error| match error {
+        Error::NotCertified { solution, .. } => *solution,
+        error => panic!("{error}"),
+    })
 }
 
 /// Stops what `watch` watches as soon as it is at this iteration of a step or beyond, or at this part.
@@ -82,11 +90,7 @@ fn a_loop_that_is_stopped_ends_with_a_certified_part_of_its_way() {
     // All dofs: every iteration is a factorisation.
     let prepared = Prepared::new(model.problem(), Condense::Never).unwrap();
     let mut settings = Settings::with_method(Method::Penalty);
-    let whole = match prepared.solve(&settings) {
-        Ok(solution) => solution,
-        Err(Error::NotCertified { solution, .. }) => *solution,
-        Err(error) => panic!("{error}"),
-    };
+    let whole = found(prepared.solve(&settings));
     settings.watch = Watch::default();
     let stopping = stop_at(&settings.watch, "penalty loop", 3);
     let Err(Error::NotCertified { solution, .. }) = prepared.solve(&settings) else { panic!("it was not cut short") };
@@ -112,13 +116,7 @@ fn interior_point_and_multigrid_notice_that_they_should_end() {
     let prepared = Prepared::new(model.problem(), Condense::Never).unwrap();
     let mut settings = Settings::with_method(Method::Qp);
     settings.polish = false;
-    let whole = prepared.solve(&settings).map_or_else(
-        |error| match error {
-            Error::NotCertified { solution, .. } => *solution,
-            error => panic!("{error}"),
-        },
-        |solution| solution,
-    );
+    let whole = found(prepared.solve(&settings));
     let stopping = stop_at(&settings.watch, "interior point", 2);
     let Err(Error::NotCertified { solution, .. }) = prepared.solve(&settings) else { panic!("it was not cut short") };
     stopping.join().unwrap();
@@ -143,9 +141,9 @@ fn a_sweep_that_is_stopped_has_the_gaps_until_then() {
     stopping.join().unwrap();
     assert!((4..gaps.len()).contains(&part.points.len()), "{}", part.points.len());
     assert!(part.events.is_empty() && part.corners.is_empty());
-    for (found, expected) in part.points.iter().zip(&whole.points) {
-        assert!(found.gap == expected.gap && found.summary.is_certified());
-        assert_eq!(found.solution.multiplier, expected.solution.multiplier);
+    for (point, expected) in part.points.iter().zip(&whole.points) {
+        assert!(point.gap == expected.gap && point.summary.is_certified());
+        assert_eq!(point.solution.multiplier, expected.solution.multiplier);
     }
 }
 
@@ -159,9 +157,9 @@ fn a_tradeoff_that_is_stopped_has_the_points_until_then() {
     stopping.join().unwrap();
     let whole = tradeoff(&scene, &grid, &Watch::default()).unwrap();
     assert!((3..whole.points.len()).contains(&measured.points.len()), "{}", measured.points.len());
-    for (found, expected) in measured.points.iter().zip(&whole.points) {
+    for (point, expected) in measured.points.iter().zip(&whole.points) {
         assert_eq!(
-            (found.method, found.knob, found.energy_error),
+            (point.method, point.knob, point.energy_error),
             (expected.method, expected.knob, expected.energy_error)
         );
     }

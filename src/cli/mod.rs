@@ -112,6 +112,9 @@ const ERASED: &str = "\r\x1b[K";
 
 /// Writes to standard error, on a terminal in place of the line of progress; where it is closed there is nobody to tell.
 fn warn(text: &str) {
+    if text.is_empty() {
+        return;
+    }
     let erased = if io::stderr().is_terminal() { ERASED } else { "" };
     let _ = io::stderr().write_all(format!("{erased}{text}").as_bytes());
 }

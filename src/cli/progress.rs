@@ -1,11 +1,11 @@
 //! What is being done and how long it takes, on one line of standard error, where that is a terminal.
 
-use std::io::{self, IsTerminal};
+use std::io::{self, IsTerminal, Write};
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use super::warn;
+use super::{ERASED, warn};
 use crate::watch::{Activity, Part, Watch};
 
 /// How often the line is drawn.
@@ -62,7 +62,8 @@ impl Drop for Progress {
         if let Some((end, drawing)) = self.0.take() {
             drop(end);
             if drawing.join().unwrap_or(true) {
-                warn("");
+                // Where it is closed nobody has seen the line.
+                let _ = io::stderr().write_all(ERASED.as_bytes());
             }
         }
     }

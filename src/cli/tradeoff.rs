@@ -46,8 +46,7 @@ fn of_motion(options: &Tradeoff, scene: &Scene, watch: &Watch) -> Result<Outcome
     let model = scene.build()?;
     warn(&warnings(&model));
     let title = scene_title(&model, &options.scene);
-    let mut settings = Settings::default();
-    settings.watch = watch.clone();
+    let settings = Settings { watch: watch.clone(), ..Settings::default() };
     let measured = motion_tradeoff(scene, &settings)?;
     watch.step("report", 0);
     let (text, json) = (motion_tradeoff_text(&title, &measured), format!("{:#}\n", motion_tradeoff_json(&measured)));

@@ -58,7 +58,7 @@ impl Integrator {
             return Err(Error::Setting { name: "mass of a dof", value: 0.0, allowed });
         }
         // What is not asked for in a step: the interior point has no warm start.
-        let mut settings = settings.started();
+        let mut settings = settings.started()?;
         if settings.method == Method::Auto {
             settings.method = Method::ActiveSet;
         }

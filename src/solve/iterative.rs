@@ -73,8 +73,7 @@ impl Iterative {
     /// * [`Error::NotConvex`] for a direction of negative energy,
     /// * [`Error::NotCertified`] with the best answer, where the method stagnates above the tolerance.
     pub fn solve_gap(&self, gap: Vec<f64>, start: Start, settings: &Settings) -> Result<Solution, Error> {
-        settings.check()?;
-        let settings = &settings.started();
+        let settings = &settings.started()?;
         let watch = &settings.watch;
         let clock = Instant::now();
         check_gap(&gap, self.problem.rows())?;

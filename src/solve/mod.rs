@@ -5,6 +5,7 @@ mod estimate;
 mod iterative;
 mod loading;
 mod path;
+mod preparation;
 mod prepared;
 mod refinement;
 mod rules;
@@ -50,8 +51,7 @@ pub fn solve_qp(problem: &ContactProblem) -> Result<Solution, Error> {
 /// * [`Error::Interrupted`] where the watch was asked to stop before there was an answer,
 /// * [`Error::Numerical`] where memory does not suffice.
 pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
-    settings.check()?;
-    let settings = &settings.started();
+    let settings = &settings.started()?;
     // Without a factor there is no bound to hold an accuracy against.
     let is_free = settings.accuracy.is_none() && settings.watch.time_left().is_none();
     let is_large = || problem.near_null().is_some() && Estimate::of(problem).prefers_multigrid(f64::INFINITY);

@@ -4,20 +4,16 @@ use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
 use super::boundary::{BoundarySolution, Found};
-use super::estimate::{Kept, check_memory};
 use super::loading::Loading;
-use super::rules::{Way, factor_seconds};
-use super::{Condense, Method, Path, Precision, Settings, run};
+use super::rules::Way;
+use super::{Condense, Method, Path, Settings, run};
 use crate::error::Error;
 use crate::method::parametric::Compliance;
 use crate::method::{ScaledProblem, active_set, interior_point};
 use crate::problem::{ContactProblem, EnergyNorm, check_gap};
 use crate::solution::{ContactSet, Iteration, Seconds, Solution};
-use crate::sparse::{Analysis, AugmentedMatrix, Cholesky, Equilibration, FactorError, dot, largest, ldexp};
+use crate::sparse::{AugmentedMatrix, Equilibration, dot, largest, ldexp};
 use crate::transform::{Condensation, RowSelection, Scaling};
-
-/// A pivot of the equilibrated stiffness below this is too uncertain in single precision.
-const SINGLE_PIVOT: f64 = 1e-4;
 
 /// A contact problem, scaled, condensed where that pays, factorised, its load swept through the factor.
 #[derive(Clone, Debug)]
@@ -29,15 +25,15 @@ pub struct Prepared {
     pub(super) stiffest: f64,
     pub(super) norm: Option<EnergyNorm>,
     pub(super) condensation: Option<Condensation>,
-    augmented: AugmentedMatrix,
+    pub(super) augmented: AugmentedMatrix,
     /// Energy norm of the condensed stiffness, made when it is first asked for.
-    condensed_norm: OnceLock<Option<EnergyNorm>>,
+    pub(super) condensed_norm: OnceLock<Option<EnergyNorm>>,
     /// The load of the problem, swept when it is first solved with.
-    loading: OnceLock<Arc<Loading>>,
+    pub(super) loading: OnceLock<Arc<Loading>>,
     /// What was chosen, where the choice was left to the program.
-    way: Option<Way>,
-    multiplications: f64,
-    seconds: Seconds,
+    pub(super) way: Option<Way>,
+    pub(super) multiplications: f64,
+    pub(super) seconds: Seconds,
 }
 
 impl Prepared {
@@ -48,128 +44,6 @@ impl Prepared {
     /// [`Error::Numerical`] where memory does not suffice.
     pub fn new(problem: &ContactProblem, condense: Condense) -> Result<Self, Error> {
         Self::with_settings(problem, &Settings { condense, ..Settings::default() })
-    }
-
-    /// As [`Prepared::new`], with the threads and the precision of `settings`.
-    ///
-    /// # Errors
-    /// As [`Prepared::new`], [`Error::Setting`], and instead of a factorisation [`Error::OutOfTime`],
-    /// [`Error::Interrupted`] or [`Error::TooLarge`], where time or memory is not left for it.
-    pub fn with_settings(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
-        settings.check()?;
-        let settings = &settings.started();
-        let Settings { condense, threads, watch, .. } = settings;
-        let clock = Instant::now();
-        watch.step("ordering", 0);
-        let selection = RowSelection::of(problem.contact(), problem.gap())?;
-        let scaling = Scaling::of(problem.stiffness(), &selection.contact(problem.contact()))?;
-        let diagonal = problem.stiffness().diagonal();
-        let (has_empty_diagonal, stiffest) = (diagonal.contains(&0.0), largest(&diagonal));
-        let factor_clock = Instant::now();
-        let contact_dofs = Condensation::contact_dofs(scaling.contact());
-        let analysis = match condense {
-            Condense::Auto => Condensation::analyse(problem.stiffness(), &contact_dofs)?,
-            Condense::Never => None,
-        }
-        .map(|analysis| analysis.with_threads(*threads));
-        let last = match &analysis {
-            Some(_) => contact_dofs.clone(),
-            None => EnergyNorm::last_dofs(scaling.contact()),
-        };
-        let of_all = match analysis {
-            Some(_) => None,
-            None => Some(Analysis::with_last(problem.stiffness(), &last)?.with_threads(*threads)),
-        };
-        let work = analysis.as_ref().or(of_all.as_ref()).map_or(0.0, Analysis::multiplications);
-        let mut way = Way::chosen(settings, analysis.is_some(), work, problem.rows());
-        if watch.is_stopped() {
-            return Err(Error::Interrupted);
-        }
-        watch.step("factorisation", 0);
-        if let Some(left) = watch.time_left() {
-            let values = analysis.as_ref().or(of_all.as_ref()).map_or(0, Analysis::factor_entries);
-            let [double, single] = factor_seconds(work, values);
-            let may_be_single = settings.precision != Precision::Double && analysis.is_some();
-            match way {
-                Some(_) if double > left && single <= left && may_be_single => way = Some(Way::ActiveSetMixed),
-                _ if double.min(if may_be_single { single } else { double }) > left => {
-                    return Err(Error::OutOfTime { needed: double, time: left });
-                }
-                _ => {}
-            }
-        }
-        let precision = way.map_or(settings.precision, |way| way.settings(settings).precision);
-        let single = precision == Precision::Mixed && analysis.is_some();
-        let kept = match (&analysis, &of_all) {
-            (Some(analysis), _) => {
-                let (values, contact_dofs) = (analysis.factor_entries(), contact_dofs.len());
-                Kept::Condensed { values, is_single: single, contact_dofs }
-            }
-            (None, of_all) => Kept::Factors { values: of_all.as_ref().map_or(0, Analysis::factor_entries) },
-        };
-        check_memory(problem, kept, settings)?;
-        let factor = |analysis: &Analysis, single| match analysis.factor_equilibrated(
-            problem.stiffness(),
-            scaling.equilibration(),
-            single,
-        ) {
-            Ok(cholesky) if single && cholesky.smallest_pivot() <= SINGLE_PIVOT => Ok(None),
-            Ok(cholesky) if cholesky.is_safely_definite() || cholesky.is_definite(scaling.stiffness()) => {
-                Ok(Some(cholesky))
-            }
-            Ok(_) | Err(FactorError::NotPositiveDefinite) => Ok(None),
-            Err(error) => Err(Error::from(error)),
-        };
-        let definite = |analysis: &Analysis| match single.then(|| factor(analysis, true)).transpose()?.flatten() {
-            Some(cholesky) => Ok(Some(cholesky)),
-            None => factor(analysis, false),
-        };
-        let cholesky = match analysis.as_ref().or(of_all.as_ref()) {
-            Some(analysis) if !has_empty_diagonal => definite(analysis)?,
-            _ => None,
-        };
-        drop(of_all);
-        if cholesky.is_none() {
-            // Without a bound no accuracy can be held: what is exact is left.
-            let exact = Settings { accuracy: None, ..settings.clone() };
-            way = Way::chosen(&exact, analysis.is_some(), work, problem.rows());
-        }
-        let mut condensation = None;
-        if analysis.is_some() {
-            let shifted = cholesky.is_none();
-            let factor = match &cholesky {
-                Some(cholesky) => Some(cholesky.clone()),
-                None => factor_with_rows(&scaling, &contact_dofs, *threads)?,
-            };
-            // Where even all rows together do not hold the body, the full problem tells why.
-            if let Some(factor) = factor {
-                condensation = Some(Condensation::new(factor, contact_dofs, scaling.contact(), shifted)?);
-            }
-        }
-        let augmented = match &condensation {
-            Some(condensed) => {
-                // Dense: the order is of no matter to the factor, and its last block is all of it.
-                let all: Vec<usize> = (0..condensed.stiffness().dim()).collect();
-                AugmentedMatrix::with_last(condensed.stiffness(), condensed.contact(), &all)?
-            }
-            None => AugmentedMatrix::new(scaling.stiffness(), scaling.contact())?.with_threads(*threads),
-        };
-        let norm = cholesky.map(|cholesky| EnergyNorm::new(cholesky, scaling.equilibration().clone(), last));
-        let factor = factor_clock.elapsed().as_secs_f64();
-        Ok(Prepared {
-            problem: problem.clone(),
-            selection,
-            scaling,
-            stiffest,
-            norm,
-            condensation,
-            augmented,
-            way,
-            multiplications: work,
-            condensed_norm: OnceLock::new(),
-            loading: OnceLock::new(),
-            seconds: Seconds { factor, solve: clock.elapsed().as_secs_f64() },
-        })
     }
 
     /// Number of dofs of the problem.
@@ -221,6 +95,7 @@ impl Prepared {
     /// As [`solve`](super::solve); [`Error::Length`] and [`Error::NotFinite`] for gaps that do not fit, or that are
     /// infinite in other rows than those of the problem that was prepared.
     pub fn solve_gap(&self, gap: Vec<f64>, start: Option<&ContactSet>, settings: &Settings) -> Result<Solution, Error> {
+        let settings = &settings.started()?;
         self.complete(self.find(self.own_load(), gap, start, settings)?, settings)
     }
 
@@ -234,6 +109,7 @@ impl Prepared {
         start: Option<&ContactSet>,
         settings: &Settings,
     ) -> Result<Solution, Error> {
+        let settings = &settings.started()?;
         let loading = self.other_load(load)?;
         self.complete(self.find(loading, self.problem.gap().to_vec(), start, settings)?, settings)
     }
@@ -250,6 +126,7 @@ impl Prepared {
         start: Option<&ContactSet>,
         settings: &Settings,
     ) -> Result<BoundarySolution<'_>, Error> {
+        let settings = &settings.started()?;
         self.on_boundary(self.find(self.own_load(), gap, start, settings)?, settings)
     }
 
@@ -277,6 +154,7 @@ impl Prepared {
         start: Option<&ContactSet>,
         settings: &Settings,
     ) -> Result<BoundarySolution<'_>, Error> {
+        let settings = &settings.started()?;
         let loading = self.load(self.problem.with(load, gap.clone())?.load().to_vec(), &gap);
         self.on_boundary(self.find(loading, gap, start, settings)?, settings)
     }
@@ -308,6 +186,7 @@ impl Prepared {
             return Err(Error::NotCondensed { step: "the exact path" });
         };
         self.check_gap(to)?;
+        let settings = &settings.started()?;
         let found = self.find(self.own_load(), from.to_vec(), None, settings)?;
         let start = self.on_boundary(found, settings)?;
         let Found { loading, unit, problem, .. } = &start.found;
@@ -339,8 +218,7 @@ impl Prepared {
         start: Option<&ContactSet>,
         settings: &Settings,
     ) -> Result<Found, Error> {
-        settings.check()?;
-        let settings = &self.resolved(&settings.started());
+        let settings = &self.resolved(&settings.started()?);
         self.check_gap(&gap)?;
         let found = self.find_step(loading, gap, start, settings)?;
         if self.is_single() { self.refined(found, settings) } else { Ok(found) }
@@ -580,17 +458,5 @@ impl Prepared {
             }
             other => other,
         }
-    }
-}
-
-/// The factor of `K + B'B` with the contact dofs last, or `None` where it is not safely definite.
-fn factor_with_rows(scaling: &Scaling, contact_dofs: &[usize], threads: usize) -> Result<Option<Cholesky>, Error> {
-    let augmented =
-        AugmentedMatrix::with_last(scaling.stiffness(), scaling.contact(), contact_dofs)?.with_threads(threads);
-    let matrix = augmented.matrix(|_| 1.0, 0.0);
-    match augmented.factor(&matrix) {
-        Ok(cholesky) if cholesky.is_definite(&matrix) => Ok(Some(cholesky)),
-        Ok(_) | Err(FactorError::NotPositiveDefinite) => Ok(None),
-        Err(error) => Err(error.into()),
     }
 }

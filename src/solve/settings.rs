@@ -143,10 +143,14 @@ impl Settings {
         Settings { time: Some(seconds), ..Settings::default() }
     }
 
-    /// The same with the seconds counted from now, in the deadline of the watch.
-    pub(crate) fn started(&self) -> Self {
+    /// The same with the seconds counted from now, as the deadline of the watch.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for the first setting that is not in its range.
+    pub(crate) fn started(&self) -> Result<Self, Error> {
+        self.check()?;
         let watch = self.time.map_or_else(|| self.watch.clone(), |time| self.watch.within(time));
-        Settings { time: None, watch, ..self.clone() }
+        Ok(Settings { time: None, watch, ..self.clone() })
     }
 
     /// What an answer is held against.
@@ -158,7 +162,7 @@ impl Settings {
     ///
     /// # Errors
     /// [`Error::Setting`] for the first that is not.
-    pub(super) fn check(&self) -> Result<(), Error> {
+    fn check(&self) -> Result<(), Error> {
         let positive = |name, value: f64| match value.is_finite() && value > 0.0 {
             true => Ok(()),
             false => Err(Error::Setting { name, value, allowed: "positive and finite" }),
