@@ -27,8 +27,8 @@ pub(super) fn run(options: &Compare, watch: &Watch) -> Result<Outcome, Error> {
     };
     let outcome = Outcome::judged(text, comparison.agreement.exact_methods);
     let Some(folder) = common.out.clone() else { return Ok(outcome) };
-    write_files(&folder, &[("report.json", json)])?;
     gallery::write_answer(&folder, &qp.solution)?;
+    write_files(&folder, &[("report.json", json)])?;
     Ok(match input.content {
         Content::Scene(model) => outcome.with_pictures(move || gallery::write_compare(&folder, &model, &comparison)),
         Content::Directory(_) => outcome,

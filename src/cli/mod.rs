@@ -152,7 +152,7 @@ fn sentence(error: &Error) -> String {
 fn ending_of(error: &Error) -> Ending {
     match error {
         Error::Infeasible { .. } | Error::Unbounded { .. } | Error::UnderHeld { .. } => Ending::NoSolution,
-        Error::NotCertified { .. } | Error::OutOfTime { .. } => Ending::NotCertified,
+        Error::NotCertified { .. } | Error::OutOfTime { .. } | Error::Interrupted => Ending::NotCertified,
         _ => Ending::BadInput,
     }
 }

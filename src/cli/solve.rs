@@ -62,8 +62,8 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
     };
     let outcome = Outcome::judged(text, summary.is_certified());
     let Some(folder) = common.out.clone() else { return Ok(outcome) };
-    write_files(&folder, &[("report.json", format!("{:#}\n", solve_json(&summary)))])?;
     gallery::write_answer(&folder, &solution)?;
+    write_files(&folder, &[("report.json", format!("{:#}\n", solve_json(&summary)))])?;
     Ok(match input.content {
         Content::Scene(model) => outcome.with_pictures(move || gallery::write_solve(&folder, &model, &solution)),
         Content::Directory(_) => outcome,

@@ -92,9 +92,16 @@ pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, 
     // The time that the shortcut took is part of the answer's.
     let method = if settings.method == Method::Auto { Method::ActiveSet } else { settings.method };
     let safe = Settings { method, precision: Precision::Double, ..settings.clone() };
-    match (solve(problem, &safe), fell_short) {
-        (Err(_), answer @ Error::NotCertified { .. }) if settings.watch.is_over() => Err(answer),
-        (solved, _) => solved.map(with_preparation),
+    let bound = |error: &Error| match error {
+        Error::NotCertified { solution, .. } => solution.certificate.energy_error_bound,
+        _ => f64::INFINITY,
+    };
+    match solve(problem, &safe) {
+        // Where it is cut short, the shortcut may have come further.
+        Err(error @ (Error::NotCertified { .. } | Error::Interrupted)) if bound(&fell_short) < bound(&error) => {
+            Err(fell_short)
+        }
+        solved => solved.map(with_preparation),
     }
 }
 
