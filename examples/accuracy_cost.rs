@@ -8,7 +8,7 @@ use std::process::ExitCode;
 use serde_json::json;
 use signorini::output::{tradeoff_csv, tradeoff_plot, tradeoff_text, write_files, write_picture};
 use signorini::study::{Tradeoff, TradeoffGrid, TradeoffPoint, tradeoff};
-use signorini::{Error, Scene};
+use signorini::{Error, Scene, Watch};
 
 /// Energy errors, relative, that are asked for; the last is that of an answer exact but for rounding.
 const ACCURACIES: [(&str, f64); 4] = [("1e-2", 1e-2), ("1e-4", 1e-4), ("1e-8", 1e-8), ("exact", 1e-11)];
@@ -54,7 +54,7 @@ fn run() -> Result<(), Error> {
     let mut table = String::new();
     for (name, title, scene, runs) in scenes {
         let grid = TradeoffGrid { refinements: 0, runs, most_full_dofs: 10_000 };
-        let measured = tradeoff(&scene, &grid)?;
+        let measured = tradeoff(&scene, &grid, &Watch::default())?;
         table += &rows(title, &measured);
         if let Some(folder) = &folder {
             let files = [

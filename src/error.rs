@@ -112,6 +112,9 @@ pub enum Error {
         /// Seconds that are left.
         time: f64,
     },
+    /// [`Watch::stop`](crate::Watch::stop) was called before anything was found.
+    #[error("interrupted before there was an answer")]
+    Interrupted,
     /// An answer was found, but it does not meet the tolerance.
     #[error("not certified: {condition} is {value:.3e}, above the tolerance {tolerance:.1e} ({})", solution.method)]
     NotCertified {
@@ -142,9 +145,9 @@ pub enum Error {
         /// Which step.
         step: &'static str,
     },
-    /// A scene that needs more memory than it may take.
+    /// A scene or a problem that needs more memory than it may take.
     #[error(
-        "the scene needs about {} of memory, but {} are allowed: about {dofs:.0e} dofs, {stiffness_entries:.0e} entries \
+        "it needs about {} of memory, but {} are allowed: about {dofs:.0e} dofs, {stiffness_entries:.0e} entries \
          of the stiffness, {factor_entries:.0e} of its factor; take larger cells, or allow more",
         memory(*bytes),
         memory(*allowed)
@@ -233,6 +236,7 @@ impl Error {
             Error::Unbounded { .. } => "unbounded",
             Error::UnderHeld { .. } => "under-held",
             Error::OutOfTime { .. } => "out-of-time",
+            Error::Interrupted => "interrupted",
             Error::NotCertified { .. } => "not-certified",
             Error::Setting { .. } => "setting",
             Error::NotCondensed { .. } => "not-condensed",

@@ -43,7 +43,7 @@
 //!
 //! | floor | modules |
 //! |---|---|
-//! | 0 | [`analytical`], [`barrier`], [`solution`] |
+//! | 0 | [`analytical`], [`barrier`], [`solution`], [`watch`] |
 //! | 1 | [`error`] |
 //! | 2 | [`mod@file`], [`sparse`], [`element`], [`formulation`] |
 //! | 3 | [`mesh`], [`material`] |
@@ -83,6 +83,7 @@ pub mod solve;
 pub mod sparse;
 pub mod study;
 pub mod transform;
+pub mod watch;
 
 pub use error::Error;
 pub use problem::ContactProblem;
@@ -92,3 +93,4 @@ pub use solve::{
     BoundarySolution, Condense, Iterative, Method, Path, Precision, Prepared, Settings, Start, solve, solve_qp,
 };
 pub use sparse::{SparseMatrix, SymmetricMatrix};
+pub use watch::Watch;

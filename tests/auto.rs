@@ -124,7 +124,9 @@ fn the_command_line_takes_accuracy_time_precision_and_extrapolation() {
     let late = run(&["--time", "1e-12", "--format", "json"]).ends_with(4);
     assert_eq!(late.json()["status"], "not_certified");
     assert!(late.stderr.contains("factorisation"), "{}", late.stderr);
-    for option in ["--accuracy", "--time"] {
+    let same = run(&["--time-limit", "1e-12", "--format", "json"]).ends_with(4);
+    assert_eq!(same.json()["status"], "not_certified");
+    for option in ["--accuracy", "--time", "--time-limit"] {
         for wrong in ["0", "-1", "nan", "inf", "soon"] {
             run(&[option, wrong]).ends_with(2);
         }

@@ -63,9 +63,9 @@ fn clamped(model: &str, body: Value, held: &str, pressed: &str, approach: &str, 
     })
 }
 
-/// The largest resident size of the program while it solves, in bytes, as the system counts it.
-fn peak(desk: &Desk) -> f64 {
-    let mut child = desk.command(&["solve", "scene.json"]).stdout(Stdio::null()).spawn().unwrap();
+/// The largest resident size of the program while it runs, in bytes, as the system counts it.
+fn peak(desk: &Desk, arguments: &[&str]) -> f64 {
+    let mut child = desk.command(arguments).stdout(Stdio::null()).spawn().unwrap();
     let status = format!("/proc/{}/status", child.id());
     let mut peak = 0.0_f64;
     while child.try_wait().unwrap().is_none() {
@@ -114,9 +114,60 @@ fn the_estimate_of_memory_is_within_a_factor_of_two_of_the_peak_on_ten_scenes() 
         let text = scene.to_string();
         desk.write("scene.json", &text);
         let estimate = Scene::from_json(&text, "scene").unwrap().size().bytes;
-        let ratio = estimate / peak(&desk);
+        let ratio = estimate / peak(&desk, &["solve", "scene.json"]);
         assert!(ratio < WITHIN && ratio > 1.0 / WITHIN, "{ratio:.2} of the peak: {}", scene["body"]);
     }
+}
+
+/// The memory that a refusal tells, in bytes.
+fn told(run: &Run) -> f64 {
+    let (_, needed) = run.stderr.split_once("needs about ").unwrap_or_else(|| panic!("{}", run.stderr));
+    let mut words = needed.split(' ');
+    let number: f64 = words.next().unwrap().parse().unwrap();
+    number * if words.next() == Some("GB") { 1e9 } else { 1e6 }
+}
+
+#[test]
+fn the_estimate_of_a_problem_directory_is_within_a_factor_of_two_of_the_peak() {
+    let bar = json!({"bar": {"x": {"points": [0, 1], "divisions": [50_000]}}});
+    let scenes = [
+        rectangle([80, 80], "q4"),
+        rectangle([300, 12], "q4"),
+        rectangle([50, 50], "q8"),
+        block([10, 10, 10], "hex8"),
+        block([10, 10, 10], "tet4"),
+        json!({
+            "model": "bar", "body": bar, "material": {"young": 1000, "poisson": 0.3},
+            "supports": [{"on": {"boundary": "left"}, "x": 0}], "loads": [{"body-force": [1]}],
+            "obstacles": [{"boundary": "right", "approach": "+x", "shape": {"plane": {"point": [1], "normal": [1]}}}]
+        }),
+    ];
+    let desk = Desk::new();
+    for scene in scenes {
+        desk.write("scene.json", scene.to_string());
+        desk.run(&["export", "scene.json", "p"]).ends_with(0);
+        for options in [&[][..], &["--no-condense"], &["--method", "mprgp"]] {
+            let arguments = [&["solve", "p"], options].concat();
+            let refused = desk.run(&[&arguments[..], &["--max-memory", "1MB"]].concat());
+            let estimate = told(&refused.fails_with(1, &["1 MB are allowed", "of the stiffness"]));
+            let ratio = estimate / peak(&desk, &arguments);
+            assert!(ratio < WITHIN && ratio > 1.0 / WITHIN, "{ratio:.2} of the peak: {options:?}, {}", scene["body"]);
+        }
+        fs::remove_dir_all(desk.path("p")).unwrap();
+    }
+}
+
+#[test]
+fn a_problem_directory_that_needs_too_much_memory_is_refused_before_its_factorisation() {
+    let desk = Desk::new();
+    desk.write("scene.json", block([20, 20, 20], "hex8").to_string());
+    desk.run(&["export", "scene.json", "p"]).ends_with(0);
+    for command in ["solve", "compare"] {
+        let refused = desk.run(&[command, "p", "--max-memory", "150MB"]);
+        refused.fails_with(1, &["150 MB are allowed", "3e4 dofs", "of its factor"]);
+    }
+    // Multigrid needs no factor.
+    desk.run(&["solve", "p", "--max-memory", "150MB", "--method", "mprgp"]).ends_with(0);
 }
 
 #[test]

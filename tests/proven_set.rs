@@ -51,7 +51,7 @@ fn no_row_is_proven_to_be_what_it_is_not() {
         let exact = answer(&problem, Settings::with_method(Method::ActiveSet));
         let strongest = exact.multiplier.iter().fold(0.0_f64, |most, value| most.max(-value));
         for settings in ways() {
-            let found = answer(&problem, settings);
+            let found = answer(&problem, settings.clone());
             wrong_sets += usize::from(found.contact_set != exact.contact_set);
             let Some(set) = &found.proven else { continue };
             for row in 0..problem.rows() {

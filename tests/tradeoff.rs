@@ -4,12 +4,12 @@ mod program;
 
 use program::{Desk, scene};
 use serde_json::{Value, json};
-use signorini::Scene;
 use signorini::study::{Tradeoff, TradeoffGrid, TradeoffPoint, tradeoff};
+use signorini::{Scene, Watch};
 
 fn measured(value: &Value) -> Tradeoff {
     let scene = Scene::from_json(&value.to_string(), "scene").unwrap();
-    tradeoff(&scene, &TradeoffGrid { refinements: 1, runs: 1, ..TradeoffGrid::default() }).unwrap()
+    tradeoff(&scene, &TradeoffGrid { refinements: 1, runs: 1, ..TradeoffGrid::default() }, &Watch::default()).unwrap()
 }
 
 #[test]

@@ -44,7 +44,7 @@ pub fn ways(accuracy: f64) -> Vec<(&'static str, Settings)> {
     ];
     if accuracy > 0.0 {
         let penalty = base(Method::Penalty, Precision::Double);
-        let mut rung = penalty;
+        let mut rung = penalty.clone();
         (rung.first_penalty, rung.last_penalty) = (100.0 / accuracy, 100.0 / accuracy);
         ways.extend([("qp-unpolished", unpolished), ("penalty", penalty), ("penalty-rung", rung)]);
     }
@@ -138,18 +138,21 @@ pub fn best(problem: &ContactProblem, accuracy: f64) -> Result<(String, f64), Er
         }
         for (name, mut settings) in ways(accuracy) {
             settings.condense = condense;
-            grid.push((format!("{name}{}", if condense == Condense::Never { ", all dofs" } else { "" }), settings));
+            grid.push((
+                format!("{name}{}", if condense == Condense::Never { ", all dofs" } else { "" }),
+                settings.clone(),
+            ));
             if name == "penalty" {
                 // The last rung alone, where the error of the penalty is likely below the accuracy.
                 for rung in [1.0, 10.0, 100.0] {
                     (settings.first_penalty, settings.last_penalty) = (rung / accuracy, rung / accuracy);
-                    grid.push((format!("penalty {:.0e}", rung / accuracy), settings));
+                    grid.push((format!("penalty {:.0e}", rung / accuracy), settings.clone()));
                 }
             }
             if name == "qp-unpolished" {
                 for tolerance in [1.0, 1e-2] {
                     settings.interior_point_tolerance = tolerance * accuracy;
-                    grid.push((format!("qp to {:.0e}", tolerance * accuracy), settings));
+                    grid.push((format!("qp to {:.0e}", tolerance * accuracy), settings.clone()));
                 }
             }
         }

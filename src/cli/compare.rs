@@ -8,26 +8,29 @@ use crate::error::Error;
 use crate::output::{compare_json, compare_text, gallery, write_files};
 use crate::solve::Method;
 use crate::study::{Summary, compare};
+use crate::watch::Watch;
 
-pub(super) fn run(options: &Compare) -> Result<Outcome, Error> {
+pub(super) fn run(options: &Compare, watch: &Watch) -> Result<Outcome, Error> {
     let common = &options.common;
     let input = Input::read(&options.input, &common.memory)?;
     warn(&input.warnings());
-    let comparison = compare(input.problem(), &settings(Method::Auto, common)).map_err(|error| input.explain(error))?;
+    let settings = settings(Method::Auto, common, watch);
+    let comparison = compare(input.problem(), &settings).map_err(|error| input.explain(error))?;
+    watch.step("report", 0);
     let [qp, active_set, penalty] = &comparison.answers;
     let summary = |solution| input.summary(solution, common.tolerance);
     let summaries: [Summary; 3] = [summary(&qp.solution)?, summary(&active_set.solution)?, summary(&penalty.solution)?];
     let json = format!("{:#}\n", compare_json(&summaries, &comparison.agreement));
-    if let Some(folder) = &common.out {
-        match &input.content {
-            Content::Scene(model) => gallery::write_compare(folder, model, &comparison)?,
-            Content::Directory(_) => gallery::write_answer(folder, &qp.solution)?,
-        }
-        write_files(folder, &[("report.json", json.clone())])?;
-    }
     let text = match common.format {
         Format::Text => compare_text(&input.title, &summaries, &comparison.agreement, &input.units),
-        Format::Json => json,
+        Format::Json => json.clone(),
     };
-    Ok(Outcome::judged(text, comparison.agreement.exact_methods))
+    let outcome = Outcome::judged(text, comparison.agreement.exact_methods);
+    let Some(folder) = common.out.clone() else { return Ok(outcome) };
+    gallery::write_answer(&folder, &qp.solution)?;
+    write_files(&folder, &[("report.json", json)])?;
+    Ok(match input.content {
+        Content::Scene(model) => outcome.with_pictures(move || gallery::write_compare(&folder, &model, &comparison)),
+        Content::Directory(_) => outcome,
+    })
 }

@@ -1,7 +1,6 @@
-//! `signorini solve` of a scene that asks for its motion: step after step, with a bar that tells how long it takes.
+//! `signorini solve` of a scene that asks for its motion: step after step.
 
-use std::io::{self, IsTerminal};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use super::input::{scene_title, unit_names, warnings};
 use super::options::{Format, Solve};
@@ -13,11 +12,12 @@ use crate::output::{MotionFolder, MotionSeconds, motion_is_certified, motion_jso
 use crate::scene::Scene;
 use crate::solve::Method;
 use crate::study::MotionSummary;
+use crate::watch::Watch;
 
 /// Energy beyond this, relative to the largest of the motion, is told even of a scheme that should keep it.
 const GAIN: f64 = 0.01;
 
-pub(super) fn run(options: &Solve, scene: &Scene) -> Result<Outcome, Error> {
+pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outcome, Error> {
     let clock = Instant::now();
     let model = scene.build()?;
     let Some(dynamics) = scene.dynamics(&model)? else { return Ok(Outcome::certified(String::new())) };
@@ -26,7 +26,8 @@ pub(super) fn run(options: &Solve, scene: &Scene) -> Result<Outcome, Error> {
     let assemble = clock.elapsed().as_secs_f64();
 
     let clock = Instant::now();
-    let mut settings = settings(options.method.method(), &options.common);
+    let mut settings = settings(options.method.method(), &options.common, watch);
+    settings.time = options.time;
     if settings.method == Method::Auto {
         settings.method = Method::ActiveSet;
     }
@@ -54,11 +55,14 @@ pub(super) fn run(options: &Solve, scene: &Scene) -> Result<Outcome, Error> {
         }
         None => None,
     };
-    let mut progress = Progress::new(integrator.state().steps, dynamics.steps);
     // A frame ends where the share of the steps reaches the next whole number of frames.
     let frames_until = |step: usize| step as u128 * dynamics.frames as u128 / dynamics.steps as u128;
     while integrator.state().steps < dynamics.steps {
-        integrator.advance().map_err(explained)?;
+        watch.part("step", integrator.state().steps + 1, dynamics.steps);
+        match integrator.advance() {
+            Err(Error::Interrupted) => break,
+            advanced => advanced.map_err(explained)?,
+        };
         let seen = integrator.observe();
         summary.add(&seen, dynamics.step);
         let steps = integrator.state().steps;
@@ -68,60 +72,24 @@ pub(super) fn run(options: &Solve, scene: &Scene) -> Result<Outcome, Error> {
                 folder.frame(&model, seen.time, integrator.state(), &summary)?;
             }
         }
-        progress.show(steps);
     }
-    progress.clear();
+    if summary.steps < dynamics.steps && !watch.is_stopped() {
+        warn(&format!("out of time after step {} of {}\n", summary.steps, dynamics.steps));
+    }
+    watch.step("report", 0);
     if summary.energy_gain() > GAIN {
         let percent = 100.0 * summary.energy_gain();
         warn(&format!("warning: the energy grew by {percent:.1} % of its largest: do not trust this motion\n"));
     }
     let seconds = MotionSeconds { assemble, factor, steps: clock.elapsed().as_secs_f64() };
     let json = format!("{:#}\n", motion_json(&model, &dynamics, settings.method, &summary, &seconds));
-    if let (Some(folder), Some(path)) = (&folder, &options.common.out) {
-        folder.draw(&model)?;
-        write_files(path, &[("report.json", json.clone())])?;
-    }
     let title = scene_title(&model, &options.input);
     let text = match options.common.format {
         Format::Text => motion_text(&title, &model, &dynamics, &summary, &seconds, &unit_names(&model)),
-        Format::Json => json,
+        Format::Json => json.clone(),
     };
-    Ok(Outcome::judged(text, motion_is_certified(&dynamics, settings.method)))
-}
-
-/// A bar on standard error, where that is a terminal.
-struct Progress {
-    shown: bool,
-    start: Instant,
-    last: Option<Instant>,
-    first_step: usize,
-    steps: usize,
-}
-
-impl Progress {
-    /// How often it is drawn, and how wide.
-    const PERIOD: Duration = Duration::from_millis(200);
-    const WIDTH: usize = 30;
-
-    fn new(first_step: usize, steps: usize) -> Self {
-        Progress { shown: io::stderr().is_terminal(), start: Instant::now(), last: None, first_step, steps }
-    }
-
-    fn show(&mut self, step: usize) {
-        if !self.shown || self.last.is_some_and(|last| last.elapsed() < Self::PERIOD) {
-            return;
-        }
-        self.last = Some(Instant::now());
-        let done = step - self.first_step;
-        let left = self.start.elapsed().as_secs_f64() * (self.steps - step) as f64 / done.max(1) as f64;
-        let filled = (Self::WIDTH as u128 * step as u128 / self.steps.max(1) as u128) as usize;
-        let bar: String = (0..Self::WIDTH).map(|place| if place < filled { '#' } else { '.' }).collect();
-        warn(&format!("\r[{bar}] step {step} of {}, {left:.0} s left   ", self.steps));
-    }
-
-    fn clear(&self) {
-        if self.last.is_some() {
-            warn(&format!("\r{:1$}\r", "", Self::WIDTH + 60));
-        }
-    }
+    let outcome = Outcome::judged(text, motion_is_certified(&dynamics, settings.method, &summary));
+    let (Some(folder), Some(path)) = (folder, &options.common.out) else { return Ok(outcome) };
+    write_files(path, &[("report.json", json)])?;
+    Ok(outcome.with_pictures(move || folder.draw(&model)))
 }

@@ -4,15 +4,17 @@ mod compare;
 mod dynamic;
 mod export;
 mod input;
+mod interrupt;
 mod memory;
 mod options;
+mod progress;
 mod solve;
 mod sweep;
 mod tradeoff;
 mod verify;
 
 use std::ffi::OsString;
-use std::io::{self, Write};
+use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -20,7 +22,10 @@ use clap::Parser;
 use crate::error::Error;
 use crate::output::printable;
 use crate::scene::Scene;
+use crate::watch::Watch;
+use interrupt::INTERRUPTED;
 use options::{Arguments, Command, Format};
+use progress::Progress;
 
 /// How a command ended, as an exit code; a usage error is 2, from the argument parser.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,14 +36,15 @@ enum Ending {
     NotCertified = 4,
 }
 
-/// The exit code of a command that was interrupted.
-const INTERRUPTED: i32 = 130;
-
-/// What a command leaves: the text for standard output, and how it ended.
+/// What a command leaves: the text for standard output, how it ended, and what is drawn once the text is out.
 struct Outcome {
     text: String,
     ending: Ending,
+    pictures: Option<Pictures>,
 }
+
+/// Fields and pictures take their time, and nobody should have to wait for numbers because of them.
+type Pictures = Box<dyn FnOnce() -> Result<(), Error>>;
 
 /// Runs the program with `arguments`, the first of which is its name.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
@@ -50,18 +56,24 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             return ExitCode::from(help.exit_code() as u8);
         }
     };
-    // Every file is written whole or not at all, so that the program may end anywhere.
-    let _ = ctrlc::set_handler(|| std::process::exit(INTERRUPTED));
+    let watch = Watch::default();
+    interrupt::listen(&watch);
+    watch.step("assembly", 0);
+    let progress = Progress::of(&watch);
     let format = arguments.command.format();
     let outcome = match arguments.command {
-        Command::Solve(options) => solve::run(&options),
-        Command::Compare(options) => compare::run(&options),
-        Command::Sweep(options) => sweep::run(&options),
-        Command::Tradeoff(options) => tradeoff::run(&options),
+        Command::Solve(options) => solve::run(&options, &watch),
+        Command::Compare(options) => compare::run(&options, &watch),
+        Command::Sweep(options) => sweep::run(&options, &watch),
+        Command::Tradeoff(options) => tradeoff::run(&options, &watch),
         Command::Export(options) => export::run(&options),
         Command::Verify(options) => verify::run(&options),
         Command::Schema => Ok(Outcome::certified(format!("{:#}\n", Scene::json_schema()))),
     };
+    drop(progress);
+    if watch.is_stopped() && outcome.is_ok() {
+        warn(&interrupt::sentence(&watch));
+    }
     let outcome = outcome.unwrap_or_else(|error| {
         let message = sentence(&error);
         warn(&format!("error: {message}\n"));
@@ -70,30 +82,56 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             Format::Json => format!("{:#}\n", failure_json(&error, &message)),
             Format::Text => String::new(),
         };
-        Outcome { text, ending }
+        Outcome { text, ending, pictures: None }
     });
-    match io::stdout().write_all(outcome.text.as_bytes()).and_then(|()| io::stdout().flush()) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            warn(&format!("error: cannot write to standard output: {error}\n"));
-            ExitCode::from(Ending::BadInput as u8)
+    let printed = io::stdout().write_all(outcome.text.as_bytes()).and_then(|()| io::stdout().flush());
+    if let Err(error) = printed
+        && error.kind() != io::ErrorKind::BrokenPipe
+    {
+        warn(&format!("error: cannot write to standard output: {error}\n"));
+        return ExitCode::from(Ending::BadInput as u8);
+    }
+    match outcome.pictures.filter(|_| !watch.is_stopped()).map_or(Ok(()), |pictures| drawn(pictures, &watch)) {
+        Err(error) => {
+            warn(&format!("error: {}\n", sentence(&error)));
+            ExitCode::from(ending_of(&error) as u8)
         }
+        _ if watch.is_stopped() => ExitCode::from(INTERRUPTED),
         _ => ExitCode::from(outcome.ending as u8),
     }
 }
 
-/// Writes to standard error; where that is closed there is nobody to tell.
+fn drawn(pictures: Pictures, watch: &Watch) -> Result<(), Error> {
+    watch.step("pictures", 0);
+    let _progress = Progress::of(watch);
+    pictures()
+}
+
+/// Takes the line of a terminal that is being written back.
+const ERASED: &str = "\r\x1b[K";
+
+/// Writes to standard error, on a terminal in place of the line of progress; where it is closed there is nobody to tell.
 fn warn(text: &str) {
-    let _ = io::stderr().write_all(text.as_bytes());
+    if text.is_empty() {
+        return;
+    }
+    let erased = if io::stderr().is_terminal() { ERASED } else { "" };
+    let _ = io::stderr().write_all(format!("{erased}{text}").as_bytes());
 }
 
 impl Outcome {
     fn certified(text: String) -> Self {
-        Outcome { text, ending: Ending::Certified }
+        Outcome::judged(text, true)
     }
 
     /// Certified or not, with that exit code.
     fn judged(text: String, certified: bool) -> Self {
-        Outcome { text, ending: if certified { Ending::Certified } else { Ending::NotCertified } }
+        let ending = if certified { Ending::Certified } else { Ending::NotCertified };
+        Outcome { text, ending, pictures: None }
+    }
+
+    fn with_pictures(self, pictures: impl FnOnce() -> Result<(), Error> + 'static) -> Self {
+        Outcome { pictures: Some(Box::new(pictures)), ..self }
     }
 }
 
@@ -114,7 +152,7 @@ fn sentence(error: &Error) -> String {
 fn ending_of(error: &Error) -> Ending {
     match error {
         Error::Infeasible { .. } | Error::Unbounded { .. } | Error::UnderHeld { .. } => Ending::NoSolution,
-        Error::NotCertified { .. } => Ending::NotCertified,
+        Error::NotCertified { .. } | Error::OutOfTime { .. } | Error::Interrupted => Ending::NotCertified,
         _ => Ending::BadInput,
     }
 }
@@ -126,6 +164,8 @@ fn failure_json(error: &Error, message: &str) -> serde_json::Value {
         Error::UnderHeld { .. } => "under_held",
         Error::NotConvex { .. } => "not_convex",
         Error::Numerical { .. } => "failed",
+        Error::Interrupted => "interrupted",
+        Error::OutOfTime { .. } => "out_of_time",
         _ => "bad_input",
     };
     serde_json::json!({ "status": status, "code": error.code(), "message": message })

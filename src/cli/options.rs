@@ -12,7 +12,7 @@ use crate::solve;
 #[command(name = "signorini", version, arg_required_else_help = true)]
 #[command(
     after_help = "Exit codes: 0 certified, 1 bad input or file, 2 usage, 3 infeasible, unbounded or under-held, \
-                        4 not certified, 130 interrupted."
+                        4 not certified, 130 interrupted, with what was found until then."
 )]
 pub(super) struct Arguments {
     #[command(subcommand)]
@@ -79,8 +79,8 @@ pub(super) struct Solve {
     /// Relative error in the energy norm that is good enough, certified
     #[arg(long, value_name = "A", allow_negative_numbers = true, value_parser = parse_tolerance)]
     pub accuracy: Option<f64>,
-    /// Seconds after which the best answer so far is returned
-    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = parse_tolerance)]
+    /// Seconds after which the best answer so far is returned, or a motion ends
+    #[arg(long, visible_alias = "time-limit", value_name = "T", allow_negative_numbers = true, value_parser = parse_tolerance)]
     pub time: Option<f64>,
     /// Precision of the sparse factor
     #[arg(long, value_enum, default_value_t = PrecisionName::Auto)]
@@ -161,10 +161,10 @@ fn parse_threads(text: &str) -> Result<usize, String> {
     }
 }
 
-/// How much memory a scene may take.
+/// How much memory a scene or a problem may take.
 #[derive(Debug, Args)]
 pub(super) struct Memory {
-    /// Refuse a scene that needs more memory, as 500MB or 1.5GB [default: what the machine has available]
+    /// Refuse what needs more memory, as 500MB or 1.5GB [default: what the machine has available]
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
     pub max_memory: Option<f64>,
 }

@@ -7,22 +7,25 @@ use crate::error::Error;
 use crate::output::{gallery, solve_json, solve_text, write_files};
 use crate::solve::{Condense, Method, Settings, solve};
 use crate::study::discretisation_error;
+use crate::watch::Watch;
 
-pub(super) fn settings(method: Method, common: &Common) -> Settings {
+pub(super) fn settings(method: Method, common: &Common, watch: &Watch) -> Settings {
     let mut settings = Settings::with_method(method);
     settings.tolerance = common.tolerance;
     settings.threads = common.threads;
     settings.condense = if common.no_condense { Condense::Never } else { Condense::Auto };
+    settings.memory = Some(common.memory.most());
+    settings.watch = watch.clone();
     settings
 }
 
-pub(super) fn run(options: &Solve) -> Result<Outcome, Error> {
+pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
     let common = &options.common;
     let source = Source::read(&options.input, &common.memory)?;
     if let Source::Scene(scene, _) = &source
         && scene.analysis.is_some()
     {
-        return dynamic::run(options, scene);
+        return dynamic::run(options, scene, watch);
     }
     if options.resume {
         let path = "analysis".into();
@@ -33,7 +36,7 @@ pub(super) fn run(options: &Solve) -> Result<Outcome, Error> {
         Source::Directory(input) => input,
     };
     warn(&input.warnings());
-    let mut settings = settings(options.method.method(), common);
+    let mut settings = settings(options.method.method(), common, watch);
     settings.prove = true;
     (settings.accuracy, settings.time) = (options.accuracy, options.time);
     (settings.precision, settings.extrapolate) = (options.precision.precision(), options.extrapolate);
@@ -52,20 +55,23 @@ pub(super) fn run(options: &Solve) -> Result<Outcome, Error> {
             "warning: --extrapolate changes nothing: the method is {method}; it goes with --method penalty\n"
         ));
     }
+    watch.step("report", 0);
     let mut summary = input.summary(&solution, settings.goal())?;
-    if let Content::Scene(model) = &input.content {
+    if let Content::Scene(model) = &input.content
+        && !watch.is_stopped()
+    {
         summary.discretisation_error = Some(discretisation_error(model, &solution)?);
-    }
-    if let Some(folder) = &common.out {
-        match &input.content {
-            Content::Scene(model) => gallery::write_solve(folder, model, &solution)?,
-            Content::Directory(_) => gallery::write_answer(folder, &solution)?,
-        }
-        write_files(folder, &[("report.json", format!("{:#}\n", solve_json(&summary)))])?;
     }
     let text = match common.format {
         Format::Text => solve_text(&input.title, &summary, &input.units),
         Format::Json => format!("{:#}\n", solve_json(&summary)),
     };
-    Ok(Outcome::judged(text, summary.is_certified()))
+    let outcome = Outcome::judged(text, summary.is_certified());
+    let Some(folder) = common.out.clone() else { return Ok(outcome) };
+    gallery::write_answer(&folder, &solution)?;
+    write_files(&folder, &[("report.json", format!("{:#}\n", solve_json(&summary)))])?;
+    Ok(match input.content {
+        Content::Scene(model) => outcome.with_pictures(move || gallery::write_solve(&folder, &model, &solution)),
+        Content::Directory(_) => outcome,
+    })
 }

@@ -11,11 +11,12 @@ use crate::output::{
 use crate::scene::Scene;
 use crate::solve::Settings;
 use crate::study::{TradeoffGrid, motion_tradeoff, tradeoff};
+use crate::watch::Watch;
 
-pub(super) fn run(options: &Tradeoff) -> Result<Outcome, Error> {
+pub(super) fn run(options: &Tradeoff, watch: &Watch) -> Result<Outcome, Error> {
     let scene = read_scene(&options.scene, &options.memory)?;
     if scene.analysis.is_some() {
-        return of_motion(options, &scene);
+        return of_motion(options, &scene, watch);
     }
     let model = build(&scene, &options.scene)?;
     warn(&warnings(&model));
@@ -25,7 +26,8 @@ pub(super) fn run(options: &Tradeoff) -> Result<Outcome, Error> {
         runs: options.runs.into(),
         most_full_dofs: options.most_full_dofs,
     };
-    let measured = tradeoff(&scene, &grid)?;
+    let measured = tradeoff(&scene, &grid, watch)?;
+    watch.step("report", 0);
     let (text, json) = (tradeoff_text(&title, &measured), format!("{:#}\n", tradeoff_json(&measured)));
     if let Some(folder) = &options.out {
         let files =
@@ -40,11 +42,13 @@ pub(super) fn run(options: &Tradeoff) -> Result<Outcome, Error> {
 }
 
 /// Every scheme at several steps.
-fn of_motion(options: &Tradeoff, scene: &Scene) -> Result<Outcome, Error> {
+fn of_motion(options: &Tradeoff, scene: &Scene, watch: &Watch) -> Result<Outcome, Error> {
     let model = scene.build()?;
     warn(&warnings(&model));
     let title = scene_title(&model, &options.scene);
-    let measured = motion_tradeoff(scene, &Settings::default())?;
+    let settings = Settings { watch: watch.clone(), ..Settings::default() };
+    let measured = motion_tradeoff(scene, &settings)?;
+    watch.step("report", 0);
     let (text, json) = (motion_tradeoff_text(&title, &measured), format!("{:#}\n", motion_tradeoff_json(&measured)));
     if let Some(folder) = &options.out {
         let files = [

@@ -10,6 +10,7 @@ use crate::problem::ContactProblem;
 use crate::solution::ContactSet;
 use crate::solve::{Method, Prepared, Settings};
 use crate::sparse::{dot, largest};
+use crate::watch::Watch;
 
 /// Rounding of the displacement and the gaps, relative to the largest of them: no penetration at the start.
 const ROUNDING: f64 = 1e-12;
@@ -30,6 +31,7 @@ pub struct Integrator {
     step: f64,
     scheme: Box<dyn Advance>,
     state: State,
+    watch: Watch,
 }
 
 impl Integrator {
@@ -56,7 +58,7 @@ impl Integrator {
             return Err(Error::Setting { name: "mass of a dof", value: 0.0, allowed });
         }
         // What is not asked for in a step: the interior point has no warm start.
-        let mut settings = *settings;
+        let mut settings = settings.started()?;
         if settings.method == Method::Auto {
             settings.method = Method::ActiveSet;
         }
@@ -86,15 +88,24 @@ impl Integrator {
             contact_set: ContactSet::from_fn(rows, |row| violation[row] >= -ROUNDING * reach),
         };
         let state = prepared.start(&problem, step, state)?;
-        Ok(Integrator { problem, step, scheme: prepared, state })
+        if settings.watch.is_over() {
+            return Err(Error::Interrupted);
+        }
+        Ok(Integrator { problem, step, scheme: prepared, state, watch: settings.watch })
     }
 
     /// One step further.
     ///
     /// # Errors
-    /// Those of a contact solve; [`Error::Numerical`] where the motion grows beyond all bounds.
+    /// Those of a contact solve; [`Error::Numerical`] where the motion grows beyond all bounds; [`Error::Interrupted`] where
+    /// the watch of the settings ends the run, in the state after the last whole step.
     pub fn advance(&mut self) -> Result<&State, Error> {
-        let next = self.scheme.advance(&self.problem, self.step, &self.state)?;
+        let next = self.scheme.advance(&self.problem, self.step, &self.state);
+        if self.watch.is_over() {
+            // The solves of this step may have been cut short.
+            return Err(Error::Interrupted);
+        }
+        let next = next?;
         if let Some(value) = next.displacement.iter().chain(&next.velocity).find(|value| !value.is_finite()) {
             let reason = format!("the motion has the value {value} after step {}", next.steps);
             return Err(Error::Numerical { step: "time integration", reason });
@@ -177,7 +188,7 @@ impl Stepping {
     /// Factorises the matrix of `problem`; its load and gaps say nothing but which rows there are.
     pub fn new(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
         let prepared = Prepared::with_settings(problem, settings)?;
-        Ok(Stepping { prepared, settings: *settings })
+        Ok(Stepping { prepared, settings: settings.clone() })
     }
 
     /// Number of dofs.

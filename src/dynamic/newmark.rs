@@ -40,7 +40,7 @@ impl Newmark {
 
     /// The trapezoidal rule with springs of `penalty` times the local stiffness in place of closed rows.
     pub fn with_penalty(problem: &DynamicProblem, step: f64, penalty: f64, settings: &Settings) -> Result<Self, Error> {
-        let mut springs = *settings;
+        let mut springs = settings.clone();
         springs.method = Method::Penalty;
         (springs.first_penalty, springs.last_penalty, springs.penetration_threshold) = (penalty, penalty, 0.0);
         // Springs give; no certificate of rigid contact can be asked of them.

@@ -70,7 +70,8 @@ pub fn solve(scaled: &ScaledProblem, start: ContactSet, max_iterations: usize) -
     let mut compliant = false;
     let mut settled = false;
     let mut stops = 0;
-    while !settled && history.len() + stops < max_iterations && (history.is_empty() || !scaled.is_out_of_time()) {
+    while !settled && history.len() + stops < max_iterations && (history.is_empty() || !scaled.watch().is_over()) {
+        scaled.watch().step("active set", history.len() + 1);
         let cholesky = match scaled.hold(&closed, if compliant { COMPLIANT_WEIGHT } else { WEIGHT })? {
             Holding::Held(cholesky) => cholesky,
             Holding::Free(motion) => match scaled.stopping_rows(&motion, &displacement, &closed) {

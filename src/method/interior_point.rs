@@ -9,6 +9,7 @@ use crate::error::Error;
 use crate::problem::ContactProblem;
 use crate::solution::ContactSet;
 use crate::sparse::{SparseMatrix, exponent, largest, ldexp};
+use crate::watch::Watch;
 
 /// A gap this many times the displacement is out of reach: the row is left out, where it would only spoil the scale.
 const OUT_OF_REACH: f64 = 1e12;
@@ -69,7 +70,7 @@ pub fn solve(scaled: &ScaledProblem, tolerance: f64) -> Result<InteriorPoint, Er
     let mut iterations = 0;
     let mut corrections = 0;
     loop {
-        let mut found = solve_in_unit(problem, tolerance, unit, scaled.time_left())?;
+        let mut found = solve_in_unit(problem, tolerance, unit, scaled.watch())?;
         iterations += found.iterations;
         found.iterations = iterations;
         let size = largest(&found.displacement);
@@ -78,7 +79,7 @@ pub fn solve(scaled: &ScaledProblem, tolerance: f64) -> Result<InteriorPoint, Er
         let fits = displacement.abs().max(force.abs()) <= UNIT_EXPONENT;
         if fits
             || size == 0.0
-            || scaled.is_out_of_time()
+            || scaled.watch().is_over()
             || displacement < -NOTHING_EXPONENT
             || corrections == UNIT_CORRECTIONS
         {
@@ -103,15 +104,10 @@ struct Unit {
 /// [`Error::Infeasible`] if so.
 pub fn check_feasible(scaled: &ScaledProblem, tolerance: f64) -> Result<(), Error> {
     let unit = Unit { displacement: 0, force: exponent(largest(scaled.problem.load())) };
-    solve_in_unit(scaled.problem, tolerance, unit, scaled.time_left()).map(|_| ())
+    solve_in_unit(scaled.problem, tolerance, unit, scaled.watch()).map(|_| ())
 }
 
-fn solve_in_unit(
-    problem: &ContactProblem,
-    tolerance: f64,
-    unit: Unit,
-    time: Option<f64>,
-) -> Result<InteriorPoint, Error> {
+fn solve_in_unit(problem: &ContactProblem, tolerance: f64, unit: Unit, watch: &Watch) -> Result<InteriorPoint, Error> {
     let gap: Vec<f64> = problem.gap().iter().map(|&g| ldexp(g, -unit.displacement)).collect();
     let rows: Vec<usize> = (0..gap.len()).filter(|&row| gap[row] < OUT_OF_REACH).collect();
     let near_gap: Vec<f64> = rows.iter().map(|&row| gap[row]).collect();
@@ -125,14 +121,18 @@ fn solve_in_unit(
         tol_feas: tolerance,
         max_iter: MAX_STEPS,
         max_threads: 1,
-        time_limit: time.unwrap_or(f64::INFINITY),
         ..DefaultSettings::default()
     };
     let cones = [SupportedConeT::NonnegativeConeT(rows.len())];
     let (mut p, a) = (csc(&problem.stiffness().upper()), csc(&near_rows));
     p.nzval.iter_mut().for_each(|value| *value = ldexp(*value, unit.displacement - unit.force));
+    let watch = watch.clone();
     let solved = guarded(|| {
         let mut solver = DefaultSolver::new(&p, &q, &a, &near_gap, &cones, settings)?;
+        solver.set_termination_callback(move |info| {
+            watch.step("interior point", info.iterations as usize);
+            watch.is_over()
+        });
         solver.solve();
         Ok(solver.solution)
     });

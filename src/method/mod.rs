@@ -19,6 +19,7 @@ use crate::error::Error;
 use crate::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
 use crate::sparse::{AugmentedMatrix, Cholesky, FactorError, SymmetricMatrix, largest};
+use crate::watch::Watch;
 
 /// Differences below this, relative to the largest displacement or multiplier, are rounding: the sign of a weakly
 /// active row is compared with it, or such a row would close and open for ever.
@@ -33,28 +34,23 @@ pub struct ScaledProblem<'a> {
     pub definite: bool,
     augmented: &'a AugmentedMatrix,
     factor_seconds: Cell<f64>,
-    deadline: Option<Instant>,
+    watch: Watch,
 }
 
 impl<'a> ScaledProblem<'a> {
     /// The problem with the analysed pattern of its K + B'B.
     pub fn new(problem: &'a ContactProblem, augmented: &'a AugmentedMatrix, definite: bool) -> Self {
-        ScaledProblem { problem, definite, augmented, factor_seconds: Cell::new(0.0), deadline: None }
+        ScaledProblem { problem, definite, augmented, factor_seconds: Cell::new(0.0), watch: Watch::default() }
     }
 
-    /// The same problem, whose loops end with what they have at `deadline`.
-    pub fn until(self, deadline: Option<Instant>) -> Self {
-        ScaledProblem { deadline, ..self }
+    /// The same problem, whose loops end with what they have when `watch` says so.
+    pub fn watched(self, watch: &Watch) -> Self {
+        ScaledProblem { watch: watch.clone(), ..self }
     }
 
-    /// Seconds until the deadline, if there is one.
-    pub(super) fn time_left(&self) -> Option<f64> {
-        self.deadline.map(|deadline| deadline.saturating_duration_since(Instant::now()).as_secs_f64())
-    }
-
-    /// Has the deadline passed?
-    pub fn is_out_of_time(&self) -> bool {
-        self.time_left() == Some(0.0)
+    /// What the loops look at, and tell their iterations.
+    pub fn watch(&self) -> &Watch {
+        &self.watch
     }
 
     /// Seconds spent in factorisations so far.

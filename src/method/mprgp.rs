@@ -23,6 +23,7 @@ use crate::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
 use crate::sparse::multigrid::{Direction, Face, Multigrid};
 use crate::sparse::{dot, largest};
+use crate::watch::Watch;
 
 /// Iterations without a residual half as large as the best before, after which the loop has stagnated.
 const PATIENCE: usize = 60;
@@ -44,11 +45,13 @@ pub struct Start<'a> {
 
 /// When the loop ends.
 #[derive(Clone, Copy, Debug)]
-pub struct Limits {
+pub struct Limits<'a> {
     /// Largest imbalance of forces and largest wrong-signed multiplier, relative to the largest force.
     pub tolerance: f64,
     /// Most cycles of the hierarchy.
     pub most_cycles: usize,
+    /// Whether it must end before.
+    pub watch: &'a Watch,
 }
 
 /// Finds displacement, multipliers and contact set; `iterations` counts the cycles of the hierarchy.
@@ -64,7 +67,7 @@ pub fn solve(problem: &ContactProblem, multigrid: &Multigrid, start: Start, limi
     let mut last: Option<Conjugate> = None;
     let (mut cycles, mut settled) = (0, false);
     let (mut best, mut since_best, mut is_fresh) = (f64::INFINITY, 0, true);
-    while cycles < limits.most_cycles && since_best < PATIENCE {
+    while cycles < limits.most_cycles && since_best < PATIENCE && !limits.watch.is_over() {
         let residual = iterate.residual();
         if residual <= limits.tolerance {
             if is_fresh {
@@ -93,6 +96,7 @@ pub fn solve(problem: &ContactProblem, multigrid: &Multigrid, start: Start, limi
             let step = iterate.preconditioned(&free_face, &gradient);
             face = Some(free_face);
             cycles += 1;
+            limits.watch.step("MPRGP", cycles);
             let direction = Conjugate::of(step, last.take(), &gradient, &iterate);
             if direction.is_free {
                 return Err(iterate.free_motion(direction.p));

@@ -19,6 +19,7 @@ use super::SIGN_TOLERANCE;
 use crate::error::Error;
 use crate::solution::ContactSet;
 use crate::sparse::largest;
+use crate::watch::Watch;
 
 /// A row whose compliance is this small, relative, once the rows before it are held, depends on them.
 const DEPENDENT: f64 = 1e-10;
@@ -131,13 +132,18 @@ impl Compliance {
     /// Walks from t = 0 to t = 1, from the set that holds at the beginning.
     ///
     /// # Errors
-    /// [`Error::Numerical`] where the closed rows are dependent beyond repair, or where the walk does not end.
-    pub fn walk(&self, start: &ContactSet) -> Result<(Vec<Piece>, Vec<Event>), Error> {
+    /// [`Error::Numerical`] where the closed rows are dependent beyond repair, or where the walk does not end;
+    /// [`Error::Interrupted`].
+    pub fn walk(&self, start: &ContactSet, watch: &Watch) -> Result<(Vec<Piece>, Vec<Event>), Error> {
         let (mut pieces, mut events) = (Vec::new(), Vec::new());
         let mut closed = self.independent(start);
         let mut now = 0.0;
         let length = largest(&self.constant).max(largest(&self.slope));
-        for _ in 0..CHANGES_PER_ROW * (self.rows() + 1) {
+        for change in 0..CHANGES_PER_ROW * (self.rows() + 1) {
+            if watch.is_over() {
+                return Err(Error::Interrupted);
+            }
+            watch.step("exact path", change + 1);
             let line = self.respond(&closed)?;
             let force = largest(&line.multiplier).max(largest(&line.multiplier_slope));
             let scales = Scales { length: SIGN_TOLERANCE * length, force: SIGN_TOLERANCE * force };

@@ -81,8 +81,9 @@ pub fn solve(
         while !settled
             && seen.insert(closed.clone())
             && history.len() + stops < max_iterations
-            && (history.is_empty() || !scaled.is_out_of_time())
+            && (history.is_empty() || !scaled.watch().is_over())
         {
+            scaled.watch().step("penalty loop", history.len() + 1);
             let cholesky = match scaled.hold(&closed, penalty)? {
                 Holding::Held(cholesky) => cholesky,
                 Holding::Free(motion) => match scaled.stopping_rows(&motion, &state.displacement, &closed) {
@@ -120,7 +121,7 @@ pub fn solve(
             last_bound = bound;
         }
         rung_before = Some(rung);
-        if small || scaled.is_out_of_time() || penalty * RUNG > ladder.last || history.len() >= max_iterations {
+        if small || scaled.watch().is_over() || penalty * RUNG > ladder.last || history.len() >= max_iterations {
             break;
         }
         penalty *= RUNG;

@@ -32,13 +32,12 @@ pub fn write_answer(folder: &Path, solution: &Solution) -> Result<(), Error> {
     write_files(folder, &solution_files(solution))
 }
 
-/// Writes the answer, its fields (`solution.vtu`), its picture (`contact`) and one picture for each iteration
+/// Writes the fields of an answer (`solution.vtu`), its picture (`contact`) and one picture for each iteration
 /// (`iteration-1`, ...), as long as these are no more than twelve. A bar and a body in space have no pictures.
 ///
 /// # Errors
 /// [`Error::File`], and those of the recovery of stresses.
 pub fn write_solve(folder: &Path, model: &Model, solution: &Solution) -> Result<(), Error> {
-    write_answer(folder, solution)?;
     write_atomically(
         &folder.join("solution.vtu"),
         fields(model, &solution.displacement, &solution.multiplier, &solution.contact_set)?.as_bytes(),
@@ -79,7 +78,7 @@ fn write_iterations(folder: &Path, model: &Model, solution: &Solution) -> Result
     draw_series(folder, &series)
 }
 
-/// Writes the answer of the QP as [`write_solve`] does, with the iterations of the active-set loop, and the pressure of
+/// Draws the answer of the QP as [`write_solve`] does, with the iterations of the active-set loop, and the pressure of
 /// the three methods over the boundary (`pressure`).
 ///
 /// # Errors

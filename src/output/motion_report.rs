@@ -19,9 +19,11 @@ pub struct MotionSeconds {
     pub steps: f64,
 }
 
-/// Are the contact problems of all steps of this motion certified? Not where springs stand for closed rows.
-pub fn motion_is_certified(dynamics: &Dynamics, method: Method) -> bool {
-    !matches!(dynamics.scheme, Scheme::Penalty { .. }) && method != Method::Penalty
+/// Are the contact problems of all steps of this motion certified? Not where springs stand for closed rows, nor where the
+/// motion was cut short.
+pub fn motion_is_certified(dynamics: &Dynamics, method: Method, summary: &MotionSummary) -> bool {
+    let is_whole = summary.steps >= dynamics.steps;
+    is_whole && !matches!(dynamics.scheme, Scheme::Penalty { .. }) && method != Method::Penalty
 }
 
 /// The report of a run, in lines of at most 100 characters.
@@ -70,7 +72,7 @@ pub fn motion_json(
     let energies = |[kinetic, strain, potential]: [f64; 3]| json!({"kinetic": kinetic, "strain": strain, "potential": potential, "total": kinetic + strain + potential});
     let MotionSeconds { assemble, factor, steps } = seconds;
     json!({
-        "status": if motion_is_certified(dynamics, method) { "certified" } else { "not_certified" },
+        "status": if motion_is_certified(dynamics, method, summary) { "certified" } else { "not_certified" },
         "method": method.name(),
         "scheme": dynamics.scheme.name(),
         "gains_energy": dynamics.scheme.gains_energy(),

@@ -1,5 +1,7 @@
 //! What the direct and the iterative path will cost, from the size of a problem alone.
 
+use super::Settings;
+use crate::error::Error;
 use crate::problem::ContactProblem;
 
 /// Rigid motions of a body in space: its factor grows faster than that of a plane body.
@@ -46,4 +48,54 @@ impl Estimate {
         self.direct_seconds > CLEARLY * self.multigrid_seconds
             || (self.direct_bytes > most_bytes && self.multigrid_bytes <= most_bytes)
     }
+}
+
+/// Bytes of a program that does nothing yet.
+const START: f64 = 9e6;
+
+/// Bytes of an unknown: loads, displacements, residuals.
+const OF_DOF: f64 = 120.0;
+
+/// Bytes of an entry of the stiffness, both triangles: its file, itself, scaled, ordered, and in the graph of the ordering.
+const OF_ENTRY: f64 = 32.0;
+
+/// Bytes of a value of a dense matrix on the contact dofs, of which a method keeps several.
+const OF_DENSE: f64 = 80.0;
+
+/// Workspace of a factorisation, beside its factor.
+const WORKSPACE: f64 = 1.15;
+
+/// What a solve keeps beside the problem.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Kept {
+    /// The factor of the body, with so many values, and dense matrices on so many contact dofs.
+    Condensed { values: usize, is_single: bool, contact_dofs: usize },
+    /// The factor of the body, with so many values, and those of two contact sets.
+    Factors { values: usize },
+    /// A hierarchy instead of a factor.
+    Multigrid,
+}
+
+/// Refuses a problem that would take more memory than `settings` allow.
+///
+/// # Errors
+/// [`Error::TooLarge`].
+pub(super) fn check_memory(problem: &ContactProblem, kept: Kept, settings: &Settings) -> Result<(), Error> {
+    let Some(allowed) = settings.memory else { return Ok(()) };
+    let (dofs, lower) = (problem.dofs() as f64, problem.stiffness().lower().entries() as f64);
+    let stiffness_entries = 2.0 * lower - dofs;
+    let (factor_entries, beside) = match kept {
+        Kept::Condensed { values, is_single, contact_dofs } => {
+            let bytes = if is_single { size_of::<f32>() } else { size_of::<f64>() };
+            let factor = WORKSPACE * bytes as f64 * values as f64;
+            (values as f64, factor + OF_DENSE * (contact_dofs as f64).powi(2))
+        }
+        Kept::Factors { values } => (values as f64, 3.0 * WORKSPACE * size_of::<f64>() as f64 * values as f64),
+        Kept::Multigrid => (0.0, Estimate::of(problem).multigrid_bytes),
+    };
+    let bytes = START + OF_DOF * dofs + OF_ENTRY * stiffness_entries + beside;
+    if bytes > allowed {
+        return Err(Error::TooLarge { dofs, stiffness_entries, factor_entries, bytes, allowed });
+    }
+    Ok(())
 }

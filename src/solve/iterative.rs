@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use super::Settings;
+use super::estimate::{Kept, check_memory};
 use crate::error::Error;
 use crate::method::mprgp::{self, Limits, Start};
 use crate::problem::{ContactProblem, check_gap};
@@ -72,7 +73,8 @@ impl Iterative {
     /// * [`Error::NotConvex`] for a direction of negative energy,
     /// * [`Error::NotCertified`] with the best answer, where the method stagnates above the tolerance.
     pub fn solve_gap(&self, gap: Vec<f64>, start: Start, settings: &Settings) -> Result<Solution, Error> {
-        settings.check()?;
+        let settings = &settings.started()?;
+        let watch = &settings.watch;
         let clock = Instant::now();
         check_gap(&gap, self.problem.rows())?;
         RowSelection::of(self.problem.contact(), &gap)?;
@@ -82,16 +84,18 @@ impl Iterative {
         let problem = self.problem.with_gap(gap)?;
         let mut tolerance = MARGIN * settings.tolerance;
         let mut left = settings.max_iterations;
-        let mut found = mprgp::solve(&problem, &self.multigrid, start, Limits { tolerance, most_cycles: left })?;
+        let mut found = mprgp::solve(&problem, &self.multigrid, start, Limits { tolerance, most_cycles: left, watch })?;
         let certificate = loop {
             let certificate = problem.certify_in(None, &found.displacement, &found.multiplier)?;
             left = left.saturating_sub(found.iterations);
             tolerance *= NEXT;
-            if certificate.meets(settings.tolerance) || !found.settled || tolerance < ROUNDING || left == 0 {
+            let met = certificate.meets(settings.tolerance);
+            if met || !found.settled || tolerance < ROUNDING || left == 0 || watch.is_over() {
                 break certificate;
             }
             let start = Start { displacement: Some(&found.displacement), contact_set: None };
-            let mut next = mprgp::solve(&problem, &self.multigrid, start, Limits { tolerance, most_cycles: left })?;
+            let mut next =
+                mprgp::solve(&problem, &self.multigrid, start, Limits { tolerance, most_cycles: left, watch })?;
             next.iterations += found.iterations;
             found.history.append(&mut next.history);
             next.history = found.history;
@@ -120,6 +124,11 @@ impl Iterative {
 
 /// Builds the hierarchy and solves from nothing known.
 pub(super) fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
+    if settings.watch.is_stopped() {
+        return Err(Error::Interrupted);
+    }
+    check_memory(problem, Kept::Multigrid, settings)?;
+    settings.watch.step("multigrid hierarchy", 0);
     let iterative = Iterative::new(problem, settings.threads)?;
     let timed = |mut solution: Solution| {
         solution.seconds.factor += iterative.seconds;

@@ -5,6 +5,7 @@ mod estimate;
 mod iterative;
 mod loading;
 mod path;
+mod preparation;
 mod prepared;
 mod refinement;
 mod rules;
@@ -46,18 +47,21 @@ pub fn solve_qp(problem: &ContactProblem) -> Result<Solution, Error> {
 /// * [`Error::UnderHeld`] for a motion that nothing resists: the answer would not be unique,
 /// * [`Error::NotConvex`] for a stiffness with a negative eigenvalue,
 /// * [`Error::NotCertified`] with the best answer, where it does not meet the tolerance,
+/// * [`Error::TooLarge`] where the memory that is allowed does not suffice,
+/// * [`Error::Interrupted`] where the watch was asked to stop before there was an answer,
 /// * [`Error::Numerical`] where memory does not suffice.
 pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
-    settings.check()?;
+    let settings = &settings.started()?;
     // Without a factor there is no bound to hold an accuracy against.
-    let is_free = settings.accuracy.is_none() && settings.time.is_none();
+    let is_free = settings.accuracy.is_none() && settings.watch.time_left().is_none();
     let is_large = || problem.near_null().is_some() && Estimate::of(problem).prefers_multigrid(f64::INFINITY);
     match settings.method {
         Method::Mprgp => return iterative::solve(problem, settings),
         // What the iteration cannot take, the direct path may.
         Method::Auto if is_free && is_large() => {
-            if let Ok(solution) = iterative::solve(problem, settings) {
-                return Ok(solution);
+            let solved = iterative::solve(problem, settings);
+            if solved.is_ok() || settings.watch.is_over() {
+                return solved;
             }
         }
         _ => {}
@@ -72,21 +76,32 @@ pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, 
         solution.seconds.solve += preparation.solve;
         solution
     };
-    let left = settings.time.map(|time| (time - preparation.solve).max(0.0));
-    match prepared.solve(&Settings { time: left, ..*settings }) {
-        Ok(solution) => Ok(with_preparation(solution)),
-        Err(Error::Numerical { .. } | Error::NotCertified { .. }) if prepared.is_a_shortcut() => {
-            drop(prepared);
-            // The time that the shortcut took is part of the answer's.
-            let method = if settings.method == Method::Auto { Method::ActiveSet } else { settings.method };
-            let safe = Settings { method, precision: Precision::Double, ..*settings };
-            solve(problem, &Settings { time: left, ..safe }).map(with_preparation)
-        }
+    let fell_short = match prepared.solve(settings) {
+        Ok(solution) => return Ok(with_preparation(solution)),
         Err(Error::NotCertified { solution, condition, value, tolerance }) => {
             let solution = Box::new(with_preparation(*solution));
-            Err(Error::NotCertified { solution, condition, value, tolerance })
+            Error::NotCertified { solution, condition, value, tolerance }
         }
-        Err(error) => Err(error),
+        Err(error @ Error::Numerical { .. }) => error,
+        Err(error) => return Err(error),
+    };
+    if !prepared.is_a_shortcut() || settings.watch.is_over() {
+        return Err(fell_short);
+    }
+    drop(prepared);
+    // The time that the shortcut took is part of the answer's.
+    let method = if settings.method == Method::Auto { Method::ActiveSet } else { settings.method };
+    let safe = Settings { method, precision: Precision::Double, ..settings.clone() };
+    let bound = |error: &Error| match error {
+        Error::NotCertified { solution, .. } => solution.certificate.energy_error_bound,
+        _ => f64::INFINITY,
+    };
+    match solve(problem, &safe) {
+        // Where it is cut short, the shortcut may have come further.
+        Err(error @ (Error::NotCertified { .. } | Error::Interrupted)) if bound(&fell_short) < bound(&error) => {
+            Err(fell_short)
+        }
+        solved => solved.map(with_preparation),
     }
 }
 
@@ -175,7 +190,7 @@ fn run(
 /// (2003) 41-62.
 fn settle(scaled: &ScaledProblem, start: ContactSet, settings: &Settings) -> Result<Outcome, Error> {
     let first = active_set::solve(scaled, start, settings.max_iterations.min(PATIENCE))?;
-    if first.settled || settings.max_iterations <= PATIENCE || scaled.is_out_of_time() {
+    if first.settled || settings.max_iterations <= PATIENCE || scaled.watch().is_over() {
         return Ok(first);
     }
     let ladder = Ladder { first: 1.0, last: BEST_PENALTY, threshold: 0.0, extrapolate: false, goal: None };

@@ -1,22 +1,19 @@
 //! A problem with everything done that does not depend on load and gap: factor once, contact many.
 
 use std::sync::{Arc, OnceLock};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use super::boundary::{BoundarySolution, Found};
 use super::loading::Loading;
-use super::rules::{Way, factor_seconds};
-use super::{Condense, Method, Path, Precision, Settings, run};
+use super::rules::Way;
+use super::{Condense, Method, Path, Settings, run};
 use crate::error::Error;
 use crate::method::parametric::Compliance;
 use crate::method::{ScaledProblem, active_set, interior_point};
 use crate::problem::{ContactProblem, EnergyNorm, check_gap};
 use crate::solution::{ContactSet, Iteration, Seconds, Solution};
-use crate::sparse::{Analysis, AugmentedMatrix, Cholesky, Equilibration, FactorError, dot, largest, ldexp};
+use crate::sparse::{AugmentedMatrix, Equilibration, dot, largest, ldexp};
 use crate::transform::{Condensation, RowSelection, Scaling};
-
-/// A pivot of the equilibrated stiffness below this is too uncertain in single precision.
-const SINGLE_PIVOT: f64 = 1e-4;
 
 /// A contact problem, scaled, condensed where that pays, factorised, its load swept through the factor.
 #[derive(Clone, Debug)]
@@ -28,15 +25,15 @@ pub struct Prepared {
     pub(super) stiffest: f64,
     pub(super) norm: Option<EnergyNorm>,
     pub(super) condensation: Option<Condensation>,
-    augmented: AugmentedMatrix,
+    pub(super) augmented: AugmentedMatrix,
     /// Energy norm of the condensed stiffness, made when it is first asked for.
-    condensed_norm: OnceLock<Option<EnergyNorm>>,
+    pub(super) condensed_norm: OnceLock<Option<EnergyNorm>>,
     /// The load of the problem, swept when it is first solved with.
-    loading: OnceLock<Arc<Loading>>,
+    pub(super) loading: OnceLock<Arc<Loading>>,
     /// What was chosen, where the choice was left to the program.
-    way: Option<Way>,
-    multiplications: f64,
-    seconds: Seconds,
+    pub(super) way: Option<Way>,
+    pub(super) multiplications: f64,
+    pub(super) seconds: Seconds,
 }
 
 impl Prepared {
@@ -47,114 +44,6 @@ impl Prepared {
     /// [`Error::Numerical`] where memory does not suffice.
     pub fn new(problem: &ContactProblem, condense: Condense) -> Result<Self, Error> {
         Self::with_settings(problem, &Settings { condense, ..Settings::default() })
-    }
-
-    /// As [`Prepared::new`], with the threads and the precision of `settings`.
-    ///
-    /// # Errors
-    /// As [`Prepared::new`], and [`Error::Setting`].
-    pub fn with_settings(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
-        settings.check()?;
-        let Settings { condense, threads, .. } = *settings;
-        let clock = Instant::now();
-        let selection = RowSelection::of(problem.contact(), problem.gap())?;
-        let scaling = Scaling::of(problem.stiffness(), &selection.contact(problem.contact()))?;
-        let diagonal = problem.stiffness().diagonal();
-        let (has_empty_diagonal, stiffest) = (diagonal.contains(&0.0), largest(&diagonal));
-        let factor_clock = Instant::now();
-        let contact_dofs = Condensation::contact_dofs(scaling.contact());
-        let analysis = match condense {
-            Condense::Auto => Condensation::analyse(problem.stiffness(), &contact_dofs)?,
-            Condense::Never => None,
-        }
-        .map(|analysis| analysis.with_threads(threads));
-        let last = match &analysis {
-            Some(_) => contact_dofs.clone(),
-            None => EnergyNorm::last_dofs(scaling.contact()),
-        };
-        let of_all = match analysis {
-            Some(_) => None,
-            None => Some(Analysis::with_last(problem.stiffness(), &last)?.with_threads(threads)),
-        };
-        let work = analysis.as_ref().or(of_all.as_ref()).map_or(0.0, Analysis::multiplications);
-        let mut way = Way::chosen(settings, analysis.is_some(), work, problem.rows());
-        if let Some(time) = settings.time {
-            let values = analysis.as_ref().or(of_all.as_ref()).map_or(0, Analysis::factor_entries);
-            let [double, single] = factor_seconds(work, values);
-            let left = (time - clock.elapsed().as_secs_f64()).max(0.0);
-            let may_be_single = settings.precision != Precision::Double && analysis.is_some();
-            match way {
-                Some(_) if double > left && single <= left && may_be_single => way = Some(Way::ActiveSetMixed),
-                _ if double.min(if may_be_single { single } else { double }) > left => {
-                    return Err(Error::OutOfTime { needed: double, time });
-                }
-                _ => {}
-            }
-        }
-        let precision = way.map_or(settings.precision, |way| way.settings(settings).precision);
-        let single = precision == Precision::Mixed && analysis.is_some();
-        let factor = |analysis: &Analysis, single| match analysis.factor_equilibrated(
-            problem.stiffness(),
-            scaling.equilibration(),
-            single,
-        ) {
-            Ok(cholesky) if single && cholesky.smallest_pivot() <= SINGLE_PIVOT => Ok(None),
-            Ok(cholesky) if cholesky.is_safely_definite() || cholesky.is_definite(scaling.stiffness()) => {
-                Ok(Some(cholesky))
-            }
-            Ok(_) | Err(FactorError::NotPositiveDefinite) => Ok(None),
-            Err(error) => Err(Error::from(error)),
-        };
-        let definite = |analysis: &Analysis| match single.then(|| factor(analysis, true)).transpose()?.flatten() {
-            Some(cholesky) => Ok(Some(cholesky)),
-            None => factor(analysis, false),
-        };
-        let cholesky = match analysis.as_ref().or(of_all.as_ref()) {
-            Some(analysis) if !has_empty_diagonal => definite(analysis)?,
-            _ => None,
-        };
-        drop(of_all);
-        if cholesky.is_none() {
-            // Without a bound no accuracy can be held: what is exact is left.
-            let exact = Settings { accuracy: None, ..*settings };
-            way = Way::chosen(&exact, analysis.is_some(), work, problem.rows());
-        }
-        let mut condensation = None;
-        if analysis.is_some() {
-            let shifted = cholesky.is_none();
-            let factor = match &cholesky {
-                Some(cholesky) => Some(cholesky.clone()),
-                None => factor_with_rows(&scaling, &contact_dofs, threads)?,
-            };
-            // Where even all rows together do not hold the body, the full problem tells why.
-            if let Some(factor) = factor {
-                condensation = Some(Condensation::new(factor, contact_dofs, scaling.contact(), shifted)?);
-            }
-        }
-        let augmented = match &condensation {
-            Some(condensed) => {
-                // Dense: the order is of no matter to the factor, and its last block is all of it.
-                let all: Vec<usize> = (0..condensed.stiffness().dim()).collect();
-                AugmentedMatrix::with_last(condensed.stiffness(), condensed.contact(), &all)?
-            }
-            None => AugmentedMatrix::new(scaling.stiffness(), scaling.contact())?.with_threads(threads),
-        };
-        let norm = cholesky.map(|cholesky| EnergyNorm::new(cholesky, scaling.equilibration().clone(), last));
-        let factor = factor_clock.elapsed().as_secs_f64();
-        Ok(Prepared {
-            problem: problem.clone(),
-            selection,
-            scaling,
-            stiffest,
-            norm,
-            condensation,
-            augmented,
-            way,
-            multiplications: work,
-            condensed_norm: OnceLock::new(),
-            loading: OnceLock::new(),
-            seconds: Seconds { factor, solve: clock.elapsed().as_secs_f64() },
-        })
     }
 
     /// Number of dofs of the problem.
@@ -206,6 +95,7 @@ impl Prepared {
     /// As [`solve`](super::solve); [`Error::Length`] and [`Error::NotFinite`] for gaps that do not fit, or that are
     /// infinite in other rows than those of the problem that was prepared.
     pub fn solve_gap(&self, gap: Vec<f64>, start: Option<&ContactSet>, settings: &Settings) -> Result<Solution, Error> {
+        let settings = &settings.started()?;
         self.complete(self.find(self.own_load(), gap, start, settings)?, settings)
     }
 
@@ -219,6 +109,7 @@ impl Prepared {
         start: Option<&ContactSet>,
         settings: &Settings,
     ) -> Result<Solution, Error> {
+        let settings = &settings.started()?;
         let loading = self.other_load(load)?;
         self.complete(self.find(loading, self.problem.gap().to_vec(), start, settings)?, settings)
     }
@@ -235,6 +126,7 @@ impl Prepared {
         start: Option<&ContactSet>,
         settings: &Settings,
     ) -> Result<BoundarySolution<'_>, Error> {
+        let settings = &settings.started()?;
         self.on_boundary(self.find(self.own_load(), gap, start, settings)?, settings)
     }
 
@@ -262,6 +154,7 @@ impl Prepared {
         start: Option<&ContactSet>,
         settings: &Settings,
     ) -> Result<BoundarySolution<'_>, Error> {
+        let settings = &settings.started()?;
         let loading = self.load(self.problem.with(load, gap.clone())?.load().to_vec(), &gap);
         self.on_boundary(self.find(loading, gap, start, settings)?, settings)
     }
@@ -286,13 +179,14 @@ impl Prepared {
     /// The exact path of the answer while the gaps move from `from` to `to` (length m each) on a straight line.
     ///
     /// # Errors
-    /// As [`Prepared::solve_gap`] for both ends; [`Error::NotCondensed`] for a problem that was not condensed or whose
+    /// As [`Prepared::solve_gap`] for both ends; [`Error::Interrupted`]; [`Error::NotCondensed`] for a problem that was not condensed or whose
     /// stiffness is not definite by itself.
     pub fn path(&self, from: &[f64], to: &[f64], settings: &Settings) -> Result<Path<'_>, Error> {
         let Some(condensed) = self.condensation.as_ref().filter(|_| self.norm.is_some() && !self.is_single()) else {
             return Err(Error::NotCondensed { step: "the exact path" });
         };
         self.check_gap(to)?;
+        let settings = &settings.started()?;
         let found = self.find(self.own_load(), from.to_vec(), None, settings)?;
         let start = self.on_boundary(found, settings)?;
         let Found { loading, unit, problem, .. } = &start.found;
@@ -302,7 +196,8 @@ impl Prepared {
             free.iter().zip(problem.gap()).map(|(&free, gap)| ldexp(free, loading.unit - unit) - gap).collect();
         let slope = problem.gap().iter().zip(&at_end).map(|(first, last)| first - last).collect();
         let compliance = Compliance::new(condensed.compliance(), constant, slope);
-        let (pieces, mut events) = compliance.walk(&self.selection.restrict_set(&start.contact_set))?;
+        let (pieces, mut events) =
+            compliance.walk(&self.selection.restrict_set(&start.contact_set), &settings.watch)?;
         events.iter_mut().for_each(|event| event.row = self.selection.kept()[event.row]);
         Ok(Path { prepared: self, from: from.to_vec(), to: to.to_vec(), unit: *unit, pieces, events })
     }
@@ -323,8 +218,7 @@ impl Prepared {
         start: Option<&ContactSet>,
         settings: &Settings,
     ) -> Result<Found, Error> {
-        settings.check()?;
-        let settings = &self.resolved(settings);
+        let settings = &self.resolved(&settings.started()?);
         self.check_gap(&gap)?;
         let found = self.find_step(loading, gap, start, settings)?;
         if self.is_single() { self.refined(found, settings) } else { Ok(found) }
@@ -334,7 +228,7 @@ impl Prepared {
     fn resolved(&self, settings: &Settings) -> Settings {
         match settings.method {
             Method::Auto => self.way.unwrap_or(Way::ActiveSet).settings(settings),
-            _ => *settings,
+            _ => settings.clone(),
         }
     }
 
@@ -348,8 +242,7 @@ impl Prepared {
     ) -> Result<Found, Error> {
         let clock = Instant::now();
         let (problem, unit) = self.scaled(&loading, &gap)?;
-        let deadline = settings.time.and_then(|time| clock.checked_add(Duration::try_from_secs_f64(time).ok()?));
-        let task = ScaledProblem::new(&problem, &self.augmented, self.norm.is_some()).until(deadline);
+        let task = ScaledProblem::new(&problem, &self.augmented, self.norm.is_some()).watched(&settings.watch);
         let start = start.map(|set| self.selection.restrict_set(set));
         let bound = |displacement: &[f64], multiplier: &[f64]| {
             let norm = self.condensed_norm(&problem).ok().flatten();
@@ -415,6 +308,7 @@ impl Prepared {
     /// The whole answer, certified.
     pub(super) fn complete(&self, found: Found, settings: &Settings) -> Result<Solution, Error> {
         let clock = Instant::now();
+        settings.watch.step("certificate", 0);
         let displacement = self.displacement(&found);
         let method = self.resolved(settings).method;
         let Found { loading, gap, problem: condensed, unit, outcome, seconds, refined } = found;
@@ -425,7 +319,7 @@ impl Prepared {
         let multiplier = self.expand_multiplier(&outcome.multiplier, unit);
         let problem = self.problem.with(loading.load.clone(), gap)?;
         let certificate = problem.certify_in(norm.as_ref(), &displacement, &multiplier)?;
-        let proven = norm.as_ref().filter(|_| settings.prove);
+        let proven = norm.as_ref().filter(|_| settings.prove && !settings.watch.is_over());
         let proven = proven.and_then(|norm| problem.prove_in(norm, &displacement, &multiplier));
         let expand_iteration = |step: Iteration| Iteration {
             contact_set: self.selection.expand_set(&step.contact_set),
@@ -447,9 +341,12 @@ impl Prepared {
         if settings.goal().is_met_by(&solution.certificate) {
             return Ok(solution);
         }
-        let task = ScaledProblem::new(&condensed, &self.augmented, self.norm.is_some());
-        interior_point::check_feasible(&task, settings.interior_point_tolerance)
-            .map_err(|error| self.expand_error(error, problem.gap()))?;
+        // Of an answer that was cut short it is known why it falls short.
+        if !settings.watch.is_over() {
+            let task = ScaledProblem::new(&condensed, &self.augmented, self.norm.is_some()).watched(&settings.watch);
+            interior_point::check_feasible(&task, settings.interior_point_tolerance)
+                .map_err(|error| self.expand_error(error, problem.gap()))?;
+        }
         let (condition, value, tolerance) = settings.goal().decisive(&solution.certificate);
         Err(Error::NotCertified { solution: Box::new(solution), condition, value, tolerance })
     }
@@ -561,17 +458,5 @@ impl Prepared {
             }
             other => other,
         }
-    }
-}
-
-/// The factor of `K + B'B` with the contact dofs last, or `None` where it is not safely definite.
-fn factor_with_rows(scaling: &Scaling, contact_dofs: &[usize], threads: usize) -> Result<Option<Cholesky>, Error> {
-    let augmented =
-        AugmentedMatrix::with_last(scaling.stiffness(), scaling.contact(), contact_dofs)?.with_threads(threads);
-    let matrix = augmented.matrix(|_| 1.0, 0.0);
-    match augmented.factor(&matrix) {
-        Ok(cholesky) if cholesky.is_definite(&matrix) => Ok(Some(cholesky)),
-        Ok(_) | Err(FactorError::NotPositiveDefinite) => Ok(None),
-        Err(error) => Err(error.into()),
     }
 }

@@ -11,7 +11,6 @@
 //! contraction is measured, and widens the bound of the certificate, which knows K~ only.
 
 use std::sync::Arc;
-use std::time::Instant;
 
 use super::boundary::Found;
 use super::loading::Loading;
@@ -51,7 +50,6 @@ impl Prepared {
     /// # Errors
     /// [`Error::Numerical`] where the stiffness is too ill-conditioned for it, and those of the method.
     pub(super) fn refined(&self, first: Found, settings: &Settings) -> Result<Found, Error> {
-        let clock = Instant::now();
         let (load, gap) = (first.loading.load.clone(), first.gap.clone());
         let mut rest = load.clone();
         let mut found = first;
@@ -78,8 +76,7 @@ impl Prepared {
                 .accuracy
                 .is_some_and(|accuracy| refined.steps > 0 && length * refined.contraction <= AIM * accuracy * size);
             let no_gain = refined.steps > 0 && (length <= NOTHING * size || ratio > 0.5);
-            let out_of_time = settings.time.is_some_and(|time| clock.elapsed().as_secs_f64() >= time);
-            if good_enough || no_gain || out_of_time || refined.steps == MOST_STEPS {
+            if good_enough || no_gain || settings.watch.is_over() || refined.steps == MOST_STEPS {
                 return Ok(Found {
                     gap,
                     loading: Arc::new(found.loading.with_load(load)),

@@ -99,7 +99,7 @@ impl Way {
             Way::Qp | Way::QpUnpolished => (Method::Qp, settings.precision),
             Way::Penalty | Way::PenaltyRung => (Method::Penalty, settings.precision),
         };
-        let mut settings = Settings { method, precision, ..*settings };
+        let mut settings = Settings { method, precision, ..settings.clone() };
         if let (Way::QpUnpolished, Some(accuracy)) = (self, settings.accuracy) {
             settings.polish = false;
             settings.interior_point_tolerance = INTERIOR_POINT_SHARE * accuracy;

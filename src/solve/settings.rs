@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::solution::Goal;
+use crate::watch::Watch;
 
 /// The method that finds the contact set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -59,7 +60,7 @@ pub enum Precision {
 }
 
 /// Settings of a solve; start from [`Settings::default`] or [`Settings::with_method`] and change fields.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Settings {
     /// The method.
@@ -80,6 +81,12 @@ pub struct Settings {
     /// Wall-clock seconds after which the best answer so far is returned, as [`Error::NotCertified`] if it falls short;
     /// a factorisation that is under way is ended first.
     pub time: Option<f64>,
+    /// Bytes that the solve may take; what would take more, by an estimate made before anything is factorised, is refused as
+    /// [`Error::TooLarge`].
+    pub memory: Option<f64>,
+    /// Asked from any thread, the solve ends as if its time were over, or with [`Error::Interrupted`] where it has found
+    /// nothing yet; it tells what is being done. Clones of the settings share it.
+    pub watch: Watch,
     /// Is the contact set of the QP settled by the active-set loop?
     pub polish: bool,
     /// Tolerance of the interior-point method, on data of order one.
@@ -107,6 +114,8 @@ impl Default for Settings {
             accuracy: None,
             prove: false,
             time: None,
+            memory: None,
+            watch: Watch::default(),
             polish: true,
             interior_point_tolerance: 1e-9,
             max_iterations: 20_000,
@@ -134,6 +143,16 @@ impl Settings {
         Settings { time: Some(seconds), ..Settings::default() }
     }
 
+    /// The same with the seconds counted from now, as the deadline of the watch.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for the first setting that is not in its range.
+    pub(crate) fn started(&self) -> Result<Self, Error> {
+        self.check()?;
+        let watch = self.time.map_or_else(|| self.watch.clone(), |time| self.watch.within(time));
+        Ok(Settings { time: None, watch, ..self.clone() })
+    }
+
     /// What an answer is held against.
     pub fn goal(&self) -> Goal {
         Goal { tolerance: self.tolerance, accuracy: self.accuracy }
@@ -143,7 +162,7 @@ impl Settings {
     ///
     /// # Errors
     /// [`Error::Setting`] for the first that is not.
-    pub(super) fn check(&self) -> Result<(), Error> {
+    fn check(&self) -> Result<(), Error> {
         let positive = |name, value: f64| match value.is_finite() && value > 0.0 {
             true => Ok(()),
             false => Err(Error::Setting { name, value, allowed: "positive and finite" }),
@@ -154,6 +173,9 @@ impl Settings {
         }
         if let Some(time) = self.time.filter(|time| time.is_nan() || *time < 0.0) {
             return Err(Error::Setting { name: "time", value: time, allowed: "zero or positive" });
+        }
+        if let Some(memory) = self.memory.filter(|memory| memory.is_nan() || *memory < 0.0) {
+            return Err(Error::Setting { name: "memory", value: memory, allowed: "zero or positive" });
         }
         positive("interior_point_tolerance", self.interior_point_tolerance)?;
         positive("first_penalty", self.first_penalty)?;

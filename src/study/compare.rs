@@ -68,18 +68,26 @@ pub struct Comparison {
 /// Solves `problem` by all three methods.
 ///
 /// # Errors
-/// As [`solve`], but an answer that is not certified is an answer here.
+/// As [`solve`], but an answer that is not certified is an answer here; [`Error::Interrupted`] where not all three are
+/// there.
 pub fn compare(problem: &ContactProblem, settings: &Settings) -> Result<Comparison, Error> {
     let answer = |method| {
-        let mut settings = *settings;
+        let mut settings = settings.clone();
         settings.method = method;
         match solve(problem, &settings) {
             Ok(solution) => Ok(MethodAnswer { solution, certified: true }),
+            Err(_) if settings.watch.is_stopped() => Err(Error::Interrupted),
             Err(Error::NotCertified { solution, .. }) => Ok(MethodAnswer { solution: *solution, certified: false }),
             Err(error) => Err(error),
         }
     };
-    let [qp, active_set, penalty] = [answer(Method::Qp)?, answer(Method::ActiveSet)?, answer(Method::Penalty)?];
+    let mut number = 0;
+    let mut next = |method| {
+        number += 1;
+        settings.watch.part("method", number, 3);
+        answer(method)
+    };
+    let [qp, active_set, penalty] = [next(Method::Qp)?, next(Method::ActiveSet)?, next(Method::Penalty)?];
     let to_active_set = difference(problem, &active_set.solution, &qp.solution);
     let to_penalty = difference(problem, &penalty.solution, &qp.solution);
     let agreement = Agreement {

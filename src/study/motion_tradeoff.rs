@@ -65,10 +65,12 @@ pub struct MotionTradeoff {
 
 /// Runs a scene that moves by every scheme at several steps.
 ///
-/// A run that breaks down has an infinite error.
+/// A run that breaks down has an infinite error. Where the watch of `settings` is asked to stop, the points are those of the
+/// runs until then.
 ///
 /// # Errors
-/// As [`Scene::build`] and [`Scene::dynamics`]; [`Error::Scene`] for a scene that does not move.
+/// As [`Scene::build`] and [`Scene::dynamics`]; [`Error::Scene`] for a scene that does not move; [`Error::Interrupted`] where
+/// not one run has ended.
 pub fn motion_tradeoff(scene: &Scene, settings: &Settings) -> Result<MotionTradeoff, Error> {
     let model = scene.build()?;
     let Some(own) = scene.dynamics(&model)? else {
@@ -78,7 +80,7 @@ pub fn motion_tradeoff(scene: &Scene, settings: &Settings) -> Result<MotionTrade
     let quarter = own.steps.div_ceil(4 * SAMPLES).max(1);
     let of = |scheme, steps: usize| with(scene, &model, scheme, steps);
     let reference = run(of(SchemeSpec::Midpoint, SAMPLES * quarter * REFERENCE)?, settings)?;
-    let mut points = Vec::new();
+    let mut runs = Vec::new();
     for scheme in SCHEMES {
         let counts: Vec<usize> = if scheme == SchemeSpec::CentralDifference {
             let fewest = fewest_stable(scene, &model)?.div_ceil(SAMPLES);
@@ -86,22 +88,31 @@ pub fn motion_tradeoff(scene: &Scene, settings: &Settings) -> Result<MotionTrade
         } else {
             QUARTERS.iter().map(|quarters| SAMPLES * quarter * quarters).collect()
         };
-        for steps in counts {
-            let dynamics = of(scheme, steps)?;
-            let (name, step) = (dynamics.scheme.name(), dynamics.step);
-            let found = run(dynamics, settings).unwrap_or_default();
-            points.push(MotionPoint {
-                scheme: name,
-                step,
-                steps,
-                seconds: found.seconds,
-                displacement_error: found.error(&reference),
-                impulse_error: relative(found.impulse - reference.impulse, reference.impulse),
-                energy_change: found.energy_change,
-                penetration: found.penetration,
-                best: false,
-            });
-        }
+        runs.extend(counts.into_iter().map(|steps| (scheme, steps)));
+    }
+    let mut points = Vec::new();
+    for (index, &(scheme, steps)) in runs.iter().enumerate() {
+        settings.watch.part("run", index + 1, runs.len());
+        let dynamics = of(scheme, steps)?;
+        let (name, step) = (dynamics.scheme.name(), dynamics.step);
+        let found = match run(dynamics, settings) {
+            Err(_) if settings.watch.is_stopped() => break,
+            found => found.unwrap_or_default(),
+        };
+        points.push(MotionPoint {
+            scheme: name,
+            step,
+            steps,
+            seconds: found.seconds,
+            displacement_error: found.error(&reference),
+            impulse_error: relative(found.impulse - reference.impulse, reference.impulse),
+            energy_change: found.energy_change,
+            penetration: found.penetration,
+            best: false,
+        });
+    }
+    if points.is_empty() {
+        return Err(Error::Interrupted);
     }
     let beats = |one: &MotionPoint, other: &MotionPoint| {
         let no_worse = one.seconds <= other.seconds && one.displacement_error <= other.displacement_error;

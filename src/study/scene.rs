@@ -128,8 +128,10 @@ pub struct Sweep {
 /// The stiffness is factorised once, and every solve starts from the last contact set. Where the rows move on straight
 /// lines (rows along the approach direction do), everything that happens between the first and the last gap is found.
 ///
+/// A sweep that is interrupted has the gaps that were done until then, and nothing between.
+///
 /// # Errors
-/// As [`Model::with_gap`] and [`solve`].
+/// As [`Model::with_gap`] and [`solve`]; [`Error::Interrupted`] where not one gap was done.
 pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, Error> {
     let (Some(&first), Some(&last)) = (gaps.first(), gaps.last()) else {
         return Ok(Sweep { points: Vec::new(), events: Vec::new(), corners: Vec::new() });
@@ -137,7 +139,8 @@ pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, 
     let at_first = model.with_gap(first)?;
     let prepared = Prepared::with_settings(at_first.problem(), settings).map_err(|error| at_first.explain(error))?;
     let mut points: Vec<SweepPoint> = Vec::new();
-    for &gap in gaps {
+    for (index, &gap) in gaps.iter().enumerate() {
+        settings.watch.part("gap", index + 1, gaps.len());
         let clock = Instant::now();
         let model = model.with_gap(gap)?;
         let assemble_seconds = clock.elapsed().as_secs_f64();
@@ -149,11 +152,22 @@ pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, 
         };
         let solution = match solved {
             Ok(solution) => solution,
+            // What was cut short is no answer to this gap.
+            Err(_) if settings.watch.is_stopped() => break,
             Err(Error::NotCertified { solution, .. }) => *solution,
             Err(error) => return Err(model.explain(error)),
         };
         let summary = scene_summary(&model, &solution, settings.goal(), assemble_seconds)?;
         points.push(SweepPoint { gap, summary, model, solution });
+        if settings.watch.is_stopped() {
+            break;
+        }
+    }
+    if points.is_empty() {
+        return Err(Error::Interrupted);
+    }
+    if settings.watch.is_stopped() {
+        return Ok(Sweep { points, events: Vec::new(), corners: Vec::new() });
     }
     let (events, corners) = between(&prepared, &at_first, first, last, settings)?;
     Ok(Sweep { points, events, corners })

@@ -10,6 +10,7 @@ use crate::scene::{Model, Scene};
 use crate::solution::Solution;
 use crate::solve::{Condense, Method, Precision, Prepared, Settings, solve};
 use crate::sparse::dot;
+use crate::watch::Watch;
 
 /// Tolerances that the interior point is given.
 const TOLERANCES: [f64; 6] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
@@ -120,22 +121,30 @@ pub struct Tradeoff {
 ///
 /// The exact answer of a mesh is that of the active set on the contact boundary, which ends with a linear solve.
 ///
+/// Where `watch` is asked to stop, the points are those that were measured until then.
+///
 /// # Errors
 /// As [`Scene::refined`], [`Scene::build`] and [`solve`]; an answer that is not certified is an answer here.
-pub fn tradeoff(scene: &Scene, grid: &TradeoffGrid) -> Result<Tradeoff, Error> {
+/// [`Error::Interrupted`] where not one point was measured.
+pub fn tradeoff(scene: &Scene, grid: &TradeoffGrid, watch: &Watch) -> Result<Tradeoff, Error> {
+    let watched = |settings| Settings { watch: watch.clone(), ..settings };
     let mut result = Tradeoff { meshes: Vec::new(), points: Vec::new(), advice: Vec::new(), runs: grid.runs.max(1) };
     for refinement in 0..=grid.refinements {
         let divided_by = 1_usize << refinement.min(usize::BITS as usize - 1);
         let model = scene.refined(divided_by)?.build()?;
         let explained = |error| model.explain(error);
-        let exact = solve(model.problem(), &Settings::with_method(Method::ActiveSet)).map_err(explained)?;
+        let exact = match solve(model.problem(), &watched(Settings::with_method(Method::ActiveSet))) {
+            Err(_) if watch.is_stopped() => break,
+            solved => solved.map_err(explained)?,
+        };
         let full = model.problem().dofs() <= grid.most_full_dofs;
         let mut ways = ways(Condense::Auto, Precision::Double);
         ways.extend(self::ways(Condense::Auto, Precision::Mixed));
         if full {
             ways.extend(self::ways(Condense::Never, Precision::Double));
         }
-        for (way, timed) in ways.iter().zip(timed(&model, &ways, result.runs).map_err(explained)?) {
+        ways.iter_mut().for_each(|way| way.settings = watched(way.settings.clone()));
+        for (way, timed) in ways.iter().zip(timed(&model, &ways, result.runs, watch).map_err(explained)?) {
             let Some((solution, seconds)) = timed else { continue };
             result.points.push(TradeoffPoint {
                 mesh: refinement,
@@ -153,6 +162,12 @@ pub fn tradeoff(scene: &Scene, grid: &TradeoffGrid) -> Result<Tradeoff, Error> {
             contact_rows: model.rows().len(),
             discretisation_error: discretisation_error(&model, &exact)?,
         });
+        if watch.is_stopped() {
+            break;
+        }
+    }
+    if result.points.is_empty() {
+        return Err(Error::Interrupted);
     }
     mark_best(&mut result.points);
     result.advice = advice(&result.points);
@@ -199,13 +214,21 @@ fn ways(condense: Condense, precision: Precision) -> Vec<Way> {
 /// The answer of each way, certified or not, and the seconds of its fastest run. All ways run once before any runs
 /// again, so that what else the machine does meets them alike.
 ///
-/// A way whose precision does not suffice has no answer.
-fn timed(model: &Model, ways: &[Way], runs: usize) -> Result<Vec<Option<(Solution, f64)>>, Error> {
-    let run = |way: &Way| {
+/// A way whose precision does not suffice has no answer, nor has one that was not run before `watch` was asked to stop.
+fn timed(model: &Model, ways: &[Way], runs: usize, watch: &Watch) -> Result<Vec<Option<(Solution, f64)>>, Error> {
+    let run = |number: usize, way: &Way| {
+        if watch.is_stopped() {
+            return Ok(None);
+        }
+        watch.part("run", number + 1, runs * ways.len());
         let clock = Instant::now();
         let solved =
             Prepared::with_settings(model.problem(), &way.settings).and_then(|prepared| prepared.solve(&way.settings));
         let seconds = clock.elapsed().as_secs_f64();
+        if watch.is_stopped() {
+            // What was cut short measures nothing.
+            return Ok(None);
+        }
         let mixed = way.settings.precision == Precision::Mixed;
         match solved {
             Ok(solution) => Ok((solution.refinements.is_some() == mixed).then_some((solution, seconds))),
@@ -216,11 +239,11 @@ fn timed(model: &Model, ways: &[Way], runs: usize) -> Result<Vec<Option<(Solutio
             Err(error) => Err(error),
         }
     };
-    let mut fastest = ways.iter().map(run).collect::<Result<Vec<_>, Error>>()?;
-    for _ in 1..runs {
-        for (way, fastest) in ways.iter().zip(&mut fastest) {
+    let mut fastest = ways.iter().enumerate().map(|(index, way)| run(index, way)).collect::<Result<Vec<_>, Error>>()?;
+    for round in 1..runs {
+        for (index, (way, fastest)) in ways.iter().zip(&mut fastest).enumerate() {
             if let Some((_, least)) = fastest
-                && let Some((_, seconds)) = run(way)?
+                && let Some((_, seconds)) = run(round * ways.len() + index, way)?
             {
                 *least = least.min(seconds);
             }

@@ -1,0 +1,123 @@
+//! What the one who waits shares with the work: a request to end, a deadline, and what is being done.
+
+use std::fmt;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// Work that may be asked to end, from any thread, and asked what it is doing.
+///
+/// Clones share the request and the activity; only the deadline is each one's own. A solve looks between factorisations,
+/// iterations and steps, and ends with the best answer that it has.
+///
+/// ```
+/// use signorini::{Error, Settings, solve};
+/// # use signorini::{ContactProblem, SparseMatrix, SymmetricMatrix};
+/// # let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(1, 1, &[(0, 0, 1.0)])?)?;
+/// # let contact = SparseMatrix::from_triplets(1, 1, &[(0, 0, 1.0)])?;
+/// # let problem = ContactProblem::new(stiffness, vec![3.0], contact, vec![1.0])?;
+///
+/// let settings = Settings::default();
+/// let watch = settings.watch.clone();
+/// std::thread::spawn(move || watch.stop()).join().unwrap();
+/// assert!(matches!(solve(&problem, &settings), Err(Error::Interrupted)));
+/// # Ok::<(), Error>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Watch {
+    deadline: Option<Instant>,
+    shared: Arc<Shared>,
+}
+
+#[derive(Debug, Default)]
+struct Shared {
+    stopped: AtomicBool,
+    noticed: AtomicBool,
+    activity: Mutex<Activity>,
+}
+
+/// What is being done.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Activity {
+    /// The part of the work, where there are several, as a gap of a sweep.
+    pub part: Option<Part>,
+    /// The step of it, as `factorisation`; empty before the first.
+    pub step: &'static str,
+    /// Which iteration of the step, from 1; 0 where it has none.
+    pub iteration: usize,
+}
+
+/// One of several parts of a work.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// What the parts are, as `gap`.
+    pub name: &'static str,
+    /// Which one, from 1.
+    pub number: usize,
+    /// How many there are.
+    pub of: usize,
+}
+
+impl fmt::Display for Part {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {} of {}", self.name, self.number, self.of)
+    }
+}
+
+impl Watch {
+    /// Asks the work to end with what it has.
+    pub fn stop(&self) {
+        self.shared.stopped.store(true, Ordering::SeqCst);
+    }
+
+    /// Was the work asked to end? It is the work that asks this, and then ends.
+    pub fn is_stopped(&self) -> bool {
+        let stopped = self.shared.stopped.load(Ordering::SeqCst);
+        if stopped {
+            self.shared.noticed.store(true, Ordering::SeqCst);
+        }
+        stopped
+    }
+
+    /// Has the work noticed that it was asked to end? While it factorises, for one, it does not.
+    pub fn is_noticed(&self) -> bool {
+        self.shared.noticed.load(Ordering::SeqCst)
+    }
+
+    /// What is being done now.
+    pub fn activity(&self) -> Activity {
+        self.shared.activity.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// The same, with a deadline so many `seconds` from now unless its own is sooner.
+    pub fn within(&self, seconds: f64) -> Watch {
+        let deadline = Duration::try_from_secs_f64(seconds).ok().and_then(|time| Instant::now().checked_add(time));
+        let deadline = deadline.into_iter().chain(self.deadline).min();
+        Watch { deadline, shared: self.shared.clone() }
+    }
+
+    /// Seconds until the deadline, if there is one.
+    pub fn time_left(&self) -> Option<f64> {
+        self.deadline.map(|deadline| deadline.saturating_duration_since(Instant::now()).as_secs_f64())
+    }
+
+    /// Must the work end, because it was asked to or because its deadline has passed?
+    pub fn is_over(&self) -> bool {
+        self.is_stopped() || self.time_left() == Some(0.0)
+    }
+
+    /// Tells which part of the work begins, from 1, `of` how many.
+    pub fn part(&self, name: &'static str, number: usize, of: usize) {
+        self.tell(Activity { part: Some(Part { name, number, of }), ..Activity::default() });
+    }
+
+    /// Tells which step of the work begins, and its iteration from 1, or 0 where it has none.
+    pub fn step(&self, step: &'static str, iteration: usize) {
+        let part = self.activity().part;
+        self.tell(Activity { part, step, iteration });
+    }
+
+    fn tell(&self, activity: Activity) {
+        *self.shared.activity.lock().unwrap_or_else(PoisonError::into_inner) = activity;
+    }
+}
