@@ -94,10 +94,12 @@ pub fn fault(error: &Error) -> String {
 /// The same for a code and a sentence at hand.
 pub fn wording(code: &str, sentence: &str) -> String {
     // In a scene, the path stands first.
-    let said = sentence.split_once("`: ").filter(|_| code == "scene").map_or(sentence, |parts| parts.1);
+    let behind_path = sentence.split_once("at `").and_then(|parts| parts.1.split_once("`: "));
+    let said = behind_path.filter(|_| code == "scene").map_or(sentence, |parts| parts.1);
     let quotes = ['`', '"'];
     let (begin, end) = (said.split(quotes).next(), said.rsplit(quotes).next());
     let words = begin.into_iter().chain(end.filter(|end| Some(*end) != begin)).flat_map(str::split_whitespace);
-    let words: Vec<&str> = words.filter(|word| !word.contains(|c: char| c.is_numeric())).take(FIRST_WORDS).collect();
+    let counts = |word: &&str| word.contains(char::is_numeric) || word.trim_end_matches(';').parse::<f64>().is_ok();
+    let words: Vec<&str> = words.filter(|word| !counts(word)).take(FIRST_WORDS).collect();
     format!("{code}: {}", words.join(" "))
 }
