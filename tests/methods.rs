@@ -161,8 +161,11 @@ fn grazing_rows_are_flagged() {
 
 #[test]
 fn plain_loop_meets_cycles_in_random_symmetric_problems_of_order_three_and_ends_all_the_same() {
+    /// The plain loop ends with a set that it knows, at the latest after the eight that there are; pivoting meets at most
+    /// those eight, and before each single pivot a few blocks.
+    const LONGEST: usize = 8 + 1 + 8 + 3;
     let mut draws = Draws::new(2);
-    let mut pivoted = 0;
+    let (mut pivoted, mut single, mut longest) = (0, 0, 0);
     // Without optimisation a share of them must do.
     for case in 0..if cfg!(debug_assertions) { 10_000 } else { 100_000 } {
         let a = nalgebra::DMatrix::from_fn(3, 3, |_, _| (7.0 * draws.signed()).round());
@@ -175,8 +178,12 @@ fn plain_loop_meets_cycles_in_random_symmetric_problems_of_order_three_and_ends_
         let solution = answer(&dense, Method::ActiveSet);
         agree(&solution.displacement, dense.enumerate().displacement.as_slice(), 1e-9, &format!("case {case}"));
         pivoted += usize::from(solution.method != "active-set");
+        single += usize::from(solution.method == "active-set-single-pivoting");
+        longest = longest.max(solution.history.len());
     }
+    println!("{pivoted} by pivoting, {single} of them one by one; at most {longest} iterations");
     assert!(pivoted > 0, "no problem made the plain loop cycle: the fallback was not exercised");
+    assert!(longest <= LONGEST, "{longest} iterations");
 }
 
 /// A rod of two nodes, free in space, k = 1: force 1 presses its second node onto a wall at 0.5.
