@@ -72,7 +72,8 @@ fn settings_out_of_their_ranges_are_refused_one_by_one() {
         ContactProblem::new(stiffness, vec![2.0], one(1.0).unwrap(), vec![1.0]).unwrap()
     };
     assert!(solve(&problem(), &Settings::default()).is_ok());
-    let cases: [(fn(&mut Settings), &str); 14] = [
+    type Change = fn(&mut Settings);
+    let cases: [(Change, &str); 14] = [
         (|settings| settings.tolerance = 0.0, "tolerance is 0"),
         (|settings| settings.tolerance = f64::NAN, "tolerance is NaN"),
         (|settings| settings.accuracy = Some(-1.0), "accuracy is -1"),
@@ -107,4 +108,22 @@ fn a_matrix_above_its_diagonal_is_no_lower_triangle_and_is_read_as_an_upper_one(
     let contact = ContactProblem::new(symmetric, vec![0.0; 2], upper(), vec![1.0; 2]).unwrap();
     let three = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(3, 3, &[]).unwrap()).unwrap();
     refused(DynamicProblem::new(contact, three), "shape", &["mass is 3 x 3", "2 x 2"]);
+}
+
+/// A full matrix whose triangles have entries in different places: only zeros may have no counterpart.
+#[test]
+fn triangles_of_a_full_matrix_are_compared_entry_by_entry() {
+    let full = |entries: &[(usize, usize, f64)]| {
+        SymmetricMatrix::from_full(&SparseMatrix::from_triplets(3, 3, entries).unwrap())
+    };
+    let right = [(0, 0, 2.0), (0, 2, -1.0), (2, 0, -1.0), (1, 1, 1.0), (2, 2, 3.0)];
+    let with = |more: &[(usize, usize, f64)]| full(&[&right[..], more].concat());
+    assert_eq!(with(&[]).unwrap().mul(&[1.0, 2.0, 3.0]), [-1.0, 2.0, 8.0]);
+    for zeros in [[(1, 0, 0.0), (2, 1, 0.0)], [(0, 1, 0.0), (1, 2, 0.0)]] {
+        assert_eq!(with(&zeros).unwrap().mul(&[1.0, 2.0, 3.0]), [-1.0, 2.0, 8.0]);
+    }
+    for (row, column) in [(1, 0), (0, 1), (2, 1), (1, 2)] {
+        refused(with(&[(row, column, 0.5)]), "not-symmetric", &["5e-1", "0e0", "give both triangles alike"]);
+    }
+    refused(with(&[(2, 0, -0.5)]), "not-symmetric", &["-1.5e0", "-1e0"]);
 }
