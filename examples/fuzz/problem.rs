@@ -11,7 +11,7 @@ const HOLDS: f64 = 1e-7;
 const ROUNDING: f64 = 1e-14;
 
 /// A problem: stiffness of any rank, rows that may be copies of each other, numbers of any size.
-fn problem(draws: &mut Draws) -> Result<ContactProblem, Error> {
+pub fn problem(draws: &mut Draws) -> Result<ContactProblem, Error> {
     let (n, m) = (1 + draws.below(6), draws.below(7));
     let rank = 1 + draws.below(n + 1);
     let factor: Vec<f64> = (0..n * rank).map(|_| if draws.below(3) == 0 { 0.0 } else { draws.signed() }).collect();
