@@ -11,4 +11,4 @@ cargo llvm-cov clean --workspace
 cargo llvm-cov --release --no-report --lib --bins --tests -- --skip a_write_that_fails
 report() { cargo llvm-cov report --release --failure-mode all --ignore-filename-regex '/(tests|examples)/' "$@"; }
 report --text --output-path target/coverage.txt
-report | awk 'NR > 2 && NF > 9 { printf "%8s of %5d lines missed  %7s  %s\n", $9, $8, $10, $1 }' | sort -k7,7n
+report | awk 'NR > 2 && NF > 9 { printf "%8s of %5d lines missed  %7s  %s\n", $9, $8, $10, $1 }' | sort -k6,6n
