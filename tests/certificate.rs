@@ -152,3 +152,82 @@ fn problems_that_do_not_fit_together_are_refused_in_one_sentence() {
     let outside = SparseMatrix::from_triplets(2, 2, &[(2, 0, 1.0)]).unwrap_err().to_string();
     assert!(outside.contains("entry (2, 0) lies outside a matrix of 2 rows"), "{outside}");
 }
+
+/// Forces and energies beyond the ends of double precision: the same numbers as in units of order one, bit by bit.
+#[test]
+fn certificate_and_proof_do_not_depend_on_the_units() {
+    let (problem, u, lambda) = two_springs();
+    let near = [0.5 + 1e-4, 1.0];
+    let (certificate, proven) = (problem.certify(&near, &lambda).unwrap(), problem.prove(&u, &lambda).unwrap());
+    assert_eq!(proven.as_ref().map(|set| (set.closed.count(), set.open.count())), Some((1, 1)));
+    for (stiffness, length) in [(900, 0), (-900, 0), (0, 450), (0, -450), (600, 300), (-450, -450)] {
+        let (k, l) = (2_f64.powi(stiffness), 2_f64.powi(length));
+        let scaled = |values: &[f64], by: f64| values.iter().map(|value| value * by).collect::<Vec<f64>>();
+        let dense = Dense::new(
+            &[&[3.0 * k, -k], &[-k, k]],
+            &scaled(&[0.5, 3.0], k * l),
+            &[&[0.0, 1.0], &[1.0, 0.0]],
+            &scaled(&[1.0, 2.0], l),
+        );
+        let far = dense.problem().unwrap();
+        let force = scaled(&lambda, k * l);
+        let mut found = far.certify(&scaled(&near, l), &force).unwrap();
+        // The square root of an odd power of two is rounded.
+        let bound = found.energy_error_bound / certificate.energy_error_bound;
+        assert!((bound - 1.0).abs() < 1e-14, "2^{stiffness}, 2^{length}: {bound}");
+        found.energy_error_bound = certificate.energy_error_bound;
+        assert_eq!(found, certificate, "2^{stiffness}, 2^{length}");
+        assert_eq!(far.prove(&scaled(&u, l), &force).unwrap(), proven, "2^{stiffness}, 2^{length}");
+    }
+}
+
+#[test]
+fn nothing_is_proven_by_numbers_that_are_none_or_of_a_body_without_an_energy_norm() {
+    let (problem, u, lambda) = two_springs();
+    assert!(problem.prove(&u, &lambda).unwrap().is_some());
+    assert!(problem.prove(&[f64::NAN, 1.0], &lambda).unwrap().is_none());
+    assert!(problem.prove(&u, &[f64::NAN, 0.0]).unwrap().is_none());
+    // A rod that only its wall holds, one that is not held at all, and a dof without stiffness.
+    let rod: &[&[f64]] = &[&[1.0, -1.0], &[-1.0, 1.0]];
+    for stiffness in [rod, &[&[0.0, 0.0], &[0.0, 0.0]], &[&[1.0, 0.0], &[0.0, 0.0]]] {
+        let floating = Dense::new(stiffness, &[0.0, 0.0], &[&[0.0, 1.0]], &[0.0]).problem().unwrap();
+        let certificate = floating.certify(&[0.0; 2], &[0.0]).unwrap();
+        assert!(certificate.energy_error_bound.is_infinite() && certificate.meets(TOLERANCE), "{certificate:?}");
+        assert!(floating.prove(&[0.0; 2], &[0.0]).unwrap().is_none());
+    }
+}
+
+/// A string of 400 springs of stiffness 1 under a load on each node, every node before a wall at distance 1: too many rows for
+/// a dense boundary. A row of zeros stands behind them, with a gap of its own.
+fn string(load: f64, gap_of_nothing: f64) -> ContactProblem {
+    let nodes = 400;
+    let springs: Vec<_> =
+        (0..nodes).map(|node| (node, node, 2.0)).chain((1..nodes).map(|j| (j, j - 1, -1.0))).collect();
+    let rows: Vec<_> = (0..nodes).map(|node| (node, node, 1.0)).collect();
+    let stiffness = SparseMatrix::from_triplets(nodes, nodes, &springs).unwrap();
+    let contact = SparseMatrix::from_triplets(nodes + 1, nodes, &rows).unwrap();
+    let gap = [vec![1.0; nodes], vec![gap_of_nothing]].concat();
+    ContactProblem::new(SymmetricMatrix::from_lower(stiffness).unwrap(), vec![load; nodes], contact, gap).unwrap()
+}
+
+#[test]
+fn bound_without_a_dense_boundary_is_that_of_a_uniform_penetration() {
+    const DEPTH: f64 = 1e-6;
+    let problem = string(3.0, 1.0);
+    let mut lambda: Vec<f64> = problem.stiffness().mul(&[1.0; 400]).iter().map(|force| force - 3.0).collect();
+    lambda.push(0.0);
+    assert!(problem.certify(&[1.0; 400], &lambda).unwrap().meets(TOLERANCE));
+    // The energy of a uniform displacement is in the two springs at the ends, and the error is one.
+    let bound = problem.certify(&[1.0 + DEPTH; 400], &lambda).unwrap().energy_error_bound;
+    assert!((DEPTH * (1.0 - 2.0 * DEPTH)..3.0 * DEPTH).contains(&bound), "{bound:e}");
+    let proven = problem.prove(&[1.0; 400], &lambda).unwrap().unwrap();
+    assert_eq!((proven.closed.count(), proven.open.count()), (400, 1));
+}
+
+#[test]
+fn a_row_of_zeros_that_wants_something_has_no_bound() {
+    let problem = string(0.0, -1.0);
+    let certificate = problem.certify(&[0.0; 400], &[0.0; 401]).unwrap();
+    assert!(certificate.energy_error_bound.is_infinite() && !certificate.meets(TOLERANCE), "{certificate:?}");
+    assert!(problem.prove(&[0.0; 400], &[0.0; 401]).unwrap().is_none());
+}

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use signorini::Error;
 use signorini::element::{Cell, MAX_NODES, Tabulated};
-use signorini::mesh::{ElementKind, Mesh, Zone, half_ball, half_disc, ring};
+use signorini::mesh::{ElementKind, Mesh, Zone, disc, half_ball, half_disc, ring};
 
 const PLANE: [ElementKind; 4] = [ElementKind::T3, ElementKind::T6, ElementKind::Q4, ElementKind::Q8];
 
@@ -37,6 +37,30 @@ fn farthest(mesh: &Mesh, name: &str, off: impl Fn([f64; 3]) -> f64) -> f64 {
 
 fn rate(errors: &[f64]) -> f64 {
     (errors[errors.len() - 2] / errors[errors.len() - 1]).log2()
+}
+
+#[test]
+fn a_disc_is_its_lower_half_twice_joined_along_the_cut() {
+    let (centre, radius, zone) = ([3.0, -1.0], 2.0, Zone { width: 0.3, divisions: 3, growth: 1.5 });
+    for kind in PLANE {
+        for symmetric in [false, true] {
+            let half = half_disc(centre, radius, &zone, symmetric, kind).unwrap();
+            let whole = disc(centre, radius, &zone, symmetric, kind).unwrap();
+            let ((area, worst), (of_half, of_worst)) = (measure(&whole), measure(&half));
+            assert!((area / of_half - 2.0).abs() < 1e-14 && (worst / of_worst - 1.0).abs() < 1e-12, "{kind:?}");
+            let shared = half.boundary("cut").unwrap().nodes().len();
+            assert_eq!(whole.nodes().len(), 2 * half.nodes().len() - shared);
+            let on_circle = |at: [f64; 3]| (at[0] - centre[0]).hypot(at[1] - centre[1]) - radius;
+            for (name, side) in [("lower", -1.0), ("upper", 1.0)] {
+                assert!(farthest(&whole, name, on_circle) < 1e-14);
+                assert!(farthest(&whole, name, |at| (side * (at[1] - centre[1])).min(0.0)) < 1e-14, "{kind:?}: {name}");
+            }
+            match symmetric {
+                true => assert!(farthest(&whole, "symmetry-x", |at| at[0] - centre[0]) < 1e-14),
+                false => assert!(whole.boundary("symmetry-x").is_none() && whole.boundary("cut").is_none()),
+            }
+        }
+    }
 }
 
 #[test]

@@ -112,11 +112,16 @@ fn values_that_describe_no_motion_are_refused_in_a_sentence_and_nothing_is_writt
     let table = |times: Value, factors: Value| {
         with("loads-in-time", json!([{"load": 0, "factor": {"table": {"times": times, "factors": factors}}}]))
     };
-    let explicit = |step: f64| {
+    let of_explicit = |key: &str, value: Value| {
         let mut scene = with("scheme", json!("central-difference"));
-        scene["analysis"]["dynamic"]["step"] = json!(step);
+        scene["analysis"]["dynamic"][key] = value;
         scene
     };
+    let (too_fast, consistent) = (of_explicit("courant", json!(1.5)), of_explicit("mass", json!("consistent")));
+    let ramp = json!({"load": 0, "factor": {"ramp": {"end": 1}}});
+    let twice = with("loads-in-time", json!([ramp, {"load": 0, "factor": {"pulse": {"end": 1}}}]));
+    let mut both = with("courant", json!(0.5));
+    both["analysis"]["dynamic"]["step"] = json!(0.1);
     let mut weightless = bar();
     weightless["material"].as_object_mut().unwrap().remove("density");
     let mut heavy = bar();
@@ -128,7 +133,10 @@ fn values_that_describe_no_motion_are_refused_in_a_sentence_and_nothing_is_writt
         (with("step", json!(-0.1)), &["at `analysis.dynamic.step`", "-0.1", "positive"]),
         (with("step", json!(null)), &["analysis.dynamic.step", "null", "expected a number"]),
         (with("step", json!(3)), &["at `analysis.dynamic.step`", "longer than the duration 2"]),
-        (explicit(0.02), &["at `analysis.dynamic.step`", "0.02 is beyond 0.01666666", "largest stable step"]),
+        (
+            of_explicit("step", json!(0.02)),
+            &["at `analysis.dynamic.step`", "0.02 is beyond 0.01666666", "largest stable step"],
+        ),
         (with("duration", json!(0)), &["at `analysis.dynamic.duration`", "positive"]),
         (with("duration", json!(1e12)), &["at `analysis.dynamic.step`", "never end"]),
         (with("courant", json!(-1)), &["at `analysis.dynamic.courant`", "-1", "positive"]),
@@ -142,6 +150,14 @@ fn values_that_describe_no_motion_are_refused_in_a_sentence_and_nothing_is_writt
         (table(json!([0, 1]), json!([0])), &["factor.table", "2 times and 1 factors"]),
         (with("loads-in-time", json!([{"load": 3, "factor": {"ramp": {"end": 1}}}])), &["no loads[3]", "1 loads"]),
         (with("loads-in-time", json!([{"load": 0, "factor": {"ramp": {"end": 0}}}])), &["factor.ramp.end", "later"]),
+        (twice, &["loads-in-time[1]", "loads[0] has two factors"]),
+        (both, &["at `analysis.dynamic.courant`", "give `step` or `courant`, not both"]),
+        (too_fast, &["at `analysis.dynamic.courant`", "1.5", "at most 1"]),
+        (consistent, &["at `analysis.dynamic.mass`", "central differences need a lumped mass"]),
+        (
+            with("initial", json!([{"velocity": {"value": [1], "gradient": [[1], [2]]}}])),
+            &["velocity.gradient", "2 rows"],
+        ),
         (weightless, &["at `material`", "needs a `density`"]),
         (heavy, &["at `material.density`", "-1", "positive"]),
         (inside, &["at `analysis.dynamic.initial`", "node 20 at (10) starts 0.25 inside obstacles[0]", "`project`"]),

@@ -6,7 +6,7 @@
 mod bodies;
 
 use bodies::{distort, distorted, nodal_of};
-use signorini::assembly::{DofMap, MassForm, add_body_force_field, mass};
+use signorini::assembly::{DofMap, Frame, MassForm, add_body_force_field, mass};
 use signorini::body::ElasticBody;
 use signorini::error::Error;
 use signorini::formulation::Formulation;
@@ -86,6 +86,29 @@ fn the_consistent_mass_has_the_kinetic_energy_of_a_linear_velocity() {
     }
 }
 
+/// Local axes at some nodes change the numbers of a velocity, not its energy.
+#[test]
+fn kinetic_energy_does_not_depend_on_the_frames_of_nodes() {
+    for (body, side) in bodies().into_iter().filter(|(body, _)| body.dimension() > 1) {
+        let dimension = body.dimension();
+        let inclined: &[[f64; 3]] =
+            if dimension == 2 { &[[0.6, 0.8, 0.0]] } else { &[[0.6, 0.8, 0.0], [0.0, 0.0, 1.0]] };
+        // Two nodes of three, in frames of two kinds, so that all combinations of neighbours appear.
+        let nodes = (0..body.mesh().nodes().len()).filter(|node| node % 3 != 0);
+        let frames =
+            nodes.map(|node| (node, Frame::completing(&inclined[..node % 3 % inclined.len() + 1], dimension).unwrap()));
+        let turned = DofMap::with_frames(vec![None; body.nodal_dofs()], dimension, frames.collect()).unwrap();
+        let velocity = nodal_of(body.mesh(), |at| [1.0 + at[1], at[0] - at[1] * at[2], 2.0 * at[0] * at[1]]);
+        let local = turned.restrict(&velocity).unwrap();
+        for form in [MassForm::Consistent, MassForm::Lumped, MassForm::Redistributed] {
+            let of = |dofs: &DofMap| mass(&body, dofs, form, &contact_nodes(&body, side)).unwrap();
+            let energy = dot(&velocity, &of(&all_free(&body)).mul(&velocity));
+            let in_frames = dot(&local, &of(&turned).mul(&local));
+            assert!((in_frames - energy).abs() <= SAME * energy, "{form:?}: {in_frames} and {energy}");
+        }
+    }
+}
+
 #[test]
 fn redistributed_mass_leaves_contact_nodes_none_and_is_definite_on_the_others() {
     for (body, side) in bodies() {
@@ -122,6 +145,10 @@ fn a_mesh_too_coarse_and_a_material_without_density_are_refused() {
     };
     assert!(matches!(refused(&body(material, &LINES)), Error::Setting { name: "density", .. }));
     let heavy = material.with_density(1.0).unwrap();
+    let everywhere = body(heavy, &LINES);
+    let all: Vec<usize> = (0..LINES.len()).collect();
+    let none_left = mass(&everywhere, &all_free(&everywhere), MassForm::Redistributed, &all).unwrap_err();
+    assert!(none_left.to_string().contains("every node of a body is a contact node"), "{none_left}");
     assert!(refused(&body(heavy, &[0.0, 1.0])).to_string().contains("too coarse"));
     for wrong in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(matches!(material.with_density(wrong), Err(Error::Setting { name: "density", .. })));

@@ -9,7 +9,7 @@ mod oracles;
 
 use std::path::Path;
 
-use bodies::{built, clamped_block, largest};
+use bodies::{built, clamped_block, clamped_square, largest};
 use oracles::{Dense, Draws, random};
 use serde_json::json;
 use signorini::sparse::multigrid::conjugate_gradients;
@@ -57,6 +57,20 @@ fn a_block_costs_little_more_cycles_than_its_linear_solve() {
     let linear = conjugate_gradients(problem.stiffness(), &load, iterative.multigrid(), 1e-10, 100).unwrap();
     let ratio = contact.iterations as f64 / linear.cycles as f64;
     assert!(ratio <= RATIO, "{} cycles of contact, {} of the linear solve", contact.iterations, linear.cycles);
+}
+
+/// So fine that the closed rows reach beyond the first coarse level, whose smoother must follow.
+#[test]
+fn closed_rows_are_known_on_every_level() {
+    let circle = json!([{"boundary": "top", "approach": "+y", "shape": {"circle": {"apex": [0.5, 1], "radius": 2}}}]);
+    let problem = built(&clamped_square(80, circle, -0.01)).problem().clone();
+    let contact = agrees_with_the_direct_path(&problem, "square");
+    assert!(contact.contact_set.count() > 10);
+    let iterative = Iterative::new(&problem, 1).unwrap();
+    let load = problem.contact().mul_transposed(&vec![-1.0; problem.rows()]);
+    let linear = conjugate_gradients(problem.stiffness(), &load, iterative.multigrid(), 1e-10, 100).unwrap();
+    println!("{} cycles of contact, {} of the linear solve", contact.iterations, linear.cycles);
+    assert!(contact.iterations as f64 <= RATIO * linear.cycles as f64, "{} cycles", contact.iterations);
 }
 
 #[test]

@@ -346,3 +346,14 @@ fn extreme_units_are_built_or_refused_without_a_number_that_is_none() {
         }
     }
 }
+
+/// A number is read as the double that is nearest to what was written.
+#[test]
+fn numbers_of_a_scene_are_read_to_the_last_bit() {
+    for digits in 1..400_u32 {
+        // Seventeen digits of everything between 1e-20 and 1e20.
+        let gap = f64::from(digits).sqrt() * 10_f64.powi(digits as i32 % 41 - 20);
+        let text = plane_above(-1.0).to_string().replace("\"gap\":-1.0", &format!("\"gap\":-{gap:.17e}"));
+        assert_eq!(Scene::from_json(&text, "scene").unwrap().gap, -gap, "{gap:.17e}");
+    }
+}

@@ -105,6 +105,32 @@ fn finer_meshes_are_nested_and_a_mesh_file_has_none() {
     assert!(coarse.refined(0).is_err());
 }
 
+/// Four times as fine along every edge: so many times the nodes of a body of one, two or three dimensions, nearly.
+#[test]
+fn every_body_that_is_not_from_a_file_has_finer_meshes() {
+    let line = json!({"points": [0, 1], "divisions": [12]});
+    let (zone, centre) = (json!({"width": 0.2, "divisions": 8, "growth": 1.1}), json!([0, 1]));
+    let angle = json!({"points": [-90, 0], "divisions": [12]});
+    let bodies = [
+        (1, json!({"bar": {"x": line}})),
+        (2, json!({"rectangle": {"x": line, "y": line, "element": "q4"}})),
+        (3, json!({"box": {"x": line, "y": line, "z": line, "element": "hex8"}})),
+        (2, json!({"ring": {"radius": {"points": [1, 2], "divisions": [12]}, "angle": angle, "centre": centre}})),
+        (2, json!({"half-disc": {"centre": centre, "radius": 1, "zone": zone}})),
+        (2, json!({"disc": {"centre": centre, "radius": 1, "zone": zone}})),
+        (3, json!({"half-ball": {"centre": [0, 0, 1], "radius": 1, "zone": zone}})),
+    ];
+    for (dimension, body) in bodies {
+        let mut value = scene();
+        value["body"] = body.clone();
+        let coarse = Scene::from_json(&value.to_string(), "scene").unwrap();
+        let growth = coarse.refined(4).unwrap().size().nodes / coarse.size().nodes;
+        let all = 4.0_f64.powi(dimension);
+        assert!((0.5 * all..1.2 * all).contains(&growth), "{body}: {growth}");
+        assert_eq!(coarse.refined(1).unwrap().size().nodes, coarse.size().nodes);
+    }
+}
+
 #[test]
 fn the_program_prints_the_table_and_leaves_its_values() {
     let desk = Desk::new();

@@ -104,7 +104,11 @@ pub fn solve(scaled: &ScaledProblem, start: ContactSet, max_iterations: usize) -
         if wrong.is_empty() {
             settled = true;
         } else {
-            if !seen.insert(closed.clone()) {
+            if !seen.insert((closed.clone(), rule)) {
+                if matches!(rule, Rule::Pivoting { .. }) {
+                    // Pivoting comes back to a set where rounding decides signs: it would do so for ever.
+                    break;
+                }
                 rule = rule.pivoting(wrong.len());
             }
             let exchanged = rule.choose(&wrong);
@@ -152,7 +156,7 @@ pub fn with_contact_set(scaled: &ScaledProblem, closed: &ContactSet) -> Result<E
 }
 
 /// How the next set is made from the rows that are wrong in this one.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Rule {
     /// All of them change sides.
     Exchange,

@@ -1,6 +1,8 @@
 //! Problems given as dense arrays, and the slow, obvious way to solve them: try every contact set.
 #![allow(dead_code)]
 
+mod dual;
+
 use nalgebra::{DMatrix, DVector};
 use signorini::{ContactProblem, Error, SparseMatrix, SymmetricMatrix};
 

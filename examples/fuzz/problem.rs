@@ -1,0 +1,104 @@
+//! Contact problems of few dofs, often degenerate or hostile, and whether an answer to one is right.
+
+use signorini::{ContactProblem, Error, Solution, SparseMatrix, SymmetricMatrix, solve_qp};
+
+use super::draws::Draws;
+
+/// Conditions of an answer that is certified to 1e-9, recomputed.
+const HOLDS: f64 = 1e-7;
+
+/// Rounding of a displacement, in the forces that it makes.
+const ROUNDING: f64 = 1e-14;
+
+/// A problem: stiffness of any rank, rows that may be copies of each other, numbers of any size.
+pub fn problem(draws: &mut Draws) -> Result<ContactProblem, Error> {
+    let (n, m) = (1 + draws.below(6), draws.below(7));
+    let rank = 1 + draws.below(n + 1);
+    let factor: Vec<f64> = (0..n * rank).map(|_| if draws.below(3) == 0 { 0.0 } else { draws.signed() }).collect();
+    let scale = if draws.below(4) == 0 { 2.0_f64.powi(draws.below(1200) as i32 - 600) } else { 1.0 };
+    let mut stiffness = Vec::new();
+    for i in 0..n {
+        for j in 0..=i {
+            let product: f64 = (0..rank).map(|k| factor[i * rank + k] * factor[j * rank + k]).sum();
+            stiffness.push((i, j, scale * (product + if i == j && draws.below(2) == 0 { 0.1 } else { 0.0 })));
+        }
+    }
+    let number = |draws: &mut Draws| match draws.below(12) {
+        0 => 0.0,
+        1 => draws.signed() * 1e-12,
+        2 => draws.signed() * 1e12,
+        _ => draws.signed(),
+    };
+    let mut rows: Vec<Vec<(usize, f64)>> = Vec::new();
+    let mut gap: Vec<f64> = Vec::new();
+    for row in 0..m {
+        if row > 0 && draws.below(6) == 0 {
+            // A copy, perhaps in another unit, from the other side, or slightly off.
+            let of = draws.below(row);
+            let factor = [1.0, -1.0, 2.0, -1e-3][draws.below(4)];
+            let off = [0.0, 0.0, 1e-15, 1e-9, 1e-3][draws.below(5)] * draws.signed();
+            rows.push(rows[of].iter().map(|&(dof, value)| (dof, value * factor * (1.0 + off))).collect());
+            let distance = gap[of] * factor;
+            gap.push(if distance.is_finite() { distance } else { 1.0 } + off);
+            continue;
+        }
+        rows.push((0..1 + draws.below(2)).map(|_| (draws.below(n), number(draws))).collect());
+        gap.push(if draws.below(10) == 0 { f64::INFINITY } else { number(draws) });
+    }
+    let contact: Vec<(usize, usize, f64)> =
+        rows.iter().enumerate().flat_map(|(row, entries)| entries.iter().map(move |&(dof, b)| (row, dof, b))).collect();
+    let load = (0..n).map(|_| scale * number(draws)).collect();
+    let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(n, n, &stiffness)?)?;
+    ContactProblem::new(stiffness, load, SparseMatrix::from_triplets(m, n, &contact)?, gap)
+}
+
+/// Solves the problem of these draws: how that ended (the method of an answer, the code of an error), or the condition that a
+/// certified answer fails.
+pub fn ending(draws: &mut Draws) -> Result<String, String> {
+    let problem = match problem(draws) {
+        Ok(problem) => problem,
+        Err(error) => return Ok(error.code().to_string()),
+    };
+    match solve_qp(&problem) {
+        Err(error) => Ok(error.code().to_string()),
+        Ok(solution) => match broken(&problem, &solution) {
+            Some(condition) => {
+                Err(format!("{condition} of a certified answer does not hold: {problem:?} {solution:?}"))
+            }
+            None => Ok(solution.method),
+        },
+    }
+}
+
+/// The condition that an answer does not meet, recomputed.
+fn broken(problem: &ContactProblem, solution: &Solution) -> Option<&'static str> {
+    let (u, lambda) = (&solution.displacement, &solution.multiplier);
+    let largest = |values: &[f64]| values.iter().fold(0.0, |size: f64, value| size.max(value.abs()));
+    let moved = problem.contact().mul(u);
+    let pressed = problem.contact().mul_transposed(lambda);
+    let force = largest(problem.load()).max(largest(&pressed));
+    let (within, terms) = (problem.stiffness().mul(u), problem.stiffness().mul_abs(u));
+    let balanced = |dof: usize| {
+        let residual = within[dof] - problem.load()[dof] - pressed[dof];
+        residual.abs() <= HOLDS * force + ROUNDING * terms[dof]
+    };
+    if !(0..problem.dofs()).all(balanced) {
+        return Some("equilibrium");
+    }
+    let stiffness = largest(&problem.stiffness().diagonal());
+    let still = if stiffness > 0.0 { force / stiffness } else { 0.0 };
+    let strongest = largest(lambda);
+    (0..problem.rows()).find_map(|row| {
+        let gap = problem.gap()[row];
+        let touched = if lambda[row] != 0.0 || moved[row] > gap { gap.abs() } else { 0.0 };
+        let reach = largest(&moved).max(touched).max(still);
+        let distance = moved[row] - gap;
+        let product = if lambda[row] == 0.0 { 0.0 } else { (lambda[row] * distance).abs() };
+        let conditions = [
+            ("no penetration", distance <= HOLDS * reach),
+            ("compression", lambda[row] <= HOLDS * strongest),
+            ("complementarity", product <= HOLDS * strongest * reach),
+        ];
+        conditions.into_iter().find(|condition| !condition.1).map(|condition| condition.0)
+    })
+}

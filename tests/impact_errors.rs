@@ -1,0 +1,138 @@
+//! Motions that make no sense are refused before the first step, or at the step where they leave all bounds.
+
+use signorini::dynamic::{DynamicProblem, Integrator, Scheme, TimeFunction, stable_step};
+use signorini::{ContactProblem, Error, Settings, SparseMatrix, SymmetricMatrix};
+
+fn symmetric(dofs: usize, entries: &[(usize, usize, f64)]) -> SymmetricMatrix {
+    SparseMatrix::from_triplets(dofs, dofs, entries).and_then(SymmetricMatrix::from_lower).unwrap()
+}
+
+/// Two masses on springs, the second before a wall at distance 1.
+fn contact() -> ContactProblem {
+    let row = SparseMatrix::from_triplets(1, 2, &[(0, 1, 1.0)]).unwrap();
+    let stiffness = symmetric(2, &[(0, 0, 3.0), (1, 0, -1.0), (1, 1, 1.0)]);
+    ContactProblem::new(stiffness, vec![0.0, 0.0], row, vec![1.0]).unwrap()
+}
+
+fn with_mass(entries: &[(usize, usize, f64)]) -> DynamicProblem {
+    DynamicProblem::new(contact(), symmetric(2, entries)).unwrap()
+}
+
+const LUMPED: [(usize, usize, f64); 2] = [(0, 0, 1.0), (1, 1, 1.0)];
+const EXPLICIT: Scheme = Scheme::CentralDifference { restitution: 0.0 };
+
+#[track_caller]
+fn refused<T>(result: Result<T, Error>, code: &str, phrases: &[&str]) {
+    let error = result.map(drop).unwrap_err();
+    assert_eq!(error.code(), code, "{error}");
+    phrases.iter().for_each(|phrase| assert!(error.to_string().contains(phrase), "{phrase}: {error}"));
+}
+
+fn integrator(problem: DynamicProblem, scheme: Scheme, step: f64) -> Result<Integrator, Error> {
+    Integrator::new(problem, scheme, step, &Settings::default())
+}
+
+#[test]
+fn masses_and_initial_states_that_do_not_fit_are_refused() {
+    refused(DynamicProblem::new(contact(), symmetric(1, &[(0, 0, 1.0)])), "shape", &["mass is 1 x 1", "2 x 2"]);
+    let negative = symmetric(2, &[(0, 0, 1.0), (1, 1, -2.0)]);
+    refused(DynamicProblem::new(contact(), negative), "setting", &["diagonal entry of the mass is -2"]);
+    let problem = || with_mass(&LUMPED);
+    refused(problem().starting_from(vec![0.0], vec![0.0; 2]), "length", &["initial displacement", "1", "2 dofs"]);
+    refused(problem().starting_from(vec![0.0; 2], vec![0.0; 3]), "length", &["initial velocity", "3", "2 dofs"]);
+    refused(problem().starting_from(vec![0.0; 2], vec![0.0, f64::NAN]), "not-finite", &["velocity", "NaN at entry 1"]);
+    refused(problem().with_damping(f64::NAN, 0.0), "setting", &["mass damping is NaN"]);
+    refused(problem().with_load(TimeFunction::Ramp { start: 0.0, end: 1.0 }, vec![1.0]), "length", &["load vector"]);
+}
+
+#[test]
+fn steps_and_schemes_that_do_not_suit_the_motion_are_refused() {
+    for step in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        refused(integrator(with_mass(&LUMPED), Scheme::Midpoint, step), "setting", &["step is", "positive and finite"]);
+    }
+    let inside = with_mass(&LUMPED).starting_from(vec![0.0, 1.25], vec![0.0; 2]).unwrap();
+    refused(integrator(inside, Scheme::Midpoint, 0.1), "setting", &["initial penetration is 0.25"]);
+    let massless = [(0, 0, 1.0)];
+    refused(integrator(with_mass(&massless), Scheme::Trapezoidal, 0.1), "setting", &["mass of a dof", "midpoint rule"]);
+    assert!(integrator(with_mass(&massless), Scheme::Midpoint, 0.1).is_ok());
+    refused(stable_step(&with_mass(&massless)), "setting", &["mass of a dof is 0", "explicit"]);
+    let consistent = [(0, 0, 1.0), (1, 0, 0.25), (1, 1, 1.0)];
+    refused(stable_step(&with_mass(&consistent)), "setting", &["beside its diagonal is 0.25", "lumped"]);
+    let most = stable_step(&with_mass(&LUMPED)).unwrap();
+    assert!(integrator(with_mass(&LUMPED), EXPLICIT, most).is_ok());
+    refused(integrator(with_mass(&LUMPED), EXPLICIT, 1.01 * most), "numerical", &["beyond the largest stable one"]);
+}
+
+/// The bound of the stable step is that of the closed form: frequencies of two masses on springs 2 and 1.
+#[test]
+fn the_stable_step_of_two_masses_is_that_of_their_larger_frequency_and_falls_with_damping() {
+    // det(K - omega^2) = (3 - w)(1 - w) - 1: w = 2 +- sqrt(2). The bound takes the magnitudes of K, which are as large.
+    let omega = (2.0 + 2.0_f64.sqrt()).sqrt();
+    let free = stable_step(&with_mass(&LUMPED)).unwrap();
+    assert!((free * omega / 2.0 - 1.0).abs() < 1e-6, "{free}");
+    let damped = stable_step(&with_mass(&LUMPED).with_damping(0.4, 0.1).unwrap()).unwrap();
+    let xi = 0.4 / (2.0 * omega) + 0.1 * omega / 2.0;
+    assert!((damped / free - (xi.hypot(1.0) - xi)).abs() < 1e-6, "{damped}");
+}
+
+#[test]
+fn a_motion_that_leaves_double_precision_is_an_error_at_its_step() {
+    // A mass that flies off on a spring of next to no stiffness: 5e307 after the first step of 1, beyond all after the fourth.
+    let no_rows = SparseMatrix::from_triplets(0, 1, &[]).unwrap();
+    let contact = ContactProblem::new(symmetric(1, &[(0, 0, 1e-300)]), vec![0.0], no_rows, vec![]).unwrap();
+    let problem = DynamicProblem::new(contact, symmetric(1, &[(0, 0, 1.0)])).unwrap();
+    let problem = problem.starting_from(vec![0.0], vec![5e307]).unwrap();
+    let mut flight = integrator(problem, Scheme::CentralDifference { restitution: 0.0 }, 1.0).unwrap();
+    for _ in 0..3 {
+        flight.advance().unwrap();
+    }
+    refused(flight.advance().map(drop), "numerical", &["the motion has the value inf after step 4"]);
+    // What was reached before stays.
+    assert_eq!((flight.state().displacement[0], flight.state().steps), (1.5e308, 3));
+}
+
+#[test]
+fn the_state_of_another_problem_is_not_resumed() {
+    let mut one = integrator(with_mass(&LUMPED), Scheme::Midpoint, 0.1).unwrap();
+    assert_eq!((one.step(), one.time(), one.problem().contact().dofs()), (0.1, 0.0, 2));
+    let mut state = one.state().clone();
+    state.velocity.pop();
+    refused(one.resume(state), "length", &["velocity has length 1", "2 dofs"]);
+}
+
+#[test]
+fn factors_over_time_are_those_of_their_description() {
+    let table = TimeFunction::Table(vec![(1.0, 2.0), (3.0, -2.0)]);
+    let sine = TimeFunction::Sine { frequency: 0.25, phase: 0.0 };
+    let ramp = TimeFunction::Ramp { start: 1.0, end: 3.0 };
+    let pulse = TimeFunction::Pulse { start: 1.0, end: 3.0 };
+    for (factor, expected) in [
+        (table, [2.0, 2.0, 1.0, 0.0, -2.0, -2.0]),
+        (sine, [0.0, 1.0, 0.5_f64.sqrt(), 0.0, -1.0, 0.0]),
+        (ramp, [0.0, 0.0, 0.25, 0.5, 1.0, 1.0]),
+        (pulse, [0.0, 0.0, 0.5_f64.sqrt(), 1.0, 0.0, 0.0]),
+    ] {
+        factor.check().unwrap();
+        for (t, value) in [0.0, 1.0, 1.5, 2.0, 3.0, 4.0].into_iter().zip(expected) {
+            assert!((factor.at(t) - value).abs() < 1e-15, "{factor:?} at {t}: {}", factor.at(t));
+        }
+    }
+    assert_eq!(TimeFunction::Table(Vec::new()).at(1.0), 1.0);
+}
+
+#[test]
+fn factors_over_time_that_are_none_are_refused() {
+    let table = |points: &[(f64, f64)]| TimeFunction::Table(points.to_vec());
+    for (factor, phrase) in [
+        (table(&[]), "number of times is 0"),
+        (table(&[(0.0, 1.0), (0.0, 2.0)]), "time of a table is 0"),
+        (table(&[(f64::NAN, 1.0)]), "time of a table is NaN"),
+        (table(&[(0.0, f64::INFINITY)]), "factor of a table is inf"),
+        (TimeFunction::Sine { frequency: 0.0, phase: 0.0 }, "frequency is 0"),
+        (TimeFunction::Sine { frequency: 1.0, phase: f64::NAN }, "phase is NaN"),
+        (TimeFunction::Ramp { start: f64::NAN, end: 1.0 }, "start is NaN"),
+        (TimeFunction::Pulse { start: 1.0, end: 1.0 }, "end is 1"),
+    ] {
+        refused(factor.check(), "setting", &[phrase]);
+    }
+}

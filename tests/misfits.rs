@@ -1,0 +1,129 @@
+//! Parts that do not fit together are refused by the library, each in a sentence that names both.
+
+use signorini::assembly::{DofMap, MassForm, mass};
+use signorini::body::ElasticBody;
+use signorini::dynamic::DynamicProblem;
+use signorini::formulation::Formulation;
+use signorini::material::Material;
+use signorini::mesh::{ElementKind, Mesh, bar, cuboid, rectangle, ring};
+use signorini::recovery::{discretisation_error, stress};
+use signorini::{ContactProblem, Error, Settings, SparseMatrix, SymmetricMatrix, solve};
+
+const LINES: [f64; 3] = [0.0, 1.0, 2.0];
+
+#[track_caller]
+fn refused<T>(result: Result<T, Error>, code: &str, phrases: &[&str]) {
+    let error = result.map(drop).unwrap_err();
+    assert_eq!(error.code(), code, "{error}");
+    phrases.iter().for_each(|phrase| assert!(error.to_string().contains(phrase), "{phrase}: {error}"));
+}
+
+fn square(kind: ElementKind) -> Mesh {
+    rectangle(&LINES, &LINES, kind).unwrap()
+}
+
+fn body(mesh: Mesh, formulation: Formulation) -> Result<ElasticBody, Error> {
+    ElasticBody::new(mesh, Material::new(1.0, 0.3)?, formulation)
+}
+
+const STRAIN: Formulation = Formulation::PlaneStrain { thickness: 1.0 };
+const STRESS: Formulation = Formulation::PlaneStress { thickness: 1.0 };
+
+#[test]
+fn elements_of_another_dimension_are_refused() {
+    refused(rectangle(&LINES, &LINES, ElementKind::Hex8), "mesh", &["a rectangle is no mesh of Hex8"]);
+    refused(ring([0.0; 2], &[1.0, 2.0], &[0.0, 90.0], ElementKind::Tet4), "mesh", &["a ring is no mesh of Tet4"]);
+    refused(cuboid(&LINES, &LINES, &LINES, ElementKind::Q4), "mesh", &["a box is no mesh of Q4"]);
+    refused(body(square(ElementKind::Q4), Formulation::Space), "mesh", &["a mesh of Q4 does not fit"]);
+    refused(body(bar(&LINES).unwrap(), STRAIN), "mesh", &["a mesh of Line2 does not fit plane strain"]);
+}
+
+#[test]
+fn bodies_of_two_kinds_do_not_stand_beside_each_other() {
+    let one = || body(square(ElementKind::Q4), STRAIN).unwrap();
+    let phrases = ["one formulation and cross-section", "plane strain and plane stress"];
+    refused(one().beside(&body(square(ElementKind::Q4), STRESS).unwrap(), "base"), "mesh", &phrases);
+    refused(one().beside(&body(square(ElementKind::T3), STRAIN).unwrap(), "base"), "mesh", &["here Q4 and T3"]);
+    refused(square(ElementKind::T6).beside(&square(ElementKind::Q8), "base"), "mesh", &["here T6 and Q8"]);
+    assert!(one().beside(&one(), "base").is_ok());
+}
+
+#[test]
+fn vectors_of_another_body_are_refused() {
+    let one = body(square(ElementKind::Q4), STRAIN).unwrap();
+    let field = stress(&one, &[0.0; 18]).unwrap();
+    refused(stress(&one, &[0.0; 17]), "length", &["17", "18 nodal dofs"]);
+    refused(discretisation_error(&one, &[0.0; 16], &field), "length", &["16", "18 nodal dofs"]);
+    let mut shorter = field.clone();
+    shorter.nodes.pop();
+    refused(discretisation_error(&one, &[0.0; 18], &shorter), "length", &["nodal stress has length 8", "9 nodes"]);
+    let dofs = DofMap::new(vec![None; 18]).unwrap();
+    refused(dofs.restrict(&[0.0; 19]), "length", &["nodal vector has length 19", "18 nodal dofs"]);
+    let nowhere = DofMap::new(vec![None, Some(f64::INFINITY)]);
+    refused(nowhere, "not-finite", &["prescribed displacement has the value inf at dof 1"]);
+    refused(mass(&one, &dofs, MassForm::Lumped, &[]), "setting", &["density"]);
+}
+
+#[test]
+fn settings_out_of_their_ranges_are_refused_one_by_one() {
+    let one = |value| SparseMatrix::from_triplets(1, 1, &[(0, 0, value)]);
+    let problem = || {
+        let stiffness = SymmetricMatrix::from_lower(one(1.0).unwrap()).unwrap();
+        ContactProblem::new(stiffness, vec![2.0], one(1.0).unwrap(), vec![1.0]).unwrap()
+    };
+    assert!(solve(&problem(), &Settings::default()).is_ok());
+    type Change = fn(&mut Settings);
+    let cases: [(Change, &str); 14] = [
+        (|settings| settings.tolerance = 0.0, "tolerance is 0"),
+        (|settings| settings.tolerance = f64::NAN, "tolerance is NaN"),
+        (|settings| settings.accuracy = Some(-1.0), "accuracy is -1"),
+        (|settings| settings.time = Some(-1.0), "time is -1"),
+        (|settings| settings.time = Some(f64::NAN), "time is NaN"),
+        (|settings| settings.interior_point_tolerance = f64::INFINITY, "interior_point_tolerance is inf"),
+        (|settings| settings.first_penalty = 0.0, "first_penalty is 0"),
+        (|settings| settings.last_penalty = -1.0, "last_penalty is -1"),
+        (|settings| settings.first_penalty = 1e9, "it must be at most last_penalty"),
+        (|settings| settings.penetration_threshold = -1.0, "penetration_threshold is -1"),
+        (|settings| settings.penetration_threshold = f64::NAN, "penetration_threshold is NaN"),
+        (|settings| settings.threads = 0, "threads is 0"),
+        (|settings| settings.max_iterations = 0, "max_iterations is 0"),
+        (|settings| settings.accuracy = Some(f64::NAN), "accuracy is NaN"),
+    ];
+    for (change, phrase) in cases {
+        let mut settings = Settings::default();
+        change(&mut settings);
+        refused(solve(&problem(), &settings), "setting", &[phrase, "must be"]);
+    }
+}
+
+#[test]
+fn a_matrix_above_its_diagonal_is_no_lower_triangle_and_is_read_as_an_upper_one() {
+    let entries = [(0, 0, 3.0), (0, 1, -1.0), (1, 1, 2.0)];
+    let upper = || SparseMatrix::from_triplets(2, 2, &entries).unwrap();
+    refused(SymmetricMatrix::from_lower(upper()), "not-symmetric", &["entry (0, 1) is -1"]);
+    let symmetric = SymmetricMatrix::from_upper(&upper()).unwrap();
+    assert_eq!(symmetric.mul(&[1.0, 10.0]), [-7.0, 19.0]);
+    let wide = SparseMatrix::from_triplets(2, 3, &[]).unwrap();
+    refused(SymmetricMatrix::from_lower(wide), "shape", &["2 x 3"]);
+    let contact = ContactProblem::new(symmetric, vec![0.0; 2], upper(), vec![1.0; 2]).unwrap();
+    let three = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(3, 3, &[]).unwrap()).unwrap();
+    refused(DynamicProblem::new(contact, three), "shape", &["mass is 3 x 3", "2 x 2"]);
+}
+
+/// A full matrix whose triangles have entries in different places: only zeros may have no counterpart.
+#[test]
+fn triangles_of_a_full_matrix_are_compared_entry_by_entry() {
+    let full = |entries: &[(usize, usize, f64)]| {
+        SymmetricMatrix::from_full(&SparseMatrix::from_triplets(3, 3, entries).unwrap())
+    };
+    let right = [(0, 0, 2.0), (0, 2, -1.0), (2, 0, -1.0), (1, 1, 1.0), (2, 2, 3.0)];
+    let with = |more: &[(usize, usize, f64)]| full(&[&right[..], more].concat());
+    assert_eq!(with(&[]).unwrap().mul(&[1.0, 2.0, 3.0]), [-1.0, 2.0, 8.0]);
+    for zeros in [[(1, 0, 0.0), (2, 1, 0.0)], [(0, 1, 0.0), (1, 2, 0.0)]] {
+        assert_eq!(with(&zeros).unwrap().mul(&[1.0, 2.0, 3.0]), [-1.0, 2.0, 8.0]);
+    }
+    for (row, column) in [(1, 0), (0, 1), (2, 1), (1, 2)] {
+        refused(with(&[(row, column, 0.5)]), "not-symmetric", &["5e-1", "0e0", "give both triangles alike"]);
+    }
+    refused(with(&[(2, 0, -0.5)]), "not-symmetric", &["-1.5e0", "-1e0"]);
+}
