@@ -36,6 +36,7 @@ pub(super) fn run(options: &Solve) -> Result<Outcome, Error> {
     let mut settings = settings(options.method.method(), common);
     settings.prove = true;
     (settings.accuracy, settings.time) = (options.accuracy, options.time);
+    settings.memory = Some(common.memory.most());
     (settings.precision, settings.extrapolate) = (options.precision.precision(), options.extrapolate);
     let solution = match solve(input.problem(), &settings) {
         Ok(solution) => solution,

@@ -46,21 +46,33 @@ pub fn solve_qp(problem: &ContactProblem) -> Result<Solution, Error> {
 /// * [`Error::UnderHeld`] for a motion that nothing resists: the answer would not be unique,
 /// * [`Error::NotConvex`] for a stiffness with a negative eigenvalue,
 /// * [`Error::NotCertified`] with the best answer, where it does not meet the tolerance,
+/// * [`Error::NoRoom`] where `settings.memory` suffices for no way,
 /// * [`Error::Numerical`] where memory does not suffice.
 pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
     settings.check()?;
-    // Without a factor there is no bound to hold an accuracy against.
-    let is_free = settings.accuracy.is_none() && settings.time.is_none();
-    let is_large = || problem.near_null().is_some() && Estimate::of(problem).prefers_multigrid(f64::INFINITY);
-    match settings.method {
+    let way = match settings.method {
+        Method::Auto => Estimate::of(problem).choose(settings.memory.unwrap_or(f64::INFINITY))?,
         Method::Mprgp => return iterative::solve(problem, settings),
-        // What the iteration cannot take, the direct path may.
-        Method::Auto if is_free && is_large() => {
-            if let Ok(solution) = iterative::solve(problem, settings) {
-                return Ok(solution);
-            }
+        _ => estimate::Choice::Factor,
+    };
+    let with_reason = |solution: Solution, reason| Solution { reason: Some(reason), ..solution };
+    match way {
+        estimate::Choice::Factor => {}
+        estimate::Choice::Room { reason } => {
+            return match iterative::solve(problem, settings) {
+                Err(Error::NotCertified { solution, condition, value, tolerance }) => {
+                    let solution = Box::new(with_reason(*solution, reason));
+                    Err(Error::NotCertified { solution, condition, value, tolerance })
+                }
+                found => found.map(|solution| with_reason(solution, reason)),
+            };
         }
-        _ => {}
+        // What the iteration cannot take, the direct path may, unless there is no time for it.
+        estimate::Choice::Speed { reason } => match iterative::solve(problem, settings) {
+            Ok(solution) => return Ok(with_reason(solution, reason)),
+            Err(error @ Error::NotCertified { .. }) if settings.time.is_some() => return Err(error),
+            Err(_) => {}
+        },
     }
     let prepared = match Prepared::with_settings(problem, settings) {
         Err(Error::OutOfTime { needed, time }) => return Err(nothing_found(problem, needed, time)?),
@@ -107,6 +119,7 @@ fn nothing_found(problem: &ContactProblem, needed: f64, time: f64) -> Result<Err
         certificate,
         proven: None,
         refinements: None,
+        reason: None,
         condensed_dofs: problem.dofs(),
         seconds: Default::default(),
     };

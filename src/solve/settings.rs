@@ -80,6 +80,8 @@ pub struct Settings {
     /// Wall-clock seconds after which the best answer so far is returned, as [`Error::NotCertified`] if it falls short;
     /// a factorisation that is under way is ended first.
     pub time: Option<f64>,
+    /// Bytes that a solve may take: [`Method::Auto`] takes no way whose estimate is above.
+    pub memory: Option<f64>,
     /// Is the contact set of the QP settled by the active-set loop?
     pub polish: bool,
     /// Tolerance of the interior-point method, on data of order one.
@@ -107,6 +109,7 @@ impl Default for Settings {
             accuracy: None,
             prove: false,
             time: None,
+            memory: None,
             polish: true,
             interior_point_tolerance: 1e-9,
             max_iterations: 20_000,
@@ -154,6 +157,9 @@ impl Settings {
         }
         if let Some(time) = self.time.filter(|time| time.is_nan() || *time < 0.0) {
             return Err(Error::Setting { name: "time", value: time, allowed: "zero or positive" });
+        }
+        if let Some(memory) = self.memory.filter(|memory| memory.is_nan() || *memory <= 0.0) {
+            return Err(Error::Setting { name: "memory", value: memory, allowed: "positive" });
         }
         positive("interior_point_tolerance", self.interior_point_tolerance)?;
         positive("first_penalty", self.first_penalty)?;
