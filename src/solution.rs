@@ -243,7 +243,7 @@ pub struct Solution {
     pub proven: Option<ProvenSet>,
     /// Steps of refinement, where the factor was in single precision.
     pub refinements: Option<usize>,
-    /// Why no factor was taken, where [`Method::Auto`](crate::Method::Auto) decided that.
+    /// Why no factor was taken, in words, where [`Method::Auto`](crate::Method::Auto) decided that.
     pub reason: Option<String>,
     /// Unknowns that the method worked on; fewer than all where the problem was condensed.
     pub condensed_dofs: usize,

@@ -240,12 +240,13 @@ fn too_few_cycles_end_with_the_best_answer_not_certified() {
     assert!(solution.contact_set.count() > 0);
     settings.max_iterations = 20_000;
     settings.tolerance = 1e-30;
-    // Rounding cannot be iterated away: the loop gives up.
-    let refused = solve(&problem, &settings).unwrap_err();
-    assert!(refused.to_string().contains(" iterations)"), "{refused}");
-    let Error::NotCertified { solution, .. } = refused else { panic!("{refused}") };
-    assert_eq!(solution.method, "mprgp-stagnated");
-    assert!(solution.certificate.meets(1e-10), "{:?}", solution.certificate);
+    // Where only rounding is left the loop ends by itself.
+    let solution = match solve(&problem, &settings) {
+        Ok(solution) => solution,
+        Err(Error::NotCertified { solution, .. }) => *solution,
+        Err(error) => panic!("{error}"),
+    };
+    assert!(solution.iterations < 40 && solution.certificate.meets(1e-12), "{:?}", solution.certificate);
     settings.time = Some(0.0);
     let Err(Error::NotCertified { solution, .. }) = solve(&problem, &settings) else { panic!("in no time?") };
     assert_eq!((solution.iterations, solution.method.as_str()), (0, "mprgp-unsettled"));

@@ -158,7 +158,7 @@ impl ContactProblem {
     }
 
     /// `f + B' lambda - K u` of the given doubles, with twice the working precision.
-    pub(super) fn accurate_residual(&self, u: &[f64], lambda: &[f64]) -> Vec<f64> {
+    pub(crate) fn accurate_residual(&self, u: &[f64], lambda: &[f64]) -> Vec<f64> {
         let mut sums = Accumulator::new(&self.load);
         for (column, &at_column) in u.iter().enumerate() {
             for (row, value) in self.stiffness.lower().column(column) {

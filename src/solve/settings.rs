@@ -7,7 +7,8 @@ use crate::solution::Goal;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Method {
-    /// The program chooses, by rules fitted to measured times; MPRGP where the factor of a body in space would cost much more.
+    /// The program chooses, by rules fitted to measured times; MPRGP where the factor of a body in space would cost much more,
+    /// or does not fit into [`Settings::memory`].
     #[default]
     Auto,
     /// Convex QP by Clarabel, its contact set settled by the active-set loop.
@@ -86,7 +87,7 @@ pub struct Settings {
     pub polish: bool,
     /// Tolerance of the interior-point method, on data of order one.
     pub interior_point_tolerance: f64,
-    /// Most iterations of a loop.
+    /// Most iterations of a loop; the cycles of MPRGP.
     pub max_iterations: usize,
     /// First penalty, in multiples of the local stiffness.
     pub first_penalty: f64,

@@ -124,6 +124,16 @@ impl<'a> Iterate<'a> {
         self.gradient.iter_mut().zip(&self.load).for_each(|(g, f)| *g -= f);
     }
 
+    /// As [`Iterate::refresh_gradient`], in twice the working precision.
+    pub fn refresh_gradient_accurately(&mut self) {
+        let mut u = self.x.clone();
+        self.bounds.turn_back(&mut u);
+        let mut rest = self.problem.accurate_residual(&u, &vec![0.0; self.problem.rows()]);
+        self.bounds.turn(&mut rest);
+        rest.iter_mut().for_each(|rest| *rest = -*rest);
+        self.gradient = rest;
+    }
+
     /// Moves the unknowns into their bounds, and sees which are at them.
     fn project(&mut self) {
         for (bound, at) in self.bounds.bounds().iter().zip(&mut self.at) {

@@ -32,6 +32,9 @@ use iterate::{Conjugate, Iterate};
 /// face changes count only beyond one for each row.
 const PATIENCE: usize = 60;
 
+/// A residual in twice the precision that is above this share of the one before will not come down any more.
+const NO_GAIN: f64 = 0.5;
+
 /// What is known beforehand.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Start<'a> {
@@ -69,6 +72,7 @@ pub fn solve(problem: &ContactProblem, multigrid: &Multigrid, start: Start, limi
     let mut last: Option<Conjugate> = None;
     let (mut cycles, mut settled) = (0, false);
     let (mut best, mut since_best, mut changes, mut is_fresh) = (f64::INFINITY, 0, 0, true);
+    let mut last_checked = f64::INFINITY;
     let is_late = || limits.deadline.is_some_and(|deadline| Instant::now() >= deadline);
     while cycles < limits.most_cycles && since_best < PATIENCE + changes.min(problem.rows()) && !is_late() {
         let residual = iterate.residual();
@@ -78,8 +82,14 @@ pub fn solve(problem: &ContactProblem, multigrid: &Multigrid, start: Start, limi
                 break;
             }
             // What the steps have carried along is checked before it is believed.
-            iterate.refresh_gradient();
-            (is_fresh, last) = (true, None);
+            iterate.refresh_gradient_accurately();
+            let checked = iterate.residual();
+            if checked > NO_GAIN * last_checked {
+                // Rounding of the displacement is all that is left.
+                settled = true;
+                break;
+            }
+            (is_fresh, last, last_checked) = (true, None, checked);
             continue;
         }
         is_fresh = false;
