@@ -33,9 +33,9 @@ fn an_exported_scene_is_solved_by_multigrid_as_the_scene_itself() {
     assert_eq!(answers[0]["contact"]["force"], answers[1]["contact"]["force"]);
     assert_eq!(answers[0]["certificate"]["bound_is_measured"], true);
     assert!(answers[0]["certificate"]["energy_error_bound"].as_f64().unwrap() <= 1e-6);
-    let report = desk.run(&["solve", "problem", "--method", "mprgp"]).ends_with(0).stdout();
+    let report = desk.run(&["solve", "problem", "--method", "mprgp"]).ends_with(0).stdout;
     assert!(report.lines().any(|line| line.contains("energy error") && line.ends_with(", measured")), "{report}");
-    let rough = desk.run(&["solve", "problem", "--method", "mprgp", "--accuracy", "1e-3"]).ends_with(0).stdout();
+    let rough = desk.run(&["solve", "problem", "--method", "mprgp", "--accuracy", "1e-3"]).ends_with(0).stdout;
     assert!(rough.contains("certified to 1.0e-3 of the energy norm") && rough.contains(", measured"), "{rough}");
 }
 
