@@ -21,6 +21,9 @@ const OF_REFERENCE: f64 = 1e-11;
 /// Bound over true error, in the middle of all cases.
 const MEDIAN: f64 = 1.3;
 
+/// Gaps of each body: without optimisation one must do.
+const GAPS: usize = if cfg!(debug_assertions) { 1 } else { 4 };
+
 /// Cycles that the bound takes on a body without thin parts.
 const FEW_CYCLES: usize = 6;
 
@@ -120,7 +123,7 @@ fn of_body(problem: &ContactProblem, name: &str, reach: f64, draws: &mut Draws, 
     let iterative = Iterative::new(problem, 1).unwrap();
     let direct = Settings::with_method(Method::ActiveSet);
     let first = ratios.len();
-    for _ in 0..4 {
+    for _ in 0..GAPS {
         let shift = reach * draws.signed();
         let gap: Vec<f64> = problem.gap().iter().map(|gap| gap + shift * (1.0 + 0.2 * draws.signed())).collect();
         let at_gap = problem.with_gap(gap.clone()).unwrap();

@@ -57,8 +57,8 @@ pub struct Limits {
 
 /// Finds displacement, multipliers and contact set; `iterations` counts the cycles of the hierarchy.
 ///
-/// The loop is finite: it ends at the limits, or, as `-stagnated`, where [`PATIENCE`] iterations together do not halve the
-/// residual.
+/// The loop is finite: it ends at the limits, where only rounding is left, or, as `-stagnated`, where 60 iterations together
+/// do not halve the residual; those that change the face count only beyond one for each row.
 ///
 /// # Errors
 /// [`Error::Numerical`] for rows that no turning makes bounds of, [`Error::NotConvex`] for a direction of negative energy
