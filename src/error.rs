@@ -116,7 +116,7 @@ pub enum Error {
     #[error("interrupted before there was an answer")]
     Interrupted,
     /// An answer was found, but it does not meet the tolerance.
-    #[error("not certified: {condition} is {value:.3e}, above the tolerance {tolerance:.1e} ({})", solution.method)]
+    #[error("not certified: {condition} is {value:.3e}, above the tolerance {tolerance:.1e} ({} after {} iterations)", solution.method, solution.iterations)]
     NotCertified {
         /// The best answer, with its certificate.
         solution: Box<Solution>,
@@ -161,6 +161,22 @@ pub enum Error {
         factor_entries: f64,
         /// Memory that all of it takes, estimated, in bytes.
         bytes: f64,
+        /// Memory that it may take, in bytes.
+        allowed: f64,
+    },
+    /// A problem of which neither a factor nor a hierarchy fits into the memory that it may take.
+    #[error(
+        "neither way fits into {}: with a factor of the stiffness it takes about {}, with multigrid about {}; take larger \
+         cells, or allow more",
+        memory(*allowed),
+        memory(*factor),
+        memory(*multigrid)
+    )]
+    NoRoom {
+        /// Memory of the direct path, estimated, in bytes.
+        factor: f64,
+        /// Memory of the iterative path, estimated, in bytes.
+        multigrid: f64,
         /// Memory that it may take, in bytes.
         allowed: f64,
     },
@@ -240,7 +256,7 @@ impl Error {
             Error::NotCertified { .. } => "not-certified",
             Error::Setting { .. } => "setting",
             Error::NotCondensed { .. } => "not-condensed",
-            Error::TooLarge { .. } => "too-large",
+            Error::TooLarge { .. } | Error::NoRoom { .. } => "too-large",
             Error::Numerical { .. } => "numerical",
             Error::Mesh { .. } => "mesh",
             Error::SceneSyntax { .. } => "scene",
@@ -252,6 +268,6 @@ impl Error {
 }
 
 /// Bytes as a reader writes them.
-fn memory(bytes: f64) -> String {
+pub(crate) fn memory(bytes: f64) -> String {
     if bytes < 1e9 { format!("{:.0} MB", bytes / 1e6) } else { format!("{:.1} GB", bytes / 1e9) }
 }

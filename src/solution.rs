@@ -85,7 +85,7 @@ impl fmt::Debug for ContactSet {
 /// | `adhesion` | `max (lambda)_+ / ls` |
 /// | `complementarity` | `max abs(lambda (B u - g)) / (ls us)` |
 /// | `duality_gap` | `abs(u'Ku - f'u - lambda'g) / es`, with the residual as far as it exceeds rounding |
-/// | `energy_error_bound` | an upper bound on `norm_K(u - u*) / norm_K(u)`, infinite where K is not positive definite or was not factorised |
+/// | `energy_error_bound` | an upper bound on `norm_K(u - u*) / norm_K(u)`, infinite where K is not positive definite |
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Certificate {
     /// Relative imbalance of forces.
@@ -102,6 +102,9 @@ pub struct Certificate {
     pub duality_gap: f64,
     /// Upper bound on the relative error of the displacement in the energy norm; infinite where none is known.
     pub energy_error_bound: f64,
+    /// Does the bound rest on a measured eigenvalue, because K was not factorised? It is the least Ritz value of K with its
+    /// multigrid cycle, of which half is taken.
+    pub bound_is_measured: bool,
 }
 
 impl Certificate {
@@ -240,6 +243,8 @@ pub struct Solution {
     pub proven: Option<ProvenSet>,
     /// Steps of refinement, where the factor was in single precision.
     pub refinements: Option<usize>,
+    /// Why no factor was taken, in words, where [`Method::Auto`](crate::Method::Auto) decided that.
+    pub reason: Option<String>,
     /// Unknowns that the method worked on; fewer than all where the problem was condensed.
     pub condensed_dofs: usize,
     /// What it cost.

@@ -10,7 +10,7 @@ use std::path::Path;
 
 use bodies::{built, clamped_block, clamped_square};
 use program::Desk;
-use serde_json::{Value, json};
+use serde_json::json;
 use signorini::{ContactProblem, Method, Settings, matrix_market, solve};
 
 fn write(folder: &Path, problem: &ContactProblem) {
@@ -31,10 +31,16 @@ fn an_exported_scene_is_solved_by_multigrid_as_the_scene_itself() {
     }
     assert_eq!(answers[0]["method"], "mprgp");
     assert_eq!(answers[0]["contact"]["force"], answers[1]["contact"]["force"]);
-    assert_eq!(answers[0]["certificate"]["energy_error_bound"], Value::Null, "no bound is known without a factor");
+    assert_eq!(answers[0]["certificate"]["bound_is_measured"], true);
+    assert!(answers[0]["certificate"]["energy_error_bound"].as_f64().unwrap() <= 1e-6);
+    let report = desk.run(&["solve", "problem", "--method", "mprgp"]).ends_with(0).stdout;
+    assert!(report.lines().any(|line| line.contains("energy error") && line.ends_with(", measured")), "{report}");
+    let rough = desk.run(&["solve", "problem", "--method", "mprgp", "--accuracy", "1e-3"]).ends_with(0).stdout;
+    assert!(rough.contains("certified to 1.0e-3 of the energy norm") && rough.contains(", measured"), "{rough}");
 }
 
-/// A square without supports, pushed against a row at each node of its top, and its nodes.
+/// A square without supports, pushed against a row at each node of its top, and its nodes. Two rows more, one against the
+/// other, guide a corner along x.
 fn unsupported() -> (ContactProblem, Vec<[f64; 3]>) {
     let plane = json!({"plane": {"point": [0, 1], "normal": [0, 1]}});
     let model = built(&clamped_square(30, json!([{"boundary": "top", "approach": "+y", "shape": plane}]), 0.0));
@@ -42,8 +48,9 @@ fn unsupported() -> (ContactProblem, Vec<[f64; 3]>) {
     let free = vec![None; body.nodal_dofs()];
     let dofs = signorini::assembly::DofMap::new(free).unwrap();
     let stiffness = signorini::assembly::stiffness(body, &dofs).unwrap();
-    let entries: Vec<_> = model.rows().iter().enumerate().map(|(row, at)| (row, 2 * at.node + 1, 1.0)).collect();
-    let rows = model.rows().len();
+    let mut entries: Vec<_> = model.rows().iter().enumerate().map(|(row, at)| (row, 2 * at.node + 1, 1.0)).collect();
+    let rows = model.rows().len() + 2;
+    entries.extend([(rows - 2, 0, 1.0), (rows - 1, 0, -1.0)]);
     let contact = signorini::SparseMatrix::from_triplets(rows, body.nodal_dofs(), &entries).unwrap();
     let mut load = vec![0.0; body.nodal_dofs()];
     load.iter_mut().skip(1).step_by(2).for_each(|force| *force = 1.0);
@@ -68,7 +75,7 @@ fn coordinates_stand_for_the_rigid_motions() {
     let moved = problem.stiffness().mul(rotation);
     let terms = problem.stiffness().mul_abs(rotation);
     assert!(moved.iter().zip(&terms).all(|(moved, terms)| moved.abs() <= 1e-13 * terms));
-    let solution = solve(&with, &Settings::with_method(Method::Mprgp)).unwrap();
+    let solution = solve(&with, &Settings::with_method(Method::Mprgp)).unwrap_or_else(|error| panic!("{error}"));
     let pushed: f64 = problem.load().iter().sum();
     assert!((solution.contact_force() - pushed).abs() <= 1e-8 * pushed, "the rows carry the whole load");
 }

@@ -360,7 +360,9 @@ fn on_a_terminal_long_work_shows_what_it_does_and_leaves_nothing_of_it() {
 
     desk.write("large.json", block(400, 400).to_string());
     let drawn_by_solve = drawn(&desk, &["solve", "large.json"]);
-    assert!(drawn_by_solve.contains(" s: factorisation"), "{drawn_by_solve:?}");
+    // What is done in the second that has begun depends on the machine.
+    let steps = ["ordering", "factorisation", "certificate", "report"];
+    assert!(steps.iter().any(|step| drawn_by_solve.contains(&format!(" s: {step}"))), "{drawn_by_solve:?}");
     assert!(drawn_by_solve.ends_with(ERASED), "{drawn_by_solve:?}");
 }
 

@@ -2,6 +2,9 @@
 //! `cargo run --release --example multigrid [-- --out DIR] [--most-dofs N]`; with `--bodies` other
 //! bodies, with `--scene SCENE.json` one's own.
 //!
+//! `cargo run --release --example multigrid threads CASE RUNS` measures two threads against one by turns, in one process
+//! (case 1 has 104,544 dofs, case 3 has 811,200); it says something on a machine that has nothing else to do.
+//!
 //! Every case is a process of its own; seconds are those of the processor, all threads together, the column of two
 //! threads is by the clock. A folder gets the table as Markdown and JSON and the plot of the growth.
 
@@ -41,6 +44,9 @@ fn run() -> Result<(), Failure> {
     match words[..] {
         ["iterative", index, threads] => {
             println!("{}", measure::iterative(&CASES[index.parse::<usize>()?].model()?, threads.parse()?)?);
+        }
+        ["threads", index, runs] => {
+            println!("{:#}", measure::threads(&CASES[index.parse::<usize>()?].model()?, runs.parse()?)?);
         }
         ["direct", index] => println!("{}", measure::direct(&CASES[index.parse::<usize>()?].model()?)?),
         ["body", index] => {

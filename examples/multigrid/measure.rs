@@ -59,9 +59,36 @@ pub fn iterative(model: &Model, threads: usize) -> Result<Value, Error> {
         "set_up": set_up, "linear_cycles": linear, "linear": linear_seconds,
         "contact_cycles": contact.iterations, "contact": contact_seconds, "sets": contact.history.len(),
         "closed": contact.contact_set.count(), "certificate": worst,
+        "energy_error_bound": contact.certificate.energy_error_bound,
         "closed_rows": contact.contact_set.iter().collect::<Vec<_>>(),
         "wall": {"set_up": set_up_clock, "linear": linear_clock, "contact": contact_clock},
         "peak_bytes": peak_bytes(),
+    }))
+}
+
+/// Set-up and contact solve on one thread and on two by turns, in this process: the least seconds by the clock of each, and
+/// whether both give the same answer bit by bit.
+pub fn threads(model: &Model, runs: usize) -> Result<Value, Error> {
+    let problem = model.problem();
+    let mut settings = Settings::with_method(Method::Mprgp);
+    settings.tolerance = TOLERANCE;
+    let mut least = [[f64::INFINITY; 2]; 2];
+    let mut answers: [Vec<f64>; 2] = [Vec::new(), Vec::new()];
+    for _ in 0..runs {
+        for threads in [1, 2] {
+            let [set_up, contact] = &mut least[threads - 1];
+            let clock = Instant::now();
+            let iterative = Iterative::new(problem, threads)?;
+            *set_up = set_up.min(clock.elapsed().as_secs_f64());
+            let clock = Instant::now();
+            answers[threads - 1] = iterative.solve(Start::default(), &settings)?.displacement;
+            *contact = contact.min(clock.elapsed().as_secs_f64());
+        }
+    }
+    let [one, two] = least;
+    Ok(json!({
+        "dofs": problem.dofs(), "one": one, "two": two, "ratio_set_up": two[0] / one[0], "ratio_contact": two[1] / one[1],
+        "ratio": (two[0] + two[1]) / (one[0] + one[1]), "same": answers[0] == answers[1],
     }))
 }
 

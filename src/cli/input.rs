@@ -33,11 +33,11 @@ pub(super) enum Source {
 }
 
 impl Source {
-    /// Reads a problem directory, if `path` is one, or else a scene that fits into so much `memory`.
-    pub fn read(path: &Path, memory: &Memory) -> Result<Self, Error> {
+    /// Reads a problem directory, if `path` is one, or else a scene, of any size.
+    pub fn read(path: &Path) -> Result<Self, Error> {
         let clock = Instant::now();
         if !path.is_dir() {
-            let scene = Box::new(read_scene(path, memory)?);
+            let scene = Box::new(Scene::read(path)?);
             return Ok(Source::Scene(scene, clock.elapsed().as_secs_f64()));
         }
         let content = Content::Directory(matrix_market::read_problem(path)?);
@@ -49,8 +49,9 @@ impl Source {
 impl Input {
     /// Reads a problem directory, if `path` is one, or else a scene that fits into so much `memory`.
     pub fn read(path: &Path, memory: &Memory) -> Result<Self, Error> {
-        match Source::read(path, memory)? {
+        match Source::read(path)? {
             Source::Scene(scene, read_seconds) => {
+                scene.check_size(memory.most())?;
                 rests(&scene)?;
                 Input::of_scene(&scene, path, read_seconds)
             }

@@ -21,11 +21,17 @@ pub(super) fn settings(method: Method, common: &Common, watch: &Watch) -> Settin
 
 pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
     let common = &options.common;
-    let source = Source::read(&options.input, &common.memory)?;
-    if let Source::Scene(scene, _) = &source
-        && scene.analysis.is_some()
-    {
-        return dynamic::run(options, scene, watch);
+    let source = Source::read(&options.input)?;
+    if let Source::Scene(scene, _) = &source {
+        let needs_factor = !matches!(options.method.method(), Method::Auto | Method::Mprgp);
+        if needs_factor || scene.analysis.is_some() {
+            scene.check_size(common.memory.most())?;
+        } else {
+            scene.check_size_without_factor(common.memory.most())?;
+        }
+        if scene.analysis.is_some() {
+            return dynamic::run(options, scene, watch);
+        }
     }
     if options.resume {
         let path = "analysis".into();
@@ -39,6 +45,7 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
     let mut settings = settings(options.method.method(), common, watch);
     settings.prove = true;
     (settings.accuracy, settings.time) = (options.accuracy, options.time);
+    settings.memory = Some(common.memory.most());
     (settings.precision, settings.extrapolate) = (options.precision.precision(), options.extrapolate);
     let solution = match solve(input.problem(), &settings) {
         Ok(solution) => solution,

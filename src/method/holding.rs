@@ -38,15 +38,20 @@ pub struct FreeMotion {
 impl FreeMotion {
     /// The error that this motion is when no row stops it.
     pub fn into_error(self) -> Error {
-        let mut entries: Vec<(usize, f64)> = self.direction.iter().copied().enumerate().collect();
-        entries.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
-        let named: Vec<String> = entries.iter().take(3).filter(|e| e.1 != 0.0).map(|e| e.0.to_string()).collect();
-        let motion = format!("most of it at dof {} (indices from 0)", named.join(", "));
+        let motion = where_largest(&self.direction);
         match self.driven {
             true => Error::Unbounded { motion, direction: self.direction },
             false => Error::UnderHeld { motion, direction: self.direction },
         }
     }
+}
+
+/// Where the largest entries of a direction are, in words.
+pub(super) fn where_largest(direction: &[f64]) -> String {
+    let mut entries: Vec<(usize, f64)> = direction.iter().copied().enumerate().collect();
+    entries.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+    let named: Vec<String> = entries.iter().take(3).filter(|e| e.1 != 0.0).map(|e| e.0.to_string()).collect();
+    format!("most of it at dof {} (indices from 0)", named.join(", "))
 }
 
 impl ScaledProblem<'_> {

@@ -52,6 +52,9 @@ pub fn solve_text(title: &str, summary: &Summary, units: &UnitNames) -> String {
     if let Some(steps) = summary.refinements {
         line("", format!("factor in single precision, {}", plural(steps, "refinement")));
     }
+    if let Some(reason) = &summary.reason {
+        line("", reason.clone());
+    }
     if let Some(penalty) = summary.history.last().and_then(|step| step.penalty) {
         line("", format!("the penalty went up to {penalty:.0e} times the local stiffness"));
     }
@@ -136,7 +139,9 @@ fn certificate_text(certificate: &CertificateSummary, certified: bool, tolerance
 fn accuracy_text(certificate: &CertificateSummary, certified: bool, accuracy: f64) -> String {
     let verdict = if certified { "certified to" } else { "NOT certified to" };
     let bound = certificate.energy_error_bound;
-    entry("certificate", &format!("{verdict} {accuracy:.1e} of the energy norm: the error is at most {bound:.1e}"))
+    let measured = if certificate.bound_is_measured { ", measured" } else { "" };
+    let what = format!("{verdict} {accuracy:.1e} of the energy norm: the error is at most {bound:.1e}{measured}");
+    entry("certificate", &what)
 }
 
 /// The report of a verification.
@@ -200,6 +205,7 @@ fn in_unit(name: &str, unit: &str) -> String {
 fn conditions(certificate: &CertificateSummary) -> [(&'static str, &'static str, String); 6] {
     let number = |value: f64| if value == 0.0 { "0".to_string() } else { format!("{value:.1e}") };
     let bound = match certificate.energy_error_bound {
+        bound if bound.is_finite() && certificate.bound_is_measured => format!("{}, measured", number(bound)),
         bound if bound.is_finite() => number(bound),
         _ => "none: K is not positive definite, or was not factorised".to_string(),
     };

@@ -4,6 +4,7 @@ use super::energy_bound::Answer;
 use super::{ContactProblem, EnergyNorm};
 use crate::error::Error;
 use crate::solution::Certificate;
+use crate::sparse::multigrid::Multigrid;
 use crate::sparse::{Accumulator, dot};
 
 /// Rounding u to double precision and summing a sparse row leaves a residual of about this many units in the last
@@ -19,6 +20,13 @@ const EXCUSED: f64 = 1e-7;
 
 /// A displacement below this share of force over stiffness is zero but for rounding.
 const NOTHING: f64 = 1e-3;
+
+/// What bounds the error in energy.
+#[derive(Clone, Copy)]
+enum Bounding<'a> {
+    Factor(&'a EnergyNorm),
+    Cycles(&'a Multigrid),
+}
 
 fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
     values.into_iter().fold(0.0, |largest: f64, value| if value.abs() > largest { value.abs() } else { largest })
@@ -58,13 +66,32 @@ impl ContactProblem {
     ) -> Result<Certificate, Error> {
         self.check_answer(displacement, multiplier)?;
         let Some(units) = self.far_units(displacement) else {
-            return Ok(self.recomputed(norm, displacement, multiplier));
+            return Ok(self.recomputed(norm.map(Bounding::Factor), displacement, multiplier));
         };
         let (norm, problem) = (norm.map(|norm| units.norm(norm)), self.in_units(&units)?);
-        Ok(problem.recomputed(norm.as_ref(), &units.displacement(displacement), &units.force(multiplier)))
+        let bounding = norm.as_ref().map(Bounding::Factor);
+        Ok(problem.recomputed(bounding, &units.displacement(displacement), &units.force(multiplier)))
     }
 
-    fn recomputed(&self, norm: Option<&EnergyNorm>, u: &[f64], lambda: &[f64]) -> Certificate {
+    /// As [`ContactProblem::certify`], with the energy bound by the cycles of the hierarchy of K, which needs no factor and
+    /// rests on a measured eigenvalue; without a bound where K is singular to the precision of its levels.
+    ///
+    /// # Errors
+    /// [`Error::Length`] for vectors that do not fit.
+    pub(crate) fn certify_by_cycles(
+        &self,
+        multigrid: &Multigrid,
+        displacement: &[f64],
+        multiplier: &[f64],
+    ) -> Result<Certificate, Error> {
+        self.check_answer(displacement, multiplier)?;
+        if self.far_units(displacement).is_some() {
+            return self.certify_in(None, displacement, multiplier);
+        }
+        Ok(self.recomputed(Some(Bounding::Cycles(multigrid)), displacement, multiplier))
+    }
+
+    fn recomputed(&self, bounding: Option<Bounding>, u: &[f64], lambda: &[f64]) -> Certificate {
         let elastic = self.stiffness.mul(u);
         let contact = self.contact.mul_transposed(lambda);
         let rounding = self.rounding(u, lambda);
@@ -100,8 +127,8 @@ impl ContactProblem {
             adhesion: relative(largest(lambda.iter().map(|value| value.max(0.0))), multiplier_scale),
             complementarity: relative(largest(products.iter().copied()), multiplier_scale * length_scale),
             duality_gap: relative(gap_of_energies.abs(), energy_scale),
-            energy_error_bound: match norm {
-                Some(norm) => {
+            energy_error_bound: match bounding {
+                Some(bounding) => {
                     let is_rounding = excess.iter().all(|&value| value == 0.0);
                     let residual = if is_rounding {
                         self.accurate_residual(u, lambda)
@@ -109,10 +136,15 @@ impl ContactProblem {
                         with_rounding(&residual, &rounding)
                     };
                     let answer = Answer { displacement: u, multiplier: lambda, residual, violation: &violation };
-                    relative(self.energy_error_bound(norm, &answer), (2.0 * strain_energy).sqrt())
+                    let bound = match bounding {
+                        Bounding::Factor(norm) => self.energy_error_bound(norm, &answer),
+                        Bounding::Cycles(multigrid) => self.energy_error_bound_by(multigrid, &answer),
+                    };
+                    relative(bound, (2.0 * strain_energy).sqrt())
                 }
                 None => f64::INFINITY,
             },
+            bound_is_measured: matches!(bounding, Some(Bounding::Cycles(_))),
         }
     }
 
@@ -126,7 +158,7 @@ impl ContactProblem {
     }
 
     /// `f + B' lambda - K u` of the given doubles, with twice the working precision.
-    pub(super) fn accurate_residual(&self, u: &[f64], lambda: &[f64]) -> Vec<f64> {
+    pub(crate) fn accurate_residual(&self, u: &[f64], lambda: &[f64]) -> Vec<f64> {
         let mut sums = Accumulator::new(&self.load);
         for (column, &at_column) in u.iter().enumerate() {
             for (row, value) in self.stiffness.lower().column(column) {

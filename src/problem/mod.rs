@@ -4,6 +4,7 @@ mod certificate;
 mod contradiction;
 mod energy_bound;
 mod energy_norm;
+mod multigrid_bound;
 mod proof;
 mod units;
 

@@ -19,6 +19,9 @@ const OF_CONNECTION: f64 = 16.0;
 /// Bytes of an entry of the stiffness: the lower triangle, scaled, ordered, and in the graph of the ordering.
 const OF_ENTRY: f64 = 40.0;
 
+/// Bytes of an unknown, and of an entry of the stiffness, where a multigrid hierarchy takes the place of its factor.
+const OF_HIERARCHY: [f64; 2] = [100.0, 20.0];
+
 /// Bytes of a value of the factor, with the workspace.
 const OF_FACTOR: f64 = 9.2;
 
@@ -50,6 +53,8 @@ pub struct Size {
     pub factor_entries: f64,
     /// Memory at the most, in bytes.
     pub bytes: f64,
+    /// Memory at the most without a factor, by multigrid, in bytes.
+    pub multigrid_bytes: f64,
 }
 
 /// A block of cells that stands for the mesh of a body.
@@ -84,7 +89,14 @@ const HEX8: Counts = Counts { nodes: 1.0, line: 1.0, connections: 8.0, neighbour
 impl Scene {
     /// Estimates the size of the scene without building it; of a mesh file its length alone is read.
     pub fn size(&self) -> Size {
-        let mut size = Size { nodes: 0.0, dofs: 0.0, stiffness_entries: 0.0, factor_entries: 0.0, bytes: START };
+        let mut size = Size {
+            nodes: 0.0,
+            dofs: 0.0,
+            stiffness_entries: 0.0,
+            factor_entries: 0.0,
+            bytes: START,
+            multigrid_bytes: START,
+        };
         let bodies = std::iter::once(&self.body).chain(self.further_bodies.iter().map(|further| &further.body));
         let radius = self.obstacles.iter().map(|obstacle| match &obstacle.shape {
             ShapeSpec::Circle(circle) => circle.radius,
@@ -112,11 +124,9 @@ impl Scene {
             size.dofs += nodes * dimension;
             size.stiffness_entries += entries;
             size.factor_entries += factor;
-            size.bytes += OF_NODE * nodes
-                + OF_CONNECTION * cells * counts.connections
-                + OF_ENTRY * entries
-                + OF_FACTOR * factor
-                + OF_DENSE * dense;
+            let mesh = OF_NODE * nodes + OF_CONNECTION * cells * counts.connections;
+            size.bytes += mesh + OF_ENTRY * entries + OF_FACTOR * factor + OF_DENSE * dense;
+            size.multigrid_bytes += mesh + OF_HIERARCHY[0] * nodes * dimension + OF_HIERARCHY[1] * entries;
         }
         size
     }
@@ -127,7 +137,21 @@ impl Scene {
     /// # Errors
     /// [`Error::TooLarge`].
     pub fn check_size(&self, most: f64) -> Result<(), Error> {
-        let Size { nodes, dofs, stiffness_entries, factor_entries, bytes } = self.size();
+        let Size { bytes, factor_entries, .. } = self.size();
+        self.check_bytes(bytes, factor_entries, most)
+    }
+
+    /// As [`Scene::check_size`], for methods that may do without a factor.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`].
+    pub fn check_size_without_factor(&self, most: f64) -> Result<(), Error> {
+        let Size { bytes, multigrid_bytes, .. } = self.size();
+        self.check_bytes(bytes.min(multigrid_bytes), 0.0, most)
+    }
+
+    fn check_bytes(&self, bytes: f64, factor_entries: f64, most: f64) -> Result<(), Error> {
+        let Size { nodes, dofs, stiffness_entries, .. } = self.size();
         if nodes <= MAX_NODES as f64 && bytes > most {
             return Err(Error::TooLarge { dofs, stiffness_entries, factor_entries, bytes, allowed: most });
         }

@@ -1,11 +1,15 @@
 //! What the direct and the iterative path will cost, from the size of a problem alone.
 
 use super::Settings;
-use crate::error::Error;
+use crate::error::{Error, memory};
 use crate::problem::ContactProblem;
 
 /// Rigid motions of a body in space: its factor grows faster than that of a plane body.
 const MOTIONS_IN_SPACE: usize = 6;
+
+/// The direct path is exact and its bound proven: it is left only where it takes so many times as long. In space that is
+/// beyond some 160,000 dofs.
+const CLEARLY: f64 = 20.0;
 
 /// Estimated time and memory of the two paths.
 ///
@@ -13,14 +17,26 @@ const MOTIONS_IN_SPACE: usize = 6;
 /// the shape of a body and the degree of its mesh count as well.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// Bytes of the Cholesky factor.
+    /// Bytes of the direct path at its peak, the problem itself included.
     pub direct_bytes: f64,
     /// Seconds of the factorisation on one processor of 2024.
     pub direct_seconds: f64,
-    /// Bytes of the multigrid hierarchy.
+    /// Bytes of the iterative path at its peak, the problem itself included.
     pub multigrid_bytes: f64,
     /// Seconds of hierarchy and iteration.
     pub multigrid_seconds: f64,
+    knows_motions: bool,
+}
+
+/// The path that is taken, and why it is not the direct one.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Choice {
+    /// The direct path.
+    Factor,
+    /// Multigrid: it is much the faster.
+    Speed { reason: String },
+    /// Multigrid: nothing else fits into the memory.
+    Room { reason: String },
 }
 
 impl Estimate {
@@ -34,19 +50,42 @@ impl Estimate {
             false => (6.0 * dofs * dofs.max(2.0).log2(), 3.7e-9 * dofs.powf(1.5)),
         };
         Estimate {
-            direct_bytes: 8.0 * factor,
+            direct_bytes: 9.2 * factor + 80.0 * entries,
             direct_seconds: seconds,
-            multigrid_bytes: 16.0 * entries,
+            multigrid_bytes: 100.0 * dofs + 40.0 * entries,
             multigrid_seconds: 1.3e-7 * entries,
+            knows_motions: problem.near_null().is_some(),
         }
     }
 
     /// Is the iterative path the better one: much the faster, or the only one within `most_bytes`?
     pub fn prefers_multigrid(&self, most_bytes: f64) -> bool {
-        // The direct path bounds the error in energy; in space it is preferred up to some 160,000 dofs.
-        const CLEARLY: f64 = 20.0;
-        self.direct_seconds > CLEARLY * self.multigrid_seconds
-            || (self.direct_bytes > most_bytes && self.multigrid_bytes <= most_bytes)
+        !matches!(self.choose(most_bytes), Ok(Choice::Factor) | Err(_))
+    }
+
+    /// The path to take within `most_bytes`.
+    ///
+    /// # Errors
+    /// [`Error::NoRoom`] where neither fits.
+    pub(super) fn choose(&self, most_bytes: f64) -> Result<Choice, Error> {
+        let Estimate { direct_bytes: factor, multigrid_bytes: multigrid, .. } = *self;
+        let ratio = self.direct_seconds / self.multigrid_seconds;
+        match (factor <= most_bytes, multigrid <= most_bytes) {
+            (false, false) => Err(Error::NoRoom { factor, multigrid, allowed: most_bytes }),
+            (false, true) => Ok(Choice::Room {
+                reason: format!(
+                    "by multigrid, of about {}: with a factor it would take about {}, {} are allowed",
+                    memory(multigrid),
+                    memory(factor),
+                    memory(most_bytes)
+                ),
+            }),
+            // Constants alone make a poor hierarchy of a body.
+            (true, true) if ratio > CLEARLY && self.knows_motions => Ok(Choice::Speed {
+                reason: format!("by multigrid: a factorisation would take about {ratio:.0} times as long"),
+            }),
+            _ => Ok(Choice::Factor),
+        }
     }
 }
 
@@ -84,16 +123,18 @@ pub(super) fn check_memory(problem: &ContactProblem, kept: Kept, settings: &Sett
     let Some(allowed) = settings.memory else { return Ok(()) };
     let (dofs, lower) = (problem.dofs() as f64, problem.stiffness().lower().entries() as f64);
     let stiffness_entries = 2.0 * lower - dofs;
-    let (factor_entries, beside) = match kept {
+    let of_problem = START + OF_DOF * dofs + OF_ENTRY * stiffness_entries;
+    let (factor_entries, bytes) = match kept {
         Kept::Condensed { values, is_single, contact_dofs } => {
             let bytes = if is_single { size_of::<f32>() } else { size_of::<f64>() };
             let factor = WORKSPACE * bytes as f64 * values as f64;
-            (values as f64, factor + OF_DENSE * (contact_dofs as f64).powi(2))
+            (values as f64, of_problem + factor + OF_DENSE * (contact_dofs as f64).powi(2))
         }
-        Kept::Factors { values } => (values as f64, 3.0 * WORKSPACE * size_of::<f64>() as f64 * values as f64),
+        Kept::Factors { values } => {
+            (values as f64, of_problem + 3.0 * WORKSPACE * size_of::<f64>() as f64 * values as f64)
+        }
         Kept::Multigrid => (0.0, Estimate::of(problem).multigrid_bytes),
     };
-    let bytes = START + OF_DOF * dofs + OF_ENTRY * stiffness_entries + beside;
     if bytes > allowed {
         return Err(Error::TooLarge { dofs, stiffness_entries, factor_entries, bytes, allowed });
     }

@@ -26,6 +26,7 @@ use crate::method::penalty::{self, BEST_PENALTY, Ladder};
 use crate::method::{Outcome, ScaledProblem, active_set};
 use crate::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration, Solution};
+use estimate::Choice;
 
 /// Iterations of the active-set loop after which its start is taken for a poor one.
 const PATIENCE: usize = 16;
@@ -47,24 +48,35 @@ pub fn solve_qp(problem: &ContactProblem) -> Result<Solution, Error> {
 /// * [`Error::UnderHeld`] for a motion that nothing resists: the answer would not be unique,
 /// * [`Error::NotConvex`] for a stiffness with a negative eigenvalue,
 /// * [`Error::NotCertified`] with the best answer, where it does not meet the tolerance,
-/// * [`Error::TooLarge`] where the memory that is allowed does not suffice,
+/// * [`Error::NoRoom`] where `settings.memory` suffices for no way, [`Error::TooLarge`] where not for the one that was named,
 /// * [`Error::Interrupted`] where the watch was asked to stop before there was an answer,
 /// * [`Error::Numerical`] where memory does not suffice.
 pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
     let settings = &settings.started()?;
-    // Without a factor there is no bound to hold an accuracy against.
-    let is_free = settings.accuracy.is_none() && settings.watch.time_left().is_none();
-    let is_large = || problem.near_null().is_some() && Estimate::of(problem).prefers_multigrid(f64::INFINITY);
-    match settings.method {
+    let way = match settings.method {
+        Method::Auto => Estimate::of(problem).choose(settings.memory.unwrap_or(f64::INFINITY))?,
         Method::Mprgp => return iterative::solve(problem, settings),
-        // What the iteration cannot take, the direct path may.
-        Method::Auto if is_free && is_large() => {
-            let solved = iterative::solve(problem, settings);
-            if solved.is_ok() || settings.watch.is_over() {
-                return solved;
-            }
+        _ => Choice::Factor,
+    };
+    let with_reason = |solution: Solution, reason| Solution { reason: Some(reason), ..solution };
+    match way {
+        Choice::Factor => {}
+        Choice::Room { reason } => {
+            return match iterative::solve(problem, settings) {
+                Err(Error::NotCertified { solution, condition, value, tolerance }) => {
+                    let solution = Box::new(with_reason(*solution, reason));
+                    Err(Error::NotCertified { solution, condition, value, tolerance })
+                }
+                found => found.map(|solution| with_reason(solution, reason)),
+            };
         }
-        _ => {}
+        // What the iteration cannot take, the direct path may, unless there is no time for it.
+        Choice::Speed { reason } => match iterative::solve(problem, settings) {
+            Ok(solution) => return Ok(with_reason(solution, reason)),
+            Err(error) if settings.watch.is_stopped() => return Err(error),
+            Err(error @ Error::NotCertified { .. }) if settings.watch.time_left().is_some() => return Err(error),
+            Err(_) => {}
+        },
     }
     let prepared = match Prepared::with_settings(problem, settings) {
         Err(Error::OutOfTime { needed, time }) => return Err(nothing_found(problem, needed, time)?),
@@ -122,6 +134,7 @@ fn nothing_found(problem: &ContactProblem, needed: f64, time: f64) -> Result<Err
         certificate,
         proven: None,
         refinements: None,
+        reason: None,
         condensed_dofs: problem.dofs(),
         seconds: Default::default(),
     };

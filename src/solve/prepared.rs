@@ -335,6 +335,7 @@ impl Prepared {
             certificate,
             proven,
             refinements: refined.map(|refined| refined.steps),
+            reason: None,
             condensed_dofs: self.condensed_dofs(),
             seconds: Seconds { solve: seconds.solve + clock.elapsed().as_secs_f64(), ..seconds },
         };

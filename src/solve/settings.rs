@@ -8,7 +8,8 @@ use crate::watch::Watch;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Method {
-    /// The program chooses, by rules fitted to measured times; MPRGP where the factor of a body in space would cost much more.
+    /// The program chooses, by rules fitted to measured times; MPRGP where the factor of a body in space would cost much more,
+    /// or does not fit into [`Settings::memory`].
     #[default]
     Auto,
     /// Convex QP by Clarabel, its contact set settled by the active-set loop.
@@ -81,8 +82,8 @@ pub struct Settings {
     /// Wall-clock seconds after which the best answer so far is returned, as [`Error::NotCertified`] if it falls short;
     /// a factorisation that is under way is ended first.
     pub time: Option<f64>,
-    /// Bytes that the solve may take; what would take more, by an estimate made before anything is factorised, is refused as
-    /// [`Error::TooLarge`].
+    /// Bytes that a solve may take: [`Method::Auto`] takes no way whose estimate is above, and what would take more on the way
+    /// that was named, by an estimate made before anything is factorised, is refused.
     pub memory: Option<f64>,
     /// Asked from any thread, the solve ends as if its time were over, or with [`Error::Interrupted`] where it has found
     /// nothing yet; it tells what is being done. Clones of the settings share it.
@@ -91,7 +92,7 @@ pub struct Settings {
     pub polish: bool,
     /// Tolerance of the interior-point method, on data of order one.
     pub interior_point_tolerance: f64,
-    /// Most iterations of a loop.
+    /// Most iterations of a loop; the cycles of MPRGP.
     pub max_iterations: usize,
     /// First penalty, in multiples of the local stiffness.
     pub first_penalty: f64,
@@ -174,8 +175,8 @@ impl Settings {
         if let Some(time) = self.time.filter(|time| time.is_nan() || *time < 0.0) {
             return Err(Error::Setting { name: "time", value: time, allowed: "zero or positive" });
         }
-        if let Some(memory) = self.memory.filter(|memory| memory.is_nan() || *memory < 0.0) {
-            return Err(Error::Setting { name: "memory", value: memory, allowed: "zero or positive" });
+        if let Some(memory) = self.memory.filter(|memory| memory.is_nan() || *memory <= 0.0) {
+            return Err(Error::Setting { name: "memory", value: memory, allowed: "positive" });
         }
         positive("interior_point_tolerance", self.interior_point_tolerance)?;
         positive("first_penalty", self.first_penalty)?;

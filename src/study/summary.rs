@@ -22,6 +22,9 @@ pub struct Summary {
     /// Steps of refinement, where the factor was in single precision.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub refinements: Option<usize>,
+    /// Why no factor was taken, where the program decided that.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
     /// Closed rows and forces.
     pub contact: ContactSummary,
     /// Rows whose contact is beyond doubt, where they were asked for.
@@ -93,6 +96,8 @@ pub struct CertificateSummary {
     pub complementarity: f64,
     pub duality_gap: f64,
     pub energy_error_bound: f64,
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub bound_is_measured: bool,
 }
 
 /// Sizes of the model that was solved.
@@ -150,6 +155,7 @@ impl From<&Certificate> for CertificateSummary {
             complementarity: certificate.complementarity,
             duality_gap: certificate.duality_gap,
             energy_error_bound: certificate.energy_error_bound,
+            bound_is_measured: certificate.bound_is_measured,
         }
     }
 }
@@ -176,6 +182,7 @@ impl Summary {
             method: solution.method.clone(),
             iterations: solution.iterations,
             refinements: solution.refinements,
+            reason: solution.reason.clone(),
             contact: ContactSummary {
                 count: solution.contact_set.count(),
                 force: solution.contact_force(),

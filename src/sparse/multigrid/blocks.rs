@@ -75,7 +75,7 @@ impl<T: Real> BlockMatrix<T> {
 
     /// `y = A x`.
     pub fn mul_into(&self, x: &[T], y: &mut [T], threads: usize) {
-        in_row_chunks(&self.starts, self.height, y, threads, |rows, part| {
+        in_row_chunks(&self.starts, self.height, [y], threads, |rows, [part]| {
             with_block_size!(multiply_rows, (self.height, self.width), (self, x, rows, part));
         });
     }
@@ -98,6 +98,24 @@ impl<T: Real> BlockMatrix<T> {
                 }
             }
             y[row * height..(row + 1) * height].iter_mut().zip(&sums).for_each(|(y, &sum)| *y -= sum);
+        }
+    }
+
+    /// `y -= A y`, for a matrix most of whose rows are empty.
+    pub fn subtract_from(&self, y: &mut [T]) {
+        let (height, width) = (self.height, self.width);
+        let rows = || (0..self.rows()).filter(|&row| self.starts[row] < self.starts[row + 1]);
+        let mut sums = vec![T::default(); rows().count() * height];
+        for (row, sums) in rows().zip(sums.chunks_exact_mut(height)) {
+            for (column, block) in self.row(row) {
+                let part = &y[column * width..(column + 1) * width];
+                for (sum, of_row) in sums.iter_mut().zip(block.chunks_exact(width)) {
+                    of_row.iter().zip(part).for_each(|(&a, &x)| *sum += a * x);
+                }
+            }
+        }
+        for (row, sums) in rows().zip(sums.chunks_exact(height)) {
+            y[row * height..(row + 1) * height].iter_mut().zip(sums).for_each(|(y, &sum)| *y -= sum);
         }
     }
 

@@ -52,13 +52,15 @@ impl<T: Real> Chebyshev<T> {
             let keep = T::of((2.0 * k_real - 3.0) / (2.0 * k_real + 1.0));
             let gain = T::of((8.0 * k_real - 4.0) / (2.0 * k_real + 1.0) / self.largest);
             self.precondition(operator, rest, &mut moved);
-            for ((step, &moved), x) in step.iter_mut().zip(&moved).zip(x.iter_mut()) {
-                *step = keep * *step + gain * moved;
-                *x += *step;
-            }
+            operator.in_chunks([&mut step, x], |range, [step, x]| {
+                for ((step, &moved), x) in step.iter_mut().zip(&moved[range]).zip(x) {
+                    *step = keep * *step + gain * moved;
+                    *x += *step;
+                }
+            });
             if k < self.degree || keep_rest {
                 operator.mul_into(&step, &mut moved);
-                rest.iter_mut().zip(&moved).for_each(|(rest, &moved)| *rest -= moved);
+                operator.subtract(&moved, rest);
             }
         }
     }
@@ -66,14 +68,16 @@ impl<T: Real> Chebyshev<T> {
     /// `D^-1 r`, in the face.
     fn precondition(&self, operator: &Operator<T>, r: &[T], result: &mut [T]) {
         let size = operator.matrix.height;
-        let blocks = self.inverse.chunks_exact(size * size);
-        for ((block, r), result) in blocks.zip(r.chunks_exact(size)).zip(result.chunks_exact_mut(size)) {
-            for (row, result) in block.chunks_exact(size).zip(result) {
-                let mut sum = T::default();
-                row.iter().zip(r).for_each(|(&a, &r)| sum += a * r);
-                *result = sum;
+        operator.in_chunks([&mut *result], |range, [result]| {
+            let blocks = self.inverse[range.start * size..range.end * size].chunks_exact(size * size);
+            for ((block, r), result) in blocks.zip(r[range].chunks_exact(size)).zip(result.chunks_exact_mut(size)) {
+                for (row, result) in block.chunks_exact(size).zip(result) {
+                    let mut sum = T::default();
+                    row.iter().zip(r).for_each(|(&a, &r)| sum += a * r);
+                    *result = sum;
+                }
             }
-        }
+        });
         operator.project(result);
     }
 

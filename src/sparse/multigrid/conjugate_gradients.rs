@@ -46,7 +46,7 @@ pub fn conjugate_gradients(
             let share = dot(&step, &moved) / energy;
             direction.iter_mut().zip(&step).for_each(|(d, z)| *d = z - share * *d);
         }
-        moved = matrix.mul(&direction);
+        moved = matrix.mul_on(multigrid.threads(), &direction);
         energy = dot(&direction, &moved);
         if energy <= 0.0 {
             let evidence = format!("a search direction p has p'Kp = {energy:e}");

@@ -95,7 +95,7 @@ impl<T: Real> Hierarchy<T> {
             let (flat, coarse) = tentative::<T>(&candidates, blocks.height, &of_node, aggregates);
             drop(of_node);
             let moved = blocks.product(&flat, threads);
-            let prolongator = smoothed(&flat, moved, &smoother.inverse, PROLONGATOR_STEP / smoother.largest);
+            let prolongator = smoothed(&flat, moved, &smoother.inverse, PROLONGATOR_STEP / smoother.largest, threads);
             drop(flat);
             let restriction = prolongator.transposed();
             let mut next = restriction.product(&blocks.product(&prolongator, threads), threads);
@@ -112,8 +112,7 @@ impl<T: Real> Hierarchy<T> {
     pub fn cycle(&self, force: &[f64], exponent: i32, face: Option<&FaceLevels<T>>) -> Vec<f64> {
         let mut rest = self.nodes.gather::<T>(force, exponent);
         if let Some(face) = face {
-            let before = rest.clone();
-            face.held.subtract_product(&before, &mut rest);
+            face.held.subtract_from(&mut rest);
         }
         let moved = self.descend(0, rest, face);
         self.nodes.scatter(&moved, self.shift - exponent)
@@ -125,8 +124,7 @@ impl<T: Real> Hierarchy<T> {
             let coarsest = face.map_or(&self.coarsest, |face| &face.coarsest);
             let mut x: Vec<T> = coarsest.solve(&force).into_iter().map(T::of).collect();
             if let Some(held) = face.filter(|_| depth == 0).map(|face| &face.held) {
-                let before = x.clone();
-                held.subtract_product(&before, &mut x);
+                held.subtract_from(&mut x);
             }
             return x;
         };
@@ -146,10 +144,10 @@ impl<T: Real> Hierarchy<T> {
         let mut moved = rest;
         level.prolongator.mul_into(&correction, &mut moved, self.threads);
         operator.project(&mut moved);
-        x.iter_mut().zip(&moved).for_each(|(x, &moved)| *x += moved);
+        operator.add(&moved, &mut x);
         operator.mul_into(&x, &mut moved);
         let mut rest = force;
-        rest.iter_mut().zip(&moved).for_each(|(rest, &moved)| *rest -= moved);
+        operator.subtract(&moved, &mut rest);
         smoother.smooth(&operator, &mut x, &mut rest, false);
         x
     }
@@ -171,7 +169,7 @@ impl<T: Real> Hierarchy<T> {
 
     /// Did the coarsest matrix have to be held, as that of a body without supports?
     pub fn is_shifted(&self) -> bool {
-        self.coarsest.is_shifted
+        self.coarsest.is_shifted()
     }
 }
 
@@ -193,6 +191,11 @@ impl Coarsest {
             }
             Err(error) => Err(error),
         }
+    }
+
+    /// Was it singular to the precision of its entries, so that it had to be held?
+    pub fn is_shifted(&self) -> bool {
+        self.is_shifted
     }
 
     fn solve(&self, force: &[f64]) -> Vec<f64> {

@@ -13,6 +13,7 @@ mod aggregation;
 mod blocks;
 mod chebyshev;
 mod conjugate_gradients;
+mod dual_norm;
 mod face;
 mod hierarchy;
 mod near_null;
@@ -23,6 +24,7 @@ mod real;
 mod threads;
 
 pub use conjugate_gradients::{ConjugateGradients, conjugate_gradients};
+pub use dual_norm::{DualNorm, dual_norm};
 pub use face::Direction;
 pub use near_null::NearNullSpace;
 
@@ -115,6 +117,14 @@ impl Multigrid {
         Ok(Face { levels: levels.map_err(located)? })
     }
 
+    /// Threads that it works with.
+    pub fn threads(&self) -> usize {
+        match &self.levels {
+            Levels::Single(hierarchy) => hierarchy.threads,
+            Levels::Double(hierarchy) => hierarchy.threads,
+        }
+    }
+
     /// Unknowns of each level, the finest first.
     pub fn unknowns(&self) -> Vec<usize> {
         match &self.levels {
@@ -158,6 +168,14 @@ impl Face<'_> {
         match &self.levels {
             LevelsInFace::Single(hierarchy, face) => hierarchy.cycle(b, to_order_one(b), Some(face)),
             LevelsInFace::Double(hierarchy, face) => hierarchy.cycle(b, to_order_one(b), Some(face)),
+        }
+    }
+
+    /// Is the matrix in the face singular to the precision of its levels, so that the coarsest had to be held?
+    pub fn is_shifted(&self) -> bool {
+        match &self.levels {
+            LevelsInFace::Single(_, face) => face.coarsest.is_shifted(),
+            LevelsInFace::Double(_, face) => face.coarsest.is_shifted(),
         }
     }
 }

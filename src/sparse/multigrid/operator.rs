@@ -1,7 +1,10 @@
 //! The matrix of a level, in all dofs or in a face of them.
 
+use std::ops::Range;
+
 use super::blocks::BlockMatrix;
 use super::real::Real;
+use super::threads::in_row_chunks;
 
 /// A matrix A less what a face changes: on the finest level the face is the range of I - Q, on coarser ones A becomes
 /// A - C.
@@ -40,8 +43,25 @@ impl<'a, T: Real> Operator<'a, T> {
     /// Takes off what is held.
     pub fn project(&self, y: &mut [T]) {
         if let Some(held) = self.held {
-            let before = y.to_vec();
-            held.subtract_product(&before, y);
+            held.subtract_from(y);
         }
+    }
+
+    /// `y += x`.
+    pub fn add(&self, x: &[T], y: &mut [T]) {
+        self.in_chunks([y], |range, [y]| y.iter_mut().zip(&x[range]).for_each(|(y, &x)| *y += x));
+    }
+
+    /// `y -= x`.
+    pub fn subtract(&self, x: &[T], y: &mut [T]) {
+        self.in_chunks([y], |range, [y]| y.iter_mut().zip(&x[range]).for_each(|(y, &x)| *y -= x));
+    }
+
+    /// Runs `work` on runs of unknowns, whole nodes each, with their parts of the vectors `ys`.
+    pub fn in_chunks<const N: usize>(&self, ys: [&mut [T]; N], work: impl Fn(Range<usize>, [&mut [T]; N]) + Sync) {
+        let height = self.matrix.height;
+        in_row_chunks(&self.matrix.starts, height, ys, self.threads, |rows, parts| {
+            work(rows.start * height..rows.end * height, parts);
+        });
     }
 }

@@ -2,6 +2,7 @@
 
 use super::blocks::BlockMatrix;
 use super::real::Real;
+use super::threads::in_block_chunks;
 
 /// A near-null vector of which less than this is left within an aggregate, after those before it are taken off, is no
 /// motion of its own there: two nodes do not turn about the line through them.
@@ -82,28 +83,34 @@ pub fn smoothed<T: Real>(
     mut moved: BlockMatrix<T>,
     inverse: &[T],
     step: f64,
+    threads: usize,
 ) -> BlockMatrix<T> {
     let (height, width) = (moved.height, moved.width);
     let step = T::of(step);
-    let mut column = vec![T::default(); height];
-    for node in 0..moved.rows() {
-        let of_node = &inverse[node * height * height..(node + 1) * height * height];
-        let own = tentative.indices[node];
-        for place in moved.starts[node]..moved.starts[node + 1] {
-            let is_own = moved.indices[place] == own;
-            let block = &mut moved.values[place * height * width..(place + 1) * height * width];
-            for j in 0..width {
-                column.iter_mut().enumerate().for_each(|(i, entry)| *entry = block[i * width + j]);
-                for i in 0..height {
-                    let mut sum = T::default();
-                    for (k, &entry) in column.iter().enumerate() {
-                        sum += of_node[i * height + k] * entry;
+    let BlockMatrix { starts, indices, values, .. } = &mut moved;
+    let size = height * width;
+    in_block_chunks(starts, size, values, threads, |rows, values| {
+        let mut column = vec![T::default(); height];
+        let first = starts[rows.start];
+        for node in rows {
+            let of_node = &inverse[node * height * height..(node + 1) * height * height];
+            let own = tentative.indices[node];
+            for place in starts[node]..starts[node + 1] {
+                let is_own = indices[place] == own;
+                let block = &mut values[(place - first) * size..(place - first + 1) * size];
+                for j in 0..width {
+                    column.iter_mut().enumerate().for_each(|(i, entry)| *entry = block[i * width + j]);
+                    for i in 0..height {
+                        let mut sum = T::default();
+                        for (k, &entry) in column.iter().enumerate() {
+                            sum += of_node[i * height + k] * entry;
+                        }
+                        let before = if is_own { tentative.block(node)[i * width + j] } else { T::default() };
+                        block[i * width + j] = before - step * sum;
                     }
-                    let before = if is_own { tentative.block(node)[i * width + j] } else { T::default() };
-                    block[i * width + j] = before - step * sum;
                 }
             }
         }
-    }
+    });
     moved
 }

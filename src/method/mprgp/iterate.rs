@@ -1,128 +1,26 @@
-//! MPRGP: modified proportioning with reduced gradient projections, preconditioned in the free face.
-//!
-//! Rows are turned into bounds by reflections. With the gradient g = K u - f, split into the free gradient, of unknowns
-//! that may move, and the chopped gradient, of those that want to leave their bound, an iteration is one of
-//!
-//! ```text
-//! proportioning   where the chopped gradient outweighs the free one: a step along it, which opens rows
-//! CG step         along conjugate directions of the free face, one cycle of the hierarchy each
-//! expansion       where the CG step would cross bounds: its projection, which closes rows; should that raise the energy,
-//!                 the step to the first bound and a projected gradient step of fixed length
-//! ```
-//!
-//! The energy falls in every one of them. The hierarchy is built once, for K; a face is a small change of it.
-//!
-//! # Source
-//! Z. Dostál, *Optimal Quadratic Programming Algorithms*, Springer (2009), algorithm 5.8 and section 5.10.
+//! What MPRGP has in hand, and the steps that it takes.
 
-use super::bounds::{Bound, Bounds};
-use super::holding::FreeMotion;
-use super::{Outcome, SIGN_TOLERANCE};
+use super::Start;
 use crate::error::Error;
+use crate::method::bounds::{Bound, Bounds};
+use crate::method::holding::where_largest;
 use crate::problem::ContactProblem;
-use crate::solution::{ContactSet, Iteration};
-use crate::sparse::multigrid::{Direction, Face, Multigrid};
+use crate::solution::Iteration;
+use crate::sparse::multigrid::{Direction, Face};
 use crate::sparse::{dot, largest};
-use crate::watch::Watch;
-
-/// Iterations without a residual half as large as the best before, after which the loop has stagnated.
-const PATIENCE: usize = 60;
 
 /// Rows that are open at the start although nothing has moved keep this share of their depth as distance.
 const INSIDE: f64 = 1e-3;
 
-/// Energy of a direction below this share of its terms is rounding of zero.
+/// Energy of a direction below this share of what its unknowns would cost one by one is rounding of zero.
 const NO_ENERGY: f64 = 1e-13;
 
-/// What is known beforehand.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Start<'a> {
-    /// A displacement near the answer, one entry per dof.
-    pub displacement: Option<&'a [f64]>,
-    /// A contact set near that of the answer.
-    pub contact_set: Option<&'a ContactSet>,
-}
-
-/// When the loop ends.
-#[derive(Clone, Copy, Debug)]
-pub struct Limits<'a> {
-    /// Largest imbalance of forces and largest wrong-signed multiplier, relative to the largest force.
-    pub tolerance: f64,
-    /// Most cycles of the hierarchy.
-    pub most_cycles: usize,
-    /// Whether it must end before.
-    pub watch: &'a Watch,
-}
-
-/// Finds displacement, multipliers and contact set; `iterations` counts the cycles of the hierarchy.
-///
-/// # Errors
-/// [`Error::Numerical`] for rows that no turning makes bounds of, [`Error::NotConvex`] for a direction of negative energy
-/// in a face, [`Error::Unbounded`] for a load that drives a motion which no row stops.
-pub fn solve(problem: &ContactProblem, multigrid: &Multigrid, start: Start, limits: Limits) -> Result<Outcome, Error> {
-    let bounds = Bounds::of(problem.contact(), problem.gap())?;
-    let mut iterate = Iterate::new(problem, &bounds, start);
-    let mut history = vec![iterate.step()];
-    let mut face = None;
-    let mut last: Option<Conjugate> = None;
-    let (mut cycles, mut settled) = (0, false);
-    let (mut best, mut since_best, mut is_fresh) = (f64::INFINITY, 0, true);
-    while cycles < limits.most_cycles && since_best < PATIENCE && !limits.watch.is_over() {
-        let residual = iterate.residual();
-        if residual <= limits.tolerance {
-            if is_fresh {
-                settled = true;
-                break;
-            }
-            // What the steps have carried along is checked before it is believed.
-            iterate.refresh_gradient();
-            (is_fresh, last) = (true, None);
-            continue;
-        }
-        is_fresh = false;
-        since_best += 1;
-        if residual < 0.5 * best {
-            (best, since_best) = (residual, 0);
-        }
-        let before = iterate.at.clone();
-        if iterate.is_disproportionate() {
-            iterate.proportion();
-        } else {
-            let gradient = iterate.free_gradient();
-            let free_face = match face.take() {
-                Some(free_face) => free_face,
-                None => multigrid.face(&iterate.held())?,
-            };
-            let step = iterate.preconditioned(&free_face, &gradient);
-            face = Some(free_face);
-            cycles += 1;
-            limits.watch.step("MPRGP", cycles);
-            let direction = Conjugate::of(step, last.take(), &gradient, &iterate);
-            if direction.is_free {
-                return Err(iterate.free_motion(direction.p));
-            }
-            if direction.energy < 0.0 {
-                let evidence = format!("a search direction p has p'Kp = {:e}", direction.energy);
-                return Err(Error::NotConvex { evidence });
-            }
-            iterate.advance(&direction);
-            last = Some(direction);
-        }
-        if iterate.at != before {
-            (face, last) = (None, None);
-            history.push(iterate.step());
-        }
-    }
-    let (multiplier, contact_set) = bounds.multipliers(|index| iterate.held_gradient(index));
-    let mut displacement = iterate.x;
-    bounds.turn_back(&mut displacement);
-    let variant = if settled { "" } else { "-unsettled" };
-    Ok(Outcome { displacement, multiplier, contact_set, iterations: cycles, history, settled, variant })
-}
+/// Bounds that are met within this share of the first are met with it.
+const FIRST: f64 = 1e-12;
 
 /// Where an unknown with bounds is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum At {
+pub enum At {
     Free,
     Lower,
     Upper,
@@ -131,30 +29,31 @@ enum At {
 }
 
 /// The unknowns, turned, their gradient, and which of them are at bounds.
-struct Iterate<'a> {
-    problem: &'a ContactProblem,
-    bounds: &'a Bounds,
-    load: Vec<f64>,
+pub struct Iterate<'a> {
+    pub problem: &'a ContactProblem,
+    pub bounds: &'a Bounds,
+    pub load: Vec<f64>,
     /// Diagonal of K at the unknowns with bounds and at all others.
     diagonal: Vec<f64>,
-    x: Vec<f64>,
-    gradient: Vec<f64>,
-    at: Vec<At>,
+    pub x: Vec<f64>,
+    pub gradient: Vec<f64>,
+    pub at: Vec<At>,
+    threads: usize,
 }
 
 /// A direction with its product.
-struct Conjugate {
-    p: Vec<f64>,
+pub struct Conjugate {
+    pub p: Vec<f64>,
     moved: Vec<f64>,
-    energy: f64,
+    pub energy: f64,
     /// Free gradient along it.
     slope: f64,
     /// Does it cost nothing and meet no bound?
-    is_free: bool,
+    pub is_free: bool,
 }
 
 impl Conjugate {
-    fn of(step: Vec<f64>, last: Option<Conjugate>, gradient: &[f64], iterate: &Iterate) -> Self {
+    pub fn of(step: Vec<f64>, last: Option<Conjugate>, gradient: &[f64], iterate: &Iterate) -> Self {
         let mut p = step;
         if let Some(last) = last {
             let share = dot(&p, &last.moved) / last.energy;
@@ -168,8 +67,7 @@ impl Conjugate {
         let slope = slope.abs();
         let moved = iterate.product(&p);
         let energy = dot(&p, &moved);
-        let terms: f64 = p.iter().zip(&moved).map(|(p, m)| (p * m).abs()).sum();
-        let costs_nothing = energy.abs() <= NO_ENERGY * terms || !energy.is_finite();
+        let costs_nothing = iterate.is_rounding(&p, energy);
         let is_free = costs_nothing && iterate.longest_step(&p).is_infinite();
         let energy = if costs_nothing { 0.0 } else { energy };
         Conjugate { p, moved, energy, slope, is_free }
@@ -177,14 +75,14 @@ impl Conjugate {
 }
 
 impl<'a> Iterate<'a> {
-    fn new(problem: &'a ContactProblem, bounds: &'a Bounds, start: Start) -> Self {
+    pub fn new(problem: &'a ContactProblem, bounds: &'a Bounds, start: Start, threads: usize) -> Self {
         let mut load = problem.load().to_vec();
         bounds.turn(&mut load);
         let mut x = start.displacement.map_or_else(|| vec![0.0; problem.dofs()], <[f64]>::to_vec);
         bounds.turn(&mut x);
         let diagonal = problem.stiffness().diagonal();
         let at = vec![At::Free; bounds.bounds().len()];
-        let mut iterate = Iterate { problem, bounds, load, diagonal, x, gradient: Vec::new(), at };
+        let mut iterate = Iterate { problem, bounds, load, diagonal, x, gradient: Vec::new(), at, threads };
         for (index, bound) in bounds.bounds().iter().enumerate() {
             if let Some(closed) = start.contact_set {
                 let value = &mut iterate.x[bound.unknown];
@@ -204,20 +102,36 @@ impl<'a> Iterate<'a> {
         iterate
     }
 
-    fn product(&self, v: &[f64]) -> Vec<f64> {
+    /// Is `p'Kp` rounding of zero?
+    pub fn is_rounding(&self, p: &[f64], energy: f64) -> bool {
+        let scale: f64 = p.iter().zip(&self.diagonal).map(|(p, d)| d * p * p).sum();
+        energy.abs() <= NO_ENERGY * scale || !energy.is_finite()
+    }
+
+    pub fn product(&self, v: &[f64]) -> Vec<f64> {
         if self.bounds.is_plain() {
-            return self.problem.stiffness().mul(v);
+            return self.problem.stiffness().mul_on(self.threads, v);
         }
         let mut u = v.to_vec();
         self.bounds.turn_back(&mut u);
-        let mut moved = self.problem.stiffness().mul(&u);
+        let mut moved = self.problem.stiffness().mul_on(self.threads, &u);
         self.bounds.turn(&mut moved);
         moved
     }
 
-    fn refresh_gradient(&mut self) {
+    pub fn refresh_gradient(&mut self) {
         self.gradient = self.product(&self.x);
         self.gradient.iter_mut().zip(&self.load).for_each(|(g, f)| *g -= f);
+    }
+
+    /// As [`Iterate::refresh_gradient`], in twice the working precision.
+    pub fn refresh_gradient_accurately(&mut self) {
+        let mut u = self.x.clone();
+        self.bounds.turn_back(&mut u);
+        let mut rest = self.problem.accurate_residual(&u, &vec![0.0; self.problem.rows()]);
+        self.bounds.turn(&mut rest);
+        rest.iter_mut().for_each(|rest| *rest = -*rest);
+        self.gradient = rest;
     }
 
     /// Moves the unknowns into their bounds, and sees which are at them.
@@ -235,7 +149,7 @@ impl<'a> Iterate<'a> {
     }
 
     /// The gradient of a bound that is closed, as far as the bound takes it.
-    fn held_gradient(&self, index: usize) -> f64 {
+    pub fn held_gradient(&self, index: usize) -> f64 {
         let gradient = self.gradient[self.bounds.bounds()[index].unknown];
         match self.at[index] {
             At::Free => 0.0,
@@ -253,13 +167,13 @@ impl<'a> Iterate<'a> {
         }
     }
 
-    fn free_gradient(&self) -> Vec<f64> {
+    pub fn free_gradient(&self) -> Vec<f64> {
         let mut free = self.gradient.clone();
         self.keep_free(&mut free);
         free
     }
 
-    fn keep_free(&self, values: &mut [f64]) {
+    pub fn keep_free(&self, values: &mut [f64]) {
         for (bound, at) in self.bounds.bounds().iter().zip(&self.at) {
             if *at != At::Free {
                 values[bound.unknown] = 0.0;
@@ -268,7 +182,7 @@ impl<'a> Iterate<'a> {
     }
 
     /// The largest force that is out of balance or wrong-signed, relative to the largest of load and multipliers.
-    fn residual(&self) -> f64 {
+    pub fn residual(&self) -> f64 {
         let bounds = 0..self.at.len();
         let held = bounds.clone().map(|index| self.held_gradient(index).abs()).fold(0.0, f64::max);
         let chopped = bounds.map(|index| self.chopped_gradient(index).abs()).fold(0.0, f64::max);
@@ -277,7 +191,7 @@ impl<'a> Iterate<'a> {
     }
 
     /// Does the chopped gradient outweigh the free one?
-    fn is_disproportionate(&self) -> bool {
+    pub fn is_disproportionate(&self) -> bool {
         let weighted = |value: f64, unknown: usize| value * value / self.diagonal[unknown];
         let free: f64 = self.free_gradient().iter().enumerate().map(|(unknown, &g)| weighted(g, unknown)).sum();
         let chopped = |(index, bound): (usize, &Bound)| weighted(self.chopped_gradient(index), bound.unknown);
@@ -285,7 +199,7 @@ impl<'a> Iterate<'a> {
     }
 
     /// A step along the chopped gradient to the least energy, as far as the other bounds let it.
-    fn proportion(&mut self) {
+    pub fn proportion(&mut self) {
         let mut direction = vec![0.0; self.x.len()];
         for (index, bound) in self.bounds.bounds().iter().enumerate() {
             direction[bound.unknown] = self.chopped_gradient(index) / self.diagonal[bound.unknown];
@@ -302,7 +216,7 @@ impl<'a> Iterate<'a> {
     }
 
     /// The longest t for which x - t d keeps within the bounds.
-    fn longest_step(&self, direction: &[f64]) -> f64 {
+    pub fn longest_step(&self, direction: &[f64]) -> f64 {
         let room = |bound: &Bound| {
             let (value, speed) = (self.x[bound.unknown], direction[bound.unknown]);
             match speed {
@@ -314,8 +228,21 @@ impl<'a> Iterate<'a> {
         self.bounds.bounds().iter().map(room).fold(f64::INFINITY, f64::min)
     }
 
+    /// The step of length `room`, which the first bounds end; rounding must not stop short of them, or it would for ever.
+    fn step_to_bounds(&mut self, direction: &Conjugate, room: f64) {
+        let meets = |bound: &Bound, x: &[f64]| {
+            let (value, speed) = (x[bound.unknown], direction.p[bound.unknown]);
+            let met = if speed > 0.0 { bound.lower } else { bound.upper };
+            (speed != 0.0 && (value - met) / speed <= room * (1.0 + FIRST)).then_some((bound.unknown, met))
+        };
+        let met: Vec<(usize, f64)> = self.bounds.bounds().iter().filter_map(|bound| meets(bound, &self.x)).collect();
+        self.step_along(&direction.p, &direction.moved, room);
+        met.iter().for_each(|&(unknown, value)| self.x[unknown] = value);
+        self.project();
+    }
+
     /// The CG step, or where it would cross bounds, the expansion.
-    fn advance(&mut self, direction: &Conjugate) {
+    pub fn advance(&mut self, direction: &Conjugate) {
         let length = direction.slope / direction.energy;
         let room = self.longest_step(&direction.p);
         if length <= room {
@@ -337,7 +264,7 @@ impl<'a> Iterate<'a> {
             }
         }
         (self.x, self.gradient, self.at) = (x, gradient, at);
-        self.step_along(&direction.p, &direction.moved, room);
+        self.step_to_bounds(direction, room);
         let share = 1.0 / self.largest_eigenvalue();
         let free = self.free_gradient();
         for ((x, g), d) in self.x.iter_mut().zip(&free).zip(&self.diagonal) {
@@ -355,22 +282,28 @@ impl<'a> Iterate<'a> {
     }
 
     /// What may not move, in the dofs of the problem.
-    fn held(&self) -> Vec<Direction> {
+    pub fn held(&self) -> Vec<Direction> {
         let closed = self.bounds.bounds().iter().zip(&self.at).filter(|entry| *entry.1 != At::Free);
         closed.map(|(bound, _)| self.bounds.direction(bound)).collect()
     }
 
-    fn preconditioned(&self, face: &Face, gradient: &[f64]) -> Vec<f64> {
-        let mut force = gradient.to_vec();
-        self.bounds.turn_back(&mut force);
-        let mut step = face.cycle(&force);
-        self.bounds.turn(&mut step);
+    pub fn preconditioned(&self, face: &Face, gradient: &[f64]) -> Vec<f64> {
+        let mut step = self.cycled(face, gradient);
         self.keep_free(&mut step);
         step
     }
 
+    /// One cycle in a face.
+    pub fn cycled(&self, face: &Face, force: &[f64]) -> Vec<f64> {
+        let mut force = force.to_vec();
+        self.bounds.turn_back(&mut force);
+        let mut step = face.cycle(&force);
+        self.bounds.turn(&mut step);
+        step
+    }
+
     /// The set as it stands.
-    fn step(&self) -> Iteration {
+    pub fn step(&self) -> Iteration {
         let (_, contact_set) = self.bounds.multipliers(|index| match self.at[index] {
             At::Free => 0.0,
             At::Lower => 1.0,
@@ -379,12 +312,16 @@ impl<'a> Iterate<'a> {
         Iteration { contact_set, penalty: 0.0 }
     }
 
-    /// The load drives the way down the gradient, and nothing stops it.
-    fn free_motion(&self, mut direction: Vec<f64>) -> Error {
-        self.bounds.turn_back(&mut direction);
-        let size = -largest(&direction);
-        direction.iter_mut().for_each(|value| *value /= size);
-        let driven = dot(self.problem.load(), &direction) > SIGN_TOLERANCE * largest(self.problem.load());
-        FreeMotion { direction, driven }.into_error()
+    /// The direction is what shows that K is not positive on the face.
+    pub fn negative_energy(&self, direction: Conjugate) -> Error {
+        let Conjugate { mut p, energy, .. } = direction;
+        self.bounds.turn_back(&mut p);
+        let size = largest(&p);
+        let evidence = format!(
+            "a direction p along which nothing is held, {} and 1 there, has p'Kp = {:e}",
+            where_largest(&p),
+            energy / (size * size)
+        );
+        Error::NotConvex { evidence }
     }
 }
