@@ -146,8 +146,8 @@ fn the_estimate_of_a_problem_directory_is_within_a_factor_of_two_of_the_peak() {
     for scene in scenes {
         desk.write("scene.json", scene.to_string());
         desk.run(&["export", "scene.json", "p"]).ends_with(0);
-        for options in [&[][..], &["--no-condense"], &["--method", "mprgp"]] {
-            let arguments = [&["solve", "p"], options].concat();
+        for options in ["--method active-set", "--method active-set --no-condense", "--method mprgp"] {
+            let arguments: Vec<&str> = ["solve", "p"].into_iter().chain(options.split(' ')).collect();
             let refused = desk.run(&[&arguments[..], &["--max-memory", "1MB"]].concat());
             let estimate = told(&refused.fails_with(1, &["1 MB are allowed", "of the stiffness"]));
             let ratio = estimate / peak(&desk, &arguments);
@@ -162,12 +162,17 @@ fn a_problem_directory_that_needs_too_much_memory_is_refused_before_its_factoris
     let desk = Desk::new();
     desk.write("scene.json", block([20, 20, 20], "hex8").to_string());
     desk.run(&["export", "scene.json", "p"]).ends_with(0);
-    for command in ["solve", "compare"] {
-        let refused = desk.run(&[command, "p", "--max-memory", "150MB"]);
+    for command in [&["compare", "p"][..], &["solve", "p", "--method", "active-set"]] {
+        let refused = desk.run(&[command, &["--max-memory", "150MB"]].concat());
         refused.fails_with(1, &["150 MB are allowed", "3e4 dofs", "of its factor"]);
     }
-    // Multigrid needs no factor.
-    desk.run(&["solve", "p", "--max-memory", "150MB", "--method", "mprgp"]).ends_with(0);
+    // Multigrid needs no factor, and is chosen where that does not fit.
+    for input in ["p", "scene.json"] {
+        let run = desk.run(&["solve", input, "--max-memory", "150MB"]).ends_with(0);
+        assert!(run.stdout.contains("by multigrid, of about "), "{}", run.stdout);
+    }
+    desk.run(&["solve", "p", "--max-memory", "20MB"]).fails_with(1, &["neither way fits into 20 MB"]);
+    desk.run(&["solve", "scene.json", "--max-memory", "20MB"]).fails_with(1, &["20 MB are allowed", "3e4 dofs"]);
 }
 
 #[test]
@@ -204,8 +209,8 @@ fn a_scene_of_a_million_million_elements_is_refused_at_once_and_without_memory()
 fn max_memory_refuses_with_the_size_and_lets_pass_what_fits() {
     let desk = Desk::new();
     desk.write("scene.json", rectangle([200, 200], "q4").to_string());
-    for command in ["solve", "compare"] {
-        let run = desk.run(&[command, "scene.json", "--max-memory", "100MB"]);
+    for command in [&["compare", "scene.json"][..], &["solve", "scene.json", "--method", "qp"]] {
+        let run = desk.run(&[command, &["--max-memory", "100MB"]].concat());
         run.fails_with(
             1,
             &["needs about 134 MB", "100 MB are allowed", "8e4 dofs", "6e6 of its factor", "larger cells"],

@@ -11,6 +11,9 @@ const MOTIONS_IN_SPACE: usize = 6;
 /// beyond some 160,000 dofs.
 const CLEARLY: f64 = 20.0;
 
+/// An estimate may be so many times too large.
+const UNSURE: f64 = 2.0;
+
 /// Estimated time and memory of the two paths.
 ///
 /// Calibrated on blocks of Q4 and Hex8 (`cargo run --release --example multigrid`); good to a factor of two or so, since
@@ -50,9 +53,9 @@ impl Estimate {
             false => (6.0 * dofs * dofs.max(2.0).log2(), 3.7e-9 * dofs.powf(1.5)),
         };
         Estimate {
-            direct_bytes: 9.2 * factor + 80.0 * entries,
+            direct_bytes: START + 9.2 * factor + 80.0 * entries,
             direct_seconds: seconds,
-            multigrid_bytes: 100.0 * dofs + 40.0 * entries,
+            multigrid_bytes: START + 100.0 * dofs + 40.0 * entries,
             multigrid_seconds: 1.3e-7 * entries,
             knows_motions: problem.near_null().is_some(),
         }
@@ -63,29 +66,36 @@ impl Estimate {
         !matches!(self.choose(most_bytes), Ok(Choice::Factor) | Err(_))
     }
 
-    /// The path to take within `most_bytes`.
+    /// The path to take within `most_bytes`; whether a factor fits that is not clearly too large, its analysis tells.
     ///
     /// # Errors
     /// [`Error::NoRoom`] where neither fits.
     pub(super) fn choose(&self, most_bytes: f64) -> Result<Choice, Error> {
-        let Estimate { direct_bytes: factor, multigrid_bytes: multigrid, .. } = *self;
         let ratio = self.direct_seconds / self.multigrid_seconds;
-        match (factor <= most_bytes, multigrid <= most_bytes) {
-            (false, false) => Err(Error::NoRoom { factor, multigrid, allowed: most_bytes }),
-            (false, true) => Ok(Choice::Room {
-                reason: format!(
-                    "by multigrid, of about {}: with a factor it would take about {}, {} are allowed",
-                    memory(multigrid),
-                    memory(factor),
-                    memory(most_bytes)
-                ),
-            }),
-            // Constants alone make a poor hierarchy of a body.
-            (true, true) if ratio > CLEARLY && self.knows_motions => Ok(Choice::Speed {
-                reason: format!("by multigrid: a factorisation would take about {ratio:.0} times as long"),
-            }),
-            _ => Ok(Choice::Factor),
+        // Constants alone make a poor hierarchy of a body.
+        if ratio > CLEARLY && self.knows_motions && self.multigrid_bytes <= most_bytes {
+            let reason = format!("by multigrid: a factorisation would take about {ratio:.0} times as long");
+            return Ok(Choice::Speed { reason });
         }
+        if self.direct_bytes > UNSURE * most_bytes {
+            return self.without_factor(self.direct_bytes, most_bytes).map(|reason| Choice::Room { reason });
+        }
+        Ok(Choice::Factor)
+    }
+
+    /// Why multigrid is taken where a solve with a factor takes `factor` bytes, and that is too much.
+    ///
+    /// # Errors
+    /// [`Error::NoRoom`] where multigrid takes too much as well.
+    pub(super) fn without_factor(&self, factor: f64, most_bytes: f64) -> Result<String, Error> {
+        let multigrid = self.multigrid_bytes;
+        if multigrid > most_bytes {
+            return Err(Error::NoRoom { factor, multigrid, allowed: most_bytes });
+        }
+        let [of_multigrid, of_factor, allowed] = [multigrid, factor, most_bytes].map(memory);
+        Ok(format!(
+            "by multigrid, of about {of_multigrid}: with a factor it would take about {of_factor}, {allowed} are allowed"
+        ))
     }
 }
 

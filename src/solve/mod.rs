@@ -53,26 +53,17 @@ pub fn solve_qp(problem: &ContactProblem) -> Result<Solution, Error> {
 /// * [`Error::Numerical`] where memory does not suffice.
 pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
     let settings = &settings.started()?;
-    let way = match settings.method {
-        Method::Auto => Estimate::of(problem).choose(settings.memory.unwrap_or(f64::INFINITY))?,
-        Method::Mprgp => return iterative::solve(problem, settings),
-        _ => Choice::Factor,
-    };
-    let with_reason = |solution: Solution, reason| Solution { reason: Some(reason), ..solution };
-    match way {
+    if settings.method == Method::Mprgp {
+        return iterative::solve(problem, settings);
+    }
+    let chooses = settings.method == Method::Auto;
+    let estimate = Estimate::of(problem);
+    match if chooses { estimate.choose(settings.memory.unwrap_or(f64::INFINITY))? } else { Choice::Factor } {
         Choice::Factor => {}
-        Choice::Room { reason } => {
-            return match iterative::solve(problem, settings) {
-                Err(Error::NotCertified { solution, condition, value, tolerance }) => {
-                    let solution = Box::new(with_reason(*solution, reason));
-                    Err(Error::NotCertified { solution, condition, value, tolerance })
-                }
-                found => found.map(|solution| with_reason(solution, reason)),
-            };
-        }
+        Choice::Room { reason } => return by_multigrid(problem, settings, reason),
         // What the iteration cannot take, the direct path may, unless there is no time for it.
-        Choice::Speed { reason } => match iterative::solve(problem, settings) {
-            Ok(solution) => return Ok(with_reason(solution, reason)),
+        Choice::Speed { reason } => match by_multigrid(problem, settings, reason) {
+            Ok(solution) => return Ok(solution),
             Err(error) if settings.watch.is_stopped() => return Err(error),
             Err(error @ Error::NotCertified { .. }) if settings.watch.time_left().is_some() => return Err(error),
             Err(_) => {}
@@ -80,6 +71,9 @@ pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, 
     }
     let prepared = match Prepared::with_settings(problem, settings) {
         Err(Error::OutOfTime { needed, time }) => return Err(nothing_found(problem, needed, time)?),
+        Err(Error::TooLarge { bytes, allowed, .. }) if chooses => {
+            return by_multigrid(problem, settings, estimate.without_factor(bytes, allowed)?);
+        }
         prepared => prepared?,
     };
     let preparation = prepared.seconds();
@@ -114,6 +108,21 @@ pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, 
             Err(fell_short)
         }
         solved => solved.map(with_preparation),
+    }
+}
+
+/// The answer without a factor, and why there is none.
+///
+/// # Errors
+/// As [`Iterative::solve_gap`].
+fn by_multigrid(problem: &ContactProblem, settings: &Settings, reason: String) -> Result<Solution, Error> {
+    let reason = Some(reason);
+    match iterative::solve(problem, settings) {
+        Err(Error::NotCertified { solution, condition, value, tolerance }) => {
+            let solution = Box::new(Solution { reason, ..*solution });
+            Err(Error::NotCertified { solution, condition, value, tolerance })
+        }
+        found => found.map(|solution| Solution { reason, ..solution }),
     }
 }
 
