@@ -8,6 +8,11 @@ use std::time::{Duration, Instant};
 use program::{Desk, scene};
 use serde_json::{Value, json};
 
+/// What the memory of a run may differ by when it takes ten times as many steps: less than the 2 MB that 36,000 more
+/// observations of seven numbers would take.
+#[cfg(target_os = "linux")]
+const GROWTH: f64 = 1e6;
+
 /// A bar of 20 cells against a wall, 240 steps.
 fn bar() -> Value {
     json!({
@@ -68,6 +73,24 @@ fn a_body_in_the_plane_leaves_an_animation_of_all_its_frames() {
     let info = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap().info().clone();
     assert_eq!(info.animation_control.unwrap().num_frames, 4);
     assert!(info.width > 300 && info.height > 150);
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn memory_does_not_grow_with_the_number_of_steps() {
+    let desk = Desk::new();
+    let peak = |step: f64| {
+        let mut scene = with("step", json!(step));
+        scene["analysis"]["dynamic"]["frames"] = json!(2);
+        // Of both histories the plots show as many points.
+        scene["analysis"]["dynamic"]["duration"] = json!(1.995);
+        desk.write("bar.json", scene.to_string());
+        let peak = desk.peak(&["solve", "bar.json", "--out", "out"]);
+        (peak, fs::read_to_string(desk.path("out/history.csv")).unwrap().lines().count())
+    };
+    let ((few, lines), (many, more_lines)) = (peak(5e-4), peak(5e-5));
+    assert_eq!((lines, more_lines), (3992, 39_902));
+    assert!(many - few < GROWTH, "{few} bytes in 3,990 steps, {many} in 39,900");
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! The midpoint rule; dofs without mass are in equilibrium with the others, at the middle of a step and at its end.
 //!
 //! ```text
-//! u^ = u + dt v/2 (u where there is no mass),   v+ = v + 4 w/dt,   u+ = u + dt (v + v+)/2
-//! (4/dt^2) M w + (2/dt) C (u^ + w - u) + K (u^ + w) = f(t + dt/2) + B' lambda,   B (u^ + w) <= g
+//! ((4/dt^2) M + (2/dt) C + K) w = f(t + dt/2) - K u + (2/dt) M v + B' lambda,   B (u + w) <= g
+//! u+ = u + 2 w,   v+ = 4 w/dt - v
 //! ```
 //!
 //! Where contact nodes have no mass the rest moves under forces that are continuous in its displacement, which the
@@ -114,27 +114,25 @@ impl Advance for Midpoint {
     }
 
     fn advance(&self, problem: &DynamicProblem, step: f64, state: &State) -> Result<State, Error> {
-        let stiffness = problem.contact().stiffness();
-        let mut velocity = state.velocity.clone();
-        let massless = self.massless.as_ref();
-        massless.iter().flat_map(|massless| &massless.dofs).for_each(|&dof| velocity[dof] = 0.0);
-        let predicted = plus(&state.displacement, step / 2.0, &velocity);
         let load = problem.load_at((state.steps as f64 + 0.5) * step);
-        let mut force = plus(&load, -1.0, &stiffness.mul(&predicted));
-        problem.damp(1.0, &velocity, &mut force);
-        let gap = problem.remaining_gap(&predicted);
+        let forces = load.iter().zip(&state.elastic).zip(&state.momentum);
+        let force = forces.map(|((f, elastic), momentum)| f - elastic + 2.0 / step * momentum).collect();
+        let gap = problem.remaining_gap(&state.displacement);
         let found = self.stepping.solve(force, gap, &state.contact_set)?;
-        let moves = state.displacement.iter().zip(&velocity).zip(&found.change);
-        let mut displacement: Vec<f64> = moves.map(|((u, v), w)| u + step * v + 2.0 * w).collect();
+        let mut displacement = plus(&state.displacement, 2.0, &found.change);
+        let changes = state.velocity.iter().zip(&found.change);
+        let velocity: Vec<f64> = changes.map(|(v, w)| 4.0 / step * w - v).collect();
+        let massless = self.massless.as_ref();
         massless
             .iter()
             .flat_map(|massless| &massless.dofs)
             .for_each(|&dof| displacement[dof] = state.displacement[dof]);
         let mut next = State {
             steps: state.steps + 1,
-            velocity: plus(&velocity, 4.0 / step, &found.change),
+            momentum: problem.mass().mul(&velocity),
+            velocity,
             acceleration: state.acceleration.clone(),
-            elastic: stiffness.mul(&displacement),
+            elastic: problem.contact().stiffness().mul(&displacement),
             displacement,
             multiplier: found.multiplier,
             contact_set: found.contact_set,

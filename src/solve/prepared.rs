@@ -10,7 +10,7 @@ use super::{Condense, Method, Path, Precision, Settings, run};
 use crate::error::Error;
 use crate::method::parametric::Compliance;
 use crate::method::{ScaledProblem, active_set, interior_point};
-use crate::problem::{ContactProblem, EnergyNorm, check_gap};
+use crate::problem::{ContactProblem, EnergyNorm, check_gap, check_load};
 use crate::solution::{ContactSet, Iteration, Seconds, Solution};
 use crate::sparse::{Analysis, AugmentedMatrix, Cholesky, Equilibration, FactorError, dot, largest, ldexp};
 use crate::transform::{Condensation, RowSelection, Scaling};
@@ -219,7 +219,7 @@ impl Prepared {
         start: Option<&ContactSet>,
         settings: &Settings,
     ) -> Result<Solution, Error> {
-        let loading = self.other_load(load)?;
+        let loading = self.other_load(load, self.problem.gap())?;
         self.complete(self.find(loading, self.problem.gap().to_vec(), start, settings)?, settings)
     }
 
@@ -262,8 +262,25 @@ impl Prepared {
         start: Option<&ContactSet>,
         settings: &Settings,
     ) -> Result<BoundarySolution<'_>, Error> {
-        let loading = self.load(self.problem.with(load, gap.clone())?.load().to_vec(), &gap);
+        let loading = self.other_load(load, &gap)?;
         self.on_boundary(self.find(loading, gap, start, settings)?, settings)
+    }
+
+    /// As [`Prepared::boundary_at`], for one of many steps: held against its conditions alone, which cost no triangular
+    /// solve, unless `settings` name an accuracy.
+    ///
+    /// # Errors
+    /// As [`Prepared::boundary_at`].
+    pub(crate) fn step_at(
+        &self,
+        load: Vec<f64>,
+        gap: Vec<f64>,
+        start: &ContactSet,
+        settings: &Settings,
+    ) -> Result<BoundarySolution<'_>, Error> {
+        let loading = self.other_load(load, &gap)?;
+        let found = self.find(loading, gap, Some(start), settings)?;
+        self.judged(found, settings, settings.accuracy.is_some())
     }
 
     /// The displacement with another load and other gaps, without a certificate; `None` where the method did not settle on
@@ -278,7 +295,7 @@ impl Prepared {
         start: &ContactSet,
         settings: &Settings,
     ) -> Result<Option<Vec<f64>>, Error> {
-        let loading = self.load(self.problem.with(load, gap.clone())?.load().to_vec(), &gap);
+        let loading = self.other_load(load, &gap)?;
         let found = self.find(loading, gap, Some(start), settings)?;
         Ok(found.outcome.settled.then(|| self.displacement(&found)))
     }
@@ -364,12 +381,17 @@ impl Prepared {
 
     /// The answer on the boundary, certified there.
     fn on_boundary(&self, found: Found, settings: &Settings) -> Result<BoundarySolution<'_>, Error> {
+        self.judged(found, settings, true)
+    }
+
+    /// The answer on the boundary, its conditions recomputed there, and its error bound where it is `bounded`.
+    fn judged(&self, found: Found, settings: &Settings, bounded: bool) -> Result<BoundarySolution<'_>, Error> {
         let Found { problem, unit, outcome, .. } = &found;
         let condensed_certificate = if self.is_single() {
             // The condensed problem is that of the last step only.
             self.complete(found.clone(), settings)?.certificate
         } else {
-            let norm = self.condensed_norm(problem)?;
+            let norm = if bounded { self.condensed_norm(problem)? } else { None };
             problem.certify_in(norm, &outcome.displacement, &outcome.multiplier)?
         };
         if !settings.goal().is_met_by(&condensed_certificate) {
@@ -499,9 +521,10 @@ impl Prepared {
         self.loading.get_or_init(|| self.load(self.problem.load().to_vec(), self.problem.gap())).clone()
     }
 
-    fn other_load(&self, load: Vec<f64>) -> Result<Arc<Loading>, Error> {
-        let checked = self.problem.with_load(load)?;
-        Ok(self.load(checked.load().to_vec(), self.problem.gap()))
+    fn other_load(&self, load: Vec<f64>, gap: &[f64]) -> Result<Arc<Loading>, Error> {
+        check_load(&load, self.dofs())?;
+        check_gap(gap, self.problem.rows())?;
+        Ok(self.load(load, gap))
     }
 
     /// The problem that the methods work on, and the exponent of its reference displacement.
