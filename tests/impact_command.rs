@@ -152,6 +152,10 @@ fn values_that_describe_no_motion_are_refused_in_a_sentence_and_nothing_is_writt
         (with("step", json!(null)), &["analysis.dynamic.step", "null", "expected a number"]),
         (with("step", json!(3)), &["at `analysis.dynamic.step`", "longer than the duration 2"]),
         (explicit(0.02), &["at `analysis.dynamic.step`", "0.02 is beyond 0.01666666", "largest stable step"]),
+        (with("step", json!(1e-300)), &["at `analysis.dynamic.step`", "2.00e300 steps of 1e-300 never end"]),
+        (with("alpha", json!(-0.1)), &["at `analysis.dynamic.alpha`", "only the scheme `hht`", "`midpoint`"]),
+        (with("restitution", json!(0)), &["at `analysis.dynamic.restitution`", "only the scheme `central-difference`"]),
+        (with("initial", json!([{"velocity": {"value": [1e308]}}])), &["at `analysis.dynamic.initial`", "too large"]),
         (with("duration", json!(0)), &["at `analysis.dynamic.duration`", "positive"]),
         (with("duration", json!(1e12)), &["at `analysis.dynamic.step`", "never end"]),
         (with("courant", json!(-1)), &["at `analysis.dynamic.courant`", "-1", "positive"]),
@@ -167,7 +171,10 @@ fn values_that_describe_no_motion_are_refused_in_a_sentence_and_nothing_is_writt
         (with("loads-in-time", json!([{"load": 0, "factor": {"ramp": {"end": 0}}}])), &["factor.ramp.end", "later"]),
         (weightless, &["at `material`", "needs a `density`"]),
         (heavy, &["at `material.density`", "-1", "positive"]),
-        (inside, &["at `analysis.dynamic.initial`", "node 20 at (10) starts 0.25 inside obstacles[0]", "`project`"]),
+        (
+            inside,
+            &["at `analysis.dynamic.initial`", "node 20 at (10) starts 2.500e-1 inside obstacles[0]", "`project`"],
+        ),
     ];
     let desk = Desk::new();
     for (scene, phrases) in cases {
@@ -175,6 +182,10 @@ fn values_that_describe_no_motion_are_refused_in_a_sentence_and_nothing_is_writt
         desk.run(&["solve", "scene.json", "--out", "out"]).fails_with(1, phrases);
         assert!(!desk.path("out").exists(), "{scene}");
     }
+    desk.write("scene.json", bar().to_string().replace("\"duration\":2", "\"duration\":2,\"step\":NaN"));
+    desk.run(&["solve", "scene.json", "--out", "out"])
+        .fails_with(1, &["scene.json:1:", "at `analysis.dynamic.step`", "expected a JSON value"]);
+    assert!(!desk.path("out").exists());
     let mut mass = with("scheme", json!("trapezoidal"));
     mass["analysis"]["dynamic"]["mass"] = json!("redistributed");
     desk.write("scene.json", mass.to_string());
