@@ -26,6 +26,9 @@ const SOFTNESS: f64 = 0.05;
 /// place, and the speed of its centre changes by the momentum that comes and goes.
 const FLIGHT: f64 = 1e-2;
 
+/// Energy that a flat blow may cost: the few steps in which it comes and goes are off by less than 1e-5 each.
+const BLOW: f64 = 1e-4;
+
 /// What was seen of a body after each step.
 struct Seen {
     step: f64,
@@ -157,11 +160,10 @@ fn a_bar_that_is_dropped_bounces_as_its_waves_and_gravity_say() {
 }
 
 #[test]
-fn the_energy_of_a_flat_blow_is_kept_to_what_the_step_that_closes_may_cost() {
-    // Of an energy 1, by the Courant number r: r^2 h / (4 L), whenever within a step the bar arrives.
+fn the_energy_of_a_flat_blow_is_kept_whenever_within_a_step_it_comes() {
     for courant in [0.5, 1.0, 1.5] {
-        let (most, step) = (courant * courant * 0.1 / 40.0, courant * 0.1 / 30.0);
-        let change = |arrival: f64| {
+        let step = courant * 0.1 / 30.0;
+        for arrival in [0.0, 0.25, 0.5, 0.75] {
             let wall = 10.0 + (20.0 + arrival) * 10.0 * step;
             let seen = motion(&json!({
                 "model": "bar",
@@ -172,10 +174,13 @@ fn the_energy_of_a_flat_blow_is_kept_to_what_the_step_that_closes_may_cost() {
                 "analysis": {"dynamic": {
                     "duration": 0.9, "step": step, "initial": [{"velocity": {"value": [10]}}]}}
             }));
-            seen.all[seen.all.len() - 1].energy() / seen.all[0].energy() - 1.0
-        };
-        let changes = [0.0, 0.25, 0.5, 0.75].map(change);
-        let largest = changes.iter().fold(0.0_f64, |largest, change| largest.max(change.abs()));
-        assert!(largest <= most && largest > 0.8 * most, "{courant}: {changes:?} of {most}");
+            let change = |at: &Observation| (at.energy() / seen.all[0].energy() - 1.0).abs();
+            let most = seen.all.iter().map(change).fold(0.0, f64::max);
+            assert!(most <= BLOW, "{courant}, {arrival}: {most}");
+            // A corrected force still pushes, and takes from the bar the momentum that it shows.
+            let impulse: f64 = seen.all.iter().map(|at| at.force * seen.step).sum();
+            let momentum = 10.0 * (10.0 - seen.centre[seen.centre.len() - 1][1]);
+            assert!(seen.all.iter().all(|at| at.force >= 0.0) && (impulse / momentum - 1.0).abs() < 1e-10);
+        }
     }
 }

@@ -194,6 +194,11 @@ impl Stepping {
         Ok(Found { change, multiplier: boundary.multiplier, contact_set: boundary.contact_set })
     }
 
+    /// The change that a force alone causes, as if no row were closed; `None` without a factor of the matrix.
+    pub fn response(&self, force: Vec<f64>) -> Result<Option<Vec<f64>>, Error> {
+        self.prepared.response(force)
+    }
+
     /// The change of the displacement alone; certified only where the method did not settle on a set.
     pub fn change(&self, force: Vec<f64>, gap: Vec<f64>, start: &ContactSet) -> Result<Vec<f64>, Error> {
         match self.prepared.settled_at(force.clone(), gap.clone(), start, &self.settings)? {

@@ -300,6 +300,21 @@ impl Prepared {
         Ok(found.outcome.settled.then(|| self.displacement(&found)))
     }
 
+    /// The displacement that a force (length n) causes where no row is closed, in the precision of the factor; `None` without
+    /// one.
+    ///
+    /// # Errors
+    /// [`Error::Length`] and [`Error::NotFinite`] for a force that does not fit.
+    pub(crate) fn response(&self, force: Vec<f64>) -> Result<Option<Vec<f64>>, Error> {
+        let Some(norm) = &self.norm else { return Ok(None) };
+        let loading = self.other_load(force, &vec![0.0; self.problem.rows()])?;
+        let moved = match &self.condensation {
+            Some(condensed) => condensed.free_displacement(&loading.sweep),
+            None => norm.scaled_displacement(&loading.scaled(loading.unit)),
+        };
+        Ok(Some(self.expand(&loading, loading.unit, &moved)))
+    }
+
     /// The exact path of the answer while the gaps move from `from` to `to` (length m each) on a straight line.
     ///
     /// # Errors
