@@ -117,7 +117,7 @@ fn a_bar_that_is_dropped_bounces_as_its_waves_and_gravity_say() {
     let period = 2.0 * fall + contact;
     let seen = motion(&json!({
         "model": "bar",
-        "body": {"bar": {"x": {"points": [0, 1], "divisions": [100]}}},
+        "body": {"bar": {"x": {"points": [0, 1], "divisions": [50]}}},
         "material": {"young": 1, "poisson": 0, "density": 1},
         "loads": [{"body-force": [-gravity]}],
         "obstacles": [

@@ -23,16 +23,19 @@ use crate::error::Error;
 use crate::problem::ContactProblem;
 use crate::solution::ContactSet;
 use crate::solve::Settings;
-use crate::sparse::{SparseMatrix, SymmetricMatrix, dot};
+use crate::sparse::{SparseMatrix, SymmetricMatrix, dot, largest};
 
 /// Energy that a step may be off by, relative to that of motion and strain, before its contact force is corrected.
 const TOLERATED: f64 = 1e-5;
 
 /// What a corrected step may be off by.
-const KEPT: f64 = 1e-10;
+const KEPT: f64 = 1e-7;
+
+/// A contact force below this, relative to the largest, is none.
+const ROUNDING: f64 = 1e-9;
 
 /// Shares of the correction that are tried.
-const TRIALS: usize = 12;
+const TRIALS: usize = 8;
 
 pub(super) struct Midpoint {
     stepping: Stepping,
@@ -208,11 +211,12 @@ impl Midpoint {
         let of_rows: Vec<f64> = contact.mul(&correction).into_iter().zip(&squares).map(share_of_row).collect();
         let Some(response) = self.stepping.response(correction)? else { return Ok(None) };
         let at = |share: f64| -> Result<(State, f64), Error> {
-            let corrected = Found {
-                change: plus(&found.change, share, &response),
-                multiplier: plus(&found.multiplier, share, &of_rows),
-                contact_set: found.contact_set.clone(),
-            };
+            let mut multiplier = plus(&found.multiplier, share, &of_rows);
+            // Open rows feel no more than the rounding of a balance of forces.
+            let rounding = ROUNDING * largest(&multiplier);
+            multiplier.iter_mut().filter(|lambda| **lambda > -rounding).for_each(|lambda| *lambda = 0.0);
+            let contact_set = ContactSet::from_fn(multiplier.len(), |row| multiplier[row] < 0.0);
+            let corrected = Found { change: plus(&found.change, share, &response), multiplier, contact_set };
             let end = self.after(problem, step, state, &corrected)?;
             let off = imbalance(state, &end, &load);
             Ok((end, off))

@@ -14,11 +14,11 @@ use crate::error::Error;
 /// | penalty | **gained** where the springs are stiff | chatters | force over penalty |
 /// | central differences | lost a little: the mass of the contact nodes stops | smooth on lumped mass | none |
 ///
-/// The midpoint rule alone takes the force of the middle of the step in which a contact node closes: from nothing, where it
-/// closes in the second half, to too much. A bar of length L and cells h that hits a wall flatly would gain or lose up to
-/// `(c dt/h)^2 h/(4 L)` of its energy. A step that is off by more than 1e-5 therefore takes a force between those of its
-/// middle and of its ends that does the right work, which costs a few steps more; bodies whose nodes close one after the
-/// other hardly need it, and with damping it is left out.
+/// Alone the midpoint rule takes the force of the middle of a step, where a node that closes in its second half does not
+/// touch yet. A bar of length L and cells h that hits a wall flatly would gain or lose up to `(c dt/h)^2 h/(4 L)` of its
+/// energy. A step that is off by more than 1e-5 therefore takes a force between those of its middle and of its ends that
+/// does the right work, at the cost of a few steps; bodies whose nodes close one after the other hardly need it, and with
+/// damping it is left out.
 ///
 /// Implicit steps slow short waves, a consistent mass quickens them: along a uniform mesh of linear elements the wave number
 /// k travels with `c (1 + (1/12 - (c dt/h)^2/6) (k h)^2/2)`. The front that comes back is smeared over some cells, and what

@@ -266,55 +266,6 @@ impl Prepared {
         self.on_boundary(self.find(loading, gap, start, settings)?, settings)
     }
 
-    /// As [`Prepared::boundary_at`], for one of many steps: held against its conditions alone, which cost no triangular
-    /// solve, unless `settings` name an accuracy.
-    ///
-    /// # Errors
-    /// As [`Prepared::boundary_at`].
-    pub(crate) fn step_at(
-        &self,
-        load: Vec<f64>,
-        gap: Vec<f64>,
-        start: &ContactSet,
-        settings: &Settings,
-    ) -> Result<BoundarySolution<'_>, Error> {
-        let loading = self.other_load(load, &gap)?;
-        let found = self.find(loading, gap, Some(start), settings)?;
-        self.judged(found, settings, settings.accuracy.is_some())
-    }
-
-    /// The displacement with another load and other gaps, without a certificate; `None` where the method did not settle on
-    /// a set.
-    ///
-    /// # Errors
-    /// As [`Prepared::boundary_at`].
-    pub(crate) fn settled_at(
-        &self,
-        load: Vec<f64>,
-        gap: Vec<f64>,
-        start: &ContactSet,
-        settings: &Settings,
-    ) -> Result<Option<Vec<f64>>, Error> {
-        let loading = self.other_load(load, &gap)?;
-        let found = self.find(loading, gap, Some(start), settings)?;
-        Ok(found.outcome.settled.then(|| self.displacement(&found)))
-    }
-
-    /// The displacement that a force (length n) causes where no row is closed, in the precision of the factor; `None` without
-    /// one.
-    ///
-    /// # Errors
-    /// [`Error::Length`] and [`Error::NotFinite`] for a force that does not fit.
-    pub(crate) fn response(&self, force: Vec<f64>) -> Result<Option<Vec<f64>>, Error> {
-        let Some(norm) = &self.norm else { return Ok(None) };
-        let loading = self.other_load(force, &vec![0.0; self.problem.rows()])?;
-        let moved = match &self.condensation {
-            Some(condensed) => condensed.free_displacement(&loading.sweep),
-            None => norm.scaled_displacement(&loading.scaled(loading.unit)),
-        };
-        Ok(Some(self.expand(&loading, loading.unit, &moved)))
-    }
-
     /// The exact path of the answer while the gaps move from `from` to `to` (length m each) on a straight line.
     ///
     /// # Errors
@@ -348,7 +299,7 @@ impl Prepared {
     }
 
     /// Runs the method of `settings`, on the contact boundary where the problem is condensed.
-    fn find(
+    pub(super) fn find(
         &self,
         loading: Arc<Loading>,
         gap: Vec<f64>,
@@ -400,7 +351,12 @@ impl Prepared {
     }
 
     /// The answer on the boundary, its conditions recomputed there, and its error bound where it is `bounded`.
-    fn judged(&self, found: Found, settings: &Settings, bounded: bool) -> Result<BoundarySolution<'_>, Error> {
+    pub(super) fn judged(
+        &self,
+        found: Found,
+        settings: &Settings,
+        bounded: bool,
+    ) -> Result<BoundarySolution<'_>, Error> {
         let Found { problem, unit, outcome, .. } = &found;
         let condensed_certificate = if self.is_single() {
             // The condensed problem is that of the last step only.
@@ -536,7 +492,7 @@ impl Prepared {
         self.loading.get_or_init(|| self.load(self.problem.load().to_vec(), self.problem.gap())).clone()
     }
 
-    fn other_load(&self, load: Vec<f64>, gap: &[f64]) -> Result<Arc<Loading>, Error> {
+    pub(super) fn other_load(&self, load: Vec<f64>, gap: &[f64]) -> Result<Arc<Loading>, Error> {
         check_load(&load, self.dofs())?;
         check_gap(gap, self.problem.rows())?;
         Ok(self.load(load, gap))
