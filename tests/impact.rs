@@ -12,7 +12,7 @@ use cases::cases;
 use measure::run;
 use signorini::dynamic::{DynamicProblem, Integrator, Scheme, TimeFunction, stable_step};
 use signorini::scene::SchemeSpec;
-use signorini::{ContactProblem, Precision, Scene, Settings, SparseMatrix, SymmetricMatrix};
+use signorini::{ContactProblem, Error, Precision, Scene, Settings, SparseMatrix, SymmetricMatrix};
 
 /// What the default scheme promises at its usual step, a Courant number of 0.5, on 100 cells.
 const ENERGY: f64 = 1e-3;
@@ -23,7 +23,7 @@ const PENETRATION: f64 = 1e-10;
 #[test]
 fn the_default_scheme_keeps_energy_pressure_rebound_and_the_wall() {
     for case in &cases() {
-        for courant in [0.5, 1.0] {
+        for courant in [0.5, 1.0, 1.5] {
             let run = run(case, SchemeSpec::Midpoint, courant, 100).unwrap();
             for energy in run.energy {
                 assert!((energy - 1.0).abs() <= ENERGY, "{}, {courant}: energy {energy}", case.name);
@@ -87,6 +87,20 @@ fn the_stable_step_of_a_bar_is_the_time_of_a_wave_through_a_cell() {
     let scene = Scene::from_json(&text, "scene").unwrap();
     let dynamics = scene.dynamics(&scene.build().unwrap()).unwrap().unwrap();
     assert!((stable_step(&dynamics.problem).unwrap() * 300.0 - 1.0).abs() < 1e-10);
+}
+
+#[test]
+fn a_step_that_is_none_and_one_beyond_the_stable_one_are_refused() {
+    let settings = Settings::default();
+    for step in [0.0, -0.1, f64::NAN, f64::INFINITY] {
+        let refused = Integrator::new(oscillator(0.0), Scheme::Midpoint, step, &settings).err().unwrap();
+        assert!(matches!(refused, Error::Setting { name: "step", .. }), "{refused}");
+    }
+    // The frequency is 2: steps are stable up to 2/2.
+    let explicit = Scheme::CentralDifference { restitution: 0.0 };
+    assert!(Integrator::new(oscillator(0.0), explicit, 1.0, &settings).is_ok());
+    let refused = Integrator::new(oscillator(0.0), explicit, 1.01, &settings).err().unwrap();
+    assert!(refused.to_string().contains("beyond the largest stable one, 1e0"), "{refused}");
 }
 
 /// One mass of 1 on a spring of 4: its frequency is 2.

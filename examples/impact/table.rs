@@ -79,5 +79,7 @@ pub fn plots(case: &Case, runs: &[Run]) -> Drawing {
         at_one().map(|run| line(run, &|seen| (seen.energy() / run.history[0].energy()).min(4.0))).collect();
     energy.push(Series::new("exact", vec![[first, 1.0], [last, 1.0]]));
     let energy = Plot::new(Quantity::new("time", ""), Quantity::new("energy over that at the start", ""), energy);
-    line_plots(&format!("{}, CFL 1", case.name), &[pressure(false), pressure(true), energy])
+    let title =
+        format!("{}, CFL 1, central differences 0.9; cut at pressure {} and energy 4", case.name, 3.0 * case.pressure);
+    line_plots(&title, &[pressure(false), pressure(true), energy])
 }

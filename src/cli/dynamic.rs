@@ -67,7 +67,7 @@ pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outco
         summary.add(&seen, dynamics.step);
         let steps = integrator.state().steps;
         if let Some(folder) = &mut folder {
-            folder.observe(&seen);
+            folder.observe(&seen)?;
             if frames_until(steps) > frames_until(steps - 1) {
                 folder.frame(&model, seen.time, integrator.state(), &summary)?;
             }

@@ -68,6 +68,7 @@ impl Advance for CentralDifference {
         let steps = state.steps + 1;
         let acceleration = self.acceleration(problem, steps as f64 * step, &elastic, &velocity);
         let velocity = plus(&velocity, step / 2.0, &acceleration);
-        Ok(State { steps, displacement, velocity, acceleration, elastic, multiplier, contact_set })
+        let momentum = problem.mass().mul(&velocity);
+        Ok(State { steps, displacement, velocity, acceleration, elastic, momentum, multiplier, contact_set })
     }
 }

@@ -52,9 +52,11 @@ impl Advance for ContactStabilised {
         let gap = problem.remaining_gap(&predicted);
         let found = self.stepping.solve(force, gap, &state.contact_set)?;
         let displacement = plus(&predicted, 1.0, &found.change);
+        let velocity = plus(&state.velocity, 2.0 / step, &found.change);
         Ok(State {
             steps: state.steps + 1,
-            velocity: plus(&state.velocity, 2.0 / step, &found.change),
+            momentum: problem.mass().mul(&velocity),
+            velocity,
             acceleration: state.acceleration.clone(),
             elastic: stiffness.mul(&displacement),
             displacement,

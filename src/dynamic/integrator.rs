@@ -84,6 +84,7 @@ impl Integrator {
             velocity: problem.velocity().to_vec(),
             acceleration: vec![0.0; problem.contact().dofs()],
             elastic: problem.contact().stiffness().mul(problem.displacement()),
+            momentum: problem.mass().mul(problem.velocity()),
             multiplier: vec![0.0; rows],
             contact_set: ContactSet::from_fn(rows, |row| violation[row] >= -ROUNDING * reach),
         };
@@ -130,6 +131,7 @@ impl Integrator {
             ("velocity", state.velocity.len(), dofs, "dofs"),
             ("acceleration", state.acceleration.len(), dofs, "dofs"),
             ("elastic forces", state.elastic.len(), dofs, "dofs"),
+            ("momentum", state.momentum.len(), dofs, "dofs"),
             ("multiplier", state.multiplier.len(), rows, "contact rows"),
             ("contact set", state.contact_set.rows(), rows, "contact rows"),
         ];
@@ -157,14 +159,14 @@ impl Integrator {
 
     /// Energies, force and penetration now.
     pub fn observe(&self) -> Observation {
-        let State { displacement, velocity, elastic, multiplier, contact_set, .. } = &self.state;
+        let State { displacement, velocity, elastic, momentum, multiplier, contact_set, .. } = &self.state;
         let [strain, potential] = self.problem.energies(displacement, elastic, self.time());
         Observation {
             time: self.time(),
             force: multiplier.iter().fold(0.0, |force, lambda| force - lambda),
             closed: contact_set.count(),
             penetration: self.problem.penetration(displacement),
-            kinetic: dot(velocity, &self.problem.mass().mul(velocity)) / 2.0,
+            kinetic: dot(velocity, momentum) / 2.0,
             strain,
             potential,
         }
@@ -198,13 +200,16 @@ impl Stepping {
 
     /// Solves with a force and gaps, from the set of the last step.
     pub fn solve(&self, force: Vec<f64>, gap: Vec<f64>, start: &ContactSet) -> Result<Found, Error> {
-        let boundary = self.prepared.boundary_at(force, gap, Some(start), &self.settings)?;
+        let boundary = self.prepared.step_at(force, gap, start, &self.settings)?;
         let change = boundary.displacement();
         Ok(Found { change, multiplier: boundary.multiplier, contact_set: boundary.contact_set })
     }
-}
 
-impl Stepping {
+    /// The change that a force alone causes, as if no row were closed; `None` without a factor of the matrix.
+    pub fn response(&self, force: Vec<f64>) -> Result<Option<Vec<f64>>, Error> {
+        self.prepared.response(force)
+    }
+
     /// The change of the displacement alone; certified only where the method did not settle on a set.
     pub fn change(&self, force: Vec<f64>, gap: Vec<f64>, start: &ContactSet) -> Result<Vec<f64>, Error> {
         match self.prepared.settled_at(force.clone(), gap.clone(), start, &self.settings)? {

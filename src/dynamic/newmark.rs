@@ -79,9 +79,11 @@ impl Advance for Newmark {
         let gap = problem.remaining_gap(&predicted);
         let found = self.stepping.solve(force, gap, &state.contact_set)?;
         let displacement = plus(&predicted, 1.0, &found.change);
+        let velocity = plus(&predicted_velocity, gamma / (beta * step), &found.change);
         Ok(State {
             steps: state.steps + 1,
-            velocity: plus(&predicted_velocity, gamma / (beta * step), &found.change),
+            momentum: problem.mass().mul(&velocity),
+            velocity,
             acceleration: found.change.iter().map(|w| w / (beta * step * step)).collect(),
             elastic: stiffness.mul(&displacement),
             displacement,

@@ -130,6 +130,12 @@ impl DynamicProblem {
         &self.velocity
     }
 
+    /// The kinetic energy at the start and the work of deformation, `(v'M v + u'K u)/2`.
+    pub fn initial_energy(&self) -> f64 {
+        let [u, v] = [&self.displacement, &self.velocity];
+        (dot(v, &self.mass.mul(v)) + dot(u, &self.contact.stiffness().mul(u))) / 2.0
+    }
+
     /// The load at time `t`, length n.
     pub fn load_at(&self, t: f64) -> Vec<f64> {
         let mut load = self.contact.load().to_vec();

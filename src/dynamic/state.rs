@@ -16,6 +16,8 @@ pub struct State {
     pub acceleration: Vec<f64>,
     /// Elastic forces K u, one entry per dof, in force.
     pub elastic: Vec<f64>,
+    /// Momentum M v, one entry per dof, in mass times length over time.
+    pub momentum: Vec<f64>,
     /// Contact multiplier of the last step, one entry per contact row, in force, `<= 0`.
     pub multiplier: Vec<f64>,
     /// Rows that were closed in the last step: where the search of the next one starts.

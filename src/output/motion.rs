@@ -2,6 +2,7 @@
 //!
 //! Everything is written at the end of a frame: the lines of the history since the last one, the fields, the list of the
 //! series, and last of all the checkpoint. Whenever a run is stopped, what is there can be read, and can be gone on from.
+//! Nothing that is kept grows with the number of steps.
 
 use std::fmt::Write as _;
 use std::fs::OpenOptions;
@@ -24,6 +25,9 @@ use crate::study::MotionSummary;
 const HISTORY: &str = "history.csv";
 const CHECKPOINT: &str = "checkpoint.json";
 const HEADING: &str = "time,force,closed,penetration,kinetic,strain,potential,energy\n";
+
+/// Lines of the history are written at every frame, and in between where they have come to so many bytes.
+const MOST_BYTES: usize = 1 << 16;
 
 /// Points of a plot over time; of more steps some are left out.
 const MOST_POINTS: usize = 4000;
@@ -63,6 +67,7 @@ struct Checkpoint {
     velocity: Vec<f64>,
     acceleration: Vec<f64>,
     elastic: Vec<f64>,
+    momentum: Vec<f64>,
     multiplier: Vec<f64>,
     closed: Vec<usize>,
     history_bytes: u64,
@@ -87,7 +92,7 @@ impl MotionFolder {
             _ => {}
         }
         write_atomically(&folder.join(HISTORY), HEADING.as_bytes())?;
-        run.observe(first);
+        run.observe(first)?;
         Ok(run)
     }
 
@@ -126,6 +131,7 @@ impl MotionFolder {
             velocity: found.velocity,
             acceleration: found.acceleration,
             elastic: found.elastic,
+            momentum: found.momentum,
             multiplier: found.multiplier,
             contact_set,
         };
@@ -140,20 +146,21 @@ impl MotionFolder {
     }
 
     /// One more line of the history.
-    pub fn observe(&mut self, seen: &Observation) {
+    ///
+    /// # Errors
+    /// [`Error::File`].
+    pub fn observe(&mut self, seen: &Observation) -> Result<(), Error> {
         let Observation { time, force, closed, penetration, kinetic, strain, potential } = seen;
         let energy = seen.energy();
         let _ = writeln!(
             self.lines,
             "{time:e},{force:e},{closed},{penetration:e},{kinetic:e},{strain:e},{potential:e},{energy:e}"
         );
+        if self.lines.len() > MOST_BYTES { self.write_lines() } else { Ok(()) }
     }
 
-    /// Writes a frame of the series, the lines of the history up to it, and the checkpoint.
-    ///
-    /// # Errors
-    /// [`Error::File`], and those of the recovery of stresses.
-    pub fn frame(&mut self, model: &Model, time: f64, state: &State, summary: &MotionSummary) -> Result<(), Error> {
+    /// Appends the lines that are not written yet.
+    fn write_lines(&mut self) -> Result<(), Error> {
         let path = self.folder.join(HISTORY);
         let appended = OpenOptions::new().append(true).open(&path).and_then(|mut file| {
             file.write_all(self.lines.as_bytes())?;
@@ -162,7 +169,15 @@ impl MotionFolder {
         appended.map_err(|source| Error::File { action: "write", path, source })?;
         self.written += self.lines.len() as u64;
         self.lines.clear();
+        Ok(())
+    }
 
+    /// Writes a frame of the series, the lines of the history up to it, and the checkpoint.
+    ///
+    /// # Errors
+    /// [`Error::File`], and those of the recovery of stresses.
+    pub fn frame(&mut self, model: &Model, time: f64, state: &State, summary: &MotionSummary) -> Result<(), Error> {
+        self.write_lines()?;
         let (number, closed) = (self.times.len(), state.contact_set.iter().collect::<Vec<usize>>());
         let vtu = fields(model, &state.displacement, &state.multiplier, &state.contact_set)?;
         write_atomically(&self.folder.join(vtu_name(number)), vtu.as_bytes())?;
@@ -182,6 +197,7 @@ impl MotionFolder {
             velocity: state.velocity.clone(),
             acceleration: state.acceleration.clone(),
             elastic: state.elastic.clone(),
+            momentum: state.momentum.clone(),
             multiplier: state.multiplier.clone(),
             closed,
             history_bytes: self.written,

@@ -149,7 +149,10 @@ impl ContactProblem {
 }
 
 /// Is `load` one of so many dofs?
-fn check_load(load: &[f64], dofs: usize) -> Result<(), Error> {
+///
+/// # Errors
+/// [`Error::Length`], [`Error::NotFinite`].
+pub(crate) fn check_load(load: &[f64], dofs: usize) -> Result<(), Error> {
     if load.len() != dofs {
         return Err(Error::Length { name: "load vector", found: load.len(), expected: dofs, of: "dofs" });
     }

@@ -54,6 +54,7 @@ impl Scene {
     pub fn dynamics(&self, model: &Model) -> Result<Option<Dynamics>, Error> {
         let Some(spec) = self.dynamic() else { return Ok(None) };
         let scheme = spec.scheme();
+        spec.check_parameters()?;
         scheme.check().map_err(in_place)?;
         if !(spec.duration.is_finite() && spec.duration > 0.0) {
             return Err(not_positive("duration", spec.duration));
@@ -118,6 +119,11 @@ impl Scene {
             displacement = projected(model.problem(), mass(MassForm::Lumped)?, &displacement)?;
         }
         let problem = problem.starting_from(displacement, dofs.restrict(&velocity)?)?;
+        let energy = problem.initial_energy();
+        if !energy.is_finite() {
+            let message = format!("displacements and velocities are too large: their energy is {energy}");
+            return Err(wrong(format!("{PATH}.initial"), message));
+        }
         let (step, steps) = spec.steps(body, &problem, scheme)?;
         let name = scheme.name();
         let warnings = scheme.gains_energy().then_some(Warning::GainsEnergy { scheme: name }).into_iter().collect();
@@ -138,6 +144,23 @@ impl DynamicSpec {
         }
     }
 
+    /// Is every parameter that is given one of the scheme?
+    fn check_parameters(&self) -> Result<(), Error> {
+        let parameters = [
+            ("alpha", self.alpha, "hht"),
+            ("penalty", self.penalty, "penalty"),
+            ("restitution", self.restitution, "central-difference"),
+        ];
+        let chosen = self.scheme().name();
+        match parameters.into_iter().find(|&(_, value, scheme)| value.is_some() && scheme != chosen) {
+            Some((name, _, scheme)) => {
+                let message = format!("only the scheme `{scheme}` has it; this is `{chosen}`");
+                Err(wrong(format!("{PATH}.{name}"), message))
+            }
+            None => Ok(()),
+        }
+    }
+
     fn changes(&self, load: usize) -> bool {
         self.loads_in_time.iter().any(|changing| changing.load == load)
     }
@@ -147,7 +170,7 @@ impl DynamicSpec {
         let stable = if scheme.is_explicit() { Some(stable_step(problem)?) } else { None };
         let counted = |step: f64, count: f64| {
             if count > MOST_STEPS {
-                let message = format!("{count:.0} steps of {} never end; take a longer step", number(step));
+                let message = format!("{count:.2e} steps of {} never end; take a longer step", number(step));
                 return Err(wrong(format!("{PATH}.step"), message));
             }
             Ok((step, (count as usize).max(1)))
@@ -317,11 +340,9 @@ fn deepest(model: &Model, displacement: &[f64]) -> Option<Error> {
     let row = model.rows()[row];
     let at = point(&model.mesh().nodes()[row.node][..model.mesh().dimension()]);
     let message = format!(
-        "node {} at {at} starts {} inside obstacles[{}]; lift the body, move the obstacle, or set \
+        "node {} at {at} starts {depth:.3e} inside obstacles[{}]; lift the body, move the obstacle, or set \
          `initial-penetration` to `project`",
-        row.node,
-        number(depth),
-        row.obstacle
+        row.node, row.obstacle
     );
     Some(wrong(format!("{PATH}.initial"), message))
 }

@@ -10,6 +10,7 @@ mod prepared;
 mod refinement;
 mod rules;
 mod settings;
+mod stepping;
 
 pub use crate::method::mprgp::Start;
 pub use crate::method::parametric::{Event, Piece};

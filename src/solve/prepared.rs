@@ -10,7 +10,7 @@ use super::{Condense, Method, Path, Settings, run};
 use crate::error::Error;
 use crate::method::parametric::Compliance;
 use crate::method::{ScaledProblem, active_set, interior_point};
-use crate::problem::{ContactProblem, EnergyNorm, check_gap};
+use crate::problem::{ContactProblem, EnergyNorm, check_gap, check_load};
 use crate::solution::{ContactSet, Iteration, Seconds, Solution};
 use crate::sparse::{AugmentedMatrix, Equilibration, dot, largest, ldexp};
 use crate::transform::{Condensation, RowSelection, Scaling};
@@ -110,7 +110,7 @@ impl Prepared {
         settings: &Settings,
     ) -> Result<Solution, Error> {
         let settings = &settings.started()?;
-        let loading = self.other_load(load)?;
+        let loading = self.other_load(load, self.problem.gap())?;
         self.complete(self.find(loading, self.problem.gap().to_vec(), start, settings)?, settings)
     }
 
@@ -155,25 +155,8 @@ impl Prepared {
         settings: &Settings,
     ) -> Result<BoundarySolution<'_>, Error> {
         let settings = &settings.started()?;
-        let loading = self.load(self.problem.with(load, gap.clone())?.load().to_vec(), &gap);
+        let loading = self.other_load(load, &gap)?;
         self.on_boundary(self.find(loading, gap, start, settings)?, settings)
-    }
-
-    /// The displacement with another load and other gaps, without a certificate; `None` where the method did not settle on
-    /// a set.
-    ///
-    /// # Errors
-    /// As [`Prepared::boundary_at`].
-    pub(crate) fn settled_at(
-        &self,
-        load: Vec<f64>,
-        gap: Vec<f64>,
-        start: &ContactSet,
-        settings: &Settings,
-    ) -> Result<Option<Vec<f64>>, Error> {
-        let loading = self.load(self.problem.with(load, gap.clone())?.load().to_vec(), &gap);
-        let found = self.find(loading, gap, Some(start), settings)?;
-        Ok(found.outcome.settled.then(|| self.displacement(&found)))
     }
 
     /// The exact path of the answer while the gaps move from `from` to `to` (length m each) on a straight line.
@@ -211,7 +194,7 @@ impl Prepared {
     }
 
     /// Runs the method of `settings`, on the contact boundary where the problem is condensed.
-    fn find(
+    pub(super) fn find(
         &self,
         loading: Arc<Loading>,
         gap: Vec<f64>,
@@ -257,12 +240,22 @@ impl Prepared {
 
     /// The answer on the boundary, certified there.
     fn on_boundary(&self, found: Found, settings: &Settings) -> Result<BoundarySolution<'_>, Error> {
+        self.judged(found, settings, true)
+    }
+
+    /// The answer on the boundary, its conditions recomputed there, and its error bound where it is `bounded`.
+    pub(super) fn judged(
+        &self,
+        found: Found,
+        settings: &Settings,
+        bounded: bool,
+    ) -> Result<BoundarySolution<'_>, Error> {
         let Found { problem, unit, outcome, .. } = &found;
         let condensed_certificate = if self.is_single() {
             // The condensed problem is that of the last step only.
             self.complete(found.clone(), settings)?.certificate
         } else {
-            let norm = self.condensed_norm(problem)?;
+            let norm = if bounded { self.condensed_norm(problem)? } else { None };
             problem.certify_in(norm, &outcome.displacement, &outcome.multiplier)?
         };
         if !settings.goal().is_met_by(&condensed_certificate) {
@@ -397,9 +390,10 @@ impl Prepared {
         self.loading.get_or_init(|| self.load(self.problem.load().to_vec(), self.problem.gap())).clone()
     }
 
-    fn other_load(&self, load: Vec<f64>) -> Result<Arc<Loading>, Error> {
-        let checked = self.problem.with_load(load)?;
-        Ok(self.load(checked.load().to_vec(), self.problem.gap()))
+    pub(super) fn other_load(&self, load: Vec<f64>, gap: &[f64]) -> Result<Arc<Loading>, Error> {
+        check_load(&load, self.dofs())?;
+        check_gap(gap, self.problem.rows())?;
+        Ok(self.load(load, gap))
     }
 
     /// The problem that the methods work on, and the exponent of its reference displacement.

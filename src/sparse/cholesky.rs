@@ -245,7 +245,7 @@ impl Cholesky {
     /// The solution x of A x = b, length `dim`. Should faer fail, or b not fit, then nothing in x is a number, which no
     /// certificate accepts.
     pub fn solve(&self, b: &[f64]) -> Vec<f64> {
-        by_precision!(self.values, values => factor::solve(&self.analysis.symbolic, values, b))
+        by_precision!(self.values, values => factor::solve(&self.analysis.symbolic, values, b.to_vec()))
     }
 
     /// `b' A^-1 b`: the squared length of L^-1 P b, by one sweep where a solution takes two.
@@ -259,11 +259,11 @@ impl Cholesky {
     pub fn forward(&self, b: &[f64]) -> Vec<f64> {
         let Some(nodes) = self.analysis.supernodes() else { return Vec::new() };
         let ordered: Vec<f64> = self.order().iter().map(|&column| b.get(column).copied().unwrap_or(f64::NAN)).collect();
-        by_precision!(self.values, values => factor::forward(nodes, values, &ordered))
+        by_precision!(self.values, values => factor::forward(nodes, values, ordered))
     }
 
     /// The sweep L' P x = y, `y` in the order of elimination, `x` in that of the matrix.
-    pub fn backward(&self, y: &[f64]) -> Vec<f64> {
+    pub fn backward(&self, y: Vec<f64>) -> Vec<f64> {
         let Some(nodes) = self.analysis.supernodes() else { return Vec::new() };
         let ordered = by_precision!(self.values, values => factor::backward(nodes, values, y));
         let mut x = vec![0.0; ordered.len()];

@@ -18,8 +18,11 @@ pub(super) trait Real: RealField + Copy + Into<f64> {
     /// The nearest value.
     fn rounded(value: f64) -> Self;
 
-    /// The exponent by which loads are scaled; doubles are taken as they are.
-    fn unit(load: &[f64]) -> i32;
+    /// A load, scaled by a power of two and rounded, and the exponent of its unit; doubles are taken as they are.
+    fn scaled(load: Vec<f64>) -> (Vec<Self>, i32);
+
+    /// The answer to a load of that unit.
+    fn unscaled(answer: Vec<Self>, unit: i32) -> Vec<f64>;
 }
 
 impl Real for f64 {
@@ -27,8 +30,12 @@ impl Real for f64 {
         value
     }
 
-    fn unit(_: &[f64]) -> i32 {
-        0
+    fn scaled(load: Vec<f64>) -> (Vec<f64>, i32) {
+        (load, 0)
+    }
+
+    fn unscaled(answer: Vec<f64>, _: i32) -> Vec<f64> {
+        answer
     }
 }
 
@@ -37,8 +44,13 @@ impl Real for f32 {
         value as f32
     }
 
-    fn unit(load: &[f64]) -> i32 {
-        exponent(largest(load))
+    fn scaled(load: Vec<f64>) -> (Vec<f32>, i32) {
+        let unit = exponent(largest(&load));
+        (load.into_iter().map(|value| ldexp(value, -unit) as f32).collect(), unit)
+    }
+
+    fn unscaled(answer: Vec<f32>, unit: i32) -> Vec<f64> {
+        answer.into_iter().map(|value| ldexp(value.into(), unit)).collect()
     }
 }
 
@@ -99,13 +111,12 @@ fn pivots<T: Real>(supernodes: &supernodal::SymbolicSupernodalCholesky<usize>, v
 /// A vector on its way through a factor of `dim` columns: scaled and rounded on the way in, back to doubles on the way
 /// out. Should it fail, or the vector not fit, then nothing in it is a number.
 fn swept<T: Real>(
-    load: &[f64],
+    load: Vec<f64>,
     dim: usize,
     scratch: faer::dyn_stack::StackReq,
     sweep: impl FnOnce(MatMut<T>, &mut MemStack),
 ) -> Vec<f64> {
-    let unit = T::unit(load);
-    let mut x: Vec<T> = load.iter().map(|&value| T::rounded(ldexp(value, -unit))).collect();
+    let (mut x, unit) = T::scaled(load);
     let rows = x.len();
     if rows != dim {
         return vec![f64::NAN; rows];
@@ -118,11 +129,11 @@ fn swept<T: Real>(
     if done.is_err() {
         return vec![f64::NAN; rows];
     }
-    x.into_iter().map(|value| ldexp(value.into(), unit)).collect()
+    T::unscaled(x, unit)
 }
 
 /// The solution of L L' x = b, both in the order of the matrix.
-pub(super) fn solve<T: Real>(symbolic: &fc::SymbolicCholesky<usize>, values: &[T], b: &[f64]) -> Vec<f64> {
+pub(super) fn solve<T: Real>(symbolic: &fc::SymbolicCholesky<usize>, values: &[T], b: Vec<f64>) -> Vec<f64> {
     swept::<T>(b, symbolic.nrows(), symbolic.solve_in_place_scratch::<T>(1, Par::Seq), |x, stack| {
         fc::LltRef::new(symbolic, values).solve_in_place_with_conj(Conj::No, x, Par::Seq, stack);
     })
@@ -132,7 +143,7 @@ pub(super) fn solve<T: Real>(symbolic: &fc::SymbolicCholesky<usize>, values: &[T
 pub(super) fn forward<T: Real>(
     nodes: &supernodal::SymbolicSupernodalCholesky<usize>,
     values: &[T],
-    b: &[f64],
+    b: Vec<f64>,
 ) -> Vec<f64> {
     swept::<T>(b, nodes.nrows(), nodes.solve_in_place_scratch::<T>(1, Par::Seq), |y, stack| {
         supernodal::SupernodalLltRef::new(nodes, values).l_solve_with_conj(Conj::No, y, Par::Seq, stack);
@@ -143,7 +154,7 @@ pub(super) fn forward<T: Real>(
 pub(super) fn backward<T: Real>(
     nodes: &supernodal::SymbolicSupernodalCholesky<usize>,
     values: &[T],
-    y: &[f64],
+    y: Vec<f64>,
 ) -> Vec<f64> {
     swept::<T>(y, nodes.nrows(), nodes.solve_in_place_scratch::<T>(1, Par::Seq), |x, stack| {
         supernodal::SupernodalLltRef::new(nodes, values).l_transpose_solve_with_conj(Conj::No, x, Par::Seq, stack);

@@ -138,8 +138,15 @@ impl SparseMatrix {
     /// The entries `(row, value)` of one column.
     #[inline]
     pub fn column(&self, column: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let (rows, values) = self.column_slices(column);
+        rows.iter().copied().zip(values.iter().copied())
+    }
+
+    /// Rows and values of one column.
+    #[inline]
+    fn column_slices(&self, column: usize) -> (&[usize], &[f64]) {
         let range = self.pattern.column_starts[column]..self.pattern.column_starts[column + 1];
-        self.pattern.row_indices[range.clone()].iter().copied().zip(self.values[range].iter().copied())
+        (&self.pattern.row_indices[range.clone()], &self.values[range])
     }
 
     /// All entries `(row, column, value)`, column by column.

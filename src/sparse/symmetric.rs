@@ -180,16 +180,20 @@ impl SymmetricMatrix {
 
     fn product(&self, x: &[f64], entry: impl Fn(f64) -> f64) -> Vec<f64> {
         let mut y = vec![0.0; self.dim()];
-        for column in 0..self.dim() {
+        for (column, &at_column) in x.iter().enumerate().take(self.dim()) {
+            let (mut rows, mut values) = self.lower.column_slices(column);
             let mut sum = 0.0;
-            for (row, value) in self.lower.column(column) {
+            // Rows increase: the diagonal comes first where there is one.
+            if let ([row, rows_below @ ..], [value, values_below @ ..]) = (rows, values)
+                && *row == column
+            {
+                sum += entry(*value) * at_column;
+                (rows, values) = (rows_below, values_below);
+            }
+            for (&row, &value) in rows.iter().zip(values) {
                 let value = entry(value);
-                if row == column {
-                    sum += value * x[column];
-                } else {
-                    sum += value * x[row];
-                    y[row] += value * x[column];
-                }
+                sum += value * x[row];
+                y[row] += value * at_column;
             }
             y[column] += sum;
         }

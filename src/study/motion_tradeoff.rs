@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::dynamic::Integrator;
 use crate::error::Error;
-use crate::scene::{AnalysisSpec, Dynamics, Model, Scene, SchemeSpec};
+use crate::scene::{AnalysisSpec, DynamicSpec, Dynamics, Model, Scene, SchemeSpec};
 use crate::solve::Settings;
 
 /// The schemes, the default first.
@@ -180,18 +180,29 @@ fn run(dynamics: Dynamics, settings: &Settings) -> Result<Run, Error> {
 fn with(scene: &Scene, model: &Model, scheme: SchemeSpec, steps: usize) -> Result<Dynamics, Error> {
     let mut scene = scene.clone();
     if let Some(AnalysisSpec::Dynamic(spec)) = &mut scene.analysis {
-        (spec.scheme, spec.mass, spec.courant) = (scheme, None, None);
+        (spec.mass, spec.courant) = (None, None);
+        take(spec, scheme);
         spec.step = Some(spec.duration / steps as f64);
     }
     let missing = || Error::Scene { path: "analysis".into(), message: "the scene does not move".into() };
     Ok(Dynamics { steps, ..scene.dynamics(model)?.ok_or_else(missing)? })
 }
 
+/// Another scheme, without the parameters of the others.
+fn take(spec: &mut DynamicSpec, scheme: SchemeSpec) {
+    spec.scheme = scheme;
+    let keep = |of: SchemeSpec, value: Option<f64>| value.filter(|_| of == scheme);
+    spec.alpha = keep(SchemeSpec::Hht, spec.alpha);
+    spec.penalty = keep(SchemeSpec::Penalty, spec.penalty);
+    spec.restitution = keep(SchemeSpec::CentralDifference, spec.restitution);
+}
+
 /// The fewest stable steps of the explicit scheme.
 fn fewest_stable(scene: &Scene, model: &Model) -> Result<usize, Error> {
     let mut scene = scene.clone();
     if let Some(AnalysisSpec::Dynamic(spec)) = &mut scene.analysis {
-        (spec.scheme, spec.mass, spec.courant, spec.step) = (SchemeSpec::CentralDifference, None, None, None);
+        (spec.mass, spec.courant, spec.step) = (None, None, None);
+        take(spec, SchemeSpec::CentralDifference);
     }
     Ok(scene.dynamics(model)?.map_or(1, |dynamics| dynamics.steps))
 }

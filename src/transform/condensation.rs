@@ -202,7 +202,7 @@ impl Condensation {
         for (column, entry) in y[first..].iter_mut().enumerate() {
             *entry = (column..size).map(|row| self.trailing[column * size + row] * displacement[row]).sum();
         }
-        let mut expanded = self.cholesky.backward(&y);
+        let mut expanded = self.cholesky.backward(y);
         // The sweep gives these back but for rounding.
         self.contact_dofs.iter().zip(displacement).for_each(|(&dof, &u)| expanded[dof] = u);
         expanded

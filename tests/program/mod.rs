@@ -4,6 +4,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::time::Duration;
 
 use serde_json::Value;
 use tempfile::TempDir;
@@ -73,6 +74,22 @@ impl Desk {
         let mut command = Command::new(env!("CARGO_BIN_EXE_signorini"));
         command.args(arguments).current_dir(self.0.path()).stdin(Stdio::null());
         command
+    }
+
+    /// The largest resident size of the program while it runs, in bytes, as Linux counts it.
+    pub fn peak(&self, arguments: &[&str]) -> f64 {
+        let mut child = self.command(arguments).stdout(Stdio::null()).spawn().unwrap();
+        let status = format!("/proc/{}/status", child.id());
+        let mut peak = 0.0_f64;
+        while child.try_wait().unwrap().is_none() {
+            let text = fs::read_to_string(&status).unwrap_or_default();
+            let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+            let kilobytes = line.and_then(|line| line.split_whitespace().next()?.parse::<f64>().ok());
+            peak = peak.max(1024.0 * kilobytes.unwrap_or(0.0));
+            std::thread::sleep(Duration::from_micros(200));
+        }
+        assert!(child.wait().unwrap().success());
+        peak
     }
 
     pub fn run(&self, arguments: &[&str]) -> Run {
