@@ -16,6 +16,9 @@ use signorini::{Scene, SparseMatrix, SymmetricMatrix};
 /// The estimate and the measured peak may differ by this factor.
 const WITHIN: f64 = 2.0;
 
+/// Without optimisation the program itself takes so many bytes more than the estimate knows.
+const UNOPTIMISED: f64 = if cfg!(debug_assertions) { 11e6 } else { 0.0 };
+
 /// The whole address space of the program, in kB, when it refuses a scene of 1e12 elements; without optimisation its own
 /// code takes 11 MB more.
 const REFUSAL_KILOBYTES: u32 = if cfg!(debug_assertions) { 35_000 } else { 20_000 };
@@ -98,7 +101,7 @@ fn the_estimate_of_memory_is_within_a_factor_of_two_of_the_peak_on_ten_scenes() 
         let text = scene.to_string();
         desk.write("scene.json", &text);
         let estimate = Scene::from_json(&text, "scene").unwrap().size().bytes;
-        let ratio = estimate / desk.peak(&["solve", "scene.json"]);
+        let ratio = (estimate + UNOPTIMISED) / desk.peak(&["solve", "scene.json"]);
         assert!(ratio < WITHIN && ratio > 1.0 / WITHIN, "{ratio:.2} of the peak: {}", scene["body"]);
     }
 }
@@ -134,7 +137,7 @@ fn the_estimate_of_a_problem_directory_is_within_a_factor_of_two_of_the_peak() {
             let arguments: Vec<&str> = ["solve", "p"].into_iter().chain(options.split(' ')).collect();
             let refused = desk.run(&[&arguments[..], &["--max-memory", "1MB"]].concat());
             let estimate = told(&refused.fails_with(1, &["1 MB are allowed", "of the stiffness"]));
-            let ratio = estimate / desk.peak(&arguments);
+            let ratio = (estimate + UNOPTIMISED) / desk.peak(&arguments);
             assert!(ratio < WITHIN && ratio > 1.0 / WITHIN, "{ratio:.2} of the peak: {options:?}, {}", scene["body"]);
         }
         fs::remove_dir_all(desk.path("p")).unwrap();

@@ -61,8 +61,7 @@ fn check() -> Result<(), Anything> {
     let mut worst = 0.0_f64;
     for (name, problem) in training::others()? {
         for accuracy in measure::ACCURACIES {
-            let (best, least) = measure::best(&problem, accuracy)?;
-            let (auto, seconds) = measure::auto(&problem, accuracy)?;
+            let [(best, least), (auto, seconds)] = measure::best_and_auto(&problem, accuracy);
             let ratio = seconds / least;
             worst = worst.max(ratio);
             let (dofs, rows) = (problem.dofs(), problem.rows());

@@ -7,7 +7,8 @@ use signorini::{ContactProblem, Error, Scene, SparseMatrix, SymmetricMatrix};
 
 type Problems = Vec<(String, ContactProblem)>;
 
-/// Blocks, clamped below and pressed on from above, of growing size; strings and membranes over an obstacle.
+/// Blocks, clamped below and pressed on from above, of growing size; strings and membranes over an obstacle, light and
+/// heavy.
 pub fn training() -> Result<Problems, Error> {
     let mut problems = Vec::new();
     for cells in [8, 16, 32, 64, 128, 256] {
@@ -22,11 +23,13 @@ pub fn training() -> Result<Problems, Error> {
     for cells in [4, 6, 8, 12, 16] {
         problems.push((format!("block Hex8 {cells}"), scene(&brick(cells))?));
     }
-    for nodes in [20, 60, 120, 250, 600] {
-        problems.push((format!("string {nodes}"), string(nodes, 0.2)?));
+    for (nodes, weight) in
+        [(20, 0.2), (40, 0.08), (60, 0.2), (120, 0.2), (160, 0.08), (250, 0.2), (500, 0.08), (600, 0.2)]
+    {
+        problems.push((format!("string {nodes} under {weight}"), string(nodes, weight)?));
     }
-    for nodes in [10, 20, 40, 80, 120] {
-        problems.push((format!("membrane {nodes}"), membrane(nodes, 8.0)?));
+    for (nodes, weight) in [(10, 8.0), (20, 8.0), (30, 30.0), (40, 8.0), (80, 8.0), (100, 4.0), (120, 8.0)] {
+        problems.push((format!("membrane {nodes} under {weight}"), membrane(nodes, weight)?));
     }
     Ok(problems)
 }

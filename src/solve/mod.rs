@@ -64,10 +64,10 @@ pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, 
         Choice::Room { reason } => return by_multigrid(problem, settings, reason),
         // What the iteration cannot take, the direct path may, unless there is no time for it.
         Choice::Speed { reason } => match by_multigrid(problem, settings, reason) {
-            Ok(solution) => return Ok(solution),
-            Err(error) if settings.watch.is_stopped() => return Err(error),
-            Err(error @ Error::NotCertified { .. }) if settings.watch.time_left().is_some() => return Err(error),
-            Err(_) => {}
+            Err(Error::NotCertified { .. }) if settings.watch.time_left().is_none() && !settings.watch.is_stopped() => {
+            }
+            Err(Error::Numerical { .. } | Error::NotConvex { .. }) if !settings.watch.is_stopped() => {}
+            decided => return decided,
         },
     }
     let prepared = match Prepared::with_settings(problem, settings) {
