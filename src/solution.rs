@@ -73,19 +73,27 @@ impl fmt::Debug for ContactSet {
 /// How far an answer (u, lambda) is from the conditions that define the solution, each relative and dimensionless.
 ///
 /// Recomputed from the original problem by [`ContactProblem::certify`](crate::ContactProblem::certify), whatever the
-/// method claims. With `fs` the largest of `|f|` and `|B' lambda|`, `us` the largest of `|u|`, of `|B u|`, of the gaps of
-/// closed rows, and of a thousandth of `fs` over the largest stiffness `ks`, `ls` the largest `|lambda|`, and `es` the largest of `u'Ku / 2`, `|f'u|`
-/// and `|g' lambda|` (and `norm_K(u)` at least a thousandth of `fs / sqrt(ks)`):
+/// method claims. Every measure is taken in its own scale. A *part* is a connected component of K and B, without couplings
+/// below 1e-6 of `sqrt(K_ii K_jj)`; with `p` the part of a dof or row,
 ///
-/// | field | formula |
+/// * `N_p = sqrt(u_p' K_pp u_p)` is its energy norm and `F_p` the largest `|F_i| / sqrt(K_ii)` of its loads and contact forces;
+///   where it is at rest, a thousandth of `F_p` stands for `N_p`;
+/// * `E_p` is the largest of `N_p^2 / 2`, `|f' u|_p` and `|g' lambda|_p`;
+/// * `b_i` is the largest `|B_ij| / sqrt(K_jj)` of row i.
+///
+/// Residuals `r = f + B' lambda - K u` and distances `B u - g` are summed with twice the working precision.
+///
+/// | field | formula, the largest over all dofs, rows or parts |
 /// |---|---|
-/// | `stationarity` | `max abs(K u - f - B' lambda) / fs` |
-/// | `stationarity_excess` | the same over the dofs where rounding u to double precision does not explain the residual, or explains more than 1e-7 of `fs` |
-/// | `penetration` | `max (B u - g)_+ / us` |
-/// | `adhesion` | `max (lambda)_+ / ls` |
-/// | `complementarity` | `max abs(lambda (B u - g)) / (ls us)` |
-/// | `duality_gap` | `abs(u'Ku - f'u - lambda'g) / es`, with the residual as far as it exceeds rounding |
-/// | `energy_error_bound` | an upper bound on `norm_K(u - u*) / norm_K(u)`, infinite where K is not positive definite |
+/// | `stationarity` | `abs(r_i) / sqrt(K_ii) / F_p` |
+/// | `stationarity_excess` | the same where rounding u and lambda to double precision does not explain it |
+/// | `penetration` | `(B u - g)_i+ / max(|B_i| |u|, |g_i|, b_i N_p)` |
+/// | `adhesion` | `(lambda_i)_+ b_i / F_p` |
+/// | `complementarity` | `abs(lambda_i (B u - g)_i) / E_p`, where rounding u does not explain the distance |
+/// | `duality_gap` | `abs(u'Ku - f'u - lambda'g)_p / E_p`, as far as it exceeds rounding |
+/// | `energy_error_bound` | an upper bound on `norm_K(u - u*) / norm_K(u)`, infinite where none is known |
+/// | `part_error_bound` | the largest of it and of the same for each part |
+/// | `energy_error_excess` | the same where rounding u to double precision does not explain it |
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Certificate {
     /// Relative imbalance of forces.
@@ -102,13 +110,19 @@ pub struct Certificate {
     pub duality_gap: f64,
     /// Upper bound on the relative error of the displacement in the energy norm; infinite where none is known.
     pub energy_error_bound: f64,
+    /// The largest such bound over the whole and each part; that of the whole where K was not factorised.
+    pub part_error_bound: f64,
+    /// The same over those whose bound is more than what rounding the displacement to double precision may cost.
+    pub energy_error_excess: f64,
+    /// Number of parts.
+    pub parts: usize,
     /// Does the bound rest on a measured eigenvalue, because K was not factorised? It is the least Ritz value of K with its
     /// multigrid cycle, of which half is taken.
     pub bound_is_measured: bool,
 }
 
 impl Certificate {
-    /// The conditions with their names, in the order of the fields: what is held against a tolerance.
+    /// The conditions with their names, in the order of the fields: what is held against a tolerance beside the bound.
     pub fn conditions(&self) -> [(&'static str, f64); 5] {
         [
             ("stationarity", self.stationarity_excess),
@@ -119,29 +133,46 @@ impl Certificate {
         ]
     }
 
-    /// The condition that is worst, and its value; a value that is not a number is the worst of all.
+    /// Returns the condition that is worst, and its value; a value that is not a number is the worst of all.
     ///
-    /// The square of the energy bound, where there is one, stands beside the conditions, as [`meets`](Self::meets)
-    /// holds it against the tolerance.
+    /// The energy bound, where there is one and it is more than rounding, stands beside the conditions.
     pub fn worst(&self) -> (&'static str, f64) {
         let rank = |value: f64| if value.is_nan() { f64::INFINITY } else { value };
-        let bound = self.energy_error_bound;
-        let squared = (!bound.is_infinite()).then_some(("energy_error_bound squared", bound * bound));
-        squared
+        let bound = self.has_bound().then_some((self.bound_name(), self.energy_error_excess));
+        bound
             .into_iter()
             .chain(self.conditions())
             .max_by(|a, b| rank(a.1).total_cmp(&rank(b.1)))
             .unwrap_or(("stationarity", 0.0))
     }
 
-    /// Do all conditions hold to `tolerance`, and does the energy bound, where there is one, agree?
-    ///
-    /// The square of the energy bound is a duality gap (of a repaired feasible pair), so it is the square that is held
-    /// against the tolerance.
-    pub fn meets(&self, tolerance: f64) -> bool {
-        let bound = self.energy_error_bound;
+    fn bound_name(&self) -> &'static str {
+        if self.part_error_bound > self.energy_error_bound {
+            "energy_error_bound of a part"
+        } else {
+            "energy_error_bound"
+        }
+    }
+
+    /// Is an upper bound on the error known?
+    pub fn has_bound(&self) -> bool {
+        !self.energy_error_bound.is_infinite()
+    }
+
+    /// Do all conditions hold to `tolerance`? This says nothing about the error of the displacement.
+    pub fn conditions_hold(&self, tolerance: f64) -> bool {
         self.conditions().iter().all(|&(_, value)| value <= tolerance)
-            && (bound.is_infinite() || bound * bound <= tolerance)
+    }
+
+    /// Do all conditions hold to `tolerance`, and is the energy bound at most `tolerance`, for the whole and for every part,
+    /// or explained by rounding the displacement to double precision?
+    pub fn meets(&self, tolerance: f64) -> bool {
+        self.conditions_hold(tolerance) && self.has_bound() && self.energy_error_excess <= tolerance
+    }
+
+    /// Does the answer meet `tolerance` only because rounding the displacement to double precision explains its bound?
+    pub fn is_rounded(&self, tolerance: f64) -> bool {
+        self.meets(tolerance) && self.part_error_bound > tolerance
     }
 }
 
@@ -170,7 +201,7 @@ impl Goal {
     /// Does an answer with this certificate reach the goal?
     pub fn is_met_by(&self, certificate: &Certificate) -> bool {
         match self.accuracy_for(certificate) {
-            Some(accuracy) => certificate.energy_error_bound <= accuracy,
+            Some(accuracy) => certificate.part_error_bound <= accuracy,
             None => certificate.meets(self.tolerance),
         }
     }
@@ -178,7 +209,10 @@ impl Goal {
     /// What decides: the condition, its value, and what is allowed.
     pub fn decisive(&self, certificate: &Certificate) -> (&'static str, f64, f64) {
         match self.accuracy_for(certificate) {
-            Some(accuracy) => ("reachable energy_error_bound", certificate.energy_error_bound, accuracy),
+            Some(accuracy) => ("reachable energy_error_bound", certificate.part_error_bound, accuracy),
+            None if certificate.conditions_hold(self.tolerance) && !certificate.has_bound() => {
+                ("energy_error_bound, of which none is known,", f64::INFINITY, self.tolerance)
+            }
             None => {
                 let (condition, value) = certificate.worst();
                 (condition, value, self.tolerance)

@@ -105,7 +105,11 @@ fn the_bound_is_near_the_error_on_every_example() {
 
 #[test]
 fn the_bound_is_near_the_error_on_a_thousand_random_problems() {
-    check((0..1000).flat_map(|seed| ratios(&format!("random {seed}"), &springs(seed))).collect());
+    check(
+        (if std::env::var("ONE").is_ok() { 135..136 } else { 0..1000 })
+            .flat_map(|seed| ratios(&format!("random {seed}"), &springs(seed)))
+            .collect(),
+    );
 }
 
 /// A string over an obstacle, every node a candidate: too many for a dense boundary, so that rows are repaired one by one.

@@ -1,25 +1,17 @@
 //! The certificate: every condition of the solution recomputed from the original problem.
 
-use super::energy_bound::Answer;
+use super::energy_bound::{Answer, ErrorBound};
+use super::parts::Parts;
+use super::scales::{Forces, Scales, larger, relative};
 use super::{ContactProblem, EnergyNorm};
 use crate::error::Error;
 use crate::solution::Certificate;
 use crate::sparse::multigrid::Multigrid;
 use crate::sparse::{Accumulator, dot};
 
-/// Rounding u to double precision and summing a sparse row leaves a residual of about this many units in the last
-/// place of its largest term; below it a residual says nothing about the answer.
-const ROUNDING: f64 = 8.0 * f64::EPSILON;
-
-/// One unit in the last place, as a share of [`ROUNDING`].
-const UNIT_ROUNDING: f64 = 1.0 / 8.0;
-
-/// Rounding excuses no more of an imbalance than this share of the forces: where the displacement is so large, or the
-/// stiffness so uneven, that it would explain more, the multipliers have lost as many digits.
-const EXCUSED: f64 = 1e-7;
-
-/// A displacement below this share of force over stiffness is zero but for rounding.
-const NOTHING: f64 = 1e-3;
+/// Rounding moves an entry of u or lambda by half a unit in the last place; what a sum of such errors may be is excused
+/// twice, once for the rounding and once for the arithmetic that made the entry.
+const ROUNDING: f64 = f64::EPSILON;
 
 /// What bounds the error in energy.
 #[derive(Clone, Copy)]
@@ -28,30 +20,24 @@ enum Bounding<'a> {
     Cycles(&'a Multigrid),
 }
 
-fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
-    values.into_iter().fold(0.0, |largest: f64, value| if value.abs() > largest { value.abs() } else { largest })
-}
-
-/// `f + B' lambda - K u` with what rounding may have hidden of it: an error of one unit in the last place of each sum's
-/// terms, of one sign or the other by turns.
-fn with_rounding(residual: &[f64], rounding: &[f64]) -> Vec<f64> {
-    let sign = |dof: usize| if dof.wrapping_mul(0x9e37_79b9) >> 16 & 1 == 0 { 1.0 } else { -1.0 };
-    residual.iter().zip(rounding).enumerate().map(|(dof, (r, limit))| sign(dof) * limit * UNIT_ROUNDING - r).collect()
-}
-
-/// `value / scale`, where nothing over nothing is nothing.
-fn relative(value: f64, scale: f64) -> f64 {
-    if value == 0.0 { 0.0 } else { value / scale }
+fn worst(values: impl IntoIterator<Item = f64>) -> f64 {
+    values.into_iter().fold(0.0, |worst, value| larger(value.abs(), worst))
 }
 
 impl ContactProblem {
-    /// The certificate of an answer (u, lambda), with the energy bound where K is positive definite.
+    /// The certificate of an answer (u, lambda), with the energy bound where K is positive definite or the rows that press
+    /// hold the body.
     ///
     /// # Errors
     /// [`Error::Length`] for vectors that do not fit, [`Error::Numerical`] when the factorisation of K fails for want
     /// of memory.
     pub fn certify(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Certificate, Error> {
-        self.certify_in(EnergyNorm::of(&self.stiffness, &self.contact)?.as_ref(), displacement, multiplier)
+        self.check_answer(displacement, multiplier)?;
+        if let Some(units) = self.far_units(displacement) {
+            return self.in_units(&units)?.certify(&units.displacement(displacement), &units.force(multiplier));
+        }
+        let norm = self.energy_norm(displacement, multiplier)?;
+        self.certify_in(norm.as_ref(), displacement, multiplier)
     }
 
     /// As [`ContactProblem::certify`], in an energy norm that is at hand.
@@ -92,60 +78,73 @@ impl ContactProblem {
     }
 
     fn recomputed(&self, bounding: Option<Bounding>, u: &[f64], lambda: &[f64]) -> Certificate {
-        let elastic = self.stiffness.mul(u);
+        let parts = self.parts();
         let contact = self.contact.mul_transposed(lambda);
-        let rounding = self.rounding(u, lambda);
-        let residual: Vec<f64> = (0..self.dofs()).map(|dof| elastic[dof] - self.load[dof] - contact[dof]).collect();
-        let violation = self.violation(u);
-        let bound_rows = || (0..self.rows()).filter(|&row| self.gap[row].is_finite());
-        // lambda (B u - g) = lambda B u - lambda g; a row without obstacle carries no multiplier.
-        let products: Vec<f64> =
-            (0..self.rows()).map(|row| if lambda[row] == 0.0 { 0.0 } else { lambda[row] * violation[row] }).collect();
+        let residual = self.accurate_residual(u, lambda);
+        let elastic: Vec<f64> = (0..self.dofs()).map(|dof| self.load[dof] + contact[dof] - residual[dof]).collect();
+        let violation = self.accurate_violation(u);
+        let terms = self.stiffness.mul_abs(u);
+        let contact_terms =
+            self.contact.abs().mul_transposed(&lambda.iter().map(|value| value.abs()).collect::<Vec<_>>());
+        let lengths = self.contact.abs().mul(&u.iter().map(|value| value.abs()).collect::<Vec<_>>());
+        let scales = Scales::of(
+            self,
+            parts,
+            &Forces { displacement: u, multiplier: lambda, contact: &contact, elastic: &elastic },
+        );
 
-        let force_scale = largest(self.load.iter().copied()).max(largest(contact.iter().copied()));
-        let explained = |r: f64, limit: f64| r.abs() <= limit.min(EXCUSED * force_scale);
-        let excess: Vec<f64> =
-            residual.iter().zip(&rounding).map(|(&r, &limit)| if explained(r, limit) { 0.0 } else { r }).collect();
-        let closed_gaps = bound_rows().filter(|&row| lambda[row] != 0.0 || violation[row] > 0.0);
-        // Where the displacement is zero but for rounding, errors are measured by what the forces do to the largest
-        // stiffness of the body.
-        let stiffness_scale = largest(self.stiffness.diagonal());
-        let static_reach = if stiffness_scale > 0.0 { NOTHING * force_scale / stiffness_scale } else { 0.0 };
-        let length_scale =
-            largest(self.contact.mul(u)).max(largest(closed_gaps.map(|row| self.gap[row]))).max(static_reach);
-        let multiplier_scale = largest(lambda.iter().copied());
-        let work_of_gap: f64 = bound_rows().map(|row| self.gap[row] * lambda[row]).sum();
-        let static_energy = NOTHING * force_scale * static_reach / 2.0;
-        let strain_energy = (dot(u, &elastic) / 2.0).max(static_energy);
-        let energy_scale = strain_energy.max(dot(&self.load, u).abs()).max(work_of_gap.abs());
-        let gap_of_energies = dot(u, &excess) + products.iter().sum::<f64>();
-
-        Certificate {
-            stationarity: relative(largest(residual.iter().copied()), force_scale),
-            stationarity_excess: relative(largest(excess.iter().copied()), force_scale),
-            penetration: relative(largest(violation.iter().map(|value| value.max(0.0))), length_scale),
-            adhesion: relative(largest(lambda.iter().map(|value| value.max(0.0))), multiplier_scale),
-            complementarity: relative(largest(products.iter().copied()), multiplier_scale * length_scale),
-            duality_gap: relative(gap_of_energies.abs(), energy_scale),
-            energy_error_bound: match bounding {
-                Some(bounding) => {
-                    let is_rounding = excess.iter().all(|&value| value == 0.0);
-                    let residual = if is_rounding {
-                        self.accurate_residual(u, lambda)
-                    } else {
-                        with_rounding(&residual, &rounding)
-                    };
-                    let answer = Answer { displacement: u, multiplier: lambda, residual, violation: &violation };
-                    let bound = match bounding {
-                        Bounding::Factor(norm) => self.energy_error_bound(norm, &answer),
-                        Bounding::Cycles(multigrid) => self.energy_error_bound_by(multigrid, &answer),
-                    };
-                    relative(bound, (2.0 * strain_energy).sqrt())
-                }
-                None => f64::INFINITY,
-            },
+        let is_rounding = |dof: usize| residual[dof].abs() <= ROUNDING * (terms[dof] + contact_terms[dof]);
+        let excess = |dof: usize| if is_rounding(dof) { 0.0 } else { residual[dof] };
+        let share = |dof: usize, force: f64| {
+            let own = larger(self.load[dof].abs(), contact[dof].abs());
+            scales.relative_force(parts, dof, force, own)
+        };
+        // A row without obstacle carries no multiplier; a violation that rounding of u explains does no work.
+        let work = |row: usize| {
+            if lambda[row] == 0.0 || violation[row].abs() <= ROUNDING * lengths[row] {
+                0.0
+            } else {
+                lambda[row] * violation[row]
+            }
+        };
+        let penetration = |row: usize| {
+            let scale = larger(
+                lengths[row],
+                larger(self.gap[row].abs(), scales.size(scales.part_of_row(row)) * scales.reach[row]),
+            );
+            relative(violation[row].max(0.0), scale)
+        };
+        let adhesion = |row: usize| {
+            let force = lambda[row].max(0.0) * scales.reach[row];
+            relative(force, scales.force[scales.part_of_row(row)])
+        };
+        let mut gaps = parts.sums(|dof| -u[dof] * excess(dof));
+        (0..self.rows()).for_each(|row| gaps[scales.part_of_row(row)] += work(row));
+        let rows = || (0..self.rows()).filter(|&row| self.gap[row].is_finite() || lambda[row] != 0.0);
+        let dofs = || 0..self.dofs();
+        let mut certificate = Certificate {
+            stationarity: worst(dofs().map(|dof| share(dof, residual[dof]))),
+            stationarity_excess: worst(dofs().map(|dof| share(dof, excess(dof)))),
+            penetration: worst(rows().map(penetration)),
+            adhesion: worst(rows().map(adhesion)),
+            complementarity: worst(rows().map(|row| relative(work(row), scales.energy[scales.part_of_row(row)]))),
+            duality_gap: worst(gaps.iter().zip(&scales.energy).map(|(&gap, &energy)| relative(gap, energy))),
+            energy_error_bound: f64::INFINITY,
+            part_error_bound: f64::INFINITY,
+            energy_error_excess: f64::INFINITY,
+            parts: parts.count(),
             bound_is_measured: matches!(bounding, Some(Bounding::Cycles(_))),
+        };
+        if let Some(bounding) = bounding {
+            let answer = Answer { displacement: u, multiplier: lambda, residual, violation: &violation };
+            let bound = match bounding {
+                Bounding::Factor(norm) => self.energy_error_bound(norm, &answer),
+                Bounding::Cycles(multigrid) => self.energy_error_bound_by(multigrid, &answer),
+            };
+            let rounding = parts.sums(|dof| u[dof].abs() * terms[dof]);
+            certificate.judge(&bound, &scales, dot(u, &elastic), &rounding);
         }
+        certificate
     }
 
     /// Do the vectors of an answer fit?
@@ -172,11 +171,59 @@ impl ContactProblem {
         sums.into_sums()
     }
 
-    /// What rounding alone can leave of each entry of `K u - f - B' lambda`.
-    fn rounding(&self, u: &[f64], lambda: &[f64]) -> Vec<f64> {
-        let elastic = self.stiffness.mul_abs(u);
-        let magnitude: Vec<f64> = lambda.iter().map(|value| value.abs()).collect();
-        let contact = self.contact.abs().mul_transposed(&magnitude);
-        (0..self.dofs()).map(|dof| ROUNDING * (elastic[dof] + self.load[dof].abs() + contact[dof])).collect()
+    /// `B u - g` of the given doubles, with twice the working precision; `-inf` where there is no obstacle.
+    pub(crate) fn accurate_violation(&self, u: &[f64]) -> Vec<f64> {
+        let start: Vec<f64> = self.gap.iter().map(|&gap| if gap.is_finite() { -gap } else { 0.0 }).collect();
+        let mut sums = Accumulator::new(&start);
+        for (column, &at_column) in u.iter().enumerate() {
+            self.contact.column(column).for_each(|(row, b)| sums.add_product(row, b, at_column));
+        }
+        let sums = sums.into_sums();
+        sums.iter().zip(&self.gap).map(|(&sum, &gap)| if gap.is_finite() { sum } else { f64::NEG_INFINITY }).collect()
+    }
+
+    /// The product with u of the entries `(row, value)` of the lower triangle that `within(column)` gives, and of their
+    /// mirror images, with twice the working precision.
+    pub(super) fn accurate_product<I: Iterator<Item = (usize, f64)>>(
+        &self,
+        within: impl Fn(usize) -> I,
+        u: &[f64],
+    ) -> Vec<f64> {
+        let mut sums = Accumulator::new(&vec![0.0; u.len()]);
+        for (column, &at_column) in u.iter().enumerate() {
+            for (row, value) in within(column) {
+                sums.add_product(row, value, at_column);
+                if row != column {
+                    sums.add_product(column, value, u[row]);
+                }
+            }
+        }
+        sums.into_sums()
+    }
+
+    /// The parts, found when they are first asked for.
+    pub(super) fn parts(&self) -> &Parts {
+        self.parts.get_or_find(|| Parts::of(self))
+    }
+}
+
+impl Certificate {
+    /// Takes in a bound on the error: of the whole and of each part, relative to its own energy norm. An error that rounding
+    /// explains, with `rounding` the sum of `|u_i| (|K| |u|)_i` of each part, is no excess.
+    fn judge(&mut self, bound: &ErrorBound, scales: &Scales, strain: f64, rounding: &[f64]) {
+        let explained = |sum: f64| ROUNDING * sum.sqrt();
+        let unexplained =
+            |error: f64, size: f64, sum: f64| if error <= explained(sum) { 0.0 } else { relative(error, size) };
+        let whole = scales.size_of_whole(strain);
+        self.energy_error_bound = relative(bound.whole, whole);
+        (self.part_error_bound, self.energy_error_excess) =
+            (self.energy_error_bound, unexplained(bound.whole, whole, rounding.iter().sum()));
+        if let Some(of_parts) = &bound.of_parts {
+            for (part, &error) in of_parts.iter().enumerate() {
+                let size = scales.size(part);
+                self.part_error_bound = larger(relative(error, size), self.part_error_bound);
+                self.energy_error_excess = larger(unexplained(error, size, rounding[part]), self.energy_error_excess);
+            }
+        }
     }
 }

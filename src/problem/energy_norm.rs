@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::energy_bound::Springs;
 use crate::error::Error;
 use crate::sparse::{Analysis, Cholesky, Equilibration, FactorError, SparseMatrix, SymmetricMatrix, dot, ldexp};
 
@@ -25,6 +26,8 @@ pub struct EnergyNorm {
     boundary: Option<Arc<Boundary>>,
     /// What a bound in this norm is multiplied with, because the factor is not quite that of K.
     widening: f64,
+    /// The springs that made a singular K definite.
+    springs: Option<Arc<Springs>>,
 }
 
 /// The contact dofs t, eliminated last: their block of the factor is that of the Schur complement.
@@ -71,7 +74,7 @@ impl EnergyNorm {
         let values = last.len().saturating_mul(last.len());
         let worth = !last.is_empty() && values <= FEW_VALUES.max(cholesky.entries());
         let boundary = worth.then(|| Arc::new(Boundary { block: cholesky.trailing_block(), dofs: last }));
-        EnergyNorm { cholesky, equilibration, boundary, widening: 1.0 }
+        EnergyNorm { cholesky, equilibration, boundary, widening: 1.0, springs: None }
     }
 
     /// The energy norm of the equilibrated stiffness itself.
@@ -93,6 +96,7 @@ impl EnergyNorm {
     pub(super) fn with_unit(&self, unit: i32) -> Self {
         let mut norm = self.clone();
         norm.equilibration.factor += unit;
+        norm.springs = norm.springs.map(|springs| Arc::new(springs.in_unit(unit)));
         norm
     }
 
@@ -105,6 +109,23 @@ impl EnergyNorm {
     pub(super) fn of_force(&self, force: &[f64]) -> f64 {
         // K^-1 = c D (c D K D)^-1 D
         ldexp(self.cholesky.inverse_product(&self.scaled(force)), self.equilibration.factor).max(0.0).sqrt()
+    }
+
+    /// The displacement that the force r causes: `K^-1 r`.
+    pub(super) fn displacement(&self, force: &[f64]) -> Vec<f64> {
+        let scaled = self.cholesky.solve(&self.scaled(force));
+        let exponents = self.equilibration.diagonal.iter().map(|d| d + self.equilibration.factor);
+        scaled.iter().zip(exponents).map(|(&value, exponent)| ldexp(value, exponent)).collect()
+    }
+
+    /// The same norm, of a matrix that these springs are part of.
+    pub(super) fn with_springs(self, springs: Springs) -> Self {
+        EnergyNorm { springs: Some(Arc::new(springs)), ..self }
+    }
+
+    /// The springs that made a singular K definite, where there are some.
+    pub(super) fn springs(&self) -> Option<&Springs> {
+        self.springs.as_deref()
     }
 
     /// The contact boundary, where it is known.

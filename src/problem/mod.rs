@@ -5,12 +5,16 @@ mod contradiction;
 mod energy_bound;
 mod energy_norm;
 mod multigrid_bound;
+mod parts;
 mod proof;
+mod scales;
 mod units;
 
 pub use energy_norm::EnergyNorm;
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
+
+use parts::Parts;
 
 use crate::error::Error;
 use crate::sparse::multigrid::NearNullSpace;
@@ -32,13 +36,45 @@ pub struct ContactProblem {
     contact: SparseMatrix,
     gap: Vec<f64>,
     near_null: Option<Arc<NearNullSpace>>,
+    parts: FoundOnce<Parts>,
+}
+
+/// What follows from the matrices of a problem and from which of its rows have an obstacle: found when it is first asked for,
+/// and shared by the same problem under other loads and gaps.
+#[derive(Clone, Debug)]
+struct FoundOnce<T>(Arc<OnceLock<T>>);
+
+impl<T> FoundOnce<T> {
+    fn not_yet() -> Self {
+        FoundOnce(Arc::new(OnceLock::new()))
+    }
+
+    fn get_or_find(&self, find: impl FnOnce() -> T) -> &T {
+        self.0.get_or_init(find)
+    }
+}
+
+impl<T> PartialEq for FoundOnce<T> {
+    /// What follows from equal data is equal.
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+/// Gaps that other QP solvers take for infinite; any other finite gap is a length.
+const NO_OBSTACLE: [f64; 2] = [1e20, 1e30];
+
+/// The gaps with `+inf` for every [`NO_OBSTACLE`].
+fn with_infinite(mut gap: Vec<f64>) -> Vec<f64> {
+    gap.iter_mut().filter(|gap| NO_OBSTACLE.contains(gap)).for_each(|gap| *gap = f64::INFINITY);
+    gap
 }
 
 impl ContactProblem {
     /// The problem of stiffness K (n x n, N/m), load f (n, N), contact rows B (m x n) and initial gaps g (m, m).
     ///
     /// A row of B is positive towards the obstacle. A gap is negative where the obstacle starts inside the body and
-    /// `f64::INFINITY` where there is none.
+    /// `f64::INFINITY`, or exactly 1e20 or 1e30, where there is none.
     ///
     /// # Errors
     /// [`Error::Length`] and [`Error::Shape`] for sizes that do not fit, [`Error::NotFinite`] for a load that is not
@@ -59,7 +95,8 @@ impl ContactProblem {
         if let Some((dof, value)) = stiffness.diagonal().iter().enumerate().find(|entry| *entry.1 < 0.0) {
             return Err(Error::NotConvex { evidence: format!("diagonal entry {dof} is {value:e}, indices from 0") });
         }
-        Ok(ContactProblem { stiffness, load, contact, gap, near_null: None })
+        let gap = with_infinite(gap);
+        Ok(ContactProblem { stiffness, load, contact, gap, near_null: None, parts: FoundOnce::not_yet() })
     }
 
     /// The same problem with what multigrid should know of its body: displacements that cost next to no energy, as the
@@ -135,7 +172,10 @@ impl ContactProblem {
         check_load(&load, self.dofs())?;
         check_gap(&gap, self.rows())?;
         let (stiffness, contact, near_null) = (self.stiffness.clone(), self.contact.clone(), self.near_null.clone());
-        Ok(ContactProblem { stiffness, load, contact, gap, near_null })
+        let gap = with_infinite(gap);
+        let same_rows = gap.iter().zip(&self.gap).all(|(gap, before)| gap.is_finite() == before.is_finite());
+        let parts = if same_rows { self.parts.clone() } else { FoundOnce::not_yet() };
+        Ok(ContactProblem { stiffness, load, contact, gap, near_null, parts })
     }
 
     /// The violation B u - g of each row, length m: positive is penetration; `-inf` where there is no obstacle.

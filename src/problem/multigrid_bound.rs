@@ -10,35 +10,23 @@
 //! are bounds that it keeps, that is rounding. The dual norm comes from the cycles of the hierarchy.
 
 use super::ContactProblem;
-use super::energy_bound::Answer;
+use super::energy_bound::{Answer, ErrorBound};
 use crate::sparse::multigrid::{Multigrid, dual_norm};
 
 impl ContactProblem {
     /// An upper bound on `|u - u*|_K`, as far as [`dual_norm`] finds the least eigenvalue; infinite where it finds none.
-    pub(super) fn energy_error_bound_by(&self, multigrid: &Multigrid, answer: &Answer) -> f64 {
+    pub(super) fn energy_error_bound_by(&self, multigrid: &Multigrid, answer: &Answer) -> ErrorBound {
         let mut residual = answer.residual.clone();
         if answer.multiplier.iter().any(|&lambda| lambda > 0.0) {
             let pulled: Vec<f64> = answer.multiplier.iter().map(|lambda| lambda.max(0.0)).collect();
             residual.iter_mut().zip(self.contact.mul_transposed(&pulled)).for_each(|(r, force)| *r -= force);
         }
-        let Some(dual) = dual_norm(&self.stiffness, multigrid, &residual) else { return f64::INFINITY };
+        let Some(dual) = dual_norm(&self.stiffness, multigrid, &residual) else { return ErrorBound::none() };
         let moved: f64 = (self.lengths_along_rows().iter().zip(answer.violation).zip(answer.multiplier))
             .filter(|((_, violation), lambda)| **violation > 0.0 || **lambda < 0.0)
             .map(|((length, violation), _)| if *violation == 0.0 { 0.0 } else { length * violation.abs() })
             .sum();
         // What moves the answer moves its residual too, by K times that.
-        2.0 * moved + dual.most
-    }
-
-    /// An upper bound on `|b / b'b|_K` of each row b: the motion along the row that it feels as one.
-    fn lengths_along_rows(&self) -> Vec<f64> {
-        let (mut sums, mut squares) = (vec![0.0; self.rows()], vec![0.0; self.rows()]);
-        for (dof, &stiffness) in self.stiffness.diagonal().iter().enumerate() {
-            for (row, b) in self.contact.column(dof) {
-                sums[row] += b.abs() * stiffness.sqrt();
-                squares[row] += b * b;
-            }
-        }
-        sums.iter().zip(&squares).map(|(sum, square)| if *square > 0.0 { sum / square } else { 0.0 }).collect()
+        ErrorBound { whole: 2.0 * moved + dual.most, of_parts: None }
     }
 }

@@ -44,10 +44,10 @@ impl ContactProblem {
             return problem.prove_in(&units.norm(norm), &units.displacement(displacement), &units.force(multiplier));
         }
         let rows = self.rows();
-        let violation = self.violation(displacement);
+        let violation = self.accurate_violation(displacement);
         let residual = self.accurate_residual(displacement, multiplier);
         let answer = Answer { displacement, multiplier, residual, violation: &violation };
-        let error = ROUNDED * self.energy_error_bound(norm, &answer);
+        let error = ROUNDED * self.energy_error_bound(norm, &answer).whole;
         if !error.is_finite() {
             return None;
         }

@@ -11,7 +11,7 @@ use crate::error::Error;
 use crate::method::parametric::Compliance;
 use crate::method::{ScaledProblem, active_set, interior_point};
 use crate::problem::{ContactProblem, EnergyNorm, check_gap, check_load};
-use crate::solution::{ContactSet, Iteration, Seconds, Solution};
+use crate::solution::{Certificate, ContactSet, Iteration, Seconds, Solution};
 use crate::sparse::{AugmentedMatrix, Equilibration, dot, largest, ldexp};
 use crate::transform::{Condensation, RowSelection, Scaling};
 
@@ -255,10 +255,16 @@ impl Prepared {
             // The condensed problem is that of the last step only.
             self.complete(found.clone(), settings)?.certificate
         } else {
-            let norm = if bounded { self.condensed_norm(problem)? } else { None };
-            problem.certify_in(norm, &outcome.displacement, &outcome.multiplier)?
+            match if bounded { self.condensed_norm(problem)? } else { None } {
+                None if bounded => problem.certify(&outcome.displacement, &outcome.multiplier)?,
+                norm => problem.certify_in(norm, &outcome.displacement, &outcome.multiplier)?,
+            }
         };
-        if !settings.goal().is_met_by(&condensed_certificate) {
+        let is_met = match bounded {
+            true => settings.goal().is_met_by(&condensed_certificate),
+            false => condensed_certificate.conditions_hold(settings.tolerance),
+        };
+        if !is_met {
             // The certificate of the whole answer tells what is wrong, unless it knows better.
             self.complete(found.clone(), settings)?;
         }
@@ -311,14 +317,15 @@ impl Prepared {
         };
         let multiplier = self.expand_multiplier(&outcome.multiplier, unit);
         let problem = self.problem.with(loading.load.clone(), gap)?;
-        let certificate = problem.certify_in(norm.as_ref(), &displacement, &multiplier)?;
-        let proven = norm.as_ref().filter(|_| settings.prove && !settings.watch.is_over());
-        let proven = proven.and_then(|norm| problem.prove_in(norm, &displacement, &multiplier));
+        let certificate = match &norm {
+            Some(norm) => problem.certify_in(Some(norm), &displacement, &multiplier)?,
+            None => problem.certify(&displacement, &multiplier)?,
+        };
         let expand_iteration = |step: Iteration| Iteration {
             contact_set: self.selection.expand_set(&step.contact_set),
             penalty: step.penalty,
         };
-        let solution = Solution {
+        let mut solution = Solution {
             displacement,
             multiplier,
             contact_set: self.selection.expand_set(&outcome.contact_set),
@@ -326,12 +333,20 @@ impl Prepared {
             iterations: outcome.iterations,
             history: outcome.history.into_iter().map(expand_iteration).collect(),
             certificate,
-            proven,
+            proven: None,
             refinements: refined.map(|refined| refined.steps),
             reason: None,
             condensed_dofs: self.condensed_dofs(),
             seconds: Seconds { solve: seconds.solve + clock.elapsed().as_secs_f64(), ..seconds },
         };
+        // What a penalty leaves is its own error, which no step with the same penalty takes away.
+        if !self.is_single() && method != Method::Penalty {
+            solution = self.corrected(solution, &problem, settings)?;
+        }
+        let clock = Instant::now();
+        let proven = norm.as_ref().filter(|_| settings.prove && !settings.watch.is_over());
+        solution.proven = proven.and_then(|norm| problem.prove_in(norm, &solution.displacement, &solution.multiplier));
+        solution.seconds.solve += clock.elapsed().as_secs_f64();
         if settings.goal().is_met_by(&solution.certificate) {
             return Ok(solution);
         }
@@ -343,6 +358,19 @@ impl Prepared {
         }
         let (condition, value, tolerance) = settings.goal().decisive(&solution.certificate);
         Err(Error::NotCertified { solution: Box::new(solution), condition, value, tolerance })
+    }
+
+    /// The certificate of an answer to `problem`, this one under some load and gaps.
+    pub(super) fn certificate(
+        &self,
+        problem: &ContactProblem,
+        displacement: &[f64],
+        multiplier: &[f64],
+    ) -> Result<Certificate, Error> {
+        match &self.norm {
+            Some(norm) => problem.certify_in(Some(norm), displacement, multiplier),
+            None => problem.certify(displacement, multiplier),
+        }
     }
 
     /// Displacement and multiplier with the rows of `closed` held at their gaps.

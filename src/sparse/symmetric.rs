@@ -94,6 +94,22 @@ impl SymmetricMatrix {
         Self::from_lower(upper.transposed())
     }
 
+    /// The matrix `A + B' diag(w) B` for rows B (m x n) and weights w (m).
+    ///
+    /// # Errors
+    /// As [`SparseMatrix::from_triplets`].
+    pub fn plus_squares(&self, rows: &SparseMatrix, weights: &[f64]) -> Result<Self, Error> {
+        let by_row = rows.transposed();
+        let mut entries: Vec<(usize, usize, f64)> = self.lower.triplets().collect();
+        for (row, &weight) in weights.iter().enumerate() {
+            for (first, a) in by_row.column(row) {
+                let below = by_row.column(row).filter(|entry| entry.0 >= first);
+                entries.extend(below.map(|(second, b)| (second, first, weight * a * b)));
+            }
+        }
+        Self::from_lower(SparseMatrix::from_triplets(self.dim(), self.dim(), &entries)?)
+    }
+
     /// Number of rows and of columns.
     pub fn dim(&self) -> usize {
         self.lower.columns()

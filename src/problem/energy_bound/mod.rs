@@ -1,0 +1,211 @@
+//! An upper bound on the energy norm of an answer's error, for the whole and for each part.
+//!
+//! For a feasible v and multipliers mu <= 0 with r = f + B' mu - K v,
+//!
+//! ```text
+//! 1/2 |v - u*|_K^2 <= J(v) - D(mu) = 1/2 r' K^-1 r + mu' (B v - g)
+//! ```
+//!
+//! so that `|u - u*|_K <= |u - v|_K + sqrt(r' K^-1 r + 2 mu' (B v - g))`. The pair (v, mu) is the answer repaired: the rows
+//! that look closed are put exactly at their gaps and no other row carries a force, so that the product vanishes.
+//!
+//! Where K is singular, the norm is that of `K_D = K + B_C' D B_C` with rows C that press, which stays the same on motions
+//! that these rows do not feel. With s = g - B u* on C and a = |r| in the dual norm of K_D,
+//!
+//! ```text
+//! |v - u*|_K^2 + sum |mu_i| s_i <= a |v - u*|_{K_D},     |v - u*|_{K_D}^2 = |v - u*|_K^2 + sum D_i s_i^2
+//! ```
+//!
+//! which gives `|v - u*|_K <= a` as long as a is below every `|mu_i| / sqrt(D_i)`; [`Springs::hold`] asks for half of that.
+
+mod boundary;
+mod row_by_row;
+
+use super::parts::Parts;
+use super::{ContactProblem, EnergyNorm};
+use crate::error::Error;
+use crate::sparse::{dot, ldexp};
+
+/// An answer (u, lambda) and what its certificate has computed of it.
+pub(super) struct Answer<'a> {
+    pub displacement: &'a [f64],
+    pub multiplier: &'a [f64],
+    /// f + B' lambda - K u.
+    pub residual: Vec<f64>,
+    /// B u - g.
+    pub violation: &'a [f64],
+}
+
+/// Upper bounds on the energy norm of the error.
+#[derive(Clone, Debug)]
+pub(super) struct ErrorBound {
+    /// `|u - u*|_K`.
+    pub whole: f64,
+    /// The same for each part, where there are several.
+    pub of_parts: Option<Vec<f64>>,
+}
+
+impl ErrorBound {
+    /// No bound.
+    pub fn none() -> Self {
+        ErrorBound { whole: f64::INFINITY, of_parts: None }
+    }
+
+    fn smaller(self, other: Self) -> Self {
+        let parts = |bound: &Self| bound.of_parts.as_ref().map_or(bound.whole, |parts| parts.iter().sum());
+        // What is not a number is worse than anything.
+        if parts(&self) <= parts(&other) || other.whole.is_nan() { self } else { other }
+    }
+
+    fn widened(mut self, factor: f64) -> Self {
+        self.whole *= factor;
+        self.of_parts.iter_mut().flatten().for_each(|bound| *bound *= factor);
+        self
+    }
+}
+
+impl ContactProblem {
+    /// An upper bound on `|u - u*|_K`.
+    pub(super) fn energy_error_bound(&self, norm: &EnergyNorm, answer: &Answer) -> ErrorBound {
+        let closed = self.rows_that_look_closed(answer);
+        let on_boundary = norm.boundary().and_then(|boundary| {
+            let residual =
+                norm.springs().map_or_else(|| answer.residual.clone(), |springs| springs.residual(self, answer));
+            self.bound_on_boundary(norm, boundary, &Answer { residual, ..*answer }, &closed)
+        });
+        let bound = on_boundary.unwrap_or_else(|| {
+            let as_it_stands = self.bound_row_by_row(norm, answer, None);
+            self.bound_row_by_row(norm, answer, Some(&closed)).smaller(as_it_stands)
+        });
+        bound.widened(norm.widening())
+    }
+
+    /// Rows whose force, times their compliance if all else stood still, exceeds their distance.
+    fn rows_that_look_closed(&self, answer: &Answer) -> Vec<bool> {
+        let diagonal = self.stiffness.diagonal();
+        let mut compliance = vec![0.0; self.rows()];
+        for (dof, &stiffness) in diagonal.iter().enumerate() {
+            self.contact
+                .column(dof)
+                .filter(|entry| entry.1 != 0.0)
+                .for_each(|(row, b)| compliance[row] += b * b / stiffness);
+        }
+        let looks = |row: usize| -answer.multiplier[row] * compliance[row] > -answer.violation[row];
+        (0..self.rows()).map(|row| self.gap[row].is_finite() && looks(row)).collect()
+    }
+
+    /// The part of each row; 0 for a row without dofs.
+    fn parts_of_rows(&self, parts: &Parts) -> Vec<usize> {
+        let mut of_rows = vec![0; self.rows()];
+        (0..self.dofs()).for_each(|dof| {
+            self.contact
+                .column(dof)
+                .filter(|entry| entry.1 != 0.0)
+                .for_each(|(row, _)| of_rows[row] = parts.of_dof(dof));
+        });
+        of_rows
+    }
+
+    /// An upper bound on `|b / b'b|_K` of each row b: the motion along the row that it feels as one.
+    pub(super) fn lengths_along_rows(&self) -> Vec<f64> {
+        let (mut sums, mut squares) = (vec![0.0; self.rows()], vec![0.0; self.rows()]);
+        for (dof, &stiffness) in self.stiffness.diagonal().iter().enumerate() {
+            for (row, b) in self.contact.column(dof) {
+                sums[row] += b.abs() * stiffness.sqrt();
+                squares[row] += b * b;
+            }
+        }
+        sums.iter().zip(&squares).map(|(sum, square)| if *square > 0.0 { sum / square } else { 0.0 }).collect()
+    }
+
+    /// The energy norm of a motion.
+    fn length(&self, motion: &[f64]) -> f64 {
+        dot(motion, &self.stiffness.mul(motion)).max(0.0).sqrt()
+    }
+
+    /// The energy norms of a motion by parts, added to `sizes`.
+    fn add_sizes(&self, parts: &Parts, motion: &[f64], sizes: &mut [f64]) {
+        let energies = self.energies(parts, motion);
+        sizes.iter_mut().zip(energies).for_each(|(size, energy)| *size += energy.max(0.0).sqrt());
+    }
+}
+
+/// Springs D on rows C that press: with them a singular K becomes `K_D = K + B_C' D B_C`.
+#[derive(Clone, Debug)]
+pub(super) struct Springs {
+    /// D of each row, zero on rows without a spring.
+    stiffness: Vec<f64>,
+}
+
+/// A row presses where its force could do more than this share of the energy norm of its part.
+const PRESSING: f64 = 1e-8;
+
+impl ContactProblem {
+    /// The energy norm of K or, where K is not definite, of K with springs on the rows that press; `None` where these do not
+    /// hold the body.
+    ///
+    /// # Errors
+    /// As [`EnergyNorm::of`].
+    pub(super) fn energy_norm(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Option<EnergyNorm>, Error> {
+        if let Some(norm) = EnergyNorm::of(&self.stiffness, &self.contact)? {
+            return Ok(Some(norm));
+        }
+        let springs = self.springs(displacement, multiplier);
+        let closed: Vec<usize> = (0..self.rows()).filter(|&row| springs.stiffness[row] > 0.0).collect();
+        let weights: Vec<f64> = closed.iter().map(|&row| springs.stiffness[row]).collect();
+        let held = self.stiffness.plus_squares(&self.contact.select_rows(&closed), &weights)?;
+        Ok(EnergyNorm::of(&held, &self.contact)?.map(|norm| norm.with_springs(springs)))
+    }
+
+    /// Springs on the rows that press, each as stiff as the row itself is when all but its own dofs stand still.
+    fn springs(&self, displacement: &[f64], multiplier: &[f64]) -> Springs {
+        let parts = self.parts();
+        let diagonal = self.stiffness.diagonal();
+        let mut compliance = vec![0.0; self.rows()];
+        for (dof, &stiffness) in diagonal.iter().enumerate().filter(|entry| *entry.1 > 0.0) {
+            for (row, b) in self.contact.column(dof) {
+                compliance[row] += b * b / stiffness;
+            }
+        }
+        let sizes: Vec<f64> = self.energies(parts, displacement).iter().map(|energy| energy.max(0.0).sqrt()).collect();
+        let (part_of_row, violation) = (self.parts_of_rows(parts), self.accurate_violation(displacement));
+        let spring = |row: usize| {
+            let (force, size) = (-multiplier[row], sizes[part_of_row[row]]);
+            // A row that only dofs without stiffness feel has no stiffness of its own: its force sets the scale.
+            let stiffness = match compliance[row] {
+                0.0 if size > 0.0 => (force / size).powi(2),
+                0.0 => 1.0,
+                compliance => 1.0 / compliance,
+            };
+            let presses = force > PRESSING * stiffness.sqrt() * size && force * compliance[row] >= -violation[row];
+            if presses { stiffness } else { 0.0 }
+        };
+        Springs {
+            stiffness: (0..self.rows()).map(|row| if multiplier[row] < 0.0 { spring(row) } else { 0.0 }).collect(),
+        }
+    }
+}
+
+impl Springs {
+    /// `f + B' lambda - K_D u + B_C' D g_C`: the residual of the same answer with springs.
+    fn residual(&self, problem: &ContactProblem, answer: &Answer) -> Vec<f64> {
+        let pull: Vec<f64> = (self.stiffness.iter().zip(answer.violation))
+            .map(|(&stiffness, &violation)| if stiffness > 0.0 { -stiffness * violation } else { 0.0 })
+            .collect();
+        answer.residual.iter().zip(problem.contact.mul_transposed(&pull)).map(|(r, spring)| r + spring).collect()
+    }
+
+    /// Does every spring stand on a row that is at its gap, with a force mu that exceeds what `left`, the dual norm of the
+    /// forces left over, could take off it?
+    fn hold(&self, multiplier: &[f64], at_gap: &[bool], left: f64) -> bool {
+        self.stiffness
+            .iter()
+            .zip(multiplier.iter().zip(at_gap))
+            .all(|(&stiffness, (&mu, &at_gap))| stiffness == 0.0 || (at_gap && -mu >= 2.0 * stiffness.sqrt() * left))
+    }
+
+    /// The same springs in other units of stiffness, `2^unit`.
+    pub fn in_unit(&self, unit: i32) -> Self {
+        Springs { stiffness: self.stiffness.iter().map(|&value| ldexp(value, -unit)).collect() }
+    }
+}

@@ -1,0 +1,100 @@
+//! The parts of a problem: bodies, or pieces of one, that share next to no energy.
+//!
+//! An answer may be right for a stiff part and wrong for a soft one beside it, whose energy is too small to show in that of
+//! the whole. Therefore a certificate measures every part in its own scale.
+
+use super::ContactProblem;
+
+/// A coupling below this share of `sqrt(K_ii K_jj)` does not make two dofs one part.
+const WEAK: f64 = 1e-6;
+
+/// The connected components of K and B: dofs that a coupling of K or a row with an obstacle joins.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Parts {
+    /// The part of each dof, length n, numbered from 0 in the order of their first dofs.
+    of_dof: Vec<usize>,
+    count: usize,
+}
+
+impl Parts {
+    /// The parts of a problem; rows with an infinite gap join nothing.
+    pub fn of(problem: &ContactProblem) -> Self {
+        let roots: Vec<f64> = problem.stiffness.diagonal().iter().map(|value| value.sqrt()).collect();
+        let mut forest = Forest::new(roots.len());
+        for (column, &own) in roots.iter().enumerate() {
+            for (row, value) in problem.stiffness.lower().column(column) {
+                if row != column && value.abs() > WEAK * own * roots[row] {
+                    forest.join(column, row);
+                }
+            }
+        }
+        let mut first: Vec<Option<usize>> = vec![None; problem.rows()];
+        for dof in 0..roots.len() {
+            let bounded = |entry: &(usize, f64)| entry.1 != 0.0 && problem.gap[entry.0].is_finite();
+            for (row, _) in problem.contact.column(dof).filter(bounded) {
+                forest.join(*first[row].get_or_insert(dof), dof);
+            }
+        }
+        forest.into_parts()
+    }
+
+    /// Number of parts.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// The part of a dof.
+    pub fn of_dof(&self, dof: usize) -> usize {
+        self.of_dof[dof]
+    }
+
+    /// The sum of `term(dof)` over the dofs of each part.
+    pub fn sums(&self, term: impl Fn(usize) -> f64) -> Vec<f64> {
+        let mut sums = vec![0.0; self.count];
+        self.of_dof.iter().enumerate().for_each(|(dof, &part)| sums[part] += term(dof));
+        sums
+    }
+}
+
+/// Trees of dofs, each of which points towards the first of its part.
+struct Forest {
+    parent: Vec<usize>,
+}
+
+impl Forest {
+    fn new(dofs: usize) -> Self {
+        Forest { parent: (0..dofs).collect() }
+    }
+
+    fn root(&mut self, mut dof: usize) -> usize {
+        while self.parent[dof] != dof {
+            self.parent[dof] = self.parent[self.parent[dof]];
+            dof = self.parent[dof];
+        }
+        dof
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        if self.parent[a] == self.parent[b] {
+            return;
+        }
+        let (a, b) = (self.root(a), self.root(b));
+        self.parent[a.max(b)] = a.min(b);
+    }
+
+    fn into_parts(mut self) -> Parts {
+        let mut of_dof = Vec::with_capacity(self.parent.len());
+        let mut count = 0;
+        for dof in 0..self.parent.len() {
+            // A root comes before the rest of its tree.
+            let root = self.root(dof);
+            if root == dof {
+                of_dof.push(count);
+                count += 1;
+            } else {
+                of_dof.push(of_dof[root]);
+            }
+        }
+        Parts { of_dof, count }
+    }
+}
