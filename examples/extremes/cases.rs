@@ -3,7 +3,7 @@
 use serde_json::json;
 use signorini::{ContactProblem, Error, Scene, SparseMatrix, SymmetricMatrix};
 
-use crate::entry::{Entry, Truth};
+use super::entry::{Entry, Truth};
 
 /// A block between rollers, its top pressed down by `gap` of its height: uniaxial strain, whatever the mesh.
 struct Block {

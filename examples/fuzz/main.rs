@@ -6,7 +6,7 @@
 //! recomputed, or with an error. Runs with the same seed are the same; the first input that fails is printed and ends the run.
 //!
 //! With `--keep`, the first input of every ending that `tests/faults` and `tests/corpus` do not know goes into `tests/corpus`,
-//! which `tests/corpus.rs` replays.
+//! which `tests/files/corpus.rs` replays.
 
 mod damage;
 mod draws;

@@ -8,8 +8,8 @@ use signorini::norm::ErrorNorms;
 use signorini::output::{Drawing, Plot, Quantity, Scale, Series, line_plots};
 use signorini::study::solve_block;
 
-use crate::answer::Answer;
-use crate::reference_errors::{REFERENCE, reference_rule};
+use super::answer::Answer;
+use super::reference_errors::{REFERENCE, reference_rule};
 
 /// Errors of one element on one block, from coarse to fine.
 pub struct Family {

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use signorini::analytical::{Bar, DiscMembrane, ObstacleString};
 use signorini::{ContactProblem, Error, Scene, SparseMatrix, SymmetricMatrix, solve_qp};
 
-use crate::answer::{Answer, Solved};
+use super::answer::{Answer, Solved};
 
 /// A bar of length 2 and EA = 100, gap 0.03: under an end force of 4, and under 4 per length.
 pub fn bars() -> Result<Vec<Answer>, Error> {

@@ -5,7 +5,7 @@
 
 mod answer;
 mod blocks;
-#[path = "../../tests/bodies/mod.rs"]
+#[path = "../../tests/support/bodies.rs"]
 mod bodies;
 mod closed_forms;
 mod contact_patch;

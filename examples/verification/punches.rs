@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use signorini::Error;
 use signorini::analytical::{Cone, FlatDisc, FlatStrip, LineContact, PointContact, Wedge};
 
-use crate::answer::{Answer, Solved};
+use super::answer::{Answer, Solved};
 
 /// E = 1.
 const POISSON: f64 = 0.3;

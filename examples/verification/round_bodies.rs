@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 use signorini::Error;
 use signorini::analytical::{LineContact, PointContact};
 
-use crate::answer::{Answer, Solved};
+use super::answer::{Answer, Solved};
 
 /// E = 1, nu = 0.3, radius 1.
 const MODULUS: f64 = 1.0 / 0.91;

@@ -1,0 +1,19 @@
+//! Bodies without contact: elements, meshes, loads, mass, norms, and linear answers against exact ones.
+
+#[path = "../support/bodies.rs"]
+mod bodies;
+
+mod accuracy;
+mod closed_forms;
+mod curved_bodies;
+mod elements;
+mod facets;
+mod gmsh_faults;
+mod gmsh_meshes;
+mod loads;
+mod manufactured;
+mod mass;
+mod mesh;
+mod misfits;
+mod norms;
+mod patch_test;

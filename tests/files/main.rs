@@ -1,0 +1,18 @@
+//! Files: those that are read, with their faults, and those that are written.
+
+#[path = "../support/oracles/mod.rs"]
+mod oracles;
+#[path = "../support/output_fixture/mod.rs"]
+mod output_fixture;
+#[path = "../support/program.rs"]
+mod program;
+
+mod bad_input;
+mod corpus;
+mod faults;
+mod matrix_market;
+mod out_folder;
+mod output_files;
+mod output_pictures;
+mod output_plots;
+mod output_ticks;

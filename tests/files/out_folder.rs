@@ -1,0 +1,197 @@
+//! What `--out` and `export` leave in a folder: files that are whole, that other programs read, and nothing else.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+use crate::program::{Desk, Problem, example, scene};
+use resvg::usvg::roxmltree::Document;
+use serde_json::{Value, json};
+use signorini::matrix_market::{read_problem, read_vector};
+
+/// The names in a folder, each file read once in the way of its kind.
+fn checked(folder: &Path) -> BTreeSet<String> {
+    let mut names = BTreeSet::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_str().unwrap().to_string();
+        let bytes = fs::read(&path).unwrap();
+        let text = || String::from_utf8(bytes.clone()).unwrap();
+        match path.extension().and_then(|extension| extension.to_str()) {
+            Some("svg") => {
+                let svg = text();
+                let document = Document::parse(&svg).unwrap_or_else(|error| panic!("{name}: {error}"));
+                assert!(document.root_element().has_tag_name(("http://www.w3.org/2000/svg", "svg")));
+                assert!(
+                    document
+                        .descendants()
+                        .filter(|node| node.has_tag_name(("http://www.w3.org/2000/svg", "text")))
+                        .count()
+                        > 5
+                );
+            }
+            Some("png") => {
+                assert!(bytes.starts_with(b"\x89PNG\r\n\x1a\n") && bytes.ends_with(b"IEND\xaeB`\x82"), "{name}");
+            }
+            Some("vtu") => {
+                let vtu = text();
+                let document = Document::parse(&vtu).unwrap_or_else(|error| panic!("{name}: {error}"));
+                let arrays: Vec<&str> = document.descendants().filter_map(|node| node.attribute("Name")).collect();
+                for array in ["u", "sigma_1", "sigma_2", "von_mises", "gap", "pressure", "contact"] {
+                    assert!(arrays.contains(&array), "{name} lacks {array}: {arrays:?}");
+                }
+            }
+            Some("mtx") if !["K.mtx", "B.mtx", "near_null.mtx"].contains(&name.as_str()) => {
+                assert!(!read_vector(&path).unwrap().is_empty())
+            }
+            Some("mtx") => {}
+            Some("json") => assert!(serde_json::from_slice::<Value>(&bytes).unwrap().is_object()),
+            _ => panic!("what is {name}?"),
+        }
+        assert!(!bytes.is_empty(), "{name} is empty");
+        names.insert(name);
+    }
+    names
+}
+
+fn names(list: &[&str]) -> BTreeSet<String> {
+    list.iter().map(|name| name.to_string()).collect()
+}
+
+fn pictures(stems: impl IntoIterator<Item = String>) -> BTreeSet<String> {
+    stems.into_iter().flat_map(|stem| [format!("{stem}.svg"), format!("{stem}.png")]).collect()
+}
+
+#[test]
+fn solve_leaves_answer_fields_pictures_and_report() {
+    let desk = Desk::new();
+    desk.write("block.json", scene().to_string());
+    let run =
+        desk.run(&["solve", "block.json", "--method", "active-set", "--format", "json", "--out", "a/b"]).ends_with(0);
+    let found = checked(&desk.path("a/b"));
+    let steps = run.json()["history"].as_array().unwrap().len();
+    let mut expected = names(&["u.mtx", "lambda.mtx", "solution.vtu", "report.json"]);
+    expected.extend(pictures((1..=steps).map(|step| format!("iteration-{step}")).chain(["contact".to_string()])));
+    assert_eq!(found, expected);
+    assert!(steps >= 2);
+    let report: Value = serde_json::from_slice(&fs::read(desk.path("a/b/report.json")).unwrap()).unwrap();
+    assert_eq!(report, run.json(), "the report in the folder is the one that is printed");
+}
+
+#[test]
+fn compare_leaves_the_pressure_of_three_methods_too() {
+    let desk = Desk::new();
+    desk.write("block.json", scene().to_string());
+    let run = desk.run(&["compare", "block.json", "--format", "json", "--out", "o"]).ends_with(0);
+    let found = checked(&desk.path("o"));
+    let wanted = names(&["pressure.svg", "pressure.png", "contact.svg", "iteration-1.png", "solution.vtu", "u.mtx"]);
+    assert!(found.is_superset(&wanted), "{found:?}");
+    let report: Value = serde_json::from_slice(&fs::read(desk.path("o/report.json")).unwrap()).unwrap();
+    assert_eq!(report, run.json());
+}
+
+#[test]
+fn sweep_leaves_a_picture_for_each_gap_and_the_curves() {
+    let desk = Desk::new();
+    desk.write("block.json", scene().to_string());
+    desk.run(&["sweep", "block.json", "--gaps", "-0.01:-0.03:3", "--out", "o"]).ends_with(0);
+    let stems = ["gap-01", "gap-02", "gap-03", "force-width"].map(String::from);
+    let mut expected = pictures(stems);
+    expected.insert("report.json".into());
+    assert_eq!(checked(&desk.path("o")), expected);
+}
+
+#[test]
+fn every_example_of_every_shape_is_drawn() {
+    let desk = Desk::new();
+    for name in crate::program::examples() {
+        desk.run(&["compare", &example(&name), "--out", &name]).ends_with(0);
+        assert!(checked(&desk.path(&name)).len() >= 6, "{name}");
+    }
+}
+
+#[test]
+fn a_problem_directory_gets_its_answer_beside_its_files() {
+    let desk = Desk::new();
+    desk.problem("p", &Problem::right());
+    desk.run(&["solve", "p", "--out", "p"]).ends_with(0);
+    assert_eq!(
+        checked(&desk.path("p")),
+        names(&["K.mtx", "f.mtx", "B.mtx", "g.mtx", "u.mtx", "lambda.mtx", "report.json"])
+    );
+}
+
+#[test]
+fn export_leaves_five_files_that_read_back_as_the_problem() {
+    let desk = Desk::new();
+    desk.write("block.json", scene().to_string());
+    desk.run(&["export", "block.json", "deep/er"]).ends_with(0);
+    assert_eq!(checked(&desk.path("deep/er")), names(&["K.mtx", "f.mtx", "B.mtx", "g.mtx", "near_null.mtx"]));
+    let model = signorini::Scene::read(desk.path("block.json")).unwrap().build().unwrap();
+    assert_eq!(&read_problem(&desk.path("deep/er")).unwrap(), model.problem());
+}
+
+#[test]
+fn a_second_run_replaces_the_files_of_the_first() {
+    let desk = Desk::new();
+    desk.write("block.json", scene().to_string());
+    desk.write("o/u.mtx", "something else");
+    desk.write("o/notes.json", "{}");
+    desk.run(&["solve", "block.json", "--out", "o"]).ends_with(0);
+    desk.run(&["solve", "block.json", "--out", "o"]).ends_with(0);
+    assert!(checked(&desk.path("o")).contains("notes.json"), "foreign files stay");
+}
+
+#[test]
+fn an_answer_that_is_not_certified_is_written_and_says_so() {
+    let desk = Desk::new();
+    let run = desk.run(&["solve", &example("indentation"), "--method", "penalty", "--out", "o"]);
+    run.fails_with(4, &["not certified"]);
+    checked(&desk.path("o"));
+    let report: Value = serde_json::from_slice(&fs::read(desk.path("o/report.json")).unwrap()).unwrap();
+    assert_eq!(report["status"], "not_certified");
+}
+
+#[test]
+fn a_folder_that_cannot_be_made_ends_with_one_sentence_and_leaves_nothing() {
+    let desk = Desk::new();
+    desk.write("block.json", scene().to_string());
+    desk.write("file", "a regular file");
+    desk.problem("p", &Problem::right());
+    for (arguments, folder) in [
+        (&["solve", "block.json", "--out", "file/below"][..], "file/below"),
+        (&["solve", "block.json", "--out", "file"], "file"),
+        (&["solve", "p", "--out", "file"], "file"),
+        (&["compare", "block.json", "--out", "file/below"], "file/below"),
+        (&["sweep", "block.json", "--gaps", "0:-0.01:2", "--out", "file"], "file"),
+        (&["export", "block.json", "file/below"], "file/below"),
+        (&["export", "block.json", "file"], "file"),
+    ] {
+        let run = desk.run(arguments).fails_with(1, &[&format!("cannot make the folder {folder}: ")]);
+        assert_eq!(run.stdout, "");
+    }
+    assert_eq!(fs::read_to_string(desk.path("file")).unwrap(), "a regular file");
+}
+
+#[test]
+fn a_file_that_cannot_be_replaced_leaves_nothing_temporary() {
+    let desk = Desk::new();
+    desk.write("block.json", scene().to_string());
+    desk.write("o/lambda.mtx/occupied", "a folder in the place of a file");
+    desk.run(&["solve", "block.json", "--out", "o"]).fails_with(1, &["cannot write o/lambda.mtx: "]);
+    let left: Vec<_> = fs::read_dir(desk.path("o")).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert!(left.iter().all(|name| name == "u.mtx" || name == "lambda.mtx"), "{left:?}");
+}
+
+#[test]
+fn titles_and_units_of_any_characters_make_pictures_that_parse() {
+    let desk = Desk::new();
+    let mut odd = scene();
+    odd["title"] = json!(format!("<&>\"' \u{0}\u{1b}\n\u{fffe} Größe 接触 {}", "long ".repeat(500)));
+    odd["units"] = json!({"length": "<m>", "force": "&\u{0}"});
+    desk.write("odd.json", odd.to_string());
+    desk.run(&["compare", "odd.json", "--out", "o"]).ends_with(0);
+    desk.run(&["sweep", "odd.json", "--gaps", "0:-0.01:2", "--out", "s"]).ends_with(0);
+    checked(&desk.path("o"));
+    checked(&desk.path("s"));
+}

@@ -1,0 +1,230 @@
+//! The picture of a contact answer: true to its data, readable, and undisturbed by hostile data.
+
+use crate::output_fixture::{
+    Indented,
+    page::{assert_readable, texts_of},
+};
+use resvg::tiny_skia::Pixmap;
+use signorini::{
+    Error,
+    output::{ContactPicture, Drawing, ObstacleLine, common_limits, common_window},
+};
+
+fn colour_at(drawing: &Drawing, x: u32, y: u32) -> [u8; 3] {
+    let png = drawing.png(1.0).expect("rasterises");
+    let pixels = Pixmap::decode_png(&png).expect("a PNG");
+    let colour = pixels.pixel(x, y).expect("on the page").demultiply();
+    [colour.red(), colour.green(), colour.blue()]
+}
+
+/// Left, top, width and height in pixels of the left (1) or the right (2) panel, from what its content is clipped to.
+fn panel(drawing: &Drawing, which: usize) -> [f64; 4] {
+    let svg = drawing.svg();
+    let clip = svg.split(&format!("<clipPath id=\"clip{which}\"><rect ")).nth(1).expect("a clipped panel");
+    ["x", "y", "width", "height"].map(|name| {
+        let rest = clip.split(&format!("{name}=\"")).nth(1).expect(name);
+        rest.split('"').next().and_then(|text| text.parse().ok()).expect(name)
+    })
+}
+
+fn panel_centre(drawing: &Drawing) -> (u32, u32) {
+    let [x, y, width, height] = panel(drawing, 1);
+    ((x + width / 2.0) as u32, (y + height / 2.0) as u32)
+}
+
+#[test]
+fn picture_of_an_indented_body_is_readable_and_names_what_it_shows() {
+    let body = Indented::new([1.0, 0.5], [40, 20]);
+    let obstacle = body.obstacle();
+    let drawing = body.picture("Gap −0.01 m, iteration 3, 15 closed nodes", &obstacle).draw().unwrap();
+    assert_readable(&drawing);
+    let texts: Vec<String> = texts_of(&drawing).into_iter().map(|(text, _)| text).collect();
+    for expected in [
+        "Gap −0.01 m, iteration 3, 15 closed nodes",
+        "second principal stress σ₂ (10⁶ Pa)",
+        "closed nodes (15)",
+        "open candidates (26)",
+        "obstacle",
+        "x (m)",
+        "y (m)",
+    ] {
+        assert!(texts.iter().any(|text| text == expected), "`{expected}` is not among {texts:?}");
+    }
+    assert!((1200.0..=1600.0).contains(&drawing.width()), "{}", drawing.width());
+}
+
+#[test]
+fn png_has_the_size_of_the_drawing_times_its_scale() {
+    let body = Indented::new([1.0, 0.5], [4, 2]);
+    let drawing = body.picture("Two scales", &[]).draw().unwrap();
+    for scale in [0.5, 1.0, 2.0] {
+        let pixels = Pixmap::decode_png(&drawing.png(scale).unwrap()).expect("a PNG");
+        let expected = [drawing.width(), drawing.height()].map(|side| (side * scale).round() as u32);
+        assert_eq!([pixels.width(), pixels.height()], expected);
+    }
+    for scale in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e4, 1e-9] {
+        assert!(matches!(drawing.png(scale), Err(Error::Setting { .. })), "scale {scale}");
+    }
+}
+
+#[test]
+fn equal_values_are_painted_in_the_middle_of_the_colours_and_limits_at_their_ends() {
+    // The ends and the middle of viridis, to the width of a band.
+    for (value, expected) in [(-2.0, [0x44, 0x01, 0x54]), (0.0, [0x21, 0x91, 0x8c]), (2.0, [0xfd, 0xe7, 0x25])] {
+        let mut body = Indented::new([1.0, 0.5], [3, 3]);
+        body.stress.fill(value);
+        let mut picture = body.picture("One colour", &[]);
+        picture.limits = [-1.0, 1.0];
+        let drawing = picture.draw().unwrap();
+        let (x, y) = panel_centre(&drawing);
+        let found = colour_at(&drawing, x, y);
+        let distance = found.iter().zip(expected).map(|(a, b)| a.abs_diff(b)).max().unwrap();
+        assert!(distance <= 12, "{value}: {found:?} is not {expected:?}");
+    }
+}
+
+#[test]
+fn pictures_stay_readable_at_extreme_shapes_and_magnitudes() {
+    for size in [[1.0, 0.5], [10.0, 1.0], [1.0, 10.0], [1000.0, 1.0], [1.0, 1000.0]] {
+        for (length, stress) in [(1.0, 1.0), (1e-12, 1e-12), (1e12, 1e12), (1e-3, 1e-30), (123.456, -1.0)] {
+            let body = Indented::new(size, [8, 8]).scaled(length, stress);
+            let obstacle = body.obstacle();
+            let mut picture = body.picture("Extreme", &obstacle);
+            picture.limits = common_limits([&body.stress[..]]);
+            assert_readable(&picture.draw().unwrap());
+        }
+    }
+}
+
+#[test]
+fn long_titles_are_broken_and_markup_in_them_is_text() {
+    let body = Indented::new([1.0, 0.5], [4, 2]);
+    let long = "a body <under> \"pressure\" & more ".repeat(20) + &"endless".repeat(60);
+    for title in [long.as_str(), "", "\u{0}\u{8}control\n\tcharacters\u{fffe}", "漢字 😀 ü", "</text><script>"] {
+        let drawing = body.picture(title, &[]).draw().unwrap();
+        assert_readable(&drawing);
+        drawing.png(1.0).unwrap();
+    }
+    let texts = texts_of(&body.picture("a < b & c > 'd' \"e\"", &[]).draw().unwrap());
+    assert!(texts.iter().any(|(text, _)| text == "a < b & c > 'd' \"e\""), "{texts:?}");
+}
+
+#[test]
+fn values_that_are_no_numbers_leave_grey_elements_and_say_so() {
+    let mut body = Indented::new([1.0, 0.5], [3, 3]);
+    body.stress.fill(f64::NAN);
+    let drawing = body.picture("No values", &[]).draw().unwrap();
+    let (x, y) = panel_centre(&drawing);
+    assert_eq!(colour_at(&drawing, x, y), [0xb9, 0xbd, 0xc4]);
+    assert!(drawing.svg().contains("grey: no value"));
+
+    let bad = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e308, -1e308, 1e-320];
+    for value in bad {
+        let mut body = Indented::new([1.0, 0.5], [6, 3]);
+        (body.nodes[1], body.displacement[20], body.stress[9], body.parabola[40]) =
+            ([value; 2], value, value, [value; 2]);
+        let obstacles = [ObstacleLine { points: &body.parabola, inside: [value, 1.0] }];
+        let mut picture = body.picture("Hostile", &obstacles);
+        (picture.limits, picture.magnification, picture.window) =
+            ([value; 2], value, Some([[value, 1.0], [0.0, value]]));
+        let drawing = picture.draw().unwrap();
+        assert_readable(&drawing);
+        drawing.png(0.5).unwrap();
+    }
+}
+
+#[test]
+fn body_without_nodes_elements_or_candidates_is_an_empty_picture() {
+    let mut body = Indented::new([1.0, 0.5], [2, 2]);
+    body.elements = vec![vec![], vec![0], vec![0, 1], vec![0, 0, 0]];
+    assert_readable(&body.picture("Degenerate elements", &[]).draw().unwrap());
+    (body.candidates, body.closed) = (vec![], vec![]);
+    let drawing = body.picture("No candidates", &[]).draw().unwrap();
+    assert!(!drawing.svg().contains("closed nodes") && !drawing.svg().contains("open candidates"));
+    let nothing = Indented { nodes: vec![], elements: vec![], displacement: vec![], stress: vec![], ..body };
+    assert_readable(&nothing.picture("Nothing", &[]).draw().unwrap());
+}
+
+#[test]
+fn arrays_that_do_not_fit_are_refused_with_both_lengths() {
+    let body = Indented::new([1.0, 0.5], [2, 2]);
+    let good = body.picture("Refused", &[]);
+    let short = ContactPicture { displacement: &body.displacement[1..], ..good.clone() };
+    let sentence = short.draw().unwrap_err().to_string();
+    assert!(sentence.contains("has length 17") && sentence.contains("18"), "{sentence}");
+    let short = ContactPicture { field: &body.stress[1..], ..good.clone() };
+    assert!(matches!(short.draw(), Err(Error::Length { found: 8, expected: 9, .. })));
+    let short = ContactPicture { closed: &body.closed[1..], ..good.clone() };
+    assert!(matches!(short.draw(), Err(Error::Length { found: 2, expected: 3, .. })));
+    let elements = [vec![0, 1, 9]];
+    let wrong = ContactPicture { elements: &elements, ..good.clone() };
+    assert!(matches!(wrong.draw(), Err(Error::Setting { value: 9.0, .. })));
+    let wrong = ContactPicture { candidates: &[0, 1, 100], ..good };
+    assert!(matches!(wrong.draw(), Err(Error::Setting { value: 100.0, .. })));
+}
+
+#[test]
+fn obstacle_is_grey_on_its_inside_and_leaves_the_other_side_white() {
+    let body = Indented::new([1.0, 0.5], [8, 4]);
+    let grey = |colour: [u8; 3]| colour.iter().all(|&part| (0xb0..0xe0).contains(&part));
+    // Lines beside the body, 0.04 away from it, each with the direction of its inside.
+    let sides = [
+        ([[-9.0, 0.54], [9.0, 0.54]], [0.0, 1.0], [0.5, 0.0]),
+        ([[-9.0, -0.04], [9.0, -0.04]], [0.0, -3.0], [0.5, 1.0]),
+        ([[1.04, -9.0], [1.04, 9.0]], [0.1, 0.0], [1.0, 0.5]),
+        ([[-0.04, 9.0], [-0.04, -9.0]], [-1.0, 0.0], [0.0, 0.5]),
+    ];
+    for (points, inside, at) in sides {
+        let drawing = body.picture("Side", &[ObstacleLine { points: &points, inside }]).draw().unwrap();
+        let [x, y, width, height] = panel(&drawing, 2);
+        let pixel = |share: [f64; 2]| {
+            let place = |from: f64, length: f64, share: f64| (from + 6.0 + share * (length - 12.0)) as u32;
+            colour_at(&drawing, place(x, width, share[0]), place(y, height, share[1]))
+        };
+        assert!(grey(pixel(at)), "{inside:?}: {:?}", pixel(at));
+        let opposite = at.map(|share| 1.0 - share);
+        assert_eq!(pixel(opposite), [255; 3], "{inside:?}");
+    }
+}
+
+#[test]
+fn tick_labels_of_a_body_far_from_the_origin_do_not_cover_each_other() {
+    for offset in [1e4, 123_456.0, 1e9, -1e9] {
+        let mut body = Indented::new([1.0, 0.5], [8, 4]);
+        body.nodes.iter_mut().for_each(|node| *node = node.map(|coordinate| coordinate + offset));
+        assert_readable(&body.picture("Far from the origin", &[]).draw().unwrap());
+    }
+}
+
+#[test]
+fn obstacle_out_of_reach_is_said_to_be_outside_the_picture() {
+    let body = Indented::new([1.0, 0.5], [4, 2]);
+    let plane = [[-1.0, 7.0], [2.0, 7.0]];
+    let drawing = body.picture("Far", &[ObstacleLine { points: &plane, inside: [0.0, 1.0] }]).draw().unwrap();
+    assert!(drawing.svg().contains("obstacle: outside the picture"));
+    assert_readable(&drawing);
+}
+
+#[test]
+fn pictures_with_a_common_window_have_the_same_size() {
+    let bodies = [0.4, 1.0].map(|depth| {
+        let mut body = Indented::new([1.0, 0.5], [8, 4]);
+        body.displacement.iter_mut().for_each(|u| *u *= depth);
+        body.parabola.iter_mut().for_each(|point| point[1] += 0.06 * (1.0 - depth));
+        body
+    });
+    let window = common_window(bodies.iter().map(|body| body.picture("", &body.obstacle()).window()));
+    let sizes = bodies.each_ref().map(|body| {
+        let obstacle = body.obstacle();
+        let drawing = ContactPicture { window: Some(window), ..body.picture("Series", &obstacle) }.draw().unwrap();
+        [drawing.width(), drawing.height()]
+    });
+    assert_eq!(sizes[0], sizes[1]);
+}
+
+#[test]
+fn picture_of_twenty_thousand_elements_stays_below_two_megabytes() {
+    let body = Indented::new([1.0, 0.5], [200, 100]);
+    let svg = body.picture("Fine", &body.obstacle()).draw().unwrap().svg();
+    assert!(svg.len() < 2_000_000, "{} bytes", svg.len());
+}

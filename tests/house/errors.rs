@@ -1,0 +1,102 @@
+//! Every variant of the one error is provoked, with its code and one sentence.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
+
+use crate::oracles::Dense;
+use signorini::matrix_market::read_problem;
+use signorini::mesh::gmsh::GmshFile;
+use signorini::{
+    Condense, ContactProblem, Error, Method, Prepared, Scene, Settings, SparseMatrix, SymmetricMatrix, solve, solve_qp,
+};
+
+/// A spring of this stiffness under a load of 2 before walls at these distances, in the directions of `rows`.
+fn spring(stiffness: f64, rows: &[f64], gap: &[f64]) -> Result<ContactProblem, Error> {
+    let rows: Vec<&[f64]> = rows.iter().map(std::slice::from_ref).collect();
+    Dense::new(&[&[stiffness]], &[2.0], &rows, gap).problem()
+}
+
+fn settings(change: impl Fn(&mut Settings)) -> Settings {
+    let mut settings = Settings::default();
+    change(&mut settings);
+    settings
+}
+
+fn scene(change: (&str, &str)) -> Result<Scene, Error> {
+    let text = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/faults/plane.json")).unwrap();
+    assert!(text.contains(change.0));
+    Scene::from_json(&text.replacen(change.0, change.1, 1), "plane.json")
+}
+
+/// The code of a variant and an error of it.
+fn provoked() -> Result<BTreeMap<&'static str, (&'static str, Error)>, Error> {
+    let spring_and_wall = spring(1.0, &[1.0], &[0.5])?;
+    let matrix = |entries: &[(usize, usize, f64)]| SparseMatrix::from_triplets(2, 2, entries);
+    let not_square = SparseMatrix::from_triplets(1, 2, &[]);
+    let nowhere = Path::new("nowhere");
+    let unprepared = Prepared::new(&spring_and_wall, Condense::Never)?;
+    let still = unprepared.path(&[0.5], &[0.4], &Settings::default());
+    let hasty = Prepared::with_settings(&spring_and_wall, &settings(|settings| settings.time = Some(0.0)));
+    let stopped = Settings::default();
+    stopped.watch.stop();
+    let never = settings(|settings| (settings.method, settings.last_penalty) = (Method::Penalty, 1.0));
+    Ok(BTreeMap::from([
+        ("Length", ("length", spring_and_wall.with_load(vec![1.0, 2.0]).unwrap_err())),
+        ("Shape", ("shape", SymmetricMatrix::from_full(&not_square?).unwrap_err())),
+        ("IndexOutOfRange", ("index-out-of-range", matrix(&[(2, 0, 1.0)]).unwrap_err())),
+        ("NotFinite", ("not-finite", spring(1.0, &[1.0], &[f64::NAN]).unwrap_err())),
+        ("NotSymmetric", ("not-symmetric", SymmetricMatrix::from_full(&matrix(&[(0, 1, 1.0)])?).unwrap_err())),
+        ("NotConvex", ("not-convex", spring(-1.0, &[1.0], &[0.5]).unwrap_err())),
+        ("Infeasible", ("infeasible", solve_qp(&spring(1.0, &[1.0, -1.0], &[0.5, -0.6])?).unwrap_err())),
+        ("Unbounded", ("unbounded", solve_qp(&spring(0.0, &[-1.0], &[0.5])?).unwrap_err())),
+        ("UnderHeld", ("under-held", solve_qp(&spring(0.0, &[1.0], &[0.5])?.with_load(vec![0.0])?).unwrap_err())),
+        ("OutOfTime", ("out-of-time", hasty.map(drop).unwrap_err())),
+        ("NotCertified", ("not-certified", solve(&spring_and_wall, &never).unwrap_err())),
+        ("Interrupted", ("interrupted", solve(&spring_and_wall, &stopped).unwrap_err())),
+        (
+            "NoRoom",
+            ("too-large", solve(&spring_and_wall, &settings(|settings| settings.memory = Some(1.0))).unwrap_err()),
+        ),
+        ("Setting", ("setting", solve(&spring_and_wall, &settings(|settings| settings.threads = 0)).unwrap_err())),
+        ("NotCondensed", ("not-condensed", still.map(drop).unwrap_err())),
+        ("TooLarge", ("too-large", scene(("[4]", "[4000]"))?.check_size(1e3).unwrap_err())),
+        ("Numerical", ("numerical", unprepared.solve(&Settings::with_method(Method::Mprgp)).unwrap_err())),
+        ("Mesh", ("mesh", gmsh_of_another_body())),
+        ("SceneSyntax", ("scene", Scene::from_json("{", "plane.json").map(drop).unwrap_err())),
+        ("Scene", ("scene", scene(("\"bottom\"", "\"below\""))?.build().map(drop).unwrap_err())),
+        ("FileSyntax", ("file-syntax", GmshFile::parse("", "square.msh").map(drop).unwrap_err())),
+        ("File", ("file", read_problem(nowhere).unwrap_err())),
+    ]))
+}
+
+/// A mesh of no such domain.
+fn gmsh_of_another_body() -> Error {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/faults/square4.msh");
+    GmshFile::read(&file).and_then(|file| file.mesh(Some("another"), 1.0)).map(drop).unwrap_err()
+}
+
+/// The variants with their codes, as `Error::code` lists them.
+fn variants() -> BTreeMap<String, String> {
+    let text = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("src/error.rs")).unwrap();
+    let arms = text.lines().filter(|line| line.trim().starts_with("Error::"));
+    let arms = arms.filter_map(|line| line.trim().strip_suffix("\",")?.split_once(" => \""));
+    arms.flat_map(|(patterns, code)| patterns.split(" | ").map(move |pattern| (pattern, code)))
+        .map(|(pattern, code)| (pattern.trim_start_matches("Error::").trim_end_matches(" { .. }"), code))
+        .map(|(variant, code)| (variant.to_string(), code.to_string()))
+        .collect()
+}
+
+#[test]
+fn every_variant_is_provoked_with_its_code_and_one_sentence() {
+    let (variants, provoked) = (variants(), provoked().unwrap());
+    assert!(variants.len() >= 22);
+    let known: BTreeSet<&str> = variants.keys().map(String::as_str).collect();
+    assert_eq!(known, provoked.keys().copied().collect(), "a variant is not provoked, or does not exist");
+    for (variant, (code, error)) in provoked {
+        assert_eq!(format!("{error:?}").split(' ').next(), Some(variant), "{error:?}");
+        assert_eq!((error.code(), variants[variant].as_str()), (code, code), "{error}");
+        let sentence = error.to_string();
+        assert!(sentence.len() > 20 && sentence.lines().count() == 1 && !sentence.contains("  "), "{sentence:?}");
+    }
+}

@@ -1,0 +1,11 @@
+//! The house itself: the floors of its modules, its one error, its examples, its README.
+
+#[path = "../support/bodies.rs"]
+mod bodies;
+#[path = "../support/oracles/mod.rs"]
+mod oracles;
+
+mod architecture;
+mod errors;
+mod examples;
+mod readme;

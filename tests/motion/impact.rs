@@ -1,0 +1,228 @@
+//! GOAL: bars in impact move as the closed forms say, and every scheme does what its description says.
+//!
+//! REFERENCE: waves in bars (`analytical::ImpactingBar`, `analytical::BouncingBar`).
+
+#[path = "../../examples/impact/cases.rs"]
+mod cases;
+#[allow(dead_code)]
+#[path = "../../examples/impact/measure.rs"]
+mod measure;
+
+use cases::cases;
+use measure::run;
+use signorini::dynamic::{DynamicProblem, Integrator, Scheme, TimeFunction, stable_step};
+use signorini::scene::SchemeSpec;
+use signorini::{ContactProblem, Error, Precision, Scene, Settings, SparseMatrix, SymmetricMatrix};
+
+/// What the default scheme promises at its usual step, a Courant number of 0.5, on 100 cells.
+const ENERGY: f64 = 1e-3;
+const PRESSURE: f64 = 5e-3;
+const REBOUND: f64 = 1e-2;
+const PENETRATION: f64 = 1e-10;
+
+#[test]
+fn the_default_scheme_keeps_energy_pressure_rebound_and_the_wall() {
+    for case in &cases() {
+        for courant in [0.5, 1.0, 1.5] {
+            let run = run(case, SchemeSpec::Midpoint, courant, 100).unwrap();
+            for energy in run.energy {
+                assert!((energy - 1.0).abs() <= ENERGY, "{}, {courant}: energy {energy}", case.name);
+            }
+            assert!((run.pressure[0] / case.pressure - 1.0).abs() <= PRESSURE, "{}: {:?}", case.name, run.pressure);
+            assert!(run.penetration <= PENETRATION, "{}: penetration {}", case.name, run.penetration);
+            if let Some(speed) = case.rebound.filter(|_| courant == 0.5) {
+                assert!((run.rebound / speed - 1.0).abs() <= REBOUND, "rebound {}", run.rebound);
+                assert!(run.pressure[1] <= 1e-2 * case.pressure, "the pressure chatters: {}", run.pressure[1]);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_displacement_error_of_the_default_scheme_falls_with_cell_and_step() {
+    // The velocity jumps at the wave fronts: a scheme of second order falls with the power 2/3 there.
+    for case in &cases() {
+        let error = |cells| run(case, SchemeSpec::Midpoint, 1.0, cells).unwrap().displacement_error;
+        let rate = (error(50) / error(400)).log2() / 3.0;
+        assert!((0.6..0.8).contains(&rate), "{}: rate {rate}", case.name);
+    }
+}
+
+#[test]
+fn contact_stabilised_steps_lose_energy_and_never_gain_any() {
+    for case in &cases() {
+        for courant in [0.5, 1.0, 1.5] {
+            let run = run(case, SchemeSpec::ContactStabilised, courant, 100).unwrap();
+            let [end, most] = run.energy;
+            assert!(most <= 1.0 + 1e-12 && (0.98..1.0).contains(&end), "{}, {courant}: {:?}", case.name, run.energy);
+        }
+    }
+}
+
+#[test]
+fn the_trapezoidal_rule_gains_energy_as_its_description_warns() {
+    let case = &cases()[0];
+    for (scheme, least) in [(SchemeSpec::Trapezoidal, 10.0), (SchemeSpec::Hht, 1.1), (SchemeSpec::Penalty, 1.2)] {
+        let run = run(case, scheme, 0.5, 100).unwrap();
+        assert!(run.scheme.gains_energy() && run.energy[1] > least, "{scheme:?}: {:?}", run.energy);
+    }
+    for scheme in [Scheme::Midpoint, Scheme::ContactStabilised, Scheme::CentralDifference { restitution: 0.0 }] {
+        assert!(!scheme.gains_energy());
+    }
+}
+
+#[test]
+fn central_differences_meet_the_pressure_and_do_not_penetrate() {
+    for case in &cases() {
+        let run = run(case, SchemeSpec::CentralDifference, 0.9, 100).unwrap();
+        assert!((run.pressure[0] / case.pressure - 1.0).abs() <= PRESSURE && run.penetration <= PENETRATION);
+        assert!((0.98..1.0 + ENERGY).contains(&run.energy[0]), "{:?}", run.energy);
+    }
+}
+
+#[test]
+fn the_stable_step_of_a_bar_is_the_time_of_a_wave_through_a_cell() {
+    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/impact/bar.json")).unwrap();
+    let text = text.replace("\"dynamic\": {", "\"dynamic\": {\"scheme\": \"central-difference\",");
+    let scene = Scene::from_json(&text, "scene").unwrap();
+    let dynamics = scene.dynamics(&scene.build().unwrap()).unwrap().unwrap();
+    assert!((stable_step(&dynamics.problem).unwrap() * 300.0 - 1.0).abs() < 1e-10);
+}
+
+#[test]
+fn a_step_that_is_none_and_one_beyond_the_stable_one_are_refused() {
+    let settings = Settings::default();
+    for step in [0.0, -0.1, f64::NAN, f64::INFINITY] {
+        let refused = Integrator::new(oscillator(0.0), Scheme::Midpoint, step, &settings).err().unwrap();
+        assert!(matches!(refused, Error::Setting { name: "step", .. }), "{refused}");
+    }
+    // The frequency is 2: steps are stable up to 2/2.
+    let explicit = Scheme::CentralDifference { restitution: 0.0 };
+    assert!(Integrator::new(oscillator(0.0), explicit, 1.0, &settings).is_ok());
+    let refused = Integrator::new(oscillator(0.0), explicit, 1.01, &settings).err().unwrap();
+    assert!(refused.to_string().contains("beyond the largest stable one, 1e0"), "{refused}");
+}
+
+/// One mass of 1 on a spring of 4: its frequency is 2.
+fn oscillator(load: f64) -> DynamicProblem {
+    let one =
+        |value| SymmetricMatrix::from_lower(SparseMatrix::from_triplets(1, 1, &[(0, 0, value)]).unwrap()).unwrap();
+    let no_rows = SparseMatrix::from_triplets(0, 1, &[]).unwrap();
+    DynamicProblem::new(ContactProblem::new(one(4.0), vec![load], no_rows, vec![]).unwrap(), one(1.0)).unwrap()
+}
+
+fn displacement_at(problem: DynamicProblem, scheme: Scheme, time: f64, steps: usize) -> f64 {
+    let mut integrator = Integrator::new(problem, scheme, time / steps as f64, &Settings::default()).unwrap();
+    for _ in 0..steps {
+        integrator.advance().unwrap();
+    }
+    integrator.state().displacement[0]
+}
+
+#[test]
+fn every_scheme_is_of_second_order_where_nothing_touches() {
+    // A damped oscillator, x'' + 2 zeta omega x' + omega^2 x = 0 from (1, 0), zeta from both parts of the damping.
+    let (omega, [mass, stiffness]) = (2.0, [0.3, 0.05]);
+    let zeta: f64 = (mass / omega + stiffness * omega) / 2.0;
+    let (damped, t) = (omega * (1.0 - zeta * zeta).sqrt(), 3.0);
+    let exact = (-zeta * omega * t).exp() * ((damped * t).cos() + zeta * omega / damped * (damped * t).sin());
+    for scheme in [
+        Scheme::Midpoint,
+        Scheme::Trapezoidal,
+        Scheme::ContactStabilised,
+        Scheme::Hht { alpha: -0.1 },
+        Scheme::Penalty { penalty: 10.0 },
+    ] {
+        let error = |steps| {
+            let problem = oscillator(0.0).with_damping(mass, stiffness).unwrap();
+            let problem = problem.starting_from(vec![1.0], vec![0.0]).unwrap();
+            (displacement_at(problem, scheme, t, steps) - exact).abs()
+        };
+        let rate = (error(100) / error(400)).log2() / 2.0;
+        assert!((rate - 2.0).abs() < 0.1, "{scheme:?}: {rate}");
+    }
+    // Central differences take the damping force of the last half step: undamped, they are of second order too.
+    let error = |steps| {
+        let problem = oscillator(0.0).starting_from(vec![1.0], vec![0.0]).unwrap();
+        (displacement_at(problem, Scheme::CentralDifference { restitution: 0.0 }, t, steps) - (omega * t).cos()).abs()
+    };
+    assert!(((error(100) / error(400)).log2() / 2.0 - 2.0).abs() < 0.1);
+}
+
+#[test]
+fn a_load_in_time_moves_an_oscillator_as_the_closed_form_says() {
+    // x'' + 4 x = sin t from rest: x = sin(t)/3 - sin(2 t)/6.
+    let factor = TimeFunction::Sine { frequency: 0.5 / std::f64::consts::PI, phase: 0.0 };
+    let problem = oscillator(0.0).with_load(factor, vec![1.0]).unwrap();
+    let t = 2.0_f64;
+    let exact = t.sin() / 3.0 - (2.0 * t).sin() / 6.0;
+    assert!((displacement_at(problem, Scheme::Midpoint, t, 2000) - exact).abs() < 1e-6);
+}
+
+#[test]
+fn a_run_that_is_resumed_goes_on_bit_for_bit() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/impact/bar.json");
+    let scene = Scene::read(path).unwrap();
+    let dynamics = scene.dynamics(&scene.build().unwrap()).unwrap().unwrap();
+    let new =
+        || Integrator::new(dynamics.problem.clone(), dynamics.scheme, dynamics.step, &Settings::default()).unwrap();
+    let (mut whole, mut second) = (new(), new());
+    // The bar is on the wall from step 300 to step 700.
+    for _ in 0..450 {
+        whole.advance().unwrap();
+    }
+    second.resume(whole.state().clone()).unwrap();
+    for _ in 0..400 {
+        whole.advance().unwrap();
+        second.advance().unwrap();
+    }
+    assert_eq!(whole.state(), second.state());
+}
+
+#[test]
+fn a_factor_in_single_precision_gives_the_same_motion() {
+    // A block that is thrown upwards, against a parabola.
+    let axis = serde_json::json!({"points": [0, 1], "divisions": [16]});
+    let scene = serde_json::json!({
+        "body": {"rectangle": {"x": axis, "y": axis}},
+        "material": {"young": 1000, "poisson": 0.3, "density": 1},
+        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}],
+        "obstacles": [
+            {"boundary": "top", "approach": "+y", "shape": {"parabola": {"apex": [0.5, 1], "radius": 2}}}],
+        "analysis": {"dynamic": {
+            "duration": 1, "initial": [{"velocity": {"value": [0, 0], "gradient": [[0, 0], [0, 5]]}}]}}
+    });
+    let scene = Scene::from_json(&scene.to_string(), "scene").unwrap();
+    let dynamics = scene.dynamics(&scene.build().unwrap()).unwrap().unwrap();
+    let [double, mixed] = [Precision::Double, Precision::Mixed].map(|precision| {
+        let mut settings = Settings::default();
+        settings.precision = precision;
+        let mut integrator =
+            Integrator::new(dynamics.problem.clone(), dynamics.scheme, dynamics.step, &settings).unwrap();
+        for _ in 0..20 {
+            integrator.advance().unwrap();
+        }
+        assert!(integrator.observe().closed > 0);
+        integrator.state().displacement.clone()
+    });
+    let largest = double.iter().fold(0.0_f64, |largest, u| largest.max(u.abs()));
+    let apart = double.iter().zip(&mixed).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+    // Every step is refined to the rounding of double precision, which is not the same rounding.
+    assert!(apart > 0.0 && apart <= 1e-9 * largest, "{apart} of {largest}");
+}
+
+#[test]
+fn a_mass_that_bounces_off_a_wall_keeps_the_restitution_it_is_given() {
+    // A free mass of 1 flies at 1 towards a wall; central differences throw it back at half its speed.
+    let rows = SparseMatrix::from_triplets(1, 1, &[(0, 0, 1.0)]).unwrap();
+    let one =
+        |value| SymmetricMatrix::from_lower(SparseMatrix::from_triplets(1, 1, &[(0, 0, value)]).unwrap()).unwrap();
+    let contact = ContactProblem::new(one(0.0), vec![0.0], rows, vec![1.0]).unwrap();
+    let problem = DynamicProblem::new(contact, one(1.0)).unwrap().starting_from(vec![0.0], vec![1.0]).unwrap();
+    let scheme = Scheme::CentralDifference { restitution: 0.5 };
+    let mut integrator = Integrator::new(problem, scheme, 0.3, &Settings::default()).unwrap();
+    for _ in 0..10 {
+        integrator.advance().unwrap();
+    }
+    assert!((integrator.state().velocity[0] + 0.5).abs() < 1e-14);
+}

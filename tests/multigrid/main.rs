@@ -1,0 +1,14 @@
+//! Multigrid, MPRGP, the bound without a factor, and the choice between both ways.
+
+#[path = "../support/bodies.rs"]
+mod bodies;
+#[path = "../support/oracles/mod.rs"]
+mod oracles;
+#[path = "../support/program.rs"]
+mod program;
+
+mod cycle_bound;
+mod mprgp;
+mod multigrid;
+mod near_null_files;
+mod room;

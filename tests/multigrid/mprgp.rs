@@ -1,0 +1,316 @@
+//! GOAL: MPRGP with one multigrid hierarchy finds what the direct methods find, at little more than a linear solve.
+//!
+//! CONDITIONS: a block in space under a sphere, inclined supports and normal rows, two bodies, bodies that only contact
+//! holds, rows on both sides, random problems against the enumeration of all sets; starts from other answers; problems that
+//! have no answer.
+
+use std::path::Path;
+
+use crate::bodies::{built, clamped_block, clamped_square, largest};
+use crate::oracles::{Dense, Draws, random};
+use serde_json::json;
+use signorini::sparse::multigrid::{NearNullSpace, conjugate_gradients};
+use signorini::{ContactProblem, ContactSet, Error, Iterative, Method, Scene, Settings, Solution, Start, solve};
+
+/// Both answers are certified to 1e-9; the condition numbers of these bodies are 1e3 and less.
+const SAME: f64 = 1e-6;
+
+/// Contact over linear solve, in cycles: what a contact solve may cost. Measured 1.0 to 1.3.
+const RATIO: f64 = 1.5;
+
+fn mprgp() -> Settings {
+    Settings::with_method(Method::Mprgp)
+}
+
+#[track_caller]
+fn same(found: &[f64], exact: &[f64], what: &str) {
+    let error = found.iter().zip(exact).fold(0.0, |error: f64, (a, b)| error.max((a - b).abs()));
+    assert!(error <= SAME * largest(exact), "{what}: off by {error:e} of {:e}", largest(exact));
+}
+
+#[track_caller]
+fn agrees_with_the_direct_path(problem: &ContactProblem, what: &str) -> Solution {
+    let direct = solve(problem, &Settings::with_method(Method::ActiveSet)).unwrap();
+    let found = solve(problem, &mprgp()).unwrap_or_else(|error| panic!("{what}: {error}"));
+    assert_eq!(found.contact_set, direct.contact_set, "{what}");
+    same(&found.displacement, &direct.displacement, what);
+    same(&found.multiplier, &direct.multiplier, what);
+    assert_eq!(found.method, "mprgp");
+    assert!(found.certificate.meets(1e-9), "{what}: {:?}", found.certificate);
+    found
+}
+
+fn example(name: &str) -> ContactProblem {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("examples/{name}.json"));
+    Scene::read(path).unwrap().build().unwrap().problem().clone()
+}
+
+#[test]
+fn a_block_costs_little_more_cycles_than_its_linear_solve() {
+    let problem = built(&clamped_block(16, -0.01)).problem().clone();
+    let contact = agrees_with_the_direct_path(&problem, "block");
+    let iterative = Iterative::new(&problem, 1).unwrap();
+    let load = problem.contact().mul_transposed(&vec![-1.0; problem.rows()]);
+    let linear = conjugate_gradients(problem.stiffness(), &load, iterative.multigrid(), 1e-10, 100).unwrap();
+    let ratio = contact.iterations as f64 / linear.cycles as f64;
+    assert!(ratio <= RATIO, "{} cycles of contact, {} of the linear solve", contact.iterations, linear.cycles);
+}
+
+/// So fine that the closed rows reach beyond the first coarse level, whose smoother must follow.
+#[test]
+fn closed_rows_are_known_on_every_level() {
+    let circle = json!([{"boundary": "top", "approach": "+y", "shape": {"circle": {"apex": [0.5, 1], "radius": 2}}}]);
+    let problem = built(&clamped_square(80, circle, -0.01)).problem().clone();
+    let contact = agrees_with_the_direct_path(&problem, "square");
+    assert!(contact.contact_set.count() > 10);
+    let iterative = Iterative::new(&problem, 1).unwrap();
+    let load = problem.contact().mul_transposed(&vec![-1.0; problem.rows()]);
+    let linear = conjugate_gradients(problem.stiffness(), &load, iterative.multigrid(), 1e-10, 100).unwrap();
+    println!("{} cycles of contact, {} of the linear solve", contact.iterations, linear.cycles);
+    assert!(contact.iterations as f64 <= RATIO * linear.cycles as f64, "{} cycles", contact.iterations);
+}
+
+#[test]
+fn scenes_with_inclined_rows_two_bodies_and_free_bodies_agree_with_the_direct_path() {
+    for name in ["inclined", "circle", "between", "block", "bar", "indentation"] {
+        agrees_with_the_direct_path(&example(name), name);
+    }
+    let part = |half: &str, centre: f64| {
+        json!({"half-disc": {"half": half, "centre": [0, centre], "radius": 1,
+                             "zone": {"width": 0.2, "divisions": 4, "growth": 1.4}, "element": "q4"}})
+    };
+    let two = json!({
+        "model": "plane-strain", "body": part("lower", 1.0), "material": {"young": 2.0, "poisson": 0.3},
+        "further-bodies": [{"name": "base", "body": part("upper", -1.0), "material": {"young": 1.0, "poisson": 0.2}}],
+        "supports": [{"on": {"boundary": "cut"}, "x": 0, "y": -0.01}, {"on": {"boundary": "base.cut"}, "x": 0, "y": 0}],
+        "obstacles": [{"boundary": "arc", "approach": "-y", "shape": {"body": {"boundary": "base.arc"}}}]
+    });
+    agrees_with_the_direct_path(built(&two).problem(), "two bodies");
+}
+
+#[test]
+fn a_body_that_only_contact_holds_is_included() {
+    let mut scene = clamped_block(6, 0.0);
+    // Guided at two faces, pressed up against the sphere: nothing but contact holds it along z.
+    scene["supports"] = json!([{"on": {"boundary": "left"}, "x": 0}, {"on": {"boundary": "front"}, "y": 0}]);
+    scene["loads"] = json!([{"traction": {"boundary": "bottom", "value": [0, 0, 1e5]}}]);
+    let problem = built(&scene).problem().clone();
+    let found = agrees_with_the_direct_path(&problem, "free along z");
+    assert!(found.contact_set.count() > 0);
+    assert!(Iterative::new(&problem, 1).unwrap().multigrid().is_shifted());
+}
+
+#[test]
+fn random_problems_agree_with_the_enumeration_of_all_sets() {
+    let mut draws = Draws::new(11);
+    let (mut solved, mut refused) = (0, 0);
+    for _ in 0..60 {
+        let dense = random(&mut draws, 6, 3);
+        match solve(&dense.problem().unwrap(), &mprgp()) {
+            Ok(found) => {
+                let exact = dense.enumerate();
+                same(&found.displacement, exact.displacement.as_slice(), "random");
+                solved += 1;
+            }
+            // Rows that share a dof and are neither parallel nor at right angles.
+            Err(Error::Numerical { reason, .. }) => {
+                assert!(reason.contains("right angles"), "{reason}");
+                refused += 1;
+            }
+            Err(error) => panic!("{error}"),
+        }
+    }
+    assert!(solved > 10 && refused > 0, "{solved} solved, {refused} refused");
+}
+
+#[test]
+fn rows_on_both_sides_of_a_dof_and_rows_of_two_dofs_are_bounds() {
+    let dense = Dense::new(
+        &[&[4.0, 1.0, 0.0], &[1.0, 3.0, 1.0], &[0.0, 1.0, 2.0]],
+        &[10.0, -10.0, 4.0],
+        &[&[1.0, 0.0, 0.0], &[-2.0, 0.0, 0.0], &[3.0, 0.0, 0.0], &[0.0, 0.6, -0.8], &[0.0, 0.8, 0.6]],
+        &[0.5, 1.0, 1.2, 0.1, f64::INFINITY],
+    );
+    let finite = Dense { gap: dense.gap.map(|gap| gap.min(1e3)), ..dense.clone() };
+    let found = solve(&dense.problem().unwrap(), &mprgp()).unwrap();
+    let exact = finite.enumerate();
+    same(&found.displacement, exact.displacement.as_slice(), "box");
+    same(&found.multiplier, exact.multiplier.as_slice(), "box");
+    assert_eq!(found.contact_set.iter().collect::<Vec<_>>(), exact.closed);
+}
+
+#[test]
+fn the_last_answer_is_a_start_that_saves_cycles() {
+    let problem = built(&clamped_block(12, -0.01)).problem().clone();
+    let iterative = Iterative::new(&problem, 1).unwrap();
+    let first = iterative.solve(Start::default(), &mprgp()).unwrap();
+    let again = Start { displacement: Some(&first.displacement), contact_set: Some(&first.contact_set) };
+    let gap: Vec<f64> = problem.gap().iter().map(|gap| gap - 1e-4).collect();
+    let next = iterative.solve_gap(gap.clone(), again, &mprgp()).unwrap();
+    let cold = iterative.solve_gap(gap, Start::default(), &mprgp()).unwrap();
+    assert_eq!(next.contact_set, cold.contact_set);
+    assert!(next.iterations < cold.iterations, "{} against {}", next.iterations, cold.iterations);
+    let wrong = vec![0.0; 3];
+    let start = Start { displacement: Some(&wrong), contact_set: None };
+    assert!(matches!(iterative.solve(start, &mprgp()), Err(Error::Length { .. })));
+}
+
+#[test]
+fn a_start_far_off_changes_nothing_but_the_cycles() {
+    let problem = built(&clamped_block(8, -0.02)).problem().clone();
+    let iterative = Iterative::new(&problem, 1).unwrap();
+    let cold = iterative.solve(Start::default(), &mprgp()).unwrap();
+    let closed = ContactSet::closed(problem.rows());
+    let start = Start { displacement: None, contact_set: Some(&closed) };
+    assert_eq!(iterative.solve(start, &mprgp()).unwrap().contact_set, cold.contact_set);
+}
+
+#[test]
+fn other_units_by_powers_of_two_give_the_same_iterations() {
+    let problem = built(&clamped_block(6, -0.01)).problem().clone();
+    let unit = 2.0_f64.powi(40);
+    let stiffness = problem.stiffness().lower().scaled(&vec![unit; problem.dofs()], &vec![1.0; problem.dofs()]);
+    let stiffness = signorini::SymmetricMatrix::from_lower(stiffness).unwrap();
+    let near_null = problem.near_null().unwrap().clone();
+    let scaled =
+        ContactProblem::new(stiffness, problem.load().to_vec(), problem.contact().clone(), problem.gap().to_vec());
+    let scaled = scaled.unwrap().with_near_null(near_null).unwrap();
+    let (one, other) = (solve(&problem, &mprgp()).unwrap(), solve(&scaled, &mprgp()).unwrap());
+    assert_eq!(one.displacement, other.displacement);
+    assert_eq!(one.multiplier.iter().map(|value| unit * value).collect::<Vec<_>>(), other.multiplier);
+}
+
+/// A block of the problem's own stiffness that nothing holds: no supports, rows at the top along z.
+fn unsupported(cells: usize, load: [f64; 3]) -> ContactProblem {
+    let model = built(&clamped_block(cells, 0.0));
+    let body = model.body();
+    let dofs = signorini::assembly::DofMap::new(vec![None; body.nodal_dofs()]).unwrap();
+    let stiffness = signorini::assembly::stiffness(body, &dofs).unwrap();
+    let entries: Vec<_> = model.rows().iter().enumerate().map(|(row, at)| (row, 3 * at.node + 2, 1.0)).collect();
+    let contact = signorini::SparseMatrix::from_triplets(entries.len(), body.nodal_dofs(), &entries).unwrap();
+    let load: Vec<f64> = (0..body.nodal_dofs()).map(|dof| load[dof % 3]).collect();
+    ContactProblem::new(stiffness, load, contact, vec![0.01; entries.len()]).unwrap()
+}
+
+#[test]
+fn motions_that_nothing_stops_come_back_as_directions_without_a_factor() {
+    // Pressed onto the rows along z, free along x, y and about z; pulled away from them.
+    let pressed = unsupported(6, [0.0, 0.0, 1.0]);
+    let free = solve(&pressed, &mprgp()).map(|_| "an answer").unwrap_err();
+    let sentence = free.to_string();
+    assert!(sentence.starts_with("a rigid-body motion is held by neither supports nor obstacle"), "{sentence}");
+    let pulled = solve(&unsupported(6, [0.0, 0.0, -1.0]), &mprgp()).unwrap_err();
+    assert!(pulled.to_string().starts_with("unbounded: the load drives a motion"), "{pulled}");
+    let (Error::UnderHeld { direction, .. }, Error::Unbounded { direction: escape, .. }) = (free, pulled) else {
+        panic!("not the errors that they say they are")
+    };
+    for direction in [&direction, &escape] {
+        let moved = pressed.stiffness().mul(direction);
+        assert!(largest(&moved) <= 1e-6 * largest(&pressed.stiffness().diagonal()), "K d is not zero");
+    }
+    assert!(largest(&pressed.contact().mul(&direction)) <= 1e-9, "a row under pressure feels the motion");
+    assert!(pressed.contact().mul(&escape).iter().all(|&moved| moved <= 1e-9), "the escape closes rows");
+}
+
+#[test]
+fn a_body_that_is_pulled_away_is_reported_as_unbounded() {
+    let dense = Dense::new(&[&[1.0, -1.0], &[-1.0, 1.0]], &[-1.0, -1.0], &[&[1.0, 0.0]], &[0.5]);
+    let pulled = solve(&dense.problem().unwrap(), &mprgp());
+    assert!(matches!(pulled, Err(Error::Unbounded { .. })), "{pulled:?}");
+}
+
+#[test]
+fn a_stiffness_with_a_negative_eigenvalue_on_the_free_face_is_refused() {
+    let dense = Dense::new(&[&[1.0, 2.0], &[2.0, 1.0]], &[1.0, -1.0], &[&[1.0, 0.0]], &[5.0]);
+    let refused = solve(&dense.problem().unwrap(), &mprgp());
+    assert!(matches!(refused, Err(Error::NotConvex { .. })), "{refused:?}");
+    // A hole in a block, three levels deep: the direction is named, where the hierarchy lets it be met.
+    let problem = built(&clamped_block(9, -0.01)).problem().clone();
+    let lower = problem.stiffness().lower();
+    let dof = problem.dofs() / 2;
+    let entries: Vec<_> = (lower.triplets())
+        .map(|(row, column, value)| (row, column, if row == dof && column == dof { 0.1 * value } else { value }))
+        .collect();
+    let lower = signorini::SparseMatrix::from_triplets(problem.dofs(), problem.dofs(), &entries).unwrap();
+    let stiffness = signorini::SymmetricMatrix::from_lower(lower).unwrap();
+    let near_null = problem.near_null().unwrap().clone();
+    let bad =
+        ContactProblem::new(stiffness, problem.load().to_vec(), problem.contact().clone(), problem.gap().to_vec());
+    let refused = solve(&bad.unwrap().with_near_null(near_null).unwrap(), &mprgp()).unwrap_err().to_string();
+    assert!(refused.starts_with("the stiffness is not positive semidefinite ("), "{refused}");
+    assert!(refused.contains(&format!("most of it at dof {dof}")) || refused.contains("coarsest"), "{refused}");
+}
+
+#[test]
+fn too_few_cycles_end_with_the_best_answer_not_certified() {
+    let problem = built(&clamped_block(8, -0.01)).problem().clone();
+    let mut settings = mprgp();
+    settings.max_iterations = 3;
+    let Err(Error::NotCertified { solution, .. }) = solve(&problem, &settings) else { panic!("three cycles suffice?") };
+    assert_eq!((solution.iterations, solution.method.as_str()), (3, "mprgp-unsettled"));
+    assert!(solution.contact_set.count() > 0);
+    settings.max_iterations = 20_000;
+    settings.tolerance = 1e-15;
+    // Where only rounding is left the loop ends by itself.
+    let solution = match solve(&problem, &settings) {
+        Ok(solution) => solution,
+        Err(Error::NotCertified { solution, .. }) => *solution,
+        Err(error) => panic!("{error}"),
+    };
+    assert!(solution.iterations < 60 && solution.certificate.meets(1e-12), "{:?}", solution.certificate);
+    settings.time = Some(0.0);
+    let Err(Error::NotCertified { solution, .. }) = solve(&problem, &settings) else { panic!("in no time?") };
+    assert_eq!((solution.iterations, solution.method.as_str()), (0, "mprgp-unsettled"));
+}
+
+#[test]
+fn a_tolerance_of_1e_10_is_reached_where_it_is_asked_for() {
+    let axis = |length: f64, cells: usize| json!({"points": [0, length], "divisions": [cells]});
+    let mut plate = clamped_block(2, -0.0005);
+    plate["body"] = json!({"box": {"x": axis(1.0, 18), "y": axis(1.0, 18), "z": axis(0.02, 2), "element": "hex8"}});
+    plate["obstacles"][0]["shape"]["sphere"]["apex"] = json!([0.5, 0.5, 0.02]);
+    let on_face = built(&plate).problem().clone();
+    plate["supports"] = json!([{"on": {"boundary": "left"}, "x": 0, "y": 0, "z": 0}]);
+    let on_edge = built(&plate).problem().clone();
+    let mut stiff = clamped_block(9, -0.01);
+    stiff["material"]["poisson"] = json!(0.49);
+    let block = built(&clamped_block(14, -0.01)).problem().clone();
+    let cases = [("block", block), ("nu = 0.49", built(&stiff).problem().clone()), ("plate on its face", on_face)];
+    let examples = ["inclined", "circle", "between", "indentation"].map(|name| (name, example(name)));
+    for (name, problem) in cases.into_iter().chain([("plate on an edge", on_edge)]).chain(examples) {
+        let mut settings = mprgp();
+        let looser = solve(&problem, &settings).unwrap();
+        settings.tolerance = 1e-10;
+        let found = solve(&problem, &settings).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let (_, worst) = found.certificate.worst();
+        println!("{name}: {worst:.1e} after {} cycles; to 1e-9 {}", found.iterations, looser.iterations);
+        assert!(worst <= 1e-10 && found.certificate.stationarity_excess <= 1e-10, "{name}: {:?}", found.certificate);
+    }
+}
+
+#[test]
+fn a_hierarchy_that_is_bad_on_purpose_stagnates_and_says_so() {
+    // A thin plate held at an edge bends, and constants know nothing of bending.
+    let axis = |length: f64, cells: usize| json!({"points": [0, length], "divisions": [cells]});
+    let mut scene = clamped_block(2, -0.0005);
+    scene["body"] = json!({"box": {"x": axis(1.0, 40), "y": axis(0.2, 8), "z": axis(0.004, 2), "element": "hex8"}});
+    scene["supports"] = json!([{"on": {"boundary": "left"}, "x": 0, "y": 0, "z": 0}]);
+    scene["obstacles"][0]["shape"]["sphere"]["apex"] = json!([0.5, 0.1, 0.004]);
+    let problem = built(&scene).problem().clone();
+    let constants = NearNullSpace::constants(problem.stiffness()).unwrap();
+    let blind = problem.clone().with_near_null(constants).unwrap();
+    let mut settings = mprgp();
+    settings.max_iterations = 150;
+    let refused = solve(&blind, &settings).unwrap_err();
+    println!("{refused}");
+    let sentence = refused.to_string();
+    assert!(sentence.starts_with("not certified: ") && sentence.contains("(mprgp-"), "{sentence}");
+    let Error::NotCertified { solution, .. } = refused else { panic!("{sentence}") };
+    assert!(solution.iterations <= 150 && sentence.contains(&format!("after {} iterations", solution.iterations)));
+    // The best answer comes along: its energy is below that of no displacement at all.
+    let elastic = problem.stiffness().mul(&solution.displacement);
+    let energy: f64 =
+        (0..problem.dofs()).map(|i| solution.displacement[i] * (0.5 * elastic[i] - problem.load()[i])).sum();
+    assert!(solution.displacement.iter().all(|u| u.is_finite()) && energy.is_finite());
+    assert!(solution.contact_set.count() > 0);
+}

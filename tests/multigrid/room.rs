@@ -1,0 +1,76 @@
+//! GOAL: the choice between a factor and multigrid keeps to the memory that is allowed, and says why it was made.
+//!
+//! CONDITIONS: a block, with memory for both ways, for one, for none; an accuracy named, no near-null space, no method left
+//! to choose.
+
+use crate::bodies::{built, clamped_block};
+use signorini::solve::Estimate;
+use signorini::study::{ModelSize, Summary};
+use signorini::{ContactProblem, Error, Method, Settings, solve};
+
+fn within(memory: f64) -> Settings {
+    let mut settings = Settings::default();
+    settings.memory = Some(memory);
+    settings
+}
+
+fn block() -> (ContactProblem, Estimate) {
+    let problem = built(&clamped_block(8, -0.01)).problem().clone();
+    let estimate = Estimate::of(&problem);
+    (problem, estimate)
+}
+
+#[test]
+fn a_factor_is_taken_where_it_fits() {
+    let (problem, estimate) = block();
+    assert!(estimate.direct_bytes > estimate.multigrid_bytes && !estimate.prefers_multigrid(estimate.direct_bytes));
+    // The estimate is good to a factor of two.
+    for settings in [Settings::default(), within(2.0 * estimate.direct_bytes)] {
+        let found = solve(&problem, &settings).unwrap();
+        assert!(found.method.starts_with("active-set") && found.reason.is_none(), "{}", found.method);
+    }
+}
+
+#[test]
+fn multigrid_is_taken_where_only_that_fits_and_the_answer_says_why() {
+    let (problem, estimate) = block();
+    let between = within(0.5 * (estimate.direct_bytes + estimate.multigrid_bytes));
+    let exact = solve(&problem, &Settings::with_method(Method::ActiveSet)).unwrap();
+    let mut with_accuracy = between.clone();
+    with_accuracy.accuracy = Some(1e-4);
+    for settings in [between, with_accuracy] {
+        let found = solve(&problem, &settings).unwrap();
+        let reason = found.reason.clone().unwrap();
+        assert_eq!((found.method.as_str(), &found.contact_set), ("mprgp", &exact.contact_set));
+        assert!(reason.starts_with("by multigrid, of about ") && reason.contains("with a factor"), "{reason}");
+        let summary = Summary::new(&found, ModelSize::of(&problem), settings.goal(), 0.0);
+        assert_eq!(summary.reason, found.reason);
+        assert!(found.certificate.energy_error_bound <= settings.accuracy.unwrap_or(1e-4));
+    }
+    // Without a near-null space constants must do.
+    let (stiffness, contact) = (problem.stiffness().clone(), problem.contact().clone());
+    let raw = ContactProblem::new(stiffness, problem.load().to_vec(), contact, problem.gap().to_vec()).unwrap();
+    let raw_estimate = Estimate::of(&raw);
+    let found = solve(&raw, &within(0.5 * (raw_estimate.direct_bytes + raw_estimate.multigrid_bytes))).unwrap();
+    assert_eq!((found.method.as_str(), found.contact_set), ("mprgp", exact.contact_set));
+}
+
+#[test]
+fn a_problem_that_fits_neither_way_is_refused_with_both_estimates() {
+    let (problem, estimate) = block();
+    let refused = solve(&problem, &within(0.5 * estimate.multigrid_bytes)).unwrap_err();
+    assert_eq!(refused.code(), "too-large");
+    let sentence = refused.to_string();
+    let megabytes = |bytes: f64| format!("about {:.0} MB", bytes / 1e6);
+    for bytes in [estimate.direct_bytes, estimate.multigrid_bytes] {
+        assert!(sentence.contains(&megabytes(bytes)), "{sentence}");
+    }
+    assert!(sentence.starts_with("neither way fits into "), "{sentence}");
+    assert!(matches!(refused, Error::NoRoom { allowed, .. } if allowed == 0.5 * estimate.multigrid_bytes));
+    let negative = solve(&problem, &within(-1.0)).unwrap_err().to_string();
+    assert_eq!(negative, "memory is -1; it must be positive");
+    // A method that is named is taken, or refused by what it needs.
+    let mut named = within(0.5 * estimate.multigrid_bytes);
+    named.method = Method::ActiveSet;
+    assert!(matches!(solve(&problem, &named), Err(Error::TooLarge { .. })));
+}

@@ -1,0 +1,231 @@
+//! GOAL: a wrong answer is told from a right one by the numbers of its certificate alone.
+//! CONDITIONS: the exact answer of a small problem, with one fault planted at a time.
+
+use crate::oracles::{Dense, Draws, random};
+use signorini::{Certificate, ContactProblem, Method, Settings, SparseMatrix, SymmetricMatrix, solve, solve_qp};
+
+const TOLERANCE: f64 = 1e-9;
+
+fn two_springs() -> (ContactProblem, Vec<f64>, Vec<f64>) {
+    let dense = Dense::new(&[&[3.0, -1.0], &[-1.0, 1.0]], &[0.5, 3.0], &[&[0.0, 1.0], &[1.0, 0.0]], &[1.0, 2.0]);
+    (dense.problem().unwrap(), vec![0.5, 1.0], vec![-2.5, 0.0])
+}
+
+fn certify(u: &[f64], lambda: &[f64]) -> Certificate {
+    two_springs().0.certify(u, lambda).unwrap()
+}
+
+#[test]
+fn exact_answer_is_certified() {
+    let (problem, u, lambda) = two_springs();
+    let certificate = problem.certify(&u, &lambda).unwrap();
+    assert!(certificate.meets(1e-14), "{certificate:?}");
+    assert!(certificate.energy_error_bound < 1e-15);
+}
+
+#[test]
+fn flipped_sign_of_the_contact_force_is_adhesion_and_imbalance() {
+    let certificate = certify(&[0.5, 1.0], &[2.5, 0.0]);
+    assert!((certificate.adhesion - 1.0).abs() < 1e-15, "{certificate:?}");
+    assert!(certificate.stationarity > 1.0 && !certificate.meets(TOLERANCE));
+}
+
+#[test]
+fn wrong_signed_force_in_balance_with_a_wrong_load_is_caught_by_its_sign_alone() {
+    // u_2 = 4 balances lambda = 0.5: K u = f + B' lambda, and the row is closed at gap 4. Only the sign is wrong.
+    let dense = Dense::new(&[&[3.0, -1.0], &[-1.0, 1.0]], &[0.5, 3.0], &[&[0.0, 1.0]], &[2.25 + 3.0]);
+    let problem = dense.problem().unwrap();
+    let u = [5.75 / 3.0, 5.25];
+    let lambda = [-u[0] + u[1] - 3.0];
+    let certificate = problem.certify(&u, &lambda).unwrap();
+    assert!(certificate.stationarity < 1e-15 && certificate.penetration == 0.0, "{certificate:?}");
+    assert!(certificate.complementarity < 1e-15, "{certificate:?}");
+    assert!(certificate.adhesion > 0.9 && !certificate.meets(TOLERANCE), "{certificate:?}");
+}
+
+#[test]
+fn lost_factor_two_is_caught() {
+    for (u, lambda) in [([0.5, 1.0], [-5.0, 0.0]), ([0.25, 0.5], [-2.5, 0.0]), ([1.0, 2.0], [-2.5, 0.0])] {
+        let certificate = certify(&u, &lambda);
+        assert!(!certificate.meets(1e-2), "{u:?} {lambda:?}: {certificate:?}");
+        // The bound is one of the displacement, which is right in the first case.
+        assert!((certificate.energy_error_bound > 0.1) == (u != [0.5, 1.0]), "{certificate:?}");
+    }
+}
+
+#[test]
+fn swapped_rows_are_caught() {
+    let certificate = certify(&[0.5, 1.0], &[0.0, -2.5]);
+    assert!(certificate.complementarity > 0.5 && certificate.stationarity > 0.5, "{certificate:?}");
+}
+
+#[test]
+fn penetration_is_measured_against_the_displacement() {
+    let certificate = certify(&[0.5, 1.001], &[-2.5, 0.0]);
+    assert!((certificate.penetration / (0.001 / 1.001) - 1.0).abs() < 1e-9, "{certificate:?}");
+}
+
+#[test]
+fn force_over_an_open_gap_is_complementarity() {
+    // The row is open by 0.5 and carries the force that balances u = (1/3, 0.5).
+    let certificate = certify(&[1.0 / 3.0, 0.5], &[-(3.0 + 1.0 / 3.0 - 0.5), 0.0]);
+    assert!(certificate.stationarity < 1e-15 && certificate.adhesion == 0.0, "{certificate:?}");
+    assert!(certificate.complementarity > 0.4, "{certificate:?}");
+}
+
+/// The bound is never below the true error, and follows it down: perturbed answers of random problems.
+#[test]
+fn energy_bound_holds_for_perturbed_answers() {
+    let mut draws = Draws::new(4);
+    for case in 0..300 {
+        let dense = random(&mut draws, 5, 4);
+        let problem = dense.problem().unwrap();
+        let exact = solve_qp(&problem).unwrap();
+        let reference = dense.enumerate().displacement;
+        let norm = |v: &nalgebra::DVector<f64>| v.dot(&(&dense.stiffness * v)).max(0.0).sqrt();
+        let size = 10.0_f64.powi(-(case % 8));
+        let shaken = |values: &[f64], draws: &mut Draws| -> Vec<f64> {
+            values.iter().map(|value| value + size * draws.signed()).collect()
+        };
+        let (u, lambda) = (shaken(&exact.displacement, &mut draws), shaken(&exact.multiplier, &mut draws));
+        let bound = problem.certify(&u, &lambda).unwrap().energy_error_bound;
+        let u = nalgebra::DVector::from_row_slice(&u);
+        let error = norm(&(&u - &reference)) / norm(&u);
+        assert!(error <= bound * (1.0 + 1e-6) + 1e-13, "case {case}: error {error:e} above the bound {bound:e}");
+    }
+}
+
+#[test]
+fn answer_moved_by_ten_tolerances_is_refused() {
+    let (problem, u, lambda) = two_springs();
+    for entry in 0..2 {
+        let mut moved = u.clone();
+        moved[entry] *= 1.0 + 10.0 * TOLERANCE;
+        assert!(!problem.certify(&moved, &lambda).unwrap().meets(TOLERANCE), "u[{entry}]");
+    }
+    assert!(!problem.certify(&u, &[lambda[0] * (1.0 + 10.0 * TOLERANCE), 0.0]).unwrap().meets(TOLERANCE));
+}
+
+#[test]
+fn not_certified_answers_come_back_with_their_numbers() {
+    let mut settings = Settings::with_method(Method::Qp);
+    settings.polish = false;
+    settings.interior_point_tolerance = 1e-2;
+    match solve(&two_springs().0, &settings) {
+        Err(signorini::Error::NotCertified { solution, value, tolerance, .. }) => {
+            assert_eq!(solution.method, "qp-unpolished");
+            assert!(value > tolerance && (solution.displacement[1] - 1.0).abs() < 0.1);
+        }
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn vectors_of_the_wrong_length_and_numbers_that_are_none_are_refused_in_one_sentence() {
+    let (problem, u, lambda) = two_springs();
+    let message = |result: Result<Certificate, signorini::Error>| result.unwrap_err().to_string();
+    assert_eq!(message(problem.certify(&u[1..], &lambda)), "displacement has length 1, but there are 2 dofs");
+    assert_eq!(message(problem.certify(&u, &[])), "multiplier has length 0, but there are 2 contact rows");
+    assert!(!problem.certify(&[f64::NAN, 1.0], &lambda).unwrap().meets(TOLERANCE));
+    assert!(!problem.certify(&u, &[f64::NAN, 0.0]).unwrap().meets(TOLERANCE));
+    assert!(!problem.certify(&u, &[f64::NEG_INFINITY, 0.0]).unwrap().meets(TOLERANCE));
+}
+
+#[test]
+fn problems_that_do_not_fit_together_are_refused_in_one_sentence() {
+    let stiffness =
+        || SymmetricMatrix::from_lower(SparseMatrix::from_triplets(2, 2, &[(0, 0, 1.0), (1, 1, 1.0)]).unwrap());
+    let contact = |columns| SparseMatrix::from_triplets(1, columns, &[(0, 0, 1.0)]).unwrap();
+    let message = |load: Vec<f64>, columns, gap: Vec<f64>| {
+        ContactProblem::new(stiffness().unwrap(), load, contact(columns), gap).unwrap_err().to_string()
+    };
+    assert_eq!(message(vec![0.0; 3], 2, vec![0.0]), "load vector has length 3, but there are 2 dofs");
+    assert_eq!(message(vec![0.0; 2], 3, vec![0.0]), "contact matrix is 1 x 3, but it must be 1 x 2");
+    assert_eq!(message(vec![0.0; 2], 2, vec![0.0; 7]), "gap vector has length 7, but there are 1 contact rows");
+    assert!(message(vec![0.0, f64::NAN], 2, vec![0.0]).contains("load vector has the value NaN at entry 1"));
+    assert!(message(vec![0.0; 2], 2, vec![f64::NEG_INFINITY]).contains("gap vector has the value -inf at entry 0"));
+    let one_triangle = SparseMatrix::from_triplets(2, 2, &[(0, 0, 2.0), (1, 0, 1.0), (1, 1, 2.0)]).unwrap();
+    let message = SymmetricMatrix::from_full(&one_triangle).unwrap_err().to_string();
+    assert!(message.contains("entry (1, 0) is 1e0, entry (0, 1) is 0e0"), "{message}");
+    let outside = SparseMatrix::from_triplets(2, 2, &[(2, 0, 1.0)]).unwrap_err().to_string();
+    assert!(outside.contains("entry (2, 0) lies outside a matrix of 2 rows"), "{outside}");
+}
+
+/// Forces and energies beyond the ends of double precision: the same numbers as in units of order one, bit by bit.
+#[test]
+fn certificate_and_proof_do_not_depend_on_the_units() {
+    let (problem, u, lambda) = two_springs();
+    let near = [0.5 + 1e-4, 1.0];
+    let (certificate, proven) = (problem.certify(&near, &lambda).unwrap(), problem.prove(&u, &lambda).unwrap());
+    assert_eq!(proven.as_ref().map(|set| (set.closed.count(), set.open.count())), Some((1, 1)));
+    for (stiffness, length) in [(900, 0), (-900, 0), (0, 450), (0, -450), (600, 300), (-450, -450)] {
+        let (k, l) = (2_f64.powi(stiffness), 2_f64.powi(length));
+        let scaled = |values: &[f64], by: f64| values.iter().map(|value| value * by).collect::<Vec<f64>>();
+        let dense = Dense::new(
+            &[&[3.0 * k, -k], &[-k, k]],
+            &scaled(&[0.5, 3.0], k * l),
+            &[&[0.0, 1.0], &[1.0, 0.0]],
+            &scaled(&[1.0, 2.0], l),
+        );
+        let far = dense.problem().unwrap();
+        let force = scaled(&lambda, k * l);
+        let mut found = far.certify(&scaled(&near, l), &force).unwrap();
+        // The square root of an odd power of two is rounded.
+        let bound = found.energy_error_bound / certificate.energy_error_bound;
+        assert!((bound - 1.0).abs() < 1e-14, "2^{stiffness}, 2^{length}: {bound}");
+        found.energy_error_bound = certificate.energy_error_bound;
+        assert_eq!(found, certificate, "2^{stiffness}, 2^{length}");
+        assert_eq!(far.prove(&scaled(&u, l), &force).unwrap(), proven, "2^{stiffness}, 2^{length}");
+    }
+}
+
+#[test]
+fn nothing_is_proven_by_numbers_that_are_none_or_of_a_body_without_an_energy_norm() {
+    let (problem, u, lambda) = two_springs();
+    assert!(problem.prove(&u, &lambda).unwrap().is_some());
+    assert!(problem.prove(&[f64::NAN, 1.0], &lambda).unwrap().is_none());
+    assert!(problem.prove(&u, &[f64::NAN, 0.0]).unwrap().is_none());
+    // A rod that only its wall holds, one that is not held at all, and a dof without stiffness.
+    let rod: &[&[f64]] = &[&[1.0, -1.0], &[-1.0, 1.0]];
+    for stiffness in [rod, &[&[0.0, 0.0], &[0.0, 0.0]], &[&[1.0, 0.0], &[0.0, 0.0]]] {
+        let floating = Dense::new(stiffness, &[0.0, 0.0], &[&[0.0, 1.0]], &[0.0]).problem().unwrap();
+        let certificate = floating.certify(&[0.0; 2], &[0.0]).unwrap();
+        assert!(certificate.energy_error_bound.is_infinite() && certificate.meets(TOLERANCE), "{certificate:?}");
+        assert!(floating.prove(&[0.0; 2], &[0.0]).unwrap().is_none());
+    }
+}
+
+/// A string of 400 springs of stiffness 1 under a load on each node, every node before a wall at distance 1: too many rows for
+/// a dense boundary. A row of zeros stands behind them, with a gap of its own.
+fn string(load: f64, gap_of_nothing: f64) -> ContactProblem {
+    let nodes = 400;
+    let springs: Vec<_> =
+        (0..nodes).map(|node| (node, node, 2.0)).chain((1..nodes).map(|j| (j, j - 1, -1.0))).collect();
+    let rows: Vec<_> = (0..nodes).map(|node| (node, node, 1.0)).collect();
+    let stiffness = SparseMatrix::from_triplets(nodes, nodes, &springs).unwrap();
+    let contact = SparseMatrix::from_triplets(nodes + 1, nodes, &rows).unwrap();
+    let gap = [vec![1.0; nodes], vec![gap_of_nothing]].concat();
+    ContactProblem::new(SymmetricMatrix::from_lower(stiffness).unwrap(), vec![load; nodes], contact, gap).unwrap()
+}
+
+#[test]
+fn bound_without_a_dense_boundary_is_that_of_a_uniform_penetration() {
+    const DEPTH: f64 = 1e-6;
+    let problem = string(3.0, 1.0);
+    let mut lambda: Vec<f64> = problem.stiffness().mul(&[1.0; 400]).iter().map(|force| force - 3.0).collect();
+    lambda.push(0.0);
+    assert!(problem.certify(&[1.0; 400], &lambda).unwrap().meets(TOLERANCE));
+    // The energy of a uniform displacement is in the two springs at the ends, and the error is one.
+    let bound = problem.certify(&[1.0 + DEPTH; 400], &lambda).unwrap().energy_error_bound;
+    assert!((DEPTH * (1.0 - 2.0 * DEPTH)..3.0 * DEPTH).contains(&bound), "{bound:e}");
+    let proven = problem.prove(&[1.0; 400], &lambda).unwrap().unwrap();
+    assert_eq!((proven.closed.count(), proven.open.count()), (400, 1));
+}
+
+#[test]
+fn a_row_of_zeros_that_wants_something_has_no_bound() {
+    let problem = string(0.0, -1.0);
+    let certificate = problem.certify(&[0.0; 400], &[0.0; 401]).unwrap();
+    assert!(certificate.energy_error_bound.is_infinite() && !certificate.meets(TOLERANCE), "{certificate:?}");
+    assert!(problem.prove(&[0.0; 400], &[0.0; 401]).unwrap().is_none());
+}

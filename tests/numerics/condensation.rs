@@ -1,0 +1,321 @@
+//! GOAL: condensed onto the contact dofs, a problem has the same answer, and the next gap or load needs no factorisation.
+//!
+//! CONDITIONS: every example scene, the reference gaps, a body in space, inclined and two-sided rows, bodies that only their
+//! rows hold, redundant rows; one thread and two.
+
+use std::path::Path;
+
+use crate::oracles::{Draws, random};
+use signorini::sparse::Cholesky;
+use signorini::{
+    Condense, ContactProblem, Error, Method, Prepared, Scene, Settings, Solution, SparseMatrix, SymmetricMatrix, solve,
+};
+
+/// Condensed and full answers differ by rounding, enlarged by the condition number of the stiffness.
+const SAME: f64 = 1e-11;
+
+const EXACT: [Method; 2] = [Method::Qp, Method::ActiveSet];
+
+fn settings(method: Method, condense: Condense) -> Settings {
+    let mut settings = Settings::with_method(method);
+    settings.condense = condense;
+    settings
+}
+
+fn answer(problem: &ContactProblem, settings: &Settings) -> Solution {
+    solve(problem, settings).unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[track_caller]
+fn same(a: &[f64], b: &[f64], what: &str) {
+    let largest = b.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    for (a, b) in a.iter().zip(b) {
+        assert!((a - b).abs() <= SAME * largest, "{what}: {a:e} and {b:e} of {largest:e}");
+    }
+}
+
+fn example(name: &str) -> ContactProblem {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("examples/{name}.json"));
+    Scene::read(path).unwrap().build().unwrap().problem().clone()
+}
+
+/// Answers and, for the active set, the search for them: condensed and full.
+#[track_caller]
+fn check_both_ways(problem: &ContactProblem, name: &str) {
+    for method in EXACT {
+        let full = answer(problem, &settings(method, Condense::Never));
+        let condensed = answer(problem, &settings(method, Condense::Auto));
+        let what = format!("{name}, {method:?}");
+        assert!(condensed.condensed_dofs < problem.dofs() / 4, "{what}: {} dofs", condensed.condensed_dofs);
+        assert_eq!(full.condensed_dofs, problem.dofs());
+        same(&condensed.displacement, &full.displacement, &what);
+        same(&condensed.multiplier, &full.multiplier, &what);
+        assert_eq!(condensed.contact_set, full.contact_set, "{what}");
+        if method == Method::ActiveSet {
+            let sets =
+                |solution: &Solution| solution.history.iter().map(|step| step.contact_set.clone()).collect::<Vec<_>>();
+            // A body that only its rows hold starts from springs, which are measured in condensed stiffness there.
+            if full.certificate.energy_error_bound.is_finite() {
+                assert_eq!(sets(&condensed), sets(&full), "{what}: history");
+            }
+        }
+    }
+}
+
+#[test]
+fn every_example_scene_has_the_same_answer_and_the_same_search() {
+    let folder = std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples")).unwrap();
+    let mut count = 0;
+    for entry in folder {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|extension| extension == "json") {
+            let model = Scene::read(&path).unwrap().build().unwrap();
+            check_both_ways(model.problem(), &path.display().to_string());
+            count += 1;
+        }
+    }
+    assert!(count >= 6);
+}
+
+#[test]
+fn the_gaps_of_the_reference_have_the_same_answer_and_the_same_search() {
+    let problem = example("indentation");
+    for step in 0..10 {
+        let gap = problem.gap().iter().map(|gap| gap - 0.01 * f64::from(step)).collect();
+        check_both_ways(&problem.with_gap(gap).unwrap(), &format!("step {step}"));
+    }
+}
+
+/// A cube under a sphere; from 14 divisions on minimum degree is so costly that nested dissection is tried.
+fn cube(divisions: usize) -> ContactProblem {
+    let axis = serde_json::json!({"points": [0, 1], "divisions": [divisions]});
+    let scene = serde_json::json!({
+        "model": "space",
+        "body": {"box": {"x": axis, "y": axis, "z": axis, "element": "hex8"}},
+        "material": {"young": 1e7, "poisson": 0.3},
+        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0, "z": 0}],
+        "obstacles": [{"boundary": "top", "approach": "+z", "shape": {"sphere": {"apex": [0.5, 0.5, 1], "radius": 1}}}],
+        "gap": -0.01,
+    });
+    Scene::from_json(&scene.to_string(), "scene").unwrap().build().unwrap().problem().clone()
+}
+
+#[test]
+fn body_in_space_has_the_same_answer_and_the_same_search() {
+    check_both_ways(&cube(5), "cube");
+    let dissected = cube(14);
+    let full = answer(&dissected, &settings(Method::ActiveSet, Condense::Never));
+    let condensed = answer(&dissected, &settings(Method::ActiveSet, Condense::Auto));
+    assert_eq!(condensed.condensed_dofs, 15 * 15);
+    same(&condensed.displacement, &full.displacement, "u of the large cube");
+    same(&condensed.multiplier, &full.multiplier, "lambda of the large cube");
+    assert_eq!(condensed.contact_set, full.contact_set);
+}
+
+/// Threads share the columns of a block among them, not the terms of a sum.
+#[test]
+fn two_threads_give_the_answer_of_one_bit_by_bit() {
+    let mut settings = settings(Method::ActiveSet, Condense::Auto);
+    for problem in [cube(14), example("indentation")] {
+        settings.threads = 1;
+        let one = answer(&problem, &settings);
+        settings.threads = 2;
+        let two = answer(&problem, &settings);
+        assert_eq!(one.displacement, two.displacement);
+        assert_eq!(one.multiplier, two.multiplier);
+        assert_eq!(one.certificate, two.certificate);
+    }
+    settings.threads = 0;
+    assert!(matches!(solve(&example("block"), &settings), Err(Error::Setting { name: "threads", .. })));
+}
+
+#[test]
+fn boundary_alone_agrees_with_the_whole_answer() {
+    let problem = example("indentation");
+    let prepared = Prepared::new(&problem, Condense::Auto).unwrap();
+    for method in EXACT {
+        let settings = settings(method, Condense::Auto);
+        let closed = prepared.solve(&settings).unwrap().contact_set;
+        let gap: Vec<f64> = problem.gap().iter().map(|gap| gap - 0.02).collect();
+        let whole = prepared.solve_gap(gap.clone(), Some(&closed), &settings).unwrap();
+        let boundary = prepared.boundary_at_gap(gap, Some(&closed), &settings).unwrap();
+        assert_eq!(boundary.multiplier, whole.multiplier);
+        assert_eq!(boundary.contact_set, whole.contact_set);
+        assert_eq!(boundary.contact_force(), whole.contact_force());
+        assert_eq!(boundary.displacement(), whole.displacement);
+        assert!(boundary.condensed_certificate.meets(1e-12), "{:?}", boundary.condensed_certificate);
+        assert!(boundary.condensed_certificate.energy_error_bound < 1e-12);
+        assert_eq!(boundary.solution(&settings).unwrap().certificate, whole.certificate);
+
+        let load: Vec<f64> = (0..problem.dofs()).map(|dof| if dof % 2 == 1 { 30.0 } else { 5.0 }).collect();
+        let whole = prepared.solve_load(load.clone(), None, &settings).unwrap();
+        let boundary = prepared.boundary_at_load(load, None, &settings).unwrap();
+        assert_eq!(boundary.multiplier, whole.multiplier);
+        assert_eq!(boundary.displacement(), whole.displacement);
+    }
+    let message = prepared.boundary_at_gap(vec![f64::NAN; 41], None, &Settings::default()).unwrap_err().to_string();
+    assert!(message.contains("gap vector has the value NaN at entry 0"), "{message}");
+}
+
+/// An answer that is not exact is refused on the boundary as it is on the whole.
+#[test]
+fn boundary_of_a_poor_answer_is_not_certified() {
+    let problem = example("indentation");
+    let prepared = Prepared::new(&problem, Condense::Auto).unwrap();
+    let mut settings = settings(Method::Penalty, Condense::Auto);
+    settings.last_penalty = 1e3;
+    let refused = prepared.boundary_at_gap(problem.gap().to_vec(), None, &settings);
+    assert!(matches!(refused, Err(Error::NotCertified { .. })), "{refused:?}");
+}
+
+/// Neither a diagonal, nor a chain, nor a full matrix trips the orderings.
+#[test]
+fn matrices_without_edges_and_with_all_of_them_are_factorised() {
+    for n in [1, 2, 3, 7, 64, 1000] {
+        let reach = if n < 100 { n } else { 3 };
+        for width in [1, 2, reach] {
+            let entries: Vec<_> = (0..n)
+                .flat_map(|i| (i..n.min(i + width)).map(move |j| (j, i, if i == j { n as f64 } else { -0.5 })))
+                .collect();
+            let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(n, n, &entries).unwrap()).unwrap();
+            let x: Vec<f64> = (0..n).map(|i| 1.0 + i as f64 / n as f64).collect();
+            let solved = Cholesky::of(&stiffness).unwrap().solve(&stiffness.mul(&x));
+            same(&solved, &x, &format!("n = {n}, width {width}"));
+        }
+    }
+}
+
+/// Rows on a tenth of the dofs, some inclined, some twice: K = A A' blocks in a chain.
+fn chain(draws: &mut Draws) -> ContactProblem {
+    let (blocks, size) = (20, 6);
+    let n = blocks * size;
+    let mut entries = Vec::new();
+    for block in 0..blocks {
+        let dense = random(draws, size, 1).stiffness;
+        for i in 0..size {
+            for j in 0..=i {
+                entries.push((block * size + i, block * size + j, dense[(i, j)]));
+            }
+        }
+        if block > 0 {
+            let (a, b) = ((block - 1) * size + 2, block * size);
+            entries.extend([(a, a, 1.0), (b, b, 1.0), (b, a, -1.0)]);
+        }
+    }
+    let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(n, n, &entries).unwrap()).unwrap();
+    let mut rows = Vec::new();
+    let mut gap = Vec::new();
+    for _ in 0..10 {
+        let dof = draws.below(n / 2);
+        let row = gap.len();
+        rows.push((row, dof, 1.0));
+        if draws.uniform() < 0.3 {
+            rows.push((row, (dof + 1) % n, draws.signed()));
+        }
+        gap.push(0.2 * draws.uniform());
+        if draws.uniform() < 0.3 {
+            rows.push((row + 1, dof, -1.0));
+            gap.push(0.2 * draws.uniform());
+        }
+    }
+    let load = (0..n).map(|_| draws.signed()).collect();
+    ContactProblem::new(stiffness, load, SparseMatrix::from_triplets(gap.len(), n, &rows).unwrap(), gap).unwrap()
+}
+
+#[test]
+fn inclined_two_sided_and_redundant_rows_condense() {
+    let mut draws = Draws::new(7);
+    let mut condensed_cases = 0;
+    for case in 0..60 {
+        let problem = chain(&mut draws);
+        for method in EXACT {
+            let full = answer(&problem, &settings(method, Condense::Never));
+            let condensed = answer(&problem, &settings(method, Condense::Auto));
+            condensed_cases += usize::from(condensed.condensed_dofs < problem.dofs());
+            same(&condensed.displacement, &full.displacement, &format!("case {case}, {method:?}"));
+            // Single multipliers of redundant rows are not unique; what they do to the body is.
+            let force = |solution: &Solution| problem.contact().mul_transposed(&solution.multiplier);
+            same(&force(&condensed), &force(&full), &format!("case {case}, {method:?}: B' lambda"));
+        }
+    }
+    assert!(condensed_cases > 100, "only {condensed_cases} were condensed");
+}
+
+#[test]
+fn next_gap_and_next_load_agree_with_independent_solves() {
+    let problem = example("indentation");
+    let prepared = Prepared::new(&problem, Condense::Auto).unwrap();
+    let default = Settings::with_method(Method::Qp);
+    let mut last = prepared.solve(&default).unwrap();
+    for step in 1..8 {
+        let gap: Vec<f64> = problem.gap().iter().map(|gap| gap - 0.006 * f64::from(step)).collect();
+        let cold = answer(&problem.with_gap(gap.clone()).unwrap(), &default);
+        let next = prepared.solve_gap(gap, Some(&last.contact_set), &default).unwrap();
+        assert_eq!(next.method, "qp-warm");
+        same(&next.displacement, &cold.displacement, "u");
+        same(&next.multiplier, &cold.multiplier, "lambda");
+        last = next;
+    }
+    let load: Vec<f64> = (0..problem.dofs()).map(|dof| if dof % 2 == 1 { -40.0 } else { 15.0 }).collect();
+    let cold = answer(&problem.with_load(load.clone()).unwrap(), &default);
+    let next = prepared.solve_load(load, None, &default).unwrap();
+    same(&next.displacement, &cold.displacement, "u under load");
+    same(&next.multiplier, &cold.multiplier, "lambda under load");
+}
+
+#[test]
+fn gaps_that_do_not_fit_a_prepared_problem_are_refused() {
+    let problem = example("indentation");
+    let prepared = Prepared::new(&problem, Condense::Auto).unwrap();
+    let default = Settings::default();
+    let message = prepared.solve_gap(vec![0.0; 3], None, &default).unwrap_err().to_string();
+    assert_eq!(message, "gap vector has length 3, but there are 41 contact rows");
+    let mut gap = problem.gap().to_vec();
+    gap[5] = f64::INFINITY;
+    let message = prepared.solve_gap(gap, None, &default).unwrap_err().to_string();
+    assert!(message.contains("gap vector has the value inf at entry 5"), "{message}");
+}
+
+#[test]
+fn rows_on_most_dofs_are_not_condensed() {
+    let n = 300;
+    let entries: Vec<_> =
+        (0..n).flat_map(|i| [(i, i, 2.0), ((i + 1).min(n - 1), i, if i + 1 < n { -1.0 } else { 0.0 })]).collect();
+    let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(n, n, &entries).unwrap()).unwrap();
+    let rows: Vec<_> = (0..n).map(|i| (i, i, -1.0)).collect();
+    let contact = SparseMatrix::from_triplets(n, n, &rows).unwrap();
+    let problem = ContactProblem::new(stiffness, vec![-1e-4; n], contact, vec![0.5; n]).unwrap();
+    assert_eq!(answer(&problem, &Settings::default()).condensed_dofs, n);
+}
+
+/// A block that only its contact rows hold along y, far larger than its boundary: pressed it is solved, pulled it escapes.
+#[test]
+fn floating_body_condenses_and_escapes_as_a_whole() {
+    let block = |traction: f64| {
+        let scene = serde_json::json!({
+            "body": {"rectangle": {"x": {"points": [0, 1], "divisions": [8]}, "y": {"points": [0, 1], "divisions": [16]}}},
+            "material": {"young": 1e5, "poisson": 0.3},
+            "supports": [{"on": {"boundary": "left"}, "x": 0}],
+            "loads": [{"traction": {"boundary": "top", "value": [0, traction]}}],
+            "obstacles":
+                [{"boundary": "bottom", "approach": "-y", "shape": {"plane": {"point": [0, 0], "normal": [0, -1]}}}],
+            "gap": 0.01,
+        });
+        Scene::from_json(&scene.to_string(), "scene").unwrap().build().unwrap()
+    };
+    for method in EXACT {
+        let pressed = block(-100.0);
+        let condensed = answer(pressed.problem(), &settings(method, Condense::Auto));
+        let full = answer(pressed.problem(), &settings(method, Condense::Never));
+        assert!(condensed.condensed_dofs == 9 && (condensed.contact_force() - 100.0).abs() < 1e-9);
+        same(&condensed.displacement, &full.displacement, "pressed");
+        match solve(block(100.0).problem(), &settings(method, Condense::Auto)) {
+            Err(Error::Unbounded { direction, .. }) => {
+                let lifted = direction.iter().filter(|d| (*d - 1.0).abs() < 1e-8).count();
+                let still = direction.iter().filter(|d| d.abs() < 1e-8).count();
+                assert_eq!((lifted, lifted + still), (9 * 17, direction.len()), "{method:?}");
+            }
+            other => panic!("{method:?}: {other:?}"),
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! The stability table, kept: no entry may lose more than a digit, be refused by another error, or turn wrong.
+//!
+//! `BLESS=1 cargo test --release --test numerics extremes` writes `tests/extremes.txt` anew.
+
+#[path = "../../examples/extremes/cases.rs"]
+mod cases;
+#[path = "../../examples/extremes/entry.rs"]
+mod entry;
+
+use std::fs;
+use std::path::Path;
+
+use entry::{COLUMNS, Cell};
+
+/// Bodies of the short form: seconds without optimisation.
+const MOST_DOFS: usize = 1100;
+
+/// Digits in which machines may differ.
+const TO_AND_FRO: u32 = 1;
+
+#[test]
+fn every_entry_of_the_stability_table_is_as_good_as_it_was() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/extremes.txt");
+    let kept = fs::read_to_string(&file).unwrap_or_default();
+    let (mut found, mut worse) = (String::new(), Vec::new());
+    let entries = cases::entries(MOST_DOFS).unwrap();
+    assert!(entries.len() >= 140);
+    for (number, entry) in entries.iter().enumerate() {
+        let cells = entry.row();
+        let name = format!("{}, {}", entry.group, entry.label);
+        let texts: Vec<String> = cells.iter().map(Cell::to_string).collect();
+        found += &format!("{name}: {}\n", texts.join(" | "));
+        let line = kept.lines().nth(number).unwrap_or_default();
+        let before = line.strip_prefix(&format!("{name}: ")).unwrap_or_default();
+        let before: Vec<&str> = before.split(" | ").collect();
+        for (column, cell) in cells.iter().enumerate() {
+            let raw = column == 0;
+            if *cell == Cell::Wrong && !raw {
+                worse.push(format!("{name}, {}: a wrong answer", COLUMNS[column]));
+            }
+            let was = before.get(column).copied().unwrap_or("nothing");
+            let stays = match (cell, was.parse::<u32>()) {
+                (Cell::Digits(digits), Ok(was)) => digits + TO_AND_FRO >= was,
+                _ => cell.to_string() == was,
+            };
+            // How an unscaled method fails is no promise of ours.
+            if !stays && !raw {
+                worse.push(format!("{name}, {}: {cell}, before {was}", COLUMNS[column]));
+            }
+        }
+    }
+    let by_raw = entries.iter().map(|entry| entry.row()[0].clone()).filter(|cell| *cell == Cell::Wrong).count();
+    assert!(by_raw >= 10, "scaling would not be needed: {by_raw}");
+    if std::env::var_os("BLESS").is_some() {
+        fs::write(&file, found).unwrap();
+        return;
+    }
+    assert_eq!(kept.lines().count(), entries.len(), "entries were added or left out");
+    assert!(worse.is_empty(), "\n{}", worse.join("\n"));
+}

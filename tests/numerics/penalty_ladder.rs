@@ -1,0 +1,112 @@
+//! The penalty ladder told an accuracy, and Richardson's extrapolation over the penalty.
+
+use signorini::solve::{Condense, Method, Settings};
+use signorini::{ContactProblem, Error, Scene, Solution, solve};
+
+/// The scenes whose stiffness is definite by itself and small enough to be solved on all dofs.
+fn problems() -> Vec<(String, ContactProblem)> {
+    let scene = |name: String| {
+        let path = format!("{}/examples/{name}.json", env!("CARGO_MANIFEST_DIR"));
+        (name, Scene::read(path).unwrap().build().unwrap().problem().clone())
+    };
+    let all = crate::program::examples().into_iter().map(scene);
+    let definite = |problem: &ContactProblem| exact(problem).certificate.energy_error_bound.is_finite();
+    all.filter(|(_, problem)| problem.dofs() < 5000 && definite(problem)).collect()
+}
+
+fn exact(problem: &ContactProblem) -> Solution {
+    solve(problem, &Settings::with_method(Method::ActiveSet)).unwrap()
+}
+
+fn penalty(problem: &ContactProblem, change: impl Fn(&mut Settings)) -> Solution {
+    let mut settings = Settings::with_method(Method::Penalty);
+    change(&mut settings);
+    match solve(problem, &settings) {
+        Ok(solution) => solution,
+        Err(Error::NotCertified { solution, .. }) => *solution,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+fn error(problem: &ContactProblem, found: &Solution, exact: &Solution) -> f64 {
+    let energy =
+        |u: &[f64]| u.iter().zip(problem.stiffness().mul(u)).map(|(u, force)| u * force).sum::<f64>().max(0.0).sqrt();
+    let away: Vec<f64> = found.displacement.iter().zip(&exact.displacement).map(|(u, v)| u - v).collect();
+    energy(&away) / energy(&found.displacement)
+}
+
+fn last_penalty(found: &Solution) -> f64 {
+    found.history.last().map_or(0.0, |step| step.penalty)
+}
+
+#[test]
+fn the_ladder_ends_on_the_first_rung_that_is_certified_to_be_good_enough() {
+    for (name, problem) in problems() {
+        let exact = exact(&problem);
+        for condense in [Condense::Auto, Condense::Never] {
+            let mut last = 0.0;
+            for accuracy in [1e-1, 1e-3, 1e-5] {
+                let found = penalty(&problem, |settings| {
+                    (settings.accuracy, settings.condense) = (Some(accuracy), condense);
+                });
+                let bound = found.certificate.energy_error_bound;
+                assert!(bound <= accuracy, "{name}, {condense:?}: {bound:e}");
+                assert!(error(&problem, &found, &exact) <= bound * (1.0 + 1e-6) + 1e-12);
+                let penalty = last_penalty(&found);
+                assert!(penalty > last, "{name}: a tighter accuracy takes a larger penalty");
+                last = penalty;
+                if penalty > 1.0 {
+                    // One rung less would not do.
+                    let before = self::penalty(&problem, |settings| {
+                        (settings.last_penalty, settings.penetration_threshold) = (penalty / 10.0, 0.0);
+                        settings.condense = condense;
+                    });
+                    let without = before.certificate.energy_error_bound;
+                    assert!(without > accuracy, "{name}, {condense:?}, {accuracy:e}: {bound:e} instead of {without:e}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_ladder_ends_at_its_floor_and_says_so() {
+    for (name, problem) in problems() {
+        let mut settings = Settings::with_method(Method::Penalty);
+        (settings.accuracy, settings.last_penalty) = (Some(1e-15), 1e18);
+        match solve(&problem, &settings) {
+            Err(Error::NotCertified { solution, condition, value, tolerance }) => {
+                assert_eq!((condition, tolerance), ("reachable energy_error_bound", 1e-15), "{name}");
+                assert_eq!(value, solution.certificate.energy_error_bound);
+                assert!(value < 1e-6, "{name}: floor {value:e}");
+                // Where more penalty would only add rounding, long before the last rung.
+                assert!(last_penalty(&solution) <= 1e14, "{name}: {:e}", last_penalty(&solution));
+            }
+            // A penalty answer without penetration is exact.
+            Ok(solution) => assert!(solution.certificate.energy_error_bound <= 1e-15, "{name}"),
+            Err(error) => panic!("{name}: {error}"),
+        }
+    }
+}
+
+#[test]
+fn extrapolation_over_the_penalty_gains_two_digits() {
+    for (name, problem) in problems() {
+        let exact = exact(&problem);
+        for condense in [Condense::Auto, Condense::Never] {
+            for last in [1e3, 1e4, 1e5] {
+                let of = |extrapolate| {
+                    penalty(&problem, |settings| {
+                        (settings.last_penalty, settings.penetration_threshold) = (last, 0.0);
+                        (settings.extrapolate, settings.condense) = (extrapolate, condense);
+                    })
+                };
+                let (plain, beyond) = (of(false), of(true));
+                let (before, after) = (error(&problem, &plain, &exact), error(&problem, &beyond, &exact));
+                assert!(after <= 1e-2 * before, "{name}, {condense:?}, {last:e}: {before:e} to {after:e}");
+                assert_eq!(beyond.method, "penalty-extrapolated");
+                assert!(after <= beyond.certificate.energy_error_bound * (1.0 + 1e-6) + 1e-12, "{name}");
+            }
+        }
+    }
+}

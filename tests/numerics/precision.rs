@@ -1,0 +1,181 @@
+//! The factor in single precision: the same answers, half the memory, and a refusal where it cannot carry them.
+
+use crate::random::springs;
+use signorini::solve::{Condense, Method, Precision, Prepared, Settings};
+use signorini::{ContactProblem, Error, Scene, Solution, SparseMatrix, SymmetricMatrix, solve};
+
+/// Two answers certified in double precision agree to this: rounding times the condition of the larger scenes.
+const AGREEMENT: f64 = 1e-11;
+
+fn with(method: Method, precision: Precision, accuracy: Option<f64>) -> Settings {
+    let mut settings = Settings::with_method(method);
+    (settings.precision, settings.accuracy) = (precision, accuracy);
+    settings
+}
+
+fn energy(problem: &ContactProblem, u: &[f64]) -> f64 {
+    u.iter().zip(problem.stiffness().mul(u)).map(|(u, force)| u * force).sum::<f64>().max(0.0).sqrt()
+}
+
+fn error(problem: &ContactProblem, found: &Solution, exact: &Solution) -> f64 {
+    let away: Vec<f64> = found.displacement.iter().zip(&exact.displacement).map(|(u, v)| u - v).collect();
+    energy(problem, &away) / energy(problem, &found.displacement)
+}
+
+#[test]
+fn refined_answers_are_those_of_double_precision() {
+    let mut refined = 0;
+    for name in crate::program::examples() {
+        let path = format!("{}/examples/{name}.json", env!("CARGO_MANIFEST_DIR"));
+        let model = Scene::read(path).unwrap().build().unwrap();
+        let problem = model.problem();
+        for method in [Method::Qp, Method::ActiveSet] {
+            let exact = solve(problem, &with(method, Precision::Double, None)).unwrap();
+            assert_eq!(exact.refinements, None);
+            let found = solve(problem, &with(method, Precision::Mixed, None)).unwrap();
+            assert!(found.certificate.meets(1e-9), "{name}");
+            assert_eq!(found.contact_set, exact.contact_set, "{name}");
+            assert!(error(problem, &found, &exact) <= AGREEMENT, "{name}, {}", error(problem, &found, &exact));
+            refined += usize::from(found.refinements.is_some());
+        }
+    }
+    assert!(refined >= 8);
+}
+
+#[test]
+fn a_requested_accuracy_is_reached_with_no_more_steps_than_it_takes() {
+    let path = format!("{}/examples/indentation.json", env!("CARGO_MANIFEST_DIR"));
+    let model = Scene::read(path).unwrap().build().unwrap();
+    let problem = model.problem();
+    let exact = solve(problem, &with(Method::ActiveSet, Precision::Double, None)).unwrap();
+    let mut steps = 0;
+    for accuracy in [1e-2, 1e-6, 1e-10, 1e-13] {
+        let found = solve(problem, &with(Method::ActiveSet, Precision::Mixed, Some(accuracy))).unwrap();
+        let bound = found.certificate.energy_error_bound;
+        assert!(bound <= accuracy);
+        assert!(error(problem, &found, &exact) <= bound + 2.0 * exact.certificate.energy_error_bound);
+        assert!(found.refinements.unwrap() >= steps);
+        steps = found.refinements.unwrap();
+    }
+    assert!((2..=6).contains(&steps), "{steps}");
+}
+
+/// On problems whose condition lets the measured contraction vary, the widened bound still holds.
+#[test]
+fn the_bound_holds_for_a_factor_in_single_precision() {
+    let (mut answers, mut worst) = (0, 0.0_f64);
+    for seed in 0..1000 {
+        let problem = springs(seed);
+        let exact = solve(&problem, &with(Method::ActiveSet, Precision::Double, None)).unwrap();
+        for accuracy in [1e-2, 1e-8] {
+            let found = solve(&problem, &with(Method::ActiveSet, Precision::Mixed, Some(accuracy))).unwrap();
+            if found.refinements.is_none() {
+                continue;
+            }
+            answers += 1;
+            let (error, bound) = (error(&problem, &found, &exact), found.certificate.energy_error_bound);
+            assert!(error <= bound * (1.0 + 1e-6) + 1e-12, "seed {seed}: error {error:e}, bound {bound:e}");
+            if error > 1e-12 {
+                worst = worst.max(bound / error);
+            }
+        }
+    }
+    println!("{answers} answers, bound over error at most {worst:.3}");
+    assert!(answers > 100);
+    assert!(worst < 10.0);
+}
+
+#[test]
+fn the_factor_takes_half_the_memory() {
+    let path = format!("{}/examples/two_cylinders.json", env!("CARGO_MANIFEST_DIR"));
+    let model = Scene::read(path).unwrap().build().unwrap();
+    let bytes = |precision| {
+        let prepared = Prepared::with_settings(model.problem(), &with(Method::ActiveSet, precision, None)).unwrap();
+        assert_eq!(prepared.is_single(), precision == Precision::Mixed);
+        prepared.factor_bytes()
+    };
+    assert_eq!(2 * bytes(Precision::Mixed), bytes(Precision::Double));
+}
+
+/// A chain of springs, one end held, a wall at the other: the condition is that of the square of its length.
+fn chain(dofs: usize, soft: f64) -> ContactProblem {
+    let mut entries = Vec::new();
+    for dof in 0..dofs {
+        let (before, after) = (if dof == 0 { 1.0 } else { soft }, if dof + 1 == dofs { 0.0 } else { soft });
+        entries.push((dof, dof, before + after));
+        if dof > 0 {
+            entries.push((dof, dof - 1, -soft));
+        }
+    }
+    let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &entries).unwrap()).unwrap();
+    let mut load = vec![0.0; dofs];
+    load[dofs - 1] = 1.0;
+    let rows = SparseMatrix::from_triplets(1, dofs, &[(0, dofs - 1, 1.0)]).unwrap();
+    ContactProblem::new(stiffness, load, rows, vec![0.5]).unwrap()
+}
+
+#[test]
+fn too_ill_conditioned_a_stiffness_is_factorised_in_double_precision() {
+    let answer = |problem: &ContactProblem, precision| match solve(problem, &with(Method::ActiveSet, precision, None)) {
+        Ok(solution) => solution,
+        Err(Error::NotCertified { solution, .. }) => *solution,
+        Err(error) => panic!("{error}"),
+    };
+    for (problem, certified) in [(chain(20_000, 1.0), true), (chain(50, 1e6), true), (chain(50, 1e9), false)] {
+        let found = answer(&problem, Precision::Mixed);
+        assert_eq!(found.refinements, None);
+        // With springs a billion times stiffer than their support, rounding is more than a certificate excuses.
+        assert_eq!(found.certificate.meets(1e-9), certified);
+        // It is the answer of double precision, bit by bit.
+        let double = answer(&problem, Precision::Double);
+        assert_eq!((found.displacement, found.multiplier), (double.displacement, double.multiplier));
+    }
+    // What is prepared stays as it is, and says so.
+    let settings = with(Method::ActiveSet, Precision::Mixed, None);
+    let problem = chain(2_000, 1.0);
+    let prepared = Prepared::with_settings(&problem, &settings).unwrap();
+    if prepared.is_single() {
+        match prepared.solve(&settings) {
+            Err(Error::Numerical { reason, .. }) => assert!(reason.contains("double precision"), "{reason}"),
+            Ok(solution) => assert!(solution.certificate.meets(1e-9)),
+            Err(error) => panic!("{error}"),
+        }
+    }
+}
+
+#[test]
+fn all_dofs_and_bodies_held_by_contact_are_factorised_in_double_precision() {
+    for (name, condense) in [("indentation", Condense::Never), ("block", Condense::Auto)] {
+        let path = format!("{}/examples/{name}.json", env!("CARGO_MANIFEST_DIR"));
+        let model = Scene::read(path).unwrap().build().unwrap();
+        let mut settings = with(Method::ActiveSet, Precision::Mixed, None);
+        settings.condense = condense;
+        let found = solve(model.problem(), &settings).unwrap();
+        assert_eq!(found.refinements, None);
+        assert!(found.certificate.meets(1e-9));
+    }
+}
+
+#[test]
+fn next_gaps_and_loads_are_refined_too() {
+    let path = format!("{}/examples/indentation.json", env!("CARGO_MANIFEST_DIR"));
+    let model = Scene::read(path).unwrap().build().unwrap();
+    let problem = model.problem();
+    let settings = with(Method::ActiveSet, Precision::Mixed, None);
+    let prepared = Prepared::with_settings(problem, &settings).unwrap();
+    let gap: Vec<f64> = problem.gap().iter().map(|gap| gap - 0.01).collect();
+    let load: Vec<f64> = (0..problem.dofs()).map(|dof| (dof % 7) as f64 - 3.0).collect();
+    let cases = [
+        (problem.with_gap(gap.clone()).unwrap(), prepared.solve_gap(gap.clone(), None, &settings).unwrap()),
+        (problem.with_load(load.clone()).unwrap(), prepared.solve_load(load, None, &settings).unwrap()),
+    ];
+    for (problem, found) in cases {
+        let exact = solve(&problem, &with(Method::ActiveSet, Precision::Double, None)).unwrap();
+        assert!(error(&problem, &found, &exact) <= AGREEMENT);
+        assert_eq!(found.contact_set, exact.contact_set);
+    }
+    let boundary = prepared.boundary_at_gap(gap, None, &settings).unwrap();
+    assert!(boundary.condensed_certificate.meets(1e-9));
+    // The exact path is a matter of the exact compliance.
+    assert!(matches!(prepared.path(problem.gap(), problem.gap(), &settings), Err(Error::NotCondensed { .. })));
+}

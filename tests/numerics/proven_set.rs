@@ -1,0 +1,135 @@
+//! The proven contact set: never wrong, whatever the method was told, and whole where the answer is good.
+
+use crate::random::springs;
+use signorini::solve::{Condense, Method, Settings};
+use signorini::{ContactProblem, Error, Scene, Solution, SparseMatrix, SymmetricMatrix, solve};
+
+/// Forces and distances below this share of the largest are not told apart from zero in the exact answer.
+const WEAK: f64 = 1e-9;
+
+fn answer(problem: &ContactProblem, mut settings: Settings) -> Solution {
+    settings.prove = true;
+    match solve(problem, &settings) {
+        Ok(solution) => solution,
+        Err(Error::NotCertified { solution, .. }) => *solution,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// Methods that are told to be anything from rough to exact.
+fn ways() -> Vec<Settings> {
+    let mut ways = Vec::new();
+    for condense in [Condense::Auto, Condense::Never] {
+        let base = |method| {
+            let mut settings = Settings::with_method(method);
+            settings.condense = condense;
+            settings
+        };
+        for tolerance in [1e-1, 1e-2, 1e-4, 1e-8] {
+            let mut settings = base(Method::Qp);
+            (settings.polish, settings.interior_point_tolerance) = (false, tolerance);
+            ways.push(settings);
+        }
+        for last in [1e0, 1e2, 1e4, 1e8] {
+            let mut settings = base(Method::Penalty);
+            (settings.last_penalty, settings.penetration_threshold) = (last, 0.0);
+            ways.push(settings);
+        }
+        ways.push(base(Method::ActiveSet));
+    }
+    ways
+}
+
+#[test]
+fn no_row_is_proven_to_be_what_it_is_not() {
+    let (mut proven, mut wrong_sets, mut rows) = (0, 0, 0);
+    for seed in 0..1000 {
+        let problem = springs(seed);
+        let exact = answer(&problem, Settings::with_method(Method::ActiveSet));
+        let strongest = exact.multiplier.iter().fold(0.0_f64, |most, value| most.max(-value));
+        for settings in ways() {
+            let found = answer(&problem, settings.clone());
+            wrong_sets += usize::from(found.contact_set != exact.contact_set);
+            let Some(set) = &found.proven else { continue };
+            for row in 0..problem.rows() {
+                rows += 1;
+                if set.open.contains(row) {
+                    assert!(-exact.multiplier[row] <= WEAK * strongest, "seed {seed}, row {row}, {settings:?}");
+                    proven += 1;
+                }
+                if set.closed.contains(row) {
+                    assert!(exact.multiplier[row] < 0.0, "seed {seed}, row {row}, {settings:?}");
+                    assert!(!set.open.contains(row));
+                    proven += 1;
+                }
+            }
+        }
+    }
+    println!("{proven} of {rows} rows proven; {wrong_sets} answers with a wrong set");
+    // The test means something: rough answers are among them, and most rows are proven all the same.
+    assert!(wrong_sets > 1000);
+    assert!(proven > rows / 2);
+}
+
+#[test]
+fn every_row_of_an_exact_answer_is_proven_where_contact_is_strict() {
+    let mut undecided = 0;
+    for seed in 0..1000 {
+        let problem = springs(seed);
+        let found = answer(&problem, Settings::with_method(Method::ActiveSet));
+        let strongest = found.multiplier.iter().fold(0.0_f64, |most, value| most.max(-value));
+        let violation = problem.violation(&found.displacement);
+        let set = found.proven.expect("springs to the ground hold the body");
+        for row in set.undecided() {
+            let strict = -found.multiplier[row] > 1e-6 * strongest || -violation[row] > 1e-6;
+            // Two rows on one dof share their force in no particular way.
+            undecided += usize::from(strict && !shares_its_dofs(&problem, row));
+        }
+    }
+    assert_eq!(undecided, 0);
+}
+
+fn shares_its_dofs(problem: &ContactProblem, row: usize) -> bool {
+    let by_row = problem.contact().transposed();
+    by_row.column(row).any(|(dof, _)| problem.contact().column(dof).count() > 1)
+}
+
+#[test]
+fn the_rows_of_the_examples_are_proven_at_default_settings() {
+    for name in crate::program::examples() {
+        let path = format!("{}/examples/{name}.json", env!("CARGO_MANIFEST_DIR"));
+        let model = Scene::read(path).unwrap().build().unwrap();
+        for condense in [Condense::Auto, Condense::Never] {
+            let mut settings = Settings::default();
+            settings.condense = condense;
+            if let Some(set) = answer(model.problem(), settings).proven {
+                assert_eq!(set.undecided().collect::<Vec<_>>(), [0; 0], "{name}, {condense:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_grazing_row_is_undecided() {
+    // A spring of stiffness 2 under a force of 4 moves by 2, to the wall and no further.
+    let one = |value| SparseMatrix::from_triplets(1, 1, &[(0, 0, value)]).unwrap();
+    let stiffness = SymmetricMatrix::from_lower(one(2.0)).unwrap();
+    let problem = ContactProblem::new(stiffness, vec![4.0], one(1.0), vec![2.0]).unwrap();
+    let found = answer(&problem, Settings::default());
+    assert_eq!(found.proven.unwrap().undecided().collect::<Vec<_>>(), [0]);
+    // A thousandth more, and it is decided.
+    for (load, closed) in [(4.004, true), (3.996, false)] {
+        let found = answer(&problem.with_load(vec![load]).unwrap(), Settings::default()).proven.unwrap();
+        assert_eq!((found.closed.contains(0), found.open.contains(0)), (closed, !closed));
+    }
+}
+
+#[test]
+fn of_two_equal_rows_neither_force_is_proven() {
+    let rows = SparseMatrix::from_triplets(2, 1, &[(0, 0, 1.0), (1, 0, 1.0)]).unwrap();
+    let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(1, 1, &[(0, 0, 2.0)]).unwrap()).unwrap();
+    let problem = ContactProblem::new(stiffness, vec![4.0], rows, vec![1.0, 1.0]).unwrap();
+    let proven = problem.prove(&[1.0], &[-1.0, -1.0]).unwrap().unwrap();
+    assert_eq!(proven.undecided().collect::<Vec<_>>(), [0, 1]);
+    assert!(problem.prove(&[1.0, 2.0], &[-1.0, -1.0]).is_err());
+}

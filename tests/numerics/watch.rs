@@ -1,0 +1,236 @@
+//! A watch: asked to stop from another thread, everything ends with what it has.
+
+use std::thread;
+use std::time::Duration;
+
+use crate::program::scene;
+use serde_json::{Value, json};
+use signorini::dynamic::Integrator;
+use signorini::study::{TradeoffGrid, compare, even_gaps, motion_tradeoff, sweep, tradeoff};
+use signorini::{Condense, Error, Iterative, Method, Prepared, Scene, Settings, Solution, Start, Watch, solve};
+
+/// A block of so many by so many cells under a parabola.
+fn block(cells: usize) -> Value {
+    let mut block = scene();
+    for axis in ["x", "y"] {
+        block["body"]["rectangle"][axis]["divisions"] = json!([cells]);
+    }
+    block
+}
+
+fn build(scene: &Value) -> signorini::Model {
+    Scene::from_json(&scene.to_string(), "scene").unwrap().build().unwrap()
+}
+
+/// An answer, certified or not.
+fn found(solved: Result<Solution, Error>) -> Solution {
+    solved.unwrap_or_else(|error| match error {
+        Error::NotCertified { solution, .. } => *solution,
+        error => panic!("{error}"),
+    })
+}
+
+/// Stops what `watch` watches as soon as it is at this iteration of a step or beyond, or at this part.
+fn stop_at(watch: &Watch, step: &'static str, number: usize) -> thread::JoinHandle<()> {
+    let watch = watch.clone();
+    thread::spawn(move || {
+        loop {
+            let now = watch.activity();
+            let part = now.part.filter(|part| part.name == step).map_or(0, |part| part.number);
+            if (now.step == step && now.iteration >= number) || part >= number {
+                return watch.stop();
+            }
+            thread::yield_now();
+        }
+    })
+}
+
+#[test]
+fn clones_share_the_request_and_the_activity_but_not_the_deadline() {
+    let watch = Watch::default();
+    let (clone, limited) = (watch.clone(), watch.within(0.0));
+    assert!(limited.is_over() && !watch.is_over() && watch.time_left().is_none());
+    // The sooner deadline counts.
+    assert!(limited.within(1e3).is_over() && watch.within(1e3).time_left().unwrap() > 1.0);
+    // No clock goes so far: that is no deadline.
+    assert!(watch.within(f64::MAX).time_left().is_none());
+    clone.part("gap", 2, 3);
+    limited.step("factorisation", 1);
+    let activity = watch.activity();
+    assert_eq!((activity.step, activity.iteration), ("factorisation", 1));
+    assert_eq!(activity.part.unwrap().to_string(), "gap 2 of 3");
+    limited.stop();
+    assert!(!watch.is_noticed());
+    assert!(clone.is_over() && watch.is_noticed() && watch.within(1e3).is_stopped());
+}
+
+#[test]
+fn what_is_stopped_before_it_begins_is_interrupted_whatever_the_method() {
+    let model = build(&block(8));
+    for method in [Method::Auto, Method::Qp, Method::ActiveSet, Method::Penalty, Method::Mprgp] {
+        let settings = Settings::with_method(method);
+        settings.watch.stop();
+        assert!(matches!(solve(model.problem(), &settings), Err(Error::Interrupted)), "{method:?}");
+        assert!(matches!(Prepared::with_settings(model.problem(), &settings), Err(Error::Interrupted)));
+        assert!(settings.watch.is_noticed());
+        assert!(matches!(compare(model.problem(), &settings), Err(Error::Interrupted)));
+        assert!(matches!(sweep(&model, &even_gaps(0.0, -0.01, 3), &settings), Err(Error::Interrupted)));
+    }
+    let settings = Settings::default();
+    settings.watch.stop();
+    let scene = Scene::from_json(&scene().to_string(), "scene").unwrap();
+    assert!(matches!(tradeoff(&scene, &TradeoffGrid::default(), &settings.watch), Err(Error::Interrupted)));
+}
+
+#[test]
+fn a_loop_that_is_stopped_ends_with_a_certified_part_of_its_way() {
+    let model = build(&block(60));
+    // All dofs: every iteration is a factorisation.
+    let prepared = Prepared::new(model.problem(), Condense::Never).unwrap();
+    let mut settings = Settings::with_method(Method::Penalty);
+    let whole = found(prepared.solve(&settings));
+    settings.watch = Watch::default();
+    let stopping = stop_at(&settings.watch, "penalty loop", 3);
+    let Err(Error::NotCertified { solution, .. }) = prepared.solve(&settings) else { panic!("it was not cut short") };
+    stopping.join().unwrap();
+    let iterations = solution.iterations;
+    assert!((3..whole.iterations).contains(&iterations), "{iterations} of {}", whole.iterations);
+    assert_eq!(solution.history, whole.history[..iterations]);
+    // An answer with a bound: half way, but known how far.
+    let bound = solution.certificate.energy_error_bound;
+    assert!(bound.is_finite() && bound > whole.certificate.energy_error_bound, "{bound}");
+
+    for method in [Method::ActiveSet, Method::Penalty] {
+        let settings = Settings::with_method(method);
+        settings.watch.stop();
+        let Err(Error::NotCertified { solution, .. }) = prepared.solve(&settings) else { panic!("{method:?}") };
+        assert_eq!(solution.iterations, 1, "{method:?}");
+    }
+}
+
+#[test]
+fn interior_point_and_multigrid_notice_that_they_should_end() {
+    let model = build(&block(40));
+    let prepared = Prepared::new(model.problem(), Condense::Never).unwrap();
+    let mut settings = Settings::with_method(Method::Qp);
+    settings.polish = false;
+    let whole = found(prepared.solve(&settings));
+    let stopping = stop_at(&settings.watch, "interior point", 2);
+    let Err(Error::NotCertified { solution, .. }) = prepared.solve(&settings) else { panic!("it was not cut short") };
+    stopping.join().unwrap();
+    assert!(solution.iterations < whole.iterations, "{} of {}", solution.iterations, whole.iterations);
+
+    let iterative = Iterative::new(model.problem(), 1).unwrap();
+    let settings = Settings::with_method(Method::Mprgp);
+    settings.watch.stop();
+    let Err(Error::NotCertified { solution, .. }) = iterative.solve(Start::default(), &settings) else { panic!() };
+    assert_eq!((solution.iterations, solution.displacement.len()), (0, model.problem().dofs()));
+}
+
+#[test]
+fn a_sweep_that_is_stopped_has_the_gaps_until_then() {
+    let model = build(&block(20));
+    let gaps = even_gaps(0.0, -0.05, 400);
+    let whole = sweep(&model, &gaps, &Settings::default()).unwrap();
+    assert!(whole.points.len() == gaps.len() && !whole.events.is_empty());
+    let settings = Settings::default();
+    let stopping = stop_at(&settings.watch, "gap", 5);
+    let part = sweep(&model, &gaps, &settings).unwrap();
+    stopping.join().unwrap();
+    assert!((4..gaps.len()).contains(&part.points.len()), "{}", part.points.len());
+    assert!(part.events.is_empty() && part.corners.is_empty());
+    for (point, expected) in part.points.iter().zip(&whole.points) {
+        assert!(point.gap == expected.gap && point.summary.is_certified());
+        assert_eq!(point.solution.multiplier, expected.solution.multiplier);
+    }
+}
+
+#[test]
+fn a_tradeoff_that_is_stopped_has_the_points_until_then() {
+    let scene = Scene::from_json(&block(20).to_string(), "scene").unwrap();
+    let watch = Watch::default();
+    let stopping = stop_at(&watch, "run", 4);
+    let grid = TradeoffGrid { refinements: 0, runs: 1, ..TradeoffGrid::default() };
+    let measured = tradeoff(&scene, &grid, &watch).unwrap();
+    stopping.join().unwrap();
+    let whole = tradeoff(&scene, &grid, &Watch::default()).unwrap();
+    assert!((3..whole.points.len()).contains(&measured.points.len()), "{}", measured.points.len());
+    for (point, expected) in measured.points.iter().zip(&whole.points) {
+        assert_eq!(
+            (point.method, point.knob, point.energy_error),
+            (expected.method, expected.knob, expected.energy_error)
+        );
+    }
+}
+
+/// A bar that flies against a wall, in 240 steps.
+fn bar() -> Scene {
+    let scene = json!({
+        "model": "bar",
+        "body": {"bar": {"x": {"points": [0, 10], "divisions": [20]}}},
+        "material": {"young": 900, "poisson": 0, "density": 1},
+        "obstacles": [{"boundary": "right", "approach": "+x", "shape": {"plane": {"point": [15], "normal": [1]}}}],
+        "analysis": {"dynamic": {"duration": 2, "initial": [{"velocity": {"value": [10]}}]}}
+    });
+    Scene::from_json(&scene.to_string(), "scene").unwrap()
+}
+
+#[test]
+fn a_motion_that_is_stopped_stays_in_its_last_whole_step_and_goes_on_bit_for_bit() {
+    let scene = bar();
+    let model = scene.build().unwrap();
+    let dynamics = scene.dynamics(&model).unwrap().unwrap();
+    let begun = |settings: &Settings| {
+        Integrator::new(dynamics.problem.clone(), dynamics.scheme, dynamics.step, settings).unwrap()
+    };
+    let settings = Settings::default();
+    let (mut whole, mut stopped) = (begun(&Settings::default()), begun(&settings));
+    for _ in 0..150 {
+        whole.advance().unwrap();
+        stopped.advance().unwrap();
+    }
+    settings.watch.stop();
+    assert!(matches!(stopped.advance(), Err(Error::Interrupted)));
+    assert_eq!(stopped.state(), whole.state());
+    let mut resumed = begun(&Settings::default());
+    resumed.resume(stopped.state().clone()).unwrap();
+    for _ in 0..30 {
+        whole.advance().unwrap();
+        resumed.advance().unwrap();
+    }
+    assert_eq!(resumed.state(), whole.state());
+
+    assert!(matches!(motion_tradeoff(&scene, &settings), Err(Error::Interrupted)));
+    let mut limited = begun(&Settings::within(0.2));
+    thread::sleep(Duration::from_millis(250));
+    assert!(matches!(limited.advance(), Err(Error::Interrupted)));
+    assert_eq!(limited.state().steps, 0);
+}
+
+#[test]
+fn memory_that_does_not_suffice_is_refused_before_a_factorisation() {
+    let model = build(&block(20));
+    for (method, condense) in [
+        (Method::ActiveSet, Condense::Auto),
+        (Method::ActiveSet, Condense::Never),
+        (Method::Penalty, Condense::Auto),
+        (Method::Mprgp, Condense::Auto),
+    ] {
+        let mut settings = Settings::with_method(method);
+        settings.condense = condense;
+        settings.memory = Some(1e9);
+        assert!(!matches!(solve(model.problem(), &settings), Err(Error::TooLarge { .. })), "{method:?}");
+        settings.memory = Some(1e6);
+        match solve(model.problem(), &settings) {
+            Err(Error::TooLarge { dofs, bytes, allowed, .. }) => {
+                assert!(dofs == model.problem().dofs() as f64 && bytes > allowed && allowed == 1e6);
+            }
+            other => panic!("{method:?}: {:?}", other.map(|solution| solution.certificate)),
+        }
+    }
+    let mut settings = Settings::default();
+    for wrong in [-1.0, f64::NAN] {
+        settings.memory = Some(wrong);
+        assert!(matches!(solve(model.problem(), &settings), Err(Error::Setting { name: "memory", .. })), "{wrong}");
+    }
+}

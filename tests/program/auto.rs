@@ -1,0 +1,133 @@
+//! The choice left to the program: an accuracy or a time is named, the answer keeps to it or says how far it got.
+
+use crate::program::{Desk, example, examples};
+use signorini::solve::{Condense, Method, Precision, Prepared, Settings};
+use signorini::{ContactProblem, Error, Scene, Solution, solve};
+
+fn problem(name: &str) -> ContactProblem {
+    Scene::read(example(name)).unwrap().build().unwrap().problem().clone()
+}
+
+fn error(problem: &ContactProblem, found: &Solution, exact: &Solution) -> f64 {
+    let energy =
+        |u: &[f64]| u.iter().zip(problem.stiffness().mul(u)).map(|(u, force)| u * force).sum::<f64>().max(0.0).sqrt();
+    let away: Vec<f64> = found.displacement.iter().zip(&exact.displacement).map(|(u, v)| u - v).collect();
+    energy(&away) / energy(&found.displacement)
+}
+
+#[test]
+fn an_accuracy_is_reached_and_certified() {
+    for name in examples() {
+        let problem = problem(&name);
+        let exact = solve(&problem, &Settings::with_method(Method::ActiveSet)).unwrap();
+        for accuracy in [1e-1, 1e-2, 1e-4, 1e-8, 1e-12] {
+            for precision in [Precision::Auto, Precision::Double, Precision::Mixed] {
+                let mut settings = Settings::for_accuracy(accuracy);
+                settings.precision = precision;
+                let found = solve(&problem, &settings).unwrap();
+                let bound = found.certificate.energy_error_bound;
+                // Where no bound is known the conditions decide, to the tolerance.
+                assert!(bound <= accuracy || (bound.is_infinite() && found.certificate.meets(1e-9)), "{name}");
+                assert!(error(&problem, &found, &exact) <= accuracy, "{name}, {accuracy:e}");
+                assert!(precision != Precision::Double || found.refinements.is_none());
+            }
+        }
+    }
+}
+
+#[test]
+fn an_accuracy_beyond_rounding_comes_with_what_is_reachable() {
+    let problem = problem("indentation");
+    match solve(&problem, &Settings::for_accuracy(1e-30)) {
+        Err(Error::NotCertified { solution, condition, value, tolerance }) => {
+            assert_eq!((condition, tolerance), ("reachable energy_error_bound", 1e-30));
+            assert!(value < 1e-12 && value == solution.certificate.energy_error_bound);
+        }
+        other => panic!("{:?}", other.map(|found| found.certificate)),
+    }
+}
+
+#[test]
+fn a_time_that_suffices_changes_nothing_and_none_returns_what_there_is() {
+    let problem = problem("indentation");
+    let exact = solve(&problem, &Settings::default()).unwrap();
+    let mut enough = Settings::within(100.0);
+    for method in [Method::Auto, Method::Qp, Method::ActiveSet] {
+        enough.method = method;
+        let found = solve(&problem, &enough).unwrap();
+        assert!(error(&problem, &found, &exact) < 1e-12 && found.contact_set == exact.contact_set);
+    }
+    for method in [Method::Auto, Method::Qp, Method::ActiveSet, Method::Penalty] {
+        let mut settings = Settings::within(0.0);
+        settings.method = method;
+        match solve(&problem, &settings) {
+            Err(Error::NotCertified { solution, condition, value, .. }) => {
+                assert!(condition.contains("factorisation") && value > 0.0, "{condition}: {value}");
+                assert_eq!((solution.displacement.len(), solution.multiplier.len()), (problem.dofs(), problem.rows()));
+            }
+            other => panic!("{:?}", other.map(|found| found.certificate)),
+        }
+    }
+    let none = Settings::within(0.0);
+    assert!(matches!(Prepared::with_settings(&problem, &none), Err(Error::OutOfTime { .. })));
+}
+
+#[test]
+fn a_loop_that_is_out_of_time_ends_with_the_set_that_it_has() {
+    // All dofs: every iteration is a factorisation.
+    let problem = problem("indentation");
+    let prepared = Prepared::new(&problem, Condense::Never).unwrap();
+    for method in [Method::ActiveSet, Method::Penalty] {
+        let mut settings = Settings::with_method(method);
+        settings.time = Some(0.0);
+        match prepared.solve(&settings) {
+            Err(Error::NotCertified { solution, .. }) => assert_eq!(solution.iterations, 1, "{method:?}"),
+            other => panic!("{:?}", other.map(|found| found.iterations)),
+        }
+    }
+}
+
+#[test]
+fn settings_that_are_no_accuracy_or_time_are_refused_by_name() {
+    let problem = problem("bar");
+    for wrong in [0.0, -1e-3, f64::NAN, f64::INFINITY] {
+        let refused = solve(&problem, &Settings::for_accuracy(wrong));
+        assert!(matches!(refused, Err(Error::Setting { name: "accuracy", .. })), "{wrong}");
+    }
+    for wrong in [-1.0, f64::NAN] {
+        let refused = solve(&problem, &Settings::within(wrong));
+        assert!(matches!(refused, Err(Error::Setting { name: "time", .. })), "{wrong}");
+    }
+}
+
+#[test]
+fn the_command_line_takes_accuracy_time_precision_and_extrapolation() {
+    let desk = Desk::new();
+    let scene = example("indentation");
+    let run = |options: &[&str]| desk.run(&[&["solve", &scene], options].concat());
+    let text = run(&["--accuracy", "1e-4"]).ends_with(0).stdout;
+    assert!(text.contains("certified to 1.0e-4 of the energy norm"), "{text}");
+    let json = run(&["--accuracy", "1e-4", "--format", "json"]).ends_with(0).json();
+    assert_eq!((json["status"].as_str(), json["accuracy"].as_f64()), (Some("certified"), Some(1e-4)));
+    let text = run(&["--precision", "mixed"]).ends_with(0).stdout;
+    assert!(text.contains("factor in single precision"), "{text}");
+    let text = run(&["--method", "penalty", "--accuracy", "1e-3"]).ends_with(0).stdout;
+    assert!(text.contains("the penalty went up to"), "{text}");
+    let text = run(&["--method", "penalty", "--extrapolate", "--accuracy", "1e-6"]).ends_with(0).stdout;
+    assert!(text.contains("penalty-extrapolated"), "{text}");
+
+    let short = run(&["--accuracy", "1e-30", "--format", "json"]).ends_with(4);
+    assert_eq!(short.json()["status"], "not_certified");
+    assert!(short.stderr.contains("reachable"), "{}", short.stderr);
+    let late = run(&["--time", "1e-12", "--format", "json"]).ends_with(4);
+    assert_eq!(late.json()["status"], "not_certified");
+    assert!(late.stderr.contains("factorisation"), "{}", late.stderr);
+    let same = run(&["--time-limit", "1e-12", "--format", "json"]).ends_with(4);
+    assert_eq!(same.json()["status"], "not_certified");
+    for option in ["--accuracy", "--time", "--time-limit"] {
+        for wrong in ["0", "-1", "nan", "inf", "soon"] {
+            run(&[option, wrong]).ends_with(2);
+        }
+    }
+    run(&["--precision", "half"]).ends_with(2);
+}

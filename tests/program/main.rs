@@ -1,0 +1,10 @@
+//! The program: its command line, its limits, its process, the choices that it makes.
+
+#[path = "../support/program.rs"]
+mod program;
+
+mod auto;
+mod command_line;
+mod limits;
+mod process;
+mod tradeoff;

@@ -1,0 +1,152 @@
+//! The trade-off of a small scene: errors that fall with what the methods are told, a front that nothing beats, files.
+
+use crate::program::{Desk, scene};
+use serde_json::{Value, json};
+use signorini::study::{Tradeoff, TradeoffGrid, TradeoffPoint, tradeoff};
+use signorini::{Scene, Watch};
+
+fn measured(value: &Value) -> Tradeoff {
+    let scene = Scene::from_json(&value.to_string(), "scene").unwrap();
+    tradeoff(&scene, &TradeoffGrid { refinements: 1, runs: 1, ..TradeoffGrid::default() }, &Watch::default()).unwrap()
+}
+
+#[test]
+fn errors_fall_with_what_the_methods_are_told() {
+    let result = measured(&scene());
+    assert_eq!(result.meshes.iter().map(|mesh| mesh.dofs).collect::<Vec<_>>(), [20, 72]);
+    assert!(result.meshes[1].discretisation_error < result.meshes[0].discretisation_error);
+    for mesh in 0..2 {
+        for condensed in [true, false] {
+            let of = |method: &str| -> Vec<&TradeoffPoint> {
+                let is_meant = |point: &&TradeoffPoint| {
+                    point.mesh == mesh && point.condensed == condensed && !point.mixed && point.method == method
+                };
+                result.points.iter().filter(is_meant).collect()
+            };
+            let (qp, penalty) = (of("qp"), of("penalty"));
+            let told = |points: &[&TradeoffPoint], knob: f64| {
+                points.iter().find(|point| point.knob == Some(knob)).unwrap().energy_error
+            };
+            // An interior point that is told less may stop better than it promised, but not by six digits.
+            assert!(told(&qp, 1e-10) < 1e-3 * told(&qp, 1e-2), "{qp:?}");
+            // The error of a penalty is k/(k + eps): a hundredth with a hundred times the penalty.
+            let ratio = told(&penalty, 1e4) / told(&penalty, 1e6);
+            assert!((ratio / 100.0 - 1.0).abs() < 0.01, "{ratio}");
+            for point in of("qp, polished").into_iter().chain(of("active-set")) {
+                assert!(point.energy_error < 1e-12 && point.force_error < 1e-12 && point.rows_wrong == 0, "{point:?}");
+            }
+        }
+    }
+    // A factor in single precision is refined to what is asked for, and to the same answer where nothing is.
+    let mixed: Vec<&TradeoffPoint> = result.points.iter().filter(|point| point.mixed).collect();
+    assert!(mixed.iter().all(|point| point.condensed));
+    let active = |point: &&&TradeoffPoint| point.method == "active-set";
+    assert!(mixed.iter().filter(active).all(|point| point.energy_error <= point.knob.unwrap_or(1e-12)));
+    assert!(
+        mixed.iter().any(|point| point.method == "active-set" && point.knob.is_none() && point.energy_error < 1e-12)
+    );
+    for point in &result.points {
+        assert!(point.seconds > 0.0 && point.energy_error.is_finite());
+        assert!(point.energy_error <= point.energy_error_bound + 1e-12, "{point:?}");
+    }
+}
+
+/// Errors below this are those of rounding, and one is as good as another.
+const ROUNDING: f64 = 1e-12;
+
+#[test]
+fn the_front_is_what_no_other_point_beats_and_the_advice_lies_on_it() {
+    let result = measured(&scene());
+    let beaten = |point: &TradeoffPoint| {
+        result.points.iter().any(|other| {
+            let [error, beaten] = [other, point].map(|point| point.energy_error.max(ROUNDING));
+            other.mesh == point.mesh && other.seconds < point.seconds && error <= beaten
+        })
+    };
+    for mesh in 0..2 {
+        assert!(result.points.iter().any(|point| point.mesh == mesh && point.best));
+    }
+    assert!(result.points.iter().filter(|point| point.best).all(|point| !beaten(point)));
+    let wanted: Vec<f64> = result.advice.iter().filter_map(|advice| advice.accuracy).collect();
+    assert_eq!(wanted, [1e-2, 1e-4, 1e-8]);
+    for advice in &result.advice {
+        let Some(index) = advice.point else { continue };
+        let chosen = &result.points[index];
+        assert!(!beaten(chosen), "{chosen:?}");
+        assert_eq!(chosen.mesh, 0);
+        if let Some(accuracy) = advice.accuracy {
+            let good = |point: &&TradeoffPoint| point.mesh == 0 && point.energy_error <= accuracy;
+            assert!(result.points.iter().filter(good).all(|point| point.seconds >= chosen.seconds));
+            assert!(chosen.energy_error <= accuracy);
+        }
+    }
+}
+
+#[test]
+fn finer_meshes_are_nested_and_a_mesh_file_has_none() {
+    let graded = json!({"points": [0, 1, 3], "divisions": [4, 1], "ratios": [5, 1]});
+    let mut value = scene();
+    value["body"]["rectangle"]["x"] = graded;
+    let coarse = Scene::from_json(&value.to_string(), "scene").unwrap();
+    let fine = coarse.refined(3).unwrap();
+    let nodes = |scene: &Scene| scene.build().unwrap().mesh().nodes().to_vec();
+    let fine_nodes = nodes(&fine);
+    assert_eq!(fine_nodes.len(), 16 * 7);
+    for node in nodes(&coarse) {
+        let nearest =
+            fine_nodes.iter().map(|at| (at[0] - node[0]).hypot(at[1] - node[1])).fold(f64::INFINITY, f64::min);
+        assert!(nearest < 1e-12, "{node:?}: {nearest}");
+    }
+    value["body"] = json!({"gmsh": {"file": "any.msh"}});
+    let error = Scene::from_json(&value.to_string(), "scene").unwrap().refined(2).unwrap_err();
+    assert!(error.to_string().contains("body.gmsh"), "{error}");
+    assert!(coarse.refined(0).is_err());
+}
+
+/// Four times as fine along every edge: so many times the nodes of a body of one, two or three dimensions, nearly.
+#[test]
+fn every_body_that_is_not_from_a_file_has_finer_meshes() {
+    let line = json!({"points": [0, 1], "divisions": [12]});
+    let (zone, centre) = (json!({"width": 0.2, "divisions": 8, "growth": 1.1}), json!([0, 1]));
+    let angle = json!({"points": [-90, 0], "divisions": [12]});
+    let bodies = [
+        (1, json!({"bar": {"x": line}})),
+        (2, json!({"rectangle": {"x": line, "y": line, "element": "q4"}})),
+        (3, json!({"box": {"x": line, "y": line, "z": line, "element": "hex8"}})),
+        (2, json!({"ring": {"radius": {"points": [1, 2], "divisions": [12]}, "angle": angle, "centre": centre}})),
+        (2, json!({"half-disc": {"centre": centre, "radius": 1, "zone": zone}})),
+        (2, json!({"disc": {"centre": centre, "radius": 1, "zone": zone}})),
+        (3, json!({"half-ball": {"centre": [0, 0, 1], "radius": 1, "zone": zone}})),
+    ];
+    for (dimension, body) in bodies {
+        let mut value = scene();
+        value["body"] = body.clone();
+        let coarse = Scene::from_json(&value.to_string(), "scene").unwrap();
+        let growth = coarse.refined(4).unwrap().size().nodes / coarse.size().nodes;
+        let all = 4.0_f64.powi(dimension);
+        assert!((0.5 * all..1.2 * all).contains(&growth), "{body}: {growth}");
+        assert_eq!(coarse.refined(1).unwrap().size().nodes, coarse.size().nodes);
+    }
+}
+
+#[test]
+fn the_program_prints_the_table_and_leaves_its_values() {
+    let desk = Desk::new();
+    desk.write("scene.json", scene().to_string());
+    let command = ["tradeoff", "scene.json", "--refinements", "1", "--runs", "1", "--out", "out"];
+    let run = desk.run(&command).ends_with(0);
+    for phrase in ["mesh of the scene: 20 dofs", "cells cut into 2", "active-set", "penalty", "What to choose"] {
+        assert!(run.stdout.contains(phrase), "{}", run.stdout);
+    }
+    let csv = std::fs::read_to_string(desk.path("out/tradeoff.csv")).unwrap();
+    let columns = csv.lines().next().unwrap().split(',').count();
+    let json = desk.run(&[&command[..6], &["--format", "json"]].concat()).ends_with(0).json();
+    let points = json["points"].as_array().unwrap().len();
+    assert_eq!(csv.lines().count(), points + 1);
+    // The one field in quotation marks may hold a comma.
+    assert!(csv.lines().skip(1).all(|line| line.replace(", ", " ").split(',').count() == columns));
+    assert!(desk.path("out/tradeoff.png").exists() && desk.path("out/tradeoff.txt").exists());
+    desk.run(&["tradeoff", "missing.json"]).fails_with(1, &["missing.json"]);
+    desk.run(&["tradeoff", "scene.json", "--runs", "0"]).ends_with(2);
+    desk.run(&["tradeoff", "scene.json", "--refinements", "9"]).ends_with(2);
+}

@@ -1,0 +1,129 @@
+//! GOAL: rollers on inclined planes against Lagrange multipliers in the coordinate axes: displacement, contact forces,
+//! reactions along the normals, balance.
+
+use std::collections::BTreeMap;
+
+use crate::bodies::built;
+use crate::rollers::{ROUNDING, check, cube, square};
+use serde_json::{Value, json};
+use signorini::{Error, solve_qp};
+
+#[test]
+fn rollers_in_the_plane_hold_as_lagrange_multipliers_do() {
+    // Side by side at the corner: two oblique normals hold it fully.
+    let supports = json!([
+        {"on": {"boundary": "bottom"}, "normal": [3, -4], "value": 0.01},
+        {"on": {"boundary": "left"}, "normal": [-2, -0.3], "value": -0.02},
+    ]);
+    for element in ["t3", "t6", "q4", "q8"] {
+        for model in ["plane-strain", "plane-stress"] {
+            let model = check(&square(model, element, supports.clone()));
+            let corner = (0..2).filter(|&dof| model.dofs().number(dof).is_some()).count();
+            assert_eq!((corner, model.dofs().frame(0)), (0, None), "the corner is held fully, without a frame");
+        }
+    }
+}
+
+#[test]
+fn a_normal_joins_coordinates_in_one_support_and_at_one_node() {
+    check(&square(
+        "plane-strain",
+        "q4",
+        json!([
+            {"on": {"boundary": "bottom"}, "normal": [1, -1]},
+            {"on": {"point": [1, 0]}, "x": 0.013},
+            {"on": {"point": [0, 1]}, "y": -0.01, "normal": [1, 0.2], "value": 0.02},
+            {"on": {"point": [0, 0]}, "x": 0, "y": 0},
+        ]),
+    ));
+    check(&cube(
+        "hex8",
+        json!([
+            {"on": {"boundary": "bottom"}, "normal": [0.1, -0.2, -1], "value": 0.01},
+            {"on": {"boundary": "front"}, "y": 0.002},
+            {"on": {"point": [0, 1, 1]}, "x": 0, "normal": [-1, 0.4, 0.2], "value": 0.003},
+            {"on": {"point": [0, 0, 1]}, "normal": [-1, 0.4, 0.2], "value": 0.003},
+        ]),
+    ));
+}
+
+#[test]
+fn rollers_in_space_hold_as_lagrange_multipliers_do() {
+    // Edges have two oblique normals, the corner at the origin three.
+    let supports = json!([
+        {"on": {"boundary": "bottom"}, "normal": [0.2, -0.3, -1], "value": 0.01},
+        {"on": {"boundary": "left"}, "normal": [-1, 0.4, 0.1], "value": 0.02},
+        {"on": {"boundary": "front"}, "normal": [0.1, -1, 0.3]},
+    ]);
+    for element in ["tet4", "hex8"] {
+        let model = check(&cube(element, supports.clone()));
+        let free_at = |node: usize| (3 * node..3 * node + 3).filter(|&dof| model.dofs().number(dof).is_some()).count();
+        let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
+        (0..27).for_each(|node| *counts.entry(free_at(node)).or_default() += 1);
+        assert_eq!(counts, BTreeMap::from([(0, 1), (1, 6), (2, 12), (3, 8)]), "{element}");
+    }
+}
+
+#[test]
+fn a_body_of_revolution_rests_in_a_cone() {
+    for element in ["q4", "t6"] {
+        let mut scene = square("axisymmetric", element, json!([{"on": {"boundary": "bottom"}, "normal": [1, -2]}]));
+        scene["loads"] = json!([{"pressure": {"boundary": "right", "value": 0.02}}, {"body-force": [0, -0.01]}]);
+        check(&scene);
+        // On the axis the cone holds the node fully: u_x = 0 and (1, -2) . u = 0.02 sqrt(5).
+        scene["supports"][0]["value"] = json!(0.02);
+        let model = check(&scene);
+        let nodal = model.nodal_displacement(&vec![0.0; model.problem().dofs()]).unwrap();
+        assert_eq!(nodal[0], 0.0);
+        assert!((nodal[1] + 0.01 * 5_f64.sqrt()).abs() < ROUNDING, "{}", nodal[1]);
+    }
+}
+
+#[test]
+fn a_contact_row_may_meet_a_roller_at_its_node() {
+    // Nodes of the top on a roller and under the parabola at once, with oblique rows.
+    let mut scene = square(
+        "plane-strain",
+        "q4",
+        json!([
+            {"on": {"boundary": "left"}, "x": 0},
+            {"on": {"boundary": "bottom"}, "normal": [0.3, -1], "value": -0.03},
+            {"on": {"point": [0.75, 1]}, "normal": [1, 0.5], "value": 0.001},
+            {"on": {"point": [0.5, 1]}, "normal": [1, -0.2], "value": -0.002},
+        ]),
+    );
+    scene["obstacles"][0]["shape"]["parabola"]["apex"] = json!([0.6, 0.98]);
+    let model = check(&scene);
+    let pressed = solve_qp(model.problem()).unwrap();
+    for x in [0.5, 0.75] {
+        let row = model.rows().iter().position(|row| model.mesh().nodes()[row.node] == [x, 1.0, 0.0]).unwrap();
+        assert!(pressed.multiplier[row] < 0.0, "the row of the roller at x = {x} is closed");
+        assert_eq!(model.problem().contact().transposed().column(row).count(), 1, "one free dof");
+    }
+}
+
+/// The top of the square on a roller of the normal (3, 4), under a plane of the same normal at a distance.
+fn parallel(distance: f64, value: f64) -> Value {
+    let mut scene = square(
+        "plane-strain",
+        "q4",
+        json!([
+            {"on": {"boundary": "bottom"}, "x": 0, "y": 0},
+            {"on": {"boundary": "top"}, "normal": [3, 4], "value": value},
+        ]),
+    );
+    let point = [1.0 + 0.6 * distance, 1.0 + 0.8 * distance];
+    scene["obstacles"][0]["shape"] = json!({"plane": {"point": point, "normal": [6, 8]}});
+    scene
+}
+
+#[test]
+fn a_row_along_the_normal_of_a_roller_holds_or_fails_by_itself() {
+    // The plane is nearest to the corner (1, 1), 0.05 from it; the roller moves the top by 0.04 towards it.
+    assert_eq!(check(&parallel(0.05, 0.04)).rows().len(), 0);
+    let model = built(&parallel(0.05, 0.06));
+    assert_eq!(model.rows().len(), 1, "the corner alone is pushed through");
+    let error = model.explain(solve_qp(model.problem()).unwrap_err());
+    let Error::Infeasible { reason, .. } = &error else { panic!("{error}") };
+    assert!(reason.contains("at (1, 1)") && reason.contains("obstacles[0]"), "{reason}");
+}

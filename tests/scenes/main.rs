@@ -1,0 +1,24 @@
+//! Scenes: what is read and refused, the rows of obstacles, supports, and contact answers against closed forms.
+
+#[path = "../support/bodies.rs"]
+mod bodies;
+#[path = "../support/oracles/mod.rs"]
+mod oracles;
+#[path = "../support/program.rs"]
+mod program;
+#[path = "../support/rollers.rs"]
+mod rollers;
+
+mod contact_scenes;
+mod dimensions;
+mod inclined_frames;
+mod inclined_supports;
+mod mesh_scenes;
+mod obstacle_rows;
+mod obstacles_in_space;
+mod rigid_motions;
+mod scene_errors;
+mod scene_model;
+mod turned_bodies;
+mod two_bodies;
+mod verification;

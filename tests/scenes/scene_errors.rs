@@ -1,0 +1,294 @@
+//! Malformed scenes: each is refused in one sentence that says where, what, and what is allowed.
+
+use serde_json::{Value, json};
+use signorini::{Error, Scene};
+
+/// A scene that is right; the tables below change one thing in it.
+fn right() -> Value {
+    json!({
+        "title": "right",
+        "units": {"length": "m", "force": "N"},
+        "model": "plane-strain",
+        "thickness": 1,
+        "body": {"rectangle": {
+            "x": {"points": [0, 0.5, 1], "divisions": [2, 2], "ratios": [1, 2]},
+            "y": {"points": [0, 1], "divisions": [4]},
+            "element": "q4"
+        }},
+        "material": {"young": 1000, "poisson": 0.3},
+        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}],
+        "loads": [
+            {"traction": {"boundary": "right", "value": [0, 1]}},
+            {"force": {"at": [1, 1], "value": [0, 1]}},
+            {"body-force": [0, -1]}
+        ],
+        "obstacles": [
+            {"boundary": "top", "approach": "+y", "rule": "approach", "shape": {"circle": {"apex": [0, 1], "radius": 3}}}
+        ],
+        "gap": 0.0
+    })
+}
+
+fn with(pointer: &str, value: Value) -> String {
+    let mut scene = right();
+    let (parent, key) = pointer.rsplit_once('/').unwrap();
+    let parent = scene.pointer_mut(parent).unwrap_or_else(|| panic!("no {parent}"));
+    match parent {
+        Value::Array(items) => items[key.parse::<usize>().unwrap()] = value,
+        object => object[key] = value,
+    }
+    scene.to_string()
+}
+
+fn shape(shape: Value) -> String {
+    with("/obstacles/0/shape", shape)
+}
+
+#[test]
+fn the_scene_that_the_tables_start_from_is_right() {
+    Scene::from_json(&right().to_string(), "scene").unwrap().build().unwrap();
+}
+
+#[test]
+fn values_that_describe_no_problem_are_refused_at_their_path() {
+    let x = "/body/rectangle/x";
+    let table = |points: Value| shape(json!({"table": {"points": points}}));
+    let plane = |normal: Value| shape(json!({"plane": {"point": [0, 1], "normal": normal}}));
+    let circle = |fields: Value| shape(json!({"circle": fields}));
+    let held = |supports: Value| with("/supports", supports);
+    let at_corner = json!({"on": {"point": [0, 0]}, "x": 0.1});
+    let cases = [
+        (with("/thickness", json!(0)), "thickness", "must be positive"),
+        (with("/thickness", json!(-1)), "thickness", "-1 is not allowed"),
+        (with("/material/young", json!(0)), "material.young", "positive"),
+        (with("/material/young", json!(-2e11)), "material.young", "-2e11"),
+        (with("/material/poisson", json!(0.5)), "material.poisson", "below 0.5 in plane strain"),
+        (with("/material/poisson", json!(-1)), "material.poisson", "above -1"),
+        (with(&format!("{x}/points"), json!([0])), "body.rectangle.x.points", "at least two"),
+        (with(&format!("{x}/points"), json!([0, 2, 1])), "body.rectangle.x.points[2]", "must increase"),
+        (with(&format!("{x}/points"), json!([0, 1])), "body.rectangle.x.divisions", "1 intervals"),
+        (with(&format!("{x}/divisions"), json!([0, 2])), "body.rectangle.x.divisions[0]", "at least 1"),
+        (with(&format!("{x}/divisions"), json!([2, 1_000_000_000])), "body.rectangle.x.divisions[1]", "5000000 nodes"),
+        (with(&format!("{x}/divisions"), json!([9, u64::MAX])), "body.rectangle.x.divisions[1]", "nodes"),
+        (with(&format!("{x}/divisions"), json!([9, 4_000_000])), "body.rectangle", "more than the 5000000 nodes"),
+        (with(&format!("{x}/ratios"), json!([1, -1])), "body.rectangle.x.ratios[1]", "positive"),
+        (with(&format!("{x}/ratios"), json!([1])), "body.rectangle.x.ratios", "2 intervals"),
+        (with("/supports/0/on/boundary", json!("floor")), "supports[0].on.boundary", "left, right, bottom, top"),
+        (held(json!([{"on": {"boundary": "bottom"}}])), "supports[0]", "holds nothing"),
+        (held(json!([{"on": {"point": [0.3, 0]}, "x": 0}])), "supports[0].on.point", "no node at (0.3, 0)"),
+        (held(json!([right()["supports"][0], at_corner])), "supports[1].x", "contradicts the 0 that supports[0]"),
+        (with("/loads/0/traction/boundary", json!("roof")), "loads[0].traction.boundary", "no boundary `roof`"),
+        (with("/loads/1/force/at", json!([2, 2])), "loads[1].force.at", "nearest is node 24 at (1, 1)"),
+        (with("/obstacles/0/boundary", json!("roof")), "obstacles[0].boundary", "no boundary `roof`"),
+        (circle(json!({"apex": [0, 1], "radius": 0})), "obstacles[0].shape.circle.radius", "must be positive"),
+        (circle(json!({"apex": [0, 1], "radius": -2})), "obstacles[0].shape.circle.radius", "-2"),
+        (circle(json!({"radius": 1})), "obstacles[0].shape.circle", "neither centre nor apex"),
+        (
+            circle(json!({"radius": 1, "apex": [0, 0], "centre": [0, 1]})),
+            "obstacles[0].shape.circle",
+            "both centre and apex",
+        ),
+        (
+            shape(json!({"parabola": {"apex": [0, 1], "radius": -1}})),
+            "obstacles[0].shape.parabola.radius",
+            "must be positive",
+        ),
+        (shape(json!({"wedge": {"apex": [0, 1], "slope": 0}})), "obstacles[0].shape.wedge.slope", "must be positive"),
+        (plane(json!([0, 0])), "obstacles[0].shape.plane.normal", "no direction"),
+        (plane(json!([0, -1])), "obstacles[0].shape.plane.normal", "into the obstacle"),
+        (plane(json!([1, 0])), "obstacles[0].shape.plane.normal", "approach direction (0, 1)"),
+        (table(json!([[0, 1]])), "obstacles[0].shape.table.points", "at least two points"),
+        (table(json!([[0, 1], [2, 1], [1, 1]])), "obstacles[0].shape.table.points[2]", "x must increase"),
+        (table(json!([[0, 1], [0, 2]])), "obstacles[0].shape.table.points[1]", "does not lie beyond"),
+        (table(json!([[0, 1], [0.8, 1]])), "obstacles[0].shape.table.points", "needs it at x = 1"),
+        (table(json!([[0.1, 1], [1, 1]])), "obstacles[0].shape.table.points", "from x = 0.1 to 1"),
+    ];
+    assert!(cases.len() >= 30);
+    for (text, path, phrase) in cases {
+        let error = Scene::from_json(&text, "scene").unwrap().build().unwrap_err();
+        let Error::Scene { path: found, message } = &error else { panic!("{path}: {error}") };
+        assert_eq!(found, path, "{error}");
+        assert!(message.contains(phrase), "{error}\n  lacks: {phrase}");
+        assert!(!error.to_string().contains('\n'), "one sentence: {error}");
+    }
+}
+
+#[test]
+fn a_scene_with_nothing_left_to_solve_is_refused() {
+    let mut scene = right();
+    scene["body"]["rectangle"]["y"] = json!({"points": [0, 1], "divisions": [1]});
+    scene["supports"] =
+        json!([{"on": {"boundary": "bottom"}, "x": 0, "y": 0}, {"on": {"boundary": "top"}, "x": 0, "y": 0}]);
+    let error = Scene::from_json(&scene.to_string(), "scene").unwrap().build().unwrap_err();
+    assert!(matches!(&error, Error::Scene { path, .. } if path == "supports"), "{error}");
+}
+
+#[test]
+fn plane_stress_accepts_a_ratio_of_one_half() {
+    let mut scene = right();
+    scene["model"] = json!("plane-stress");
+    scene["material"]["poisson"] = json!(0.5);
+    assert!(Scene::from_json(&scene.to_string(), "scene").unwrap().build().is_ok());
+}
+
+#[test]
+fn texts_that_are_no_scene_are_refused_at_path_line_and_column() {
+    let text = right().to_string();
+    let without = |key: &str| {
+        let mut scene = right();
+        scene.as_object_mut().unwrap().remove(key);
+        scene.to_string()
+    };
+    let raw = |from: &str, to: &str| {
+        assert!(text.contains(from), "{from}");
+        text.replacen(from, to, 1)
+    };
+    let cases = [
+        (with("/thicknes", json!(1)), "thicknes", "unknown field `thicknes`"),
+        (with("/material/yuong", json!(1)), "material.yuong", "expected one of `young`, `poisson`, `density`"),
+        (with("/material/young", json!("1000")), "material.young", "expected a number"),
+        (with("/material/young", json!(null)), "material.young", "expected a number"),
+        (with("/model", json!("plain-strain")), "model", "expected one of `bar`, `plane-strain`, `plane-stress`"),
+        (
+            with("/body/rectangle/element", json!("q9")),
+            "body.rectangle.element",
+            "expected one of `t3`, `t6`, `q4`, `q8`",
+        ),
+        (with("/body/rectangle/x/divisions", json!([-3, 2])), "body.rectangle.x.divisions[0]", "not negative"),
+        (with("/body/rectangle/x/divisions", json!([1.5, 2])), "body.rectangle.x.divisions[0]", "whole number"),
+        (with("/body/rectangle/x/points", json!(3)), "body.rectangle.x.points", "expected an array"),
+        (
+            with("/body", json!({"blob": {}})),
+            "body.blob",
+            "unknown choice `blob`, expected one of `rectangle`, `bar`, `box`",
+        ),
+        (with("/obstacles/0/approach", json!("up")), "obstacles[0].approach", "`+x`, `-x`, `+y`, `-y`"),
+        (with("/obstacles/0/rule", json!("closest")), "obstacles[0].rule", "`closest-point`"),
+        (shape(json!({"torus": {}})), "obstacles[0].shape.torus", "`plane`"),
+        (
+            shape(json!({"circle": {"apex": [0, 1, 2], "radius": 1}})),
+            "obstacles[0].shape.circle.apex",
+            "too many entries",
+        ),
+        (shape(json!({"circle": {"apex": [0], "radius": 1}})), "obstacles[0].shape.circle.apex", "array of length 2"),
+        (shape(json!({"wedge": {"apex": [0, 1]}})), "obstacles[0].shape.wedge", "missing field `slope`"),
+        (without("body"), ".", "missing field `body`"),
+        (without("material"), ".", "missing field `material`"),
+        (
+            with("/loads/0", json!({"traction": {"boundary": "top", "value": [0, 1]}, "body-force": [0, 1]})),
+            "loads[0]",
+            "single key",
+        ),
+        (with("/loads/0", json!({"stress": 1})), "loads[0].stress", "unknown choice `stress`"),
+        (with("/loads/0", json!({"pressure": 1})), "loads[0].pressure", "expected an object"),
+        (with("/supports/0/x", json!(null)), "supports[0].x", "null is no number"),
+        (with("/body", json!({})), "body", "empty, expected a single key"),
+        (with("/body", json!([])), "body", "array, expected an object with a single key"),
+        (with("/supports/0/on", json!("bottom")), "supports[0].on", "expected an object with a single key"),
+        (with("/model", json!(5)), "model", "integer `5`, expected a string"),
+        (with("/obstacles/0/rule", json!(["approach"])), "obstacles[0].rule", "array, expected a string"),
+        (with("/supports/0/on", json!({"edge": "top"})), "supports[0].on.edge", "`boundary` or `point`"),
+        (with("/gap", json!([0])), "gap", "expected a number"),
+        // An array where an object belongs: serde alone would fill the fields in order.
+        (with("/material", json!([1000, 0.3])), "material", "expected an object"),
+        (with("/units", json!(["m", "N"])), "units", "expected an object"),
+        (with("/body/rectangle/x", json!([[0, 1], [4]])), "body.rectangle.x", "expected an object"),
+        (with("/supports/0", json!([{"boundary": "top"}, 0, 0])), "supports[0]", "expected an object"),
+        (with("/loads/0/traction", json!(["top", [0, 1]])), "loads[0].traction", "expected an object"),
+        (with("/obstacles", json!({})), "obstacles", "expected an array of objects"),
+        ("[]".into(), ".", "expected an object"),
+        // Text that is no JSON.
+        (raw("\"gap\":0.0", "\"gap\":NaN"), "gap", "expected"),
+        (raw("\"gap\":0.0", "\"gap\":1e999"), "gap", "number out of range"),
+        (raw("\"x\":0,\"y\":0", "\"normal\":[1,1e999]"), "supports[0].normal[1]", "number out of range"),
+        (raw("\"gap\":0.0", "\"gap\":0.0,\"gap\":1"), ".", "duplicate field `gap`"),
+        (raw("\"young\":1000", "\"young\":1000,\"young\":1"), "material", "duplicate field `young`"),
+        (format!("{text} x"), ".", "more text behind the scene"),
+        (text[..text.len() / 2].into(), "", "text ends"),
+        (String::new(), ".", "text ends"),
+    ];
+    assert!(cases.len() >= 30);
+    for (text, path, phrase) in cases {
+        let error = Scene::from_json(&text, "the scene").unwrap_err();
+        let Error::SceneSyntax { source_name, line, path: found, message, .. } = &error else { panic!("{error}") };
+        assert_eq!((source_name.as_str(), *line > 0), ("the scene", true), "{error}");
+        assert!(path.is_empty() || found == path, "{error}\n  path should be: {path}");
+        assert!(message.contains(phrase), "{error}\n  lacks: {phrase}");
+        assert!(!message.contains("line") && !message.contains("variant"), "position or Rust words twice: {error}");
+    }
+}
+
+#[test]
+fn line_and_column_point_at_the_value() {
+    let text = "{\n  \"body\": 3\n}";
+    let Err(Error::SceneSyntax { line, column, .. }) = Scene::from_json(text, "scene") else { panic!() };
+    assert_eq!((line, column > 8), (2, true));
+}
+
+#[test]
+fn an_array_is_refused_wherever_an_example_has_an_object() {
+    fn objects(value: &Value, at: String, found: &mut Vec<String>) {
+        match value {
+            Value::Object(fields) => {
+                found.push(at.clone());
+                fields.iter().for_each(|(key, value)| objects(value, format!("{at}/{key}"), found));
+            }
+            Value::Array(items) => {
+                items.iter().enumerate().for_each(|(i, value)| objects(value, format!("{at}/{i}"), found));
+            }
+            _ => {}
+        }
+    }
+    let mut found = Vec::new();
+    objects(&right(), String::new(), &mut found);
+    assert!(found.len() > 12, "{found:?}");
+    for pointer in found {
+        let mut scene = right();
+        let place = scene.pointer_mut(&pointer).unwrap();
+        *place = Value::Array(place.as_object().unwrap().values().cloned().collect());
+        assert!(Scene::from_json(&scene.to_string(), "scene").is_err(), "an array is accepted at {pointer}");
+    }
+}
+
+#[test]
+fn a_schema_address_and_a_byte_order_mark_are_accepted() {
+    let text = format!("\u{feff}{}", with("/$schema", json!("https://example.org/scene.json")));
+    assert!(Scene::from_json(&text, "scene").is_ok());
+}
+
+#[test]
+fn a_file_that_is_not_there_is_named() {
+    let error = Scene::read("no/such/scene.json").unwrap_err();
+    assert!(matches!(&error, Error::File { action: "read", .. }));
+    assert!(error.to_string().contains("no/such/scene.json"), "{error}");
+}
+
+#[test]
+fn the_schema_names_every_field_of_a_scene() {
+    let schema = Scene::json_schema();
+    for key in right().as_object().unwrap().keys().map(String::as_str).chain(["$schema"]) {
+        assert!(schema["properties"].get(key).is_some(), "{key}: {schema:#}");
+    }
+    assert_eq!(schema["additionalProperties"], json!(false));
+    assert_eq!(schema["required"], json!(["body", "material"]));
+}
+
+#[test]
+fn numbers_that_json_cannot_say_are_refused_in_scenes_made_by_hand() {
+    let scene = Scene::from_json(&right().to_string(), "scene").unwrap();
+    let refused = |change: &dyn Fn(&mut Scene), path: &str| {
+        let mut scene = scene.clone();
+        change(&mut scene);
+        let error = scene.build().unwrap_err();
+        assert!(matches!(&error, Error::Scene { path: found, .. } if found == path), "{error}");
+    };
+    refused(&|scene| scene.gap = f64::NAN, "gap");
+    refused(&|scene| scene.thickness = f64::INFINITY, "thickness");
+    refused(&|scene| scene.material.young = f64::NAN, "material.young");
+    refused(&|scene| scene.supports[0].x = Some(f64::NAN), "supports[0].x");
+    refused(&|scene| scene.supports[0].normal = Some(vec![1.0, f64::INFINITY]), "supports[0].normal[1]");
+    let value = |scene: &mut Scene| {
+        (scene.supports[0].normal, scene.supports[0].value) = (Some(vec![1.0, 1.0]), Some(f64::NAN));
+    };
+    refused(&value, "supports[0].value");
+}

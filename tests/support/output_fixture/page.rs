@@ -1,0 +1,49 @@
+//! What a reader of a picture would object to, found in the SVG itself.
+
+use resvg::usvg::{Group, Node, Options, Rect, Tree};
+use signorini::output::Drawing;
+
+fn texts(group: &Group, found: &mut Vec<(String, Rect)>) {
+    for node in group.children() {
+        match node {
+            Node::Group(inner) => texts(inner, found),
+            Node::Text(text) => {
+                let words: String = text.chunks().iter().map(|chunk| chunk.text()).collect();
+                found.push((words, text.abs_bounding_box()));
+            }
+            _ => {}
+        }
+    }
+}
+
+/// Every text with its box in pixels; panics where the SVG is not well formed or carries a number that is none.
+pub fn texts_of(drawing: &Drawing) -> Vec<(String, Rect)> {
+    let svg = drawing.svg();
+    for attribute in svg.split(" d=\"").skip(1) {
+        let path = attribute.split('"').next().unwrap_or_default();
+        assert!(!path.contains("NaN") && !path.contains("inf"), "{path}");
+    }
+    let mut options = Options::default();
+    options.fontdb_mut().load_font_data(include_bytes!("../../../src/output/font/signorini-sans.ttf").to_vec());
+    options.fontdb_mut().load_font_data(include_bytes!("../../../src/output/font/signorini-sans-bold.ttf").to_vec());
+    let tree = Tree::from_str(&svg, &options).expect("well-formed SVG");
+    let mut found = Vec::new();
+    texts(tree.root(), &mut found);
+    found
+}
+
+/// No text is cut off by the page, none covers another.
+pub fn assert_readable(drawing: &Drawing) {
+    let texts = texts_of(drawing);
+    let (width, height) = (drawing.width() as f32, drawing.height() as f32);
+    for (k, (text, place)) in texts.iter().enumerate() {
+        let on_page = place.left() >= 0.0 && place.top() >= 0.0 && place.right() <= width && place.bottom() <= height;
+        assert!(on_page, "`{text}` at {place:?} leaves the page of {width} x {height}");
+        for (other, there) in &texts[k + 1..] {
+            // Boxes hold the line height, letters less than that: touching lines overlap by a little of nothing.
+            let across = place.right().min(there.right()) - place.left().max(there.left());
+            let down = place.bottom().min(there.bottom()) - place.top().max(there.top());
+            assert!(across <= 0.0 || down <= 4.0, "`{text}` covers `{other}`: {place:?} and {there:?}");
+        }
+    }
+}
