@@ -10,6 +10,9 @@
 
 mod damage;
 mod draws;
+mod exact;
+#[path = "../../tests/oracles/exact/mod.rs"]
+mod oracle;
 mod problem;
 
 use std::collections::BTreeSet;
@@ -120,7 +123,11 @@ fn input(files: &[(&str, Vec<u8>)], draws: &mut Draws, desk: &Path, kept: &mut O
 }
 
 fn main() -> ExitCode {
-    let (options, arguments): (Vec<String>, Vec<String>) = std::env::args().skip(1).partition(|word| word == "--keep");
+    let all: Vec<String> = std::env::args().skip(1).collect();
+    if all.first().is_some_and(|target| target == "exact") {
+        return exact::run(&all[1..]);
+    }
+    let (options, arguments): (Vec<String>, Vec<String>) = all.into_iter().partition(|word| word == "--keep");
     let target = TARGETS.iter().find(|target| arguments.first().is_some_and(|name| name == target.0));
     let inputs = arguments.get(1).and_then(|text| text.parse::<u64>().ok());
     let seed = arguments.get(2).map_or(Some(1), |text| text.parse::<u64>().ok());
