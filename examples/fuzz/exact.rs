@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
-use signorini::matrix_market::problem_files;
+use signorini::matrix_market::{format_vector, problem_files};
 
 use super::oracle::{Fault, KINDS, Table, Trial, draw};
 
@@ -82,12 +82,16 @@ pub fn run(arguments: &[String]) -> ExitCode {
     if failures.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// Writes a problem with a fault and its exact answer as a problem directory.
+/// Writes a problem with a fault, its exact answer and the answer at fault as a problem directory.
 fn save(folder: &Path, trial: &Trial, fault: &Fault, number: u64, seed: u64) -> std::io::Result<()> {
     fs::create_dir_all(folder)?;
     let problem = trial.case.problem().map_err(std::io::Error::other)?;
     for (name, text) in problem_files(&problem) {
         fs::write(folder.join(name), text)?;
+    }
+    if let Some((u, lambda)) = &fault.answer {
+        fs::write(folder.join("u.mtx"), format_vector(u))?;
+        fs::write(folder.join("lambda.mtx"), format_vector(lambda))?;
     }
     let text = format!(
         "{}: {}\n\nstiffness {}, rows {}; problem {number} of seed {seed}: fuzz exact 1 {seed} --only {number} --kind {}\n\nexact: {}\n",

@@ -21,7 +21,7 @@ pub const CONDITIONED: f64 = 1e10;
 pub enum Sort {
     /// A bound on the error that lies below the error.
     Bound,
-    /// The same, by no more than rounding of the bound itself.
+    /// The same, by no more than rounding of the bound itself or of the exact displacement.
     Rounded,
     /// A row proven open that is closed, or proven closed that is open.
     Proof,
@@ -79,11 +79,13 @@ pub struct Fault {
     pub detail: String,
     /// By how much a bound falls short.
     pub factor: f64,
+    /// The answer in which the fault is: u and lambda.
+    pub answer: Option<(Vec<f64>, Vec<f64>)>,
 }
 
 impl Fault {
     pub fn new(sort: Sort, detail: String) -> Self {
-        Fault { sort, detail, factor: 0.0 }
+        Fault { sort, detail, factor: 0.0, answer: None }
     }
 }
 
@@ -173,7 +175,8 @@ impl Judge<'_> {
             Outcome::Indefinite { .. } => !is_certified,
         };
         if !is_told && is_certified {
-            faults.push(fault(Sort::Certified));
+            let answer = solution.map(|solution| (solution.displacement.clone(), solution.multiplier.clone()));
+            faults.push(Fault { answer, ..fault(Sort::Certified) });
         } else if !is_told && must_end {
             faults.push(fault(if self.is_fair() { Sort::Refused } else { Sort::Missed }));
         }
@@ -195,7 +198,7 @@ impl Judge<'_> {
             (Ok(certificate), Ok(proven)) => {
                 let met = goal.is_met_by(&certificate).then_some(goal);
                 let mut faults = self.answer(asked, displacement, multiplier, &certificate, proven.as_ref(), met);
-                let has_answer = matches!(self.outcome, Outcome::Solved(_) | Outcome::Indefinite { .. });
+                let has_answer = matches!(self.outcome, Outcome::Solved(_));
                 if met.is_some() && !has_answer && !self.is_borderline() {
                     faults
                         .push(Fault::new(Sort::Certified, format!("{asked}: certified, but it is {}", self.verdict())));
@@ -226,8 +229,9 @@ impl Judge<'_> {
         if bound.is_finite() && !whole.is_within(bound) {
             let factor = whole.value() / bound;
             let detail = format!("{asked}: error {:.3e} is {factor:.6} times its bound {bound:.3e}", whole.value());
-            let sort = if factor > OF_THE_BOUND { Sort::Bound } else { Sort::Rounded };
-            faults.push(Fault { sort, detail, factor });
+            let is_rounding = factor < OF_THE_BOUND || whole.is_within(whole.explained);
+            let sort = if is_rounding { Sort::Rounded } else { Sort::Bound };
+            faults.push(Fault { factor, ..Fault::new(sort, detail) });
         }
         if let Some(goal) = certified {
             let promised = goal.accuracy.filter(|_| bound.is_finite()).unwrap_or(goal.tolerance);
@@ -248,6 +252,8 @@ impl Judge<'_> {
                 .and_then(|proven| self.wrong_proof(answer, proven))
                 .map(|row| Fault::new(Sort::Proof, format!("{asked}: {row}"))),
         );
+        let at_fault = (displacement.to_vec(), multiplier.to_vec());
+        faults.iter_mut().for_each(|fault| fault.answer = Some(at_fault.clone()));
         faults
     }
 
