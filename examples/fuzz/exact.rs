@@ -6,9 +6,14 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
-use signorini::matrix_market::{format_vector, problem_files};
+use signorini::matrix_market::{format_vector, problem_files, read_problem};
 
-use super::oracle::{Fault, KINDS, Table, Trial, draw};
+use super::oracle::case::Case;
+use super::oracle::judge::Fault;
+use super::oracle::solve::Exact;
+use super::oracle::stiffness::KINDS;
+use super::oracle::table::Table;
+use super::oracle::trial::{Trial, draw};
 
 /// What the command line says.
 struct Options {
@@ -42,10 +47,25 @@ fn options(arguments: &[String]) -> Option<Options> {
 
 /// Runs the problems, prints the table, and fails if something is that must not be.
 pub fn run(arguments: &[String]) -> ExitCode {
+    if let [word, directory] = arguments
+        && word == "--answer"
+    {
+        return match read_problem(Path::new(directory)) {
+            Ok(problem) => {
+                let case = Case::of(&problem);
+                println!("{:#}", Exact::new(&case).json(&case));
+                ExitCode::SUCCESS
+            }
+            Err(error) => {
+                eprintln!("{error}");
+                ExitCode::FAILURE
+            }
+        };
+    }
     let Some(options) = options(arguments) else {
         let kinds: Vec<&str> = KINDS.iter().map(|kind| kind.0).collect();
         eprintln!(
-            "usage: fuzz exact PROBLEMS [SEED] [--kind NAME] [--only NUMBER] [--save FOLDER]\nkinds: {}",
+            "usage: fuzz exact PROBLEMS [SEED] [--kind NAME] [--only NUMBER] [--save FOLDER]\n       fuzz exact --answer DIRECTORY\nkinds: {}",
             kinds.join(" ")
         );
         return ExitCode::from(2);
@@ -100,7 +120,7 @@ fn save(folder: &Path, trial: &Trial, fault: &Fault, number: u64, seed: u64) -> 
         trial.kind,
         trial.rows,
         trial.kind,
-        trial.exact_answer()
+        Exact::new(&trial.case).json(&trial.case)
     );
     fs::write(folder.join("README.txt"), text)
 }

@@ -5,6 +5,10 @@
 //! neither panic nor take long. A problem gets damaged data, and must end with an answer whose conditions hold when they are
 //! recomputed, or with an error. Runs with the same seed are the same; the first input that fails is printed and ends the run.
 //!
+//! The target `exact` holds every answer of the program against exact arithmetic: `fuzz exact PROBLEMS [SEED] [--kind NAME]
+//! [--only NUMBER] [--save FOLDER]`, with a fresh seed unless one is given, or `fuzz exact --answer DIRECTORY` for the exact
+//! answer of one problem. See `exact.rs`.
+//!
 //! With `--keep`, the first input of every ending that `tests/faults` and `tests/corpus` do not know goes into `tests/corpus`,
 //! which `tests/corpus.rs` replays.
 
@@ -65,6 +69,9 @@ impl Kept {
         }
         for file in fs::read_dir(corpus()).into_iter().flatten() {
             let file = file?.path();
+            if file.is_dir() {
+                continue;
+            }
             files += 1;
             let stem = file.file_name().and_then(|name| name.to_str()).and_then(|name| name.split_once('-'));
             let extension = file.extension().and_then(|extension| extension.to_str());

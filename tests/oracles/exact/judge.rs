@@ -100,16 +100,16 @@ pub struct Judge<'a> {
     pub lowest: f64,
 }
 
-impl Judge<'_> {
+impl<'a> Judge<'a> {
+    pub fn new(case: &'a Case, exact: &'a Exact, outcome: &'a Outcome) -> Self {
+        let (low, high) = case.equilibrated_spectrum();
+        let lowest = if high > 0.0 { low / high } else { 0.0 };
+        let condition = if lowest > 0.0 { 1.0 / lowest } else { f64::INFINITY };
+        Judge { case, exact, outcome, condition, lowest }
+    }
     /// The exact answer in a word.
     pub fn verdict(&self) -> &'static str {
-        match self.outcome {
-            Outcome::Solved(answer) if answer.is_unique => "solved",
-            Outcome::Solved(_) => "under-held",
-            Outcome::Infeasible { .. } => "infeasible",
-            Outcome::Unbounded { .. } => "unbounded",
-            Outcome::Indefinite { .. } => "not-convex",
-        }
+        self.outcome.verdict()
     }
 
     /// Does rounding of the data decide how this problem ends?
@@ -228,7 +228,11 @@ impl Judge<'_> {
         let (whole, bound) = (errors.whole(displacement, multiplier), certificate.energy_error_bound);
         if bound.is_finite() && !whole.is_within(bound) {
             let factor = whole.value() / bound;
-            let detail = format!("{asked}: error {:.3e} is {factor:.6} times its bound {bound:.3e}", whole.value());
+            let detail = format!(
+                "{asked}: error {:.3e} exceeds its bound {bound:.3e} by a factor of 1 + {:.1e}",
+                whole.value(),
+                factor - 1.0
+            );
             let is_rounding = factor < OF_THE_BOUND || whole.is_within(whole.explained);
             let sort = if is_rounding { Sort::Rounded } else { Sort::Bound };
             faults.push(Fault { factor, ..Fault::new(sort, detail) });

@@ -4,22 +4,17 @@
 //! unique), infeasible, unbounded, or not convex; each verdict is verified in the original data before it is returned.
 #![allow(dead_code)]
 
-mod case;
-mod dyadic;
-mod judge;
+pub mod case;
+pub mod dyadic;
+pub mod judge;
 mod lemke;
 mod loads;
-mod measure;
-mod rows;
-mod solve;
-mod stiffness;
-mod table;
+pub mod measure;
+pub mod rows;
+pub mod solve;
+pub mod stiffness;
+pub mod table;
 mod tableau;
-mod trial;
-
-pub use judge::Fault;
-pub use stiffness::KINDS;
-pub use table::Table;
-pub use trial::{Trial, draw};
+pub mod trial;
 
 use super::draws::Draws;

@@ -1,6 +1,7 @@
 //! The exact answer of a problem, or exactly why there is none; every verdict is verified in the data before it is returned.
 
 use num_bigint::BigInt;
+use serde_json::{Value, json};
 
 use super::case::Case;
 use super::dyadic::{Dyadic, dot, ratio};
@@ -55,7 +56,52 @@ struct Units {
     row: Vec<i64>,
 }
 
+impl Outcome {
+    /// The verdict in a word, as the program names it.
+    pub fn verdict(&self) -> &'static str {
+        match self {
+            Outcome::Solved(answer) if answer.is_unique => "solved",
+            Outcome::Solved(_) => "under-held",
+            Outcome::Infeasible { .. } => "infeasible",
+            Outcome::Unbounded { .. } => "unbounded",
+            Outcome::Indefinite { .. } => "not-convex",
+        }
+    }
+}
+
 impl Exact {
+    /// A solution rounded to doubles: u, and lambda with an entry for each row of the case.
+    pub fn rounded(&self, case: &Case, answer: &Answer) -> (Vec<f64>, Vec<f64>) {
+        let round = |value| ratio(value, &answer.denominator);
+        let mut lambda = vec![0.0; case.rows()];
+        // Zero without a sign, as files have it.
+        self.rows.iter().zip(&answer.force).for_each(|(&row, force)| lambda[row] = 0.0 - round(force));
+        (answer.displacement.iter().map(round).collect(), lambda)
+    }
+
+    /// The outcome as JSON, rounded to doubles.
+    pub fn json(&self, case: &Case) -> Value {
+        let outcome = self.outcome();
+        let over_sum = |values: &[Dyadic]| -> Vec<f64> {
+            let sum = values.iter().fold(Dyadic::ZERO, |sum, value| &sum + &value.abs());
+            values.iter().map(|value| ratio(value, &sum)).collect()
+        };
+        let verdict = outcome.verdict();
+        match &outcome {
+            Outcome::Solved(answer) => {
+                let (displacement, multiplier) = self.rounded(case, answer);
+                json!({"verdict": verdict, "displacement": displacement, "multiplier": multiplier})
+            }
+            Outcome::Infeasible { weights, overlap, .. } => {
+                json!({"verdict": verdict, "weights": over_sum(weights), "rows": self.rows, "overlap": overlap})
+            }
+            Outcome::Unbounded { direction, drive } => {
+                json!({"verdict": verdict, "direction": over_sum(direction), "drive": drive})
+            }
+            Outcome::Indefinite { is_feasible } => json!({"verdict": verdict, "feasible": is_feasible}),
+        }
+    }
+
     pub fn new(case: &Case) -> Self {
         let exact = |values: &[f64]| values.iter().map(|&value| Dyadic::from(value)).collect::<Vec<_>>();
         let rows: Vec<usize> = (0..case.gap.len()).filter(|&row| case.is_bounded(row)).collect();

@@ -106,17 +106,20 @@ impl Table {
         let mut failures: Vec<String> = forbidden
             .map(|sort| format!("{} problems with a fault of the sort `{}`", self.count(sort), sort.name()))
             .collect();
+        failures.extend(self.frequent());
+        failures
+    }
+
+    /// The kinds of stiffness of which too many problems are refused or missed.
+    pub fn frequent(&self) -> Vec<String> {
+        let mut frequent = Vec::new();
         for (name, line) in &self.kinds {
             for sort in [Sort::Refused, Sort::Missed].into_iter().filter(|&sort| line.exceeds(sort)) {
-                failures.push(format!(
-                    "{} of {} problems {} with the stiffness `{name}`",
-                    line.count(sort),
-                    line.of(sort),
-                    sort.name()
-                ));
+                let (count, of) = (line.count(sort), line.of(sort));
+                frequent.push(format!("{count} of {of} problems {} with the stiffness `{name}`", sort.name()));
             }
         }
-        failures
+        frequent
     }
 
     pub fn text(&self) -> String {

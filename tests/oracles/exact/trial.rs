@@ -7,11 +7,10 @@ use signorini::{Condense, ContactProblem, Method, Precision, Settings, solve};
 
 use super::Draws;
 use super::case::Case;
-use super::dyadic::{Dyadic, ratio};
 use super::judge::{Fault, Judge, Sort};
 use super::loads::load;
 use super::rows::{ROWS, Rows};
-use super::solve::{Answer, Exact, Outcome};
+use super::solve::{Exact, Outcome};
 use super::stiffness::KINDS;
 
 /// No solve of so few unknowns takes so many seconds.
@@ -133,10 +132,7 @@ impl Trial {
         let exact = Exact::new(&self.case);
         let outcome = exact.outcome();
         let exact_seconds = start.elapsed().as_secs_f64();
-        let (low, high) = self.case.equilibrated_spectrum();
-        let lowest = if high > 0.0 { low / high } else { 0.0 };
-        let condition = if lowest > 0.0 { 1.0 / lowest } else { f64::INFINITY };
-        let judge = Judge { case: &self.case, exact: &exact, outcome: &outcome, condition, lowest };
+        let judge = Judge::new(&self.case, &exact, &outcome);
         let mut report = Report {
             verdict: judge.verdict(),
             is_fair: judge.is_fair(),
@@ -172,31 +168,6 @@ impl Trial {
         report
     }
 
-    /// The exact answer in words, rounded to doubles.
-    pub fn exact_answer(&self) -> String {
-        let exact = Exact::new(&self.case);
-        match exact.outcome() {
-            Outcome::Solved(answer) => {
-                let (u, lambda) = self.doubles(&exact, &answer);
-                let unique = if answer.is_unique { "unique" } else { "not unique" };
-                format!("solved, {unique}: u = {u:?}, lambda = {lambda:?}")
-            }
-            Outcome::Infeasible { weights, overlap, .. } => {
-                let weights: Vec<f64> = weights
-                    .iter()
-                    .map(|weight| ratio(weight, &weights.iter().fold(Dyadic::ZERO, |sum, w| &sum + w)))
-                    .collect();
-                format!("infeasible: weights {weights:?} of the bounded rows, overlap {overlap:.3e} of the gaps")
-            }
-            Outcome::Unbounded { direction, drive } => {
-                let size = direction.iter().fold(Dyadic::ZERO, |sum, d| &sum + &d.abs());
-                let direction: Vec<f64> = direction.iter().map(|d| ratio(d, &size)).collect();
-                format!("unbounded: direction {direction:?}, drive {drive:.3e} of the work")
-            }
-            Outcome::Indefinite { is_feasible } => format!("not convex, feasible: {is_feasible}"),
-        }
-    }
-
     fn ask(&self, judge: &Judge, problem: &ContactProblem, settings: &Settings, must_end: bool, report: &mut Report) {
         let (start, asked) = (Instant::now(), words(settings));
         let ending = catch_unwind(AssertUnwindSafe(|| solve(problem, settings)));
@@ -219,7 +190,7 @@ impl Trial {
             let u = (0..n).map(|_| draws.signed()).collect();
             return if draws.one_in(2) { zero() } else { ("anything".to_string(), u, vec![0.0; m]) };
         };
-        let (mut u, mut lambda) = self.doubles(exact, answer);
+        let (mut u, mut lambda) = exact.rounded(&self.case, answer);
         let size = draws.decades(1e-16, 1.0);
         match draws.below(8) {
             0 => return zero(),
@@ -262,16 +233,8 @@ impl Trial {
         }
         let exact = Exact::new(&other);
         let Outcome::Solved(answer) = exact.outcome() else { return ("rounded".to_string(), u, lambda) };
-        let (u, lambda) = self.doubles(&exact, &answer);
+        let (u, lambda) = exact.rounded(&self.case, &answer);
         (if is_dropped { format!("without row {row}") } else { format!("with row {row} moved") }, u, lambda)
-    }
-
-    /// An exact answer rounded to doubles.
-    fn doubles(&self, exact: &Exact, answer: &Answer) -> (Vec<f64>, Vec<f64>) {
-        let round = |value| ratio(value, &answer.denominator);
-        let mut lambda = vec![0.0; self.case.rows()];
-        exact.rows.iter().zip(&answer.force).for_each(|(&row, force)| lambda[row] = -round(force));
-        (answer.displacement.iter().map(round).collect(), lambda)
     }
 }
 
