@@ -60,7 +60,7 @@ fn no_row_is_proven_to_be_what_it_is_not() {
 
 #[test]
 fn no_claim_about_a_problem_is_false() {
-    has_none(&[Sort::Claim]);
+    has_none(&[Sort::Claim, Sort::Evidence]);
 }
 
 #[test]

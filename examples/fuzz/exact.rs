@@ -22,11 +22,12 @@ struct Options {
     kind: Option<String>,
     save: Option<PathBuf>,
     only: Option<u64>,
+    all: bool,
 }
 
 fn options(arguments: &[String]) -> Option<Options> {
     let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(1, |since| since.as_nanos() as u64 % 1_000_000_007);
-    let mut options = Options { problems: 0, seed: now, kind: None, save: None, only: None };
+    let mut options = Options { problems: 0, seed: now, kind: None, save: None, only: None, all: false };
     let (mut words, mut plain) = (arguments.iter(), 0);
     while let Some(word) = words.next() {
         match word.as_str() {
@@ -35,6 +36,7 @@ fn options(arguments: &[String]) -> Option<Options> {
             }
             "--save" => options.save = Some(words.next()?.into()),
             "--only" => options.only = Some(words.next()?.parse().ok()?),
+            "--all" => options.all = true,
             _ => {
                 let number = word.parse().ok()?;
                 *[&mut options.problems, &mut options.seed].into_iter().nth(plain)? = number;
@@ -65,7 +67,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
     let Some(options) = options(arguments) else {
         let kinds: Vec<&str> = KINDS.iter().map(|kind| kind.0).collect();
         eprintln!(
-            "usage: fuzz exact PROBLEMS [SEED] [--kind NAME] [--only NUMBER] [--save FOLDER]\n       fuzz exact --answer DIRECTORY\nkinds: {}",
+            "usage: fuzz exact PROBLEMS [SEED] [--kind NAME] [--only NUMBER] [--save FOLDER] [--all]\n       fuzz exact --answer DIRECTORY\nkinds: {}",
             kinds.join(" ")
         );
         return ExitCode::from(2);
@@ -84,7 +86,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
         for fault in &report.faults {
             let place = format!("{}-{}", fault.sort.name(), trial.kind);
             let is_first = saved.insert(place.clone());
-            if is_first || options.only.is_some() {
+            if is_first || options.all {
                 println!("{number} ({}, {}): {}: {}", trial.kind, trial.rows, fault.sort.name(), fault.detail);
             }
             if let Some(folder) = options.save.as_ref().filter(|_| is_first)
@@ -114,12 +116,11 @@ fn save(folder: &Path, trial: &Trial, fault: &Fault, number: u64, seed: u64) -> 
         fs::write(folder.join("lambda.mtx"), format_vector(lambda))?;
     }
     let text = format!(
-        "{}: {}\n\nstiffness {}, rows {}; problem {number} of seed {seed}: fuzz exact 1 {seed} --only {number} --kind {}\n\nexact: {}\n",
+        "{}: {}\n\nstiffness {}, rows {}; problem {number} of seed {seed}: fuzz exact 1 {seed} --only {number}\n\nexact: {}\n",
         fault.sort.name(),
         fault.detail,
         trial.kind,
         trial.rows,
-        trial.kind,
         Exact::new(&trial.case).json(&trial.case)
     );
     fs::write(folder.join("README.txt"), text)

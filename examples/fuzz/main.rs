@@ -6,8 +6,7 @@
 //! recomputed, or with an error. Runs with the same seed are the same; the first input that fails is printed and ends the run.
 //!
 //! The target `exact` holds every answer of the program against exact arithmetic: `fuzz exact PROBLEMS [SEED] [--kind NAME]
-//! [--only NUMBER] [--save FOLDER]`, with a fresh seed unless one is given, or `fuzz exact --answer DIRECTORY` for the exact
-//! answer of one problem. See `exact.rs`.
+//! [--only NUMBER] [--save FOLDER] [--all]`, or `fuzz exact --answer DIRECTORY` for the exact answer of one problem. See `exact.rs`.
 //!
 //! With `--keep`, the first input of every ending that `tests/faults` and `tests/corpus` do not know goes into `tests/corpus`,
 //! which `tests/corpus.rs` replays.

@@ -4,11 +4,12 @@ use signorini::{Certificate, ContactProblem, Error, Goal, ProvenSet, Solution};
 
 use super::case::Case;
 use super::dyadic::{Dyadic, ratio};
+use super::evidence;
 use super::measure::{Errors, Relative};
 use super::solve::{Answer, Exact, Outcome};
 
-/// A contradiction, a drive or an eigenvalue that counts less than this decides nothing: rounding of the data may be behind it.
-const ROUNDING: f64 = 1e-9;
+/// A contradiction, a drive or an eigenvalue that counts less than this decides nothing: the tolerance of a certificate may be behind it.
+const BORDERLINE: f64 = 1e-8;
 
 /// A bound that falls short by a smaller factor has lost it by rounding, as far as it is above rounding itself.
 const OF_THE_BOUND: f64 = 1.001;
@@ -27,6 +28,8 @@ pub enum Sort {
     Proof,
     /// Infeasible, unbounded, not convex or under-held, of a problem that is not.
     Claim,
+    /// The weights or the direction that a claim names do not show it.
+    Evidence,
     /// Certified, but further from the exact answer than certified.
     Certified,
     Panic,
@@ -39,11 +42,12 @@ pub enum Sort {
 }
 
 impl Sort {
-    pub const ALL: [Sort; 9] = [
+    pub const ALL: [Sort; 10] = [
         Sort::Bound,
         Sort::Rounded,
         Sort::Proof,
         Sort::Claim,
+        Sort::Evidence,
         Sort::Certified,
         Sort::Panic,
         Sort::Slow,
@@ -57,6 +61,7 @@ impl Sort {
             Sort::Rounded => "rounded",
             Sort::Proof => "proof",
             Sort::Claim => "claim",
+            Sort::Evidence => "evidence",
             Sort::Certified => "certified",
             Sort::Panic => "panic",
             Sort::Slow => "slow",
@@ -116,9 +121,9 @@ impl<'a> Judge<'a> {
     pub fn is_borderline(&self) -> bool {
         match self.outcome {
             Outcome::Solved(_) => false,
-            Outcome::Infeasible { overlap, .. } => *overlap < ROUNDING,
-            Outcome::Unbounded { drive, .. } => *drive < ROUNDING,
-            Outcome::Indefinite { .. } => self.lowest > -ROUNDING,
+            Outcome::Infeasible { overlap, .. } => *overlap < BORDERLINE,
+            Outcome::Unbounded { drive, .. } => *drive < BORDERLINE,
+            Outcome::Indefinite { .. } => self.lowest > -BORDERLINE,
         }
     }
 
@@ -163,6 +168,8 @@ impl<'a> Judge<'a> {
         };
         if is_false && !self.is_borderline() {
             faults.push(fault(Sort::Claim));
+        } else if let Some(evidence) = ending.as_ref().err().and_then(|error| evidence::fault(self.exact, error)) {
+            faults.push(Fault::new(Sort::Evidence, format!("{asked}: {said}, but {evidence}")));
         }
         if is_false || self.is_borderline() {
             return faults;
@@ -170,6 +177,8 @@ impl<'a> Judge<'a> {
         let is_told = match self.outcome {
             Outcome::Solved(answer) if answer.is_unique => is_certified || !self.is_fair(),
             Outcome::Solved(_) => is_certified || matches!(ending, Err(Error::UnderHeld { .. })),
+            // What meets the rows to a tolerance meets rows that overlap by less.
+            Outcome::Infeasible { overlap, .. } if is_certified => *overlap <= goal.tolerance,
             Outcome::Infeasible { .. } => matches!(ending, Err(Error::Infeasible { .. } | Error::Unbounded { .. })),
             Outcome::Unbounded { .. } => matches!(ending, Err(Error::Unbounded { .. })),
             Outcome::Indefinite { .. } => !is_certified,

@@ -6,6 +6,7 @@
 
 pub mod case;
 pub mod dyadic;
+mod evidence;
 pub mod judge;
 mod lemke;
 mod loads;

@@ -96,6 +96,8 @@ fn few(draws: &mut Draws, point: &[f64]) -> Rows {
 }
 
 fn some(draws: &mut Draws, point: &[f64], most: usize, make: fn(&mut Draws, usize) -> Vec<f64>) -> Rows {
+    // As many as a larger body has dofs, now and then.
+    let most = if draws.one_in(4) { most.max(point.len()) } else { most };
     let (mut rows, count) = (Rows::default(), 1 + draws.below(most));
     add(&mut rows, draws, point, count, make);
     rows
@@ -105,8 +107,18 @@ fn boolean(draws: &mut Draws, point: &[f64]) -> Rows {
     some(draws, point, 9, unit)
 }
 
+/// Rows between two dofs; some of them from each dof to the next.
 fn difference(draws: &mut Draws, point: &[f64]) -> Rows {
-    some(draws, point, 9, pair)
+    if draws.one_in(2) {
+        return some(draws, point, 9, pair);
+    }
+    let mut rows = Rows::default();
+    for dof in 1..point.len() {
+        let mut row = vec![0.0; point.len()];
+        (row[dof - 1], row[dof]) = (-1.0, 1.0);
+        rows.push(row, point[dof] - point[dof - 1] + draws.signed());
+    }
+    rows
 }
 
 fn integer(draws: &mut Draws, point: &[f64]) -> Rows {

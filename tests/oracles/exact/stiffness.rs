@@ -69,6 +69,11 @@ fn size(draws: &mut Draws) -> usize {
     1 + draws.below(8)
 }
 
+/// The same, and now and then more.
+fn size_of_network(draws: &mut Draws) -> usize {
+    if draws.one_in(12) { 9 + draws.below(16) } else { 1 + draws.below(8) }
+}
+
 /// `A A'` summed in order, so that both triangles agree.
 fn gram(a: &Matrix) -> Matrix {
     let product = |i: usize, j: usize| a[i].iter().zip(&a[j]).map(|(x, y)| x * y).sum();
@@ -143,7 +148,7 @@ fn short_spring(draws: &mut Draws) -> f64 {
 }
 
 fn springs(draws: &mut Draws) -> Matrix {
-    let n = size(draws);
+    let n = size_of_network(draws);
     let mut k = square(n);
     connect(&mut k, draws, 0, n, spring);
     (0..n).for_each(|i| {
@@ -156,7 +161,7 @@ fn springs(draws: &mut Draws) -> Matrix {
 
 /// A part of the network is held by 1e-6 only.
 fn springs_weak(draws: &mut Draws) -> Matrix {
-    let n = 2 + draws.below(7);
+    let n = 1 + size_of_network(draws);
     let (mut k, middle) = (square(n), 1 + draws.below(n - 1));
     connect(&mut k, draws, 0, middle, spring);
     connect(&mut k, draws, middle, n, spring);
@@ -188,7 +193,8 @@ fn string(draws: &mut Draws) -> Matrix {
 
 /// The five-point Laplacian, clamped all around.
 fn membrane(draws: &mut Draws) -> Matrix {
-    let (across, along) = (2 + draws.below(2), 2 + draws.below(3));
+    let most = if draws.one_in(12) { 5 } else { 2 };
+    let (across, along) = (2 + draws.below(most), 2 + draws.below(most + 1));
     let mut k = square(across * along);
     for i in 0..across * along {
         k[i][i] = 4.0;

@@ -60,7 +60,7 @@ impl Line {
         };
         let worst = if self.worst_factor > 0.0 { format!(" ({:.1e})", self.worst_factor) } else { String::new() };
         format!(
-            "{name:<18}{:>7}{:>7}{:>6}{:>6}{:>6}{:>6} |{:>18}{:>8}{:>7}{:>7}{:>10}{:>7}{:>6} |{:>16}{:>16}{:>9.1}",
+            "{name:<18}{:>7}{:>7}{:>6}{:>6}{:>6}{:>6} |{:>18}{:>8}{:>7}{:>7}{:>9}{:>10}{:>7}{:>6} |{:>16}{:>16}{:>9.1}",
             self.problems,
             verdict("solved"),
             verdict("under-held"),
@@ -71,6 +71,7 @@ impl Line {
             self.count(Sort::Rounded),
             self.count(Sort::Proof),
             self.count(Sort::Claim),
+            self.count(Sort::Evidence),
             self.count(Sort::Certified),
             self.count(Sort::Panic),
             self.count(Sort::Slow),
@@ -125,7 +126,7 @@ impl Table {
     pub fn text(&self) -> String {
         let mut text = String::new();
         let head = format!(
-            "{:>7}{:>7}{:>6}{:>6}{:>6}{:>6} |{:>18}{:>8}{:>7}{:>7}{:>10}{:>7}{:>6} |{:>16}{:>16}{:>9}",
+            "{:>7}{:>7}{:>6}{:>6}{:>6}{:>6} |{:>18}{:>8}{:>7}{:>7}{:>9}{:>10}{:>7}{:>6} |{:>16}{:>16}{:>9}",
             "problem",
             "solved",
             "under",
@@ -136,6 +137,7 @@ impl Table {
             "rounded",
             "proof",
             "claim",
+            "evidence",
             "certified",
             "panic",
             "slow",

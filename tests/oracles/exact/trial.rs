@@ -254,6 +254,10 @@ fn settings(draws: &mut Draws) -> Settings {
     if draws.one_in(6) {
         settings.precision = Precision::Mixed;
     }
+    if draws.one_in(16) {
+        settings.time = Some(0.0);
+    }
+    settings.polish = !draws.one_in(6);
     settings.prove = draws.one_in(2);
     settings.extrapolate = draws.one_in(4);
     settings
@@ -267,6 +271,8 @@ fn words(settings: &Settings) -> String {
         (settings.condense == Condense::Never, "all dofs"),
         (settings.precision == Precision::Mixed, "mixed precision"),
         (settings.prove, "proving"),
+        (!settings.polish, "unpolished"),
+        (settings.time.is_some(), "without time"),
         (settings.extrapolate, "extrapolating"),
     ];
     words.extend(marks.into_iter().filter(|mark| mark.0).map(|mark| mark.1.to_string()));
