@@ -5,11 +5,17 @@
 //! neither panic nor take long. A problem gets damaged data, and must end with an answer whose conditions hold when they are
 //! recomputed, or with an error. Runs with the same seed are the same; the first input that fails is printed and ends the run.
 //!
+//! The target `exact` holds every answer of the program against exact arithmetic: `fuzz exact PROBLEMS [SEED] [--kind NAME]
+//! [--only NUMBER] [--save FOLDER] [--all]`, or `fuzz exact --answer DIRECTORY` for the exact answer of one problem. See `exact.rs`.
+//!
 //! With `--keep`, the first input of every ending that `tests/faults` and `tests/corpus` do not know goes into `tests/corpus`,
 //! which `tests/files/corpus.rs` replays.
 
 mod damage;
 mod draws;
+mod exact;
+#[path = "../../tests/oracles/exact/mod.rs"]
+mod oracle;
 mod problem;
 
 use std::collections::BTreeSet;
@@ -62,6 +68,9 @@ impl Kept {
         }
         for file in fs::read_dir(corpus()).into_iter().flatten() {
             let file = file?.path();
+            if file.is_dir() {
+                continue;
+            }
             files += 1;
             let stem = file.file_name().and_then(|name| name.to_str()).and_then(|name| name.split_once('-'));
             let extension = file.extension().and_then(|extension| extension.to_str());
@@ -120,7 +129,11 @@ fn input(files: &[(&str, Vec<u8>)], draws: &mut Draws, desk: &Path, kept: &mut O
 }
 
 fn main() -> ExitCode {
-    let (options, arguments): (Vec<String>, Vec<String>) = std::env::args().skip(1).partition(|word| word == "--keep");
+    let all: Vec<String> = std::env::args().skip(1).collect();
+    if all.first().is_some_and(|target| target == "exact") {
+        return exact::run(&all[1..]);
+    }
+    let (options, arguments): (Vec<String>, Vec<String>) = all.into_iter().partition(|word| word == "--keep");
     let target = TARGETS.iter().find(|target| arguments.first().is_some_and(|name| name == target.0));
     let inputs = arguments.get(1).and_then(|text| text.parse::<u64>().ok());
     let seed = arguments.get(2).map_or(Some(1), |text| text.parse::<u64>().ok());

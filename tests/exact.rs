@@ -1,0 +1,215 @@
+//! GOAL: no answer of the program contradicts exact arithmetic. A short form of `cargo run --release --example fuzz -- exact 20000`.
+//!
+//! CONDITIONS: 400 problems of fixed seeds, every kind of stiffness and of rows, every method, options at random; wrong answers
+//! to verify. The exact solver itself is held against the elimination of every variable (Fourier, Motzkin) and of every minor.
+
+#[path = "../examples/fuzz/draws.rs"]
+mod draws;
+#[path = "oracles/exact/mod.rs"]
+mod exact;
+
+use std::sync::LazyLock;
+
+use draws::Draws;
+use exact::case::Case;
+use exact::dyadic::{Dyadic, dot};
+use exact::judge::Sort;
+use exact::solve::{Exact, Outcome};
+use exact::table::Table;
+use exact::trial::draw;
+
+const SEEDS: [u64; 4] = [1, 20, 300, 4000];
+
+/// Faults that a failure shows.
+const SHOWN: usize = 20;
+
+/// Problems of each seed.
+const PROBLEMS: u64 = 100;
+
+/// The counts, and every fault with its problem.
+static RUN: LazyLock<(Table, Vec<(Sort, String)>)> = LazyLock::new(|| {
+    let (mut table, mut faults) = (Table::default(), Vec::new());
+    for seed in SEEDS {
+        for number in 0..PROBLEMS {
+            let trial = draw(seed, number, None);
+            let report = trial.run();
+            table.add(&trial, &report);
+            let place = format!("{number} of seed {seed} ({}, {})", trial.kind, trial.rows);
+            faults.extend(report.faults.iter().map(|fault| (fault.sort, format!("{place}: {}", fault.detail))));
+        }
+    }
+    (table, faults)
+});
+
+#[track_caller]
+fn has_none(sorts: &[Sort]) {
+    let found: Vec<&str> =
+        RUN.1.iter().filter(|fault| sorts.contains(&fault.0)).map(|fault| fault.1.as_str()).collect();
+    assert!(found.is_empty(), "{} faults, the first of them {:#?}", found.len(), &found[..found.len().min(SHOWN)]);
+}
+
+#[test]
+fn no_bound_lies_below_the_error() {
+    has_none(&[Sort::Bound, Sort::Rounded]);
+}
+
+#[test]
+fn no_row_is_proven_to_be_what_it_is_not() {
+    has_none(&[Sort::Proof]);
+}
+
+#[test]
+fn no_claim_about_a_problem_is_false() {
+    has_none(&[Sort::Claim, Sort::Evidence]);
+}
+
+#[test]
+fn nothing_is_certified_that_is_wrong() {
+    has_none(&[Sort::Certified]);
+}
+
+#[test]
+fn nothing_panics_or_takes_long() {
+    has_none(&[Sort::Panic, Sort::Slow]);
+}
+
+/// At most one problem of a kind of stiffness, as it is with the long form.
+#[test]
+fn hardly_a_fair_problem_is_refused_and_hardly_one_without_an_answer_is_missed() {
+    let rare = RUN.0.frequent();
+    assert!(rare.is_empty(), "{rare:#?}\n{}", RUN.0.text());
+}
+
+/// Linear inequalities `a x <= b`: rows (a, b).
+type Inequalities = Vec<(Vec<Dyadic>, Dyadic)>;
+
+/// Is there an x? Every variable is eliminated from all pairs of rows that bound it from both sides.
+fn is_solvable(mut rows: Inequalities) -> bool {
+    let columns = rows.first().map_or(0, |row| row.0.len());
+    for column in 0..columns {
+        let (bounding, mut next): (Inequalities, Inequalities) =
+            rows.into_iter().partition(|row| row.0[column].sign() != 0);
+        for upper in bounding.iter().filter(|row| row.0[column].sign() > 0) {
+            for lower in bounding.iter().filter(|row| row.0[column].sign() < 0) {
+                let (up, down) = (&upper.0[column], lower.0[column].abs());
+                let sum = |a: &Dyadic, b: &Dyadic| &(a * &down) + &(b * up);
+                let entries = upper.0.iter().zip(&lower.0).map(|(a, b)| sum(a, b)).collect();
+                next.push((entries, sum(&upper.1, &lower.1)));
+            }
+        }
+        rows = next;
+    }
+    rows.iter().all(|row| row.1.sign() >= 0)
+}
+
+/// `d` with `K d = 0` and `B_i d <= 0` in some rows, and beyond that `extra`.
+fn without_energy(exact: &Exact, rows: &[usize], extra: Vec<(Vec<Dyadic>, Dyadic)>) -> Inequalities {
+    let negative = |row: &Vec<Dyadic>| row.iter().map(|value| -value).collect::<Vec<_>>();
+    let mut inequalities = extra;
+    for line in &exact.stiffness {
+        inequalities.push((line.clone(), Dyadic::ZERO));
+        inequalities.push((negative(line), Dyadic::ZERO));
+    }
+    inequalities.extend(rows.iter().map(|&row| (exact.contact[row].clone(), Dyadic::ZERO)));
+    inequalities
+}
+
+/// The determinant of the rows and columns of `places`, by the first row.
+fn minor(matrix: &[Vec<Dyadic>], rows: &[usize], columns: &[usize]) -> Dyadic {
+    let Some((&row, rest)) = rows.split_first() else { return Dyadic::integer(1) };
+    columns.iter().enumerate().fold(Dyadic::ZERO, |sum, (place, &column)| {
+        let others: Vec<usize> = columns.iter().copied().filter(|&other| other != column).collect();
+        let product = &matrix[row][column] * &minor(matrix, rest, &others);
+        if place % 2 == 0 { &sum + &product } else { &sum - &product }
+    })
+}
+
+/// The verdict on a problem by minors and elimination alone; of a solved one the solution tells which rows are closed.
+fn slow_verdict(exact: &Exact, outcome: &Outcome) -> &'static str {
+    let n = exact.dofs();
+    let subsets = (0_usize..1 << n).map(|bits| (0..n).filter(|dof| bits >> dof & 1 == 1).collect::<Vec<usize>>());
+    if subsets.into_iter().any(|set| minor(&exact.stiffness, &set, &set).sign() < 0) {
+        return "not-convex";
+    }
+    let rows = exact.contact.iter().cloned().zip(exact.gap.iter().cloned()).collect();
+    if !is_solvable(rows) {
+        return "infeasible";
+    }
+    let all: Vec<usize> = (0..exact.gap.len()).collect();
+    let against_load: Vec<Dyadic> = exact.load.iter().map(|f| -f).collect();
+    if is_solvable(without_energy(exact, &all, vec![(against_load.clone(), Dyadic::integer(-1))])) {
+        return "unbounded";
+    }
+    let Outcome::Solved(answer) = outcome else { return "solved" };
+    let distances = exact.distances(answer);
+    let closed: Vec<usize> = all.into_iter().filter(|&row| distances[row].is_zero()).collect();
+    let moves = |dof: usize, sign: i64| {
+        let unit = (0..n).map(|other| Dyadic::integer(if other == dof { -sign } else { 0 })).collect();
+        let along_load = (against_load.clone(), Dyadic::ZERO);
+        is_solvable(without_energy(exact, &closed, vec![(unit, Dyadic::integer(-1)), along_load]))
+    };
+    if (0..n).any(|dof| moves(dof, 1) || moves(dof, -1)) { "under-held" } else { "solved" }
+}
+
+/// Short numbers, so that contradictions and balance are exact and frequent.
+fn tiny(draws: &mut Draws) -> Case {
+    let (n, m) = (1 + draws.below(3), draws.below(6));
+    let rank = draws.below(n + 1);
+    let a: Vec<Vec<f64>> = (0..n).map(|_| (0..rank).map(|_| f64::from(draws.between(-2, 2))).collect()).collect();
+    let product = |i: usize, j: usize| a[i].iter().zip(&a[j]).map(|(x, y)| x * y).sum::<f64>();
+    let mut stiffness: Vec<Vec<f64>> = (0..n).map(|i| (0..n).map(|j| product(i, j)).collect()).collect();
+    if draws.one_in(8) {
+        stiffness[0][0] -= 1.0;
+    }
+    let mut whole = |count: usize| (0..count).map(|_| f64::from(draws.between(-2, 2))).collect::<Vec<f64>>();
+    let contact: Vec<Vec<f64>> = (0..m).map(|_| whole(n)).collect();
+    let (mut load, gap, moved, forces) = (whole(n), whole(m), whole(n), whole(m));
+    if draws.one_in(2) {
+        // In balance with forces along the rows.
+        for dof in 0..n {
+            let along: f64 = contact.iter().zip(&forces).map(|(row, force)| row[dof] * force.max(0.0)).sum();
+            load[dof] = stiffness[dof].iter().zip(&moved).map(|(k, u)| k * u).sum::<f64>() + along;
+        }
+    }
+    Case { stiffness, load, contact, gap }
+}
+
+#[test]
+fn the_exact_solver_agrees_with_elimination_of_every_variable() {
+    let (mut draws, mut verdicts) = (Draws(7), std::collections::BTreeMap::<&str, usize>::new());
+    for number in 0..1000 {
+        let case = tiny(&mut draws);
+        let exact = Exact::new(&case);
+        let outcome = exact.outcome();
+        assert_eq!(outcome.verdict(), slow_verdict(&exact, &outcome), "{number}: {case:?}");
+        *verdicts.entry(outcome.verdict()).or_default() += 1;
+    }
+    assert!(verdicts.len() == 5 && verdicts.values().all(|&count| count >= 50), "{verdicts:?}");
+}
+
+/// The least energy over every set of rows held as equalities whose answer meets all rows.
+#[test]
+fn no_other_point_of_the_rows_has_less_energy() {
+    let (mut draws, mut solved) = (Draws(8), 0);
+    for _ in 0..300 {
+        let case = tiny(&mut draws);
+        let exact = Exact::new(&case);
+        let Outcome::Solved(answer) = exact.outcome() else { continue };
+        // Twice the energy of a point x over d, times d^2.
+        let energy = |x: &[Dyadic], d: &Dyadic| {
+            let elastic: Vec<Dyadic> = exact.stiffness.iter().map(|line| dot(line, x)).collect();
+            &dot(x, &elastic) - &(&(&dot(&exact.load, x) * d) * &Dyadic::integer(2))
+        };
+        let (least, d) = (energy(&answer.displacement, &answer.denominator), &answer.denominator);
+        for _ in 0..50 {
+            let x: Vec<Dyadic> =
+                (0..exact.dofs()).map(|_| Dyadic::from(f64::from(draws.between(-16, 16)) / 4.0)).collect();
+            let meets = exact.contact.iter().zip(&exact.gap).all(|(row, gap)| dot(row, &x) <= *gap);
+            if meets {
+                assert!(&energy(&x, &Dyadic::integer(1)) * &(d * d) >= least, "{case:?}");
+                solved += 1;
+            }
+        }
+    }
+    assert!(solved >= 1000, "{solved} points");
+}

@@ -1,0 +1,224 @@
+//! GOAL: small problems on which a promise once broke, each with its exact answer, and what must hold of them.
+//!
+//! A folder of `tests/corpus/findings` is a problem directory, perhaps with an answer to verify, or a scene; `exact.json` is what
+//! `fuzz exact --answer` writes of it. CONDITIONS, everywhere: no claim about the problem is false, no bound lies below the
+//! error, no proof is wrong, and nothing is certified that is further from the exact answer than it says, whatever the method.
+
+#[path = "../examples/fuzz/draws.rs"]
+mod draws;
+#[path = "oracles/exact/mod.rs"]
+mod exact;
+mod program;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use exact::case::Case;
+use exact::judge::{Fault, Judge};
+use exact::measure::Errors;
+use exact::solve::{Exact, Outcome};
+use program::{Desk, Run};
+use serde_json::Value;
+use signorini::matrix_market::{read_problem, read_vector};
+use signorini::{ContactProblem, Error, Method, Settings, Solution, solve};
+
+const ALL: [Method; 5] = [Method::Auto, Method::Qp, Method::ActiveSet, Method::Penalty, Method::Mprgp];
+
+/// An answer is exact to rounding where its relative error in energy is below this, or rounding of u explains it.
+const ROUNDING: f64 = 1e-13;
+
+fn folder(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/corpus/findings").join(name)
+}
+
+/// A problem with its exact answer.
+struct Finding {
+    name: &'static str,
+    problem: ContactProblem,
+    case: Case,
+    exact: Exact,
+    outcome: Outcome,
+}
+
+impl Finding {
+    fn read(name: &'static str) -> Self {
+        let problem = read_problem(&folder(name)).unwrap();
+        let case = Case::of(&problem);
+        let exact = Exact::new(&case);
+        let kept: Value = serde_json::from_str(&fs::read_to_string(folder(name).join("exact.json")).unwrap()).unwrap();
+        assert_eq!(exact.json(&case), kept, "{name}");
+        Finding { name, problem, outcome: exact.outcome(), case, exact }
+    }
+
+    fn judge(&self) -> Judge<'_> {
+        Judge::new(&self.case, &self.exact, &self.outcome)
+    }
+
+    fn is_faultless(&self, faults: &[Fault]) {
+        let details: Vec<&str> = faults.iter().map(|fault| fault.detail.as_str()).collect();
+        assert!(details.is_empty(), "{}: {details:#?}", self.name);
+    }
+
+    /// Solves with a method, and judges how that ends.
+    fn solve(&self, method: Method) -> Result<Solution, Error> {
+        let mut settings = Settings::with_method(method);
+        settings.prove = true;
+        let ending = solve(&self.problem, &settings);
+        self.is_faultless(&self.judge().ending(method.name(), settings.goal(), &ending, false));
+        ending
+    }
+
+    /// Asserts that methods certify the answer, and that it is exact to rounding; MPRGP that it is exact to its tolerance.
+    fn is_certified_by(&self, methods: &[Method]) {
+        for &method in methods {
+            let solution =
+                self.solve(method).unwrap_or_else(|error| panic!("{} by {}: {error}", self.name, method.name()));
+            let Outcome::Solved(answer) = &self.outcome else { panic!("{} has no answer", self.name) };
+            let errors = Errors { case: &self.case, exact: &self.exact, answer };
+            let error = errors.whole(&solution.displacement, &solution.multiplier);
+            let allowed = if method == Method::Mprgp { 1e-9 } else { ROUNDING.max(error.explained) };
+            assert!(error.is_within(allowed), "{} by {}: {:.3e}", self.name, method.name(), error.value());
+        }
+    }
+
+    /// `signorini solve` with some arguments.
+    fn command(&self, arguments: &[&str]) -> Run {
+        let folder = folder(self.name);
+        Desk::new().run(&[&["solve", folder.to_str().unwrap()], arguments].concat())
+    }
+
+    /// Asserts that `verify` does not certify the answer of the folder, and that all that it says of it is true.
+    fn is_not_verified(&self) {
+        let folder = folder(self.name);
+        let files = ["u.mtx", "lambda.mtx"].map(|file| folder.join(file));
+        let [u, lambda] = files.each_ref().map(|file| read_vector(file).unwrap());
+        self.is_faultless(&self.judge().verified("verify", &self.problem, &u, &lambda));
+        let [u, lambda] = files.each_ref().map(|file| file.to_str().unwrap());
+        let arguments = ["verify", folder.to_str().unwrap(), "--displacement", u, "--multiplier", lambda];
+        Desk::new().run(&arguments).ends_with(4);
+    }
+}
+
+#[test]
+fn an_exact_answer_at_a_degenerate_vertex_has_a_small_bound() {
+    let finding = Finding::read("bound_too_large_degenerate_vertex");
+    finding.is_certified_by(&ALL);
+    let run = finding.command(&["--format", "json"]).ends_with(0);
+    assert!(run.json()["certificate"]["energy_error_bound"].as_f64().unwrap() <= 1e-9);
+}
+
+#[test]
+fn two_rows_that_share_a_soft_dof_are_certified() {
+    let finding = Finding::read("contrast_2dof");
+    finding.is_certified_by(&ALL);
+    finding.command(&[]).ends_with(0);
+}
+
+#[test]
+fn a_gap_of_1e20_is_no_bound() {
+    let finding = Finding::read("gap_1e20");
+    for method in ALL {
+        assert!(matches!(finding.solve(method), Err(Error::Unbounded { .. })), "{}", method.name());
+        finding.command(&["--method", method.name()]).ends_with(3);
+    }
+}
+
+#[test]
+fn rows_that_contradict_each_other_by_order_one_are_infeasible() {
+    let finding = Finding::read("infeasible_not_found");
+    for method in ALL {
+        let Err(Error::Infeasible { rows, weights, .. }) = finding.solve(method) else { panic!("{}", method.name()) };
+        // Rows 1 + 2 + 2 * 3 cancel, and ask for 0 <= -4.
+        assert_eq!(rows, [1, 2, 3], "{}", method.name());
+        let ratios = [0.5, 0.5, 1.0].iter().zip(&weights).all(|(ratio, weight)| (ratio - weight).abs() < 1e-12);
+        assert!(ratios, "{}: {weights:?}", method.name());
+        finding.command(&["--method", method.name()]).ends_with(3);
+    }
+}
+
+#[test]
+fn a_free_dof_that_contact_holds_is_convex() {
+    let finding = Finding::read("mprgp_zero_diagonal_not_convex");
+    finding.is_certified_by(&ALL);
+    finding.command(&["--method", "mprgp"]).ends_with(0);
+}
+
+#[test]
+fn a_row_behind_its_scaled_copy_is_not_proven_closed() {
+    let finding = Finding::read("solve_wrong_proof_parallel_rows");
+    finding.is_certified_by(&ALL);
+    for method in ALL {
+        let mut settings = Settings::with_method(method);
+        (settings.accuracy, settings.prove) = (Some(1e-2), true);
+        let ending = solve(&finding.problem, &settings);
+        finding.is_faultless(&finding.judge().ending(method.name(), settings.goal(), &ending, true));
+    }
+    let proven = finding.command(&["--accuracy", "1e-2", "--format", "json"]).ends_with(0).json()["proven"].clone();
+    assert_eq!(
+        proven["closed"].as_u64().unwrap() + proven["open"].as_u64().unwrap(),
+        2 - proven["undecided"].as_array().unwrap().len() as u64
+    );
+}
+
+/// Optimised only: 84,000 unknowns.
+#[cfg(not(debug_assertions))]
+#[test]
+fn a_limit_of_memory_leaves_a_stretched_strip_certified() {
+    let scene = folder("strip_max_memory").join("scene.json");
+    Desk::new().run(&["solve", scene.to_str().unwrap(), "--max-memory", "100MB"]).ends_with(0);
+}
+
+#[test]
+fn rounding_of_a_large_displacement_is_excused_in_full() {
+    let finding = Finding::read("unconstrained_stationarity");
+    finding.is_certified_by(&[Method::Auto, Method::Qp, Method::ActiveSet, Method::Penalty]);
+    finding.command(&[]).ends_with(0);
+}
+
+/// Floating bodies in exact balance: an answer, or under-held, but not unbounded.
+#[test]
+fn a_load_in_exact_balance_is_not_unbounded() {
+    let finding = Finding::read("under_held_called_unbounded");
+    assert_eq!(finding.outcome.verdict(), "under-held");
+    is_certified_or_under_held(&finding);
+}
+
+#[test]
+fn zero_stiffness_is_under_held_and_convex() {
+    let finding = Finding::read("zero_stiffness_not_convex");
+    is_certified_or_under_held(&finding);
+}
+
+fn is_certified_or_under_held(finding: &Finding) {
+    for method in ALL {
+        let ending = finding.solve(method);
+        assert!(matches!(ending, Ok(_) | Err(Error::UnderHeld { .. })), "{}: {ending:?}", method.name());
+        for all_dofs in [&[][..], &["--no-condense"]] {
+            let run = finding.command(&[&["--method", method.name()], all_dofs].concat());
+            assert!([0, 3].contains(&run.code), "{} {all_dofs:?}: {}", method.name(), run.stderr);
+            assert!(!run.stderr.contains("unbounded"), "{}", run.stderr);
+        }
+    }
+}
+
+#[test]
+fn a_violated_row_that_follows_from_others_is_not_overlooked() {
+    Finding::read("verify_bound_fooled_dependent_row").is_not_verified();
+}
+
+#[test]
+fn a_soft_floating_body_at_the_wrong_place_is_not_certified() {
+    Finding::read("verify_soft_floating_body").is_not_verified();
+}
+
+#[test]
+fn a_soft_part_at_the_wrong_place_is_not_certified() {
+    Finding::read("verify_soft_part_definite").is_not_verified();
+}
+
+#[test]
+fn a_weakly_held_part_between_difference_rows_is_certified() {
+    let finding = Finding::read("weakly_held_part_difference_rows");
+    finding.is_certified_by(&[Method::Auto, Method::Qp, Method::ActiveSet, Method::Penalty]);
+    finding.command(&[]).ends_with(0);
+}

@@ -1,0 +1,166 @@
+//! Numbers m 2^e with an integer m of any size: doubles are such numbers, and their sums and products stay so.
+
+use std::cmp::Ordering;
+use std::ops::{Add, Mul, Neg, Sub};
+
+use num_bigint::{BigInt, Sign};
+
+/// m 2^e.
+#[derive(Clone, Debug)]
+pub struct Dyadic {
+    mantissa: BigInt,
+    exponent: i64,
+}
+
+impl Dyadic {
+    pub const ZERO: Dyadic = Dyadic { mantissa: BigInt::ZERO, exponent: 0 };
+
+    pub fn new(mantissa: BigInt, exponent: i64) -> Self {
+        if mantissa.sign() == Sign::NoSign { Dyadic::ZERO } else { Dyadic { mantissa, exponent } }
+    }
+
+    pub fn integer(value: i64) -> Self {
+        Dyadic::new(value.into(), 0)
+    }
+
+    /// The number times 2^shift.
+    pub fn ldexp(&self, shift: i64) -> Self {
+        Dyadic::new(self.mantissa.clone(), self.exponent + shift)
+    }
+
+    pub fn exponent(&self) -> i64 {
+        self.exponent
+    }
+
+    pub fn is_zero(&self) -> bool {
+        self.mantissa.sign() == Sign::NoSign
+    }
+
+    pub fn sign(&self) -> i32 {
+        sign(&self.mantissa)
+    }
+
+    pub fn abs(&self) -> Self {
+        Dyadic { mantissa: self.mantissa.magnitude().clone().into(), exponent: self.exponent }
+    }
+
+    /// The integer `self / 2^exponent`, for an exponent that is low enough to leave one.
+    pub fn over(&self, exponent: i64) -> BigInt {
+        if self.is_zero() {
+            return BigInt::ZERO;
+        }
+        assert!(self.exponent >= exponent, "2^{} over 2^{exponent} is no integer", self.exponent);
+        &self.mantissa << (self.exponent - exponent)
+    }
+
+    /// The nearest double, to one unit in the last place.
+    pub fn to_f64(&self) -> f64 {
+        quotient(self, &Dyadic::integer(1)).map_or(0.0, |(m, e)| scaled(m, e))
+    }
+}
+
+impl From<f64> for Dyadic {
+    /// The number that a finite double is.
+    fn from(value: f64) -> Self {
+        assert!(value.is_finite(), "{value} is no number");
+        let bits = value.to_bits();
+        let (biased, fraction) = ((bits >> 52 & 0x7ff) as i64, bits & ((1 << 52) - 1));
+        let (mantissa, exponent) = if biased == 0 { (fraction, -1074) } else { (fraction | 1 << 52, biased - 1075) };
+        if mantissa == 0 {
+            return Dyadic::ZERO;
+        }
+        let zeros = mantissa.trailing_zeros();
+        let mantissa = BigInt::from(mantissa >> zeros);
+        Dyadic::new(if value < 0.0 { -mantissa } else { mantissa }, exponent + i64::from(zeros))
+    }
+}
+
+impl Add for &Dyadic {
+    type Output = Dyadic;
+    fn add(self, other: &Dyadic) -> Dyadic {
+        if self.is_zero() || other.is_zero() {
+            return if self.is_zero() { other.clone() } else { self.clone() };
+        }
+        let exponent = self.exponent.min(other.exponent);
+        Dyadic::new(self.over(exponent) + other.over(exponent), exponent)
+    }
+}
+
+impl Neg for &Dyadic {
+    type Output = Dyadic;
+    fn neg(self) -> Dyadic {
+        Dyadic { mantissa: -&self.mantissa, exponent: self.exponent }
+    }
+}
+
+impl Sub for &Dyadic {
+    type Output = Dyadic;
+    fn sub(self, other: &Dyadic) -> Dyadic {
+        self + &-other
+    }
+}
+
+impl Mul for &Dyadic {
+    type Output = Dyadic;
+    fn mul(self, other: &Dyadic) -> Dyadic {
+        Dyadic::new(&self.mantissa * &other.mantissa, self.exponent + other.exponent)
+    }
+}
+
+impl PartialEq for Dyadic {
+    fn eq(&self, other: &Self) -> bool {
+        (self - other).is_zero()
+    }
+}
+
+impl PartialOrd for Dyadic {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some((self - other).sign().cmp(&0))
+    }
+}
+
+pub fn sign(value: &BigInt) -> i32 {
+    match value.sign() {
+        Sign::Minus => -1,
+        Sign::NoSign => 0,
+        Sign::Plus => 1,
+    }
+}
+
+/// The sum of products, without rounding.
+pub fn dot<'a>(a: impl IntoIterator<Item = &'a Dyadic>, b: impl IntoIterator<Item = &'a Dyadic>) -> Dyadic {
+    a.into_iter().zip(b).filter(|(a, b)| !a.is_zero() && !b.is_zero()).fold(Dyadic::ZERO, |sum, (a, b)| &sum + &(a * b))
+}
+
+/// `m 2^e`, also where 2^e itself is no double.
+fn scaled(m: f64, e: i64) -> f64 {
+    let e = e.clamp(-2400, 2400) as i32;
+    let (first, second) = (e / 3, e / 3);
+    m * 2.0_f64.powi(first) * 2.0_f64.powi(second) * 2.0_f64.powi(e - first - second)
+}
+
+/// `a / b` as m 2^e with an even e and m of about 2^70; `None` for zero.
+fn quotient(a: &Dyadic, b: &Dyadic) -> Option<(f64, i64)> {
+    assert!(!b.is_zero(), "nothing is divided by zero");
+    if a.is_zero() {
+        return None;
+    }
+    let mut shift = 70 + b.mantissa.bits() as i64 - a.mantissa.bits() as i64;
+    let exponent = a.exponent - b.exponent;
+    shift += (exponent - shift) & 1;
+    let up = |value: &BigInt, by: i64| if by >= 0 { value << by } else { value >> -by };
+    let whole = up(&a.mantissa, shift) / &b.mantissa;
+    let digits = whole.magnitude().to_u64_digits();
+    let size = digits.iter().rev().fold(0.0, |sum, &digit| sum * 2.0_f64.powi(64) + digit as f64);
+    Some((f64::from(sign(&whole)) * size, exponent - shift))
+}
+
+/// `a / b`, to a few units in the last place.
+pub fn ratio(a: &Dyadic, b: &Dyadic) -> f64 {
+    quotient(a, b).map_or(0.0, |(m, e)| scaled(m, e))
+}
+
+/// `sqrt(a / b)`, to a few units in the last place, also where a / b itself is no double.
+pub fn root_of_ratio(a: &Dyadic, b: &Dyadic) -> f64 {
+    quotient(a, b).map_or(0.0, |(m, e)| scaled(m.sqrt(), e / 2))
+}

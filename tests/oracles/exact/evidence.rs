@@ -1,0 +1,84 @@
+//! What the program names as the reason of a claim, held against the data.
+
+use signorini::Error;
+
+use super::dyadic::Dyadic;
+use super::solve::Exact;
+
+/// Sums that vanish exactly may be left with this share of their terms, and entries below this share of the largest stand for
+/// zero: the evidence is given in doubles.
+const ROUNDING: f64 = 1e-9;
+
+/// The numbers, with those that stand for zero replaced by it; each counts `size` times.
+fn cleaned(values: &[f64], sizes: impl Fn(usize) -> f64) -> Vec<Dyadic> {
+    let largest =
+        values.iter().enumerate().fold(0.0_f64, |largest, (place, value)| largest.max(value.abs() * sizes(place)));
+    let kept =
+        |(place, &value): (usize, &f64)| if value.abs() * sizes(place) > ROUNDING * largest { value } else { 0.0 };
+    values.iter().enumerate().map(kept).map(Dyadic::from).collect()
+}
+
+/// A sum of products, and the sum of their sizes.
+fn sum<'a>(terms: impl Iterator<Item = (&'a Dyadic, &'a Dyadic)>) -> (Dyadic, Dyadic) {
+    terms.fold((Dyadic::ZERO, Dyadic::ZERO), |(sum, size), (a, b)| {
+        let product = a * b;
+        (&sum + &product, &size + &product.abs())
+    })
+}
+
+/// Is a sum zero but for rounding?
+fn vanishes((sum, size): &(Dyadic, Dyadic)) -> bool {
+    sum.abs() <= size * &Dyadic::from(ROUNDING)
+}
+
+/// What is wrong with the weights or the direction that an error names, if something is.
+pub fn fault(exact: &Exact, error: &Error) -> Option<&'static str> {
+    match error {
+        Error::Infeasible { rows, weights, .. } if !weights.is_empty() => infeasible(exact, rows, weights),
+        Error::Unbounded { direction, .. } => unbounded(exact, direction),
+        Error::UnderHeld { direction, .. } if !has_no_energy(exact, direction) => Some("the direction has energy"),
+        _ => None,
+    }
+}
+
+/// Farkas: `y >= 0`, `B'y = 0`, `g'y < 0`.
+fn infeasible(exact: &Exact, rows: &[usize], weights: &[f64]) -> Option<&'static str> {
+    if weights.len() != rows.len() || weights.iter().any(|&weight| weight < 0.0 || !weight.is_finite()) {
+        return Some("the weights are not one for each row, zero or positive");
+    }
+    let places: Option<Vec<usize>> =
+        rows.iter().map(|row| exact.rows.iter().position(|bounded| bounded == row)).collect();
+    let Some(places) = places else { return Some("a row has no bound") };
+    let size = |of: usize| exact.contact[places[of]].iter().map(|b| b.to_f64().abs()).fold(f64::MIN_POSITIVE, f64::max);
+    let weights = cleaned(weights, size);
+    let cancels = |dof: usize| vanishes(&sum(places.iter().map(|&place| &exact.contact[place][dof]).zip(&weights)));
+    let (overlap, _) = sum(places.iter().map(|&place| &exact.gap[place]).zip(&weights));
+    match (0..exact.dofs()).all(cancels) {
+        false => Some("the rows do not cancel"),
+        true if overlap.sign() >= 0 => Some("the rows do not overlap"),
+        true => None,
+    }
+}
+
+/// `K d = 0`, `B d <= 0`, `f'd > 0`.
+fn unbounded(exact: &Exact, direction: &[f64]) -> Option<&'static str> {
+    if !has_no_energy(exact, direction) {
+        return Some("the direction has energy");
+    }
+    let direction = cleaned(direction, |_| 1.0);
+    let moved: Vec<(Dyadic, Dyadic)> = exact.contact.iter().map(|row| sum(row.iter().zip(&direction))).collect();
+    if moved.iter().any(|moved| moved.0.sign() > 0 && !vanishes(moved)) {
+        return Some("a row stops the direction");
+    }
+    (sum(exact.load.iter().zip(&direction)).0.sign() <= 0).then_some("the load does not drive the direction")
+}
+
+fn has_no_energy(exact: &Exact, direction: &[f64]) -> bool {
+    let is_finite = direction.len() == exact.dofs() && direction.iter().all(|d| d.is_finite());
+    let moves = direction.iter().any(|&d| d != 0.0);
+    if !is_finite || !moves {
+        return false;
+    }
+    let direction = cleaned(direction, |_| 1.0);
+    exact.stiffness.iter().all(|line| vanishes(&sum(line.iter().zip(&direction))))
+}

@@ -1,0 +1,289 @@
+//! The program's answers and claims held against the exact ones.
+
+use signorini::{Certificate, ContactProblem, Error, Goal, ProvenSet, Solution};
+
+use super::case::Case;
+use super::dyadic::{Dyadic, ratio};
+use super::evidence;
+use super::measure::{Errors, Relative};
+use super::solve::{Answer, Exact, Outcome};
+
+/// A contradiction, a drive or an eigenvalue that counts less than this decides nothing: the tolerance of a certificate may be behind it.
+const BORDERLINE: f64 = 1e-8;
+
+/// A bound that falls short by a smaller factor has lost it by rounding, as far as it is above rounding itself.
+const OF_THE_BOUND: f64 = 1.001;
+
+/// The program must certify a unique answer if the equilibrated stiffness has a condition below this.
+pub const CONDITIONED: f64 = 1e10;
+
+/// Sorts of faults, the gravest first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Sort {
+    /// A bound on the error that lies below the error.
+    Bound,
+    /// The same, by no more than rounding of the bound itself or of the exact displacement.
+    Rounded,
+    /// A row proven open that is closed, or proven closed that is open.
+    Proof,
+    /// Infeasible, unbounded, not convex or under-held, of a problem that is not.
+    Claim,
+    /// The weights or the direction that a claim names do not show it.
+    Evidence,
+    /// Certified, but further from the exact answer than certified.
+    Certified,
+    Panic,
+    /// Too long.
+    Slow,
+    /// Not certified, of a problem that has a unique answer and a fair condition.
+    Refused,
+    /// Infeasible, unbounded or under-held, and not said to be.
+    Missed,
+}
+
+impl Sort {
+    pub const ALL: [Sort; 10] = [
+        Sort::Bound,
+        Sort::Rounded,
+        Sort::Proof,
+        Sort::Claim,
+        Sort::Evidence,
+        Sort::Certified,
+        Sort::Panic,
+        Sort::Slow,
+        Sort::Refused,
+        Sort::Missed,
+    ];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Sort::Bound => "bound",
+            Sort::Rounded => "rounded",
+            Sort::Proof => "proof",
+            Sort::Claim => "claim",
+            Sort::Evidence => "evidence",
+            Sort::Certified => "certified",
+            Sort::Panic => "panic",
+            Sort::Slow => "slow",
+            Sort::Refused => "refused",
+            Sort::Missed => "missed",
+        }
+    }
+
+    /// Must there be none at all? The others may be rare.
+    pub fn is_forbidden(self) -> bool {
+        !matches!(self, Sort::Refused | Sort::Missed)
+    }
+}
+
+/// Something that must not be.
+#[derive(Clone, Debug)]
+pub struct Fault {
+    pub sort: Sort,
+    /// What was asked, what was said, and what is right.
+    pub detail: String,
+    /// By how much a bound falls short.
+    pub factor: f64,
+    /// The answer in which the fault is: u and lambda.
+    pub answer: Option<(Vec<f64>, Vec<f64>)>,
+}
+
+impl Fault {
+    pub fn new(sort: Sort, detail: String) -> Self {
+        Fault { sort, detail, factor: 0.0, answer: None }
+    }
+}
+
+/// A problem with all that is known exactly of it.
+pub struct Judge<'a> {
+    pub case: &'a Case,
+    pub exact: &'a Exact,
+    pub outcome: &'a Outcome,
+    /// Condition of the equilibrated stiffness, infinite if it is singular.
+    pub condition: f64,
+    /// Its least eigenvalue, over the largest.
+    pub lowest: f64,
+}
+
+impl<'a> Judge<'a> {
+    pub fn new(case: &'a Case, exact: &'a Exact, outcome: &'a Outcome) -> Self {
+        let (low, high) = case.equilibrated_spectrum();
+        let lowest = if high > 0.0 { low / high } else { 0.0 };
+        let condition = if lowest > 0.0 { 1.0 / lowest } else { f64::INFINITY };
+        Judge { case, exact, outcome, condition, lowest }
+    }
+    /// The exact answer in a word.
+    pub fn verdict(&self) -> &'static str {
+        self.outcome.verdict()
+    }
+
+    /// Does rounding of the data decide how this problem ends?
+    pub fn is_borderline(&self) -> bool {
+        match self.outcome {
+            Outcome::Solved(_) => false,
+            Outcome::Infeasible { overlap, .. } => *overlap < BORDERLINE,
+            Outcome::Unbounded { drive, .. } => *drive < BORDERLINE,
+            Outcome::Indefinite { .. } => self.lowest > -BORDERLINE,
+        }
+    }
+
+    /// Must the program certify this problem?
+    pub fn is_fair(&self) -> bool {
+        matches!(self.outcome, Outcome::Solved(answer) if answer.is_unique) && self.condition < CONDITIONED
+    }
+
+    /// The faults of how a solve ended; those of the program's own choice may not be refusals either.
+    pub fn ending(&self, asked: &str, goal: Goal, ending: &Result<Solution, Error>, must_end: bool) -> Vec<Fault> {
+        let (solution, said) = match ending {
+            Ok(solution) => (Some(solution), "certified".to_string()),
+            Err(Error::NotCertified { solution, .. }) => (Some(&**solution), "not-certified".to_string()),
+            Err(error) => (None, error.code().to_string()),
+        };
+        let is_certified = ending.is_ok();
+        let mut faults = Vec::new();
+        if let Some(solution) = solution {
+            let (u, lambda) = (&solution.displacement, &solution.multiplier);
+            faults = self.answer(
+                asked,
+                u,
+                lambda,
+                &solution.certificate,
+                solution.proven.as_ref(),
+                is_certified.then_some(goal),
+            );
+        }
+        let fault = |sort| Fault::new(sort, format!("{asked}: {said}, but it is {}", self.verdict()));
+        let is_false = match ending {
+            Err(Error::Infeasible { .. }) => {
+                !matches!(self.outcome, Outcome::Infeasible { .. } | Outcome::Indefinite { is_feasible: false })
+            }
+            Err(Error::Unbounded { .. }) => match self.outcome {
+                Outcome::Unbounded { .. } | Outcome::Indefinite { .. } => false,
+                Outcome::Infeasible { is_driven, .. } => !is_driven,
+                Outcome::Solved(_) => true,
+            },
+            Err(Error::NotConvex { .. }) => !matches!(self.outcome, Outcome::Indefinite { .. }),
+            Err(Error::UnderHeld { .. }) => matches!(self.outcome, Outcome::Solved(answer) if answer.is_unique),
+            _ => false,
+        };
+        if is_false && !self.is_borderline() {
+            faults.push(fault(Sort::Claim));
+        } else if let Some(evidence) = ending.as_ref().err().and_then(|error| evidence::fault(self.exact, error)) {
+            faults.push(Fault::new(Sort::Evidence, format!("{asked}: {said}, but {evidence}")));
+        }
+        if is_false || self.is_borderline() {
+            return faults;
+        }
+        let is_told = match self.outcome {
+            Outcome::Solved(answer) if answer.is_unique => is_certified || !self.is_fair(),
+            Outcome::Solved(_) => is_certified || matches!(ending, Err(Error::UnderHeld { .. })),
+            // What meets the rows to a tolerance meets rows that overlap by less.
+            Outcome::Infeasible { overlap, .. } if is_certified => *overlap <= goal.tolerance,
+            Outcome::Infeasible { .. } => matches!(ending, Err(Error::Infeasible { .. } | Error::Unbounded { .. })),
+            Outcome::Unbounded { .. } => matches!(ending, Err(Error::Unbounded { .. })),
+            Outcome::Indefinite { .. } => !is_certified,
+        };
+        if !is_told && is_certified {
+            let answer = solution.map(|solution| (solution.displacement.clone(), solution.multiplier.clone()));
+            faults.push(Fault { answer, ..fault(Sort::Certified) });
+        } else if !is_told && must_end {
+            faults.push(fault(if self.is_fair() { Sort::Refused } else { Sort::Missed }));
+        }
+        faults
+    }
+
+    /// The faults of the certificate of any answer, right or wrong.
+    pub fn verified(
+        &self,
+        asked: &str,
+        problem: &ContactProblem,
+        displacement: &[f64],
+        multiplier: &[f64],
+    ) -> Vec<Fault> {
+        let goal = Goal::from(1e-9);
+        let certified = problem.certify(displacement, multiplier);
+        let proven = problem.prove(displacement, multiplier);
+        match (certified, proven) {
+            (Ok(certificate), Ok(proven)) => {
+                let met = goal.is_met_by(&certificate).then_some(goal);
+                let mut faults = self.answer(asked, displacement, multiplier, &certificate, proven.as_ref(), met);
+                let has_answer = matches!(self.outcome, Outcome::Solved(_));
+                if met.is_some() && !has_answer && !self.is_borderline() {
+                    faults
+                        .push(Fault::new(Sort::Certified, format!("{asked}: certified, but it is {}", self.verdict())));
+                }
+                faults
+            }
+            (Err(error), _) | (_, Err(error)) => vec![Fault::new(Sort::Claim, format!("{asked}: {error}"))],
+        }
+    }
+
+    fn answer(
+        &self,
+        asked: &str,
+        displacement: &[f64],
+        multiplier: &[f64],
+        certificate: &Certificate,
+        proven: Option<&ProvenSet>,
+        certified: Option<Goal>,
+    ) -> Vec<Fault> {
+        let Outcome::Solved(answer) = self.outcome else { return Vec::new() };
+        if displacement.iter().chain(multiplier).any(|value| !value.is_finite()) {
+            let detail = format!("{asked}: certified with numbers that are none");
+            return if certified.is_some() { vec![Fault::new(Sort::Certified, detail)] } else { Vec::new() };
+        }
+        let errors = Errors { case: self.case, exact: self.exact, answer };
+        let mut faults = Vec::new();
+        let (whole, bound) = (errors.whole(displacement, multiplier), certificate.energy_error_bound);
+        if bound.is_finite() && !whole.is_within(bound) {
+            let factor = whole.value() / bound;
+            let detail = format!(
+                "{asked}: error {:.3e} exceeds its bound {bound:.3e} by a factor of 1 + {:.1e}",
+                whole.value(),
+                factor - 1.0
+            );
+            let is_rounding = factor < OF_THE_BOUND || whole.is_within(whole.explained);
+            let sort = if is_rounding { Sort::Rounded } else { Sort::Bound };
+            faults.push(Fault { factor, ..Fault::new(sort, detail) });
+        }
+        if let Some(goal) = certified {
+            let promised = goal.accuracy.filter(|_| bound.is_finite()).unwrap_or(goal.tolerance);
+            let parts = errors.parts(displacement, multiplier);
+            let exceeds = |relative: &&Relative| !relative.is_within(promised.max(relative.explained));
+            if let Some(worst) = parts.iter().find(exceeds) {
+                let detail = format!(
+                    "{asked}: certified to {promised:.1e}, but a part of {} is off by {:.3e} in energy, of which rounding explains {:.1e}",
+                    parts.len(),
+                    worst.value(),
+                    worst.explained
+                );
+                faults.push(Fault::new(Sort::Certified, detail));
+            }
+        }
+        faults.extend(
+            proven
+                .and_then(|proven| self.wrong_proof(answer, proven))
+                .map(|row| Fault::new(Sort::Proof, format!("{asked}: {row}"))),
+        );
+        let at_fault = (displacement.to_vec(), multiplier.to_vec());
+        faults.iter_mut().for_each(|fault| fault.answer = Some(at_fault.clone()));
+        faults
+    }
+
+    /// A row that is proven to be what it is not.
+    fn wrong_proof(&self, answer: &Answer, proven: &ProvenSet) -> Option<String> {
+        let distances = self.exact.distances(answer);
+        for (place, &row) in self.exact.rows.iter().enumerate() {
+            let distance: &Dyadic = &distances[place];
+            let apart = ratio(distance, &answer.denominator);
+            if proven.closed.contains(row) && distance.sign() > 0 {
+                return Some(format!("row {row} is proven closed, but is open by {apart:.3e}"));
+            }
+            if proven.open.contains(row) && distance.is_zero() {
+                return Some(format!("row {row} is proven open, but is closed"));
+            }
+        }
+        let infinite = (0..self.case.rows()).find(|&row| !self.case.is_bounded(row) && proven.closed.contains(row));
+        infinite.map(|row| format!("row {row} is proven closed, but has no bound"))
+    }
+}

@@ -1,0 +1,21 @@
+//! Small contact problems solved in exact arithmetic, and the program's answers held against them.
+//!
+//! Doubles are taken as the rationals that they are. `solve` decides every problem: solved (and whether the displacement is
+//! unique), infeasible, unbounded, or not convex; each verdict is verified in the original data before it is returned.
+#![allow(dead_code)]
+
+pub mod case;
+pub mod dyadic;
+mod evidence;
+pub mod judge;
+mod lemke;
+mod loads;
+pub mod measure;
+pub mod rows;
+pub mod solve;
+pub mod stiffness;
+pub mod table;
+mod tableau;
+pub mod trial;
+
+use super::draws::Draws;

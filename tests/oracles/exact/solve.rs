@@ -1,0 +1,358 @@
+//! The exact answer of a problem, or exactly why there is none; every verdict is verified in the data before it is returned.
+
+use num_bigint::BigInt;
+use serde_json::{Value, json};
+
+use super::case::Case;
+use super::dyadic::{Dyadic, dot, ratio};
+use super::lemke::{Ending, Point, eliminate};
+use super::tableau::rank;
+
+/// A problem in exact numbers: K (n x n), f (n), B (m x n), g (m), all rows bounded.
+#[derive(Clone, Debug)]
+pub struct Exact {
+    pub stiffness: Vec<Vec<Dyadic>>,
+    pub load: Vec<Dyadic>,
+    pub contact: Vec<Vec<Dyadic>>,
+    pub gap: Vec<Dyadic>,
+    /// For each row its place among all rows of the case; rows without a bound are left out.
+    pub rows: Vec<usize>,
+}
+
+/// A solution: displacements u (n) and forces z = -lambda (m of [`Exact`]), each over `denominator > 0`.
+#[derive(Clone, Debug)]
+pub struct Answer {
+    pub displacement: Vec<Dyadic>,
+    pub force: Vec<Dyadic>,
+    pub denominator: Dyadic,
+    /// Is there no other displacement that solves the problem?
+    pub is_unique: bool,
+}
+
+/// How a problem ends.
+#[derive(Clone, Debug)]
+pub enum Outcome {
+    Solved(Answer),
+    /// Farkas' weights y: `y >= 0`, `B'y = 0`, `g'y < 0`, and `-g'y / |g|'y`.
+    Infeasible {
+        weights: Vec<Dyadic>,
+        overlap: f64,
+        is_driven: bool,
+    },
+    /// The direction d: `K d = 0`, `B d <= 0`, `f'd > 0`, and `f'd / |f|'|d|`.
+    Unbounded {
+        direction: Vec<Dyadic>,
+        drive: f64,
+    },
+    /// K has a negative eigenvalue.
+    Indefinite {
+        is_feasible: bool,
+    },
+}
+
+/// Powers of two that bring the entries of a problem to order one, and leave integers.
+struct Units {
+    dof: Vec<i64>,
+    row: Vec<i64>,
+}
+
+impl Outcome {
+    /// The verdict in a word, as the program names it.
+    pub fn verdict(&self) -> &'static str {
+        match self {
+            Outcome::Solved(answer) if answer.is_unique => "solved",
+            Outcome::Solved(_) => "under-held",
+            Outcome::Infeasible { .. } => "infeasible",
+            Outcome::Unbounded { .. } => "unbounded",
+            Outcome::Indefinite { .. } => "not-convex",
+        }
+    }
+}
+
+impl Exact {
+    /// A solution rounded to doubles: u, and lambda with an entry for each row of the case.
+    pub fn rounded(&self, case: &Case, answer: &Answer) -> (Vec<f64>, Vec<f64>) {
+        let round = |value| ratio(value, &answer.denominator);
+        let mut lambda = vec![0.0; case.rows()];
+        // Zero without a sign, as files have it.
+        self.rows.iter().zip(&answer.force).for_each(|(&row, force)| lambda[row] = 0.0 - round(force));
+        (answer.displacement.iter().map(round).collect(), lambda)
+    }
+
+    /// The outcome as JSON, rounded to doubles.
+    pub fn json(&self, case: &Case) -> Value {
+        let outcome = self.outcome();
+        let over_sum = |values: &[Dyadic]| -> Vec<f64> {
+            let sum = values.iter().fold(Dyadic::ZERO, |sum, value| &sum + &value.abs());
+            values.iter().map(|value| ratio(value, &sum)).collect()
+        };
+        let verdict = outcome.verdict();
+        match &outcome {
+            Outcome::Solved(answer) => {
+                let (displacement, multiplier) = self.rounded(case, answer);
+                json!({"verdict": verdict, "displacement": displacement, "multiplier": multiplier})
+            }
+            Outcome::Infeasible { weights, overlap, .. } => {
+                json!({"verdict": verdict, "weights": over_sum(weights), "rows": self.rows, "overlap": overlap})
+            }
+            Outcome::Unbounded { direction, drive } => {
+                json!({"verdict": verdict, "direction": over_sum(direction), "drive": drive})
+            }
+            Outcome::Indefinite { is_feasible } => json!({"verdict": verdict, "feasible": is_feasible}),
+        }
+    }
+
+    pub fn new(case: &Case) -> Self {
+        let exact = |values: &[f64]| values.iter().map(|&value| Dyadic::from(value)).collect::<Vec<_>>();
+        let rows: Vec<usize> = (0..case.gap.len()).filter(|&row| case.is_bounded(row)).collect();
+        Exact {
+            stiffness: case.stiffness.iter().map(|row| exact(row)).collect(),
+            load: exact(&case.load),
+            contact: rows.iter().map(|&row| exact(&case.contact[row])).collect(),
+            gap: rows.iter().map(|&row| Dyadic::from(case.gap[row])).collect(),
+            rows,
+        }
+    }
+
+    pub fn dofs(&self) -> usize {
+        self.load.len()
+    }
+
+    /// Decides the problem.
+    pub fn outcome(&self) -> Outcome {
+        let Some((ending, null)) = self.end() else {
+            return Outcome::Indefinite { is_feasible: self.contradiction().is_none() };
+        };
+        match ending {
+            Ending::Solved(point) => {
+                let mut answer = self.answer(&point);
+                self.check_solved(&answer);
+                answer.is_unique = self.is_unique(&answer, &null);
+                Outcome::Solved(answer)
+            }
+            Ending::Ray(_) => {
+                let escape = self.escape(&null);
+                match (self.contradiction(), escape) {
+                    (Some(weights), escape) => {
+                        let (work, size) = (dot(&self.gap, &weights), self.size_of_gaps(&weights));
+                        Outcome::Infeasible { overlap: -ratio(&work, &size), weights, is_driven: escape.is_some() }
+                    }
+                    (None, Some(direction)) => {
+                        let size: Dyadic =
+                            self.load.iter().zip(&direction).fold(Dyadic::ZERO, |sum, (f, d)| &sum + &(f * d).abs());
+                        Outcome::Unbounded { drive: ratio(&dot(&self.load, &direction), &size), direction }
+                    }
+                    (None, None) => panic!("a feasible problem without an escape has a solution"),
+                }
+            }
+        }
+    }
+
+    fn size_of_gaps(&self, weights: &[Dyadic]) -> Dyadic {
+        self.gap.iter().zip(weights).fold(Dyadic::ZERO, |sum, (g, y)| &sum + &(g * y).abs())
+    }
+
+    /// Units in which the numbers of the elimination stay short.
+    fn units(&self) -> Units {
+        let size = |value: &Dyadic| value.exponent() + value.abs().over(value.exponent()).bits() as i64;
+        let dof: Vec<i64> = (0..self.dofs())
+            .map(|dof| match &self.stiffness[dof][dof] {
+                own if own.is_zero() => {
+                    let largest =
+                        self.contact.iter().filter(|row| !row[dof].is_zero()).map(|row| size(&row[dof])).max();
+                    -largest.unwrap_or(0)
+                }
+                own => -size(own).div_euclid(2),
+            })
+            .collect();
+        let row = self
+            .contact
+            .iter()
+            .map(|row| {
+                let sizes = row.iter().zip(&dof).filter(|entry| !entry.0.is_zero()).map(|(b, unit)| size(b) + unit);
+                -sizes.max().unwrap_or(0)
+            })
+            .collect();
+        Units { dof, row }
+    }
+
+    /// The ending of the conditions, with the null space of K; `None` if K has a negative eigenvalue.
+    ///
+    /// With u = D v 2^-c, z = R y: `D K D v + (R B D)' y = 2^c D f`, `R B D v <= 2^c R g`, each line times a power of two.
+    fn end(&self) -> Option<(Ending, Vec<Vec<Dyadic>>)> {
+        let Units { dof, row } = self.units();
+        let stiffness: Vec<Vec<Dyadic>> = self
+            .stiffness
+            .iter()
+            .zip(&dof)
+            .map(|(line, i)| line.iter().zip(&dof).map(|(k, j)| k.ldexp(i + j)).collect())
+            .collect();
+        let contact: Vec<Vec<Dyadic>> = self
+            .contact
+            .iter()
+            .zip(&row)
+            .map(|(line, i)| line.iter().zip(&dof).map(|(b, j)| b.ldexp(i + j)).collect())
+            .collect();
+        let load: Vec<Dyadic> = self.load.iter().zip(&dof).map(|(f, i)| f.ldexp(*i)).collect();
+        let gap: Vec<Dyadic> = self.gap.iter().zip(&row).map(|(g, i)| g.ldexp(*i)).collect();
+        let lowest = |values: &mut dyn Iterator<Item = &Dyadic>| {
+            values.filter(|value| !value.is_zero()).map(Dyadic::exponent).min()
+        };
+        let a = lowest(&mut stiffness.iter().flatten()).unwrap_or(0);
+        let b = lowest(&mut contact.iter().flatten()).unwrap_or(0);
+        // Line e is divided by 2^a and line s by 2^b; the constants must be integers after that and the unit 2^c of u.
+        let c = [lowest(&mut load.iter()).map(|low| low - a), lowest(&mut gap.iter()).map(|low| low - b)];
+        let c = c.into_iter().flatten().min().unwrap_or(0);
+        let whole = |lines: &[Vec<Dyadic>], unit: i64| {
+            lines.iter().map(|line| line.iter().map(|value| value.over(unit)).collect()).collect::<Vec<Vec<BigInt>>>()
+        };
+        let load: Vec<BigInt> = load.iter().map(|f| f.over(a + c)).collect();
+        let gap: Vec<BigInt> = gap.iter().map(|g| g.over(b + c)).collect();
+        let eliminated = eliminate(&whole(&stiffness, a), &whole(&contact, b), &load, &gap)?;
+        let vector = |vector: &Vec<BigInt>| {
+            vector.iter().zip(&dof).map(|(entry, unit)| Dyadic::new(entry.clone(), *unit)).collect()
+        };
+        let null = eliminated.null.iter().map(vector).collect();
+        let ending = match eliminated.end() {
+            Ending::Ray(ray) => Ending::Ray(ray),
+            Ending::Solved(point) => Ending::Solved(point),
+        };
+        let shift = |values: Vec<BigInt>, units: &[i64], all: i64| {
+            values.into_iter().zip(units).map(|(value, unit)| (value, unit + all)).collect::<Vec<_>>()
+        };
+        let ending = match ending {
+            Ending::Solved(Point { displacement, force, denominator }) => {
+                // In the line e, 2^a K u + 2^b B'y 2^(a-b) = ..: forces carry the unit 2^(a-b) beside that of u.
+                let displacement = shift(displacement, &dof, c);
+                let force = shift(force, &row, c + a - b);
+                let low = displacement.iter().chain(&force).map(|entry| entry.1).min().unwrap_or(0).min(0);
+                let up = |values: Vec<(BigInt, i64)>| {
+                    values.into_iter().map(|(value, unit)| value << (unit - low)).collect()
+                };
+                Ending::Solved(Point {
+                    displacement: up(displacement),
+                    force: up(force),
+                    denominator: denominator << -low,
+                })
+            }
+            Ending::Ray(ray) => {
+                let ray = shift(ray, &row, 0);
+                let low = ray.iter().map(|entry| entry.1).min().unwrap_or(0);
+                Ending::Ray(ray.into_iter().map(|(value, unit)| value << (unit - low)).collect())
+            }
+        };
+        Some((ending, null))
+    }
+
+    fn answer(&self, point: &Point) -> Answer {
+        let exact = |values: &[BigInt]| values.iter().map(|value| Dyadic::new(value.clone(), 0)).collect();
+        Answer {
+            displacement: exact(&point.displacement),
+            force: exact(&point.force),
+            denominator: Dyadic::new(point.denominator.clone(), 0),
+            is_unique: true,
+        }
+    }
+
+    /// `g - B u`, times the denominator of u.
+    pub fn distances(&self, answer: &Answer) -> Vec<Dyadic> {
+        let distance =
+            |(row, gap): (&Vec<Dyadic>, &Dyadic)| &(gap * &answer.denominator) - &dot(row, &answer.displacement);
+        self.contact.iter().zip(&self.gap).map(distance).collect()
+    }
+
+    /// Asserts every condition of a solution.
+    fn check_solved(&self, answer: &Answer) {
+        assert!(answer.denominator.sign() > 0);
+        for dof in 0..self.dofs() {
+            let column = self.contact.iter().map(|row| &row[dof]);
+            let force = &dot(&self.stiffness[dof], &answer.displacement) + &dot(column, &answer.force);
+            assert!(force == &self.load[dof] * &answer.denominator, "equilibrium of dof {dof}");
+        }
+        for (row, (distance, force)) in self.distances(answer).iter().zip(&answer.force).enumerate() {
+            assert!(distance.sign() >= 0 && force.sign() >= 0 && (distance * force).is_zero(), "contact in row {row}");
+        }
+    }
+
+    /// Farkas' weights, if no displacement meets the rows: the ray of the least displacement that would.
+    fn contradiction(&self) -> Option<Vec<Dyadic>> {
+        let least = self.with(identity(self.dofs()), vec![Dyadic::ZERO; self.dofs()]);
+        let (ending, _) = least.end().expect("the identity is definite");
+        match ending {
+            Ending::Solved(point) => {
+                least.check_solved(&least.answer(&point));
+                None
+            }
+            Ending::Ray(ray) => {
+                let weights: Vec<Dyadic> = ray.into_iter().map(|weight| Dyadic::new(weight, 0)).collect();
+                let cancels = |dof: usize| dot(self.contact.iter().map(|row| &row[dof]), &weights).is_zero();
+                assert!(
+                    weights.iter().all(|weight| weight.sign() >= 0) && (0..self.dofs()).all(cancels),
+                    "Farkas' weights"
+                );
+                assert!(dot(&self.gap, &weights).sign() < 0, "Farkas' weights leave a gap");
+                Some(weights)
+            }
+        }
+    }
+
+    fn with(&self, stiffness: Vec<Vec<Dyadic>>, load: Vec<Dyadic>) -> Exact {
+        Exact { stiffness, load, ..self.clone() }
+    }
+
+    /// `B N` and `N' f` of a null space N.
+    fn in_null_space(&self, null: &[Vec<Dyadic>]) -> (Vec<Vec<Dyadic>>, Vec<Dyadic>) {
+        let rows = self.contact.iter().map(|row| null.iter().map(|vector| dot(row, vector)).collect()).collect();
+        (rows, null.iter().map(|vector| dot(&self.load, vector)).collect())
+    }
+
+    /// A direction without energy that the load drives and no row stops, if there is one: the projection of the load onto the
+    /// cone of the directions that the rows leave.
+    fn escape(&self, null: &[Vec<Dyadic>]) -> Option<Vec<Dyadic>> {
+        let (contact, load) = self.in_null_space(null);
+        let coefficients = projection(load, contact)?;
+        let entry = |dof: usize| dot(null.iter().map(|vector| &vector[dof]), &coefficients);
+        let direction: Vec<Dyadic> = (0..self.dofs()).map(entry).collect();
+        assert!(self.stiffness.iter().all(|row| dot(row, &direction).is_zero()), "an escape has no energy");
+        assert!(self.contact.iter().all(|row| dot(row, &direction).sign() <= 0), "no row stops an escape");
+        assert!(dot(&self.load, &direction).sign() > 0, "the load drives an escape");
+        Some(direction)
+    }
+
+    /// Is u the only solution? Others differ by a direction without energy that leaves the closed rows or slides along them,
+    /// and along all that carry a force.
+    fn is_unique(&self, answer: &Answer, null: &[Vec<Dyadic>]) -> bool {
+        if null.is_empty() {
+            return true;
+        }
+        let (moved, _) = self.in_null_space(null);
+        let distances = self.distances(answer);
+        let closed: Vec<usize> = (0..moved.len()).filter(|&row| distances[row].is_zero()).collect();
+        let low = moved.iter().flatten().map(Dyadic::exponent).min().unwrap_or(0);
+        let whole = closed.iter().map(|&row| moved[row].iter().map(|value| value.over(low.min(0))).collect());
+        if rank(whole.collect()) < null.len() {
+            return false;
+        }
+        let (pressed, touching): (Vec<usize>, Vec<usize>) =
+            closed.iter().partition(|&&row| answer.force[row].sign() > 0);
+        let away = |place: usize| touching.iter().fold(Dyadic::ZERO, |sum, &row| &sum - &moved[row][place]);
+        let mut contact: Vec<Vec<Dyadic>> = closed.iter().map(|&row| moved[row].clone()).collect();
+        contact.extend(pressed.iter().map(|&row| moved[row].iter().map(|value| -value).collect()));
+        projection((0..null.len()).map(away).collect(), contact).is_none()
+    }
+}
+
+fn identity(size: usize) -> Vec<Vec<Dyadic>> {
+    (0..size).map(|i| (0..size).map(|j| Dyadic::integer(i64::from(i == j))).collect()).collect()
+}
+
+/// The nearest point to `load` in the cone `rows c <= 0`, times a positive number; `None` for zero.
+fn projection(load: Vec<Dyadic>, rows: Vec<Vec<Dyadic>>) -> Option<Vec<Dyadic>> {
+    let gap = vec![Dyadic::ZERO; rows.len()];
+    let nearest = Exact { stiffness: identity(load.len()), load, rows: (0..gap.len()).collect(), contact: rows, gap };
+    let (ending, _) = nearest.end().expect("the identity is definite");
+    let Ending::Solved(point) = ending else { panic!("a cone has a nearest point") };
+    let answer = nearest.answer(&point);
+    nearest.check_solved(&answer);
+    answer.displacement.iter().any(|value| !value.is_zero()).then_some(answer.displacement)
+}
