@@ -1,6 +1,7 @@
 //! What a solve may be told.
 
 use crate::error::Error;
+use crate::method::penalty::BEST_PENALTY;
 use crate::solution::Goal;
 use crate::watch::Watch;
 
@@ -157,6 +158,16 @@ impl Settings {
     /// What an answer is held against.
     pub fn goal(&self) -> Goal {
         Goal { tolerance: self.tolerance, accuracy: self.accuracy }
+    }
+
+    /// Is the answer that is wanted as good as can be? An unpolished QP, and a penalty that ends below its best value, are
+    /// asked for as they are.
+    pub(super) fn wants_best(&self) -> bool {
+        match self.method {
+            Method::Qp => self.polish,
+            Method::Penalty => self.last_penalty >= BEST_PENALTY,
+            Method::Auto | Method::ActiveSet | Method::Mprgp => true,
+        }
     }
 
     /// Are all settings in their ranges?
