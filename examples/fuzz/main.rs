@@ -14,7 +14,7 @@
 mod damage;
 mod draws;
 mod exact;
-#[path = "../../tests/oracles/exact/mod.rs"]
+#[path = "../../tests/support/oracles/exact/mod.rs"]
 mod oracle;
 mod problem;
 

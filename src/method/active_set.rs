@@ -7,7 +7,8 @@
 //!
 //! A primal-dual active set, or semismooth Newton, method: from most starts it ends in a few steps. It can cycle. When
 //! a set comes back, the loop goes on by block principal pivoting with single pivots (largest row first) whenever a
-//! block exchange does not reduce the number of violations: finite for every P-matrix.
+//! block exchange does not reduce the number of violations: finite for every P-matrix. Closed rows that contradict each
+//! other, and a set that comes back under pivoting too, end the loop unsettled.
 //!
 //! # Source
 //! J. J. Júdice and F. M. Pires, *A block principal pivoting algorithm for large-scale strictly monotone linear
@@ -24,9 +25,6 @@ use crate::sparse::{Cholesky, largest};
 /// Weight of the closed rows in K + w B_C'B_C, on a diagonal of order one: every correction of the multipliers gains
 /// about four digits, and the factorisation loses as many.
 const WEIGHT: f64 = 65536.0;
-
-/// Weight that stands for the row itself where closed rows contradict each other: a compliance of 1e-8.
-const COMPLIANT_WEIGHT: f64 = 1e8;
 
 /// Free motions that may be stopped, where there are fewer rows.
 const MOST_STOPS: usize = 100;
@@ -67,12 +65,11 @@ pub fn solve(scaled: &ScaledProblem, start: ContactSet, max_iterations: usize) -
     let mut history = Vec::new();
     let mut seen = HashSet::new();
     let mut rule = Rule::Exchange;
-    let mut compliant = false;
     let mut settled = false;
     let mut stops = 0;
     while !settled && history.len() + stops < max_iterations && (history.is_empty() || !scaled.watch().is_over()) {
         scaled.watch().step("active set", history.len() + 1);
-        let cholesky = match scaled.hold(&closed, if compliant { COMPLIANT_WEIGHT } else { WEIGHT })? {
+        let cholesky = match scaled.hold(&closed, WEIGHT)? {
             Holding::Held(cholesky) => cholesky,
             Holding::Free(motion) => match scaled.stopping_rows(&motion, &displacement, &closed) {
                 // A motion that rows stop again and again must not keep the loop alive.
@@ -87,17 +84,10 @@ pub fn solve(scaled: &ScaledProblem, start: ContactSet, max_iterations: usize) -
                 None => return Err(motion.into_error()),
             },
         };
-        let balance = if compliant {
-            compliant_equilibrium(scaled.problem, &cholesky, &closed)
-        } else {
-            equilibrium(scaled.problem, &cholesky, &closed)
-        };
+        let balance = equilibrium(scaled.problem, &cholesky, &closed);
         history.push(Iteration { contact_set: closed.clone(), penalty: 0.0 });
         if !balance.consistent {
-            compliant = true;
-            rule = rule.pivoting(rows);
-            seen.clear();
-            continue;
+            break;
         }
         (displacement, multiplier) = (balance.displacement, balance.multiplier);
         let wrong = wrong_rows(scaled.problem, &displacement, &multiplier, &closed);
@@ -113,15 +103,6 @@ pub fn solve(scaled: &ScaledProblem, start: ContactSet, max_iterations: usize) -
             }
             let exchanged = rule.choose(&wrong);
             exchanged.iter().for_each(|&row| closed.set(row, !closed.contains(row)));
-        }
-    }
-    if settled
-        && compliant
-        && let Holding::Held(cholesky) = scaled.hold(&closed, WEIGHT)?
-    {
-        let balance = equilibrium(scaled.problem, &cholesky, &closed);
-        if balance.consistent {
-            (displacement, multiplier) = (balance.displacement, balance.multiplier);
         }
     }
     multiplier.iter_mut().for_each(|value| *value = value.min(0.0));
@@ -244,23 +225,6 @@ pub(super) fn equilibrium(problem: &ContactProblem, cholesky: &Cholesky, closed:
     let reach = reach(problem, &u).max(largest(&on_closed(gap.to_vec())));
     let consistent = largest(&missing(&u)) <= CONTRADICTION * reach;
     Equilibrium { displacement: u, multiplier, consistent }
-}
-
-/// Balance with every closed row taken for a stiff spring: its LCP matrix is a P-matrix whatever the rows are.
-fn compliant_equilibrium(problem: &ContactProblem, cholesky: &Cholesky, closed: &ContactSet) -> Equilibrium {
-    let gap: Vec<f64> = (0..problem.rows())
-        .map(|row| if closed.contains(row) { COMPLIANT_WEIGHT * problem.gap()[row] } else { 0.0 })
-        .collect();
-    let pull = problem.contact().mul_transposed(&gap);
-    let force: Vec<f64> = problem.load().iter().zip(&pull).map(|(f, g)| f + g).collect();
-    let displacement = cholesky.solve(&force);
-    let multiplier = problem
-        .violation(&displacement)
-        .iter()
-        .enumerate()
-        .map(|(row, violation)| if closed.contains(row) { -COMPLIANT_WEIGHT * violation } else { 0.0 })
-        .collect();
-    Equilibrium { displacement, multiplier, consistent: true }
 }
 
 fn relative_size(step: &[f64], size: f64) -> f64 {

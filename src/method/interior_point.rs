@@ -26,12 +26,6 @@ const UNIT_CORRECTIONS: usize = 4;
 /// Steps after which more do not help: on ill-conditioned data the residuals stall, and the barrier falls on.
 const MAX_STEPS: u32 = 50;
 
-/// A Farkas vector y counts when `B'y` is this small beside y, and `g'y` this negative beside its terms.
-const FARKAS_TOLERANCE: f64 = 1e-7;
-
-/// Rows whose weight in a Farkas vector is below this share of the largest take no part in the contradiction.
-const FARKAS_SHARE: f64 = 1e-3;
-
 /// What the interior-point method ended with.
 #[derive(Clone, Debug)]
 pub struct InteriorPoint {
@@ -60,10 +54,10 @@ impl InteriorPoint {
 /// Solves the QP to `tolerance`, relative to data of order one.
 ///
 /// An ending without full accuracy is no error here: the set is settled and the answer certified later. A problem that
-/// is reported as unbounded returns with no closed row, for the loop that follows to find the motion.
+/// is reported as unbounded or infeasible returns with no closed row, for others to find the motion or the rows.
 ///
 /// # Errors
-/// [`Error::Infeasible`] with the rows of a verified Farkas vector, [`Error::Numerical`] if the solver refuses its input.
+/// [`Error::Numerical`] if the solver refuses its input.
 pub fn solve(scaled: &ScaledProblem, tolerance: f64) -> Result<InteriorPoint, Error> {
     let problem = scaled.problem;
     let mut unit = Unit { displacement: 0, force: exponent(largest(problem.load())) };
@@ -96,15 +90,6 @@ pub fn solve(scaled: &ScaledProblem, tolerance: f64) -> Result<InteriorPoint, Er
 struct Unit {
     displacement: i32,
     force: i32,
-}
-
-/// Are the rows contradictory? Decided by Clarabel, believed when its Farkas vector is verified.
-///
-/// # Errors
-/// [`Error::Infeasible`] if so.
-pub fn check_feasible(scaled: &ScaledProblem, tolerance: f64) -> Result<(), Error> {
-    let unit = Unit { displacement: 0, force: exponent(largest(scaled.problem.load())) };
-    solve_in_unit(scaled.problem, tolerance, unit, scaled.watch()).map(|_| ())
 }
 
 fn solve_in_unit(problem: &ContactProblem, tolerance: f64, unit: Unit, watch: &Watch) -> Result<InteriorPoint, Error> {
@@ -141,16 +126,10 @@ fn solve_in_unit(problem: &ContactProblem, tolerance: f64, unit: Unit, watch: &W
     let iterations = answer.iterations as usize;
 
     match answer.status {
-        SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
-            verify_farkas(&near_rows, &near_gap, &answer.z).map_or(Ok(()), |contradicting| {
-                let named: Vec<usize> = contradicting.iter().map(|&row| rows[row]).collect();
-                let weights: Vec<f64> = contradicting.iter().map(|&row| answer.z[row]).collect();
-                let overlap = problem.overlap(&named, &weights).unwrap_or(0.0);
-                let reason = format!("no displacement satisfies all contact rows; those that contradict are {named:?}");
-                Err(Error::Infeasible { reason, rows: named, weights, overlap })
-            })?;
-        }
-        SolverStatus::DualInfeasible | SolverStatus::AlmostDualInfeasible => {}
+        SolverStatus::PrimalInfeasible
+        | SolverStatus::AlmostPrimalInfeasible
+        | SolverStatus::DualInfeasible
+        | SolverStatus::AlmostDualInfeasible => {}
         _ => {
             let mut multiplier = vec![0.0; problem.rows()];
             let mut contact_set = ContactSet::open(problem.rows());
@@ -167,17 +146,6 @@ fn solve_in_unit(problem: &ContactProblem, tolerance: f64, unit: Unit, watch: &W
         }
     }
     Ok(InteriorPoint { iterations, ..InteriorPoint::nothing_found(problem) })
-}
-
-/// The rows of a vector y >= 0 with B'y = 0 and g'y < 0: together they cannot be satisfied. `None` if y is no such vector.
-fn verify_farkas(rows: &SparseMatrix, gap: &[f64], y: &[f64]) -> Option<Vec<usize>> {
-    let y: Vec<f64> = y.iter().map(|value| value.max(0.0)).collect();
-    let size = largest(&y);
-    let balance = largest(&rows.mul_transposed(&y));
-    let (work, terms) =
-        y.iter().zip(gap).fold((0.0, 0.0), |(sum, terms), (y, g)| (sum + y * g, f64::max(terms, (y * g).abs())));
-    let proves = size > 0.0 && balance <= FARKAS_TOLERANCE * size && work < -FARKAS_TOLERANCE * terms;
-    proves.then(|| (0..y.len()).filter(|&row| y[row] > FARKAS_SHARE * size).collect())
 }
 
 fn csc(matrix: &SparseMatrix) -> CscMatrix<f64> {

@@ -4,6 +4,7 @@
 
 pub mod active_set;
 mod bounds;
+pub mod dual_active_set;
 mod holding;
 pub mod interior_point;
 pub mod mprgp;
@@ -137,4 +138,17 @@ pub struct Outcome {
     pub settled: bool,
     /// Empty, or the variant that ended the loop, to be appended to the method's name.
     pub variant: &'static str,
+}
+
+impl Outcome {
+    /// Did the last resort, [`dual_active_set`], find it?
+    pub fn is_last_resort(&self) -> bool {
+        self.variant.starts_with(dual_active_set::VARIANT)
+    }
+
+    /// This outcome, found after another that fell short.
+    pub fn after(self, before: Outcome) -> Self {
+        let history = [before.history, self.history].concat();
+        Outcome { iterations: before.iterations + self.iterations, history, ..self }
+    }
 }

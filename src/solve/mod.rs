@@ -24,7 +24,7 @@ pub use settings::{Condense, Method, Precision, Settings};
 use crate::error::Error;
 use crate::method::interior_point::{self, InteriorPoint};
 use crate::method::penalty::{self, BEST_PENALTY, Ladder};
-use crate::method::{Outcome, ScaledProblem, active_set};
+use crate::method::{Outcome, ScaledProblem, active_set, dual_active_set};
 use crate::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration, Solution};
 use estimate::Choice;
@@ -199,8 +199,23 @@ fn run(
             return Err(Error::Numerical { step: "MPRGP on a factorised problem", reason });
         }
     };
+    let outcome = if outcome.settled || !settings.wants_best() { outcome } else { last_resort(scaled, outcome)? };
     scaled.check_unique(&outcome)?;
     Ok(outcome)
+}
+
+/// What the dual active-set method finds where another fell short; what that left where it finds nothing.
+///
+/// # Errors
+/// Those of [`dual_active_set::solve`].
+fn last_resort(scaled: &ScaledProblem, before: Outcome) -> Result<Outcome, Error> {
+    if before.is_last_resort() || scaled.watch().is_over() {
+        return Ok(before);
+    }
+    Ok(match dual_active_set::solve(scaled)? {
+        Some(found) => found.after(before),
+        None => before,
+    })
 }
 
 /// The active-set loop; should it take long, it is started again from the set that the penalty ladder arrives at.

@@ -159,6 +159,15 @@ impl Settings {
         Goal { tolerance: self.tolerance, accuracy: self.accuracy }
     }
 
+    /// Is the answer that is wanted as good as can be? An unpolished QP and a penalty are asked for as they are.
+    pub(super) fn wants_best(&self) -> bool {
+        match self.method {
+            Method::Qp => self.polish,
+            Method::Penalty => false,
+            Method::Auto | Method::ActiveSet | Method::Mprgp => true,
+        }
+    }
+
     /// Are all settings in their ranges?
     ///
     /// # Errors

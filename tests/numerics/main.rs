@@ -1,5 +1,9 @@
 //! The QP: methods, certificate, bound, proofs, condensation and precision, on raw problems and small scenes.
 
+#[path = "../../examples/fuzz/draws.rs"]
+mod draws;
+#[path = "../support/oracles/exact/mod.rs"]
+mod exact;
 #[path = "../support/oracles/mod.rs"]
 mod oracles;
 #[path = "../support/program.rs"]
@@ -10,9 +14,12 @@ mod random;
 mod certificate;
 mod condensation;
 mod degenerate;
+mod dual_active_set;
 mod energy_bound;
+mod exact_arithmetic;
 mod exact_path;
 mod extremes;
+mod findings;
 mod hostile;
 mod methods;
 mod obstacle_problems;

@@ -3,20 +3,15 @@
 //! CONDITIONS: 400 problems of fixed seeds, every kind of stiffness and of rows, every method, options at random; wrong answers
 //! to verify. The exact solver itself is held against the elimination of every variable (Fourier, Motzkin) and of every minor.
 
-#[path = "../examples/fuzz/draws.rs"]
-mod draws;
-#[path = "oracles/exact/mod.rs"]
-mod exact;
-
 use std::sync::LazyLock;
 
-use draws::Draws;
-use exact::case::Case;
-use exact::dyadic::{Dyadic, dot};
-use exact::judge::Sort;
-use exact::solve::{Exact, Outcome};
-use exact::table::Table;
-use exact::trial::draw;
+use crate::draws::Draws;
+use crate::exact::case::Case;
+use crate::exact::dyadic::{Dyadic, dot};
+use crate::exact::judge::Sort;
+use crate::exact::solve::{Exact, Outcome};
+use crate::exact::table::Table;
+use crate::exact::trial::draw;
 
 const SEEDS: [u64; 4] = [1, 20, 300, 4000];
 

@@ -4,20 +4,14 @@
 //! `fuzz exact --answer` writes of it. CONDITIONS, everywhere: no claim about the problem is false, no bound lies below the
 //! error, no proof is wrong, and nothing is certified that is further from the exact answer than it says, whatever the method.
 
-#[path = "../examples/fuzz/draws.rs"]
-mod draws;
-#[path = "oracles/exact/mod.rs"]
-mod exact;
-mod program;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use exact::case::Case;
-use exact::judge::{Fault, Judge};
-use exact::measure::Errors;
-use exact::solve::{Exact, Outcome};
-use program::{Desk, Run};
+use crate::exact::case::Case;
+use crate::exact::judge::{Fault, Judge};
+use crate::exact::measure::Errors;
+use crate::exact::solve::{Exact, Outcome};
+use crate::program::{Desk, Run};
 use serde_json::Value;
 use signorini::matrix_market::{read_problem, read_vector};
 use signorini::{ContactProblem, Error, Method, Settings, Solution, solve};

@@ -1,0 +1,169 @@
+//! The dual active-set method for strictly convex problems: the last resort, slow and hard to mislead.
+//!
+//! It starts from the free point and closes the row that is violated most, again and again. A row closes by a step in
+//! its pressure; closed rows whose pressure comes to an end on the way open. Every set on the way is one of independent
+//! rows that all push, so that rows which are equal, dependent, or nearly parallel in energy do no harm, and the dual
+//! energy grows from set to set.
+//!
+//! ```text
+//! base (u, y) = 0
+//! repeat   pass: from the base to the nearest point of the polyhedron      (pass.rs)
+//!          corrections of (u, y) on the set found, with accurate residuals
+//! until all rows are met, by their accurate distances
+//! ```
+//!
+//! A semidefinite K is made definite by a proximal term, which the corrections and further passes, being about the last
+//! answer, take out again.
+//!
+//! # Source
+//! D. Goldfarb and A. Idnani, 1983, "A numerically stable dual method for solving strictly convex quadratic programs",
+//! Mathematical Programming 27, pp. 1-33.
+
+mod basis;
+mod pass;
+mod polyhedron;
+
+use std::collections::HashSet;
+
+use super::{Outcome, ScaledProblem};
+use crate::error::Error;
+use crate::solution::{ContactSet, Iteration};
+use basis::{Basis, norm};
+use pass::{Ending, Pass};
+use polyhedron::Polyhedron;
+
+/// The suffix that the method leaves behind a name; more follows where it is not settled.
+pub const VARIANT: &str = "-dual";
+
+/// Passes: the second mends what the rounding of the first hides where dofs are of very different scale.
+const MOST_PASSES: usize = 10;
+
+/// Corrections of one set. Where K is definite the first gains all digits but the last; a proximal term may need more.
+const MOST_CORRECTIONS: usize = 30;
+
+/// A correction is worth another where it is below this share of the one before.
+const SHRINKS: f64 = 0.5;
+
+/// A set whose last correction is above this share of the answer holds no answer.
+const CONVERGED: f64 = 1e-10;
+
+/// Units in the last place of its terms to which a row is met.
+const MET: f64 = 4.0 * f64::EPSILON;
+
+/// Solves the problem; `None` where its factorisation fails or it is too large for a dense basis of its rows.
+///
+/// The answer is not settled where the method was cut short or its corrections do not converge, as where rows and
+/// stiffness do not hold the body: it makes no claim about that.
+///
+/// # Errors
+/// [`Error::Infeasible`] with verified weights, [`Error::Numerical`] for want of memory.
+pub fn solve(scaled: &ScaledProblem) -> Result<Option<Outcome>, Error> {
+    let Some(polyhedron) = Polyhedron::of(scaled)? else { return Ok(None) };
+    let (dofs, rows) = (scaled.problem.dofs(), scaled.problem.rows());
+    let mut search = Search {
+        polyhedron: &polyhedron,
+        basis: Basis::default(),
+        displacement: vec![0.0; dofs],
+        pressures: vec![0.0; rows],
+        point: vec![0.0; dofs],
+        history: Vec::new(),
+    };
+    let mut seen = HashSet::new();
+    let mut settled = false;
+    for _ in 0..MOST_PASSES {
+        let ending = search.pass(scaled)?;
+        let converged = search.correct();
+        let violated = search.violates();
+        settled = ending == Ending::Met && converged && !violated;
+        let pulls = search.pressures.iter().any(|&pressure| pressure < 0.0);
+        // A set that comes back will do so for ever.
+        if settled && !pulls || scaled.watch().is_over() || !seen.insert(search.contact_set()) {
+            break;
+        }
+    }
+    let Search { basis, displacement, pressures, history, .. } = search;
+    Ok(Some(polyhedron.expand(&displacement, &pressures, basis.rows(), history, settled)))
+}
+
+/// The best answer so far, in the units of the polyhedron.
+struct Search<'a> {
+    polyhedron: &'a Polyhedron,
+    basis: Basis,
+    displacement: Vec<f64>,
+    /// `-lambda` of all rows.
+    pressures: Vec<f64>,
+    /// L' u.
+    point: Vec<f64>,
+    history: Vec<Iteration>,
+}
+
+impl Search<'_> {
+    fn contact_set(&self) -> ContactSet {
+        let mut closed = ContactSet::open(self.pressures.len());
+        self.basis.rows().iter().for_each(|&row| closed.set(row, true));
+        closed
+    }
+
+    /// What is out of balance, `L^-1 (f - B'y - K u)`, and the distances of the rows, both from accurate sums.
+    fn residuals(&self) -> (Vec<f64>, Vec<f64>) {
+        let multiplier: Vec<f64> = self.pressures.iter().map(|pressure| -pressure).collect();
+        let imbalance = self.polyhedron.problem.accurate_residual(&self.displacement, &multiplier);
+        (self.polyhedron.of_force(&imbalance), self.polyhedron.distances(&self.displacement))
+    }
+
+    /// One pass from the answer so far. The basis comes from the data again, free of what its updates have lost.
+    fn pass(&mut self, scaled: &ScaledProblem) -> Result<Ending, Error> {
+        let residuals = self.residuals();
+        let base = norm(&self.point);
+        let parts = (&mut self.basis, &mut self.pressures[..], &mut self.history);
+        let mut pass = Pass::new(self.polyhedron, scaled.watch(), parts, residuals, base);
+        let ending = pass.run()?;
+        let change = pass.point;
+        self.advance(&change);
+        self.basis = pass::of_rows(self.polyhedron, self.basis.rows());
+        Ok(ending)
+    }
+
+    fn advance(&mut self, change: &[f64]) {
+        self.point.iter_mut().zip(change).for_each(|(entry, change)| *entry += change);
+        let moved = self.polyhedron.displacement(change);
+        self.displacement.iter_mut().zip(&moved).for_each(|(u, moved)| *u += moved);
+    }
+
+    /// The change that balances the forces with the closed rows at their gaps, and that of their pressures.
+    fn correction(&self, imbalance: &[f64], distances: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let on_closed: Vec<f64> = self.basis.rows().iter().map(|&row| distances[row]).collect();
+        self.basis.nearest(imbalance, &on_closed)
+    }
+
+    /// Corrects the answer on its set until that gains nothing more. Does it converge?
+    fn correct(&mut self) -> bool {
+        let mut last = f64::INFINITY;
+        for _ in 0..MOST_CORRECTIONS {
+            let (imbalance, distances) = self.residuals();
+            let (change, pressures) = self.correction(&imbalance, &distances);
+            let step = norm(&change);
+            if step > SHRINKS * last {
+                break;
+            }
+            self.advance(&change);
+            self.basis.rows().iter().zip(&pressures).for_each(|(&row, change)| self.pressures[row] += change);
+            last = step;
+        }
+        last <= CONVERGED * norm(&self.point)
+    }
+
+    /// Is an open row violated beyond rounding? What the rounding of the closed rows explains does not count: two rows
+    /// that are one but for their scale would be exchanged for ever.
+    fn violates(&self) -> bool {
+        let problem = &self.polyhedron.problem;
+        let distances = self.polyhedron.distances(&self.displacement);
+        let at_rest = vec![0.0; self.displacement.len()];
+        let (to_closed, _) = self.correction(&at_rest, &distances);
+        let explained = problem.contact().mul(&self.polyhedron.displacement(&to_closed));
+        let magnitude: Vec<f64> = self.displacement.iter().map(|u| u.abs()).collect();
+        let terms = problem.contact().abs().mul(&magnitude);
+        let violation = |row: usize| explained[row] - distances[row];
+        (0..distances.len()).any(|row| violation(row) > MET * (terms[row] + problem.gap()[row].abs()))
+    }
+}
