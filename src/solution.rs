@@ -77,7 +77,7 @@ impl fmt::Debug for ContactSet {
 /// below 1e-6 of `sqrt(K_ii K_jj)`; with `p` the part of a dof or row,
 ///
 /// * `N_p = sqrt(u_p' K_pp u_p)` is its energy norm and `F_p` the largest `|F_i| / sqrt(K_ii)` of its loads and contact forces;
-///   where it is at rest, a thousandth of `F_p` stands for `N_p`;
+///   where it is at rest, a millionth of `F_p` stands for `N_p`;
 /// * `E_p` is the largest of `N_p^2 / 2`, `|f' u|_p` and `|g' lambda|_p`;
 /// * `b_i` is the largest `|B_ij| / sqrt(K_jj)` of row i.
 ///

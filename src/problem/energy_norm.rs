@@ -15,6 +15,9 @@ const FEW_DOFS: usize = 100;
 /// A contraction that is measured may be so many times larger.
 const MEASURED: f64 = 10.0;
 
+/// Rounding of a sweep, relative, where no pivot is small.
+const SWEEP_ROUNDING: f64 = 256.0 * f64::EPSILON;
+
 /// Values of a dense matrix on the boundary that are not worth counting.
 const FEW_VALUES: usize = 1_000_000;
 
@@ -90,6 +93,12 @@ impl EnergyNorm {
     /// What a bound in this norm is multiplied with.
     pub(super) fn widening(&self) -> f64 {
         self.widening
+    }
+
+    /// By how much a norm that comes from sweeps through the factor may be rounded: by some units in the last place over the
+    /// smallest pivot, on a diagonal of order one.
+    pub(super) fn rounding(&self) -> f64 {
+        1.0 + SWEEP_ROUNDING / self.cholesky.smallest_pivot().min(1.0)
     }
 
     /// The same norm with the stiffness in another unit, `2^unit`.

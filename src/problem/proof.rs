@@ -19,10 +19,10 @@ const MOST_WORK: f64 = 2e9;
 /// The bound can be the error itself; by this much it and all that is computed from it may be rounded.
 const ROUNDED: f64 = 1.0 + 1e-6;
 
-/// Pivots below this share of their row's own compliance belong to rows that follow from others.
-const DEPENDENT: f64 = 1e-12;
+/// Pivots below this share of their row's own compliance belong to rows that follow from others, or nearly so.
+const DEPENDENT: f64 = 1e-8;
 
-/// A row takes part in a dependence where its coefficient is above this.
+/// A row takes part in a dependence where its share of the motion is above this share of the dependent row.
 const TAKES_PART: f64 = 1e-9;
 
 impl ContactProblem {
@@ -144,8 +144,9 @@ impl<'a> Halves<'a> {
         let mut factor = vec![0.0; size * size];
         let mut kept = vec![true; size];
         let mut dependent = vec![false; size];
+        let owns: Vec<f64> = halves.iter().map(|half| dot(half, half)).collect();
         for i in 0..size {
-            let own = dot(&halves[i], &halves[i]);
+            let own = owns[i];
             let (before, row) = factor.split_at_mut(i * size);
             for j in (0..i).filter(|&j| kept[j]) {
                 let known = dot(&before[j * size..j * size + j], &row[..j]);
@@ -160,7 +161,9 @@ impl<'a> Halves<'a> {
             dependent[i] = true;
             let mut share = row[..i].to_vec();
             backward(before, size, &kept, &mut share);
-            share.iter().zip(&mut dependent).for_each(|(share, dependent)| *dependent |= share.abs() > TAKES_PART);
+            let takes_part = |share: f64, other: f64| share.abs() * other.sqrt() > TAKES_PART * own.sqrt();
+            let others = share.iter().zip(&owns);
+            others.zip(&mut dependent).for_each(|((&share, &other), flag)| *flag |= takes_part(share, other));
             row[..i].fill(0.0);
         }
         (0..size)

@@ -3,8 +3,8 @@
 use super::ContactProblem;
 use super::parts::Parts;
 
-/// A part whose energy is below the square of this share of what its forces could do to it is at rest but for rounding.
-const AT_REST: f64 = 1e-3;
+/// A part whose energy norm is below this share of what its forces could do to a single dof is at rest but for rounding.
+const AT_REST: f64 = 1e-6;
 
 /// What the errors of an answer are measured against.
 pub(super) struct Scales {
@@ -84,7 +84,7 @@ impl Scales {
         self.part_of_row[row]
     }
 
-    /// The energy norm of a part, or a thousandth of what its forces could do, where it is at rest.
+    /// The energy norm of a part, or a millionth of what its forces could do, where it is at rest.
     pub fn size(&self, part: usize) -> f64 {
         larger(self.norm[part], AT_REST * self.force[part])
     }

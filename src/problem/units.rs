@@ -7,6 +7,9 @@ use crate::sparse::{SymmetricMatrix, exponent, largest, ldexp};
 /// Forces and energies beyond 2 to plus or minus this power are near the ends of double precision.
 const FAR: i32 = 800;
 
+/// A displacement below 2 to this power of what the load could do is nothing beside it, and sets no unit.
+const NOTHING: i32 = -200;
+
 /// Units of stiffness and of length, as exponents of two.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Units {
@@ -35,8 +38,13 @@ impl ContactProblem {
     /// The units in which an answer is of order one, where forces or energies would over- or underflow in its own.
     pub(super) fn far_units(&self, displacement: &[f64]) -> Option<Units> {
         let stiffness = exponent(largest(&self.stiffness.diagonal()));
-        let moved = largest(displacement);
-        let length = if moved > 0.0 { exponent(moved) } else { exponent(largest(&self.load)) - stiffness };
+        let (moved, load) = (largest(displacement), largest(&self.load));
+        let statics = exponent(load) - stiffness;
+        let length = match (moved > 0.0, load > 0.0) {
+            (true, true) => exponent(moved).max(statics + NOTHING),
+            (true, false) => exponent(moved),
+            (false, _) => statics,
+        };
         let is_far = |power: i32| power.abs() > FAR;
         let far = is_far(stiffness) || is_far(length) || is_far(stiffness + length) || is_far(stiffness + 2 * length);
         far.then_some(Units { stiffness, length })

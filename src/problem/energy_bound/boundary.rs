@@ -22,6 +22,9 @@ const DEPENDENT: f64 = 1e-12;
 /// Corrections of the multipliers that put rows at their gaps; each gains the digits that the dependence of rows leaves.
 const CORRECTIONS: usize = 4;
 
+/// Rounding of a sum of forces, in units of its terms.
+const CANCELLED: f64 = 4.0 * f64::EPSILON;
+
 /// Rounding of a row's distance after a motion, in units of its terms.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
@@ -50,9 +53,23 @@ impl ContactProblem {
 struct Force {
     alpha: f64,
     rows: Vec<f64>,
+    /// Magnitudes of the terms of x: what rounding of their sum is measured by.
+    terms: Vec<f64>,
 }
 
 impl Force {
+    fn new(alpha: f64, rows: Vec<f64>) -> Self {
+        let terms = rows.iter().map(|x| x.abs()).collect();
+        Force { alpha, rows, terms }
+    }
+
+    /// The force with more of each row.
+    fn plus(&self, more: &[f64]) -> Self {
+        let rows = self.rows.iter().zip(more).map(|(a, b)| a + b).collect();
+        let terms = self.terms.iter().zip(more).map(|(a, b)| a + b.abs()).collect();
+        Force { alpha: self.alpha, rows, terms }
+    }
+
     fn is_none(&self) -> bool {
         self.alpha == 0.0 && self.rows.iter().all(|&x| x == 0.0)
     }
@@ -138,6 +155,12 @@ impl<'a> Repair<'a> {
         ldexp(force.alpha * force.alpha * self.interior + dot(&sweep, &sweep), self.norm.factor()).sqrt()
     }
 
+    /// The energy norm of the motion that a unit force along a row causes.
+    fn reach(&self, row: usize) -> f64 {
+        let half = self.half(row);
+        ldexp(dot(half, half), self.norm.factor()).sqrt()
+    }
+
     /// An upper bound on the energy norm of the motion along a row that it feels as one; the diagonal of the equilibrated
     /// stiffness is at most 4.
     fn along(&self, row: usize) -> f64 {
@@ -162,9 +185,14 @@ impl<'a> Repair<'a> {
                 return ErrorBound::none();
             }
         }
-        // A closed row that is off its gap is put there along itself, which moves the answer and its residual.
-        let put: Vec<f64> =
-            (0..off.len()).map(|row| if off[row] > 0.0 { 2.0 * off[row] * self.along(row) } else { 0.0 }).collect();
+        // A closed row that is off its gap is put there along itself, which moves the answer and its residual; and forces that
+        // cancel each other leave their rounding.
+        let put = |row: usize| {
+            let moved = if off[row] > 0.0 { 2.0 * off[row] * self.along(row) } else { 0.0 };
+            let terms = error.terms[row] + left.terms[row];
+            if terms > 0.0 { moved + CANCELLED * terms * self.reach(row) } else { moved }
+        };
+        let put: Vec<f64> = (0..off.len()).map(put).collect();
         let of_error = match self.norm.springs() {
             Some(_) => self.problem.length(&self.motion(error)),
             None => self.length(error),
@@ -197,9 +225,9 @@ impl<'a> Repair<'a> {
                 // Open rows lose their forces.
                 true => {
                     let dropped = |row: usize| if closed[row] { 0.0 } else { -self.multiplier[row] };
-                    Force { alpha: 1.0, rows: (0..rows).map(dropped).collect() }
+                    Force::new(1.0, (0..rows).map(dropped).collect())
                 }
-                false => Force { alpha: 0.0, rows: vec![0.0; rows] },
+                false => Force::new(0.0, vec![0.0; rows]),
             };
             let Fitted { change, distance, tolerance, independent } = self.fit(&set, &base);
             let violated: Vec<usize> =
@@ -237,19 +265,20 @@ impl<'a> Repair<'a> {
 
     /// The witness of rows that are at their gaps under `base` and `change`.
     fn witness(&self, base: Force, change: Vec<f64>, closed: &[bool], in_equilibrium: bool) -> Witness {
-        let Force { alpha, rows } = base;
-        let error = Force { alpha, rows: rows.iter().zip(&change).map(|(a, b)| a + b).collect() };
+        let alpha = base.alpha;
+        let error = base.plus(&change);
         let balanced = |row: usize| self.multiplier[row] + if in_equilibrium { change[row] } else { 0.0 };
         // What pulls is no multiplier.
         let multiplier: Vec<f64> =
             (0..change.len()).map(|row| if closed[row] { balanced(row).min(0.0) } else { 0.0 }).collect();
-        let left = |row: usize| multiplier[row] - self.multiplier[row] - change[row];
-        let rows = match in_equilibrium {
-            true => (0..change.len()).map(|row| if closed[row] { left(row) } else { 0.0 }).collect(),
-            false => (0..change.len()).map(left).collect(),
+        let left = |row: usize| match in_equilibrium {
+            true if closed[row] => -balanced(row).max(0.0),
+            true => 0.0,
+            false => multiplier[row] - self.multiplier[row] - change[row],
         };
+        let rows = (0..change.len()).map(left).collect();
         let off = vec![0.0; change.len()];
-        Witness { error, left: Force { alpha: 1.0 - alpha, rows }, multiplier, closed: closed.to_vec(), off }
+        Witness { error, left: Force::new(1.0 - alpha, rows), multiplier, closed: closed.to_vec(), off }
     }
 
     /// The multipliers that put the rows of `set` at their gaps beside the force `base`.

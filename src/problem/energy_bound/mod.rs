@@ -64,6 +64,9 @@ impl ErrorBound {
     }
 }
 
+/// Squares of what is below this share of another number underflow beside it.
+const LOST: f64 = 1e-140;
+
 impl ContactProblem {
     /// An upper bound on `|u - u*|_K`.
     pub(super) fn energy_error_bound(&self, norm: &EnergyNorm, answer: &Answer) -> ErrorBound {
@@ -77,7 +80,25 @@ impl ContactProblem {
             let as_it_stands = self.bound_row_by_row(norm, answer, None);
             self.bound_row_by_row(norm, answer, Some(&closed)).smaller(as_it_stands)
         });
-        bound.widened(norm.widening())
+        let underflow = self.underflow(answer);
+        let bound = bound.widened(norm.widening() * norm.rounding());
+        ErrorBound {
+            whole: bound.whole + underflow,
+            of_parts: bound.of_parts.map(|parts| parts.iter().map(|part| part + underflow).collect()),
+        }
+    }
+
+    /// What displacements are worth in energy whose squares are lost in double precision beside the forces; 0 where there
+    /// are none.
+    fn underflow(&self, answer: &Answer) -> f64 {
+        let roots: Vec<f64> = self.stiffness.diagonal().iter().map(|value| value.sqrt()).collect();
+        let contact = self.contact.mul_transposed(answer.multiplier);
+        let force =
+            |dof: usize| if roots[dof] > 0.0 { (self.load[dof].abs() + contact[dof].abs()) / roots[dof] } else { 0.0 };
+        let least = LOST * (0..self.dofs()).map(force).fold(0.0, f64::max);
+        let is_lost =
+            |dof: usize| answer.displacement[dof] != 0.0 && answer.displacement[dof].abs() * roots[dof] < least;
+        (0..self.dofs()).filter(|&dof| is_lost(dof)).count() as f64 * 2.0 * least
     }
 
     /// Rows whose force, times their compliance if all else stood still, exceeds their distance.
@@ -120,7 +141,8 @@ impl ContactProblem {
 
     /// The energy norm of a motion.
     fn length(&self, motion: &[f64]) -> f64 {
-        dot(motion, &self.stiffness.mul(motion)).max(0.0).sqrt()
+        let forces = self.accurate_product(|column| self.stiffness.lower().column(column), motion);
+        dot(motion, &forces).max(0.0).sqrt()
     }
 
     /// The energy norms of a motion by parts, added to `sizes`.

@@ -8,7 +8,7 @@ use super::solve::{Answer, Exact};
 const COUPLED: f64 = 1e-6;
 
 /// A displacement that is this share of force over root of stiffness, in energy, is at rest.
-const AT_REST: f64 = 1e-3;
+const AT_REST: f64 = 1e-6;
 
 /// What is at rest is measured in doubles: by so much that measure may be off.
 const IN_DOUBLES: f64 = 1.0 + 1e-12;
@@ -82,13 +82,15 @@ impl Errors<'_> {
         Relative { error: square(&apart), size, explained }
     }
 
-    /// The largest force over the root of the largest stiffness.
+    /// The largest force over the root of the stiffness of its dof.
     fn static_size(&self, dofs: &[usize], multiplier: &[f64]) -> f64 {
         let pressed =
             |dof: usize| (0..self.case.rows()).map(|row| self.case.contact[row][dof] * multiplier[row]).sum::<f64>();
-        let force = dofs.iter().map(|&dof| self.case.load[dof].abs().max(pressed(dof).abs())).fold(0.0, f64::max);
-        let stiffness = dofs.iter().map(|&dof| self.case.stiffness[dof][dof]).fold(0.0, f64::max);
-        if stiffness > 0.0 { force / stiffness.sqrt() } else { 0.0 }
+        let of_dof = |&dof: &usize| match self.case.stiffness[dof][dof] {
+            stiffness if stiffness > 0.0 => self.case.load[dof].abs().max(pressed(dof).abs()) / stiffness.sqrt(),
+            _ => 0.0,
+        };
+        dofs.iter().map(of_dof).fold(0.0, f64::max)
     }
 
     /// What rounding of the exact displacement may be worth, in energy.
