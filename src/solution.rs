@@ -78,7 +78,7 @@ impl fmt::Debug for ContactSet {
 ///
 /// * `N_p = sqrt(u_p' K_pp u_p)` is its energy norm and `F_p` the largest `|F_i| / sqrt(K_ii)` of its loads and contact forces;
 ///   where it is at rest, a millionth of `F_p` stands for `N_p`;
-/// * `E_p` is the largest of `N_p^2 / 2`, `|f' u|_p` and `|g' lambda|_p`;
+/// * `E_p` is the largest of `N_p^2 / 2`, `|f' u|_p`, `|g' lambda|_p` and a millionth of `F_p^2 / 2`;
 /// * `b_i` is the largest `|B_ij| / sqrt(K_jj)` of row i.
 ///
 /// Residuals `r = f + B' lambda - K u` and distances `B u - g` are summed with twice the working precision.

@@ -15,8 +15,11 @@ const FEW_DOFS: usize = 100;
 /// A contraction that is measured may be so many times larger.
 const MEASURED: f64 = 10.0;
 
-/// Rounding of a sweep, relative, where no pivot is small.
-const SWEEP_ROUNDING: f64 = 256.0 * f64::EPSILON;
+/// Rounding of a sweep, relative, over the smallest pivot.
+const SWEEP_ROUNDING: f64 = 1e4 * f64::EPSILON;
+
+/// Rounding of what is computed of a bound after its sweeps, relative.
+const ROUNDING: f64 = 1e-6;
 
 /// Values of a dense matrix on the boundary that are not worth counting.
 const FEW_VALUES: usize = 1_000_000;
@@ -98,7 +101,7 @@ impl EnergyNorm {
     /// By how much a norm that comes from sweeps through the factor may be rounded: by some units in the last place over the
     /// smallest pivot, on a diagonal of order one.
     pub(super) fn rounding(&self) -> f64 {
-        1.0 + SWEEP_ROUNDING / self.cholesky.smallest_pivot().min(1.0)
+        1.0 + ROUNDING + SWEEP_ROUNDING / self.cholesky.smallest_pivot().min(1.0)
     }
 
     /// The same norm with the stiffness in another unit, `2^unit`.

@@ -13,6 +13,9 @@ use super::ContactProblem;
 use super::energy_bound::{Answer, ErrorBound};
 use crate::sparse::multigrid::{Multigrid, dual_norm};
 
+/// All that is computed of a bound may be rounded by this much.
+const ROUNDED: f64 = 1.0 + 1e-6;
+
 impl ContactProblem {
     /// An upper bound on `|u - u*|_K`, as far as [`dual_norm`] finds the least eigenvalue; infinite where it finds none.
     pub(super) fn energy_error_bound_by(&self, multigrid: &Multigrid, answer: &Answer) -> ErrorBound {
@@ -27,6 +30,6 @@ impl ContactProblem {
             .map(|((length, violation), _)| if *violation == 0.0 { 0.0 } else { length * violation.abs() })
             .sum();
         // What moves the answer moves its residual too, by K times that.
-        ErrorBound { whole: 2.0 * moved + dual.most, of_parts: None }
+        ErrorBound { whole: ROUNDED * (2.0 * moved + dual.most), of_parts: None }
     }
 }

@@ -72,7 +72,7 @@ impl Scales {
             gap_work[part_of_row[row]] += problem.gap[row] * multiplier[row];
         }
         let energy = |part: usize| {
-            let at_rest = (AT_REST * force[part]).powi(2);
+            let at_rest = AT_REST * force[part].powi(2);
             larger(norm[part].powi(2) / 2.0, larger(load_work[part].abs(), larger(gap_work[part].abs(), at_rest / 2.0)))
         };
         let energy = (0..parts.count()).map(energy).collect();

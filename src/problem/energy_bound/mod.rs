@@ -51,10 +51,14 @@ impl ErrorBound {
         ErrorBound { whole: f64::INFINITY, of_parts: None }
     }
 
+    /// What tells the smaller of two bounds; what is not a number is larger than anything.
+    fn size(&self) -> f64 {
+        let size = self.of_parts.as_ref().map_or(self.whole, |parts| parts.iter().sum());
+        if size.is_nan() { f64::INFINITY } else { size }
+    }
+
     fn smaller(self, other: Self) -> Self {
-        let parts = |bound: &Self| bound.of_parts.as_ref().map_or(bound.whole, |parts| parts.iter().sum());
-        // What is not a number is worse than anything.
-        if parts(&self) <= parts(&other) || other.whole.is_nan() { self } else { other }
+        if self.size() <= other.size() { self } else { other }
     }
 
     fn widened(mut self, factor: f64) -> Self {
@@ -71,11 +75,7 @@ impl ContactProblem {
     /// An upper bound on `|u - u*|_K`.
     pub(super) fn energy_error_bound(&self, norm: &EnergyNorm, answer: &Answer) -> ErrorBound {
         let closed = self.rows_that_look_closed(answer);
-        let on_boundary = norm.boundary().and_then(|boundary| {
-            let residual =
-                norm.springs().map_or_else(|| answer.residual.clone(), |springs| springs.residual(self, answer));
-            self.bound_on_boundary(norm, boundary, &Answer { residual, ..*answer }, &closed)
-        });
+        let on_boundary = norm.boundary().and_then(|boundary| self.bound_on_boundary(norm, boundary, answer, &closed));
         let bound = on_boundary.unwrap_or_else(|| {
             let as_it_stands = self.bound_row_by_row(norm, answer, None);
             self.bound_row_by_row(norm, answer, Some(&closed)).smaller(as_it_stands)
