@@ -16,7 +16,7 @@ const FEW_DOFS: usize = 100;
 const MEASURED: f64 = 10.0;
 
 /// Rounding of a sweep, relative, over the smallest pivot.
-const SWEEP_ROUNDING: f64 = 1e4 * f64::EPSILON;
+const SWEEP_ROUNDING: f64 = 1e5 * f64::EPSILON;
 
 /// Rounding of what is computed of a bound after its sweeps, relative.
 const ROUNDING: f64 = 1e-6;

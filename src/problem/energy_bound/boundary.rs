@@ -40,24 +40,34 @@ impl ContactProblem {
         answer: &Answer,
         closed: &[bool],
     ) -> Option<ErrorBound> {
-        let residual = |multiplier: &[f64], residual: &[f64]| match norm.springs() {
-            Some(springs) => springs.residual(self, &Answer { multiplier, residual: residual.to_vec(), ..*answer }),
-            None => residual.to_vec(),
+        let residual = |answer: &Answer| match norm.springs() {
+            Some(springs) => springs.residual(self, answer),
+            None => answer.residual.clone(),
         };
-        let first = Answer { residual: residual(answer.multiplier, &answer.residual), ..*answer };
+        let first = Answer { residual: residual(answer), ..*answer };
         let repair = Repair::new(self, norm, boundary, &first)?;
         let witness = repair.best_witness(closed)?;
         let bound = repair.bound(&witness);
-        if repair.cancelled(&witness) <= SMALL * bound.whole {
+        if !witness.has_dependent && repair.cancelled(&witness) <= SMALL * bound.whole {
             return Some(bound);
         }
-        // Rows that follow from others have given their forces to these: from there on forces need not cancel.
+        // Rows that follow from others: what is rounding of a large motion may be a large distance between them. The same
+        // again from the witness itself, whose motions and changes of force are small.
+        let motion = repair.motion(&witness.error);
+        let moved: Vec<f64> = answer.displacement.iter().zip(&motion).map(|(u, d)| u + d).collect();
         let multiplier = repair.expanded(&witness.multiplier);
-        let residual = residual(&multiplier, &self.accurate_residual(answer.displacement, &multiplier));
-        let second = Answer { multiplier: &multiplier, residual, ..*answer };
-        let repair = Repair::new(self, norm, boundary, &second)?;
-        let again = repair.best_witness(&witness.closed).map(|witness| repair.bound(&witness));
-        Some(again.map_or(bound.clone(), |again| again.smaller(bound)))
+        let violation = self.accurate_violation(&moved);
+        let near = Answer {
+            displacement: &moved,
+            multiplier: &multiplier,
+            residual: self.accurate_residual(&moved, &multiplier),
+            violation: &violation,
+        };
+        let near = Answer { residual: residual(&near), ..near };
+        let repair = Repair::new(self, norm, boundary, &near)?;
+        let of_near = repair.bound(&repair.best_witness(&witness.closed)?);
+        let step: Vec<f64> = moved.iter().zip(answer.displacement).map(|(v, u)| v - u).collect();
+        Some(of_near.farther(self, &step))
     }
 }
 
@@ -95,6 +105,8 @@ struct Witness {
     closed: Vec<bool>,
     /// What the corrections have left of the distance of each closed row.
     off: Vec<f64>,
+    /// Does a closed row follow from others?
+    has_dependent: bool,
 }
 
 /// An answer on the contact boundary, in equilibrated units, rows normalised by powers of two.
@@ -190,7 +202,7 @@ impl<'a> Repair<'a> {
     }
 
     fn bound(&self, witness: &Witness) -> ErrorBound {
-        let Witness { error, left, multiplier, closed, off } = witness;
+        let Witness { error, left, multiplier, closed, off, .. } = witness;
         let of_left = self.length(left);
         let springs = self.norm.springs();
         if springs.is_some_and(|springs| !springs.hold(&self.expanded(multiplier), closed, of_left)) {
@@ -284,7 +296,8 @@ impl<'a> Repair<'a> {
             if is_met && (pulling.is_empty() || exchange >= EXCHANGES) {
                 let off = |row: usize| if missed(row) { distance[row].abs() } else { 0.0 };
                 let off = (0..rows).map(off).collect();
-                return Some(Witness { off, ..self.witness(base, change, &closed, in_equilibrium) });
+                let has_dependent = first.iter().any(|&first| first) || independent.contains(&false);
+                return Some(Witness { off, has_dependent, ..self.witness(base, change, &closed, in_equilibrium) });
             }
             if deeper.iter().any(|&row| first[row]) {
                 return None;
@@ -314,7 +327,14 @@ impl<'a> Repair<'a> {
         };
         let rows = (0..change.len()).map(left).collect();
         let off = vec![0.0; change.len()];
-        Witness { error, left: Force::new(1.0 - alpha, rows), multiplier, closed: closed.to_vec(), off }
+        Witness {
+            error,
+            left: Force::new(1.0 - alpha, rows),
+            multiplier,
+            closed: closed.to_vec(),
+            off,
+            has_dependent: false,
+        }
     }
 
     /// The multipliers that put the rows of `set` at their gaps beside the force `base`.

@@ -61,6 +61,15 @@ impl ErrorBound {
         if self.size() <= other.size() { self } else { other }
     }
 
+    /// The bound on the error of an answer that is away by `step` from the one that this is of.
+    fn farther(mut self, problem: &ContactProblem, step: &[f64]) -> Self {
+        self.whole += problem.length(step);
+        if let Some(parts) = &mut self.of_parts {
+            problem.add_sizes(problem.parts(), step, parts);
+        }
+        self
+    }
+
     fn widened(mut self, factor: f64) -> Self {
         self.whole *= factor;
         self.of_parts.iter_mut().flatten().for_each(|bound| *bound *= factor);
