@@ -11,8 +11,8 @@ const SHIFTS: [f64; 3] = [1e-12, 1e-10, 1e-8];
 /// Projections of the load: each gains several digits, since eigenvalues differ by many orders of magnitude.
 const STEPS: usize = 5;
 
-/// Work of the load on a free motion below this, relative to the load, is rounding.
-pub(super) const WORK_TOLERANCE: f64 = 1e-9;
+/// Work of the load on a free motion below this share of its terms is rounding.
+pub(crate) const WORK_TOLERANCE: f64 = 1e-9;
 
 /// A row this close to the obstacle, on displacements of order one, has no play.
 pub(super) const PLAY: f64 = 1e-9;
@@ -79,19 +79,20 @@ impl ScaledProblem<'_> {
 
     /// The projection of the load onto the null space, or, where the load does no work there, any null vector.
     fn free_motion(&self, closed: &ContactSet, weight: f64) -> Result<FreeMotion, Error> {
+        // A weight changes nothing about null vectors, and a large one hides the shift in its rounding.
+        let weight = weight.min(1.0);
         for shift in SHIFTS {
             let cholesky = match self.factor(&self.matrix(closed, weight, shift)) {
                 Ok(cholesky) => cholesky,
                 Err(FactorError::NotPositiveDefinite) => continue,
                 Err(error) => return Err(error.into()),
             };
-            let load = self.problem.load();
-            let mut projected = load.to_vec();
+            let mut projected = self.problem.load().to_vec();
             for _ in 0..STEPS {
                 projected = cholesky.solve(&projected);
                 projected.iter_mut().for_each(|value| *value *= shift);
             }
-            let driven = largest(&projected) > WORK_TOLERANCE * largest(load);
+            let driven = self.problem.share_of_work(&projected) > WORK_TOLERANCE;
             let mut direction = if driven { projected } else { cholesky.softest_vector() };
             let size = largest(&direction);
             direction.iter_mut().for_each(|value| *value /= size);

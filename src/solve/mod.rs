@@ -199,7 +199,8 @@ fn run(
             return Err(Error::Numerical { step: "MPRGP on a factorised problem", reason });
         }
     };
-    let outcome = if outcome.settled || !settings.wants_best() { outcome } else { last_resort(scaled, outcome)? };
+    let is_final = outcome.settled || !settings.allows_last_resort(f64::INFINITY);
+    let outcome = if is_final { outcome } else { last_resort(scaled, outcome)? };
     scaled.check_unique(&outcome)?;
     Ok(outcome)
 }

@@ -5,6 +5,10 @@ use crate::method::penalty::BEST_PENALTY;
 use crate::solution::Goal;
 use crate::watch::Watch;
 
+/// The best penalty leaves a relative penetration of one over itself; parts of the body that are softer than the dofs of a row
+/// make it so many times larger.
+const PENETRATION: f64 = 100.0;
+
 /// The method that finds the contact set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
@@ -160,12 +164,13 @@ impl Settings {
         Goal { tolerance: self.tolerance, accuracy: self.accuracy }
     }
 
-    /// Is the answer that is wanted as good as can be? An unpolished QP, and a penalty that ends below its best value, are
-    /// asked for as they are.
-    pub(super) fn wants_best(&self) -> bool {
+    /// May the last resort replace an answer that misses the goal, in its worst condition, by `value`? Not that of an
+    /// unpolished QP or of a penalty that ends below its best value, which are asked for as they are, nor the penetration
+    /// that the best penalty leaves.
+    pub(super) fn allows_last_resort(&self, value: f64) -> bool {
         match self.method {
             Method::Qp => self.polish,
-            Method::Penalty => self.last_penalty >= BEST_PENALTY,
+            Method::Penalty => self.last_penalty >= BEST_PENALTY && !(value <= PENETRATION / BEST_PENALTY),
             Method::Auto | Method::ActiveSet | Method::Mprgp => true,
         }
     }
