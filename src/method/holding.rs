@@ -17,6 +17,16 @@ pub(crate) const WORK_TOLERANCE: f64 = 1e-9;
 /// A row this close to the obstacle, on displacements of order one, has no play.
 pub(super) const PLAY: f64 = 1e-9;
 
+/// Entries of a null vector with largest entry one, and forces on a diagonal of order one, below this are rounding.
+const NOISE: f64 = 1e-13;
+
+/// The vector with largest entry one and without the entries that are rounding.
+fn normalised(mut direction: Vec<f64>) -> Vec<f64> {
+    let size = largest(&direction);
+    direction.iter_mut().for_each(|value| *value = if value.abs() > NOISE * size { *value / size } else { 0.0 });
+    direction
+}
+
 /// The answer to whether the closed rows hold the body.
 #[derive(Debug)]
 pub enum Holding {
@@ -92,10 +102,10 @@ impl ScaledProblem<'_> {
                 projected = cholesky.solve(&projected);
                 projected.iter_mut().for_each(|value| *value *= shift);
             }
-            let driven = self.problem.share_of_work(&projected) > WORK_TOLERANCE;
-            let mut direction = if driven { projected } else { cholesky.softest_vector() };
-            let size = largest(&direction);
-            direction.iter_mut().for_each(|value| *value /= size);
+            let projected = normalised(projected);
+            let still = self.matrix(closed, weight, 0.0).mul(&projected);
+            let driven = largest(&still) <= NOISE && self.problem.share_of_work(&projected) > WORK_TOLERANCE;
+            let direction = if driven { projected } else { normalised(cholesky.softest_vector()) };
             return Ok(FreeMotion { direction, driven });
         }
         Err(Error::NotConvex { evidence: "a Cholesky pivot is negative".into() })
