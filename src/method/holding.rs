@@ -119,12 +119,12 @@ impl ScaledProblem<'_> {
         displacement: &[f64],
         closed: &ContactSet,
     ) -> Option<ContactSet> {
-        let approach = self.problem.contact().mul(&motion.direction);
+        let approach = self.approach(&motion.direction);
         let violation = self.problem.violation(displacement);
         let ways: &[f64] = if motion.driven { &[1.0] } else { &[1.0, -1.0] };
         for way in ways {
             let time = |row: usize| match approach[row] * way {
-                speed if speed > WORK_TOLERANCE && !closed.contains(row) => Some((-violation[row]).max(0.0) / speed),
+                speed if speed > 0.0 && !closed.contains(row) => Some((-violation[row]).max(0.0) / speed),
                 _ => None,
             };
             let first = (0..self.problem.rows()).filter_map(time).fold(f64::INFINITY, f64::min);
@@ -137,5 +137,32 @@ impl ScaledProblem<'_> {
             }
         }
         None
+    }
+
+    /// How fast each row closes on a motion: B d, zero where that is rounding of its own terms.
+    pub(super) fn approach(&self, direction: &[f64]) -> Vec<f64> {
+        let magnitude: Vec<f64> = direction.iter().map(|d| d.abs()).collect();
+        let terms = self.problem.contact().abs().mul(&magnitude);
+        let speed = self.problem.contact().mul(direction);
+        speed.iter().zip(&terms).map(|(&v, term)| if v.abs() > WORK_TOLERANCE * term { v } else { 0.0 }).collect()
+    }
+
+    /// Does a motion cost no energy: is `K d` rounding of its own terms at each dof?
+    pub(super) fn costs_nothing(&self, direction: &[f64]) -> bool {
+        let (force, terms) = (self.problem.stiffness().mul(direction), self.problem.stiffness().mul_abs(direction));
+        force.iter().zip(&terms).all(|(force, term)| force.abs() <= WORK_TOLERANCE * term)
+    }
+
+    /// Is what an error claims of a motion true, in the terms of each dof and row? Sums of squares, which find the motion,
+    /// lose what is small beside others.
+    pub fn is_true(&self, claim: &Error) -> bool {
+        match claim {
+            Error::UnderHeld { direction, .. } => self.costs_nothing(direction),
+            Error::Unbounded { direction, .. } => {
+                let is_stopped = self.approach(direction).iter().any(|&speed| speed > 0.0);
+                self.costs_nothing(direction) && !is_stopped
+            }
+            _ => true,
+        }
     }
 }

@@ -114,12 +114,12 @@ impl<'a> ScaledProblem<'a> {
             Holding::Free(motion) if motion.driven => Ok(()),
             Holding::Free(motion) => {
                 let violation = self.problem.violation(&outcome.displacement);
-                let approach = self.problem.contact().mul(&motion.direction);
+                let approach = self.approach(&motion.direction);
+                let is_free = self.costs_nothing(&motion.direction) && pressed.iter().all(|row| approach[row] == 0.0);
                 let stopped = |way: f64| {
-                    (0..self.problem.rows())
-                        .any(|row| approach[row] * way > holding::WORK_TOLERANCE && violation[row] > -holding::PLAY)
+                    (0..self.problem.rows()).any(|row| approach[row] * way > 0.0 && violation[row] > -holding::PLAY)
                 };
-                if stopped(1.0) && stopped(-1.0) { Ok(()) } else { Err(motion.into_error()) }
+                if !is_free || stopped(1.0) && stopped(-1.0) { Ok(()) } else { Err(motion.into_error()) }
             }
         }
     }

@@ -179,7 +179,7 @@ fn run(
     match found.and_then(unique) {
         // Only of rows that can be met together, and where there is no balance, which rounding may hide.
         Err(claim @ (Error::Unbounded { .. } | Error::UnderHeld { .. })) => match dual_active_set::solve(scaled)? {
-            Some(balance) if balance.settled && matches!(claim, Error::Unbounded { .. }) => unique(balance),
+            Some(balance) if balance.settled || !scaled.is_true(&claim) => unique(balance),
             _ => Err(claim),
         },
         found => found,

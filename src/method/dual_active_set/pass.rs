@@ -17,6 +17,9 @@ const VIOLATED: f64 = 16.0 * f64::EPSILON;
 /// free point do. Rows that depend on each other but for the rounding of their entries are met 1e16 times as far.
 const FAR: f64 = 1e22;
 
+/// Corrected weights below this share of the largest are zero but for rounding.
+const NO_WEIGHT: f64 = 1e-24;
+
 /// Corrections of the weights: the first gains all digits but the last, the second and the third as many again.
 const WEIGHT_CORRECTIONS: usize = 3;
 
@@ -211,8 +214,7 @@ impl<'a> Pass<'a> {
             }
         }
         let left = norm(&left(&weights, &rest));
-        let tiny = DEPENDENT * largest(&weights);
-        let (rows, weights) = taking_part(&weights, tiny);
+        let (rows, weights) = taking_part(&weights, NO_WEIGHT * largest(&weights));
         // The largest weight is the unit of the overlap.
         let overlap = problem.overlap(&rows, &weights).map_or(0.0, |overlap| overlap * largest(&weights));
         let nearest = rows.iter().map(|&row| problem.gap()[row].abs() / lengths[row]).fold(0.0, f64::max);
