@@ -16,7 +16,7 @@
 
 use std::collections::HashSet;
 
-use super::{Holding, Outcome, SIGN_TOLERANCE, ScaledProblem};
+use super::{Holding, Outcome, SIGN_TOLERANCE, ScaledProblem, multiplier_rounding};
 use crate::error::Error;
 use crate::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
@@ -37,9 +37,6 @@ const CONTRADICTION: f64 = 1e-9;
 
 /// Block exchanges that may fail to reduce the number of violations before a single pivot.
 const PATIENCE: usize = 3;
-
-/// Rounding of a multiplier, in units of the last place of the forces that balance it.
-const FORCE_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Balance of forces with the rows of a set closed.
 #[derive(Clone, Debug)]
@@ -177,15 +174,12 @@ fn reach(problem: &ContactProblem, u: &[f64]) -> f64 {
 /// The rows that are on the wrong side: open and penetrating, or closed and pulling, beyond rounding.
 fn wrong_rows(problem: &ContactProblem, u: &[f64], multiplier: &[f64], closed: &ContactSet) -> Vec<usize> {
     let reach = reach(problem, u);
-    let strongest = largest(multiplier);
-    let mut forces = problem.stiffness().mul_abs(u);
-    forces.iter_mut().zip(problem.load()).for_each(|(sum, f)| *sum += f.abs());
-    let rounding = problem.contact().abs().mul(&forces);
+    let rounding = multiplier_rounding(problem, u, multiplier);
     let violation = problem.violation(u);
     (0..problem.rows())
         .filter(|&row| match closed.contains(row) {
             false => violation[row] > SIGN_TOLERANCE * (reach + problem.gap()[row].abs()),
-            true => multiplier[row] > SIGN_TOLERANCE * strongest + FORCE_ROUNDING * rounding[row],
+            true => multiplier[row] > rounding[row],
         })
         .collect()
 }

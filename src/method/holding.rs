@@ -11,11 +11,21 @@ const SHIFTS: [f64; 3] = [1e-12, 1e-10, 1e-8];
 /// Projections of the load: each gains several digits, since eigenvalues differ by many orders of magnitude.
 const STEPS: usize = 5;
 
-/// Work of the load on a free motion below this, relative to the load, is rounding.
-pub(super) const WORK_TOLERANCE: f64 = 1e-9;
+/// Work of the load on a free motion below this share of its terms is rounding.
+pub(crate) const WORK_TOLERANCE: f64 = 1e-9;
 
 /// A row this close to the obstacle, on displacements of order one, has no play.
 pub(super) const PLAY: f64 = 1e-9;
+
+/// Entries of a null vector with largest entry one, and forces on a diagonal of order one, below this are rounding.
+const NOISE: f64 = 1e-13;
+
+/// The vector with largest entry one and without the entries that are rounding.
+fn normalised(mut direction: Vec<f64>) -> Vec<f64> {
+    let size = largest(&direction);
+    direction.iter_mut().for_each(|value| *value = if value.abs() > NOISE * size { *value / size } else { 0.0 });
+    direction
+}
 
 /// The answer to whether the closed rows hold the body.
 #[derive(Debug)]
@@ -79,22 +89,23 @@ impl ScaledProblem<'_> {
 
     /// The projection of the load onto the null space, or, where the load does no work there, any null vector.
     fn free_motion(&self, closed: &ContactSet, weight: f64) -> Result<FreeMotion, Error> {
+        // A weight changes nothing about null vectors, and a large one hides the shift in its rounding.
+        let weight = weight.min(1.0);
         for shift in SHIFTS {
             let cholesky = match self.factor(&self.matrix(closed, weight, shift)) {
                 Ok(cholesky) => cholesky,
                 Err(FactorError::NotPositiveDefinite) => continue,
                 Err(error) => return Err(error.into()),
             };
-            let load = self.problem.load();
-            let mut projected = load.to_vec();
+            let mut projected = self.problem.load().to_vec();
             for _ in 0..STEPS {
                 projected = cholesky.solve(&projected);
                 projected.iter_mut().for_each(|value| *value *= shift);
             }
-            let driven = largest(&projected) > WORK_TOLERANCE * largest(load);
-            let mut direction = if driven { projected } else { cholesky.softest_vector() };
-            let size = largest(&direction);
-            direction.iter_mut().for_each(|value| *value /= size);
+            let projected = normalised(projected);
+            let still = self.matrix(closed, weight, 0.0).mul(&projected);
+            let driven = largest(&still) <= NOISE && self.problem.share_of_work(&projected) > WORK_TOLERANCE;
+            let direction = if driven { projected } else { normalised(cholesky.softest_vector()) };
             return Ok(FreeMotion { direction, driven });
         }
         Err(Error::NotConvex { evidence: "a Cholesky pivot is negative".into() })
@@ -108,12 +119,12 @@ impl ScaledProblem<'_> {
         displacement: &[f64],
         closed: &ContactSet,
     ) -> Option<ContactSet> {
-        let approach = self.problem.contact().mul(&motion.direction);
+        let approach = self.approach(&motion.direction);
         let violation = self.problem.violation(displacement);
         let ways: &[f64] = if motion.driven { &[1.0] } else { &[1.0, -1.0] };
         for way in ways {
             let time = |row: usize| match approach[row] * way {
-                speed if speed > WORK_TOLERANCE && !closed.contains(row) => Some((-violation[row]).max(0.0) / speed),
+                speed if speed > 0.0 && !closed.contains(row) => Some((-violation[row]).max(0.0) / speed),
                 _ => None,
             };
             let first = (0..self.problem.rows()).filter_map(time).fold(f64::INFINITY, f64::min);
@@ -126,5 +137,32 @@ impl ScaledProblem<'_> {
             }
         }
         None
+    }
+
+    /// How fast each row closes on a motion: B d, zero where that is rounding of its own terms.
+    pub(super) fn approach(&self, direction: &[f64]) -> Vec<f64> {
+        let magnitude: Vec<f64> = direction.iter().map(|d| d.abs()).collect();
+        let terms = self.problem.contact().abs().mul(&magnitude);
+        let speed = self.problem.contact().mul(direction);
+        speed.iter().zip(&terms).map(|(&v, term)| if v.abs() > WORK_TOLERANCE * term { v } else { 0.0 }).collect()
+    }
+
+    /// Does a motion cost no energy: is `K d` rounding of its own terms at each dof?
+    pub(super) fn costs_nothing(&self, direction: &[f64]) -> bool {
+        let (force, terms) = (self.problem.stiffness().mul(direction), self.problem.stiffness().mul_abs(direction));
+        force.iter().zip(&terms).all(|(force, term)| force.abs() <= WORK_TOLERANCE * term)
+    }
+
+    /// Is what an error claims of a motion true, in the terms of each dof and row? Sums of squares, which find the motion,
+    /// lose what is small beside others.
+    pub fn is_true(&self, claim: &Error) -> bool {
+        match claim {
+            Error::UnderHeld { direction, .. } => self.costs_nothing(direction),
+            Error::Unbounded { direction, .. } => {
+                let is_stopped = self.approach(direction).iter().any(|&speed| speed > 0.0);
+                self.costs_nothing(direction) && !is_stopped
+            }
+            _ => true,
+        }
     }
 }

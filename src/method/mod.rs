@@ -14,6 +14,7 @@ pub mod penalty;
 use std::cell::Cell;
 use std::time::Instant;
 
+pub(crate) use holding::WORK_TOLERANCE;
 pub use holding::{FreeMotion, Holding};
 
 use crate::error::Error;
@@ -25,6 +26,9 @@ use crate::watch::Watch;
 /// Differences below this, relative to the largest displacement or multiplier, are rounding: the sign of a weakly
 /// active row is compared with it, or such a row would close and open for ever.
 pub(crate) const SIGN_TOLERANCE: f64 = 1e-12;
+
+/// Rounding of a multiplier, in units of the last place of the forces that balance it.
+const FORCE_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// A scaled problem with its pattern analysed: what every method works on.
 #[derive(Debug)]
@@ -103,22 +107,31 @@ impl<'a> ScaledProblem<'a> {
         if self.definite {
             return Ok(());
         }
-        let strongest = SIGN_TOLERANCE * largest(&outcome.multiplier);
-        let pressed = ContactSet::from_fn(self.problem.rows(), |row| outcome.multiplier[row] < -strongest);
+        let rounding = multiplier_rounding(self.problem, &outcome.displacement, &outcome.multiplier);
+        let pressed = ContactSet::from_fn(self.problem.rows(), |row| outcome.multiplier[row] < -rounding[row]);
         match self.hold(&pressed, 1.0)? {
             Holding::Held(_) => Ok(()),
             Holding::Free(motion) if motion.driven => Ok(()),
             Holding::Free(motion) => {
                 let violation = self.problem.violation(&outcome.displacement);
-                let approach = self.problem.contact().mul(&motion.direction);
+                let approach = self.approach(&motion.direction);
+                let is_free = self.costs_nothing(&motion.direction) && pressed.iter().all(|row| approach[row] == 0.0);
                 let stopped = |way: f64| {
-                    (0..self.problem.rows())
-                        .any(|row| approach[row] * way > holding::WORK_TOLERANCE && violation[row] > -holding::PLAY)
+                    (0..self.problem.rows()).any(|row| approach[row] * way > 0.0 && violation[row] > -holding::PLAY)
                 };
-                if stopped(1.0) && stopped(-1.0) { Ok(()) } else { Err(motion.into_error()) }
+                if !is_free || stopped(1.0) && stopped(-1.0) { Ok(()) } else { Err(motion.into_error()) }
             }
         }
     }
+}
+
+/// Multipliers of either sign below this are rounding, row by row.
+fn multiplier_rounding(problem: &ContactProblem, u: &[f64], multiplier: &[f64]) -> Vec<f64> {
+    let strongest = SIGN_TOLERANCE * largest(multiplier);
+    let mut forces = problem.stiffness().mul_abs(u);
+    forces.iter_mut().zip(problem.load()).for_each(|(sum, f)| *sum += f.abs());
+    let rounding = problem.contact().abs().mul(&forces);
+    rounding.iter().map(|rounding| strongest + FORCE_ROUNDING * rounding).collect()
 }
 
 /// What a method found, in scaled quantities.

@@ -8,7 +8,7 @@ const OVERLAP: f64 = 4.0 * f64::EPSILON;
 
 /// Weights that do not cancel exactly prove nothing about a displacement that is large enough. A contradiction counts
 /// where such a displacement would have to be this many times larger than the gaps.
-const FAR: f64 = 1e10;
+const FAR: f64 = 1e8;
 
 impl ContactProblem {
     /// By how much the contact rows `rows` overlap under the weights y, one for each of them, in length: `-g'y` for the
@@ -16,7 +16,7 @@ impl ContactProblem {
     ///
     /// By Farkas' lemma no displacement satisfies `B u <= g` if and only if there are weights `y >= 0` with `B'y = 0` and
     /// `g'y < 0`: the rows, weighted, would ask for `0 <= g'y`. Doubles may leave a share s of the terms `|B|'y` of a dof:
-    /// then a displacement that meets the rows is at least as large as `-g'y / s`, in the same terms, which must be 1e10
+    /// then a displacement that meets the rows is at least as large as `-g'y / s`, in the same terms, which must be 1e8
     /// times `|g|'y`. All sums have twice the working precision, and neither scaled rows nor scaled dofs change the verdict.
     pub fn overlap(&self, rows: &[usize], weights: &[f64]) -> Option<f64> {
         let size = largest(weights);

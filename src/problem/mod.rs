@@ -18,7 +18,7 @@ use parts::Parts;
 
 use crate::error::Error;
 use crate::sparse::multigrid::NearNullSpace;
-use crate::sparse::{SparseMatrix, SymmetricMatrix};
+use crate::sparse::{Accumulator, SparseMatrix, SymmetricMatrix};
 
 /// Frictionless unilateral contact as a convex quadratic program:
 ///
@@ -185,6 +185,16 @@ impl ContactProblem {
             *value -= gap;
         }
         violation
+    }
+}
+
+impl ContactProblem {
+    /// The work f'd of the load on a motion d, as a share of its terms `|f|'|d|`, between -1 and 1.
+    pub(crate) fn share_of_work(&self, motion: &[f64]) -> f64 {
+        let mut work = Accumulator::new(&[0.0]);
+        self.load.iter().zip(motion).for_each(|(&f, &d)| work.add_product(0, f, d));
+        let terms: f64 = self.load.iter().zip(motion).map(|(f, d)| (f * d).abs()).sum();
+        if terms > 0.0 { work.into_sums()[0] / terms } else { 0.0 }
     }
 }
 

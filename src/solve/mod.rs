@@ -161,7 +161,8 @@ pub fn with_contact_set(problem: &ContactProblem, closed: &ContactSet) -> Result
     Prepared::new(problem, Condense::Auto)?.with_contact_set(closed)
 }
 
-/// Runs the method of `settings`; the active-set steps start from `start` where it is given.
+/// Runs the method of `settings`, and the last resort where that does not settle; the active-set steps start from `start`
+/// where it is given.
 ///
 /// `bound` is that of the energy error of an answer to the scaled problem.
 fn run(
@@ -170,8 +171,30 @@ fn run(
     settings: &Settings,
     bound: &dyn Fn(&[f64], &[f64]) -> f64,
 ) -> Result<Outcome, Error> {
+    let found = run_method(scaled, start, settings, bound).and_then(|outcome| {
+        let is_final = outcome.settled || !settings.allows_last_resort(f64::INFINITY);
+        if is_final { Ok(outcome) } else { last_resort(scaled, outcome) }
+    });
+    let unique = |outcome: Outcome| scaled.check_unique(&outcome).map(|()| outcome);
+    match found.and_then(unique) {
+        // Only of rows that can be met together, and where there is no balance, which rounding may hide.
+        Err(claim @ (Error::Unbounded { .. } | Error::UnderHeld { .. })) => match dual_active_set::solve(scaled)? {
+            Some(balance) if balance.settled || !scaled.is_true(&claim) => unique(balance),
+            _ => Err(claim),
+        },
+        found => found,
+    }
+}
+
+/// The outcome of the method of `settings` as it stands.
+fn run_method(
+    scaled: &ScaledProblem,
+    start: Option<ContactSet>,
+    settings: &Settings,
+    bound: &dyn Fn(&[f64], &[f64]) -> f64,
+) -> Result<Outcome, Error> {
     let cold = scaled.start()?;
-    let outcome = match settings.method {
+    Ok(match settings.method {
         Method::Qp if settings.polish && start.is_some() => {
             let outcome = settle(scaled, start.unwrap_or(cold), settings)?;
             Outcome { variant: if outcome.settled { "-warm" } else { outcome.variant }, ..outcome }
@@ -198,10 +221,7 @@ fn run(
             let reason = "its hierarchy stands in `Iterative`, which is prepared without a factorisation".to_string();
             return Err(Error::Numerical { step: "MPRGP on a factorised problem", reason });
         }
-    };
-    let outcome = if outcome.settled || !settings.wants_best() { outcome } else { last_resort(scaled, outcome)? };
-    scaled.check_unique(&outcome)?;
-    Ok(outcome)
+    })
 }
 
 /// What the dual active-set method finds where another fell short; what that left where it finds nothing.

@@ -9,7 +9,7 @@ use super::rules::Way;
 use super::{Condense, Method, Path, Settings, last_resort, run};
 use crate::error::Error;
 use crate::method::parametric::Compliance;
-use crate::method::{ScaledProblem, active_set};
+use crate::method::{ScaledProblem, WORK_TOLERANCE, active_set};
 use crate::problem::{ContactProblem, EnergyNorm, check_gap, check_load};
 use crate::solution::{Certificate, ContactSet, Iteration, Seconds, Solution};
 use crate::sparse::{AugmentedMatrix, Equilibration, dot, largest, ldexp};
@@ -233,7 +233,8 @@ impl Prepared {
             let of_whole = self.share_of_boundary(&loading, unit, &problem, displacement);
             certificate.map_or(f64::INFINITY, |certificate| certificate.energy_error_bound * of_whole)
         };
-        let outcome = run(&task, start, settings, &bound).map_err(|error| self.expand_error(error, &gap))?;
+        let outcome =
+            run(&task, start, settings, &bound).map_err(|error| self.expand_error(error, &loading.load, &gap))?;
         let seconds = Seconds { factor: task.factor_seconds(), solve: clock.elapsed().as_secs_f64() };
         Ok(Found { loading, gap, problem, unit, outcome, seconds, refined: None })
     }
@@ -327,14 +328,14 @@ impl Prepared {
         if goal.is_met_by(&best.1.certificate) {
             return Ok(best);
         }
-        // By how much an answer misses the goal.
-        let excess = |solution: &Solution| {
-            let (_, value, tolerance) = goal.decisive(&solution.certificate);
-            if value.is_nan() { f64::INFINITY } else { value / tolerance }
+        let miss = |solution: &Solution| {
+            let (_, value, _) = goal.decisive(&solution.certificate);
+            if value.is_nan() { f64::INFINITY } else { value }
         };
-        if let Some(other) = self.second_attempt(&best.0, settings)? {
+        let other = self.second_attempt(&best.0, settings)?;
+        if let Some(other) = other.filter(|_| self.resolved(settings).allows_last_resort(miss(&best.1))) {
             let solution = self.whole(&other, settings)?;
-            if excess(&solution) < excess(&best.1) {
+            if miss(&solution) < miss(&best.1) {
                 best = (other, solution);
             }
         }
@@ -346,10 +347,10 @@ impl Prepared {
         Err(Error::NotCertified { solution: Box::new(best.1), condition, value, tolerance })
     }
 
-    /// What the last resort finds, where `found` is not its answer already and the best answer is wanted.
+    /// What the last resort finds, where `found` is not its answer already.
     ///
     /// # Errors
-    /// [`Error::Infeasible`] for contact rows that contradict each other, whatever is wanted.
+    /// [`Error::Infeasible`] for contact rows that contradict each other.
     fn second_attempt(&self, found: &Found, settings: &Settings) -> Result<Option<Found>, Error> {
         let clock = Instant::now();
         // Of an answer that was cut short it is known why it falls short.
@@ -357,11 +358,10 @@ impl Prepared {
             return Ok(None);
         }
         let task = ScaledProblem::new(&found.problem, &self.augmented, self.norm.is_some()).watched(&settings.watch);
-        let outcome =
-            last_resort(&task, found.outcome.clone()).map_err(|error| self.expand_error(error, &found.gap))?;
-        let wanted = outcome.is_last_resort() && self.resolved(settings).wants_best();
+        let outcome = last_resort(&task, found.outcome.clone())
+            .map_err(|error| self.expand_error(error, &found.loading.load, &found.gap))?;
         let seconds = Seconds { solve: found.seconds.solve + clock.elapsed().as_secs_f64(), ..found.seconds };
-        Ok(wanted.then(|| Found { outcome, seconds, ..found.clone() }))
+        Ok(outcome.is_last_resort().then(|| Found { outcome, seconds, ..found.clone() }))
     }
 
     /// The whole answer with its certificate.
@@ -428,7 +428,7 @@ impl Prepared {
         let (problem, unit) = self.scaled(&loading, self.problem.gap())?;
         let task = ScaledProblem::new(&problem, &self.augmented, self.norm.is_some());
         let held = active_set::with_contact_set(&task, &self.selection.restrict_set(closed))
-            .map_err(|error| self.expand_error(error, self.problem.gap()))?;
+            .map_err(|error| self.expand_error(error, self.problem.load(), self.problem.gap()))?;
         Ok((self.expand(&loading, unit, &held.displacement), self.expand_multiplier(&held.multiplier, unit)))
     }
 
@@ -498,7 +498,8 @@ impl Prepared {
     }
 
     /// Rows and directions of an error in the terms of the original problem.
-    fn expand_error(&self, error: Error, gap: &[f64]) -> Error {
+    fn expand_error(&self, error: Error, load: &[f64], gap: &[f64]) -> Error {
+        let Ok(problem) = self.problem.with(load.to_vec(), gap.to_vec()) else { return error };
         let normalised = |direction: Vec<f64>| {
             let whole = match &self.condensation {
                 // A free motion moves the interior along without force.
@@ -511,7 +512,14 @@ impl Prepared {
             direction
         };
         match error {
-            Error::Unbounded { motion, direction } => Error::Unbounded { motion, direction: normalised(direction) },
+            Error::Unbounded { motion, direction } => {
+                let direction = normalised(direction);
+                // Condensing leaves the rounding of a load in balance, which is all that drives the boundary then.
+                match problem.share_of_work(&direction) > WORK_TOLERANCE {
+                    true => Error::Unbounded { motion, direction },
+                    false => Error::UnderHeld { motion, direction },
+                }
+            }
             Error::UnderHeld { motion, direction } => Error::UnderHeld { motion, direction: normalised(direction) },
             Error::Infeasible { rows, weights, .. } => {
                 let mut scaled = vec![0.0; self.selection.kept().len()];
@@ -521,8 +529,7 @@ impl Prepared {
                 let all = self.expand_multiplier(&scaled, self.scaling.equilibration().factor);
                 let weights: Vec<f64> =
                     if weights.is_empty() { weights } else { rows.iter().map(|&row| all[row]).collect() };
-                let problem = self.problem.with(self.problem.load().to_vec(), gap.to_vec());
-                let overlap = problem.ok().and_then(|problem| problem.overlap(&rows, &weights)).unwrap_or(0.0);
+                let overlap = problem.overlap(&rows, &weights).unwrap_or(0.0);
                 let by = if overlap > 0.0 { format!(": they overlap by {overlap:.3e}") } else { String::new() };
                 let reason =
                     format!("no displacement satisfies the contact rows {rows:?} together{by} (indices from 0)");

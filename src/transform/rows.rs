@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use crate::error::Error;
 use crate::solution::ContactSet;
-use crate::sparse::SparseMatrix;
+use crate::sparse::{Accumulator, SparseMatrix, exponent, ldexp};
 
 /// Two opposed gaps that overlap by less than this times their size meet: the rows are an equality.
 const MEETING: f64 = 4.0 * f64::EPSILON;
@@ -62,7 +62,9 @@ impl RowSelection {
             }
         }
         let crossing = nearest.values().filter_map(|sides| match sides {
-            [Some((a, above)), Some((b, below))] if above + below < -MEETING * above.abs().max(below.abs()) => {
+            [Some((a, above)), Some((b, below))]
+                if above + below < -MEETING * above.abs().max(below.abs()) && are_parallel(&by_row, *a, *b) =>
+            {
                 Some((*a, *b, above + below))
             }
             _ => None,
@@ -114,4 +116,19 @@ impl RowSelection {
     pub fn restrict_set(&self, set: &ContactSet) -> ContactSet {
         ContactSet::from_fn(self.kept.len(), |row| set.contains(self.kept[row]))
     }
+}
+
+/// Are two rows with entries in the same places multiples of each other, to the last bit? Quotients may be alike by
+/// rounding, and some displacement then meets both.
+fn are_parallel(by_row: &SparseMatrix, a: usize, b: usize) -> bool {
+    let entries = |row: usize| by_row.column(row).filter(|entry| entry.1 != 0.0).map(|entry| entry.1);
+    let (Some(first_a), Some(first_b)) = (entries(a).next(), entries(b).next()) else { return false };
+    // Brought to order one, so that no product leaves the range of doubles.
+    let of_order_one = |value: f64, first: f64| ldexp(value, -exponent(first));
+    entries(a).zip(entries(b)).all(|(at_a, at_b)| {
+        let mut difference = Accumulator::new(&[0.0]);
+        difference.add_product(0, of_order_one(at_a, first_a), of_order_one(first_b, first_b));
+        difference.add_product(0, -of_order_one(at_b, first_b), of_order_one(first_a, first_a));
+        difference.into_sums()[0] == 0.0
+    })
 }

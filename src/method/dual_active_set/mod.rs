@@ -38,11 +38,18 @@ pub const VARIANT: &str = "-dual";
 /// Passes: the second mends what the rounding of the first hides where dofs are of very different scale.
 const MOST_PASSES: usize = 10;
 
-/// Corrections of one set. Where K is definite the first gains all digits but the last; a proximal term may need more.
+/// Corrections of one set in any case. The first gains all digits but the last, except in parts that are so soft that their
+/// energy is below the rounding of the others.
+const CORRECTIONS: usize = 3;
+
+/// Most corrections of one set: a proximal term may need more.
 const MOST_CORRECTIONS: usize = 30;
 
 /// A correction is worth another where it is below this share of the one before.
 const SHRINKS: f64 = 0.5;
+
+/// A change below this share of the free point is nothing, even where the answer is zero.
+const NOTHING: f64 = f64::EPSILON * f64::EPSILON;
 
 /// A set whose last correction is above this share of the answer holds no answer.
 const CONVERGED: f64 = 1e-10;
@@ -139,16 +146,19 @@ impl Search<'_> {
     /// Corrects the answer on its set until that gains nothing more. Does it converge?
     fn correct(&mut self) -> bool {
         let mut last = f64::INFINITY;
-        for _ in 0..MOST_CORRECTIONS {
+        for turn in 0..MOST_CORRECTIONS {
             let (imbalance, distances) = self.residuals();
             let (change, pressures) = self.correction(&imbalance, &distances);
             let step = norm(&change);
-            if step > SHRINKS * last {
+            if turn >= CORRECTIONS && step > SHRINKS * last {
                 break;
             }
             self.advance(&change);
             self.basis.rows().iter().zip(&pressures).for_each(|(&row, change)| self.pressures[row] += change);
             last = step;
+            if step <= NOTHING * self.polyhedron.reach {
+                break;
+            }
         }
         last <= CONVERGED * norm(&self.point)
     }

@@ -14,8 +14,14 @@ use crate::watch::Watch;
 const VIOLATED: f64 = 16.0 * f64::EPSILON;
 
 /// A contradiction counts where a point that meets the rows would lie this many times farther off than the rows and the
-/// free point do. With 1e8 one feasible problem of several thousand was refused, with 1e12 one contradiction missed.
-const FAR: f64 = 1e10;
+/// free point do. Rows that depend on each other but for the rounding of their entries are met 1e16 times as far.
+const FAR: f64 = 1e22;
+
+/// Corrected weights below this share of the largest are zero but for rounding.
+const NO_WEIGHT: f64 = 1e-24;
+
+/// Corrections of the weights: the first gains all digits but the last, the second and the third as many again.
+const WEIGHT_CORRECTIONS: usize = 3;
 
 /// How a pass ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -186,7 +192,8 @@ impl<'a> Pass<'a> {
 
     /// Does `row` contradict the closed rows? Under the weights y (1 for it, -r for them) the rows would have to overlap,
     /// `-g'y > 0`, and what is left of them, `delta = |L^-1 B'y|`, be so small that a point which meets them is absurdly
-    /// far away.
+    /// far away. Rows that depend on each other but for the rounding of their entries are met far away, and are no
+    /// contradiction: the weights have twice the working precision, to tell them from rows that do depend.
     ///
     /// # Errors
     /// [`Error::Infeasible`] if so.
@@ -195,16 +202,19 @@ impl<'a> Pass<'a> {
         let mut weights = vec![0.0; problem.rows()];
         weights[row] = 1.0;
         self.basis.rows().iter().zip(shares).for_each(|(&closed, share)| weights[closed] = (-share).max(0.0));
-        // Corrected once with what is left of the rows.
-        let left = self.polyhedron.of_force(&self.polyhedron.force(&weights));
-        let change = self.basis.solve_upper(self.basis.along(&left));
-        let tiny = DEPENDENT * largest(&weights);
-        for (&closed, change) in self.basis.rows().iter().zip(&change) {
-            let corrected = weights[closed] - change;
-            weights[closed] = if corrected > tiny { corrected } else { 0.0 };
+        let mut rest = vec![0.0; problem.rows()];
+        let left = |weights: &[f64], rest: &[f64]| self.polyhedron.of_force(&self.polyhedron.force(weights, rest));
+        for _ in 0..WEIGHT_CORRECTIONS {
+            let change = self.basis.solve_upper(self.basis.along(&left(&weights, &rest)));
+            for (&closed, change) in self.basis.rows().iter().zip(&change) {
+                let weight = rest[closed] - change;
+                let sum = (weights[closed] + weight).max(0.0);
+                (rest[closed], weights[closed]) =
+                    if sum > 0.0 { (weight - (sum - weights[closed]), sum) } else { (0.0, 0.0) };
+            }
         }
-        let left = norm(&self.polyhedron.of_force(&self.polyhedron.force(&weights)));
-        let (rows, weights) = taking_part(&weights);
+        let left = norm(&left(&weights, &rest));
+        let (rows, weights) = taking_part(&weights, NO_WEIGHT * largest(&weights));
         // The largest weight is the unit of the overlap.
         let overlap = problem.overlap(&rows, &weights).map_or(0.0, |overlap| overlap * largest(&weights));
         let nearest = rows.iter().map(|&row| problem.gap()[row].abs() / lengths[row]).fold(0.0, f64::max);
@@ -226,7 +236,7 @@ pub(super) fn of_rows(polyhedron: &Polyhedron, rows: &[usize]) -> Basis {
     basis
 }
 
-/// The rows with a weight, and their weights.
-fn taking_part(weights: &[f64]) -> (Vec<usize>, Vec<f64>) {
-    weights.iter().copied().enumerate().filter(|entry| entry.1 > 0.0).unzip()
+/// The rows with a weight above `tiny`, and their weights.
+fn taking_part(weights: &[f64], tiny: f64) -> (Vec<usize>, Vec<f64>) {
+    weights.iter().copied().enumerate().filter(|entry| entry.1 > tiny).unzip()
 }

@@ -126,11 +126,12 @@ impl Polyhedron {
         sums.into_sums()
     }
 
-    /// B' y of the rows' weights y, rounded once.
-    pub fn force(&self, weights: &[f64]) -> Vec<f64> {
+    /// B'y of the rows' weights `y = weights + rest`, rounded once.
+    pub fn force(&self, weights: &[f64], rest: &[f64]) -> Vec<f64> {
         let mut sums = Accumulator::new(&vec![0.0; self.problem.dofs()]);
         for (row, dof, b) in self.problem.contact().triplets() {
             sums.add_product(dof, b, weights[row]);
+            sums.add_product(dof, b, rest[row]);
         }
         sums.into_sums()
     }
