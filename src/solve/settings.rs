@@ -1,8 +1,13 @@
 //! What a solve may be told.
 
 use crate::error::Error;
+use crate::method::penalty::BEST_PENALTY;
 use crate::solution::Goal;
 use crate::watch::Watch;
+
+/// The best penalty leaves a relative penetration of one over itself; parts of the body that are softer than the dofs of a row
+/// make it so many times larger.
+const PENETRATION: f64 = 100.0;
 
 /// The method that finds the contact set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -166,6 +171,14 @@ impl Settings {
             Method::Penalty => false,
             Method::Auto | Method::ActiveSet | Method::Mprgp => true,
         }
+    }
+
+    /// May the last resort replace an answer that misses the goal, in its worst condition, by `value`? Not that of an
+    /// unpolished QP or of a penalty that ends below its best value, which are asked for as they are, nor the penetration
+    /// that the best penalty leaves.
+    pub(super) fn allows_last_resort(&self, value: f64) -> bool {
+        let is_best_penalty = self.method == Method::Penalty && self.last_penalty >= BEST_PENALTY;
+        self.wants_best() || (is_best_penalty && !(value <= PENETRATION / BEST_PENALTY))
     }
 
     /// Are all settings in their ranges?

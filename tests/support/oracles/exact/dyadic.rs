@@ -32,6 +32,11 @@ impl Dyadic {
         self.exponent
     }
 
+    /// The exponent of the power of two just above the number, which is not zero.
+    pub fn size(&self) -> i64 {
+        self.exponent + self.mantissa.bits() as i64
+    }
+
     pub fn is_zero(&self) -> bool {
         self.mantissa.sign() == Sign::NoSign
     }

@@ -39,10 +39,12 @@ pub enum Sort {
     Refused,
     /// Infeasible, unbounded or under-held, and not said to be.
     Missed,
+    /// Not certified, of a problem that has a unique answer, but a stiffness that is singular or in worse condition.
+    Hard,
 }
 
 impl Sort {
-    pub const ALL: [Sort; 10] = [
+    pub const ALL: [Sort; 11] = [
         Sort::Bound,
         Sort::Rounded,
         Sort::Proof,
@@ -53,6 +55,7 @@ impl Sort {
         Sort::Slow,
         Sort::Refused,
         Sort::Missed,
+        Sort::Hard,
     ];
 
     pub fn name(self) -> &'static str {
@@ -67,12 +70,13 @@ impl Sort {
             Sort::Slow => "slow",
             Sort::Refused => "refused",
             Sort::Missed => "missed",
+            Sort::Hard => "hard",
         }
     }
 
-    /// Must there be none at all? The others may be rare.
+    /// Must there be none at all? Refused and missed problems may be rare, hard ones any number.
     pub fn is_forbidden(self) -> bool {
-        !matches!(self, Sort::Refused | Sort::Missed)
+        !matches!(self, Sort::Refused | Sort::Missed | Sort::Hard)
     }
 }
 
@@ -175,7 +179,7 @@ impl<'a> Judge<'a> {
             return faults;
         }
         let is_told = match self.outcome {
-            Outcome::Solved(answer) if answer.is_unique => is_certified || !self.is_fair(),
+            Outcome::Solved(answer) if answer.is_unique => is_certified,
             Outcome::Solved(_) => is_certified || matches!(ending, Err(Error::UnderHeld { .. })),
             // What meets the rows to a tolerance meets rows that overlap by less.
             Outcome::Infeasible { overlap, .. } if is_certified => *overlap <= goal.tolerance,
@@ -187,7 +191,12 @@ impl<'a> Judge<'a> {
             let answer = solution.map(|solution| (solution.displacement.clone(), solution.multiplier.clone()));
             faults.push(Fault { answer, ..fault(Sort::Certified) });
         } else if !is_told && must_end {
-            faults.push(fault(if self.is_fair() { Sort::Refused } else { Sort::Missed }));
+            let sort = match self.verdict() {
+                "solved" if self.is_fair() => Sort::Refused,
+                "solved" => Sort::Hard,
+                _ => Sort::Missed,
+            };
+            faults.push(fault(sort));
         }
         faults
     }
@@ -209,8 +218,9 @@ impl<'a> Judge<'a> {
                 let mut faults = self.answer(asked, displacement, multiplier, &certificate, proven.as_ref(), met);
                 let has_answer = matches!(self.outcome, Outcome::Solved(_));
                 if met.is_some() && !has_answer && !self.is_borderline() {
-                    faults
-                        .push(Fault::new(Sort::Certified, format!("{asked}: certified, but it is {}", self.verdict())));
+                    let detail = format!("{asked}: certified, but it is {}", self.verdict());
+                    let answer = Some((displacement.to_vec(), multiplier.to_vec()));
+                    faults.push(Fault { answer, ..Fault::new(Sort::Certified, detail) });
                 }
                 faults
             }

@@ -11,6 +11,7 @@ use num_bigint::BigInt;
 
 use super::dyadic::sign;
 use super::tableau::Tableau;
+use super::units::Integers;
 
 /// A variable of the conditions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,18 +42,11 @@ impl Variable {
     }
 }
 
-/// Displacements and forces, as integers over one positive denominator.
-#[derive(Clone, Debug)]
-pub struct Point {
-    pub displacement: Vec<BigInt>,
-    pub force: Vec<BigInt>,
-    pub denominator: BigInt,
-}
-
 /// How the conditions end.
 #[derive(Clone, Debug)]
 pub enum Ending {
-    Solved(Point),
+    /// Displacements and forces, over a positive denominator.
+    Solved { displacement: Vec<BigInt>, force: Vec<BigInt>, denominator: BigInt },
     /// No solution. The forces of the ray are Farkas' weights if K is definite.
     Ray(Vec<BigInt>),
 }
@@ -66,13 +60,9 @@ pub struct Eliminated {
     pub null: Vec<Vec<BigInt>>,
 }
 
-/// Eliminates u from K (n x n), -B (m x n) and the constants -f and g; `None` if K has a negative eigenvalue.
-pub fn eliminate(
-    stiffness: &[Vec<BigInt>],
-    contact: &[Vec<BigInt>],
-    load: &[BigInt],
-    gap: &[BigInt],
-) -> Option<Eliminated> {
+/// Eliminates u as far as K is regular; `None` if K has a negative eigenvalue.
+pub fn eliminate(problem: &Integers) -> Option<Eliminated> {
+    let Integers { stiffness, contact, load, gap, .. } = problem;
     let (dofs, rows) = (load.len(), gap.len());
     let balance = (0..dofs).map(|i| {
         let forces = (0..rows).map(|row| contact[row][i].clone());
@@ -113,29 +103,22 @@ impl Eliminated {
     /// Solves what is left.
     pub fn end(self) -> Ending {
         let Eliminated { mut tableau, dofs, rows, null } = self;
-        let no_ray = || Ending::Ray(vec![BigInt::ZERO; rows]);
         if !null.is_empty() && !eliminate_free(&mut tableau) {
-            return no_ray();
+            return Ending::Ray(vec![BigInt::ZERO; rows]);
         }
         // Every displacement is basic now, or does not matter; an imbalance that is not basic is zero.
         while let Some(place) = tableau.others.iter().position(|other| matches!(other, Imbalance(_) | Displacement(_)))
         {
             tableau.drop_other(place);
         }
-        tableau
-            .basic
-            .iter()
-            .enumerate()
-            .rev()
-            .filter(|entry| matches!(entry.1, Imbalance(_)))
-            .map(|entry| entry.0)
-            .collect::<Vec<_>>()
-            .into_iter()
-            .for_each(|place| drop(tableau.take_basic(place)));
-        let displaced: Vec<usize> =
-            (0..tableau.basic.len()).rev().filter(|&place| matches!(tableau.basic[place], Displacement(_))).collect();
-        let displaced: Vec<(Variable, Vec<BigInt>)> =
-            displaced.into_iter().map(|place| tableau.take_basic(place)).collect();
+        let mut displaced = Vec::new();
+        for place in (0..tableau.basic.len()).rev() {
+            match tableau.basic[place] {
+                Displacement(dof) => displaced.push((dof, tableau.take_basic(place))),
+                Imbalance(_) => drop(tableau.take_basic(place)),
+                _ => {}
+            }
+        }
         let (of_displaced, known) = (tableau.others.clone(), tableau.denominator.clone());
         if let Some(ray) = lemke(&mut tableau) {
             let mut forces = vec![BigInt::ZERO; rows];
@@ -153,13 +136,12 @@ impl Eliminated {
         // The displacements over the product of both denominators.
         let others: Vec<BigInt> = of_displaced.iter().map(|&variable| value(variable)).collect();
         let mut displacement = vec![BigInt::ZERO; dofs];
-        for (variable, row) in displaced {
-            let Displacement(dof) = variable else { continue };
+        for (dof, row) in displaced {
             displacement[dof] =
                 row[1..].iter().zip(&others).fold(&row[0] * &tableau.denominator, |sum, (a, x)| sum + a * x);
         }
         let force = (0..rows).map(|row| value(Force(row)) * &known).collect();
-        Ending::Solved(Point { displacement, force, denominator: known * &tableau.denominator })
+        Ending::Solved { displacement, force, denominator: known * &tableau.denominator }
     }
 }
 

@@ -17,5 +17,6 @@ pub mod stiffness;
 pub mod table;
 mod tableau;
 pub mod trial;
+mod units;
 
 use super::draws::Draws;

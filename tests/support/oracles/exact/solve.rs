@@ -1,12 +1,14 @@
 //! The exact answer of a problem, or exactly why there is none; every verdict is verified in the data before it is returned.
 
-use num_bigint::BigInt;
 use serde_json::{Value, json};
 
 use super::case::Case;
 use super::dyadic::{Dyadic, dot, ratio};
-use super::lemke::{Ending, Point, eliminate};
+use super::lemke::{Ending, eliminate};
 use super::tableau::rank;
+use super::units::Integers;
+
+type Vector = Vec<Dyadic>;
 
 /// A problem in exact numbers: K (n x n), f (n), B (m x n), g (m), all rows bounded.
 #[derive(Clone, Debug)]
@@ -48,12 +50,6 @@ pub enum Outcome {
     Indefinite {
         is_feasible: bool,
     },
-}
-
-/// Powers of two that bring the entries of a problem to order one, and leave integers.
-struct Units {
-    dof: Vec<i64>,
-    row: Vec<i64>,
 }
 
 impl Outcome {
@@ -124,13 +120,11 @@ impl Exact {
             return Outcome::Indefinite { is_feasible: self.contradiction().is_none() };
         };
         match ending {
-            Ending::Solved(point) => {
-                let mut answer = self.answer(&point);
-                self.check_solved(&answer);
+            Ok(mut answer) => {
                 answer.is_unique = self.is_unique(&answer, &null);
                 Outcome::Solved(answer)
             }
-            Ending::Ray(_) => {
+            Err(_) => {
                 let escape = self.escape(&null);
                 match (self.contradiction(), escape) {
                     (Some(weights), escape) => {
@@ -152,106 +146,25 @@ impl Exact {
         self.gap.iter().zip(weights).fold(Dyadic::ZERO, |sum, (g, y)| &sum + &(g * y).abs())
     }
 
-    /// Units in which the numbers of the elimination stay short.
-    fn units(&self) -> Units {
-        let size = |value: &Dyadic| value.exponent() + value.abs().over(value.exponent()).bits() as i64;
-        let dof: Vec<i64> = (0..self.dofs())
-            .map(|dof| match &self.stiffness[dof][dof] {
-                own if own.is_zero() => {
-                    let largest =
-                        self.contact.iter().filter(|row| !row[dof].is_zero()).map(|row| size(&row[dof])).max();
-                    -largest.unwrap_or(0)
-                }
-                own => -size(own).div_euclid(2),
-            })
-            .collect();
-        let row = self
-            .contact
-            .iter()
-            .map(|row| {
-                let sizes = row.iter().zip(&dof).filter(|entry| !entry.0.is_zero()).map(|(b, unit)| size(b) + unit);
-                -sizes.max().unwrap_or(0)
-            })
-            .collect();
-        Units { dof, row }
-    }
-
-    /// The ending of the conditions, with the null space of K; `None` if K has a negative eigenvalue.
-    ///
-    /// With u = D v 2^-c, z = R y: `D K D v + (R B D)' y = 2^c D f`, `R B D v <= 2^c R g`, each line times a power of two.
-    fn end(&self) -> Option<(Ending, Vec<Vec<Dyadic>>)> {
-        let Units { dof, row } = self.units();
-        let stiffness: Vec<Vec<Dyadic>> = self
-            .stiffness
-            .iter()
-            .zip(&dof)
-            .map(|(line, i)| line.iter().zip(&dof).map(|(k, j)| k.ldexp(i + j)).collect())
-            .collect();
-        let contact: Vec<Vec<Dyadic>> = self
-            .contact
-            .iter()
-            .zip(&row)
-            .map(|(line, i)| line.iter().zip(&dof).map(|(b, j)| b.ldexp(i + j)).collect())
-            .collect();
-        let load: Vec<Dyadic> = self.load.iter().zip(&dof).map(|(f, i)| f.ldexp(*i)).collect();
-        let gap: Vec<Dyadic> = self.gap.iter().zip(&row).map(|(g, i)| g.ldexp(*i)).collect();
-        let lowest = |values: &mut dyn Iterator<Item = &Dyadic>| {
-            values.filter(|value| !value.is_zero()).map(Dyadic::exponent).min()
-        };
-        let a = lowest(&mut stiffness.iter().flatten()).unwrap_or(0);
-        let b = lowest(&mut contact.iter().flatten()).unwrap_or(0);
-        // Line e is divided by 2^a and line s by 2^b; the constants must be integers after that and the unit 2^c of u.
-        let c = [lowest(&mut load.iter()).map(|low| low - a), lowest(&mut gap.iter()).map(|low| low - b)];
-        let c = c.into_iter().flatten().min().unwrap_or(0);
-        let whole = |lines: &[Vec<Dyadic>], unit: i64| {
-            lines.iter().map(|line| line.iter().map(|value| value.over(unit)).collect()).collect::<Vec<Vec<BigInt>>>()
-        };
-        let load: Vec<BigInt> = load.iter().map(|f| f.over(a + c)).collect();
-        let gap: Vec<BigInt> = gap.iter().map(|g| g.over(b + c)).collect();
-        let eliminated = eliminate(&whole(&stiffness, a), &whole(&contact, b), &load, &gap)?;
-        let vector = |vector: &Vec<BigInt>| {
-            vector.iter().zip(&dof).map(|(entry, unit)| Dyadic::new(entry.clone(), *unit)).collect()
-        };
-        let null = eliminated.null.iter().map(vector).collect();
+    /// The answer of the conditions, verified, or the forces of the ray in which they end, and the null space of K; `None` if K has a
+    /// negative eigenvalue.
+    fn end(&self) -> Option<(Result<Answer, Vector>, Vec<Vector>)> {
+        let integers = Integers::of(self);
+        let eliminated = eliminate(&integers)?;
+        let null = eliminated.null.iter().map(|vector| integers.displacement(vector)).collect();
         let ending = match eliminated.end() {
-            Ending::Ray(ray) => Ending::Ray(ray),
-            Ending::Solved(point) => Ending::Solved(point),
+            Ending::Ray(forces) => Err(integers.force(&forces)),
+            Ending::Solved { displacement, force, denominator } => Ok(Answer {
+                displacement: integers.displacement(&displacement),
+                force: integers.force(&force),
+                denominator: Dyadic::new(denominator, 0),
+                is_unique: true,
+            }),
         };
-        let shift = |values: Vec<BigInt>, units: &[i64], all: i64| {
-            values.into_iter().zip(units).map(|(value, unit)| (value, unit + all)).collect::<Vec<_>>()
-        };
-        let ending = match ending {
-            Ending::Solved(Point { displacement, force, denominator }) => {
-                // In the line e, 2^a K u + 2^b B'y 2^(a-b) = ..: forces carry the unit 2^(a-b) beside that of u.
-                let displacement = shift(displacement, &dof, c);
-                let force = shift(force, &row, c + a - b);
-                let low = displacement.iter().chain(&force).map(|entry| entry.1).min().unwrap_or(0).min(0);
-                let up = |values: Vec<(BigInt, i64)>| {
-                    values.into_iter().map(|(value, unit)| value << (unit - low)).collect()
-                };
-                Ending::Solved(Point {
-                    displacement: up(displacement),
-                    force: up(force),
-                    denominator: denominator << -low,
-                })
-            }
-            Ending::Ray(ray) => {
-                let ray = shift(ray, &row, 0);
-                let low = ray.iter().map(|entry| entry.1).min().unwrap_or(0);
-                Ending::Ray(ray.into_iter().map(|(value, unit)| value << (unit - low)).collect())
-            }
-        };
-        Some((ending, null))
-    }
-
-    fn answer(&self, point: &Point) -> Answer {
-        let exact = |values: &[BigInt]| values.iter().map(|value| Dyadic::new(value.clone(), 0)).collect();
-        Answer {
-            displacement: exact(&point.displacement),
-            force: exact(&point.force),
-            denominator: Dyadic::new(point.denominator.clone(), 0),
-            is_unique: true,
+        if let Ok(answer) = &ending {
+            self.check_solved(answer);
         }
+        Some((ending, null))
     }
 
     /// `g - B u`, times the denominator of u.
@@ -278,22 +191,11 @@ impl Exact {
     fn contradiction(&self) -> Option<Vec<Dyadic>> {
         let least = self.with(identity(self.dofs()), vec![Dyadic::ZERO; self.dofs()]);
         let (ending, _) = least.end().expect("the identity is definite");
-        match ending {
-            Ending::Solved(point) => {
-                least.check_solved(&least.answer(&point));
-                None
-            }
-            Ending::Ray(ray) => {
-                let weights: Vec<Dyadic> = ray.into_iter().map(|weight| Dyadic::new(weight, 0)).collect();
-                let cancels = |dof: usize| dot(self.contact.iter().map(|row| &row[dof]), &weights).is_zero();
-                assert!(
-                    weights.iter().all(|weight| weight.sign() >= 0) && (0..self.dofs()).all(cancels),
-                    "Farkas' weights"
-                );
-                assert!(dot(&self.gap, &weights).sign() < 0, "Farkas' weights leave a gap");
-                Some(weights)
-            }
-        }
+        let weights = ending.err()?;
+        let cancels = |dof: usize| dot(self.contact.iter().map(|row| &row[dof]), &weights).is_zero();
+        assert!(weights.iter().all(|weight| weight.sign() >= 0) && (0..self.dofs()).all(cancels), "Farkas' weights");
+        assert!(dot(&self.gap, &weights).sign() < 0, "Farkas' weights leave a gap");
+        Some(weights)
     }
 
     fn with(&self, stiffness: Vec<Vec<Dyadic>>, load: Vec<Dyadic>) -> Exact {
@@ -351,8 +253,6 @@ fn projection(load: Vec<Dyadic>, rows: Vec<Vec<Dyadic>>) -> Option<Vec<Dyadic>> 
     let gap = vec![Dyadic::ZERO; rows.len()];
     let nearest = Exact { stiffness: identity(load.len()), load, rows: (0..gap.len()).collect(), contact: rows, gap };
     let (ending, _) = nearest.end().expect("the identity is definite");
-    let Ending::Solved(point) = ending else { panic!("a cone has a nearest point") };
-    let answer = nearest.answer(&point);
-    nearest.check_solved(&answer);
+    let answer = ending.expect("a cone has a nearest point");
     answer.displacement.iter().any(|value| !value.is_zero()).then_some(answer.displacement)
 }

@@ -195,16 +195,14 @@ fn string(draws: &mut Draws) -> Matrix {
 fn membrane(draws: &mut Draws) -> Matrix {
     let most = if draws.one_in(12) { 5 } else { 2 };
     let (across, along) = (2 + draws.below(most), 2 + draws.below(most + 1));
-    let mut k = square(across * along);
-    for i in 0..across * along {
-        k[i][i] = 4.0;
-        for j in [(i % across + 1 < across).then_some(i + 1), (i + across < across * along).then_some(i + across)] {
-            if let Some(j) = j {
-                k[i][j] = -1.0;
-                k[j][i] = -1.0;
-            }
-        }
+    let n = across * along;
+    let mut k = square(n);
+    let right = (0..n).filter(|i| i % across + 1 < across).map(|i| (i, i + 1));
+    for (i, j) in right.chain((0..n - across).map(|i| (i, i + across))) {
+        k[i][j] = -1.0;
+        k[j][i] = -1.0;
     }
+    (0..n).for_each(|i| k[i][i] = 4.0);
     k
 }
 

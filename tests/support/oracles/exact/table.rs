@@ -43,13 +43,21 @@ impl Line {
     }
 
     fn of(&self, sort: Sort) -> usize {
-        if sort == Sort::Refused { self.fair } else { self.other }
+        match sort {
+            Sort::Refused => self.fair,
+            Sort::Hard => self.verdicts.get("solved").map_or(0, |solved| solved - self.fair),
+            _ => self.other,
+        }
     }
 
     /// Is a sort of fault more frequent than it may be?
     fn exceeds(&self, sort: Sort) -> bool {
         let count = self.count(sort);
-        if sort.is_forbidden() { count > 0 } else { count > 1 && count as f64 > RARE * self.of(sort) as f64 }
+        match sort {
+            Sort::Hard => false,
+            Sort::Refused | Sort::Missed => count > 1 && count as f64 > RARE * self.of(sort) as f64,
+            _ => count > 0,
+        }
     }
 
     fn row(&self, name: &str) -> String {
@@ -60,7 +68,7 @@ impl Line {
         };
         let worst = if self.worst_factor > 0.0 { format!(" ({:.1e})", self.worst_factor) } else { String::new() };
         format!(
-            "{name:<18}{:>7}{:>7}{:>6}{:>6}{:>6}{:>6} |{:>18}{:>8}{:>7}{:>7}{:>9}{:>10}{:>7}{:>6} |{:>16}{:>16}{:>9.1}",
+            "{name:<18}{:>7}{:>7}{:>6}{:>6}{:>6}{:>6} |{:>18}{:>8}{:>7}{:>7}{:>9}{:>10}{:>7}{:>6} |{:>16}{:>16}{:>16}{:>9.1}",
             self.problems,
             verdict("solved"),
             verdict("under-held"),
@@ -77,6 +85,7 @@ impl Line {
             self.count(Sort::Slow),
             share(Sort::Refused),
             share(Sort::Missed),
+            share(Sort::Hard),
             1e3 * self.longest
         )
     }
@@ -126,7 +135,7 @@ impl Table {
     pub fn text(&self) -> String {
         let mut text = String::new();
         let head = format!(
-            "{:>7}{:>7}{:>6}{:>6}{:>6}{:>6} |{:>18}{:>8}{:>7}{:>7}{:>9}{:>10}{:>7}{:>6} |{:>16}{:>16}{:>9}",
+            "{:>7}{:>7}{:>6}{:>6}{:>6}{:>6} |{:>18}{:>8}{:>7}{:>7}{:>9}{:>10}{:>7}{:>6} |{:>16}{:>16}{:>16}{:>9}",
             "problem",
             "solved",
             "under",
@@ -143,6 +152,7 @@ impl Table {
             "slow",
             "refused",
             "missed",
+            "hard",
             "ms"
         );
         for (title, lines) in [("stiffness", &self.kinds), ("rows", &self.rows)] {

@@ -65,9 +65,10 @@ impl<V: Copy> Tableau<V> {
         self.rows.iter_mut().for_each(|row| drop(row.remove(other + 1)));
     }
 
-    /// Takes out a basic variable with its row.
-    pub fn take_basic(&mut self, basic: usize) -> (V, Vec<BigInt>) {
-        (self.basic.remove(basic), self.rows.remove(basic))
+    /// Takes out a basic variable, and returns its row.
+    pub fn take_basic(&mut self, basic: usize) -> Vec<BigInt> {
+        self.basic.remove(basic);
+        self.rows.remove(basic)
     }
 }
 

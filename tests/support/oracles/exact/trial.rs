@@ -193,8 +193,8 @@ impl Trial {
         let (mut u, mut lambda) = exact.rounded(&self.case, answer);
         let size = draws.decades(1e-16, 1.0);
         match draws.below(8) {
-            0 => return zero(),
-            1 => return ("rounded".to_string(), u, lambda),
+            0 => zero(),
+            1 => ("rounded".to_string(), u, lambda),
             2 => {
                 u.iter_mut().for_each(|value| *value *= 1.0 + size * draws.signed());
                 lambda.iter_mut().for_each(|value| *value *= 1.0 + size * draws.signed());
