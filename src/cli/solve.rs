@@ -14,20 +14,20 @@ pub(super) fn settings(method: Method, common: &Common, watch: &Watch) -> Settin
     settings.tolerance = common.tolerance;
     settings.threads = common.threads;
     settings.condense = if common.no_condense { Condense::Never } else { Condense::Auto };
-    settings.memory = Some(common.memory.most());
+    settings.memory = Some(common.limits.most_memory());
     settings.watch = watch.clone();
     settings
 }
 
 pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
     let common = &options.common;
-    let source = Source::read(&options.input)?;
+    let source = Source::read(&options.input, &common.limits)?;
     if let Source::Scene(scene, _) = &source {
         let needs_factor = !matches!(options.method.method(), Method::Auto | Method::Mprgp);
         if needs_factor || scene.analysis.is_some() {
-            scene.check_size(common.memory.most())?;
+            scene.check_size(common.limits.most_memory())?;
         } else {
-            scene.check_size_without_factor(common.memory.most())?;
+            scene.check_size_without_factor(common.limits.most_memory())?;
         }
         if scene.analysis.is_some() {
             return dynamic::run(options, scene, watch);
@@ -45,7 +45,7 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
     let mut settings = settings(options.method.method(), common, watch);
     settings.prove = true;
     (settings.accuracy, settings.time) = (options.accuracy, options.time);
-    settings.memory = Some(common.memory.most());
+    settings.memory = Some(common.limits.most_memory());
     (settings.precision, settings.extrapolate) = (options.precision.precision(), options.extrapolate);
     let solution = match solve(input.problem(), &settings) {
         Ok(solution) => solution,
