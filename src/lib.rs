@@ -71,6 +71,7 @@ pub mod file;
 pub mod formulation;
 pub mod material;
 pub mod matrix_market;
+pub mod memory;
 pub mod mesh;
 pub mod method;
 pub mod norm;

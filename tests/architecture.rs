@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 /// The rooms of each floor, from the ground up. `lib` re-exports and `main` calls: they stand on the roof.
 const FLOORS: [&[&str]; 12] = [
-    &["analytical", "barrier", "solution", "watch"],
+    &["analytical", "barrier", "memory", "solution", "watch"],
     &["error"],
     &["file", "sparse", "element", "formulation"],
     &["mesh", "material"],

@@ -27,7 +27,6 @@ pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outco
 
     let clock = Instant::now();
     let mut settings = settings(options.method.method(), &options.common, watch);
-    settings.time = options.time;
     if settings.method == Method::Auto {
         settings.method = Method::ActiveSet;
     }
