@@ -341,7 +341,7 @@ fn where_memory_cannot_be_had_the_program_says_so_and_ends() {
     for (number, scene) in scenes.iter().enumerate() {
         desk.write(&format!("scene{number}.json"), scene.to_string());
         for options in ["", "--no-condense", "--method qp --no-condense", "--method mprgp"] {
-            for megabytes in [30, 45, 60, 80, 120, 180] {
+            for megabytes in [40, 90, 110, 130, 150, 180, 220, 270] {
                 let program = env!("CARGO_BIN_EXE_signorini");
                 let script = format!("ulimit -v {megabytes}000; exec '{program}' solve scene{number}.json {options}");
                 let output = Command::new("sh").args(["-c", &script]).current_dir(desk.path(".")).output().unwrap();

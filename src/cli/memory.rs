@@ -26,6 +26,10 @@ pub(super) fn available() -> f64 {
 /// A limited address space is not used to its last byte: pieces of it are too small for what is asked for.
 const USABLE: f64 = 0.9;
 
+/// Bytes of the address space that matrix products reserve for packed blocks, of which they touch few: allocated at once
+/// inside the factorisation, which could not end cleanly without them.
+const PACKED_BLOCKS: f64 = (64_u32 << 20) as f64;
+
 /// Bytes of the address space that the program may take in all, itself included, if that is limited (`ulimit -v`).
 ///
 /// The program counts the bytes that it touches; code and stacks that it only reserves are taken off.
@@ -33,7 +37,7 @@ pub(super) fn address_space_left() -> f64 {
     let Some(limit) = field("/proc/self/limits", "Max address space") else { return f64::INFINITY };
     let kilobytes = |name| field("/proc/self/status", name).unwrap_or(0.0);
     let reserved = 1024.0 * (kilobytes("VmSize:") - kilobytes("VmRSS:"));
-    (USABLE * (limit - reserved)).max(0.0)
+    (USABLE * (limit - reserved - PACKED_BLOCKS)).max(0.0)
 }
 
 /// The number behind `name` in a file of the system.

@@ -9,6 +9,9 @@ use crate::solve::{Condense, Method, Settings, solve};
 use crate::study::discretisation_error;
 use crate::watch::Watch;
 
+/// Assembly that takes so many seconds at the most is done without time too: the report then says what the rest needs.
+const AT_ONCE: f64 = 1e-3;
+
 pub(super) fn settings(method: Method, common: &Common, watch: &Watch) -> Settings {
     let mut settings = Settings::with_method(method);
     settings.tolerance = common.tolerance;
@@ -32,7 +35,7 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
             scene.check_size_without_factor(common.limits.most_memory())?;
         }
         let needed = scene.size().assembly_seconds();
-        if let Some(time) = watch.time_left().filter(|_| !watch.allows(needed)) {
+        if let Some(time) = watch.time_left().filter(|_| needed > AT_ONCE && !watch.allows(needed)) {
             return Err(Error::OutOfTime { needed, time });
         }
         if scene.analysis.is_some() {
