@@ -43,7 +43,7 @@
 //!
 //! | floor | modules |
 //! |---|---|
-//! | 0 | [`analytical`], [`barrier`], [`solution`], [`watch`] |
+//! | 0 | [`analytical`], [`barrier`], [`memory`], [`solution`], [`watch`] |
 //! | 1 | [`error`] |
 //! | 2 | [`mod@file`], [`sparse`], [`element`], [`formulation`] |
 //! | 3 | [`mesh`], [`material`] |

@@ -105,7 +105,10 @@ impl MotionFolder {
     /// read.
     pub fn resume(folder: &Path, scene: String) -> Result<(Self, State, MotionSummary), Error> {
         let path = folder.join(CHECKPOINT);
-        let text = read_text_capped(&path, MOST_OF_TABLE)?;
+        let text = read_text_capped(&path, MOST_OF_TABLE).map_err(|error| match error {
+            Error::File { path, source, .. } => Error::File { action: "resume from", path, source },
+            other => other,
+        })?;
         let wrong = |message: String| Error::FileSyntax { file: path.clone(), line: 1, message };
         let found: Checkpoint = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
         if found.scene != scene && undated(&found.scene) != undated(&scene) {
