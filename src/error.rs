@@ -104,8 +104,8 @@ pub enum Error {
         /// The free direction, one entry per dof.
         direction: Vec<f64>,
     },
-    /// A factorisation would take longer than there is time.
-    #[error("one factorisation takes about {needed:.1e} s, and {time:.1e} s are left")]
+    /// A step that cannot be interrupted, as a factorisation, would take longer than there is time.
+    #[error("the next step takes about {needed:.1e} s, and {time:.1e} s are left")]
     OutOfTime {
         /// Seconds that it takes, estimated.
         needed: f64,
@@ -164,14 +164,8 @@ pub enum Error {
         /// Memory that it may take, in bytes.
         allowed: f64,
     },
-    /// A problem of which neither a factor nor a hierarchy fits into the memory that it may take.
-    #[error(
-        "neither way fits into {}: with a factor of the stiffness it takes about {}, with multigrid about {}; take larger \
-         cells, or allow more",
-        memory(*allowed),
-        memory(*factor),
-        memory(*multigrid)
-    )]
+    /// A problem that no way solves within the memory that it may take.
+    #[error("{}", no_room(*factor, *multigrid, *allowed, ended.as_deref()))]
     NoRoom {
         /// Memory of the direct path, estimated, in bytes.
         factor: f64,
@@ -179,6 +173,8 @@ pub enum Error {
         multigrid: f64,
         /// Memory that it may take, in bytes.
         allowed: f64,
+        /// How the iterative path ended without a certified answer, if there was room for it.
+        ended: Option<String>,
     },
     /// A library step that failed for a reason of its own.
     #[error("{step} failed: {reason}")]
@@ -264,6 +260,20 @@ impl Error {
             Error::FileSyntax { .. } => "file-syntax",
             Error::File { .. } => "file",
         }
+    }
+}
+
+fn no_room(factor: f64, multigrid: f64, allowed: f64, ended: Option<&str>) -> String {
+    let [factor, multigrid, allowed] = [factor, multigrid, allowed].map(memory);
+    match ended {
+        None => format!(
+            "neither way fits into {allowed}: with a factor of the stiffness it takes about {factor}, with multigrid about \
+             {multigrid}; take larger cells, or allow more"
+        ),
+        Some(ended) => format!(
+            "no way within {allowed} gives a certified answer: multigrid, of about {multigrid}, ended where {ended}, and \
+             with a factor of the stiffness it takes about {factor}; allow more"
+        ),
     }
 }
 

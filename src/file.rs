@@ -24,6 +24,10 @@ pub fn read_capped(path: &Path, most: u64) -> Result<Vec<u8>, Error> {
 }
 
 fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    if is_named_pipe(path) {
+        let reason = "it is a named pipe, which may never be written to; name a file, or pipe into /dev/stdin";
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, reason));
+    }
     let file = File::open(path)?;
     let about = file.metadata()?;
     let most = if about.is_file() { most } else { most.min(MOST_OF_STREAM) };
@@ -37,6 +41,20 @@ fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     }
     file.take(most + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > most { Err(too_long()) } else { Ok(bytes) }
+}
+
+/// Is it a pipe that has a name? To open one waits for a writer. What a shell has already connected, as /dev/stdin, has no
+/// name of its own.
+#[cfg(unix)]
+fn is_named_pipe(path: &Path) -> bool {
+    use std::os::unix::fs::FileTypeExt;
+
+    std::fs::metadata(path).is_ok_and(|about| about.file_type().is_fifo()) && path.canonicalize().is_ok()
+}
+
+#[cfg(not(unix))]
+fn is_named_pipe(_: &Path) -> bool {
+    false
 }
 
 /// The text of a file, at most `most` bytes of UTF-8.

@@ -43,7 +43,7 @@
 //!
 //! | floor | modules |
 //! |---|---|
-//! | 0 | [`analytical`], [`barrier`], [`solution`], [`watch`] |
+//! | 0 | [`analytical`], [`barrier`], [`memory`], [`solution`], [`watch`] |
 //! | 1 | [`error`] |
 //! | 2 | [`mod@file`], [`sparse`], [`element`], [`formulation`] |
 //! | 3 | [`mesh`], [`material`] |
@@ -71,6 +71,7 @@ pub mod file;
 pub mod formulation;
 pub mod material;
 pub mod matrix_market;
+pub mod memory;
 pub mod mesh;
 pub mod method;
 pub mod norm;

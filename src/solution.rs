@@ -242,7 +242,7 @@ impl ProvenSet {
 pub struct Seconds {
     /// Symbolic and numeric factorisations.
     pub factor: f64,
-    /// Everything from the checked problem to the certified answer, factorisations included.
+    /// Everything from the checked problem to the certified answer, factorisations and earlier attempts included.
     pub solve: f64,
 }
 
@@ -253,6 +253,17 @@ pub struct Iteration {
     pub contact_set: ContactSet,
     /// The penalty, in multiples of the local stiffness; zero where the method has none.
     pub penalty: f64,
+}
+
+/// A way that was tried beside the one that gave the answer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Attempt {
+    /// The method, as in [`Solution::method`].
+    pub method: String,
+    /// Wall-clock seconds that it took.
+    pub seconds: f64,
+    /// Why its end was not the end.
+    pub reason: String,
 }
 
 /// The answer to a contact problem.
@@ -279,6 +290,8 @@ pub struct Solution {
     pub refinements: Option<usize>,
     /// Why no factor was taken, in words, where [`Method::Auto`](crate::Method::Auto) decided that.
     pub reason: Option<String>,
+    /// What else was tried, in order; its time is in `seconds`.
+    pub attempts: Vec<Attempt>,
     /// Unknowns that the method worked on; fewer than all where the problem was condensed.
     pub condensed_dofs: usize,
     /// What it cost.

@@ -34,7 +34,11 @@ struct Shared {
     stopped: AtomicBool,
     noticed: AtomicBool,
     activity: Mutex<Activity>,
+    pace: Mutex<Option<f64>>,
 }
+
+/// Work that takes less tells nothing of the pace.
+const TELLING: f64 = 1e-3;
 
 /// What is being done.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -96,9 +100,53 @@ impl Watch {
         Watch { deadline, shared: self.shared.clone() }
     }
 
+    /// The same, without a deadline.
+    pub fn unhurried(&self) -> Watch {
+        Watch { deadline: None, shared: self.shared.clone() }
+    }
+
     /// Seconds until the deadline, if there is one.
     pub fn time_left(&self) -> Option<f64> {
         self.deadline.map(|deadline| deadline.saturating_duration_since(Instant::now()).as_secs_f64())
+    }
+
+    /// Seconds that work takes here which is estimated to take so many: at the pace of what was [timed](Self::timed) last.
+    pub fn needed(&self, estimate: f64) -> f64 {
+        estimate * self.pace().unwrap_or(1.0)
+    }
+
+    /// Is there time left for work that is estimated to take so many seconds?
+    pub fn allows(&self, estimate: f64) -> bool {
+        self.time_left().is_none_or(|left| self.needed(estimate) < left)
+    }
+
+    /// The same, with the deadline sooner by what is estimated to take so many seconds: whoever asks between two steps that
+    /// take as long is told that it is over while there still is time for none of them.
+    pub fn keeping(&self, estimate: f64) -> Watch {
+        match self.time_left() {
+            Some(left) => self.within(left - self.needed(estimate).min(left)),
+            None => self.clone(),
+        }
+    }
+
+    /// Does work that is estimated to take so many seconds, and learns the pace of this machine from it.
+    pub fn timed<T>(&self, estimate: f64, work: impl FnOnce() -> T) -> T {
+        let clock = Instant::now();
+        let done = work();
+        if estimate >= TELLING {
+            self.learn(clock.elapsed().as_secs_f64() / estimate);
+        }
+        done
+    }
+
+    /// Takes work to last so many times as long as it is estimated to.
+    pub fn learn(&self, pace: f64) {
+        *self.shared.pace.lock().unwrap_or_else(PoisonError::into_inner) = Some(pace);
+    }
+
+    /// Seconds that work takes for each that is estimated; none before anything was timed.
+    pub fn pace(&self) -> Option<f64> {
+        *self.shared.pace.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Must the work end, because it was asked to or because its deadline has passed?

@@ -12,7 +12,7 @@ use crate::watch::Watch;
 
 pub(super) fn run(options: &Compare, watch: &Watch) -> Result<Outcome, Error> {
     let common = &options.common;
-    let input = Input::read(&options.input, &common.memory)?;
+    let input = Input::read(&options.input, &common.limits)?;
     warn(&input.warnings());
     let settings = settings(Method::Auto, common, watch);
     let comparison = compare(input.problem(), &settings).map_err(|error| input.explain(error))?;

@@ -27,7 +27,6 @@ pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outco
 
     let clock = Instant::now();
     let mut settings = settings(options.method.method(), &options.common, watch);
-    settings.time = options.time;
     if settings.method == Method::Auto {
         settings.method = Method::ActiveSet;
     }
@@ -44,7 +43,15 @@ pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outco
     let mut folder = match &options.common.out {
         Some(folder) if options.resume => {
             let (folder, state, so_far) = MotionFolder::resume(folder, text)?;
+            if state.steps > dynamics.steps {
+                let message = format!("the run in the folder has gone on to step {} already, beyond it", state.steps);
+                return Err(Error::Scene { path: "analysis.dynamic.duration".into(), message });
+            }
             integrator.resume(state)?;
+            if integrator.time() != so_far.time {
+                let message = "the run in the folder has another step; its duration was less than one".to_string();
+                return Err(Error::Scene { path: "analysis.dynamic.step".into(), message });
+            }
             summary = so_far;
             Some(folder)
         }

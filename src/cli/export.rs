@@ -8,7 +8,7 @@ use crate::matrix_market;
 use crate::output::write_files;
 
 pub(super) fn run(options: &Export) -> Result<Outcome, Error> {
-    let model = still_model(&options.scene, &options.memory)?;
+    let model = still_model(&options.scene, &options.limits)?;
     warn(&warnings(&model));
     let problem = model.problem();
     write_files(&options.directory, &matrix_market::problem_files(problem))?;

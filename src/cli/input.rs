@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
-use super::options::Memory;
+use super::options::Limits;
 use crate::error::Error;
 use crate::matrix_market;
 use crate::output::UnitNames;
@@ -34,10 +34,10 @@ pub(super) enum Source {
 
 impl Source {
     /// Reads a problem directory, if `path` is one, or else a scene, of any size.
-    pub fn read(path: &Path) -> Result<Self, Error> {
+    pub fn read(path: &Path, limits: &Limits) -> Result<Self, Error> {
         let clock = Instant::now();
         if !path.is_dir() {
-            let scene = Box::new(Scene::read(path)?);
+            let scene = Box::new(scene_of(path, limits)?);
             return Ok(Source::Scene(scene, clock.elapsed().as_secs_f64()));
         }
         let content = Content::Directory(matrix_market::read_problem(path)?);
@@ -47,11 +47,11 @@ impl Source {
 }
 
 impl Input {
-    /// Reads a problem directory, if `path` is one, or else a scene that fits into so much `memory`.
-    pub fn read(path: &Path, memory: &Memory) -> Result<Self, Error> {
-        match Source::read(path)? {
+    /// Reads a problem directory, if `path` is one, or else a scene that fits into these `limits`.
+    pub fn read(path: &Path, limits: &Limits) -> Result<Self, Error> {
+        match Source::read(path, limits)? {
             Source::Scene(scene, read_seconds) => {
-                scene.check_size(memory.most())?;
+                scene.check_size(limits.most_memory())?;
                 rests(&scene)?;
                 Input::of_scene(&scene, path, read_seconds)
             }
@@ -103,8 +103,8 @@ impl Input {
 }
 
 /// The model of a scene at rest.
-pub(super) fn still_model(path: &Path, memory: &Memory) -> Result<Model, Error> {
-    let scene = read_scene(path, memory)?;
+pub(super) fn still_model(path: &Path, limits: &Limits) -> Result<Model, Error> {
+    let scene = read_scene(path, limits)?;
     rests(&scene)?;
     build(&scene, path)
 }
@@ -118,10 +118,14 @@ fn rests(scene: &Scene) -> Result<(), Error> {
     Err(Error::Scene { path: "analysis".into(), message: message.into() })
 }
 
-/// Reads a scene and makes sure that it fits into so much `memory`.
-pub(super) fn read_scene(path: &Path, memory: &Memory) -> Result<Scene, Error> {
-    let scene = Scene::read(path)?;
-    scene.check_size(memory.most())?;
+fn scene_of(path: &Path, limits: &Limits) -> Result<Scene, Error> {
+    Ok(Scene { reads_outside: limits.allow_outside, ..Scene::read(path)? })
+}
+
+/// Reads a scene and makes sure that it fits into these `limits`.
+pub(super) fn read_scene(path: &Path, limits: &Limits) -> Result<Scene, Error> {
+    let scene = scene_of(path, limits)?;
+    scene.check_size(limits.most_memory())?;
     Ok(scene)
 }
 

@@ -1,4 +1,4 @@
-//! An interrupt: the first asks the work to end with what it has, the second ends the program.
+//! An interrupt, or a request to terminate: the first asks the work to end with what it has, the second ends the program.
 
 use std::time::Duration;
 
@@ -11,6 +11,10 @@ pub(super) const INTERRUPTED: u8 = 130;
 /// The work has so long to notice that it should end, so that the program ends within a second.
 const PATIENCE: Duration = Duration::from_millis(800);
 
+/// Bytes of the stack of a thread that waits for a signal or a moment: the default of 2 MB would count against a limit of
+/// the address space.
+const STACK: usize = 64 << 10;
+
 /// Lets interrupts stop what `watch` watches. A factorisation cannot be stopped: what does not notice in time is ended
 /// where it is, which leaves whole files, because every file is written whole or not at all.
 pub(super) fn listen(watch: &Watch) {
@@ -22,7 +26,7 @@ pub(super) fn listen(watch: &Watch) {
         }
         watch.stop();
         let watch = watch.clone();
-        let patience = std::thread::Builder::new().spawn(move || {
+        let patience = std::thread::Builder::new().stack_size(STACK).spawn(move || {
             std::thread::sleep(PATIENCE);
             if !watch.is_noticed() {
                 end();
@@ -32,6 +36,26 @@ pub(super) fn listen(watch: &Watch) {
             end();
         }
     };
+    on_request(handler);
+}
+
+/// Calls `handler` at every interrupt (SIGINT) and every request to terminate (SIGTERM). If the system refuses, these
+/// signals end the program as they do by default.
+#[cfg(unix)]
+fn on_request(mut handler: impl FnMut() + Send + 'static) {
+    use signal_hook::consts::{SIGINT, SIGTERM};
+
+    let listening = std::thread::Builder::new().stack_size(STACK).spawn(move || {
+        if let Ok(mut signals) = signal_hook::iterator::Signals::new([SIGINT, SIGTERM]) {
+            signals.forever().for_each(|_| handler());
+        }
+    });
+    drop(listening);
+}
+
+/// Calls `handler` at every interrupt of the terminal.
+#[cfg(not(unix))]
+fn on_request(handler: impl FnMut() + Send + 'static) {
     // Where the system has no interrupts there are none to listen to.
     let _ = ctrlc::set_handler(handler);
 }

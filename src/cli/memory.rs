@@ -12,10 +12,44 @@ pub(super) fn parse_size(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Bytes that the machine can give away, where it says so (on Linux); elsewhere there is no limit.
+/// Bytes that the machine can give away, if it says so (on Linux): what is available, and what is left to the control
+/// group; elsewhere there is no limit.
 pub(super) fn available() -> f64 {
-    let stated = std::fs::read_to_string("/proc/meminfo").ok();
-    let line = stated.iter().flat_map(|text| text.lines()).find(|line| line.starts_with("MemAvailable:"));
-    let kilobytes = line.and_then(|line| line.split_whitespace().nth(1)).and_then(|number| number.parse::<f64>().ok());
-    kilobytes.map_or(f64::INFINITY, |kilobytes| 1024.0 * kilobytes)
+    let free = field("/proc/meminfo", "MemAvailable:").map_or(f64::INFINITY, |kilobytes| 1024.0 * kilobytes);
+    let of_group = |file: &str| number(&text(&format!("/sys/fs/cgroup/{file}"))?);
+    match (of_group("memory.max"), of_group("memory.current")) {
+        (Some(most), Some(taken)) => free.min((most - taken).max(0.0)),
+        _ => free,
+    }
+}
+
+/// A limited address space is not used to its last byte: pieces of it are too small for what is asked for.
+const USABLE: f64 = 0.9;
+
+/// Bytes of the address space that matrix products reserve for packed blocks, of which they touch few: allocated at once
+/// inside the factorisation, which could not end cleanly without them.
+const PACKED_BLOCKS: f64 = (64_u32 << 20) as f64;
+
+/// Bytes of the address space that the program may take in all, itself included, if that is limited (`ulimit -v`).
+///
+/// The program counts the bytes that it touches; code and stacks that it only reserves are taken off.
+pub(super) fn address_space_left() -> f64 {
+    let Some(limit) = field("/proc/self/limits", "Max address space") else { return f64::INFINITY };
+    let kilobytes = |name| field("/proc/self/status", name).unwrap_or(0.0);
+    let reserved = 1024.0 * (kilobytes("VmSize:") - kilobytes("VmRSS:"));
+    (USABLE * (limit - reserved - PACKED_BLOCKS)).max(0.0)
+}
+
+/// The number behind `name` in a file of the system.
+fn field(file: &str, name: &str) -> Option<f64> {
+    number(text(file)?.lines().find_map(|line| line.strip_prefix(name))?)
+}
+
+fn text(file: &str) -> Option<String> {
+    std::fs::read_to_string(file).ok()
+}
+
+/// The first word as a number; a limit that is called `unlimited` or `max` is none.
+fn number(words: &str) -> Option<f64> {
+    words.split_whitespace().next()?.parse().ok()
 }

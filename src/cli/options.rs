@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use super::memory::parse_size;
+use super::memory::{self, parse_size};
 use crate::solve;
 
 /// Frictionless contact of elastic bodies with obstacles: a convex QP, cross-checked and certified.
@@ -88,7 +88,7 @@ pub(super) struct Solve {
     /// Extrapolate the penalty answer to an infinite penalty
     #[arg(long)]
     pub extrapolate: bool,
-    /// Go on with the motion that stands in the folder of --out
+    /// Go on with the motion that stands in the folder of --out, to a longer duration if the scene now says so
     #[arg(long, requires = "out")]
     pub resume: bool,
     #[command(flatten)]
@@ -161,18 +161,21 @@ fn parse_threads(text: &str) -> Result<usize, String> {
     }
 }
 
-/// How much memory a scene or a problem may take.
+/// What a scene or a problem may take and read.
 #[derive(Debug, Args)]
-pub(super) struct Memory {
+pub(super) struct Limits {
     /// Refuse what needs more memory, as 500MB or 1.5GB [default: what the machine has available]
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
     pub max_memory: Option<f64>,
+    /// Let the scene read mesh files that lie outside its own folder
+    #[arg(long)]
+    pub allow_outside: bool,
 }
 
-impl Memory {
-    /// In bytes.
-    pub fn most(&self) -> f64 {
-        self.max_memory.unwrap_or_else(super::memory::available)
+impl Limits {
+    /// The memory, in bytes.
+    pub fn most_memory(&self) -> f64 {
+        self.max_memory.unwrap_or_else(memory::available).min(memory::address_space_left())
     }
 }
 
@@ -189,7 +192,7 @@ pub(super) struct Common {
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = parse_threads)]
     pub threads: usize,
     #[command(flatten)]
-    pub memory: Memory,
+    pub limits: Limits,
     /// Folder for pictures, fields and answers
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -212,7 +215,7 @@ pub(super) struct Tradeoff {
     #[arg(long, value_name = "DOFS", default_value_t = 10_000)]
     pub most_full_dofs: usize,
     #[command(flatten)]
-    pub memory: Memory,
+    pub limits: Limits,
     /// Folder for the table, its values and the picture
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -228,7 +231,7 @@ pub(super) struct Export {
     /// Folder for K.mtx, f.mtx, B.mtx, g.mtx and near_null.mtx; made if missing
     pub directory: PathBuf,
     #[command(flatten)]
-    pub memory: Memory,
+    pub limits: Limits,
 }
 
 #[derive(Debug, Args)]

@@ -9,25 +9,34 @@ use crate::solve::{Condense, Method, Settings, solve};
 use crate::study::discretisation_error;
 use crate::watch::Watch;
 
+/// Assembly that takes so many seconds at the most is done without time too: the report then says what the rest needs.
+const AT_ONCE: f64 = 1e-3;
+
 pub(super) fn settings(method: Method, common: &Common, watch: &Watch) -> Settings {
     let mut settings = Settings::with_method(method);
     settings.tolerance = common.tolerance;
     settings.threads = common.threads;
     settings.condense = if common.no_condense { Condense::Never } else { Condense::Auto };
-    settings.memory = Some(common.memory.most());
+    settings.memory = Some(common.limits.most_memory());
     settings.watch = watch.clone();
     settings
 }
 
 pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
     let common = &options.common;
-    let source = Source::read(&options.input)?;
+    // Reading and assembly count too.
+    let watch = &options.time.map_or_else(|| watch.clone(), |time| watch.within(time));
+    let source = Source::read(&options.input, &common.limits)?;
     if let Source::Scene(scene, _) = &source {
         let needs_factor = !matches!(options.method.method(), Method::Auto | Method::Mprgp);
         if needs_factor || scene.analysis.is_some() {
-            scene.check_size(common.memory.most())?;
+            scene.check_size(common.limits.most_memory())?;
         } else {
-            scene.check_size_without_factor(common.memory.most())?;
+            scene.check_size_without_factor(common.limits.most_memory())?;
+        }
+        let needed = scene.size().assembly_seconds();
+        if let Some(time) = watch.time_left().filter(|_| needed > AT_ONCE && !watch.allows(needed)) {
+            return Err(Error::OutOfTime { needed, time });
         }
         if scene.analysis.is_some() {
             return dynamic::run(options, scene, watch);
@@ -44,8 +53,7 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
     warn(&input.warnings());
     let mut settings = settings(options.method.method(), common, watch);
     settings.prove = true;
-    (settings.accuracy, settings.time) = (options.accuracy, options.time);
-    settings.memory = Some(common.memory.most());
+    settings.accuracy = options.accuracy;
     (settings.precision, settings.extrapolate) = (options.precision.precision(), options.extrapolate);
     let solution = match solve(input.problem(), &settings) {
         Ok(solution) => solution,
@@ -65,7 +73,7 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
     watch.step("report", 0);
     let mut summary = input.summary(&solution, settings.goal())?;
     if let Content::Scene(model) = &input.content
-        && !watch.is_stopped()
+        && !watch.is_over()
     {
         summary.discretisation_error = Some(discretisation_error(model, &solution)?);
     }
@@ -77,6 +85,10 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
     let Some(folder) = common.out.clone() else { return Ok(outcome) };
     gallery::write_answer(&folder, &solution)?;
     write_files(&folder, &[("report.json", format!("{:#}\n", solve_json(&summary)))])?;
+    if watch.is_over() && !watch.is_stopped() {
+        warn("warning: no fields and no pictures: the time is over\n");
+        return Ok(outcome);
+    }
     Ok(match input.content {
         Content::Scene(model) => outcome.with_pictures(move || gallery::write_solve(&folder, &model, &solution)),
         Content::Directory(_) => outcome,

@@ -12,7 +12,7 @@ use crate::watch::Watch;
 
 pub(super) fn run(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
     let common = &options.common;
-    let model = still_model(&options.scene, &common.memory)?;
+    let model = still_model(&options.scene, &common.limits)?;
     warn(&warnings(&model));
     let gaps = even_gaps(options.gaps.first, options.gaps.last, options.gaps.count);
     let swept = sweep(&model, &gaps, &settings(Method::Auto, common, watch))?;

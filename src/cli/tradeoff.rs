@@ -14,7 +14,7 @@ use crate::study::{TradeoffGrid, motion_tradeoff, tradeoff};
 use crate::watch::Watch;
 
 pub(super) fn run(options: &Tradeoff, watch: &Watch) -> Result<Outcome, Error> {
-    let scene = read_scene(&options.scene, &options.memory)?;
+    let scene = read_scene(&options.scene, &options.limits)?;
     if scene.analysis.is_some() {
         return of_motion(options, &scene, watch);
     }

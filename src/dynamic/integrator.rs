@@ -1,5 +1,7 @@
 //! The loop over steps: prepare once, advance many times.
 
+use std::time::Instant;
+
 use super::central_difference::CentralDifference;
 use super::contact_stabilised::ContactStabilised;
 use super::midpoint::Midpoint;
@@ -32,6 +34,8 @@ pub struct Integrator {
     scheme: Box<dyn Advance>,
     state: State,
     watch: Watch,
+    /// Seconds of the longest step so far.
+    longest: f64,
 }
 
 impl Integrator {
@@ -66,6 +70,7 @@ impl Integrator {
             // Its answers are never exact; whoever chooses it takes them as they are.
             settings.tolerance = f64::MAX;
         }
+        let watch = settings.watch.clone();
         let prepared: Box<dyn Advance> = match scheme {
             Scheme::Midpoint => Box::new(Midpoint::new(&problem, step, &settings)?),
             Scheme::Trapezoidal => Box::new(Newmark::new(&problem, step, 0.0, &settings)?),
@@ -89,10 +94,10 @@ impl Integrator {
             contact_set: ContactSet::from_fn(rows, |row| violation[row] >= -ROUNDING * reach),
         };
         let state = prepared.start(&problem, step, state)?;
-        if settings.watch.is_over() {
+        if watch.is_over() {
             return Err(Error::Interrupted);
         }
-        Ok(Integrator { problem, step, scheme: prepared, state, watch: settings.watch })
+        Ok(Integrator { problem, step, scheme: prepared, state, watch, longest: 0.0 })
     }
 
     /// One step further.
@@ -101,8 +106,13 @@ impl Integrator {
     /// Those of a contact solve; [`Error::Numerical`] where the motion grows beyond all bounds; [`Error::Interrupted`] where
     /// the watch of the settings ends the run, in the state after the last whole step.
     pub fn advance(&mut self) -> Result<&State, Error> {
+        if self.watch.time_left().is_some_and(|left| left <= self.longest) {
+            return Err(Error::Interrupted);
+        }
+        let clock = Instant::now();
         let next = self.scheme.advance(&self.problem, self.step, &self.state);
-        if self.watch.is_over() {
+        self.longest = self.longest.max(clock.elapsed().as_secs_f64());
+        if self.watch.is_stopped() {
             // The solves of this step may have been cut short.
             return Err(Error::Interrupted);
         }
@@ -190,7 +200,8 @@ impl Stepping {
     /// Factorises the matrix of `problem`; its load and gaps say nothing but which rows there are.
     pub fn new(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
         let prepared = Prepared::with_settings(problem, settings)?;
-        Ok(Stepping { prepared, settings: settings.clone() })
+        // A step is done whole or not at all: there is no half of it to return.
+        Ok(Stepping { prepared, settings: Settings { watch: settings.watch.unhurried(), ..settings.clone() } })
     }
 
     /// Number of dofs.

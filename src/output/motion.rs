@@ -18,6 +18,7 @@ use super::{
 };
 use crate::dynamic::{Observation, State};
 use crate::error::Error;
+use crate::file::{MOST_OF_TABLE, read_text_capped};
 use crate::scene::Model;
 use crate::solution::ContactSet;
 use crate::study::MotionSummary;
@@ -97,17 +98,20 @@ impl MotionFolder {
     }
 
     /// The run of `scene` that stands in `folder`, with its state and its numbers; lines behind its checkpoint are cut off.
+    /// The scene may have another duration and other frames than it had then.
     ///
     /// # Errors
     /// [`Error::File`] where there is none, [`Error::Scene`] for the run of another scene or a checkpoint that cannot be
     /// read.
     pub fn resume(folder: &Path, scene: String) -> Result<(Self, State, MotionSummary), Error> {
         let path = folder.join(CHECKPOINT);
-        let fail = |action, source| Error::File { action, path: path.clone(), source };
-        let text = std::fs::read_to_string(&path).map_err(|source| fail("resume from", source))?;
+        let text = read_text_capped(&path, MOST_OF_TABLE).map_err(|error| match error {
+            Error::File { path, source, .. } => Error::File { action: "resume from", path, source },
+            other => other,
+        })?;
         let wrong = |message: String| Error::FileSyntax { file: path.clone(), line: 1, message };
         let found: Checkpoint = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
-        if found.scene != scene {
+        if found.scene != scene && undated(&found.scene) != undated(&scene) {
             return Err(wrong("it belongs to another scene; take its own, or another folder".into()));
         }
         let history = folder.join(HISTORY);
@@ -224,11 +228,7 @@ impl MotionFolder {
 
     fn read_frame(&self, number: usize) -> Result<Frame, Error> {
         let path = self.frame_path(number);
-        let text = std::fs::read_to_string(&path).map_err(|source| Error::File {
-            action: "read",
-            path: path.clone(),
-            source,
-        })?;
+        let text = read_text_capped(&path, MOST_OF_TABLE)?;
         serde_json::from_str(&text).map_err(|error| Error::FileSyntax {
             file: path,
             line: error.line(),
@@ -301,6 +301,14 @@ impl MotionFolder {
         }
         Ok(rows)
     }
+}
+
+/// A scene without what may change while its motion goes on: how long it lasts and how many frames it shows.
+fn undated(scene: &str) -> Option<serde_json::Value> {
+    let mut scene: serde_json::Value = serde_json::from_str(scene).ok()?;
+    let motion = scene.pointer_mut("/analysis/dynamic")?.as_object_mut()?;
+    ["duration", "frames"].iter().for_each(|field| drop(motion.remove(*field)));
+    Some(scene)
 }
 
 fn vtu_name(number: usize) -> String {

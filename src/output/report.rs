@@ -34,6 +34,9 @@ pub(crate) fn plural(count: usize, noun: &str) -> String {
 /// An algebraic error below this times that of the mesh does not show in the sum of both.
 const FAR_BELOW: f64 = 1e-2;
 
+/// Characters of the reason of an attempt that are shown; the JSON report has all.
+const LONGEST_REASON: usize = 50;
+
 /// The report of one answer, in lines of at most 100 characters.
 pub fn solve_text(title: &str, summary: &Summary, units: &UnitNames) -> String {
     let Summary { contact, model, seconds, .. } = summary;
@@ -54,6 +57,10 @@ pub fn solve_text(title: &str, summary: &Summary, units: &UnitNames) -> String {
     }
     if let Some(reason) = &summary.reason {
         line("", reason.clone());
+    }
+    for attempt in &summary.attempts {
+        let reason: String = printable(&attempt.reason).chars().take(LONGEST_REASON).collect();
+        line("", format!("also tried: {}, {:.3} s, {reason}", attempt.method, attempt.seconds));
     }
     if let Some(penalty) = summary.history.last().and_then(|step| step.penalty) {
         line("", format!("the penalty went up to {penalty:.0e} times the local stiffness"));

@@ -202,9 +202,9 @@ impl DynamicSpec {
                     return Err(wrong(format!("{PATH}.courant"), message));
                 }
                 let unit = stable.unwrap_or_else(|| wave_time(body));
-                // A whole number of steps.
-                let count = (self.duration / (courant * unit) * (1.0 - ROUNDING)).ceil().max(1.0);
-                counted(self.duration / count, count)
+                // Whatever the duration: a run can then go on to a longer one.
+                let step = (courant * unit).min(self.duration);
+                counted(step, (self.duration / step * (1.0 - ROUNDING)).ceil())
             }
         }
     }

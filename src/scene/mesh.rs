@@ -1,6 +1,6 @@
 //! The mesh of a scene's body.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::body::DescribedBody;
 use super::schema::{
@@ -99,12 +99,31 @@ impl DescribedBody<'_> {
         }
     }
 
-    fn gmsh(&self, spec: &GmshSpec) -> Result<Mesh, Error> {
-        let file = match &self.scene.folder {
-            Some(folder) => folder.join(&spec.file),
-            None => Path::new(&spec.file).to_path_buf(),
+    /// The mesh file that is named, which lies below the folder of the scene once `..` and links are followed, unless the
+    /// scene may read outside.
+    fn mesh_file(&self, spec: &GmshSpec) -> Result<PathBuf, Error> {
+        // The folder of a scene that is named alone is the empty path.
+        let folder = self.scene.folder.as_deref().unwrap_or(Path::new(""));
+        let file = folder.join(&spec.file);
+        if self.scene.reads_outside {
+            return Ok(file);
+        }
+        let real = |path: &Path| {
+            path.canonicalize().map_err(|source| Error::File { action: "read", path: path.into(), source })
         };
-        let mesh = GmshFile::read(file)?.mesh(spec.group.as_deref(), spec.scale)?;
+        let home = real(if folder.as_os_str().is_empty() { Path::new(".") } else { folder })?;
+        if !real(&file)?.starts_with(home) {
+            let message = format!(
+                "the file {} lies outside the folder of the scene; copy it there, or allow it (--allow-outside)",
+                file.display()
+            );
+            return Err(wrong(self.path(".file"), message));
+        }
+        Ok(file)
+    }
+
+    fn gmsh(&self, spec: &GmshSpec) -> Result<Mesh, Error> {
+        let mesh = GmshFile::read(self.mesh_file(spec)?)?.mesh(spec.group.as_deref(), spec.scale)?;
         let (found, model) = (mesh.dimension(), self.scene.model.name());
         if found != self.scene.model.dimension() {
             let body = ["a bar", "plane", "in space"][found - 1];

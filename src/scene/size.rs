@@ -5,28 +5,8 @@ use std::path::Path;
 use super::schema::{AxisSpec, BodySpec, ElementSpec, Scene, ShapeSpec, SolidElementSpec, ZoneSpec};
 use super::wrong;
 use crate::error::Error;
+use crate::memory;
 use crate::mesh::MAX_NODES;
-
-/// Bytes of a program that does nothing yet.
-const START: f64 = 9e6;
-
-/// Bytes of a node: coordinates, displacements, loads, stresses, and what finds a node.
-const OF_NODE: f64 = 120.0;
-
-/// Bytes of a node of an element: the mesh, and its copies by node.
-const OF_CONNECTION: f64 = 16.0;
-
-/// Bytes of an entry of the stiffness: the lower triangle, scaled, ordered, and in the graph of the ordering.
-const OF_ENTRY: f64 = 40.0;
-
-/// Bytes of an unknown, and of an entry of the stiffness, where a multigrid hierarchy takes the place of its factor.
-const OF_HIERARCHY: [f64; 2] = [100.0, 20.0];
-
-/// Bytes of a value of the factor, with the workspace.
-const OF_FACTOR: f64 = 9.2;
-
-/// Bytes of a value of a dense matrix on the contact dofs, of which a method keeps several.
-const OF_DENSE: f64 = 80.0;
 
 /// Where a dense matrix would have more than this share of the values of the factor, nothing is condensed.
 const DENSE_SHARE: f64 = 0.4;
@@ -86,6 +66,16 @@ const Q8: Counts = Counts { nodes: 3.0, line: 2.0, connections: 8.0, neighbours:
 const TET4: Counts = Counts { nodes: 1.0, line: 1.0, connections: 24.0, neighbours: 15.0 };
 const HEX8: Counts = Counts { nodes: 1.0, line: 1.0, connections: 8.0, neighbours: 27.0 };
 
+/// Seconds of meshing and assembly for an entry of the stiffness, on one processor of 2024.
+const ASSEMBLY: f64 = 3e-8;
+
+impl Size {
+    /// Seconds of meshing and assembly, estimated.
+    pub fn assembly_seconds(&self) -> f64 {
+        ASSEMBLY * self.stiffness_entries
+    }
+}
+
 impl Scene {
     /// Estimates the size of the scene without building it; of a mesh file its length alone is read.
     pub fn size(&self) -> Size {
@@ -94,8 +84,8 @@ impl Scene {
             dofs: 0.0,
             stiffness_entries: 0.0,
             factor_entries: 0.0,
-            bytes: START,
-            multigrid_bytes: START,
+            bytes: memory::START,
+            multigrid_bytes: memory::START,
         };
         let bodies = std::iter::once(&self.body).chain(self.further_bodies.iter().map(|further| &further.body));
         let radius = self.obstacles.iter().map(|obstacle| match &obstacle.shape {
@@ -124,9 +114,10 @@ impl Scene {
             size.dofs += nodes * dimension;
             size.stiffness_entries += entries;
             size.factor_entries += factor;
-            let mesh = OF_NODE * nodes + OF_CONNECTION * cells * counts.connections;
-            size.bytes += mesh + OF_ENTRY * entries + OF_FACTOR * factor + OF_DENSE * dense;
-            size.multigrid_bytes += mesh + OF_HIERARCHY[0] * nodes * dimension + OF_HIERARCHY[1] * entries;
+            let (mesh, dofs) = (memory::of_mesh(nodes, cells * counts.connections), nodes * dimension);
+            let direct = memory::of_factor(factor, size_of::<f64>()) + memory::of_dense(dense.sqrt());
+            size.bytes += mesh + memory::of_problem(dofs, entries) + direct;
+            size.multigrid_bytes += mesh + memory::of_hierarchy(dofs, entries);
         }
         size
     }

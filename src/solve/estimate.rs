@@ -1,11 +1,17 @@
 //! What the direct and the iterative path will cost, from the size of a problem alone.
 
 use super::Settings;
-use crate::error::{Error, memory};
+use super::rules::factor_seconds;
+use crate::error::{Error, memory as written};
+use crate::memory;
 use crate::problem::ContactProblem;
+use crate::watch::Watch;
 
 /// Rigid motions of a body in space: its factor grows faster than that of a plane body.
 const MOTIONS_IN_SPACE: usize = 6;
+
+/// Values of the factor of a bar for an unknown, about.
+const ALONG_A_LINE: f64 = 4.0;
 
 /// The direct path is exact and its bound proven: it is left only where it takes so many times as long. In space that is
 /// beyond some 160,000 dofs.
@@ -22,12 +28,16 @@ const UNSURE: f64 = 2.0;
 pub struct Estimate {
     /// Bytes of the direct path at its peak, the problem itself included.
     pub direct_bytes: f64,
+    /// Values of the factor.
+    pub factor_entries: f64,
     /// Seconds of the factorisation on one processor of 2024.
     pub direct_seconds: f64,
     /// Bytes of the iterative path at its peak, the problem itself included.
     pub multigrid_bytes: f64,
     /// Seconds of hierarchy and iteration.
     pub multigrid_seconds: f64,
+    /// Seconds of the hierarchy alone.
+    pub hierarchy_seconds: f64,
     knows_motions: bool,
 }
 
@@ -43,20 +53,24 @@ pub(super) enum Choice {
 }
 
 impl Estimate {
-    /// The estimate for `problem`; its near-null space tells whether it is a body in space.
+    /// The estimate for `problem`; its near-null space tells whether it is a bar or a body in space.
     pub fn of(problem: &ContactProblem) -> Self {
         let dofs = problem.dofs() as f64;
         let entries = problem.stiffness().lower().entries() as f64;
-        let in_space = problem.near_null().is_some_and(|near_null| near_null.count() >= MOTIONS_IN_SPACE);
-        let (factor, seconds) = match in_space {
-            true => (23.0 * dofs.powf(4.0 / 3.0), 6.5e-10 * dofs.powi(2)),
-            false => (6.0 * dofs * dofs.max(2.0).log2(), 3.7e-9 * dofs.powf(1.5)),
+        let motions = problem.near_null().map(|near_null| near_null.count());
+        let (factor, seconds) = match motions {
+            Some(1) => (ALONG_A_LINE * dofs, factor_seconds(0.0, (ALONG_A_LINE * dofs) as usize)[0]),
+            Some(MOTIONS_IN_SPACE..) => (23.0 * dofs.powf(4.0 / 3.0), 6.5e-10 * dofs.powi(2)),
+            _ => (6.0 * dofs * dofs.max(2.0).log2(), 3.7e-9 * dofs.powf(1.5)),
         };
+        let both = 2.0 * entries - dofs;
         Estimate {
-            direct_bytes: START + 9.2 * factor + 80.0 * entries,
+            direct_bytes: memory::START + memory::of_problem(dofs, both) + memory::of_factor(factor, size_of::<f64>()),
+            factor_entries: factor,
             direct_seconds: seconds,
-            multigrid_bytes: START + 100.0 * dofs + 40.0 * entries,
+            multigrid_bytes: memory::START + memory::of_hierarchy(dofs, both),
             multigrid_seconds: 1.3e-7 * entries,
+            hierarchy_seconds: 4e-8 * entries,
             knows_motions: problem.near_null().is_some(),
         }
     }
@@ -90,40 +104,30 @@ impl Estimate {
     pub(super) fn without_factor(&self, factor: f64, most_bytes: f64) -> Result<String, Error> {
         let multigrid = self.multigrid_bytes;
         if multigrid > most_bytes {
-            return Err(Error::NoRoom { factor, multigrid, allowed: most_bytes });
+            return Err(Error::NoRoom { factor, multigrid, allowed: most_bytes, ended: None });
         }
-        let [of_multigrid, of_factor, allowed] = [multigrid, factor, most_bytes].map(memory);
+        let [of_multigrid, of_factor, allowed] = [multigrid, factor, most_bytes].map(written);
         Ok(format!(
             "by multigrid, of about {of_multigrid}: with a factor it would take about {of_factor}, {allowed} are allowed"
         ))
     }
 }
 
-/// Bytes of a program that does nothing yet.
-const START: f64 = 9e6;
-
-/// Bytes of an unknown: loads, displacements, residuals.
-const OF_DOF: f64 = 120.0;
-
-/// Bytes of an entry of the stiffness, both triangles: its file, itself, scaled, ordered, and in the graph of the ordering.
-const OF_ENTRY: f64 = 32.0;
-
-/// Bytes of a value of a dense matrix on the contact dofs, of which a method keeps several.
-const OF_DENSE: f64 = 80.0;
-
-/// Workspace of a factorisation, beside its factor.
-const WORKSPACE: f64 = 1.15;
-
 /// What a solve keeps beside the problem.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Kept {
+    /// Nothing yet: the problem is being ordered.
+    Nothing,
     /// The factor of the body, with so many values, and dense matrices on so many contact dofs.
-    Condensed { values: usize, is_single: bool, contact_dofs: usize },
-    /// The factor of the body, with so many values, and those of two contact sets.
-    Factors { values: usize },
+    Condensed { values: usize, is_single: bool, contact_dofs: usize, by_interior_point: bool },
+    /// The factor of the body and those of two contact sets, with so many values each; so many contact dofs come last.
+    Factors { values: usize, last: usize, by_interior_point: bool },
     /// A hierarchy instead of a factor.
     Multigrid,
 }
+
+/// Factors that exist at one time where every contact set has its own.
+pub(super) const FACTORS: f64 = 2.0;
 
 /// Refuses a problem that would take more memory than `settings` allow.
 ///
@@ -133,20 +137,40 @@ pub(super) fn check_memory(problem: &ContactProblem, kept: Kept, settings: &Sett
     let Some(allowed) = settings.memory else { return Ok(()) };
     let (dofs, lower) = (problem.dofs() as f64, problem.stiffness().lower().entries() as f64);
     let stiffness_entries = 2.0 * lower - dofs;
-    let of_problem = START + OF_DOF * dofs + OF_ENTRY * stiffness_entries;
-    let (factor_entries, bytes) = match kept {
-        Kept::Condensed { values, is_single, contact_dofs } => {
-            let bytes = if is_single { size_of::<f32>() } else { size_of::<f64>() };
-            let factor = WORKSPACE * bytes as f64 * values as f64;
-            (values as f64, of_problem + factor + OF_DENSE * (contact_dofs as f64).powi(2))
+    let of_interior_point = |values: f64, is_used| if is_used { memory::of_interior_point(values) } else { 0.0 };
+    let (factor_entries, beside) = match kept {
+        Kept::Nothing => (0, 0.0),
+        Kept::Condensed { values, is_single, contact_dofs, by_interior_point } => {
+            let size = if is_single { size_of::<f32>() } else { size_of::<f64>() };
+            let dense = contact_dofs as f64;
+            let on_boundary = memory::of_dense(dense) + of_interior_point(dense * dense / 2.0, by_interior_point);
+            (values, memory::of_factor(values as f64, size) + on_boundary)
         }
-        Kept::Factors { values } => {
-            (values as f64, of_problem + 3.0 * WORKSPACE * size_of::<f64>() as f64 * values as f64)
+        Kept::Factors { values, last, by_interior_point } => {
+            let factors = FACTORS * memory::of_factor(values as f64, size_of::<f64>());
+            let beside = memory::of_sets(stiffness_entries) + memory::of_boundary(last as f64);
+            (values, factors + beside + of_interior_point(values as f64, by_interior_point))
         }
-        Kept::Multigrid => (0.0, Estimate::of(problem).multigrid_bytes),
+        Kept::Multigrid => (0, 0.0),
+    };
+    let bytes = match kept {
+        Kept::Multigrid => Estimate::of(problem).multigrid_bytes,
+        _ => memory::START + memory::of_problem(dofs, stiffness_entries) + beside,
     };
     if bytes > allowed {
+        let factor_entries = factor_entries as f64;
         return Err(Error::TooLarge { dofs, stiffness_entries, factor_entries, bytes, allowed });
     }
     Ok(())
+}
+
+/// Refuses work that is estimated to take so many seconds if there is no time for it.
+///
+/// # Errors
+/// [`Error::OutOfTime`].
+pub(super) fn check_time(watch: &Watch, estimate: f64) -> Result<(), Error> {
+    match watch.time_left() {
+        Some(time) if !watch.allows(estimate) => Err(Error::OutOfTime { needed: watch.needed(estimate), time }),
+        _ => Ok(()),
+    }
 }

@@ -2,8 +2,8 @@
 
 use std::time::Instant;
 
-use super::Settings;
-use super::estimate::{Kept, check_memory};
+use super::estimate::{Estimate, Kept, check_memory, check_time};
+use super::{Settings, pace};
 use crate::error::Error;
 use crate::method::mprgp::{self, Limits, Start};
 use crate::problem::{ContactProblem, check_gap};
@@ -123,6 +123,7 @@ impl Iterative {
             proven: None,
             refinements: None,
             reason: None,
+            attempts: Vec::new(),
             condensed_dofs: problem.dofs(),
             seconds: Seconds { factor: 0.0, solve: clock.elapsed().as_secs_f64() },
         };
@@ -140,8 +141,11 @@ pub(super) fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Sol
         return Err(Error::Interrupted);
     }
     check_memory(problem, Kept::Multigrid, settings)?;
+    pace::learn(&settings.watch);
+    let estimate = Estimate::of(problem).hierarchy_seconds;
+    check_time(&settings.watch, estimate)?;
     settings.watch.step("multigrid hierarchy", 0);
-    let iterative = Iterative::new(problem, settings.threads)?;
+    let iterative = settings.watch.timed(estimate, || Iterative::new(problem, settings.threads))?;
     let timed = |mut solution: Solution| {
         solution.seconds.factor += iterative.seconds;
         solution.seconds.solve += iterative.seconds;

@@ -1,9 +1,12 @@
 //! From a contact problem to a certified answer: select rows, scale, condense, method, expand, certify.
 
+mod attempts;
 mod boundary;
 mod estimate;
 mod iterative;
+mod layout;
 mod loading;
+mod pace;
 mod path;
 mod preparation;
 mod prepared;
@@ -14,6 +17,7 @@ mod stepping;
 
 pub use crate::method::mprgp::Start;
 pub use crate::method::parametric::{Event, Piece};
+pub use attempts::solve;
 pub use boundary::BoundarySolution;
 pub use estimate::Estimate;
 pub use iterative::Iterative;
@@ -27,7 +31,6 @@ use crate::method::penalty::{self, BEST_PENALTY, Ladder};
 use crate::method::{Outcome, ScaledProblem, active_set, dual_active_set};
 use crate::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration, Solution};
-use estimate::Choice;
 
 /// Iterations of the active-set loop after which its start is taken for a poor one.
 const PATIENCE: usize = 16;
@@ -38,118 +41,6 @@ const PATIENCE: usize = 16;
 /// As [`solve`].
 pub fn solve_qp(problem: &ContactProblem) -> Result<Solution, Error> {
     solve(problem, &Settings::with_method(Method::Qp))
-}
-
-/// Solves a contact problem; `Ok` means that the answer is certified to `settings.tolerance`.
-///
-/// # Errors
-/// * [`Error::Setting`] for a setting outside its range,
-/// * [`Error::Infeasible`] for contact rows that contradict each other,
-/// * [`Error::Unbounded`] for a load that drives a motion which nothing stops,
-/// * [`Error::UnderHeld`] for a motion that nothing resists: the answer would not be unique,
-/// * [`Error::NotConvex`] for a stiffness with a negative eigenvalue,
-/// * [`Error::NotCertified`] with the best answer, where it does not meet the tolerance,
-/// * [`Error::NoRoom`] where `settings.memory` suffices for no way, [`Error::TooLarge`] where not for the one that was named,
-/// * [`Error::Interrupted`] where the watch was asked to stop before there was an answer,
-/// * [`Error::Numerical`] where memory does not suffice.
-pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
-    let settings = &settings.started()?;
-    if settings.method == Method::Mprgp {
-        return iterative::solve(problem, settings);
-    }
-    let chooses = settings.method == Method::Auto;
-    let estimate = Estimate::of(problem);
-    match if chooses { estimate.choose(settings.memory.unwrap_or(f64::INFINITY))? } else { Choice::Factor } {
-        Choice::Factor => {}
-        Choice::Room { reason } => return by_multigrid(problem, settings, reason),
-        // What the iteration cannot take, the direct path may, unless there is no time for it.
-        Choice::Speed { reason } => match by_multigrid(problem, settings, reason) {
-            Err(Error::NotCertified { .. }) if settings.watch.time_left().is_none() && !settings.watch.is_stopped() => {
-            }
-            Err(Error::Numerical { .. } | Error::NotConvex { .. }) if !settings.watch.is_stopped() => {}
-            decided => return decided,
-        },
-    }
-    let prepared = match Prepared::with_settings(problem, settings) {
-        Err(Error::OutOfTime { needed, time }) => return Err(nothing_found(problem, needed, time)?),
-        Err(Error::TooLarge { bytes, allowed, .. }) if chooses => {
-            return by_multigrid(problem, settings, estimate.without_factor(bytes, allowed)?);
-        }
-        prepared => prepared?,
-    };
-    let preparation = prepared.seconds();
-    let with_preparation = |mut solution: Solution| {
-        solution.seconds.factor += preparation.factor;
-        solution.seconds.solve += preparation.solve;
-        solution
-    };
-    let fell_short = match prepared.solve(settings) {
-        Ok(solution) => return Ok(with_preparation(solution)),
-        Err(Error::NotCertified { solution, condition, value, tolerance }) => {
-            let solution = Box::new(with_preparation(*solution));
-            Error::NotCertified { solution, condition, value, tolerance }
-        }
-        Err(error @ Error::Numerical { .. }) => error,
-        Err(error) => return Err(error),
-    };
-    if !prepared.is_a_shortcut() || settings.watch.is_over() {
-        return Err(fell_short);
-    }
-    drop(prepared);
-    // The time that the shortcut took is part of the answer's.
-    let method = if settings.method == Method::Auto { Method::ActiveSet } else { settings.method };
-    let safe = Settings { method, precision: Precision::Double, ..settings.clone() };
-    let bound = |error: &Error| match error {
-        Error::NotCertified { solution, .. } => solution.certificate.energy_error_bound,
-        _ => f64::INFINITY,
-    };
-    match solve(problem, &safe) {
-        // Where it is cut short, the shortcut may have come further.
-        Err(error @ (Error::NotCertified { .. } | Error::Interrupted)) if bound(&fell_short) < bound(&error) => {
-            Err(fell_short)
-        }
-        solved => solved.map(with_preparation),
-    }
-}
-
-/// The answer without a factor, and why there is none.
-///
-/// # Errors
-/// As [`Iterative::solve_gap`].
-fn by_multigrid(problem: &ContactProblem, settings: &Settings, reason: String) -> Result<Solution, Error> {
-    let reason = Some(reason);
-    match iterative::solve(problem, settings) {
-        Err(Error::NotCertified { solution, condition, value, tolerance }) => {
-            let solution = Box::new(Solution { reason, ..*solution });
-            Err(Error::NotCertified { solution, condition, value, tolerance })
-        }
-        found => found.map(|solution| Solution { reason, ..solution }),
-    }
-}
-
-/// The answer before anything is found: no displacement and no force, and how far that is off.
-///
-/// # Errors
-/// Those of the certificate.
-fn nothing_found(problem: &ContactProblem, needed: f64, time: f64) -> Result<Error, Error> {
-    let (displacement, multiplier) = (vec![0.0; problem.dofs()], vec![0.0; problem.rows()]);
-    let certificate = problem.certify_in(None, &displacement, &multiplier)?;
-    let solution = Solution {
-        displacement,
-        multiplier,
-        contact_set: ContactSet::open(problem.rows()),
-        method: "none".to_string(),
-        iterations: 0,
-        history: Vec::new(),
-        certificate,
-        proven: None,
-        refinements: None,
-        reason: None,
-        condensed_dofs: problem.dofs(),
-        seconds: Default::default(),
-    };
-    let condition = "the time of one factorisation (s)";
-    Ok(Error::NotCertified { solution: Box::new(solution), condition, value: needed, tolerance: time })
 }
 
 /// Displacement and multiplier of the body with the rows of `closed` held at their gaps and all others free: one
@@ -253,6 +144,9 @@ fn settle(scaled: &ScaledProblem, start: ContactSet, settings: &Settings) -> Res
     }
     let ladder = Ladder { first: 1.0, last: BEST_PENALTY, threshold: 0.0, extrapolate: false, goal: None };
     let approach = penalty::solve(scaled, first.contact_set, ladder, settings.max_iterations)?;
+    if scaled.watch().is_over() {
+        return Ok(Outcome { settled: false, variant: "-unsettled", ..approach });
+    }
     let mut second = active_set::solve(scaled, approach.contact_set, settings.max_iterations)?;
     second.history = [first.history, approach.history, second.history].concat();
     second.iterations = second.history.len();

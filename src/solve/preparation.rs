@@ -3,13 +3,14 @@
 use std::sync::OnceLock;
 use std::time::Instant;
 
-use super::estimate::{Kept, check_memory};
+use super::estimate::{Kept, check_memory, check_time};
+use super::layout::Layout;
 use super::rules::{Way, factor_seconds};
-use super::{Condense, Precision, Prepared, Settings};
+use super::{Prepared, Settings, pace};
 use crate::error::Error;
 use crate::problem::{ContactProblem, EnergyNorm};
 use crate::solution::Seconds;
-use crate::sparse::{Analysis, AugmentedMatrix, Cholesky, FactorError, largest};
+use crate::sparse::{AugmentedMatrix, Cholesky, FactorError, largest};
 use crate::transform::{Condensation, RowSelection, Scaling};
 
 /// A pivot of the equilibrated stiffness below this is too uncertain in single precision.
@@ -23,92 +24,73 @@ impl Prepared {
     /// [`Error::Interrupted`] or [`Error::TooLarge`], where time or memory is not left for it.
     pub fn with_settings(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
         let settings = &settings.started()?;
-        let Settings { condense, threads, watch, .. } = settings;
+        let Settings { threads, watch, .. } = settings;
         let clock = Instant::now();
         watch.step("ordering", 0);
+        pace::learn(watch);
         let selection = RowSelection::of(problem.contact(), problem.gap())?;
         let scaling = Scaling::of(problem.stiffness(), &selection.contact(problem.contact()))?;
         let diagonal = problem.stiffness().diagonal();
         let (has_empty_diagonal, stiffest) = (diagonal.contains(&0.0), largest(&diagonal));
         let factor_clock = Instant::now();
-        let contact_dofs = Condensation::contact_dofs(scaling.contact());
-        let analysis = match condense {
-            Condense::Auto => Condensation::analyse(problem.stiffness(), &contact_dofs)?,
-            Condense::Never => None,
-        }
-        .map(|analysis| analysis.with_threads(*threads));
-        let last = match &analysis {
-            Some(_) => contact_dofs.clone(),
-            None => EnergyNorm::last_dofs(scaling.contact()),
-        };
-        let of_all = match analysis {
-            Some(_) => None,
-            None => Some(Analysis::with_last(problem.stiffness(), &last)?.with_threads(*threads)),
-        };
-        let work = analysis.as_ref().or(of_all.as_ref()).map_or(0.0, Analysis::multiplications);
-        let mut way = Way::chosen(settings, analysis.is_some(), work, problem.rows());
+        let layout = Layout::within(problem, &scaling, settings)?;
+        let Layout { analysis, last, is_condensed, multiplications, mut way, is_single: single } = layout;
         if watch.is_stopped() {
             return Err(Error::Interrupted);
         }
         watch.step("factorisation", 0);
-        if let Some(left) = watch.time_left() {
-            let values = analysis.as_ref().or(of_all.as_ref()).map_or(0, Analysis::factor_entries);
-            let [double, single] = factor_seconds(work, values);
-            let may_be_single = settings.precision != Precision::Double && analysis.is_some();
-            match way {
-                Some(_) if double > left && single <= left && may_be_single => way = Some(Way::ActiveSetMixed),
-                _ if double.min(if may_be_single { single } else { double }) > left => {
-                    return Err(Error::OutOfTime { needed: double, time: left });
+        let proof_seconds = match last.len() as f64 {
+            0.0 => pace::sweeps(problem.rows(), analysis.factor_entries() as f64),
+            boundary => pace::sweeps(problem.rows(), boundary * boundary),
+        };
+        let factor = |single| {
+            let estimate = factor_seconds(multiplications, analysis.factor_entries())[usize::from(single)];
+            let scaled = scaling.equilibration();
+            let factor = || analysis.factor_equilibrated(problem.stiffness(), scaled, single);
+            match watch.timed(estimate, factor) {
+                Ok(cholesky) if single && cholesky.smallest_pivot() <= SINGLE_PIVOT => Ok(None),
+                Ok(cholesky) if cholesky.is_safely_definite() || cholesky.is_definite(scaling.stiffness()) => {
+                    Ok(Some(cholesky))
                 }
-                _ => {}
+                Ok(_) | Err(FactorError::NotPositiveDefinite) => Ok(None),
+                Err(error) => Err(Error::from(error)),
             }
-        }
-        let precision = way.map_or(settings.precision, |way| way.settings(settings).precision);
-        let single = precision == Precision::Mixed && analysis.is_some();
-        let kept = match (&analysis, &of_all) {
-            (Some(analysis), _) => {
-                let (values, contact_dofs) = (analysis.factor_entries(), contact_dofs.len());
-                Kept::Condensed { values, is_single: single, contact_dofs }
-            }
-            (None, of_all) => Kept::Factors { values: of_all.as_ref().map_or(0, Analysis::factor_entries) },
         };
-        check_memory(problem, kept, settings)?;
-        let factor = |analysis: &Analysis, single| match analysis.factor_equilibrated(
-            problem.stiffness(),
-            scaling.equilibration(),
-            single,
-        ) {
-            Ok(cholesky) if single && cholesky.smallest_pivot() <= SINGLE_PIVOT => Ok(None),
-            Ok(cholesky) if cholesky.is_safely_definite() || cholesky.is_definite(scaling.stiffness()) => {
-                Ok(Some(cholesky))
-            }
-            Ok(_) | Err(FactorError::NotPositiveDefinite) => Ok(None),
-            Err(error) => Err(Error::from(error)),
-        };
-        let definite = |analysis: &Analysis| match single.then(|| factor(analysis, true)).transpose()?.flatten() {
+        let definite = || match single.then(|| factor(true)).transpose()?.flatten() {
             Some(cholesky) => Ok(Some(cholesky)),
-            None => factor(analysis, false),
+            None => {
+                if single {
+                    let values = analysis.factor_entries();
+                    let kept = Kept::Condensed {
+                        values,
+                        is_single: false,
+                        contact_dofs: last.len(),
+                        by_interior_point: false,
+                    };
+                    check_memory(problem, kept, settings)?;
+                    check_time(watch, factor_seconds(multiplications, values)[0])?;
+                }
+                factor(false)
+            }
         };
-        let cholesky = match analysis.as_ref().or(of_all.as_ref()) {
-            Some(analysis) if !has_empty_diagonal => definite(analysis)?,
-            _ => None,
-        };
-        drop(of_all);
+        let cholesky = if has_empty_diagonal { None } else { definite()? };
+        drop(analysis);
         if cholesky.is_none() {
             // Without a bound no accuracy can be held: what is exact is left.
             let exact = Settings { accuracy: None, ..settings.clone() };
-            way = Way::chosen(&exact, analysis.is_some(), work, problem.rows());
+            way = Way::chosen(&exact, is_condensed, multiplications, problem.rows());
         }
         let mut condensation = None;
-        if analysis.is_some() {
+        if is_condensed {
             let shifted = cholesky.is_none();
             let factor = match &cholesky {
                 Some(cholesky) => Some(cholesky.clone()),
-                None => factor_with_rows(&scaling, &contact_dofs, *threads)?,
+                None => factor_with_rows(&scaling, &last, settings)?,
             };
             // Where even all rows together do not hold the body, the full problem tells why.
             if let Some(factor) = factor {
-                condensation = Some(Condensation::new(factor, contact_dofs, scaling.contact(), shifted)?);
+                check_time(watch, pace::dense(last.len()))?;
+                condensation = Some(Condensation::new(factor, last.clone(), scaling.contact(), shifted)?);
             }
         }
         let augmented = match &condensation {
@@ -130,7 +112,8 @@ impl Prepared {
             condensation,
             augmented,
             way,
-            multiplications: work,
+            multiplications,
+            proof_seconds,
             condensed_norm: OnceLock::new(),
             loading: OnceLock::new(),
             seconds: Seconds { factor, solve: clock.elapsed().as_secs_f64() },
@@ -139,9 +122,13 @@ impl Prepared {
 }
 
 /// The factor of `K + B'B` with the contact dofs last, or `None` where it is not safely definite.
-fn factor_with_rows(scaling: &Scaling, contact_dofs: &[usize], threads: usize) -> Result<Option<Cholesky>, Error> {
-    let augmented =
-        AugmentedMatrix::with_last(scaling.stiffness(), scaling.contact(), contact_dofs)?.with_threads(threads);
+///
+/// # Errors
+/// [`Error::OutOfTime`] before it is factorised, [`Error::Numerical`].
+fn factor_with_rows(scaling: &Scaling, contact_dofs: &[usize], settings: &Settings) -> Result<Option<Cholesky>, Error> {
+    let augmented = AugmentedMatrix::with_last(scaling.stiffness(), scaling.contact(), contact_dofs)?;
+    let augmented = augmented.with_threads(settings.threads);
+    check_time(&settings.watch, pace::factorisation(augmented.analysis()))?;
     let matrix = augmented.matrix(|_| 1.0, 0.0);
     match augmented.factor(&matrix) {
         Ok(cholesky) if cholesky.is_definite(&matrix) => Ok(Some(cholesky)),

@@ -4,9 +4,10 @@ use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
 use super::boundary::{BoundarySolution, Found};
+use super::estimate::check_time;
 use super::loading::Loading;
 use super::rules::Way;
-use super::{Condense, Method, Path, Settings, last_resort, run};
+use super::{Condense, Method, Path, Settings, last_resort, pace, run};
 use crate::error::Error;
 use crate::method::parametric::Compliance;
 use crate::method::{ScaledProblem, WORK_TOLERANCE, active_set};
@@ -14,6 +15,10 @@ use crate::problem::{ContactProblem, EnergyNorm, check_gap, check_load};
 use crate::solution::{Certificate, ContactSet, Iteration, Seconds, Solution};
 use crate::sparse::{AugmentedMatrix, Equilibration, dot, largest, ldexp};
 use crate::transform::{Condensation, RowSelection, Scaling};
+use crate::watch::Watch;
+
+/// Factorisations for one step of a loop where K is not definite by itself.
+const SINGULAR: f64 = 3.0;
 
 /// A contact problem, scaled, condensed where that pays, factorised, its load swept through the factor.
 #[derive(Clone, Debug)]
@@ -33,6 +38,8 @@ pub struct Prepared {
     /// What was chosen, where the choice was left to the program.
     pub(super) way: Option<Way>,
     pub(super) multiplications: f64,
+    /// Seconds that proving which rows are open and closed takes, estimated.
+    pub(super) proof_seconds: f64,
     pub(super) seconds: Seconds,
 }
 
@@ -208,7 +215,7 @@ impl Prepared {
     }
 
     /// The settings with the method that was chosen, where they leave the choice.
-    fn resolved(&self, settings: &Settings) -> Settings {
+    pub(super) fn resolved(&self, settings: &Settings) -> Settings {
         match settings.method {
             Method::Auto => self.way.unwrap_or(Way::ActiveSet).settings(settings),
             _ => settings.clone(),
@@ -224,8 +231,9 @@ impl Prepared {
         settings: &Settings,
     ) -> Result<Found, Error> {
         let clock = Instant::now();
+        let watch = self.watch_of_loop(settings)?;
         let (problem, unit) = self.scaled(&loading, &gap)?;
-        let task = ScaledProblem::new(&problem, &self.augmented, self.norm.is_some()).watched(&settings.watch);
+        let task = ScaledProblem::new(&problem, &self.augmented, self.norm.is_some()).watched(&watch);
         let start = start.map(|set| self.selection.restrict_set(set));
         let bound = |displacement: &[f64], multiplier: &[f64]| {
             let norm = self.condensed_norm(&problem).ok().flatten();
@@ -237,6 +245,26 @@ impl Prepared {
             run(&task, start, settings, &bound).map_err(|error| self.expand_error(error, &loading.load, &gap))?;
         let seconds = Seconds { factor: task.factor_seconds(), solve: clock.elapsed().as_secs_f64() };
         Ok(Found { loading, gap, problem, unit, outcome, seconds, refined: None })
+    }
+
+    /// A watch that is over as soon as there is no time left for one more factorisation of a loop.
+    ///
+    /// # Errors
+    /// [`Error::OutOfTime`] where there is none for the first.
+    fn watch_of_loop(&self, settings: &Settings) -> Result<Watch, Error> {
+        if settings.watch.time_left().is_none() {
+            return Ok(settings.watch.clone());
+        }
+        let analysis = self.augmented.analysis();
+        // Where K is not definite, the start and the test of uniqueness factorise too.
+        let factors = if self.norm.is_some() { 1.0 } else { SINGULAR };
+        let of_loop = factors * pace::factorisation(analysis);
+        let (first, each) = match settings.method {
+            Method::Qp => (2.0 * pace::interior_point(analysis), pace::interior_point(analysis).max(of_loop)),
+            _ => (of_loop, of_loop),
+        };
+        check_time(&settings.watch, first)?;
+        Ok(settings.watch.keeping(each))
     }
 
     /// The answer on the boundary, certified there.
@@ -396,6 +424,7 @@ impl Prepared {
             proven: None,
             refinements: refined.as_ref().map(|refined| refined.steps),
             reason: None,
+            attempts: Vec::new(),
             condensed_dofs: self.condensed_dofs(),
             seconds: Seconds { solve: seconds.solve + clock.elapsed().as_secs_f64(), ..*seconds },
         };
@@ -403,7 +432,8 @@ impl Prepared {
             solution = self.corrected(solution, &problem, settings)?;
         }
         let clock = Instant::now();
-        let proven = norm.as_ref().filter(|_| settings.prove && !settings.watch.is_over());
+        let may_prove = settings.prove && !settings.watch.is_stopped() && settings.watch.allows(self.proof_seconds);
+        let proven = norm.as_ref().filter(|_| may_prove);
         solution.proven = proven.and_then(|norm| problem.prove_in(norm, &solution.displacement, &solution.multiplier));
         solution.seconds.solve += clock.elapsed().as_secs_f64();
         Ok(solution)

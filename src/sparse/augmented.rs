@@ -34,32 +34,37 @@ impl AugmentedMatrix {
     pub fn with_last(stiffness: &SymmetricMatrix, rows: &SparseMatrix, last: &[usize]) -> Result<Self, FactorError> {
         let dim = stiffness.dim();
         let by_row = rows.transposed();
-        let mut columns: Vec<Vec<usize>> = (0..dim)
-            .map(|column| {
-                let mut of_column = vec![column];
-                of_column.extend(stiffness.lower().column(column).map(|entry| entry.0));
-                of_column
-            })
-            .collect();
         let mut squares = Vec::new();
         let mut row_starts = vec![0];
         for row in 0..by_row.columns() {
             for (first, a) in by_row.column(row) {
                 for (second, b) in by_row.column(row).filter(|entry| entry.0 >= first) {
-                    columns[first].push(second);
                     squares.push((first, second, a * b));
                 }
             }
             row_starts.push(squares.len());
         }
-        let mut starts = vec![0];
-        let mut indices = Vec::new();
-        for mut of_column in columns {
+        let mut added: Vec<(usize, usize)> = squares.iter().map(|&(first, second, _)| (first, second)).collect();
+        added.sort_unstable();
+        added.dedup();
+        let mut starts = Vec::with_capacity(dim + 1);
+        starts.push(0);
+        let mut indices = Vec::with_capacity(stiffness.lower().entries() + added.len());
+        let mut of_column = Vec::new();
+        let mut rest = added.as_slice();
+        for column in 0..dim {
+            let (here, later) = rest.split_at(rest.partition_point(|place| place.0 == column));
+            rest = later;
+            of_column.clear();
+            of_column.push(column);
+            of_column.extend(stiffness.lower().column(column).map(|entry| entry.0));
+            of_column.extend(here.iter().map(|place| place.1));
             of_column.sort_unstable();
             of_column.dedup();
-            indices.extend(of_column);
+            indices.extend_from_slice(&of_column);
             starts.push(indices.len());
         }
+        drop(added);
         let slot = |row: usize, column: usize| {
             let range = starts[column]..starts[column + 1];
             starts[column] + indices[range].partition_point(|&index| index < row)
@@ -77,6 +82,11 @@ impl AugmentedMatrix {
     /// The same matrices, whose factorisations use so many threads.
     pub fn with_threads(self, threads: usize) -> Self {
         AugmentedMatrix { analysis: self.analysis.with_threads(threads), ..self }
+    }
+
+    /// The order and structure of their factors.
+    pub fn analysis(&self) -> &Analysis {
+        &self.analysis
     }
 
     /// The matrix K + shift I + B' diag(weight(i)) B.

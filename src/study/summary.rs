@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::problem::ContactProblem;
-use crate::solution::{Certificate, Goal, Iteration, Solution};
+use crate::solution::{Attempt, Certificate, Goal, Iteration, Solution};
 
 /// One answer in numbers.
 #[derive(Clone, Debug, Serialize)]
@@ -25,6 +25,9 @@ pub struct Summary {
     /// Why no factor was taken, where the program decided that.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
+    /// What else was tried, in order.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub attempts: Vec<AttemptSummary>,
     /// Closed rows and forces.
     pub contact: ContactSummary,
     /// Rows whose contact is beyond doubt, where they were asked for.
@@ -41,6 +44,17 @@ pub struct Summary {
     pub seconds: SecondsSummary,
     /// Iteration by iteration: number of closed rows, and the penalty where there is one.
     pub history: Vec<HistoryEntry>,
+}
+
+/// A way that was tried beside the one that gave the answer.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AttemptSummary {
+    /// The method.
+    pub method: String,
+    /// Wall-clock seconds that it took.
+    pub seconds: f64,
+    /// Why its end was not the end.
+    pub reason: String,
 }
 
 /// One iteration in numbers.
@@ -145,6 +159,13 @@ impl ModelSize {
     }
 }
 
+impl From<&Attempt> for AttemptSummary {
+    fn from(attempt: &Attempt) -> Self {
+        let Attempt { method, seconds, reason } = attempt.clone();
+        AttemptSummary { method, seconds, reason }
+    }
+}
+
 impl From<&Certificate> for CertificateSummary {
     fn from(certificate: &Certificate) -> Self {
         CertificateSummary {
@@ -183,6 +204,7 @@ impl Summary {
             iterations: solution.iterations,
             refinements: solution.refinements,
             reason: solution.reason.clone(),
+            attempts: solution.attempts.iter().map(AttemptSummary::from).collect(),
             contact: ContactSummary {
                 count: solution.contact_set.count(),
                 force: solution.contact_force(),

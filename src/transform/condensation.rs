@@ -99,9 +99,7 @@ impl Condensation {
                 }
             }
         }
-        let entries: Vec<_> =
-            (0..size).flat_map(|j| (j..size).map(move |i| (i, j))).map(|(i, j)| (i, j, schur[j * size + i])).collect();
-        let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(size, size, &entries)?)?;
+        let stiffness = SymmetricMatrix::from_lower(dense_triangle(schur, size)?)?;
         Ok(Condensation { contact_dofs, cholesky, trailing, stiffness, contact })
     }
 
@@ -207,6 +205,27 @@ impl Condensation {
         self.contact_dofs.iter().zip(displacement).for_each(|(&dof, &u)| expanded[dof] = u);
         expanded
     }
+}
+
+/// The lower triangle of a dense matrix (n x n, column by column), with every entry of it.
+///
+/// # Errors
+/// [`Error::NotFinite`] for an entry that is not finite.
+fn dense_triangle(matrix: Vec<f64>, size: usize) -> Result<SparseMatrix, Error> {
+    let entries = size * (size + 1) / 2;
+    let (mut starts, mut rows, mut values) =
+        (Vec::with_capacity(size + 1), Vec::with_capacity(entries), Vec::with_capacity(entries));
+    starts.push(0);
+    for column in 0..size {
+        rows.extend(column..size);
+        values.extend_from_slice(&matrix[column * size + column..(column + 1) * size]);
+        starts.push(rows.len());
+    }
+    if let Some(&value) = values.iter().find(|value| !value.is_finite()) {
+        let at = "the condensed stiffness".to_string();
+        return Err(Error::NotFinite { name: "matrix", at, value, allowed: "finite" });
+    }
+    Ok(SparseMatrix::from_parts(size, starts, rows, values))
 }
 
 /// The lower triangle of L L' for a lower triangular L (n x n, column by column).

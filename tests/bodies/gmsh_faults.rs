@@ -119,8 +119,8 @@ fn line_ends_and_blank_lines_do_not_matter() {
 fn faults_of_files_have_their_line() {
     let cases = [
         (String::new(), 1, "without a section `$MeshFormat`"),
-        ("hello".into(), 1, "`hello` stands where a section"),
-        (text(&V2[8..]), 1, "`$Nodes` stands before `$MeshFormat`"),
+        ("hello".into(), 1, "it is no mesh of Gmsh"),
+        (text(&V2[8..]), 1, "it is no mesh of Gmsh"),
         (with(&V2, 2, "2.2 1 8"), 2, "`Mesh.Binary = 0`"),
         (with(&V2, 2, "4 0 8"), 2, "version 4 of the format is not read; versions 4.1 and 2.2"),
         (with(&V2, 2, "3.0 0 8"), 2, "version 3"),

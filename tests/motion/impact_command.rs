@@ -119,7 +119,7 @@ fn a_run_that_was_killed_is_resumed_bit_for_bit() {
 fn only_a_run_of_the_same_scene_is_resumed() {
     let desk = Desk::new();
     desk.write("bar.json", bar().to_string());
-    desk.write("other.json", with("duration", json!(1)).to_string());
+    desk.write("other.json", with("step", json!(0.01)).to_string());
     desk.run(&["solve", "bar.json", "--out", "out", "--resume"]).fails_with(1, &["cannot resume", "checkpoint.json"]);
     desk.run(&["solve", "bar.json", "--out", "out"]).ends_with(0);
     desk.run(&["solve", "other.json", "--out", "out", "--resume"]).fails_with(1, &["belongs to another scene"]);

@@ -80,6 +80,10 @@ fn a_loop_that_is_out_of_time_ends_with_the_set_that_it_has() {
     for method in [Method::ActiveSet, Method::Penalty] {
         let mut settings = Settings::with_method(method);
         settings.time = Some(0.0);
+        assert!(matches!(prepared.solve(&settings), Err(Error::OutOfTime { .. })), "{method:?}");
+        // Asked to stop, it ends after the iteration that it is in.
+        settings.time = None;
+        settings.watch.stop();
         match prepared.solve(&settings) {
             Err(Error::NotCertified { solution, .. }) => assert_eq!(solution.iterations, 1, "{method:?}"),
             other => panic!("{:?}", other.map(|found| found.iterations)),

@@ -14,6 +14,9 @@ enum Version {
     V4,
 }
 
+/// What is said of a file before it has shown that it is a mesh: nothing of its content, which may be nobody's business.
+const NO_MESH: &str = "it is no mesh of Gmsh: a section `$MeshFormat` should begin here, which tells the version";
+
 /// Reads all sections; those that say nothing about nodes, elements and groups are passed over.
 pub(super) fn read(file: &Path, text: &str) -> Result<GmshFile, Error> {
     // Some editors put a byte order mark in front.
@@ -24,6 +27,9 @@ pub(super) fn read(file: &Path, text: &str) -> Result<GmshFile, Error> {
     let mut seen: Vec<&str> = Vec::new();
     while let Some(line) = lines.next() {
         let Some(name) = line.strip_prefix('$').map(str::trim) else {
+            if version.is_none() {
+                return Err(lines.fault(NO_MESH));
+            }
             let message = format!("`{}` stands where a section, as `$MeshFormat`, should begin", shortened(line));
             return Err(lines.fault(message));
         };
@@ -35,7 +41,7 @@ pub(super) fn read(file: &Path, text: &str) -> Result<GmshFile, Error> {
             return Err(lines.fault(format!("there is a second section `${name}`")));
         }
         if name != "MeshFormat" && version.is_none() {
-            return Err(lines.fault(format!("`${name}` stands before `$MeshFormat`, which tells the version")));
+            return Err(lines.fault(NO_MESH));
         }
         match (name, version) {
             ("MeshFormat", _) => version = Some(format(&mut lines)?),

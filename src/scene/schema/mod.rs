@@ -78,6 +78,9 @@ pub struct Scene {
     /// The folder of the file that the scene was read from: where relative file names start. Not part of the text.
     #[serde(skip)]
     pub folder: Option<PathBuf>,
+    /// May the scene name mesh files outside its folder? Not part of the text.
+    #[serde(skip)]
+    pub reads_outside: bool,
 }
 
 fn one() -> f64 {

@@ -10,7 +10,7 @@ use super::{AxisSpec, ElementSpec, IntegrationSpec, one};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GmshSpec {
-    /// The file; a relative name starts from the folder of the scene.
+    /// The file, below the folder of the scene unless that is allowed to read outside; a relative name starts there.
     pub file: String,
     /// What the coordinates of the file are multiplied by, positive.
     #[serde(default = "one")]
