@@ -17,14 +17,27 @@ use crate::sparse::multigrid::{Multigrid, dual_norm};
 const ROUNDED: f64 = 1.0 + 1e-6;
 
 impl ContactProblem {
-    /// An upper bound on `|u - u*|_K`, as far as [`dual_norm`] finds the least eigenvalue; infinite where it finds none.
+    /// An upper bound on `|u - u*|_K`, as far as [`dual_norm`] finds the least eigenvalue; infinite where it finds none. A
+    /// stiffness that the hierarchy has found singular gets springs on the rows that press.
     pub(super) fn energy_error_bound_by(&self, multigrid: &Multigrid, answer: &Answer) -> ErrorBound {
         let mut residual = answer.residual.clone();
         if answer.multiplier.iter().any(|&lambda| lambda > 0.0) {
             let pulled: Vec<f64> = answer.multiplier.iter().map(|lambda| lambda.max(0.0)).collect();
             residual.iter_mut().zip(self.contact.mul_transposed(&pulled)).for_each(|(r, force)| *r -= force);
         }
-        let Some(dual) = dual_norm(&self.stiffness, multigrid, &residual) else { return ErrorBound::none() };
+        let springs = multigrid.is_shifted().then(|| self.springs(answer.displacement, answer.multiplier));
+        let dual = match &springs {
+            None => dual_norm(&self.stiffness, multigrid, &residual),
+            Some(springs) => {
+                springs.added_to(self).ok().flatten().and_then(|stiffness| dual_norm(&stiffness, multigrid, &residual))
+            }
+        };
+        let Some(dual) = dual else { return ErrorBound::none() };
+        // Every row that presses is put at its gap below.
+        let at_gap = vec![true; self.rows()];
+        if springs.is_some_and(|springs| !springs.hold(answer.multiplier, &at_gap, ROUNDED * dual.most)) {
+            return ErrorBound::none();
+        }
         let moved: f64 = (self.lengths_along_rows().iter().zip(answer.violation).zip(answer.multiplier))
             .filter(|((_, violation), lambda)| **violation > 0.0 || **lambda < 0.0)
             .map(|((length, violation), _)| if *violation == 0.0 { 0.0 } else { length * violation.abs() })

@@ -38,9 +38,9 @@ impl Parts {
         forest.into_parts()
     }
 
-    /// Number of parts.
+    /// Number of parts, at least one: a problem without dofs has an empty one.
     pub fn count(&self) -> usize {
-        self.count
+        self.count.max(1)
     }
 
     /// The part of a dof.
@@ -50,7 +50,7 @@ impl Parts {
 
     /// The sum of `term(dof)` over the dofs of each part.
     pub fn sums(&self, term: impl Fn(usize) -> f64) -> Vec<f64> {
-        let mut sums = vec![0.0; self.count];
+        let mut sums = vec![0.0; self.count()];
         self.of_dof.iter().enumerate().for_each(|(dof, &part)| sums[part] += term(dof));
         sums
     }

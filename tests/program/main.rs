@@ -5,6 +5,7 @@ mod program;
 
 mod auto;
 mod command_line;
+mod kept_limits;
 mod limits;
 mod process;
 mod tradeoff;

@@ -24,7 +24,7 @@ mod row_by_row;
 use super::parts::Parts;
 use super::{ContactProblem, EnergyNorm};
 use crate::error::Error;
-use crate::sparse::{dot, ldexp};
+use crate::sparse::{SymmetricMatrix, dot, ldexp};
 
 /// An answer (u, lambda) and what its certificate has computed of it.
 pub(super) struct Answer<'a> {
@@ -182,14 +182,12 @@ impl ContactProblem {
             return Ok(Some(norm));
         }
         let springs = self.springs(displacement, multiplier);
-        let closed: Vec<usize> = (0..self.rows()).filter(|&row| springs.stiffness[row] > 0.0).collect();
-        let weights: Vec<f64> = closed.iter().map(|&row| springs.stiffness[row]).collect();
-        let held = self.stiffness.plus_squares(&self.contact.select_rows(&closed), &weights)?;
+        let Some(held) = springs.added_to(self)? else { return Ok(None) };
         Ok(EnergyNorm::of(&held, &self.contact)?.map(|norm| norm.with_springs(springs)))
     }
 
     /// Springs on the rows that press, each as stiff as the row itself is when all but its own dofs stand still.
-    fn springs(&self, displacement: &[f64], multiplier: &[f64]) -> Springs {
+    pub(super) fn springs(&self, displacement: &[f64], multiplier: &[f64]) -> Springs {
         let parts = self.parts();
         let diagonal = self.stiffness.diagonal();
         let mut compliance = vec![0.0; self.rows()];
@@ -218,6 +216,19 @@ impl ContactProblem {
 }
 
 impl Springs {
+    /// `K + B_C' D B_C`; `None` where no row presses.
+    ///
+    /// # Errors
+    /// As [`SymmetricMatrix::plus_squares`](crate::sparse::SymmetricMatrix::plus_squares).
+    pub fn added_to(&self, problem: &ContactProblem) -> Result<Option<SymmetricMatrix>, Error> {
+        let closed: Vec<usize> = (0..problem.rows()).filter(|&row| self.stiffness[row] > 0.0).collect();
+        if closed.is_empty() {
+            return Ok(None);
+        }
+        let weights: Vec<f64> = closed.iter().map(|&row| self.stiffness[row]).collect();
+        problem.stiffness.plus_squares(&problem.contact.select_rows(&closed), &weights).map(Some)
+    }
+
     /// `f + B' lambda - K_D u + B_C' D g_C`: the residual of the same answer with springs.
     fn residual(&self, problem: &ContactProblem, answer: &Answer) -> Vec<f64> {
         let pull: Vec<f64> = (self.stiffness.iter().zip(answer.violation))
@@ -228,7 +239,7 @@ impl Springs {
 
     /// Does every spring stand on a row that is at its gap, with a force mu that exceeds what `left`, the dual norm of the
     /// forces left over, could take off it?
-    fn hold(&self, multiplier: &[f64], at_gap: &[bool], left: f64) -> bool {
+    pub fn hold(&self, multiplier: &[f64], at_gap: &[bool], left: f64) -> bool {
         self.stiffness
             .iter()
             .zip(multiplier.iter().zip(at_gap))

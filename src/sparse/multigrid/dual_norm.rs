@@ -46,12 +46,9 @@ pub struct DualNorm {
     pub cycles: usize,
 }
 
-/// Bounds `sqrt(r' A^-1 r)` by conjugate gradients with one cycle of `multigrid`, the hierarchy of `matrix` A; `None` where
-/// A is singular to the precision of its levels, or the cycles do not settle.
+/// Bounds `sqrt(r' A^-1 r)` by conjugate gradients with one cycle of `multigrid`, the hierarchy of `matrix` A or of A without
+/// terms of low rank; `None` where the cycles do not settle. A must be definite.
 pub fn dual_norm(matrix: &SymmetricMatrix, multigrid: &Multigrid, force: &[f64]) -> Option<DualNorm> {
-    if multigrid.is_shifted() {
-        return None;
-    }
     let unit = to_order_one(force);
     let force: Vec<f64> = force.iter().map(|&value| ldexp(value, unit)).collect();
     if dot(&force, &force) == 0.0 {

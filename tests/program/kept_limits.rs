@@ -1,14 +1,12 @@
 //! Limits are kept: of time, of memory, of what is read, and how a run ends that is asked to.
 #![cfg(target_os = "linux")]
 
-mod program;
-
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-use program::{Desk, Problem, scene};
+use crate::program::{Desk, Problem, scene};
 use serde_json::{Value, json};
 use signorini::{Error, Method, Scene, Settings, Watch, solve};
 
