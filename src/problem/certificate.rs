@@ -219,7 +219,7 @@ impl Certificate {
         (self.part_error_bound, self.energy_error_excess) =
             (self.energy_error_bound, unexplained(bound.whole, whole, rounding.iter().sum()));
         if let Some(of_parts) = &bound.of_parts {
-            for (part, &error) in of_parts.iter().enumerate() {
+            for (part, &error) in of_parts.iter().enumerate().filter(|entry| scales.is_stiff[entry.0]) {
                 let size = scales.size(part);
                 self.part_error_bound = larger(relative(error, size), self.part_error_bound);
                 self.energy_error_excess = larger(unexplained(error, size, rounding[part]), self.energy_error_excess);

@@ -15,6 +15,8 @@ pub(super) struct Scales {
     /// `max |b_ij| / sqrt(K_jj)` of each row, over the dofs with stiffness: the force of the row in units of energy norm, and
     /// how far a motion of unit energy norm of a single dof moves it.
     pub reach: Vec<f64>,
+    /// Does the part have stiffness? Where it has none, its error has no energy, and rows alone judge it.
+    pub is_stiff: Vec<bool>,
     /// Energy norm of each part, from `u_p' K_pp u_p`.
     pub norm: Vec<f64>,
     /// `max |F_i| / sqrt(K_ii)` of each part over loads and contact forces F: what they could do to a single dof.
@@ -57,8 +59,9 @@ impl Scales {
                 }
             }
         }
-        let mut force = vec![0.0; parts.count()];
+        let (mut force, mut is_stiff) = (vec![0.0; parts.count()], vec![false; parts.count()]);
         for dof in (0..u.len()).filter(|&dof| softness[dof].is_finite()) {
+            is_stiff[parts.of_dof(dof)] = true;
             let largest = larger(problem.load[dof].abs(), contact[dof].abs());
             let of_part = &mut force[parts.of_dof(dof)];
             *of_part = larger(largest * softness[dof], *of_part);
@@ -76,7 +79,7 @@ impl Scales {
             larger(norm[part].powi(2) / 2.0, larger(load_work[part].abs(), larger(gap_work[part].abs(), at_rest / 2.0)))
         };
         let energy = (0..parts.count()).map(energy).collect();
-        Scales { part_of_row, softness, reach, norm, force, energy }
+        Scales { part_of_row, softness, reach, is_stiff, norm, force, energy }
     }
 
     /// The part of a row.

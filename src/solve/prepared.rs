@@ -236,8 +236,10 @@ impl Prepared {
         let task = ScaledProblem::new(&problem, &self.augmented, self.norm.is_some()).watched(&watch);
         let start = start.map(|set| self.selection.restrict_set(set));
         let bound = |displacement: &[f64], multiplier: &[f64]| {
-            let norm = self.condensed_norm(&problem).ok().flatten();
-            let certificate = problem.certify_in(norm, displacement, multiplier);
+            let certificate = match self.condensed_norm(&problem).ok().flatten() {
+                Some(norm) => problem.certify_in(Some(norm), displacement, multiplier),
+                None => problem.certify(displacement, multiplier),
+            };
             let of_whole = self.share_of_boundary(&loading, unit, &problem, displacement);
             certificate.map_or(f64::INFINITY, |certificate| certificate.energy_error_bound * of_whole)
         };

@@ -225,7 +225,8 @@ fn a_body_that_only_contact_holds_has_a_bound_with_springs_on_its_rows() {
         settings.tolerance = tolerance;
         let found = solve(model.problem(), &settings).unwrap();
         let away: Vec<f64> = found.displacement.iter().zip(&exact.displacement).map(|(u, v)| u - v).collect();
-        let energy = |u: &[f64]| u.iter().zip(model.problem().stiffness().mul(u)).map(|(u, k)| u * k).sum::<f64>().sqrt();
+        let energy =
+            |u: &[f64]| u.iter().zip(model.problem().stiffness().mul(u)).map(|(u, k)| u * k).sum::<f64>().sqrt();
         let (error, bound) = (energy(&away) / energy(&found.displacement), found.certificate.energy_error_bound);
         // The reference is exact to twelve digits; half the least Ritz value and few cycles cost less than a factor of 100.
         assert!(error <= bound + 1e-12 && bound <= tolerance && bound <= 100.0 * error + 1e-12, "{error:e} {bound:e}");

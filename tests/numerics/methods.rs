@@ -195,7 +195,10 @@ fn floating_rod_pressed_onto_the_wall_is_solved() {
         let solution = answer(&rod([1.0, 0.5]), method);
         agree(&solution.displacement, &[1.5, 0.5], 1e-12, "u");
         agree(&solution.multiplier, &[-1.5], 1e-12, "lambda");
-        assert!(solution.certificate.energy_error_bound.is_infinite(), "K is singular: there is no energy norm");
+        assert!(
+            solution.certificate.energy_error_bound < 1e-12,
+            "K is singular, but the row that presses holds the rod"
+        );
     }
 }
 

@@ -216,7 +216,8 @@ impl<'a> Repair<'a> {
         };
         let put: Vec<f64> = (0..off.len()).map(put).collect();
         let of_error = match springs {
-            Some(_) => self.problem.length(&self.motion(error)),
+            // The springs' own energy is no error, but rounding knows them.
+            Some(_) => self.problem.length(&self.motion(error)) + (self.norm.rounding() - 1.0) * self.length(error),
             None => self.length(error),
         };
         let whole = of_error + of_left + put.iter().sum::<f64>();

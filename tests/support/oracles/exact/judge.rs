@@ -2,6 +2,8 @@
 
 use signorini::{Certificate, ContactProblem, Error, Goal, ProvenSet, Solution};
 
+use nalgebra::DMatrix;
+
 use super::case::Case;
 use super::dyadic::{Dyadic, ratio};
 use super::evidence;
@@ -10,6 +12,9 @@ use super::solve::{Answer, Exact, Outcome};
 
 /// A contradiction, a drive or an eigenvalue that counts less than this decides nothing: the tolerance of a certificate may be behind it.
 const BORDERLINE: f64 = 1e-8;
+
+/// Rows closer to a dependence than this have lost all but the last digits of what tells them apart.
+const DEPENDENT: f64 = 1e-13;
 
 /// A bound that falls short by a smaller factor has lost it by rounding, as far as it is above rounding itself.
 const OF_THE_BOUND: f64 = 1.001;
@@ -107,6 +112,31 @@ pub struct Judge<'a> {
     pub condition: f64,
     /// Its least eigenvalue, over the largest.
     pub lowest: f64,
+    /// The least singular value of the rows that carry force in the exact answer, each of energy length one: below rounding
+    /// double precision cannot tell them from rows that depend on each other, and their exact answer is that of their last bits.
+    pub apart: f64,
+}
+
+/// How far the rows that carry force are from depending on each other; 1 for none.
+fn apart(case: &Case, exact: &Exact, outcome: &Outcome) -> f64 {
+    let Outcome::Solved(answer) = outcome else { return 1.0 };
+    let pressing = exact.rows.iter().zip(&answer.force).filter(|(_, force)| !force.is_zero());
+    let rows: Vec<Vec<f64>> = pressing
+        .map(|(&row, _)| {
+            let soft = |dof: usize| match case.stiffness[dof][dof] {
+                stiffness if stiffness > 0.0 => 1.0 / stiffness.sqrt(),
+                _ => 1.0,
+            };
+            let entries: Vec<f64> = (0..case.dofs()).map(|dof| case.contact[row][dof] * soft(dof)).collect();
+            let length = entries.iter().fold(0.0_f64, |length, entry| length.hypot(*entry));
+            entries.iter().map(|entry| entry / length).collect()
+        })
+        .collect();
+    if rows.is_empty() {
+        return 1.0;
+    }
+    let matrix = DMatrix::from_fn(rows.len(), case.dofs(), |row, dof| rows[row][dof]);
+    matrix.singular_values().min()
 }
 
 impl<'a> Judge<'a> {
@@ -114,8 +144,9 @@ impl<'a> Judge<'a> {
         let (low, high) = case.equilibrated_spectrum();
         let lowest = if high > 0.0 { low / high } else { 0.0 };
         let condition = if lowest > 0.0 { 1.0 / lowest } else { f64::INFINITY };
-        Judge { case, exact, outcome, condition, lowest }
+        Judge { case, exact, outcome, condition, lowest, apart: apart(case, exact, outcome) }
     }
+
     /// The exact answer in a word.
     pub fn verdict(&self) -> &'static str {
         self.outcome.verdict()
@@ -124,7 +155,7 @@ impl<'a> Judge<'a> {
     /// Does rounding of the data decide how this problem ends?
     pub fn is_borderline(&self) -> bool {
         match self.outcome {
-            Outcome::Solved(_) => false,
+            Outcome::Solved(_) => self.apart < DEPENDENT,
             Outcome::Infeasible { overlap, .. } => *overlap < BORDERLINE,
             Outcome::Unbounded { drive, .. } => *drive < BORDERLINE,
             Outcome::Indefinite { .. } => self.lowest > -BORDERLINE,
@@ -238,6 +269,9 @@ impl<'a> Judge<'a> {
         certified: Option<Goal>,
     ) -> Vec<Fault> {
         let Outcome::Solved(answer) = self.outcome else { return Vec::new() };
+        if self.is_borderline() {
+            return Vec::new();
+        }
         if displacement.iter().chain(multiplier).any(|value| !value.is_finite()) {
             let detail = format!("{asked}: certified with numbers that are none");
             return if certified.is_some() { vec![Fault::new(Sort::Certified, detail)] } else { Vec::new() };
