@@ -7,8 +7,8 @@ use std::time::{Duration, Instant};
 
 /// Work that may be asked to end, from any thread, and asked what it is doing.
 ///
-/// Clones share the request and the activity; only the deadline is each one's own. A solve looks between factorisations,
-/// iterations and steps, and ends with the best answer that it has.
+/// Clones share the request, the activity and the observer; only the deadline is each one's own. A solve looks between
+/// factorisations, iterations and steps, and ends with the best answer that it has.
 ///
 /// ```
 /// use signorini::{Error, Settings, solve};
@@ -35,6 +35,19 @@ struct Shared {
     noticed: AtomicBool,
     activity: Mutex<Activity>,
     pace: Mutex<Option<f64>>,
+    observer: Observer,
+}
+
+type Call = dyn Fn(&Watch) + Send + Sync;
+
+/// What is called whenever something begins.
+#[derive(Default)]
+struct Observer(Option<Box<Call>>);
+
+impl fmt::Debug for Observer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if self.0.is_some() { "Observer" } else { "no observer" })
+    }
 }
 
 /// Work that takes less tells nothing of the pace.
@@ -68,7 +81,43 @@ impl fmt::Display for Part {
     }
 }
 
+impl fmt::Display for Activity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let part = self.part.as_ref().map(Part::to_string);
+        let step = match self.iteration {
+            _ if self.step.is_empty() => None,
+            0 => Some(self.step.to_string()),
+            iteration => Some(format!("{}, iteration {iteration}", self.step)),
+        };
+        f.write_str(&part.into_iter().chain(step).collect::<Vec<_>>().join(": "))
+    }
+}
+
 impl Watch {
+    /// A watch that calls `observer` whenever a part, a step or an iteration begins: on the thread that does the work, and
+    /// before it is done. [`Watch::activity`] is then what begins.
+    ///
+    /// ```
+    /// use signorini::{Error, Settings, Watch, solve};
+    /// # use signorini::{ContactProblem, SparseMatrix, SymmetricMatrix};
+    /// # let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(1, 1, &[(0, 0, 1.0)])?)?;
+    /// # let contact = SparseMatrix::from_triplets(1, 1, &[(0, 0, 1.0)])?;
+    /// # let problem = ContactProblem::new(stiffness, vec![3.0], contact, vec![1.0])?;
+    ///
+    /// let mut settings = Settings::default();
+    /// settings.watch = Watch::observed(|watch| {
+    ///     if watch.activity().step == "ordering" {
+    ///         watch.stop();
+    ///     }
+    /// });
+    /// assert!(matches!(solve(&problem, &settings), Err(Error::Interrupted)));
+    /// # Ok::<(), Error>(())
+    /// ```
+    pub fn observed(observer: impl Fn(&Watch) + Send + Sync + 'static) -> Watch {
+        let observer = Observer(Some(Box::new(observer)));
+        Watch { deadline: None, shared: Arc::new(Shared { observer, ..Shared::default() }) }
+    }
+
     /// Asks the work to end with what it has.
     pub fn stop(&self) {
         self.shared.stopped.store(true, Ordering::SeqCst);
@@ -167,5 +216,9 @@ impl Watch {
 
     fn tell(&self, activity: Activity) {
         *self.shared.activity.lock().unwrap_or_else(PoisonError::into_inner) = activity;
+        // The lock is free again: the observer may ask for the activity.
+        if let Observer(Some(observer)) = &self.shared.observer {
+            observer(self);
+        }
     }
 }

@@ -56,10 +56,11 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             return ExitCode::from(help.exit_code() as u8);
         }
     };
-    let watch = Watch::default();
+    let watch = if arguments.progress { progress::told() } else { Watch::default() };
     interrupt::listen(&watch);
     watch.step("assembly", 0);
-    let progress = Progress::of(&watch);
+    let line = || (!arguments.progress).then(|| Progress::of(&watch));
+    let shown = line();
     let format = arguments.command.format();
     let outcome = match arguments.command {
         Command::Solve(options) => solve::run(&options, &watch),
@@ -70,7 +71,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Verify(options) => verify::run(&options),
         Command::Schema => Ok(Outcome::certified(format!("{:#}\n", Scene::json_schema()))),
     };
-    drop(progress);
+    drop(shown);
     if watch.is_stopped() && outcome.is_ok() {
         warn(&interrupt::sentence(&watch));
     }
@@ -91,7 +92,12 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         warn(&format!("error: cannot write to standard output: {error}\n"));
         return ExitCode::from(Ending::BadInput as u8);
     }
-    match outcome.pictures.filter(|_| !watch.is_stopped()).map_or(Ok(()), |pictures| drawn(pictures, &watch)) {
+    let draw = |pictures: Pictures| {
+        watch.step("pictures", 0);
+        let _shown = line();
+        pictures()
+    };
+    match outcome.pictures.filter(|_| !watch.is_stopped()).map_or(Ok(()), draw) {
         Err(error) => {
             warn(&format!("error: {}\n", sentence(&error)));
             ExitCode::from(ending_of(&error) as u8)
@@ -99,12 +105,6 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         _ if watch.is_stopped() => ExitCode::from(INTERRUPTED),
         _ => ExitCode::from(outcome.ending as u8),
     }
-}
-
-fn drawn(pictures: Pictures, watch: &Watch) -> Result<(), Error> {
-    watch.step("pictures", 0);
-    let _progress = Progress::of(watch);
-    pictures()
 }
 
 /// Takes the line of a terminal that is being written back.

@@ -15,6 +15,9 @@ use crate::solve;
                         4 not certified, 130 interrupted, with what was found until then."
 )]
 pub(super) struct Arguments {
+    /// Print each step on a line of standard error as it begins
+    #[arg(long, global = true)]
+    pub progress: bool,
     #[command(subcommand)]
     pub command: Command,
 }

@@ -1,4 +1,5 @@
-//! What is being done and how long it takes, on one line of standard error, where that is a terminal.
+//! What is being done: a line for each step on standard error if asked for, or one line that is redrawn, with the time that
+//! it takes, if that is a terminal.
 
 use std::io::{self, IsTerminal, Write};
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
@@ -22,6 +23,11 @@ const TELLING: usize = 5;
 
 /// Longer lines would be broken by narrow terminals, and could not be erased.
 const WIDTH: usize = 79;
+
+/// A watch that writes each step on a line of its own as it begins.
+pub(super) fn told() -> Watch {
+    Watch::observed(|watch| warn(&format!("progress: {}\n", watch.activity())))
+}
 
 /// The line, which follows the activity of a watch until it is dropped.
 pub(super) struct Progress(Option<(Sender<()>, JoinHandle<bool>)>);
@@ -87,10 +93,7 @@ impl Pace {
 }
 
 fn line(activity: &Activity, elapsed: Duration, left: Option<Duration>) -> String {
-    let step = match activity.iteration {
-        0 => activity.step.to_string(),
-        iteration => format!("{}, iteration {iteration}", activity.step),
-    };
+    let step = Activity { part: None, ..activity.clone() };
     let Some(part) = &activity.part else { return format!("{} s: {step}", elapsed.as_secs()) };
     let filled = (BAR as u128 * part.number.saturating_sub(1) as u128 / part.of.max(1) as u128) as usize;
     let bar: String = (0..BAR).map(|place| if place < filled { '#' } else { '.' }).collect();
@@ -115,5 +118,7 @@ mod tests {
         let bar = "[##########..........] gap 16 of 30";
         assert_eq!(line(&one_of_many, seconds(12), None), format!("{bar}, 12 s: factorisation"));
         assert_eq!(line(&one_of_many, seconds(12), Some(seconds(7))), format!("{bar}, 7 s left: factorisation"));
+        assert_eq!(one_of_many.to_string(), "gap 16 of 30: factorisation");
+        assert_eq!(Activity { step: "", ..one_of_many }.to_string(), "gap 16 of 30");
     }
 }

@@ -84,7 +84,7 @@ fn no_kept_problem_keeps_the_loop_alive() {
 /// A short run of the longer one.
 #[test]
 fn damaged_files_and_problems_do_no_harm() {
-    let (inputs, desk) = (if cfg!(debug_assertions) { 200 } else { 2000 }, desk());
+    let (inputs, desk) = (2000, desk());
     let mut draws = Draws(5);
     for name in ["plane.json", "space.json", "round.json", "square2.msh", "square4.msh", "K.mtx", "B.mtx"] {
         let text = fs::read(faults(name)).unwrap();

@@ -18,8 +18,8 @@ const OF_REFERENCE: f64 = 1e-11;
 /// Bound over true error, in the middle of all cases.
 const MEDIAN: f64 = 1.3;
 
-/// Gaps of each body: without optimisation one must do.
-const GAPS: usize = if cfg!(debug_assertions) { 1 } else { 4 };
+/// Gaps of each body.
+const GAPS: usize = 4;
 
 /// Cycles that the bound takes on a body without thin parts.
 const FEW_CYCLES: usize = 6;

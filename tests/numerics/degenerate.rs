@@ -7,8 +7,7 @@ use signorini::{Method, Settings, Solution, solve};
 
 const ROWS: usize = 300;
 
-/// Without optimisation a share of the problems must do.
-const PROBLEMS: usize = if cfg!(debug_assertions) { 20 } else { 1000 };
+const PROBLEMS: usize = 1000;
 
 /// Forces and distances above this share of the largest are told apart from zero beyond rounding: condition numbers are
 /// below 1e7, times the working precision.

@@ -22,7 +22,7 @@ const TO_AND_FRO: u32 = 1;
 fn every_entry_of_the_stability_table_is_as_good_as_it_was() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/extremes.txt");
     let kept = fs::read_to_string(&file).unwrap_or_default();
-    let (mut found, mut worse) = (String::new(), Vec::new());
+    let (mut found, mut worse, mut wrong_raw) = (String::new(), Vec::new(), 0);
     let entries = cases::entries(MOST_DOFS).unwrap();
     assert!(entries.len() >= 140);
     for (number, entry) in entries.iter().enumerate() {
@@ -35,6 +35,8 @@ fn every_entry_of_the_stability_table_is_as_good_as_it_was() {
         let before: Vec<&str> = before.split(" | ").collect();
         for (column, cell) in cells.iter().enumerate() {
             let raw = column == 0;
+            // How an unscaled method fails is no promise of ours.
+            wrong_raw += usize::from(raw && *cell == Cell::Wrong);
             if *cell == Cell::Wrong && !raw {
                 worse.push(format!("{name}, {}: a wrong answer", COLUMNS[column]));
             }
@@ -43,14 +45,12 @@ fn every_entry_of_the_stability_table_is_as_good_as_it_was() {
                 (Cell::Digits(digits), Ok(was)) => digits + TO_AND_FRO >= was,
                 _ => cell.to_string() == was,
             };
-            // How an unscaled method fails is no promise of ours.
             if !stays && !raw {
                 worse.push(format!("{name}, {}: {cell}, before {was}", COLUMNS[column]));
             }
         }
     }
-    let by_raw = entries.iter().map(|entry| entry.row()[0].clone()).filter(|cell| *cell == Cell::Wrong).count();
-    assert!(by_raw >= 10, "scaling would not be needed: {by_raw}");
+    assert!(wrong_raw >= 10, "scaling would not be needed: {wrong_raw}");
     if std::env::var_os("BLESS").is_some() {
         fs::write(&file, found).unwrap();
         return;

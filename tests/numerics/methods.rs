@@ -112,7 +112,7 @@ fn contact_sets_of_random_problems_are_those_of_the_enumeration() {
     /// Above the rounding of both, in data of order one.
     const CLEAR: f64 = 1e-7;
     let mut draws = Draws::new(12);
-    let (mut clear, cases) = (0, if cfg!(debug_assertions) { 1_000 } else { 10_000 });
+    let (mut clear, cases) = (0, 10_000);
     for case in 0..cases {
         let (n, m) = (1 + draws.below(6), 1 + draws.below(10));
         let dense = random(&mut draws, n, m);
@@ -164,8 +164,7 @@ fn plain_loop_meets_cycles_in_random_symmetric_problems_of_order_three_and_ends_
     const LONGEST: usize = 8 + 1 + 8 + 3;
     let mut draws = Draws::new(2);
     let (mut pivoted, mut single, mut longest) = (0, 0, 0);
-    // Without optimisation a share of them must do.
-    for case in 0..if cfg!(debug_assertions) { 10_000 } else { 100_000 } {
+    for case in 0..100_000 {
         let a = nalgebra::DMatrix::from_fn(3, 3, |_, _| (7.0 * draws.signed()).round());
         let matrix = &a * a.transpose() + nalgebra::DMatrix::identity(3, 3) * 0.1;
         let rows: Vec<Vec<f64>> =

@@ -1,8 +1,5 @@
 //! A watch: asked to stop from another thread, everything ends with what it has.
 
-use std::thread;
-use std::time::Duration;
-
 use crate::program::scene;
 use serde_json::{Value, json};
 use signorini::dynamic::Integrator;
@@ -30,17 +27,13 @@ fn found(solved: Result<Solution, Error>) -> Solution {
     })
 }
 
-/// Stops what `watch` watches as soon as it is at this iteration of a step or beyond, or at this part.
-fn stop_at(watch: &Watch, step: &'static str, number: usize) -> thread::JoinHandle<()> {
-    let watch = watch.clone();
-    thread::spawn(move || {
-        loop {
-            let now = watch.activity();
-            let part = now.part.filter(|part| part.name == step).map_or(0, |part| part.number);
-            if (now.step == step && now.iteration >= number) || part >= number {
-                return watch.stop();
-            }
-            thread::yield_now();
+/// A watch that stops the work when this iteration of a step begins, or this part.
+fn stopping_at(step: &'static str, number: usize) -> Watch {
+    Watch::observed(move |watch| {
+        let now = watch.activity();
+        let part = now.part.filter(|part| part.name == step).map_or(0, |part| part.number);
+        if (now.step == step && now.iteration == number) || part == number {
+            watch.stop();
         }
     })
 }
@@ -89,10 +82,8 @@ fn a_loop_that_is_stopped_ends_with_a_certified_part_of_its_way() {
     let prepared = Prepared::new(model.problem(), Condense::Never).unwrap();
     let mut settings = Settings::with_method(Method::Penalty);
     let whole = found(prepared.solve(&settings));
-    settings.watch = Watch::default();
-    let stopping = stop_at(&settings.watch, "penalty loop", 3);
+    settings.watch = stopping_at("penalty loop", 3);
     let Err(Error::NotCertified { solution, .. }) = prepared.solve(&settings) else { panic!("it was not cut short") };
-    stopping.join().unwrap();
     let iterations = solution.iterations;
     assert!((3..whole.iterations).contains(&iterations), "{iterations} of {}", whole.iterations);
     assert_eq!(solution.history, whole.history[..iterations]);
@@ -115,9 +106,8 @@ fn interior_point_and_multigrid_notice_that_they_should_end() {
     let mut settings = Settings::with_method(Method::Qp);
     settings.polish = false;
     let whole = found(prepared.solve(&settings));
-    let stopping = stop_at(&settings.watch, "interior point", 2);
+    settings.watch = stopping_at("interior point", 2);
     let Err(Error::NotCertified { solution, .. }) = prepared.solve(&settings) else { panic!("it was not cut short") };
-    stopping.join().unwrap();
     assert!(solution.iterations < whole.iterations, "{} of {}", solution.iterations, whole.iterations);
 
     let iterative = Iterative::new(model.problem(), 1).unwrap();
@@ -133,10 +123,9 @@ fn a_sweep_that_is_stopped_has_the_gaps_until_then() {
     let gaps = even_gaps(0.0, -0.05, 400);
     let whole = sweep(&model, &gaps, &Settings::default()).unwrap();
     assert!(whole.points.len() == gaps.len() && !whole.events.is_empty());
-    let settings = Settings::default();
-    let stopping = stop_at(&settings.watch, "gap", 5);
+    let mut settings = Settings::default();
+    settings.watch = stopping_at("gap", 5);
     let part = sweep(&model, &gaps, &settings).unwrap();
-    stopping.join().unwrap();
     assert!((4..gaps.len()).contains(&part.points.len()), "{}", part.points.len());
     assert!(part.events.is_empty() && part.corners.is_empty());
     for (point, expected) in part.points.iter().zip(&whole.points) {
@@ -148,11 +137,9 @@ fn a_sweep_that_is_stopped_has_the_gaps_until_then() {
 #[test]
 fn a_tradeoff_that_is_stopped_has_the_points_until_then() {
     let scene = Scene::from_json(&block(20).to_string(), "scene").unwrap();
-    let watch = Watch::default();
-    let stopping = stop_at(&watch, "run", 4);
+    let watch = stopping_at("run", 4);
     let grid = TradeoffGrid { refinements: 0, runs: 1, ..TradeoffGrid::default() };
     let measured = tradeoff(&scene, &grid, &watch).unwrap();
-    stopping.join().unwrap();
     let whole = tradeoff(&scene, &grid, &Watch::default()).unwrap();
     assert!((3..whole.points.len()).contains(&measured.points.len()), "{}", measured.points.len());
     for (point, expected) in measured.points.iter().zip(&whole.points) {
@@ -201,8 +188,16 @@ fn a_motion_that_is_stopped_stays_in_its_last_whole_step_and_goes_on_bit_for_bit
     assert_eq!(resumed.state(), whole.state());
 
     assert!(matches!(motion_tradeoff(&scene, &settings), Err(Error::Interrupted)));
-    let mut limited = begun(&Settings::within(0.2));
-    thread::sleep(Duration::from_millis(250));
+    // On a slow machine the time may be over before the preparation is done.
+    let limited = |seconds: f64| {
+        let mut settings = Settings::default();
+        settings.watch = Watch::default().within(seconds);
+        Some((Integrator::new(dynamics.problem.clone(), dynamics.scheme, dynamics.step, &settings).ok()?, settings))
+    };
+    let (mut limited, settings) = (-3..).find_map(|power| limited(2.0_f64.powi(power))).unwrap();
+    while settings.watch.time_left() != Some(0.0) {
+        std::thread::yield_now();
+    }
     assert!(matches!(limited.advance(), Err(Error::Interrupted)));
     assert_eq!(limited.state().steps, 0);
 }

@@ -2,9 +2,10 @@
 #![allow(dead_code)]
 
 use std::fs;
+use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::time::Duration;
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::{self, Receiver};
 
 use serde_json::Value;
 use tempfile::TempDir;
@@ -76,20 +77,36 @@ impl Desk {
         command
     }
 
-    /// The largest resident size of the program while it runs, in bytes, as Linux counts it.
+    /// The largest resident size of the program, in bytes, as the system counts it to its end.
     pub fn peak(&self, arguments: &[&str]) -> f64 {
-        let mut child = self.command(arguments).stdout(Stdio::null()).spawn().unwrap();
-        let status = format!("/proc/{}/status", child.id());
-        let mut peak = 0.0_f64;
-        while child.try_wait().unwrap().is_none() {
-            let text = fs::read_to_string(&status).unwrap_or_default();
-            let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-            let kilobytes = line.and_then(|line| line.split_whitespace().next()?.parse::<f64>().ok());
-            peak = peak.max(1024.0 * kilobytes.unwrap_or(0.0));
-            std::thread::sleep(Duration::from_micros(200));
-        }
-        assert!(child.wait().unwrap().success());
-        peak
+        let script = "import os, sys
+silent = [(os.POSIX_SPAWN_OPEN, 1, os.devnull, os.O_WRONLY, 0)]
+child = os.posix_spawn(sys.argv[1], sys.argv[1:], os.environ, file_actions=silent)
+_, status, usage = os.wait4(child, 0)
+print(usage.ru_maxrss)
+sys.exit(os.waitstatus_to_exitcode(status))";
+        let output = self.by_python(script).args(arguments).output().unwrap();
+        assert!(output.status.success(), "{output:?}");
+        1024.0 * String::from_utf8(output.stdout).unwrap().trim().parse::<f64>().unwrap()
+    }
+
+    /// Python with a script whose first argument is the program. Isolated and without `site`, Python stays small: it
+    /// counts as the program until that is loaded.
+    pub fn by_python(&self, script: &str) -> Command {
+        let mut python = Command::new("python3");
+        python.args(["-I", "-S", "-c", script, env!("CARGO_BIN_EXE_signorini")]).current_dir(self.0.path());
+        python
+    }
+
+    /// Starts the program with `--progress`, to follow its steps.
+    pub fn start(&self, arguments: &[&str]) -> UnderWay {
+        let mut command = self.command(arguments);
+        let mut child = command.arg("--progress").stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let said = BufReader::new(child.stderr.take().unwrap());
+        let (tell, told) = mpsc::channel();
+        // Read all the time: the program never waits for the test.
+        std::thread::spawn(move || said.lines().map_while(Result::ok).try_for_each(|line| tell.send(line)));
+        UnderWay { child, told, stderr: String::new() }
     }
 
     pub fn run(&self, arguments: &[&str]) -> Run {
@@ -99,6 +116,57 @@ impl Desk {
             stdout: String::from_utf8(output.stdout).unwrap(),
             stderr: String::from_utf8(output.stderr).unwrap(),
         }
+    }
+}
+
+/// A run of the program that tells its steps.
+pub struct UnderWay {
+    child: Child,
+    told: Receiver<String>,
+    /// What it said beside its steps.
+    stderr: String,
+}
+
+impl UnderWay {
+    /// Waits until the program says `phrase` on standard error. Returns `false` if it ends without that.
+    pub fn waits_for(&mut self, phrase: &str) -> bool {
+        while let Ok(line) = self.told.recv() {
+            if !line.starts_with("progress: ") {
+                self.stderr += &format!("{line}\n");
+            }
+            if line.contains(phrase) {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Waits until the program begins to print its report, of which it then waits to get rid if it is long.
+    pub fn waits_for_report(&mut self) {
+        self.child.stdout.as_mut().unwrap().read_exact(&mut [0]).unwrap();
+    }
+
+    /// Interrupts it as a terminal does; does nothing if it has ended.
+    pub fn interrupt(&self) {
+        assert!(Command::new("kill").args(["-INT", &self.child.id().to_string()]).status().unwrap().success());
+    }
+
+    /// Kills it.
+    pub fn kill(mut self) {
+        self.child.kill().unwrap();
+        self.child.wait().unwrap();
+    }
+
+    /// Waits for its end; what it printed is taken, or left to clog the pipe.
+    pub fn ends(mut self, printed_is_read: bool) -> Run {
+        let mut printed = self.child.stdout.take().unwrap();
+        let mut stdout = String::new();
+        if printed_is_read {
+            printed.read_to_string(&mut stdout).unwrap();
+        }
+        let code = self.child.wait().unwrap().code().expect("an exit code, not a signal");
+        self.waits_for("\n");
+        Run { code, stdout, stderr: self.stderr }
     }
 }
 
