@@ -279,6 +279,9 @@ pub struct Solution {
     pub refinements: Option<usize>,
     /// Why no factor was taken, in words, where [`Method::Auto`](crate::Method::Auto) decided that.
     pub reason: Option<String>,
+    /// The smallest pivot of the stiffness, of a diagonal of order one, where it is so close to rounding that digits are lost;
+    /// 0 where a pivot was not positive.
+    pub lost_pivot: Option<f64>,
     /// Unknowns that the method worked on; fewer than all where the problem was condensed.
     pub condensed_dofs: usize,
     /// What it cost.

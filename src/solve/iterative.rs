@@ -122,6 +122,7 @@ impl Iterative {
             certificate,
             proven: None,
             refinements: None,
+            lost_pivot: None,
             reason: None,
             condensed_dofs: problem.dofs(),
             seconds: Seconds { factor: 0.0, solve: clock.elapsed().as_secs_f64() },

@@ -144,6 +144,7 @@ fn nothing_found(problem: &ContactProblem, needed: f64, time: f64) -> Result<Err
         certificate,
         proven: None,
         refinements: None,
+        lost_pivot: None,
         reason: None,
         condensed_dofs: problem.dofs(),
         seconds: Default::default(),

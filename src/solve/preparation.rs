@@ -1,5 +1,6 @@
 //! What is done once for all loads and gaps: rows selected, data scaled, the stiffness ordered and factorised.
 
+use std::cell::Cell;
 use std::sync::OnceLock;
 use std::time::Instant;
 
@@ -14,6 +15,9 @@ use crate::transform::{Condensation, RowSelection, Scaling};
 
 /// A pivot of the equilibrated stiffness below this is too uncertain in single precision.
 const SINGLE_PIVOT: f64 = 1e-4;
+
+/// A pivot below this share of a diagonal of order one leaves fewer than four digits of a double.
+pub(super) const LOST_PIVOT: f64 = 1e-12;
 
 impl Prepared {
     /// As [`Prepared::new`], with the threads and the precision of `settings`.
@@ -73,16 +77,20 @@ impl Prepared {
             (None, of_all) => Kept::Factors { values: of_all.as_ref().map_or(0, Analysis::factor_entries) },
         };
         check_memory(problem, kept, settings)?;
-        let factor = |analysis: &Analysis, single| match analysis.factor_equilibrated(
-            problem.stiffness(),
-            scaling.equilibration(),
-            single,
-        ) {
+        let least_pivot = Cell::new(None);
+        let factor = |analysis: &Analysis, single| match analysis
+            .factor_equilibrated(problem.stiffness(), scaling.equilibration(), single)
+            .inspect(|cholesky| least_pivot.set(Some(cholesky.smallest_pivot())))
+        {
             Ok(cholesky) if single && cholesky.smallest_pivot() <= SINGLE_PIVOT => Ok(None),
             Ok(cholesky) if cholesky.is_safely_definite() || cholesky.is_definite(scaling.stiffness()) => {
                 Ok(Some(cholesky))
             }
-            Ok(_) | Err(FactorError::NotPositiveDefinite) => Ok(None),
+            Ok(_) => Ok(None),
+            Err(FactorError::NotPositiveDefinite) => {
+                least_pivot.set(Some(0.0));
+                Ok(None)
+            }
             Err(error) => Err(Error::from(error)),
         };
         let definite = |analysis: &Analysis| match single.then(|| factor(analysis, true)).transpose()?.flatten() {
@@ -127,6 +135,7 @@ impl Prepared {
             scaling,
             stiffest,
             norm,
+            lost_pivot: least_pivot.get().filter(|&pivot| pivot < LOST_PIVOT),
             condensation,
             augmented,
             way,
