@@ -1,13 +1,12 @@
 //! Is a matrix positive definite, or did rounding let a singular one pass its Cholesky factorisation?
 
-use super::{Accumulator, Cholesky, SymmetricMatrix, largest};
+use super::{Cholesky, SymmetricMatrix, largest};
 
 /// On a diagonal of order one, a smallest pivot above this leaves no doubt; below it the smallest eigenvalue is looked at.
 const SAFE_PIVOT: f64 = 1e-9;
 
-/// `norm(A x)` of a null vector x, summed with twice the working precision, is rounding of the entries of A and x: this many
-/// units in the last place of the terms that cancel.
-const NULL_ROUNDING: f64 = 16.0 * f64::EPSILON;
+/// `norm(A x)` of a null vector x is rounding: this many units in the last place of the terms that cancel.
+const NULL_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Steps of inverse iteration: each gains several digits, since eigenvalues differ by many orders of magnitude.
 const STEPS: usize = 5;
@@ -24,9 +23,7 @@ impl Cholesky {
             return true;
         }
         let softest = self.softest_vector();
-        let mut force = Accumulator::new(&vec![0.0; self.dim()]);
-        let terms = force.subtract_product(matrix, &softest);
-        largest(&force.into_sums()) > NULL_ROUNDING * largest(&terms)
+        largest(&matrix.mul(&softest)) > NULL_ROUNDING * largest(&matrix.mul_abs(&softest))
     }
 
     /// The vector that the matrix resists least, largest entry one, by inverse iteration.
