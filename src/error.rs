@@ -116,7 +116,7 @@ pub enum Error {
     #[error("interrupted before there was an answer")]
     Interrupted,
     /// An answer was found, but it does not meet the tolerance.
-    #[error("not certified: {condition} is {value:.3e}, above the tolerance {tolerance:.1e} ({} after {} iterations)", solution.method, solution.iterations)]
+    #[error("not certified: {condition} is {value:.3e}, above the tolerance {tolerance:.1e} ({} after {} iterations){}", solution.method, solution.iterations, lost_digits(solution))]
     NotCertified {
         /// The best answer, with its certificate.
         solution: Box<Solution>,
@@ -275,6 +275,15 @@ fn no_room(factor: f64, multigrid: f64, allowed: f64, ended: Option<&str>) -> St
              with a factor of the stiffness it takes about {factor}; allow more"
         ),
     }
+}
+
+/// Why digits are lost and what helps, where the stiffness has a pivot near rounding.
+fn lost_digits(solution: &Solution) -> String {
+    let Some(pivot) = solution.lost_pivot else { return String::new() };
+    format!(
+        "; the stiffness has lost its digits (smallest pivot {pivot:.0e} of its diagonal), as slender bodies in bending do: take \
+         fewer elements along the thickness, quadratic elements, or a beam; or hold the body by more supports"
+    )
 }
 
 /// Bytes as a reader writes them.

@@ -292,6 +292,9 @@ pub struct Solution {
     pub reason: Option<String>,
     /// What else was tried, in order; its time is in `seconds`.
     pub attempts: Vec<Attempt>,
+    /// The smallest pivot of the stiffness, of a diagonal of order one, where it is so close to rounding that digits are lost;
+    /// 0 where a pivot was not positive.
+    pub lost_pivot: Option<f64>,
     /// Unknowns that the method worked on; fewer than all where the problem was condensed.
     pub condensed_dofs: usize,
     /// What it cost.

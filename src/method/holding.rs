@@ -141,8 +141,7 @@ impl ScaledProblem<'_> {
 
     /// How fast each row closes on a motion: B d, zero where that is rounding of its own terms.
     pub(super) fn approach(&self, direction: &[f64]) -> Vec<f64> {
-        let magnitude: Vec<f64> = direction.iter().map(|d| d.abs()).collect();
-        let terms = self.problem.contact().abs().mul(&magnitude);
+        let terms = self.problem.contact().mul_abs(direction);
         let speed = self.problem.contact().mul(direction);
         speed.iter().zip(&terms).map(|(&v, term)| if v.abs() > WORK_TOLERANCE * term { v } else { 0.0 }).collect()
     }

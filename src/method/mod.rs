@@ -130,7 +130,7 @@ fn multiplier_rounding(problem: &ContactProblem, u: &[f64], multiplier: &[f64]) 
     let strongest = SIGN_TOLERANCE * largest(multiplier);
     let mut forces = problem.stiffness().mul_abs(u);
     forces.iter_mut().zip(problem.load()).for_each(|(sum, f)| *sum += f.abs());
-    let rounding = problem.contact().abs().mul(&forces);
+    let rounding = problem.contact().mul_abs(&forces);
     rounding.iter().map(|rounding| strongest + FORCE_ROUNDING * rounding).collect()
 }
 

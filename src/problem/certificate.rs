@@ -80,13 +80,10 @@ impl ContactProblem {
     fn recomputed(&self, bounding: Option<Bounding>, u: &[f64], lambda: &[f64]) -> Certificate {
         let parts = self.parts();
         let contact = self.contact.mul_transposed(lambda);
-        let residual = self.accurate_residual(u, lambda);
+        let (residual, terms) = self.accurate_residual_and_terms(u, lambda);
         let elastic: Vec<f64> = (0..self.dofs()).map(|dof| self.load[dof] + contact[dof] - residual[dof]).collect();
         let violation = self.accurate_violation(u);
-        let terms = self.stiffness.mul_abs(u);
-        let contact_terms =
-            self.contact.abs().mul_transposed(&lambda.iter().map(|value| value.abs()).collect::<Vec<_>>());
-        let lengths = self.contact.abs().mul(&u.iter().map(|value| value.abs()).collect::<Vec<_>>());
+        let (contact_terms, lengths) = (self.contact.mul_abs_transposed(lambda), self.contact.mul_abs(u));
         let scales = Scales::of(
             self,
             parts,
@@ -95,10 +92,7 @@ impl ContactProblem {
 
         let is_rounding = |dof: usize| residual[dof].abs() <= ROUNDING * (terms[dof] + contact_terms[dof]);
         let excess = |dof: usize| if is_rounding(dof) { 0.0 } else { residual[dof] };
-        let share = |dof: usize, force: f64| {
-            let own = larger(self.load[dof].abs(), contact[dof].abs());
-            scales.relative_force(parts, dof, force, own)
-        };
+        let own = |dof: usize| larger(self.load[dof].abs(), contact[dof].abs());
         // A row without obstacle carries no multiplier; a violation that rounding of u explains does no work.
         let work = |row: usize| {
             if lambda[row] == 0.0 || violation[row].abs() <= ROUNDING * lengths[row] {
@@ -121,10 +115,9 @@ impl ContactProblem {
         let mut gaps = parts.sums(|dof| -u[dof] * excess(dof));
         (0..self.rows()).for_each(|row| gaps[scales.part_of_row(row)] += work(row));
         let rows = || (0..self.rows()).filter(|&row| self.gap[row].is_finite() || lambda[row] != 0.0);
-        let dofs = || 0..self.dofs();
         let mut certificate = Certificate {
-            stationarity: worst(dofs().map(|dof| share(dof, residual[dof]))),
-            stationarity_excess: worst(dofs().map(|dof| share(dof, excess(dof)))),
+            stationarity: scales.largest_force(parts, |dof| residual[dof], own),
+            stationarity_excess: scales.largest_force(parts, excess, own),
             penetration: worst(rows().map(penetration)),
             adhesion: worst(rows().map(adhesion)),
             complementarity: worst(rows().map(|row| relative(work(row), scales.energy[scales.part_of_row(row)]))),
@@ -158,17 +151,17 @@ impl ContactProblem {
 
     /// `f + B' lambda - K u` of the given doubles, with twice the working precision.
     pub(crate) fn accurate_residual(&self, u: &[f64], lambda: &[f64]) -> Vec<f64> {
+        self.accurate_residual_and_terms(u, lambda).0
+    }
+
+    /// The same, and `|K| |u|`.
+    fn accurate_residual_and_terms(&self, u: &[f64], lambda: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let mut sums = Accumulator::new(&self.load);
-        for (column, &at_column) in u.iter().enumerate() {
-            for (row, value) in self.stiffness.lower().column(column) {
-                sums.add_product(row, -value, at_column);
-                if row != column {
-                    sums.add_product(column, -value, u[row]);
-                }
-            }
-            self.contact.column(column).for_each(|(row, b)| sums.add_product(column, b, lambda[row]));
+        let terms = sums.subtract_product(&self.stiffness, u);
+        for dof in 0..self.dofs() {
+            self.contact.column(dof).for_each(|(row, b)| sums.add_product(dof, b, lambda[row]));
         }
-        sums.into_sums()
+        (sums.into_sums(), terms)
     }
 
     /// `B u - g` of the given doubles, with twice the working precision; `-inf` where there is no obstacle.

@@ -28,7 +28,7 @@ impl ContactProblem {
         rows.iter().zip(weights).for_each(|(&row, &weight)| y[row] += weight / size);
         let mut left = Accumulator::new(&vec![0.0; self.dofs()]);
         self.contact.triplets().for_each(|(row, dof, b)| left.add_product(dof, b, y[row]));
-        let terms = self.contact.abs().mul_transposed(&y);
+        let terms = self.contact.mul_abs_transposed(&y);
         let left_over = left.into_sums().into_iter().zip(&terms).filter(|entry| *entry.1 > 0.0);
         let share = left_over.fold(0.0, |most: f64, (left, terms)| most.max(left.abs() / terms));
         let mut sum = Accumulator::new(&[0.0]);

@@ -15,6 +15,7 @@ pub use energy_norm::EnergyNorm;
 use std::sync::{Arc, OnceLock};
 
 use parts::Parts;
+use scales::Diagonal;
 
 use crate::error::Error;
 use crate::sparse::multigrid::NearNullSpace;
@@ -36,11 +37,12 @@ pub struct ContactProblem {
     contact: SparseMatrix,
     gap: Vec<f64>,
     near_null: Option<Arc<NearNullSpace>>,
+    diagonal: FoundOnce<Diagonal>,
     parts: FoundOnce<Parts>,
 }
 
-/// What follows from the matrices of a problem and from which of its rows have an obstacle: found when it is first asked for,
-/// and shared by the same problem under other loads and gaps.
+/// What follows from the matrices of a problem, or from which of its rows have an obstacle too: found when it is first asked
+/// for, and shared by the same problem under other loads and gaps.
 #[derive(Clone, Debug)]
 struct FoundOnce<T>(Arc<OnceLock<T>>);
 
@@ -96,7 +98,8 @@ impl ContactProblem {
             return Err(Error::NotConvex { evidence: format!("diagonal entry {dof} is {value:e}, indices from 0") });
         }
         let gap = with_infinite(gap);
-        Ok(ContactProblem { stiffness, load, contact, gap, near_null: None, parts: FoundOnce::not_yet() })
+        let (diagonal, parts) = (FoundOnce::not_yet(), FoundOnce::not_yet());
+        Ok(ContactProblem { stiffness, load, contact, gap, near_null: None, diagonal, parts })
     }
 
     /// The same problem with what multigrid should know of its body: displacements that cost next to no energy, as the
@@ -175,7 +178,13 @@ impl ContactProblem {
         let gap = with_infinite(gap);
         let same_rows = gap.iter().zip(&self.gap).all(|(gap, before)| gap.is_finite() == before.is_finite());
         let parts = if same_rows { self.parts.clone() } else { FoundOnce::not_yet() };
-        Ok(ContactProblem { stiffness, load, contact, gap, near_null, parts })
+        let diagonal = self.diagonal.clone();
+        Ok(ContactProblem { stiffness, load, contact, gap, near_null, diagonal, parts })
+    }
+
+    /// The diagonal of K, found when it is first asked for.
+    fn diagonal(&self) -> &Diagonal {
+        self.diagonal.get_or_find(|| Diagonal::of(&self.stiffness))
     }
 
     /// The violation B u - g of each row, length m: positive is penetration; `-inf` where there is no obstacle.

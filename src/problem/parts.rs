@@ -19,7 +19,7 @@ pub(super) struct Parts {
 impl Parts {
     /// The parts of a problem; rows with an infinite gap join nothing.
     pub fn of(problem: &ContactProblem) -> Self {
-        let roots: Vec<f64> = problem.stiffness.diagonal().iter().map(|value| value.sqrt()).collect();
+        let roots = &problem.diagonal().roots;
         let mut forest = Forest::new(roots.len());
         for (column, &own) in roots.iter().enumerate() {
             for (row, value) in problem.stiffness.lower().column(column) {

@@ -85,7 +85,7 @@ impl ContactProblem {
         let mut place = vec![usize::MAX; self.rows()];
         rows.iter().enumerate().for_each(|(index, &row)| place[row] = index);
         let mut lengths = vec![f64::INFINITY; rows.len()];
-        for (dof, &stiffness) in self.stiffness.diagonal().iter().enumerate() {
+        for (dof, &stiffness) in self.diagonal().values.iter().enumerate() {
             let mut felt = self.contact.column(dof).filter(|&(row, b)| b != 0.0 && place[row] != usize::MAX);
             if let (Some((row, b)), None) = (felt.next(), felt.next()) {
                 let length = &mut lengths[place[row]];

@@ -2,9 +2,27 @@
 
 use super::ContactProblem;
 use super::parts::Parts;
+use crate::sparse::SymmetricMatrix;
 
 /// A part whose energy norm is below this share of what its forces could do to a single dof is at rest but for rounding.
 const AT_REST: f64 = 1e-6;
+
+/// The diagonal of K.
+#[derive(Clone, Debug)]
+pub(super) struct Diagonal {
+    /// K_ii of each dof.
+    pub values: Vec<f64>,
+    /// `sqrt(K_ii)` of each dof.
+    pub roots: Vec<f64>,
+}
+
+impl Diagonal {
+    /// The diagonal of a stiffness.
+    pub fn of(stiffness: &SymmetricMatrix) -> Self {
+        let values = stiffness.diagonal();
+        Diagonal { roots: values.iter().map(|value| value.sqrt()).collect(), values }
+    }
+}
 
 /// What the errors of an answer are measured against.
 pub(super) struct Scales {
@@ -49,7 +67,7 @@ impl Scales {
     /// The scales of an answer to `problem`.
     pub fn of(problem: &ContactProblem, parts: &Parts, forces: &Forces) -> Self {
         let Forces { displacement: u, multiplier, contact, elastic } = *forces;
-        let softness: Vec<f64> = problem.stiffness.diagonal().iter().map(|value| 1.0 / value.sqrt()).collect();
+        let softness: Vec<f64> = problem.diagonal().roots.iter().map(|root| 1.0 / root).collect();
         let (mut reach, mut part_of_row) = (vec![0.0; problem.rows()], vec![0; problem.rows()]);
         for (dof, &soft) in softness.iter().enumerate() {
             for (row, b) in problem.contact.column(dof).filter(|entry| entry.1 != 0.0) {
@@ -98,14 +116,21 @@ impl Scales {
         larger(strain.max(0.0).sqrt(), AT_REST * force)
     }
 
-    /// A force on a dof, relative to those that act on its part; on a dof without stiffness, to `own`, those on the dof.
-    pub fn relative_force(&self, parts: &Parts, dof: usize, force: f64, own: f64) -> f64 {
-        let soft = self.softness[dof];
-        if soft.is_finite() {
-            relative(force.abs() * soft, self.force[parts.of_dof(dof)])
-        } else {
-            relative(force.abs(), own)
+    /// The largest `force(dof)`, relative to those that act on its part; on a dof without stiffness, to `own(dof)`, those on
+    /// the dof.
+    pub fn largest_force(&self, parts: &Parts, force: impl Fn(usize) -> f64, own: impl Fn(usize) -> f64) -> f64 {
+        let (mut of_parts, mut without_stiffness) = (vec![0.0; self.force.len()], 0.0);
+        for (dof, soft) in self.softness.iter().enumerate() {
+            let force = force(dof).abs();
+            if soft.is_finite() {
+                let of_part = &mut of_parts[parts.of_dof(dof)];
+                *of_part = larger(force * soft, *of_part);
+            } else {
+                without_stiffness = larger(relative(force, own(dof)), without_stiffness);
+            }
         }
+        let of_parts = of_parts.iter().zip(&self.force).map(|(&force, &scale)| relative(force, scale));
+        of_parts.fold(without_stiffness, |largest, share| larger(share, largest))
     }
 }
 

@@ -37,7 +37,7 @@ impl Units {
 impl ContactProblem {
     /// The units in which an answer is of order one, where forces or energies would over- or underflow in its own.
     pub(super) fn far_units(&self, displacement: &[f64]) -> Option<Units> {
-        let stiffness = exponent(largest(&self.stiffness.diagonal()));
+        let stiffness = exponent(largest(&self.diagonal().values));
         let (moved, load) = (largest(displacement), largest(&self.load));
         let statics = exponent(load) - stiffness;
         let length = match (moved > 0.0, load > 0.0) {

@@ -210,6 +210,7 @@ fn nothing_found(problem: &ContactProblem, needed: f64, time: f64) -> Result<Err
         certificate,
         proven: None,
         refinements: None,
+        lost_pivot: None,
         reason: None,
         attempts: Vec::new(),
         condensed_dofs: problem.dofs(),

@@ -122,6 +122,7 @@ impl Iterative {
             certificate,
             proven: None,
             refinements: None,
+            lost_pivot: None,
             reason: None,
             attempts: Vec::new(),
             condensed_dofs: problem.dofs(),

@@ -1,5 +1,6 @@
 //! What is done once for all loads and gaps: rows selected, data scaled, the stiffness ordered and factorised.
 
+use std::cell::Cell;
 use std::sync::OnceLock;
 use std::time::Instant;
 
@@ -15,6 +16,9 @@ use crate::transform::{Condensation, RowSelection, Scaling};
 
 /// A pivot of the equilibrated stiffness below this is too uncertain in single precision.
 const SINGLE_PIVOT: f64 = 1e-4;
+
+/// A pivot below this share of a diagonal of order one leaves fewer than four digits of a double.
+pub(super) const LOST_PIVOT: f64 = 1e-12;
 
 impl Prepared {
     /// As [`Prepared::new`], with the threads and the precision of `settings`.
@@ -43,16 +47,21 @@ impl Prepared {
             0.0 => pace::sweeps(problem.rows(), analysis.factor_entries() as f64),
             boundary => pace::sweeps(problem.rows(), boundary * boundary),
         };
+        let least_pivot = Cell::new(None);
         let factor = |single| {
             let estimate = factor_seconds(multiplications, analysis.factor_entries())[usize::from(single)];
             let scaled = scaling.equilibration();
             let factor = || analysis.factor_equilibrated(problem.stiffness(), scaled, single);
-            match watch.timed(estimate, factor) {
+            match watch.timed(estimate, factor).inspect(|cholesky| least_pivot.set(Some(cholesky.smallest_pivot()))) {
                 Ok(cholesky) if single && cholesky.smallest_pivot() <= SINGLE_PIVOT => Ok(None),
                 Ok(cholesky) if cholesky.is_safely_definite() || cholesky.is_definite(scaling.stiffness()) => {
                     Ok(Some(cholesky))
                 }
-                Ok(_) | Err(FactorError::NotPositiveDefinite) => Ok(None),
+                Ok(_) => Ok(None),
+                Err(FactorError::NotPositiveDefinite) => {
+                    least_pivot.set(Some(0.0));
+                    Ok(None)
+                }
                 Err(error) => Err(Error::from(error)),
             }
         };
@@ -109,6 +118,7 @@ impl Prepared {
             scaling,
             stiffest,
             norm,
+            lost_pivot: least_pivot.get().filter(|&pivot| pivot < LOST_PIVOT),
             condensation,
             augmented,
             way,

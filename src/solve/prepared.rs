@@ -29,6 +29,8 @@ pub struct Prepared {
     /// The largest diagonal entry of the stiffness.
     pub(super) stiffest: f64,
     pub(super) norm: Option<EnergyNorm>,
+    /// The smallest pivot of the scaled stiffness, where it is below [`LOST_PIVOT`](super::preparation::LOST_PIVOT).
+    pub(super) lost_pivot: Option<f64>,
     pub(super) condensation: Option<Condensation>,
     pub(super) augmented: AugmentedMatrix,
     /// Energy norm of the condensed stiffness, made when it is first asked for.
@@ -427,6 +429,7 @@ impl Prepared {
             refinements: refined.as_ref().map(|refined| refined.steps),
             reason: None,
             attempts: Vec::new(),
+            lost_pivot: self.lost_pivot,
             condensed_dofs: self.condensed_dofs(),
             seconds: Seconds { solve: seconds.solve + clock.elapsed().as_secs_f64(), ..*seconds },
         };

@@ -168,9 +168,19 @@ impl SparseMatrix {
         (0..self.columns()).map(|column| self.column(column).map(|(row, value)| value * y[row]).sum()).collect()
     }
 
-    /// The matrix with every entry replaced by its magnitude.
-    pub fn abs(&self) -> Self {
-        self.with_values(self.values.iter().map(|value| value.abs()).collect())
+    /// The product |A| |x|, entry by entry: the scale of rounding in A x.
+    pub fn mul_abs(&self, x: &[f64]) -> Vec<f64> {
+        let mut y = vec![0.0; self.rows];
+        for (row, column, value) in self.triplets() {
+            y[row] += value.abs() * x[column].abs();
+        }
+        y
+    }
+
+    /// The product |A|' |y|, length `columns`; `y` has length `rows`.
+    pub fn mul_abs_transposed(&self, y: &[f64]) -> Vec<f64> {
+        let term = |(row, value): (usize, f64)| value.abs() * y[row].abs();
+        (0..self.columns()).map(|column| self.column(column).map(term).sum()).collect()
     }
 
     /// The transposed matrix: its columns are the rows of this one.

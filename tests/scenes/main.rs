@@ -19,6 +19,7 @@ mod obstacles_in_space;
 mod rigid_motions;
 mod scene_errors;
 mod scene_model;
+mod slender;
 mod turned_bodies;
 mod two_bodies;
 mod verification;

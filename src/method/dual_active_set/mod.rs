@@ -171,8 +171,7 @@ impl Search<'_> {
         let at_rest = vec![0.0; self.displacement.len()];
         let (to_closed, _) = self.correction(&at_rest, &distances);
         let explained = problem.contact().mul(&self.polyhedron.displacement(&to_closed));
-        let magnitude: Vec<f64> = self.displacement.iter().map(|u| u.abs()).collect();
-        let terms = problem.contact().abs().mul(&magnitude);
+        let terms = problem.contact().mul_abs(&self.displacement);
         let violation = |row: usize| explained[row] - distances[row];
         (0..distances.len()).any(|row| violation(row) > MET * (terms[row] + problem.gap()[row].abs()))
     }

@@ -100,11 +100,11 @@ impl ContactProblem {
     /// What displacements are worth in energy whose squares are lost in double precision beside the forces; 0 where there
     /// are none.
     fn underflow(&self, answer: &Answer) -> f64 {
-        let roots: Vec<f64> = self.stiffness.diagonal().iter().map(|value| value.sqrt()).collect();
+        let roots = &self.diagonal().roots;
         let contact = self.contact.mul_transposed(answer.multiplier);
-        let force =
-            |dof: usize| if roots[dof] > 0.0 { (self.load[dof].abs() + contact[dof].abs()) / roots[dof] } else { 0.0 };
-        let least = LOST * (0..self.dofs()).map(force).fold(0.0, f64::max);
+        let force = |dof: usize| self.load[dof].abs() + contact[dof].abs();
+        let loaded = (0..self.dofs()).filter(|&dof| force(dof) > 0.0 && roots[dof] > 0.0);
+        let least = LOST * loaded.map(|dof| force(dof) / roots[dof]).fold(0.0, f64::max);
         let is_lost =
             |dof: usize| answer.displacement[dof] != 0.0 && answer.displacement[dof].abs() * roots[dof] < least;
         (0..self.dofs()).filter(|&dof| is_lost(dof)).count() as f64 * 2.0 * least
@@ -112,9 +112,8 @@ impl ContactProblem {
 
     /// Rows whose force, times their compliance if all else stood still, exceeds their distance.
     fn rows_that_look_closed(&self, answer: &Answer) -> Vec<bool> {
-        let diagonal = self.stiffness.diagonal();
         let mut compliance = vec![0.0; self.rows()];
-        for (dof, &stiffness) in diagonal.iter().enumerate() {
+        for (dof, &stiffness) in self.diagonal().values.iter().enumerate() {
             self.contact
                 .column(dof)
                 .filter(|entry| entry.1 != 0.0)
@@ -139,9 +138,9 @@ impl ContactProblem {
     /// An upper bound on `|b / b'b|_K` of each row b: the motion along the row that it feels as one.
     pub(super) fn lengths_along_rows(&self) -> Vec<f64> {
         let (mut sums, mut squares) = (vec![0.0; self.rows()], vec![0.0; self.rows()]);
-        for (dof, &stiffness) in self.stiffness.diagonal().iter().enumerate() {
+        for (dof, &root) in self.diagonal().roots.iter().enumerate() {
             for (row, b) in self.contact.column(dof) {
-                sums[row] += b.abs() * stiffness.sqrt();
+                sums[row] += b.abs() * root;
                 squares[row] += b * b;
             }
         }
@@ -189,9 +188,8 @@ impl ContactProblem {
     /// Springs on the rows that press, each as stiff as the row itself is when all but its own dofs stand still.
     pub(super) fn springs(&self, displacement: &[f64], multiplier: &[f64]) -> Springs {
         let parts = self.parts();
-        let diagonal = self.stiffness.diagonal();
         let mut compliance = vec![0.0; self.rows()];
-        for (dof, &stiffness) in diagonal.iter().enumerate().filter(|entry| *entry.1 > 0.0) {
+        for (dof, &stiffness) in self.diagonal().values.iter().enumerate().filter(|entry| *entry.1 > 0.0) {
             for (row, b) in self.contact.column(dof) {
                 compliance[row] += b * b / stiffness;
             }

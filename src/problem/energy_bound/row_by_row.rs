@@ -15,8 +15,8 @@ const RELAXATIONS: usize = 20;
 impl ContactProblem {
     /// What B u - g may be off by rounding u, row by row.
     pub(in super::super) fn negligible(&self, displacement: &[f64]) -> Vec<f64> {
-        let magnitude: Vec<f64> = displacement.iter().map(|value| ROUNDING * value.abs()).collect();
-        self.contact.abs().mul(&magnitude)
+        let magnitude: Vec<f64> = displacement.iter().map(|value| ROUNDING * value).collect();
+        self.contact.mul_abs(&magnitude)
     }
 
     /// The bound from the displacement whose rows are moved one after the other, each by its own dofs: those of `closed`
@@ -110,11 +110,11 @@ impl ContactProblem {
     /// A displacement d that follows the force `residual` where nothing is `held`, by a few steps of conjugate gradients,
     /// and K d.
     fn relaxed(&self, residual: &[f64], held: &[bool]) -> (Vec<f64>, Vec<f64>) {
-        let diagonal = self.stiffness.diagonal();
+        let diagonal = &self.diagonal().values;
         let free = |values: Vec<f64>| -> Vec<f64> {
             values.into_iter().zip(held).map(|(value, &held)| if held { 0.0 } else { value }).collect()
         };
-        let scaled = |rest: &[f64]| -> Vec<f64> { rest.iter().zip(&diagonal).map(|(r, d)| r / d).collect() };
+        let scaled = |rest: &[f64]| -> Vec<f64> { rest.iter().zip(diagonal).map(|(r, d)| r / d).collect() };
         let (mut moved, mut force) = (vec![0.0; self.dofs()], vec![0.0; self.dofs()]);
         let mut rest = free(residual.to_vec());
         let mut preconditioned = scaled(&rest);

@@ -1,0 +1,188 @@
+//! GOAL: slender bodies in bending are certified, whatever the element, the mesh and the method.
+//!
+//! CONDITIONS: a cantilever under a uniform load on a stop or on a floor, L/h from 10 to 1000; a quarter of a ring between
+//! rigid plates, t/R from 0.1 to 0.01.
+//!
+//! REFERENCE: beam theory in closed form; the three other ways to solve the same scene.
+
+use std::f64::consts::PI;
+
+use serde_json::{Value, json};
+use signorini::{Condense, Error, Method, Scene, Settings, Solution, solve};
+
+const PLANE: [&str; 4] = ["q4", "q8", "t3", "t6"];
+const ALL: [&str; 5] = ["q4", "q8", "t3", "t6", "hex8"];
+const SLENDERNESS: [f64; 4] = [10.0, 20.0, 50.0, 100.0];
+
+/// Divisions along the axis and through the thickness.
+const MESHES: [(usize, usize); 2] = [(20, 1), (50, 3)];
+
+/// What every answer is certified to.
+const TOLERANCE: f64 = 1e-9;
+
+/// Ways to solve one scene agree in force: certified to 1e-9 in energy, of which a row takes its share.
+const AGREE: f64 = 1e-6;
+
+/// Load per length of beam; all beams have E = 1, h = 1 and width 1, thus EI = 1/12.
+const LOAD: f64 = 1e-9;
+const BENDING: f64 = 1.0 / 12.0;
+
+fn is_quadratic(element: &str) -> bool {
+    matches!(element, "q8" | "t6")
+}
+
+/// The four ways to solve a scene.
+fn ways() -> [Settings; 4] {
+    let with = Settings::with_method;
+    let mut never = Settings::default();
+    never.condense = Condense::Never;
+    [Settings::default(), never, with(Method::Qp), with(Method::ActiveSet)]
+}
+
+fn answer(scene: &Value, settings: &Settings) -> Result<Solution, Error> {
+    let model = Scene::from_json(&scene.to_string(), "scene").and_then(|scene| scene.build()).unwrap();
+    solve(model.problem(), settings)
+}
+
+/// The contact force of a scene, which every way certifies, with a bound on the error.
+fn certified_force(name: &str, scene: &Value) -> f64 {
+    let forces = ways().map(|settings| {
+        let found = answer(scene, &settings).unwrap_or_else(|e| panic!("{name}, {:?}: {e}", settings.method));
+        let certificate = &found.certificate;
+        assert!(certificate.meets(TOLERANCE) && certificate.has_bound(), "{name}: {certificate:?}");
+        assert!(
+            certificate.energy_error_bound < 1e-7 && certificate.part_error_bound < 1e-7,
+            "{name}: {certificate:?}"
+        );
+        assert_eq!(certificate.parts, 1, "{name}");
+        found.contact_force()
+    });
+    assert!(forces[0] > 0.0, "{name}: no contact");
+    for force in forces {
+        assert!((force / forces[0] - 1.0).abs() < AGREE, "{name}: {forces:?}");
+    }
+    forces[0]
+}
+
+#[track_caller]
+fn close(name: &str, force: f64, expected: f64, tolerance: f64) {
+    assert!((force / expected - 1.0).abs() < tolerance, "{name}: {force:e} instead of {expected:e}");
+}
+
+/// A cantilever of length L, the nodes of `boundary` stopped by a floor at the distance `gap` below it.
+fn cantilever(element: &str, length: f64, (along, through): (usize, usize), boundary: &str, gap: f64) -> Value {
+    let axis = |end: f64, divisions: usize| json!({"points": [0, end], "divisions": [divisions]});
+    let is_solid = element == "hex8";
+    let (body, model, down, support) = if is_solid {
+        let sides = json!({"x": axis(length, along), "y": axis(1.0, 1), "z": axis(1.0, through), "element": element});
+        (json!({"box": sides}), "space", "-z", json!({"on": {"boundary": "left"}, "x": 0, "y": 0, "z": 0}))
+    } else {
+        let sides = json!({"x": axis(length, along), "y": axis(1.0, through), "element": element});
+        (json!({"rectangle": sides}), "plane-stress", "-y", json!({"on": {"boundary": "left"}, "x": 0, "y": 0}))
+    };
+    let vertical = |value: f64| if is_solid { json!([0, 0, value]) } else { json!([0, value]) };
+    json!({
+        "model": model, "body": body, "material": {"young": 1.0, "poisson": 0.0}, "supports": [support],
+        "loads": [{"traction": {"boundary": "top", "value": vertical(-LOAD)}}],
+        "obstacles": [{"boundary": boundary, "approach": down,
+                       "shape": {"plane": {"point": vertical(-gap), "normal": vertical(-1.0)}}}],
+    })
+}
+
+/// A propped cantilever carries 3/8 of its load at the prop, whatever its bending stiffness: locking does not show.
+#[test]
+fn a_cantilever_on_a_stop_is_certified_and_carries_three_eighths_of_its_load_there() {
+    // Of shear, in h/L = 0.1, and of twenty linear elements; the stop takes the load of its own node too.
+    const PROP: f64 = 0.04;
+    for element in ALL {
+        for length in SLENDERNESS {
+            for mesh in MESHES {
+                let name = format!("{element}, L/h = {length}, {mesh:?}");
+                let force = certified_force(&name, &cantilever(element, length, mesh, "right", 0.0));
+                close(&name, force, 3.0 / 8.0 * LOAD * length, PROP);
+            }
+        }
+    }
+}
+
+/// Over a floor at the distance g the beam is free up to a, a^4 = 72 EI g / q, and hangs on its clamp with 2/3 q a.
+#[test]
+fn a_cantilever_on_a_floor_is_certified_and_lies_down_as_a_beam_does() {
+    // Touchdown falls between two of forty nodes.
+    const FLOOR: f64 = 0.03;
+    for element in ALL {
+        for length in SLENDERNESS {
+            let free = 0.6 * length;
+            let gap = LOAD * free.powi(4) / (72.0 * BENDING);
+            for mesh in [(40, 1), (80, 2)] {
+                let name = format!("{element}, L/h = {length}, {mesh:?}");
+                let force = certified_force(&name, &cantilever(element, length, mesh, "bottom", gap));
+                let expected = LOAD * (length - 2.0 / 3.0 * free);
+                if is_quadratic(element) {
+                    close(&name, force, expected, FLOOR);
+                } else {
+                    // Linear elements lock: the beam is too stiff, and more of it stays free.
+                    assert!(force < (1.0 + FLOOR) * expected, "{name}: {force:e}, beam theory {expected:e}");
+                }
+            }
+        }
+    }
+}
+
+/// A quarter of a ring of radius 1, its plane of symmetry pressed down by 0.01 on a rigid plate.
+fn ring(element: &str, thickness: f64, (around, through): (usize, usize)) -> Value {
+    let radius = json!({"points": [1.0 - thickness / 2.0, 1.0 + thickness / 2.0], "divisions": [through]});
+    let angle = json!({"points": [-90, 0], "divisions": [around]});
+    json!({
+        "model": "plane-stress", "body": {"ring": {"radius": radius, "angle": angle, "element": element}},
+        "material": {"young": 1.0, "poisson": 0.0},
+        "supports": [{"on": {"boundary": "start"}, "x": 0}, {"on": {"boundary": "end"}, "y": -0.01}],
+        "obstacles": [{"boundary": "outer", "approach": "-y",
+                       "shape": {"plane": {"point": [0, -1.0 - thickness / 2.0], "normal": [0, -1]}}}],
+    })
+}
+
+/// Two opposite forces P shorten a thin ring by (pi/4 - 2/pi) P R^3 / EI.
+#[test]
+fn a_ring_between_plates_is_certified_and_as_stiff_as_a_curved_beam() {
+    // Of the stretching and shear that a curved beam leaves out at t/R = 0.1, and of twenty quadratic elements at 0.01.
+    const CURVED: f64 = 0.05;
+    for element in PLANE {
+        for thickness in [0.1, 0.05, 0.02, 0.01_f64] {
+            for mesh in MESHES {
+                let name = format!("{element}, t/R = {thickness}, {mesh:?}");
+                let force = certified_force(&name, &ring(element, thickness, mesh));
+                let expected = 0.01 * thickness.powi(3) / 12.0 / (PI / 4.0 - 2.0 / PI);
+                if is_quadratic(element) {
+                    close(&name, force, expected, CURVED);
+                } else {
+                    assert!(force > (1.0 - CURVED) * expected, "{name}: {force:e}, beam theory {expected:e}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_clamped_body_a_thousand_times_as_long_as_thick_is_not_called_loose_or_soft() {
+    for element in ALL {
+        for mesh in [(20, 1), (100, 2)] {
+            for boundary in ["right", "bottom"] {
+                let name = format!("{element}, {mesh:?}, {boundary}");
+                let scene = cantilever(element, 1000.0, mesh, boundary, 0.0);
+                let found = answer(&scene, &Settings::default()).unwrap_or_else(|e| panic!("{name}: {e}"));
+                assert!(found.certificate.meets(TOLERANCE), "{name}: {:?}", found.certificate);
+            }
+        }
+    }
+}
+
+/// The softest motion of this beam has 1e-24 of the stiffness of its elements.
+#[test]
+fn an_answer_without_digits_names_bending() {
+    let error = answer(&cantilever("q4", 1e7, (1000, 1), "right", 0.0), &Settings::default());
+    let text = error.as_ref().map_or_else(|error| error.to_string(), |found| format!("{:?}", found.certificate));
+    assert!(matches!(error, Err(Error::NotCertified { .. })), "{text}");
+    assert!(text.contains("the stiffness has lost its digits (smallest pivot"), "{text}");
+    assert!(text.contains("bending") && text.contains("fewer elements along the thickness"), "{text}");
+}
