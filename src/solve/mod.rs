@@ -1,6 +1,7 @@
 //! From a contact problem to a certified answer: select rows, scale, condense, method, expand, certify.
 
 mod boundary;
+mod claims;
 mod estimate;
 mod iterative;
 mod loading;
@@ -54,6 +55,15 @@ pub fn solve_qp(problem: &ContactProblem) -> Result<Solution, Error> {
 /// * [`Error::Numerical`] where memory does not suffice.
 pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
     let settings = &settings.started()?;
+    claims::rechecked(problem, settings, method_ending(problem, settings))
+}
+
+/// How the method ends by itself.
+///
+/// # Errors
+/// As [`solve`]; a claim about the problem is not rechecked.
+fn method_ending(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
+    let settings = &settings.started()?;
     if settings.method == Method::Mprgp {
         return iterative::solve(problem, settings);
     }
@@ -103,7 +113,7 @@ pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, 
         Error::NotCertified { solution, .. } => solution.certificate.energy_error_bound,
         _ => f64::INFINITY,
     };
-    match solve(problem, &safe) {
+    match method_ending(problem, &safe) {
         // Where it is cut short, the shortcut may have come further.
         Err(error @ (Error::NotCertified { .. } | Error::Interrupted)) if bound(&fell_short) < bound(&error) => {
             Err(fell_short)
