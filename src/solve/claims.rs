@@ -33,6 +33,9 @@ const PRESSED: f64 = 1e-9;
 /// A row that is open by less than this share of its displacement and gap may touch.
 const TOUCHING: f64 = 1e-7;
 
+/// The same, as a share of what the load would move.
+const STRAINED: f64 = 1e-10;
+
 /// Exponent of rho: on a diagonal of order one, far above rounding and far below what resists.
 const STEP: i32 = -20;
 
@@ -49,9 +52,12 @@ pub(super) fn rechecked(
     ending: Result<Solution, Error>,
 ) -> Result<Solution, Error> {
     let before = match ending {
-        Err(error) if is_doubtful(&error) && !settings.watch.is_over() => error,
+        Err(error) if is_doubtful(&error) => error,
         sure => return sure,
     };
+    if settings.watch.is_over() {
+        return Err(not_decided(problem, before)?);
+    }
     let scaling = Scaling::of(problem.stiffness(), problem.contact())?;
     let (load, gap) = (scaling.load(problem.load(), 0), scaling.gap(problem.gap(), 0));
     let scaled = match ContactProblem::new(scaling.stiffness().clone(), load, scaling.contact().clone(), gap) {
@@ -148,7 +154,11 @@ impl Looked<'_> {
         let sizes = problem.contact().abs().mul(&u.iter().map(|value| value.abs()).collect::<Vec<_>>());
         let strongest = largest(lambda);
         let presses = |row: usize| lambda[row] < -PRESSED * strongest;
-        let touches = |row: usize| violation[row] >= -TOUCHING * (sizes[row] + problem.gap()[row].abs());
+        // What the load would move dofs that nothing but their own stiffness holds: all that is left of u may be rounding of it.
+        let unit = self.scaling.expand_displacement(&vec![STRAINED * largest(self.scaled.load()); u.len()], 0);
+        let strained = problem.contact().abs().mul(&unit);
+        let touches =
+            |row: usize| violation[row] >= -(TOUCHING * (sizes[row] + problem.gap()[row].abs()) + strained[row]);
         let mut left = Complement::of(self.null.len());
         self.bounded_rows().filter(|&row| presses(row)).for_each(|row| left.remove(&self.coordinates_of_row(row)));
         let mut rows: Vec<Vec<f64>> = (self.bounded_rows())
@@ -220,7 +230,8 @@ impl Looked<'_> {
         let mut centre = vec![0.0; dofs];
         for step in 1..=MOST_STEPS {
             let load = (problem.load().iter().zip(&added).zip(&centre)).map(|((f, e), u)| f + e * u).collect();
-            let of_step = ContactProblem::new(stiffness.clone(), load, problem.contact().clone(), problem.gap().to_vec())?;
+            let of_step =
+                ContactProblem::new(stiffness.clone(), load, problem.contact().clone(), problem.gap().to_vec())?;
             let found = match method_ending(&of_step, &settings_of_step) {
                 Ok(solution) => solution,
                 Err(Error::NotCertified { solution, .. }) => *solution,

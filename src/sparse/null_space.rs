@@ -35,6 +35,8 @@ impl SymmetricMatrix {
 
     /// A unit vector that is not resisted, at right angles to those `found`.
     fn null_vector(&self, factor: &Cholesky, found: &[Vec<f64>]) -> Option<Vec<f64>> {
+        // No entry of A v is larger than this, for a unit vector v.
+        let terms = largest(&self.mul_abs(&vec![1.0; self.dim()]));
         let mut vector = generic(self.dim(), found.len());
         let mut before = f64::INFINITY;
         for _ in 0..MOST_STEPS {
@@ -46,7 +48,7 @@ impl SymmetricMatrix {
             }
             let length = dot(&vector, &vector).sqrt();
             vector.iter_mut().for_each(|value| *value /= length);
-            let (resistance, terms) = (largest(&self.mul(&vector)), largest(&self.mul_abs(&vector)));
+            let resistance = largest(&self.mul(&vector));
             if resistance <= NULL_ROUNDING * terms {
                 return Some(vector);
             }
