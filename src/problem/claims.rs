@@ -11,8 +11,11 @@ const VANISHES: f64 = 1e-10;
 /// Entries below this share of the largest are what the factorisation has left of zero.
 const ZERO: f64 = 1e-9;
 
-/// Work of the load below this share of its terms is its rounding: loads in balance are rarely so to the last digit.
-const WORK: f64 = 1e-9;
+/// A load drives a motion if its work is beyond this share of its terms.
+const DRIVES: f64 = 1e-9;
+
+/// A load whose work is below this share of its terms is in balance, but for rounding of the motion.
+const IN_BALANCE: f64 = 1e-13;
 
 /// Energy of a direction counts as negative beyond this share of its terms.
 const NEGATIVE: f64 = 1e-12;
@@ -31,12 +34,12 @@ pub(crate) struct Motion {
 impl Motion {
     /// The error that it is, if the load drives the motion and no row stops it.
     pub fn escapes(&self) -> bool {
-        self.work > WORK && self.approach.iter().all(|&speed| speed <= 0.0)
+        self.work > DRIVES && self.approach.iter().all(|&speed| speed <= 0.0)
     }
 
     /// Does the load neither drive nor resist it?
     pub fn is_in_balance(&self) -> bool {
-        self.work.abs() <= WORK
+        self.work.abs() <= IN_BALANCE
     }
 
     /// How the motion was rechecked, and most of it.

@@ -27,8 +27,8 @@ const DEPENDENT: f64 = 1e-9;
 /// A point of a cone that is nearer to its tip than this share of c is the tip.
 const TIP: f64 = 1e-8;
 
-/// Multipliers below this share of the largest press no row for sure.
-const PRESSED: f64 = 1e-9;
+/// A row presses if its force on a dof is beyond this share of the forces that are in balance there: less is their rounding.
+const PRESSED: f64 = 1e-13;
 
 /// A row that is open by less than this share of its displacement and gap may touch.
 const TOUCHING: f64 = 1e-7;
@@ -152,8 +152,8 @@ impl Looked<'_> {
         let (u, lambda) = (&solution.displacement, &solution.multiplier);
         let violation = problem.accurate_violation(u);
         let sizes = problem.contact().abs().mul(&u.iter().map(|value| value.abs()).collect::<Vec<_>>());
-        let strongest = largest(lambda);
-        let presses = |row: usize| lambda[row] < -PRESSED * strongest;
+        let presses = pressed(problem, u, lambda);
+        let presses = |row: usize| presses[row];
         // What the load would move dofs that nothing but their own stiffness holds: all that is left of u may be rounding of it.
         let unit = self.scaling.expand_displacement(&vec![STRAINED * largest(self.scaled.load()); u.len()], 0);
         let strained = problem.contact().abs().mul(&unit);
@@ -255,6 +255,19 @@ impl Looked<'_> {
             None => Err(not_decided(problem, before)?),
         }
     }
+}
+
+/// Does each row press?
+fn pressed(problem: &ContactProblem, u: &[f64], lambda: &[f64]) -> Vec<bool> {
+    let sizes: Vec<f64> = lambda.iter().map(|value| value.abs()).collect();
+    let contact = problem.contact().abs().mul_transposed(&sizes);
+    let elastic = problem.stiffness().mul_abs(u);
+    let mut presses = vec![false; problem.rows()];
+    for (row, dof, b) in problem.contact().triplets() {
+        let terms = contact[dof] + elastic[dof] + problem.load()[dof].abs();
+        presses[row] |= (b * lambda[row]).abs() > PRESSED * terms;
+    }
+    presses
 }
 
 /// The sum of `b_i v_i`, zero where its terms cancel.
