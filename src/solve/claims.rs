@@ -39,6 +39,9 @@ const STRAINED: f64 = 1e-10;
 /// Exponent of rho: on a diagonal of order one, far above rounding and far below what resists.
 const STEP: i32 = -20;
 
+/// Steps after which one that gains nothing is the last: the first finds a place, the second its forces.
+const FEWEST_STEPS: usize = 3;
+
 /// Steps with `K + rho E`, each of which takes a factor `rho / eigenvalue` off the error.
 const MOST_STEPS: usize = 12;
 
@@ -220,7 +223,7 @@ impl Looked<'_> {
         let dofs = problem.dofs();
         let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &entries)?)?;
         let settings_of_step = Settings {
-            method: Method::Auto,
+            method: Method::ActiveSet,
             precision: Precision::Double,
             accuracy: None,
             prove: false,
@@ -241,12 +244,11 @@ impl Looked<'_> {
             centre.clone_from(&found.displacement);
             let certificate = problem.certify(&found.displacement, &found.multiplier)?;
             let is_better = best.as_ref().is_none_or(|best| certificate.worst().1 < 0.5 * best.certificate.worst().1);
-            if !is_better {
-                break;
+            if is_better {
+                let reason = Some(format!("by {step} steps with K + rho E, since the stiffness is singular: {before}"));
+                best = Some(Solution { certificate, reason, ..found });
             }
-            let reason = Some(format!("by {step} steps with K + rho E, since the stiffness is singular: {before}"));
-            best = Some(Solution { certificate, reason, ..found });
-            if settings.watch.is_over() {
+            if settings.watch.is_over() || step >= FEWEST_STEPS && !is_better {
                 break;
             }
         }

@@ -9,6 +9,9 @@ const SHIFT: f64 = 1e-10;
 /// Steps of inverse iteration: each takes a factor `SHIFT / eigenvalue` off what the matrix resists.
 const MOST_STEPS: usize = 30;
 
+/// Entries of a null vector below this share of the largest are what the iteration has left of zero.
+const ZERO: f64 = 1e-12;
+
 /// Null vectors beyond which none is looked for: every vector is held against all before it.
 const MOST_VECTORS: usize = 256;
 
@@ -50,7 +53,9 @@ impl SymmetricMatrix {
             vector.iter_mut().for_each(|value| *value /= length);
             let resistance = largest(&self.mul(&vector));
             if resistance <= NULL_ROUNDING * terms {
-                return Some(vector);
+                let largest = largest(&vector);
+                let kept = |value: f64| if value.abs() > ZERO * largest { value } else { 0.0 };
+                return Some(vector.into_iter().map(kept).collect());
             }
             if resistance.is_nan() || resistance > 0.5 * before {
                 return None;
