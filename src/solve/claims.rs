@@ -34,7 +34,7 @@ const PRESSED: f64 = 1e-13;
 const TOUCHING: f64 = 1e-7;
 
 /// The same, as a share of what the load would move.
-const STRAINED: f64 = 1e-10;
+const STRAINED: f64 = 1e-13;
 
 /// Exponent of rho: on a diagonal of order one, far above rounding and far below what resists.
 const STEP: i32 = -20;
@@ -243,7 +243,9 @@ impl Looked<'_> {
             };
             centre.clone_from(&found.displacement);
             let certificate = problem.certify(&found.displacement, &found.multiplier)?;
-            let is_better = best.as_ref().is_none_or(|best| certificate.worst().1 < 0.5 * best.certificate.worst().1);
+            let is_better = best
+                .as_ref()
+                .is_none_or(|best| worst_condition(&certificate) < 0.5 * worst_condition(&best.certificate));
             if is_better {
                 let reason = Some(format!("by {step} steps with K + rho E, since the stiffness is singular: {before}"));
                 best = Some(Solution { certificate, reason, ..found });
