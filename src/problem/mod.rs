@@ -1,6 +1,7 @@
 //! The contact problem as a convex QP, checked once, and the certificate of an answer to it.
 
 mod certificate;
+mod claims;
 mod contradiction;
 mod energy_bound;
 mod energy_norm;
@@ -10,6 +11,7 @@ mod proof;
 mod scales;
 mod units;
 
+pub(crate) use claims::Motion;
 pub use energy_norm::EnergyNorm;
 
 use std::sync::{Arc, OnceLock};

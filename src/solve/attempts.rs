@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use super::estimate::{Choice, Estimate};
-use super::{Method, Precision, Prepared, Settings, iterative};
+use super::{Method, Precision, Prepared, Settings, claims, iterative};
 use crate::error::Error;
 use crate::problem::ContactProblem;
 use crate::solution::{Attempt, ContactSet, Seconds, Solution};
@@ -22,6 +22,15 @@ use crate::solution::{Attempt, ContactSet, Seconds, Solution};
 /// * [`Error::Interrupted`] where the watch was asked to stop before there was an answer,
 /// * [`Error::Numerical`] where memory does not suffice.
 pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
+    let settings = &settings.started()?;
+    claims::rechecked(problem, settings, method_ending(problem, settings))
+}
+
+/// How the ways that are tried end by themselves.
+///
+/// # Errors
+/// As [`solve`]; a claim about the problem is not rechecked.
+pub(super) fn method_ending(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
     let settings = &settings.started()?;
     let mut attempts = Attempts { clock: Instant::now(), made: Vec::new(), factor_seconds: 0.0 };
     let found = match settings.method {
@@ -197,7 +206,7 @@ fn by_multigrid(problem: &ContactProblem, settings: &Settings, reason: String) -
 ///
 /// # Errors
 /// Those of the certificate.
-fn nothing_found(problem: &ContactProblem, needed: f64, time: f64) -> Result<Error, Error> {
+pub(super) fn nothing_found(problem: &ContactProblem, needed: f64, time: f64) -> Result<Error, Error> {
     let (displacement, multiplier) = (vec![0.0; problem.dofs()], vec![0.0; problem.rows()]);
     let certificate = problem.certify_in(None, &displacement, &multiplier)?;
     let solution = Solution {

@@ -2,6 +2,7 @@
 
 mod attempts;
 mod boundary;
+mod claims;
 mod estimate;
 mod iterative;
 mod layout;

@@ -6,7 +6,7 @@ use super::{Cholesky, SymmetricMatrix, largest};
 const SAFE_PIVOT: f64 = 1e-9;
 
 /// `norm(A x)` of a null vector x is rounding: this many units in the last place of the terms that cancel.
-const NULL_ROUNDING: f64 = 64.0 * f64::EPSILON;
+pub(super) const NULL_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Steps of inverse iteration: each gains several digits, since eigenvalues differ by many orders of magnitude.
 const STEPS: usize = 5;

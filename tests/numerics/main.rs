@@ -12,6 +12,7 @@ mod program;
 mod random;
 
 mod certificate;
+mod claims;
 mod condensation;
 mod degenerate;
 mod dual_active_set;

@@ -1,0 +1,108 @@
+//! The vectors that a positive semidefinite matrix does not resist.
+
+use super::definite::NULL_ROUNDING;
+use super::{AugmentedMatrix, Cholesky, FactorError, SparseMatrix, SymmetricMatrix, dot, largest};
+
+/// What is added to a diagonal of order one, so that a singular matrix has a factor: far below what resists, far above rounding.
+const SHIFT: f64 = 1e-10;
+
+/// Steps of inverse iteration: each takes a factor `SHIFT / eigenvalue` off what the matrix resists.
+const MOST_STEPS: usize = 30;
+
+/// Entries of a null vector below this share of the largest are what the iteration has left of zero.
+const ZERO: f64 = 1e-12;
+
+/// Null vectors beyond which none is looked for: every vector is held against all before it.
+const MOST_VECTORS: usize = 256;
+
+impl SymmetricMatrix {
+    /// An orthonormal basis of the null space, to rounding, of a positive semidefinite matrix with a diagonal of order one or
+    /// zero; `None` where it has more than 256 vectors.
+    ///
+    /// Inverse iteration with A + 1e-10 I, each vector at right angles to those before, ends at the first that A resists.
+    ///
+    /// # Errors
+    /// [`FactorError::NotPositiveDefinite`] where an eigenvalue is clearly negative, and those of the factorisation.
+    pub fn null_space(&self) -> Result<Option<Vec<Vec<f64>>>, FactorError> {
+        let factor = self.shifted_factor(SHIFT)?;
+        let mut found: Vec<Vec<f64>> = Vec::new();
+        while found.len() < self.dim() {
+            if found.len() == MOST_VECTORS {
+                return Ok(None);
+            }
+            let Some(vector) = self.null_vector(&factor, &found) else { break };
+            found.push(vector);
+        }
+        Ok(Some(found))
+    }
+
+    /// A unit vector that is not resisted, at right angles to those `found`.
+    fn null_vector(&self, factor: &Cholesky, found: &[Vec<f64>]) -> Option<Vec<f64>> {
+        // No entry of A v is larger than this, for a unit vector v.
+        let terms = largest(&self.mul_abs(&vec![1.0; self.dim()]));
+        let mut vector = generic(self.dim(), found.len());
+        let mut before = f64::INFINITY;
+        for _ in 0..MOST_STEPS {
+            vector = factor.solve(&vector);
+            // A second time, for what rounding of the first has left.
+            for other in found.iter().chain(found) {
+                let share = dot(&vector, other);
+                vector.iter_mut().zip(other).for_each(|(value, other)| *value -= share * other);
+            }
+            let length = dot(&vector, &vector).sqrt();
+            vector.iter_mut().for_each(|value| *value /= length);
+            let resistance = largest(&self.mul(&vector));
+            if resistance <= NULL_ROUNDING * terms {
+                let largest = largest(&vector);
+                let kept = |value: f64| if value.abs() > ZERO * largest { value } else { 0.0 };
+                return Some(vector.into_iter().map(kept).collect());
+            }
+            if resistance.is_nan() || resistance > 0.5 * before {
+                return None;
+            }
+            before = resistance;
+        }
+        None
+    }
+
+    /// A direction of negative energy, if there is one that stands out from rounding: largest entry one.
+    ///
+    /// # Errors
+    /// Those of the factorisation.
+    pub fn negative_direction(&self) -> Result<Option<Vec<f64>>, FactorError> {
+        // Gershgorin: with more than this on its diagonal, the matrix is definite.
+        let most = 2.0 * largest(&self.mul_abs(&vec![1.0; self.dim()]));
+        let mut shift = SHIFT;
+        while shift < 4.0 * most {
+            let factor = match self.shifted_factor(shift) {
+                Ok(factor) => factor,
+                Err(FactorError::NotPositiveDefinite) => {
+                    shift *= 4.0;
+                    continue;
+                }
+                Err(error) => return Err(error),
+            };
+            // Close above the least eigenvalue, inverse iteration turns to its vector.
+            let mut vector = generic(self.dim(), 0);
+            for _ in 0..MOST_STEPS {
+                vector = factor.solve(&vector);
+                let size = largest(&vector);
+                vector.iter_mut().for_each(|value| *value /= size);
+            }
+            return Ok((dot(&vector, &self.mul(&vector)) < 0.0).then_some(vector));
+        }
+        Ok(None)
+    }
+
+    fn shifted_factor(&self, shift: f64) -> Result<Cholesky, FactorError> {
+        let no_rows = SparseMatrix::from_parts(0, vec![0; self.dim() + 1], Vec::new(), Vec::new());
+        let augmented = AugmentedMatrix::new(self, &no_rows)?;
+        augmented.factor(&augmented.matrix(|_| 0.0, shift))
+    }
+}
+
+/// A vector without symmetry, another for each number, the same in every run.
+pub fn generic(length: usize, number: usize) -> Vec<f64> {
+    let (golden, silver) = (0.618_033_988_749_895, 0.414_213_562_373_095);
+    (0..length).map(|i| (i as f64 * golden + (number + 1) as f64 * silver).fract() - 0.5).collect()
+}

@@ -1,0 +1,88 @@
+//! GOAL: what is said of a problem without a unique answer is true, and the same by every method.
+//!
+//! CONDITIONS: a stiffness that resists nothing, or not every motion, with loads in balance and out of it, and rows that stop
+//! the motion one way, both ways or not at all. REFERENCE: the answers can be read off the data.
+
+use signorini::{ContactProblem, Error, Method, Settings, Solution, SparseMatrix, SymmetricMatrix, solve};
+
+const ALL: [Method; 5] = [Method::Auto, Method::Qp, Method::ActiveSet, Method::Penalty, Method::Mprgp];
+
+/// A problem from its entries: K by its lower triangle, f, B by rows, g.
+fn problem(stiffness: &[(usize, usize, f64)], load: &[f64], rows: &[&[f64]], gap: &[f64]) -> ContactProblem {
+    let dofs = load.len();
+    let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, stiffness).unwrap()).unwrap();
+    let entries: Vec<(usize, usize, f64)> = (rows.iter().enumerate())
+        .flat_map(|(row, of_row)| of_row.iter().enumerate().map(move |(dof, &b)| (row, dof, b)))
+        .filter(|entry| entry.2 != 0.0)
+        .collect();
+    let contact = SparseMatrix::from_triplets(rows.len(), dofs, &entries).unwrap();
+    ContactProblem::new(stiffness, load.to_vec(), contact, gap.to_vec()).unwrap()
+}
+
+/// Two masses joined by a spring, free to move together.
+const SPRING: [(usize, usize, f64); 3] = [(0, 0, 1.0), (1, 0, -1.0), (1, 1, 1.0)];
+
+fn endings(problem: &ContactProblem) -> impl Iterator<Item = (&'static str, Result<Solution, Error>)> + '_ {
+    ALL.into_iter().map(|method| (method.name(), solve(problem, &Settings::with_method(method))))
+}
+
+#[test]
+fn a_stiffness_of_zero_without_load_is_under_held() {
+    let problem = problem(&[], &[0.0, 0.0], &[&[1.0, 0.0]], &[1.0]);
+    for (method, ending) in endings(&problem) {
+        assert!(matches!(ending, Err(Error::UnderHeld { .. })), "{method}: {ending:?}");
+    }
+}
+
+#[test]
+fn a_loaded_dof_that_only_a_row_holds_is_at_its_gap() {
+    let problem = problem(&[(0, 0, 2.0)], &[2.0, 3.0], &[&[0.0, 1.0]], &[0.5]);
+    for (method, ending) in endings(&problem) {
+        // Whether its error is bounded is a matter of the certificate; here nothing may be said of the problem.
+        let solution = match ending {
+            Ok(solution) => solution,
+            Err(Error::NotCertified { solution, .. }) => *solution,
+            Err(error) => panic!("{method}: {error}"),
+        };
+        let exact = [1.0, 0.5].iter().zip(&solution.displacement).all(|(exact, u)| (exact - u).abs() < 1e-8);
+        assert!(exact && (solution.multiplier[0] + 3.0).abs() < 1e-8, "{method}: {solution:?}");
+    }
+}
+
+#[test]
+fn a_load_away_from_the_only_row_is_unbounded_along_the_translation() {
+    let problem = problem(&SPRING, &[0.0, -1.0], &[&[1.0, 0.0]], &[1.0]);
+    for (method, ending) in endings(&problem) {
+        let Err(Error::Unbounded { direction, .. }) = ending else { panic!("{method}: {ending:?}") };
+        assert_eq!(direction, [-1.0, -1.0], "{method}");
+    }
+}
+
+#[test]
+fn a_load_in_balance_is_not_unbounded_but_leaves_the_body_under_held() {
+    let problem = problem(&SPRING, &[0.25, -0.25], &[&[1.0, 0.0]], &[1.0]);
+    for (method, ending) in endings(&problem) {
+        let Err(Error::UnderHeld { direction, .. }) = ending else { panic!("{method}: {ending:?}") };
+        assert_eq!(direction[0], direction[1], "{method}");
+    }
+}
+
+#[test]
+fn rows_that_stop_a_motion_both_ways_without_play_hold_it() {
+    let problem = problem(&SPRING, &[0.25, -0.25], &[&[1.0, 0.0], &[-1.0, 0.0]], &[1.0, -1.0]);
+    for (method, ending) in endings(&problem) {
+        assert!(
+            !matches!(ending, Err(Error::UnderHeld { .. } | Error::Unbounded { .. } | Error::NotConvex { .. })),
+            "{method}"
+        );
+    }
+}
+
+#[test]
+fn a_negative_eigenvalue_is_named_with_the_tolerance_of_its_recheck() {
+    let problem = problem(&[(0, 0, 1.0), (1, 0, 2.0), (1, 1, 1.0)], &[1.0, 0.0], &[&[1.0, 0.0]], &[1.0]);
+    for (method, ending) in endings(&problem) {
+        let Err(Error::NotConvex { evidence }) = ending else { panic!("{method}: {ending:?}") };
+        assert!(evidence.contains("beyond 1e-12 of its terms"), "{method}: {evidence}");
+    }
+}
