@@ -70,7 +70,7 @@ def dense_point(problem: Problem, rows) -> Answer | None:
     # Rows and columns to a unit size, so that the condition number sees dependence and not units.
     scale = 1.0 / np.sqrt(np.maximum(np.abs(matrix).max(axis=0, initial=0.0), np.finfo(float).tiny))
     balanced = matrix * np.outer(scale, scale)
-    if not np.all(np.isfinite(right)) or np.linalg.cond(balanced) > 1e14:
+    if not np.all(np.isfinite(right)) or np.linalg.cond(balanced, 1) > 1e14:
         return None
     solution = scale * np.linalg.solve(balanced, scale * right)
     multiplier = np.zeros(problem.rows)

@@ -6,9 +6,11 @@ them. Exits with 1 on any disagreement, with 2 when there is nothing to run.
 """
 
 import argparse
+import os
 import sys
 import tempfile
 import time
+from concurrent.futures import ThreadPoolExecutor
 from fnmatch import fnmatch
 from pathlib import Path
 
@@ -75,24 +77,30 @@ def known(case: Case, problem: Problem, settled: dict[str, Settled]) -> list[Ver
 
 
 def tested(case: Case, problem: Problem, directory: Path, program: Path, references: list[Answer]) -> list[Verdict]:
-    """The verdicts on the program's answers to a problem directory."""
-    verdicts = []
-    for method in METHODS:
-        name = f"signorini {method}"
-        try:
-            result = solve(program, directory, method, directory / method)
-            faults = report_faults(problem, method, result) + bound_faults(problem, result, references)
-            # The penalty answer is near and says how near; the other two are exact.
-            exact = method != "penalty"
-            if exact:
-                full = solve(program, directory, method, directory / f"{method}-full", "--no-condense")
-                faults += condensation_faults(problem, result, full)
-            note = f"{result.seconds:.2f} s" + ("" if exact else f", bound {result.energy_error_bound:.1e}")
-            tolerances = EXACT if exact else RAW
-            verdicts.append(judge(case.name, name, problem, result.answer, references, tolerances, exact, faults, note))
-        except (ProgramFailed, ValueError) as error:
-            verdicts.append(broken(case.name, name, str(error)))
-    return verdicts
+    """The verdicts on the program's answers to a problem directory, the methods side by side."""
+    with ThreadPoolExecutor(max_workers=os.cpu_count()) as pool:
+        runs = [pool.submit(method_verdict, case, problem, directory, program, references, name) for name in METHODS]
+        return [run.result() for run in runs]
+
+
+def method_verdict(
+    case: Case, problem: Problem, directory: Path, program: Path, references: list[Answer], method: str
+) -> Verdict:
+    """The verdict on the program's answer by a method, condensed and, where that is exact, on all dofs."""
+    name = f"signorini {method}"
+    try:
+        result = solve(program, directory, method, directory / method)
+        faults = report_faults(problem, method, result) + bound_faults(problem, result, references)
+        # The penalty answer is near and says how near; the other two are exact.
+        exact = method != "penalty"
+        if exact:
+            full = solve(program, directory, method, directory / f"{method}-full", "--no-condense")
+            faults += condensation_faults(problem, result, full)
+        note = f"{result.seconds:.2f} s" + ("" if exact else f", bound {result.energy_error_bound:.1e}")
+        tolerances = EXACT if exact else RAW
+        return judge(case.name, name, problem, result.answer, references, tolerances, exact, faults, note)
+    except (ProgramFailed, ValueError) as error:
+        return broken(case.name, name, str(error))
 
 
 def pictured(case: Case, scene: Path, program: Path, folder: Path, problem: Problem, references) -> Verdict:

@@ -22,11 +22,12 @@ const fn space(name: &'static str, cells: usize) -> Case {
     Case { name, space: true, cells }
 }
 
-pub const CASES: [Case; 7] = [
+pub const CASES: [Case; 8] = [
     plane("Q4 64", 64),
     plane("Q4 128", 128),
     plane("Q4 256", 256),
     plane("Q4 512", 512),
+    space("Hex8 6", 6),
     space("Hex8 12", 12),
     space("Hex8 20", 20),
     space("Hex8 28", 28),

@@ -1,5 +1,5 @@
 //! What a contact solve costs beside one plain linear solve of the same stiffness, on one thread:
-//! `cargo run --release --example contact_cost [-- --out DIR] [--only "Q4 64,Hex8 12"] [--rounds N]`.
+//! `cargo run --release --example contact_cost [-- --out DIR] [--only "Q4 64,Hex8 6"] [--rounds N]`.
 //!
 //! Every case is timed in a process of its own, its tasks in turn, round after round; the least time of each counts. The
 //! peak of memory is that of one more process for each task, which builds the model and does the task once.

@@ -33,7 +33,8 @@ pub struct Step {
 
 pub const BLOCKS: [&str; 3] = ["smooth", "generic edge", "Hertz"];
 
-pub fn families() -> Result<Vec<Family>, Error> {
+/// Every block by every element, with so many cells along a side.
+pub fn families(cells: &[usize]) -> Result<Vec<Family>, Error> {
     let elasticity = PlaneElasticity::plane_strain(1.0, 0.3);
     let smooth = Smooth { elasticity, opening: 1.0, pressure: 1.0, edge: 0.5, power: 3 };
     let edge = GenericEdge { elasticity, edge: 0.53, pressure: 1.0 };
@@ -53,7 +54,7 @@ pub fn families() -> Result<Vec<Family>, Error> {
                     seconds: solved.seconds,
                 })
             };
-            let steps = [8, 16, 32, 64, 128].into_iter().map(step).collect::<Result<_, Error>>()?;
+            let steps = cells.iter().copied().map(step).collect::<Result<_, Error>>()?;
             families.push(Family { block, kind, steps });
         }
     }
