@@ -8,6 +8,7 @@ import os
 import subprocess
 import sys
 import tempfile
+import threading
 import unittest
 from pathlib import Path
 from unittest import mock
@@ -55,9 +56,13 @@ class WithProgram(unittest.TestCase):
         return {verdict.solver: verdict for verdict in found}
 
 
+ALONE = threading.Lock()
+"""Of all threads one at a time may redirect standard output."""
+
+
 def run_here(arguments, **_) -> subprocess.CompletedProcess:
     """The stand-in as `subprocess.run` would run it."""
-    with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()) as err:
+    with ALONE, contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()) as err:
         code = stand_in.main(arguments[1:])
     return subprocess.CompletedProcess(arguments, code, out.getvalue(), err.getvalue())
 

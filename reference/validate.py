@@ -79,7 +79,8 @@ def known(case: Case, problem: Problem, settled: dict[str, Settled]) -> list[Ver
 def tested(case: Case, problem: Problem, directory: Path, program: Path, references: list[Answer]) -> list[Verdict]:
     """The verdicts on the program's answers to a problem directory, the methods side by side."""
     with ThreadPoolExecutor(max_workers=os.cpu_count()) as pool:
-        return list(pool.map(lambda method: method_verdict(case, problem, directory, program, references, method), METHODS))
+        runs = [pool.submit(method_verdict, case, problem, directory, program, references, name) for name in METHODS]
+        return [run.result() for run in runs]
 
 
 def method_verdict(
