@@ -20,6 +20,9 @@ pub(super) const PLAY: f64 = 1e-9;
 /// Entries of a null vector with largest entry one, and forces on a diagonal of order one, below this are rounding.
 const NOISE: f64 = 1e-13;
 
+/// Sums over a null vector below this share of their own terms are rounding.
+const OWN_ROUNDING: f64 = 1e-12;
+
 /// The vector with largest entry one and without the entries that are rounding.
 fn normalised(mut direction: Vec<f64>) -> Vec<f64> {
     let size = largest(&direction);
@@ -144,24 +147,24 @@ impl ScaledProblem<'_> {
         let magnitude: Vec<f64> = direction.iter().map(|d| d.abs()).collect();
         let terms = self.problem.contact().abs().mul(&magnitude);
         let speed = self.problem.contact().mul(direction);
-        speed.iter().zip(&terms).map(|(&v, term)| if v.abs() > WORK_TOLERANCE * term { v } else { 0.0 }).collect()
+        speed.iter().zip(&terms).map(|(&v, term)| if v.abs() > OWN_ROUNDING * term { v } else { 0.0 }).collect()
     }
 
     /// Does a motion cost no energy: is `K d` rounding of its own terms at each dof?
     pub(super) fn costs_nothing(&self, direction: &[f64]) -> bool {
         let (force, terms) = (self.problem.stiffness().mul(direction), self.problem.stiffness().mul_abs(direction));
-        force.iter().zip(&terms).all(|(force, term)| force.abs() <= WORK_TOLERANCE * term)
+        force.iter().zip(&terms).all(|(force, term)| force.abs() <= OWN_ROUNDING * term)
     }
 
     /// Is what an error claims of a motion true, in the terms of each dof and row? Sums of squares, which find the motion,
     /// lose what is small beside others.
     pub fn is_true(&self, claim: &Error) -> bool {
+        let stops = |direction: &[f64], way: f64| self.approach(direction).iter().any(|&speed| speed * way > 0.0);
         match claim {
-            Error::UnderHeld { direction, .. } => self.costs_nothing(direction),
-            Error::Unbounded { direction, .. } => {
-                let is_stopped = self.approach(direction).iter().any(|&speed| speed > 0.0);
-                self.costs_nothing(direction) && !is_stopped
+            Error::UnderHeld { direction, .. } => {
+                self.costs_nothing(direction) && !(stops(direction, 1.0) && stops(direction, -1.0))
             }
+            Error::Unbounded { direction, .. } => self.costs_nothing(direction) && !stops(direction, 1.0),
             _ => true,
         }
     }
