@@ -170,7 +170,7 @@ impl Settings {
     pub(super) fn allows_last_resort(&self, value: f64) -> bool {
         match self.method {
             Method::Qp => self.polish,
-            Method::Penalty => self.last_penalty >= BEST_PENALTY && !(value <= PENETRATION / BEST_PENALTY),
+            Method::Penalty => self.last_penalty >= BEST_PENALTY && value > PENETRATION / BEST_PENALTY,
             Method::Auto | Method::ActiveSet | Method::Mprgp => true,
         }
     }
