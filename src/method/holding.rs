@@ -168,4 +168,12 @@ impl ScaledProblem<'_> {
             _ => true,
         }
     }
+
+    /// Is a claim true at sight, because the motion opens every row? Then the rows can be met together, and none can
+    /// balance the load.
+    pub fn is_evident(&self, claim: &Error) -> bool {
+        let (Error::UnderHeld { direction, .. } | Error::Unbounded { direction, .. }) = claim else { return false };
+        let opens = |way: f64| self.approach(direction).iter().all(|&speed| speed * way < 0.0);
+        self.is_true(claim) && (opens(1.0) || matches!(claim, Error::UnderHeld { .. }) && opens(-1.0))
+    }
 }
