@@ -11,7 +11,7 @@ const SHIFTS: [f64; 3] = [1e-12, 1e-10, 1e-8];
 /// Projections of the load: each gains several digits, since eigenvalues differ by many orders of magnitude.
 const STEPS: usize = 5;
 
-/// Work of the load on a free motion below this share of its terms is rounding.
+/// Work of the load on a free motion, and other sums over one, are rounding below this share of their own terms.
 pub(crate) const WORK_TOLERANCE: f64 = 1e-9;
 
 /// A row this close to the obstacle, on displacements of order one, has no play.
@@ -19,9 +19,6 @@ pub(super) const PLAY: f64 = 1e-9;
 
 /// Entries of a null vector with largest entry one, and forces on a diagonal of order one, below this are rounding.
 const NOISE: f64 = 1e-13;
-
-/// Sums over a null vector below this share of their own terms are rounding.
-const OWN_ROUNDING: f64 = 1e-12;
 
 /// The vector with largest entry one and without the entries that are rounding.
 fn normalised(mut direction: Vec<f64>) -> Vec<f64> {
@@ -147,13 +144,15 @@ impl ScaledProblem<'_> {
         let magnitude: Vec<f64> = direction.iter().map(|d| d.abs()).collect();
         let terms = self.problem.contact().abs().mul(&magnitude);
         let speed = self.problem.contact().mul(direction);
-        speed.iter().zip(&terms).map(|(&v, term)| if v.abs() > OWN_ROUNDING * term { v } else { 0.0 }).collect()
+        speed.iter().zip(&terms).map(|(&v, term)| if v.abs() > WORK_TOLERANCE * term { v } else { 0.0 }).collect()
     }
 
-    /// Does a motion cost no energy: is `K d` rounding of its own terms at each dof?
+    /// Does a motion, largest entry one, cost no energy: is `K d` rounding of its own terms at each dof, or of what moving
+    /// that dof alone would take?
     pub(super) fn costs_nothing(&self, direction: &[f64]) -> bool {
-        let (force, terms) = (self.problem.stiffness().mul(direction), self.problem.stiffness().mul_abs(direction));
-        force.iter().zip(&terms).all(|(force, term)| force.abs() <= OWN_ROUNDING * term)
+        let stiffness = self.problem.stiffness();
+        let (force, terms, alone) = (stiffness.mul(direction), stiffness.mul_abs(direction), stiffness.diagonal());
+        (0..force.len()).all(|dof| force[dof].abs() <= WORK_TOLERANCE * terms[dof].max(alone[dof]))
     }
 
     /// Is what an error claims of a motion true, in the terms of each dof and row? Sums of squares, which find the motion,
