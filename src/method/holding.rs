@@ -11,7 +11,7 @@ const SHIFTS: [f64; 3] = [1e-12, 1e-10, 1e-8];
 /// Projections of the load: each gains several digits, since eigenvalues differ by many orders of magnitude.
 const STEPS: usize = 5;
 
-/// Work of the load on a free motion below this share of its terms is rounding.
+/// Work of the load on a free motion, and other sums over one, are rounding below this share of their own terms.
 pub(crate) const WORK_TOLERANCE: f64 = 1e-9;
 
 /// A row this close to the obstacle, on displacements of order one, has no play.
@@ -146,22 +146,32 @@ impl ScaledProblem<'_> {
         speed.iter().zip(&terms).map(|(&v, term)| if v.abs() > WORK_TOLERANCE * term { v } else { 0.0 }).collect()
     }
 
-    /// Does a motion cost no energy: is `K d` rounding of its own terms at each dof?
+    /// Does a motion, largest entry one, cost no energy: is `K d` rounding of its own terms at each dof, or of what moving
+    /// that dof alone would take?
     pub(super) fn costs_nothing(&self, direction: &[f64]) -> bool {
-        let (force, terms) = (self.problem.stiffness().mul(direction), self.problem.stiffness().mul_abs(direction));
-        force.iter().zip(&terms).all(|(force, term)| force.abs() <= WORK_TOLERANCE * term)
+        let stiffness = self.problem.stiffness();
+        let (force, terms, alone) = (stiffness.mul(direction), stiffness.mul_abs(direction), stiffness.diagonal());
+        (0..force.len()).all(|dof| force[dof].abs() <= WORK_TOLERANCE * terms[dof].max(alone[dof]))
     }
 
     /// Is what an error claims of a motion true, in the terms of each dof and row? Sums of squares, which find the motion,
     /// lose what is small beside others.
     pub fn is_true(&self, claim: &Error) -> bool {
+        let stops = |direction: &[f64], way: f64| self.approach(direction).iter().any(|&speed| speed * way > 0.0);
         match claim {
-            Error::UnderHeld { direction, .. } => self.costs_nothing(direction),
-            Error::Unbounded { direction, .. } => {
-                let is_stopped = self.approach(direction).iter().any(|&speed| speed > 0.0);
-                self.costs_nothing(direction) && !is_stopped
+            Error::UnderHeld { direction, .. } => {
+                self.costs_nothing(direction) && !(stops(direction, 1.0) && stops(direction, -1.0))
             }
+            Error::Unbounded { direction, .. } => self.costs_nothing(direction) && !stops(direction, 1.0),
             _ => true,
         }
+    }
+
+    /// Is a claim true at sight, because the motion opens every row? Then the rows can be met together, and none can
+    /// balance the load.
+    pub fn is_evident(&self, claim: &Error) -> bool {
+        let (Error::UnderHeld { direction, .. } | Error::Unbounded { direction, .. }) = claim else { return false };
+        let opens = |way: f64| self.approach(direction).iter().all(|&speed| speed * way < 0.0);
+        self.is_true(claim) && (opens(1.0) || matches!(claim, Error::UnderHeld { .. }) && opens(-1.0))
     }
 }

@@ -69,11 +69,13 @@ fn run(
     });
     let unique = |outcome: Outcome| scaled.check_unique(&outcome).map(|()| outcome);
     match found.and_then(unique) {
-        // Only of rows that can be met together, and where there is no balance, which rounding may hide.
-        Err(claim @ (Error::Unbounded { .. } | Error::UnderHeld { .. })) => match dual_active_set::solve(scaled)? {
-            Some(balance) if balance.settled || !scaled.is_true(&claim) => unique(balance),
-            _ => Err(claim),
-        },
+        Err(claim @ (Error::Unbounded { .. } | Error::UnderHeld { .. })) if !scaled.is_evident(&claim) => {
+            // Only of rows that can be met together, and where there is no balance, which rounding may hide.
+            match dual_active_set::solve(scaled)? {
+                Some(balance) if balance.settled || !scaled.is_true(&claim) => unique(balance),
+                _ => Err(claim),
+            }
+        }
         found => found,
     }
 }

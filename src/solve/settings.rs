@@ -178,7 +178,7 @@ impl Settings {
     /// that the best penalty leaves.
     pub(super) fn allows_last_resort(&self, value: f64) -> bool {
         let is_best_penalty = self.method == Method::Penalty && self.last_penalty >= BEST_PENALTY;
-        self.wants_best() || (is_best_penalty && !(value <= PENETRATION / BEST_PENALTY))
+        self.wants_best() || (is_best_penalty && value > PENETRATION / BEST_PENALTY)
     }
 
     /// Are all settings in their ranges?

@@ -5,7 +5,7 @@ use crate::oracles::{Dense, Draws, random};
 use nalgebra::{DMatrix, DVector};
 use signorini::method::{Outcome, ScaledProblem, dual_active_set};
 use signorini::sparse::AugmentedMatrix;
-use signorini::{ContactProblem, Error};
+use signorini::{ContactProblem, Error, Method, Settings, SparseMatrix, SymmetricMatrix, solve};
 
 /// Runs the method on a problem as it stands; `definite` is what is known of its stiffness.
 fn run(problem: &ContactProblem, definite: bool) -> Result<Outcome, Error> {
@@ -221,5 +221,134 @@ fn rows_that_contradict_each_other_but_for_rounding_are_not_called_infeasible() 
         dense.load = dense.load.insert_row(n, 0.0);
         let found = run(&dense.problem().unwrap(), true);
         assert!(!matches!(found, Err(Error::Infeasible { .. })), "case {case}: {found:?}");
+    }
+}
+
+/// The methods on a factor, which all end with the last resort.
+const METHODS: [Method; 4] = [Method::Auto, Method::Qp, Method::ActiveSet, Method::Penalty];
+
+#[track_caller]
+fn agrees(dense: &Dense, displacement: &[f64], multiplier: &[f64]) {
+    let problem = dense.problem().unwrap();
+    for method in METHODS {
+        let found =
+            solve(&problem, &Settings::with_method(method)).unwrap_or_else(|error| panic!("{method:?}: {error}"));
+        let exact = DVector::from_column_slice(displacement);
+        assert!(energy_error(dense, &found.displacement, &exact) <= 1e-12, "{method:?}: {:?}", found.displacement);
+        let strongest = multiplier.iter().fold(0.0, |size: f64, value| size.max(value.abs()));
+        for (row, (value, exact)) in found.multiplier.iter().zip(multiplier).enumerate() {
+            assert!((value - exact).abs() <= 1e-9 * strongest, "{method:?}, row {row}: {value:e}, not {exact:e}");
+        }
+    }
+}
+
+/// Stiffness 1 and 1e-6, rows u_0 + u_1 <= -1 and u_0 - u_1 <= -2: in energy they are 2e-3 from parallel.
+#[test]
+fn two_rows_that_share_a_soft_dof_are_both_closed_exactly() {
+    let dense = Dense::new(&[&[1.0, 0.0], &[0.0, 1e-6]], &[0.0, 0.0], &[&[1.0, 1.0], &[1.0, -1.0]], &[-1.0, -2.0]);
+    agrees(&dense, &[-1.5, 0.5], &[-0.74999975, -0.75000025]);
+}
+
+/// With K the identity and no load the answer is the point of the cone `B u <= 0` nearest to f: the apex itself is closed to
+/// all of more rows than dofs. f is a sum of the first two rows, which alone push.
+#[test]
+fn an_apex_of_more_rows_than_dofs_has_the_multipliers_of_the_rows_that_push() {
+    let rows: [&[f64]; 5] = [&[1.0, 0.0], &[0.0, 1.0], &[-1.0, 1e-3], &[-1.0, -1.0], &[1e-3, -1.0]];
+    let dense = Dense::new(&[&[1.0, 0.0], &[0.0, 1.0]], &[1.0, 2.0], &rows, &[0.0; 5]);
+    let found = run(&dense.problem().unwrap(), true).unwrap();
+    assert!(found.settled && found.displacement.iter().all(|u| u.abs() <= 1e-15), "{found:?}");
+    let force = dense.contact.transpose() * DVector::from_column_slice(&found.multiplier);
+    assert!((force + dense.load).amax() <= 1e-15, "{found:?}");
+}
+
+/// Rows 1, 2 and twice 3 add up to `0 <= -4`; row 0 takes no part.
+#[test]
+fn every_method_finds_that_three_rows_contradict_each_other() {
+    let rows: [&[f64]; 4] = [&[-1.0, 1.0, 1.0], &[1.0, 0.0, 1.0], &[-1.0, 0.0, 1.0], &[0.0, 0.0, -1.0]];
+    let identity: [&[f64]; 3] = [&[1.0, 0.0, 0.0], &[0.0, 1.0, 0.0], &[0.0, 0.0, 1.0]];
+    let problem = Dense::new(&identity, &[0.0; 3], &rows, &[-1.0; 4]).problem().unwrap();
+    for method in METHODS {
+        let Err(Error::Infeasible { rows, weights, overlap, .. }) = solve(&problem, &Settings::with_method(method))
+        else {
+            panic!("{method:?} finds no contradiction");
+        };
+        assert_eq!((&rows[..], overlap), (&[1, 2, 3][..], 2.0), "{method:?}");
+        assert_eq!(problem.overlap(&rows, &weights), Some(overlap));
+    }
+}
+
+#[test]
+fn networks_are_certified_by_every_exact_method() {
+    let mut draws = Draws::new(8);
+    for case in 0..100 {
+        let n = 6 + draws.below(20);
+        let problem = network(&mut draws, n).problem().unwrap();
+        for method in [Method::Auto, Method::Qp, Method::ActiveSet] {
+            if let Err(error) = solve(&problem, &Settings::with_method(method)) {
+                panic!("case {case}, {method:?}: {error}");
+            }
+        }
+    }
+}
+
+/// A floating pair of springs of 2^52 whose load is in balance to the last bit: condensing leaves rounding, which drives
+/// nothing.
+#[test]
+fn a_load_in_balance_does_not_drive_a_body_away() {
+    let spring = 2.0_f64.powi(52);
+    let line = |dof: usize| -> [f64; 5] {
+        let mut line = [0.0; 5];
+        (line[dof.saturating_sub(1)], line[(dof + 1).min(4)]) = (-spring, -spring);
+        line[dof] = if dof == 0 || dof == 4 { spring } else { 2.0 * spring };
+        line
+    };
+    let lines = [0, 1, 2, 3, 4].map(line);
+    let stiffness: Vec<&[f64]> = lines.iter().map(|line| &line[..]).collect();
+    let load = [0.3, 0.1, -0.7, 0.25, 0.05].map(|f: f64| (f * spring).round());
+    let balance = load.iter().sum::<f64>();
+    let load = [load[0] - balance, load[1], load[2], load[3], load[4]];
+    assert_eq!(load.iter().sum::<f64>(), 0.0);
+    // On one side the rounding pulls away from the row, on the other it presses on it.
+    let ends = [-1.0, 1.0].map(|side| {
+        let row = [0.0, 0.0, side, 0.0, 0.0];
+        let problem = Dense::new(&stiffness, &load, &[&row[..]], &[0.5]).problem().unwrap();
+        solve(&problem, &Settings::default()).map_or_else(|error| error.code(), |_| "certified")
+    });
+    assert!(ends.contains(&"under-held") && !ends.contains(&"unbounded"), "{ends:?}");
+}
+
+/// Without stiffness, load and gap, whatever meets the rows is an answer: a semidefinite problem, and no indefinite one.
+#[test]
+fn a_stiffness_of_zero_is_under_held_and_convex() {
+    let empty = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(3, 3, &[]).unwrap()).unwrap();
+    let rows = [(0, 0, -0.875), (0, 1, -0.75), (0, 2, -0.375), (1, 0, -1.5), (1, 1, 0.5), (1, 2, -0.5)];
+    let last = [(2, 0, 0.5), (2, 1, 0.75), (2, 2, 0.25)];
+    let contact = SparseMatrix::from_triplets(3, 3, &[&rows[..], &last].concat()).unwrap();
+    let problem = ContactProblem::new(empty, vec![0.0; 3], contact, vec![-0.002, -0.0015, 0.0016]).unwrap();
+    for method in METHODS {
+        let error = solve(&problem, &Settings::with_method(method)).unwrap_err();
+        assert_eq!(error.code(), "under-held", "{method:?}: {error}");
+    }
+}
+
+/// A load beside which the others are nothing stands on a dof that the motion does not move.
+#[test]
+fn a_motion_is_driven_by_the_loads_on_it_alone() {
+    let dense = Dense::new(&[&[1.0, 0.0], &[0.0, 0.0]], &[1e12, -1.0], &[&[0.0, 1.0]], &[0.5]);
+    let error = solve(&dense.problem().unwrap(), &Settings::default()).unwrap_err();
+    assert_eq!(error.code(), "unbounded", "{error}");
+}
+
+/// An answer of zero, which corrections shrink further and further, is not pursued to the end of double precision.
+#[test]
+fn an_apex_at_the_origin_ends_without_numbers_out_of_range() {
+    let mut draws = Draws::new(9);
+    for case in 0..200 {
+        let mut dense = random(&mut draws, 4, 8);
+        dense.gap.fill(0.0);
+        dense.load = dense.contact.transpose() * DVector::from_fn(8, |_, _| draws.uniform());
+        let problem = dense.problem().unwrap();
+        let found = solve(&problem, &Settings::default());
+        assert!(found.is_ok(), "case {case}: {:?}", found.err().map(|error| error.to_string()));
     }
 }
