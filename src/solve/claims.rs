@@ -34,7 +34,7 @@ const PRESSED: f64 = 1e-13;
 const TOUCHING: f64 = 1e-7;
 
 /// The same, as a share of what the load would move.
-const STRAINED: f64 = 1e-10;
+const STRAINED: f64 = 1e-13;
 
 /// Exponent of rho: on a diagonal of order one, far above rounding and far below what resists.
 const STEP: i32 = -20;

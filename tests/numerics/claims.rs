@@ -38,7 +38,12 @@ fn a_stiffness_of_zero_without_load_is_under_held() {
 fn a_loaded_dof_that_only_a_row_holds_is_at_its_gap() {
     let problem = problem(&[(0, 0, 2.0)], &[2.0, 3.0], &[&[0.0, 1.0]], &[0.5]);
     for (method, ending) in endings(&problem) {
-        let solution = ending.unwrap_or_else(|error| panic!("{method}: {error}"));
+        // Whether its error is bounded is a matter of the certificate; here nothing may be said of the problem.
+        let solution = match ending {
+            Ok(solution) => solution,
+            Err(Error::NotCertified { solution, .. }) => *solution,
+            Err(error) => panic!("{method}: {error}"),
+        };
         let exact = [1.0, 0.5].iter().zip(&solution.displacement).all(|(exact, u)| (exact - u).abs() < 1e-8);
         assert!(exact && (solution.multiplier[0] + 3.0).abs() < 1e-8, "{method}: {solution:?}");
     }
