@@ -29,7 +29,7 @@ pub(super) enum Content {
 pub(super) enum Source {
     /// A scene, with the seconds that reading it took.
     Scene(Box<Scene>, f64),
-    Directory(Input),
+    Directory(Box<Input>),
 }
 
 impl Source {
@@ -42,7 +42,8 @@ impl Source {
         }
         let content = Content::Directory(matrix_market::read_problem(path)?);
         let (title, units) = (format!("Problem directory {}", path.display()), UnitNames::default());
-        Ok(Source::Directory(Input { title, units, assemble_seconds: clock.elapsed().as_secs_f64(), content }))
+        let assemble_seconds = clock.elapsed().as_secs_f64();
+        Ok(Source::Directory(Box::new(Input { title, units, assemble_seconds, content })))
     }
 }
 
@@ -55,7 +56,7 @@ impl Input {
                 rests(&scene)?;
                 Input::of_scene(&scene, path, read_seconds)
             }
-            Source::Directory(input) => Ok(input),
+            Source::Directory(input) => Ok(*input),
         }
     }
 

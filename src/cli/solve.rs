@@ -48,7 +48,7 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
     }
     let input = match source {
         Source::Scene(scene, read_seconds) => Input::of_scene(&scene, &options.input, read_seconds)?,
-        Source::Directory(input) => input,
+        Source::Directory(input) => *input,
     };
     warn(&input.warnings());
     let mut settings = settings(options.method.method(), common, watch);
