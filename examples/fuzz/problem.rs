@@ -88,6 +88,7 @@ fn broken(problem: &ContactProblem, solution: &Solution) -> Option<&'static str>
     let stiffness = largest(&problem.stiffness().diagonal());
     let still = if stiffness > 0.0 { force / stiffness } else { 0.0 };
     let strongest = largest(lambda);
+    let lengths = problem.contact().mul_abs(u);
     (0..problem.rows()).find_map(|row| {
         let gap = problem.gap()[row];
         let touched = if lambda[row] != 0.0 || moved[row] > gap { gap.abs() } else { 0.0 };
@@ -95,7 +96,7 @@ fn broken(problem: &ContactProblem, solution: &Solution) -> Option<&'static str>
         let distance = moved[row] - gap;
         let product = if lambda[row] == 0.0 { 0.0 } else { (lambda[row] * distance).abs() };
         let conditions = [
-            ("no penetration", distance <= HOLDS * reach),
+            ("no penetration", distance <= HOLDS * reach.max(lengths[row])),
             ("compression", lambda[row] <= HOLDS * strongest),
             ("complementarity", product <= HOLDS * strongest * reach),
         ];

@@ -139,6 +139,18 @@ fn certificate_text(certificate: &CertificateSummary, certified: bool, tolerance
     for (name, formula, value) in conditions(certificate) {
         text += &entry("", &format!("{name:<18}{formula:<38}{value}"));
     }
+    if certificate.parts > 1 {
+        text += &entry(
+            "",
+            &format!("of {} parts the worst is at most {:.1e} off", certificate.parts, certificate.part_error_bound),
+        );
+    }
+    if certified && certificate.part_error_bound > tolerance {
+        text += &entry("", "what is above the tolerance is explained by rounding the displacement to double precision");
+    }
+    if certificate.energy_error_bound.is_infinite() {
+        text += &entry("", "no error bound: the conditions alone do not tell how far off the displacement is");
+    }
     text
 }
 
@@ -214,7 +226,7 @@ fn conditions(certificate: &CertificateSummary) -> [(&'static str, &'static str,
     let bound = match certificate.energy_error_bound {
         bound if bound.is_finite() && certificate.bound_is_measured => format!("{}, measured", number(bound)),
         bound if bound.is_finite() => number(bound),
-        _ => "none: K is not positive definite, or was not factorised".to_string(),
+        _ => "unknown".to_string(),
     };
     [
         ("stationarity", "|K u - f - B' lambda|", number(certificate.stationarity)),

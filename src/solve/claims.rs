@@ -56,7 +56,7 @@ pub(super) fn rechecked(
     ending: Result<Solution, Error>,
 ) -> Result<Solution, Error> {
     let before = match ending {
-        Err(error) if is_doubtful(&error) => error,
+        Err(error) if is_doubtful(&error, settings.tolerance) => error,
         sure => return sure,
     };
     if settings.watch.is_over() {
@@ -94,11 +94,13 @@ pub(super) fn rechecked(
     judged(settings, solution)
 }
 
-/// Does an ending make a claim, or leave open whether there is one?
-fn is_doubtful(error: &Error) -> bool {
+/// Does an ending make a claim, or leave open whether there is one? An answer that misses its conditions says nothing.
+fn is_doubtful(error: &Error, tolerance: f64) -> bool {
     match error {
         Error::NotConvex { .. } | Error::Unbounded { .. } | Error::UnderHeld { .. } => true,
-        Error::NotCertified { solution, .. } => !solution.certificate.has_bound(),
+        Error::NotCertified { solution, .. } => {
+            !solution.certificate.has_bound() && solution.certificate.conditions_hold(tolerance)
+        }
         _ => false,
     }
 }

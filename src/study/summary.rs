@@ -110,6 +110,9 @@ pub struct CertificateSummary {
     pub complementarity: f64,
     pub duality_gap: f64,
     pub energy_error_bound: f64,
+    pub part_error_bound: f64,
+    pub energy_error_excess: f64,
+    pub parts: usize,
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub bound_is_measured: bool,
 }
@@ -176,6 +179,9 @@ impl From<&Certificate> for CertificateSummary {
             complementarity: certificate.complementarity,
             duality_gap: certificate.duality_gap,
             energy_error_bound: certificate.energy_error_bound,
+            part_error_bound: certificate.part_error_bound,
+            energy_error_excess: certificate.energy_error_excess,
+            parts: certificate.parts,
             bound_is_measured: certificate.bound_is_measured,
         }
     }

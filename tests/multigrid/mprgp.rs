@@ -238,7 +238,7 @@ fn a_stiffness_with_a_negative_eigenvalue_on_the_free_face_is_refused() {
         ContactProblem::new(stiffness, problem.load().to_vec(), problem.contact().clone(), problem.gap().to_vec());
     let refused = solve(&bad.unwrap().with_near_null(near_null).unwrap(), &mprgp()).unwrap_err().to_string();
     assert!(refused.starts_with("the stiffness is not positive semidefinite ("), "{refused}");
-    assert!(refused.contains(&format!("most of it at dof {dof}")) || refused.contains("coarsest"), "{refused}");
+    assert!(refused.contains(&format!("at dof {dof} (indices from 0)")), "{refused}");
 }
 
 #[test]

@@ -44,8 +44,9 @@ fn a_loaded_dof_that_only_a_row_holds_is_at_its_gap() {
             Err(Error::NotCertified { solution, .. }) => *solution,
             Err(error) => panic!("{method}: {error}"),
         };
-        let exact = [1.0, 0.5].iter().zip(&solution.displacement).all(|(exact, u)| (exact - u).abs() < 1e-8);
-        assert!(exact && (solution.multiplier[0] + 3.0).abs() < 1e-8, "{method}: {solution:?}");
+        let exact = [1.0, 0.5].iter().zip(&solution.displacement).all(|(exact, u)| (exact - u).abs() < 1e-7);
+        // The best penalty is 1e8 times the stiffness.
+        assert!(exact && (solution.multiplier[0] + 3.0).abs() < 1e-7, "{method}: {solution:?}");
     }
 }
 

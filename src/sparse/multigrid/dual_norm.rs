@@ -83,6 +83,11 @@ pub fn dual_norm(matrix: &SymmetricMatrix, multigrid: &Multigrid, force: &[f64])
         }
         solution.iter_mut().zip(&direction).for_each(|(z, d)| *z += length * d);
         rest.iter_mut().zip(&moved).for_each(|(rest, moved)| *rest -= length * moved);
+        if rest.iter().all(|&value| value == 0.0) {
+            let known: f64 = solution.iter().zip(&force).map(|(z, r)| z * r).sum();
+            let norm = ldexp(known.max(0.0).sqrt(), -unit);
+            return Some(DualNorm { least: norm, most: norm, ritz: 1.0, cycles });
+        }
         lengths.push(length);
         last = Some((direction, moved, energy));
     }
