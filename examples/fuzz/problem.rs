@@ -89,6 +89,15 @@ fn broken(problem: &ContactProblem, solution: &Solution) -> Option<&'static str>
     let still = if stiffness > 0.0 { force / stiffness } else { 0.0 };
     let strongest = largest(lambda);
     let lengths = problem.contact().mul_abs(u);
+    // How far the energy of the displacement could move a row by a single dof.
+    let energy: f64 = u.iter().zip(problem.stiffness().mul(u)).map(|(u, force)| u * force).sum::<f64>().max(0.0);
+    let mut soft = vec![0.0_f64; problem.rows()];
+    for (dof, &stiffness) in problem.stiffness().diagonal().iter().enumerate().filter(|entry| *entry.1 > 0.0) {
+        problem
+            .contact()
+            .column(dof)
+            .for_each(|(row, b)| soft[row] = soft[row].max(b.abs() * (energy / stiffness).sqrt()));
+    }
     (0..problem.rows()).find_map(|row| {
         let gap = problem.gap()[row];
         let touched = if lambda[row] != 0.0 || moved[row] > gap { gap.abs() } else { 0.0 };
@@ -96,7 +105,7 @@ fn broken(problem: &ContactProblem, solution: &Solution) -> Option<&'static str>
         let distance = moved[row] - gap;
         let product = if lambda[row] == 0.0 { 0.0 } else { (lambda[row] * distance).abs() };
         let conditions = [
-            ("no penetration", distance <= HOLDS * reach.max(lengths[row])),
+            ("no penetration", distance <= HOLDS * reach.max(lengths[row]).max(gap.abs()).max(soft[row])),
             ("compression", lambda[row] <= HOLDS * strongest),
             ("complementarity", product <= HOLDS * strongest * reach),
         ];

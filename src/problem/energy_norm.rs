@@ -18,6 +18,9 @@ const MEASURED: f64 = 10.0;
 /// Rounding of a sweep, relative, over the smallest pivot.
 const SWEEP_ROUNDING: f64 = 1e5 * f64::EPSILON;
 
+/// Where rounding of a sweep may be so many times the sweep itself, the factor is that of another matrix.
+const LOST: f64 = 1.0;
+
 /// Rounding of what is computed of a bound after its sweeps, relative.
 const ROUNDING: f64 = 1e-6;
 
@@ -101,7 +104,8 @@ impl EnergyNorm {
     /// By how much a norm that comes from sweeps through the factor may be rounded: by some units in the last place over the
     /// smallest pivot, on a diagonal of order one.
     pub(super) fn rounding(&self) -> f64 {
-        1.0 + ROUNDING + SWEEP_ROUNDING / self.cholesky.smallest_pivot().min(1.0)
+        let share = SWEEP_ROUNDING / self.cholesky.smallest_pivot().min(1.0);
+        if share < LOST { 1.0 + ROUNDING + share } else { f64::INFINITY }
     }
 
     /// The same norm with the stiffness in another unit, `2^unit`.

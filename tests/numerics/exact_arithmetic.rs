@@ -85,7 +85,7 @@ fn nothing_panics_or_takes_long() {
 }
 
 /// Kinds of stiffness that fall short of that today; the long form has the counts.
-const SHORT: [&str; 3] = ["parts", "parts-floating", "zero-diagonal"];
+const SHORT: [&str; 4] = ["bodies", "parts", "parts-floating", "zero-diagonal"];
 
 /// At most one problem of a kind of stiffness, as it is with the long form.
 #[test]
