@@ -78,9 +78,16 @@ fn broken(problem: &ContactProblem, solution: &Solution) -> Option<&'static str>
     let pressed = problem.contact().mul_transposed(lambda);
     let force = largest(problem.load()).max(largest(&pressed));
     let (within, terms) = (problem.stiffness().mul(u), problem.stiffness().mul_abs(u));
+    // A force counts by what it does to its own dof, in energy.
+    let diagonal = problem.stiffness().diagonal();
+    let counts = |dof: usize, force: f64| if diagonal[dof] > 0.0 { force.abs() / diagonal[dof].sqrt() } else { 0.0 };
+    let strong = (0..problem.dofs())
+        .map(|dof| counts(dof, problem.load()[dof]).max(counts(dof, pressed[dof])))
+        .fold(0.0, f64::max);
     let balanced = |dof: usize| {
         let residual = within[dof] - problem.load()[dof] - pressed[dof];
-        residual.abs() <= HOLDS * force + ROUNDING * terms[dof]
+        let rest = (residual.abs() - ROUNDING * terms[dof]).max(0.0);
+        rest <= HOLDS * force || (diagonal[dof] > 0.0 && counts(dof, rest) <= HOLDS * strong)
     };
     if !(0..problem.dofs()).all(balanced) {
         return Some("equilibrium");

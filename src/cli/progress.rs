@@ -47,7 +47,9 @@ impl Progress {
             while ended.recv_timeout(PERIOD) == Err(RecvTimeoutError::Timeout) {
                 let activity = watch.activity();
                 let left = activity.part.as_ref().and_then(|part| pace.left(part));
-                if start.elapsed() >= QUIET {
+                // Until an interrupt is noticed, its own line may be the last one.
+                let is_pending = watch.is_stopped() && !watch.is_noticed();
+                if start.elapsed() >= QUIET && !is_pending {
                     is_shown = true;
                     let line = if watch.is_noticed() {
                         "interrupted: it ends with what there is, at once if interrupted again".to_string()

@@ -19,7 +19,7 @@ const MEASURED: f64 = 10.0;
 const SWEEP_ROUNDING: f64 = 1e5 * f64::EPSILON;
 
 /// Where rounding of a sweep may be so many times the sweep itself, the factor is that of another matrix.
-const LOST: f64 = 1.0;
+const LOST: f64 = 1e3;
 
 /// Rounding of what is computed of a bound after its sweeps, relative.
 const ROUNDING: f64 = 1e-6;

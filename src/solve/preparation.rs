@@ -18,7 +18,7 @@ use crate::transform::{Condensation, RowSelection, Scaling};
 const SINGLE_PIVOT: f64 = 1e-4;
 
 /// A pivot below this share of a diagonal of order one leaves fewer than four digits of a double.
-pub(super) const LOST_PIVOT: f64 = 1e-12;
+pub(super) const LOST_PIVOT: f64 = 1e-10;
 
 impl Prepared {
     /// As [`Prepared::new`], with the threads and the precision of `settings`.
