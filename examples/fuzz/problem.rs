@@ -77,7 +77,10 @@ fn broken(problem: &ContactProblem, solution: &Solution) -> Option<&'static str>
     let moved = problem.contact().mul(u);
     let pressed = problem.contact().mul_transposed(lambda);
     let force = largest(problem.load()).max(largest(&pressed));
-    let (within, terms) = (problem.stiffness().mul(u), problem.stiffness().mul_abs(u));
+    let within = problem.stiffness().mul(u);
+    // Multipliers are rounded too; those of opposed rows may be far larger than what is left of them.
+    let of_contact = problem.contact().mul_abs_transposed(lambda);
+    let terms: Vec<f64> = problem.stiffness().mul_abs(u).iter().zip(of_contact).map(|(a, b)| a + b).collect();
     // A force counts by what it does to its own dof, in energy.
     let diagonal = problem.stiffness().diagonal();
     let counts = |dof: usize, force: f64| if diagonal[dof] > 0.0 { force.abs() / diagonal[dof].sqrt() } else { 0.0 };
@@ -98,6 +101,10 @@ fn broken(problem: &ContactProblem, solution: &Solution) -> Option<&'static str>
     let lengths = problem.contact().mul_abs(u);
     // How far the energy of the displacement could move a row by a single dof.
     let energy: f64 = u.iter().zip(problem.stiffness().mul(u)).map(|(u, force)| u * force).sum::<f64>().max(0.0);
+    let of_load: f64 = u.iter().zip(problem.load()).map(|(u, f)| u * f).sum();
+    let of_gap: f64 = (lambda.iter().zip(problem.gap())).filter(|entry| *entry.0 != 0.0).map(|(l, g)| l * g).sum();
+    // What stands still is measured by what its forces could do.
+    let work = energy.max(of_load.abs()).max(of_gap.abs()).max(1e-6 * strong * strong);
     let mut soft = vec![0.0_f64; problem.rows()];
     for (dof, &stiffness) in problem.stiffness().diagonal().iter().enumerate().filter(|entry| *entry.1 > 0.0) {
         problem
@@ -110,11 +117,15 @@ fn broken(problem: &ContactProblem, solution: &Solution) -> Option<&'static str>
         let touched = if lambda[row] != 0.0 || moved[row] > gap { gap.abs() } else { 0.0 };
         let reach = largest(&moved).max(touched).max(still);
         let distance = moved[row] - gap;
-        let product = if lambda[row] == 0.0 { 0.0 } else { (lambda[row] * distance).abs() };
+        let product = if lambda[row] == 0.0 || distance.abs() <= ROUNDING * lengths[row] {
+            0.0
+        } else {
+            (lambda[row] * distance).abs()
+        };
         let conditions = [
             ("no penetration", distance <= HOLDS * reach.max(lengths[row]).max(gap.abs()).max(soft[row])),
             ("compression", lambda[row] <= HOLDS * strongest),
-            ("complementarity", product <= HOLDS * strongest * reach),
+            ("complementarity", product <= HOLDS * (strongest * reach).max(work)),
         ];
         conditions.into_iter().find(|condition| !condition.1).map(|condition| condition.0)
     })
