@@ -1,6 +1,6 @@
 //! The stability table, kept: no entry may lose more than a digit, be refused by another error, or turn wrong.
 //!
-//! `BLESS=1 cargo test --release --test numerics extremes` writes `tests/extremes.txt` anew.
+//! `BLESS=1 cargo test --test numerics extremes` writes `tests/extremes.txt` anew.
 
 #[path = "../../examples/extremes/cases.rs"]
 mod cases;
@@ -12,8 +12,8 @@ use std::path::Path;
 
 use entry::{COLUMNS, Cell};
 
-/// Bodies of the short form: seconds without optimisation.
-const MOST_DOFS: usize = 1100;
+/// Larger bodies are left to the command: they take half a minute.
+const MOST_DOFS: usize = 10_000;
 
 /// Digits in which machines may differ.
 const TO_AND_FRO: u32 = 1;
@@ -24,7 +24,7 @@ fn every_entry_of_the_stability_table_is_as_good_as_it_was() {
     let kept = fs::read_to_string(&file).unwrap_or_default();
     let (mut found, mut worse, mut wrong_raw) = (String::new(), Vec::new(), 0);
     let entries = cases::entries(MOST_DOFS).unwrap();
-    assert!(entries.len() >= 140);
+    assert!(entries.len() >= 150);
     for (number, entry) in entries.iter().enumerate() {
         let cells = entry.row();
         let name = format!("{}, {}", entry.group, entry.label);

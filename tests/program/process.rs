@@ -13,6 +13,9 @@ use std::process::{Command, Stdio};
 /// How a file that waits to take its place is called.
 const WAITING: &str = ".signorini-";
 
+/// A run may end before the test can act on it, but not so often in a row, however busy the machine is.
+const TRIES: usize = 50;
+
 /// How the line of progress is taken back.
 const ERASED: &str = "\r\x1b[K";
 
@@ -68,7 +71,7 @@ fn a_kill_at_any_moment_leaves_no_broken_file() {
         // As many kills at each number of files, those counted that wait to take their place.
         for files in 0..=all {
             let mut killed = 0;
-            while killed < kills {
+            for _ in 0..TRIES * kills {
                 fs::remove_dir_all(desk.path("o")).unwrap_or(());
                 let mut child = desk.command(arguments).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
                 while there() < files && child.try_wait().unwrap().is_none() {
@@ -80,7 +83,11 @@ fn a_kill_at_any_moment_leaves_no_broken_file() {
                 // With the last file there may be nothing left to do.
                 killed += usize::from(is_early || files == all);
                 whole(&desk.path("o"));
+                if killed == kills {
+                    break;
+                }
             }
+            assert_eq!(killed, kills, "{arguments:?} always ended before it could be killed at {files} files");
         }
     }
 }
@@ -125,17 +132,17 @@ fn block(x: usize, y: usize) -> Value {
     block
 }
 
-/// The first run that `event` shows to be under way, that is then interrupted, and that was `cut` short by it.
+/// The first run that `event` shows to be under way, that is then interrupted, and that was `cut` short by it. The folder
+/// `o` holds what it left.
 fn interrupted(desk: &Desk, arguments: &[&str], event: &str, cut: impl Fn(&Run) -> bool) -> Run {
-    loop {
+    let mut runs = (0..TRIES).map(|_| {
+        fs::remove_dir_all(desk.path("o")).unwrap_or(());
         let mut run = desk.start(arguments);
         assert!(run.waits_for(event), "{arguments:?} never came to {event:?}");
         run.interrupt();
-        let run = run.ends(true);
-        if run.code == 130 && cut(&run) {
-            return run;
-        }
-    }
+        run.ends(true)
+    });
+    runs.find(|run| run.code == 130 && cut(run)).expect("a run that was cut short")
 }
 
 /// Whether it notices the interrupt behind the factorisation or is ended in it depends on the machine.
@@ -183,12 +190,12 @@ fn a_second_interrupt_does_not_wait() {
 fn an_interrupted_solve_tells_the_best_answer_that_it_has() {
     let desk = Desk::new();
     let arguments = ["solve", "block.json", "--method", "penalty", "--no-condense", "--format", "json", "--out", "o"];
-    let runs = [100, 50, 150].into_iter().cycle().map(|cells| {
+    let mut runs = [100, 50, 150].into_iter().cycle().take(TRIES).map(|cells| {
         desk.write("block.json", block(cells, cells).to_string());
         interrupted(&desk, &arguments, "penalty loop, iteration 2", |_| true)
     });
     let has_answer = |run: &Run| !run.stdout.is_empty() && run.json()["status"] == "not_certified";
-    let run = runs.into_iter().find(has_answer).unwrap();
+    let run = runs.find(has_answer).expect("a run that was interrupted with an answer");
     let report = run.json();
     assert!(report["certificate"]["energy_error_bound"].as_f64().is_some_and(|bound| bound > 0.0), "{report}");
     assert!(report["contact"]["force"].as_f64().is_some_and(|force| force > 0.0), "{report}");
@@ -257,9 +264,12 @@ fn an_interrupted_motion_leaves_its_frames_and_is_resumed_bit_for_bit() {
 fn a_motion_ends_at_its_time_limit() {
     let desk = Desk::new();
     desk.write("bar.json", bar(ENDLESS).to_string());
-    let run = desk.run(&["solve", "bar.json", "--time-limit", "0.5", "--format", "json"]).ends_with(4);
+    // On a slow machine the time may be over before the first step.
+    let mut runs = ["0.5", "5", "50"]
+        .iter()
+        .map(|limit| desk.run(&["solve", "bar.json", "--time-limit", limit, "--format", "json"]).ends_with(4));
+    let run = runs.find(|run| run.stderr.starts_with("out of time after step ")).expect("a motion that began");
     assert_eq!(run.json()["status"], "not_certified");
-    assert!(run.stderr.starts_with("out of time after step "), "{}", run.stderr);
 }
 
 /// Ten runs write the same bytes, the seconds in the report apart.
@@ -303,7 +313,8 @@ fn no_progress_is_shown_where_nobody_watches() {
     let desk = Desk::new();
     desk.write("bar.json", bar(ENDLESS).to_string());
     let run = desk.run(&["solve", "bar.json", "--time-limit", "1.5"]).ends_with(4);
-    assert!(run.stderr.starts_with("out of time after step ") && run.stderr.lines().count() == 1, "{}", run.stderr);
+    // That its time is over, and nothing else.
+    assert!(run.stderr.lines().count() == 1 && !run.stderr.contains('\r'), "{:?}", run.stderr);
 }
 
 #[test]
@@ -382,5 +393,5 @@ fn on_a_terminal_long_work_shows_what_it_does_and_leaves_nothing_of_it() {
 fn on_a_terminal_short_work_shows_nothing() {
     let drawn = drawn(&Desk::new(), &["solve", &example("bar")], &[]);
     let (left, shown) = left_and_shown(&drawn);
-    assert!(left.is_empty() && shown.iter().all(|line| !line.contains("0 s: ")), "{drawn:?}");
+    assert!(left.is_empty() && shown.iter().all(|line| !line.starts_with("0 s: ")), "{drawn:?}");
 }

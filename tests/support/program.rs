@@ -130,18 +130,20 @@ pub struct UnderWay {
 impl UnderWay {
     /// Waits until the program says `phrase` on standard error. Returns `false` if it ends without that.
     pub fn waits_for(&mut self, phrase: &str) -> bool {
-        while let Ok(line) = self.told.recv() {
-            if !line.starts_with("progress: ") {
-                self.stderr += &format!("{line}\n");
-            }
-            if line.contains(phrase) {
-                return true;
-            }
-        }
-        false
+        std::iter::from_fn(|| self.next_line()).any(|line| line.contains(phrase))
     }
 
-    /// Waits until the program begins to print its report, of which it then waits to get rid if it is long.
+    /// The next line of standard error; `None` if it is closed.
+    fn next_line(&mut self) -> Option<String> {
+        let line = self.told.recv().ok()?;
+        if !line.starts_with("progress: ") {
+            self.stderr += &format!("{line}\n");
+        }
+        Some(line)
+    }
+
+    /// Waits until the program begins to print its report. If that is longer than a pipe holds, the program then waits for a
+    /// reader.
     pub fn waits_for_report(&mut self) {
         self.child.stdout.as_mut().unwrap().read_exact(&mut [0]).unwrap();
     }
@@ -151,21 +153,15 @@ impl UnderWay {
         assert!(Command::new("kill").args(["-INT", &self.child.id().to_string()]).status().unwrap().success());
     }
 
-    /// Kills it.
-    pub fn kill(mut self) {
-        self.child.kill().unwrap();
-        self.child.wait().unwrap();
-    }
-
-    /// Waits for its end; what it printed is taken, or left to clog the pipe.
-    pub fn ends(mut self, printed_is_read: bool) -> Run {
-        let mut printed = self.child.stdout.take().unwrap();
+    /// Waits for its end, while its report is read or nobody reads it.
+    pub fn ends(mut self, is_read: bool) -> Run {
+        let mut report = self.child.stdout.take().unwrap();
         let mut stdout = String::new();
-        if printed_is_read {
-            printed.read_to_string(&mut stdout).unwrap();
+        if is_read {
+            report.read_to_string(&mut stdout).unwrap();
         }
         let code = self.child.wait().unwrap().code().expect("an exit code, not a signal");
-        self.waits_for("\n");
+        while self.next_line().is_some() {}
         Run { code, stdout, stderr: self.stderr }
     }
 }
