@@ -3,7 +3,7 @@
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use signorini::sparse::Cholesky;
+use signorini::qp::linear::Cholesky;
 use signorini::{Condense, Method, Model, Prepared, Settings, solve};
 
 #[path = "../examples/contact_cost/case.rs"]

@@ -59,39 +59,24 @@
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 
-pub mod analytical;
-pub mod assembly;
-pub mod barrier;
-pub mod body;
 pub mod cli;
-pub mod dynamic;
-pub mod element;
 pub mod error;
+pub mod fem;
 pub mod file;
-pub mod formulation;
-pub mod material;
-pub mod matrix_market;
-pub mod memory;
-pub mod mesh;
-pub mod method;
-pub mod norm;
+pub mod motion;
 pub mod output;
-pub mod problem;
-pub mod recovery;
+pub mod qp;
 pub mod scene;
 pub mod solution;
-pub mod solve;
-pub mod sparse;
 pub mod study;
-pub mod transform;
 pub mod watch;
 
 pub use error::Error;
-pub use problem::ContactProblem;
-pub use scene::{Model, Scene};
-pub use solution::{Certificate, ContactSet, Goal, ProvenSet, Solution};
-pub use solve::{
+pub use qp::linear::{SparseMatrix, SymmetricMatrix};
+pub use qp::problem::ContactProblem;
+pub use qp::solve::{
     BoundarySolution, Condense, Iterative, Method, Path, Precision, Prepared, Settings, Start, solve, solve_qp,
 };
-pub use sparse::{SparseMatrix, SymmetricMatrix};
+pub use scene::{Model, Scene};
+pub use solution::{Certificate, ContactSet, Goal, ProvenSet, Solution};
 pub use watch::Watch;

@@ -8,8 +8,8 @@
 use std::time::Instant;
 
 use serde_json::json;
-use signorini::dynamic::{Integrator, Scheme};
-use signorini::sparse::{Cholesky, SparseMatrix, SymmetricMatrix};
+use signorini::motion::{Integrator, Scheme};
+use signorini::qp::linear::{Cholesky, SparseMatrix, SymmetricMatrix};
 use signorini::{Scene, Settings};
 
 /// Cells along a side: 8,320, 33,024 and 131,584 dofs.

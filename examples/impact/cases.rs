@@ -1,6 +1,6 @@
 //! The two bars.
 
-use signorini::analytical::{BouncingBar, ImpactingBar};
+use signorini::fem::closed_forms::{BouncingBar, ImpactingBar};
 
 use super::measure::Case;
 

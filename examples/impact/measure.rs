@@ -1,6 +1,6 @@
 //! One run of one scheme, held against a closed form.
 
-use signorini::dynamic::{Integrator, Observation, Scheme};
+use signorini::motion::{Integrator, Observation, Scheme};
 use signorini::scene::{AnalysisSpec, SchemeSpec};
 use signorini::{Error, Scene, Settings};
 

@@ -62,7 +62,7 @@ pub fn plots(case: &Case, runs: &[Run]) -> Drawing {
     let [begin, end] = case.contact;
     let last = runs[0].history.last().map_or(end, |seen| seen.time).min(end + (end - begin) / 2.0);
     let first = begin - (end - begin) / 4.0;
-    let line = |run: &Run, value: &dyn Fn(&signorini::dynamic::Observation) -> f64| {
+    let line = |run: &Run, value: &dyn Fn(&signorini::motion::Observation) -> f64| {
         let shown = run.history.iter().filter(|seen| (first..=last).contains(&seen.time));
         Series::new(run.scheme.name(), shown.map(|seen| [seen.time, value(seen)]).collect())
     };

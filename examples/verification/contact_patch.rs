@@ -1,12 +1,13 @@
 //! The contact patch test on distorted meshes: a block pressed onto a frictionless plane is compressed uniformly.
 
-use signorini::assembly::{DofMap, add_pressure, free_load, stiffness, tributary_areas};
-use signorini::body::{ElasticBody, Integration};
-use signorini::element::ElementKind::{self, Hex8, Q4, Q8, T3, T6, Tet4};
-use signorini::formulation::Formulation;
-use signorini::material::Material;
-use signorini::mesh::{cuboid, rectangle};
-use signorini::{ContactProblem, Error, SparseMatrix, recovery, solve_qp};
+use signorini::fem::assembly::{DofMap, add_pressure, free_load, stiffness, tributary_areas};
+use signorini::fem::body::{ElasticBody, Integration};
+use signorini::fem::element::ElementKind::{self, Hex8, Q4, Q8, T3, T6, Tet4};
+use signorini::fem::formulation::Formulation;
+use signorini::fem::material::Material;
+use signorini::fem::mesh::{cuboid, rectangle};
+use signorini::fem::recovery;
+use signorini::{ContactProblem, Error, SparseMatrix, solve_qp};
 
 use crate::bodies::distort;
 

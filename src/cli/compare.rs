@@ -6,7 +6,7 @@ use super::solve::settings;
 use super::{Outcome, warn};
 use crate::error::Error;
 use crate::output::{compare_json, compare_text, gallery, write_files};
-use crate::solve::Method;
+use crate::qp::solve::Method;
 use crate::study::{Summary, compare};
 use crate::watch::Watch;
 

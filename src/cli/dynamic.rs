@@ -6,11 +6,11 @@ use super::input::{scene_title, unit_names, warnings};
 use super::options::{Format, Solve};
 use super::solve::settings;
 use super::{Outcome, warn};
-use crate::dynamic::Integrator;
+use crate::motion::Integrator;
 use crate::error::Error;
 use crate::output::{MotionFolder, MotionSeconds, motion_is_certified, motion_json, motion_text, write_files};
 use crate::scene::Scene;
-use crate::solve::Method;
+use crate::qp::solve::Method;
 use crate::study::MotionSummary;
 use crate::watch::Watch;
 

@@ -4,7 +4,7 @@ use super::input::{still_model, warnings};
 use super::options::Export;
 use super::{Outcome, warn};
 use crate::error::Error;
-use crate::matrix_market;
+use crate::qp::matrix_market;
 use crate::output::write_files;
 
 pub(super) fn run(options: &Export) -> Result<Outcome, Error> {

@@ -5,9 +5,9 @@ use std::time::Instant;
 
 use super::options::Limits;
 use crate::error::Error;
-use crate::matrix_market;
+use crate::qp::matrix_market;
 use crate::output::UnitNames;
-use crate::problem::ContactProblem;
+use crate::qp::problem::ContactProblem;
 use crate::scene::{Model, Scene};
 use crate::solution::{Goal, Solution};
 use crate::study::{ModelSize, Summary, scene_summary};

@@ -5,7 +5,7 @@ use super::options::{Common, Format, Solve};
 use super::{Outcome, dynamic, warn};
 use crate::error::Error;
 use crate::output::{gallery, solve_json, solve_text, write_files};
-use crate::solve::{Condense, Method, Settings, solve};
+use crate::qp::solve::{Condense, Method, Settings, solve};
 use crate::study::discretisation_error;
 use crate::watch::Watch;
 

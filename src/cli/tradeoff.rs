@@ -9,7 +9,7 @@ use crate::output::{
     tradeoff_plot, tradeoff_text, write_files, write_picture,
 };
 use crate::scene::Scene;
-use crate::solve::Settings;
+use crate::qp::solve::Settings;
 use crate::study::{TradeoffGrid, motion_tradeoff, tradeoff};
 use crate::watch::Watch;
 

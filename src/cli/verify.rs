@@ -3,7 +3,7 @@
 use super::Outcome;
 use super::options::{Format, Verify};
 use crate::error::Error;
-use crate::matrix_market::{read_problem, read_vector};
+use crate::qp::matrix_market::{read_problem, read_vector};
 use crate::output::{verify_json, verify_text};
 use crate::study::{ModelSize, Verification};
 

@@ -16,7 +16,7 @@ use super::gallery::{Scene, fields};
 use super::{
     ContactPicture, Plot, Quantity, Series, common_limits, common_window, line_plots, write_atomically, write_picture,
 };
-use crate::dynamic::{Observation, State};
+use crate::motion::{Observation, State};
 use crate::error::Error;
 use crate::file::{MOST_OF_TABLE, read_text_capped};
 use crate::scene::Model;

@@ -3,9 +3,9 @@
 use serde_json::{Value, json};
 
 use super::report::{UnitNames, entry, plural, printable, quantity};
-use crate::dynamic::Scheme;
+use crate::motion::Scheme;
 use crate::scene::{Dynamics, Model};
-use crate::solve::Method;
+use crate::qp::solve::Method;
 use crate::study::MotionSummary;
 
 /// What a run cost, in seconds.

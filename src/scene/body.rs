@@ -2,10 +2,10 @@
 
 use super::schema::{BodySpec, IntegrationSpec, MaterialSpec, ModelSpec, Scene};
 use super::{Warning, located, wrong};
-use crate::body::{ElasticBody, Integration};
+use crate::fem::body::{ElasticBody, Integration};
 use crate::error::Error;
-use crate::formulation::Formulation;
-use crate::material::Material;
+use crate::fem::formulation::Formulation;
+use crate::fem::material::Material;
 
 /// Above this ratio linear elements are known to lock noticeably; measured, quadratic ones do above the second.
 const LOCKING_POISSON: [f64; 2] = [0.49, 0.499];

@@ -5,7 +5,7 @@ use super::condition::boundary;
 use super::model::{Model, Parts};
 use super::schema::Scene;
 use super::{Obstacle, number, wrong};
-use crate::assembly::tributary_areas;
+use crate::fem::assembly::tributary_areas;
 use crate::error::Error;
 
 impl Scene {

@@ -3,10 +3,10 @@
 use super::held::{COORDINATES, Component, Held, Holder, unit_normal};
 use super::schema::{LoadSpec, Place, Scene, SupportSpec};
 use super::{PLACE_TOLERANCE, finite, point, vector, wrong};
-use crate::assembly::{DofMap, add_body_force, add_pressure, add_traction};
-use crate::body::ElasticBody;
+use crate::fem::assembly::{DofMap, add_body_force, add_pressure, add_traction};
+use crate::fem::body::ElasticBody;
 use crate::error::Error;
-use crate::mesh::{Boundary, Mesh};
+use crate::fem::mesh::{Boundary, Mesh};
 
 /// Radii below this times the body's size lie on the axis of revolution.
 const ON_THE_AXIS: f64 = 1e-12;

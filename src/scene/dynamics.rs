@@ -4,13 +4,13 @@ use super::schema::{
     AnalysisSpec, DynamicSpec, FactorSpec, FieldSpec, LoadInTimeSpec, MassSpec, PenetrationSpec, Scene, SchemeSpec,
 };
 use super::{Model, ROUNDING, Warning, finite, located, number, point, vector, wrong};
-use crate::assembly::{MassForm, free_load, internal_force, mass};
-use crate::body::ElasticBody;
-use crate::dynamic::{DynamicProblem, Scheme, TimeFunction, stable_step};
+use crate::fem::assembly::{MassForm, free_load, internal_force, mass};
+use crate::fem::body::ElasticBody;
+use crate::motion::{DynamicProblem, Scheme, TimeFunction, stable_step};
 use crate::error::Error;
-use crate::problem::ContactProblem;
-use crate::solve::{Method, Settings, solve};
-use crate::sparse::dot;
+use crate::qp::problem::ContactProblem;
+use crate::qp::solve::{Method, Settings, solve};
+use crate::qp::linear::dot;
 
 /// Where the fields stand in a scene.
 const PATH: &str = "analysis.dynamic";
@@ -350,7 +350,7 @@ fn deepest(model: &Model, displacement: &[f64]) -> Option<Error> {
 /// The admissible displacement that is nearest to a given one in the norm of a mass.
 fn projected(
     problem: &ContactProblem,
-    mass: crate::sparse::SymmetricMatrix,
+    mass: crate::qp::linear::SymmetricMatrix,
     displacement: &[f64],
 ) -> Result<Vec<f64>, Error> {
     let load = mass.mul(displacement);

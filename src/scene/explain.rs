@@ -1,6 +1,6 @@
 //! Errors of the solvers in the words of the scene: rigid motions by name, rows by node and obstacle.
 
-use super::motion::{RigidMotions, advice};
+use super::rigid_modes::{RigidMotions, advice};
 use super::{Model, number, point};
 use crate::error::Error;
 

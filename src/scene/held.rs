@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::{number, point, wrong};
-use crate::assembly::{DofMap, Frame, perpendicular};
+use crate::fem::assembly::{DofMap, Frame, perpendicular};
 use crate::error::Error;
-use crate::mesh::Mesh;
+use crate::fem::mesh::Mesh;
 
 /// A normal that leans by less than this out of those before it depends on them: the rounding of written components.
 const DEPENDENT: f64 = 1e-9;

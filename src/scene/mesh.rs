@@ -8,8 +8,8 @@ use super::schema::{
 };
 use super::{located, wrong};
 use crate::error::Error;
-use crate::mesh::gmsh::GmshFile;
-use crate::mesh::{self, Axis, ElementKind, Mesh, Zone};
+use crate::fem::mesh::gmsh::GmshFile;
+use crate::fem::mesh::{self, Axis, ElementKind, Mesh, Zone};
 
 impl BodySpec {
     /// As it is written.

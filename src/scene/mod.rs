@@ -23,7 +23,7 @@ mod held;
 mod locate;
 mod mesh;
 mod model;
-mod motion;
+mod rigid_modes;
 mod obstacle;
 mod parse;
 mod refine;

@@ -2,17 +2,17 @@
 
 use std::sync::Arc;
 
-use super::motion::RigidMotions;
+use super::rigid_modes::RigidMotions;
 use super::rows::{self, ContactRow};
 use super::{Obstacle, Units, Warning, wrong};
-use crate::assembly::{DofMap, free_load, internal_force, rigid_motions, stiffness};
-use crate::body::ElasticBody;
+use crate::fem::assembly::{DofMap, free_load, internal_force, rigid_motions, stiffness};
+use crate::fem::body::ElasticBody;
 use crate::error::Error;
-use crate::mesh::Mesh;
-use crate::problem::ContactProblem;
-use crate::recovery::{self, StressField};
-use crate::sparse::SymmetricMatrix;
-use crate::sparse::multigrid::NearNullSpace;
+use crate::fem::mesh::Mesh;
+use crate::qp::problem::ContactProblem;
+use crate::fem::recovery::{self, StressField};
+use crate::qp::linear::SymmetricMatrix;
+use crate::qp::linear::multigrid::NearNullSpace;
 
 /// Tributary areas below this, relative to the largest, are rounding of zero; radii, relative to the size of the body.
 const NO_AREA: f64 = 1e-12;

@@ -3,7 +3,7 @@
 use super::model::Parts;
 use super::{ROUNDING, Warning, finite, point, wrong};
 use crate::error::Error;
-use crate::sparse::SparseMatrix;
+use crate::qp::linear::SparseMatrix;
 
 /// One contact row: `normal . u <= gap` at a node, or `normal . (u - u_partner) <= gap` between two.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,19 +2,19 @@
 
 use std::time::Instant;
 
-use crate::analytical::manufactured::{ContactSolution, PlaneElasticity};
-use crate::assembly::{DofMap, add_body_force_field, free_load, stiffness, tributary_areas};
-use crate::body::{ElasticBody, Integration};
-use crate::element::{ElementKind, QuadraturePoint};
+use crate::fem::closed_forms::manufactured::{ContactSolution, PlaneElasticity};
+use crate::fem::assembly::{DofMap, add_body_force_field, free_load, stiffness, tributary_areas};
+use crate::fem::body::{ElasticBody, Integration};
+use crate::fem::element::{ElementKind, QuadraturePoint};
 use crate::error::Error;
-use crate::formulation::Formulation;
-use crate::material::Material;
-use crate::mesh::rectangle;
-use crate::norm::{ErrorNorms, ExactState, error_norms, error_norms_by};
-use crate::problem::ContactProblem;
-use crate::recovery::{discretisation_error, stress};
-use crate::solve::solve_qp;
-use crate::sparse::SparseMatrix;
+use crate::fem::formulation::Formulation;
+use crate::fem::material::Material;
+use crate::fem::mesh::rectangle;
+use crate::fem::norms::{ErrorNorms, ExactState, error_norms, error_norms_by};
+use crate::qp::problem::ContactProblem;
+use crate::fem::recovery::{discretisation_error, stress};
+use crate::qp::solve::solve_qp;
+use crate::qp::linear::SparseMatrix;
 
 /// The contact pressure at one node.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,11 +89,12 @@ fn in_space([x, y]: [f64; 2]) -> [f64; 3] {
 ///
 /// # Errors
 /// [`Error::Mesh`] for an element that is not plane or an integration that does not fit it, [`Error::Setting`] for
-/// elastic constants that are none, and as [`solve_qp`](crate::solve::solve_qp).
+/// elastic constants that are none, and as [`solve_qp`](crate::qp::solve::solve_qp).
 ///
 /// ```
-/// use signorini::analytical::manufactured::{HertzBlock, PlaneElasticity};
-/// use signorini::{body::Integration, element::ElementKind, study::solve_block};
+/// use signorini::fem::closed_forms::manufactured::{HertzBlock, PlaneElasticity};
+/// use signorini::fem::{body::Integration, element::ElementKind};
+/// use signorini::study::solve_block;
 ///
 /// let elasticity = PlaneElasticity::plane_strain(1.0, 0.3);
 /// let exact = HertzBlock { elasticity, half_width: 0.53, peak_pressure: 1.0 };

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::dynamic::Observation;
+use crate::motion::Observation;
 
 /// What a run has come to, gathered step by step; its size does not depend on how many there were.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

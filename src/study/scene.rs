@@ -6,11 +6,11 @@ use serde::Serialize;
 
 use super::{ModelSize, Summary};
 use crate::error::Error;
-use crate::formulation::Formulation;
-use crate::recovery;
+use crate::fem::formulation::Formulation;
+use crate::fem::recovery;
 use crate::scene::Model;
 use crate::solution::{ContactSet, Goal, Solution};
-use crate::solve::{Event, Prepared, Settings, solve};
+use crate::qp::solve::{Event, Prepared, Settings, solve};
 
 /// Gaps half way that differ by this from the mean of the ends, relative, are not on a straight line.
 const STRAIGHT: f64 = 1e-12;

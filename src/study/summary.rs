@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::problem::ContactProblem;
+use crate::qp::problem::ContactProblem;
 use crate::solution::{Attempt, Certificate, Goal, Iteration, Solution};
 
 /// One answer in numbers.

@@ -5,12 +5,12 @@
 //! up to a fifth of a cell; E = 7, nu = 0.3.
 
 use crate::bodies::{difference, distort, distorted, largest, nodal_of, solve_held};
-use signorini::assembly::{self, DofMap};
-use signorini::body::{ElasticBody, Integration};
-use signorini::formulation::Formulation;
-use signorini::material::Material;
-use signorini::mesh::{ElementKind, Mesh, bar, cuboid, rectangle};
-use signorini::recovery::{self, Stress};
+use signorini::fem::assembly::{self, DofMap};
+use signorini::fem::body::{ElasticBody, Integration};
+use signorini::fem::formulation::Formulation;
+use signorini::fem::material::Material;
+use signorini::fem::mesh::{ElementKind, Mesh, bar, cuboid, rectangle};
+use signorini::fem::recovery::{self, Stress};
 
 /// A few thousand operations on numbers of order one.
 const ROUNDING: f64 = 1e-12;

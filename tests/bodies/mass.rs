@@ -4,13 +4,13 @@
 //! functions contain exactly.
 
 use crate::bodies::{distort, distorted, nodal_of};
-use signorini::assembly::{DofMap, Frame, MassForm, add_body_force_field, mass};
-use signorini::body::ElasticBody;
+use signorini::fem::assembly::{DofMap, Frame, MassForm, add_body_force_field, mass};
+use signorini::fem::body::ElasticBody;
 use signorini::error::Error;
-use signorini::formulation::Formulation;
-use signorini::material::Material;
-use signorini::mesh::{ElementKind, bar, cuboid};
-use signorini::sparse::{Cholesky, dot};
+use signorini::fem::formulation::Formulation;
+use signorini::fem::material::Material;
+use signorini::fem::mesh::{ElementKind, bar, cuboid};
+use signorini::qp::linear::{Cholesky, dot};
 
 /// Sums over a mesh, by two quadratures.
 const SAME: f64 = 1e-12;

@@ -1,12 +1,12 @@
 //! Parts that do not fit together are refused by the library, each in a sentence that names both.
 
-use signorini::assembly::{DofMap, MassForm, mass};
-use signorini::body::ElasticBody;
-use signorini::dynamic::DynamicProblem;
-use signorini::formulation::Formulation;
-use signorini::material::Material;
-use signorini::mesh::{ElementKind, Mesh, bar, cuboid, rectangle, ring};
-use signorini::recovery::{discretisation_error, stress};
+use signorini::fem::assembly::{DofMap, MassForm, mass};
+use signorini::fem::body::ElasticBody;
+use signorini::motion::DynamicProblem;
+use signorini::fem::formulation::Formulation;
+use signorini::fem::material::Material;
+use signorini::fem::mesh::{ElementKind, Mesh, bar, cuboid, rectangle, ring};
+use signorini::fem::recovery::{discretisation_error, stress};
 use signorini::{ContactProblem, Error, Settings, SparseMatrix, SymmetricMatrix, solve};
 
 const LINES: [f64; 3] = [0.0, 1.0, 2.0];

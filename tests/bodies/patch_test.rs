@@ -3,9 +3,9 @@
 //! MESH: 2 x 1 rectangle, 4 x 3 cells, inner nodes moved by up to a fifth of a cell; E = 7, nu = 0.3, thickness 0.5.
 
 use crate::bodies::{VARIANTS, difference, distorted_body, largest, nodal, solve_held};
-use signorini::assembly;
-use signorini::formulation::Formulation;
-use signorini::recovery::{self, Stress};
+use signorini::fem::assembly;
+use signorini::fem::formulation::Formulation;
+use signorini::fem::recovery::{self, Stress};
 
 /// A few hundred operations on numbers of order one.
 const ROUNDING: f64 = 1e-13;
@@ -59,11 +59,11 @@ fn stress_of_a_linear_field_is_exact_in_elements_and_at_nodes() {
 #[test]
 fn stress_that_is_linear_in_a_rectangle_is_exact_at_its_nodes() {
     // u_x = x y is bilinear: eps_xx = y, gamma_xy = x, everywhere in Q4 rectangles of any size.
-    use signorini::mesh::{ElementKind, rectangle};
+    use signorini::fem::mesh::{ElementKind, rectangle};
     let mesh = rectangle(&[0.0, 0.2, 1.0], &[0.0, 0.7, 1.0], ElementKind::Q4).unwrap();
-    let material = signorini::material::Material::new(8.0, 0.25).unwrap();
+    let material = signorini::fem::material::Material::new(8.0, 0.25).unwrap();
     let formulation = Formulation::PlaneStress { thickness: 1.0 };
-    let body = signorini::body::ElasticBody::new(mesh, material, formulation).unwrap();
+    let body = signorini::fem::body::ElasticBody::new(mesh, material, formulation).unwrap();
     let field = recovery::stress(&body, &nodal(body.mesh(), |[x, y]| [x * y, 0.0])).unwrap();
     let (along, shear) = (8.0 / (1.0 - 0.0625), 8.0 / 2.5);
     for (stress, [x, y]) in field.nodes.iter().zip(body.mesh().nodes().iter().map(|&[x, y, _]| [x, y])) {
@@ -116,10 +116,10 @@ fn assembled_stiffness_and_internal_force_agree() {
 #[test]
 fn stiffness_of_a_square_element_has_its_known_entries() {
     // Q4, plane stress, nu = 0, E = t = 1, unit square: K_xx = 1/3 + 1/6, K_xy = 1/8 by hand.
-    let mesh = signorini::mesh::rectangle(&[0.0, 1.0], &[0.0, 1.0], signorini::mesh::ElementKind::Q4).unwrap();
-    let material = signorini::material::Material::new(1.0, 0.0).unwrap();
+    let mesh = signorini::fem::mesh::rectangle(&[0.0, 1.0], &[0.0, 1.0], signorini::fem::mesh::ElementKind::Q4).unwrap();
+    let material = signorini::fem::material::Material::new(1.0, 0.0).unwrap();
     let formulation = Formulation::PlaneStress { thickness: 1.0 };
-    let body = signorini::body::ElasticBody::new(mesh, material, formulation).unwrap();
+    let body = signorini::fem::body::ElasticBody::new(mesh, material, formulation).unwrap();
     let dofs = assembly::DofMap::new(vec![None; 8]).unwrap();
     let stiffness = assembly::stiffness(&body, &dofs).unwrap();
     let first: Vec<f64> = stiffness.lower().column(0).map(|entry| entry.1).collect();
@@ -132,10 +132,10 @@ fn stiffness_does_not_change_with_the_unit_of_length() {
         let of = |scale: f64| {
             let lines = |lines: &[f64]| lines.iter().map(|x| x * scale).collect::<Vec<f64>>();
             let (x, y) = (lines(&[0.0, 0.4, 1.0]), lines(&[0.0, 0.7]));
-            let mesh = signorini::mesh::rectangle(&x, &y, signorini::mesh::ElementKind::Q4).unwrap();
-            let material = signorini::material::Material::new(7.0, 0.3).unwrap();
+            let mesh = signorini::fem::mesh::rectangle(&x, &y, signorini::fem::mesh::ElementKind::Q4).unwrap();
+            let material = signorini::fem::material::Material::new(7.0, 0.3).unwrap();
             let formulation = Formulation::PlaneStrain { thickness: 1.0 };
-            let body = signorini::body::ElasticBody::new(mesh, material, formulation).unwrap();
+            let body = signorini::fem::body::ElasticBody::new(mesh, material, formulation).unwrap();
             assembly::stiffness(&body, &assembly::DofMap::new(vec![None; 12]).unwrap()).unwrap()
         };
         assert_eq!(of(scale), of(1.0), "scale {scale:e}");
@@ -144,7 +144,7 @@ fn stiffness_does_not_change_with_the_unit_of_length() {
 
 #[test]
 fn material_refuses_what_is_no_material() {
-    use signorini::material::Material;
+    use signorini::fem::material::Material;
     let strain = Formulation::PlaneStrain { thickness: 1.0 };
     let stress = Formulation::PlaneStress { thickness: 1.0 };
     for (young, poisson, formulation, fits) in [

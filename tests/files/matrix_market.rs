@@ -4,7 +4,8 @@ use std::fs;
 use std::path::Path;
 
 use crate::oracles::{Draws, random};
-use signorini::{Error, matrix_market, solve_qp};
+use signorini::qp::matrix_market;
+use signorini::{Error, solve_qp};
 
 fn write(folder: &Path, files: &[(&str, String)]) {
     files.iter().for_each(|(name, text)| fs::write(folder.join(name), text).unwrap());

@@ -5,8 +5,8 @@
 //! Elastic Solids*, Oxford, 1975, section 2.4).
 
 use serde_json::{Value, json};
-use signorini::analytical::ImpactingBar;
-use signorini::dynamic::{Integrator, Observation};
+use signorini::fem::closed_forms::ImpactingBar;
+use signorini::motion::{Integrator, Observation};
 use signorini::{Scene, Settings};
 
 /// What the default scheme promises at its usual step, a Courant number of 0.5, on 100 cells along the wave.

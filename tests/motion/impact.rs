@@ -10,7 +10,7 @@ mod measure;
 
 use cases::cases;
 use measure::run;
-use signorini::dynamic::{DynamicProblem, Integrator, Scheme, TimeFunction, stable_step};
+use signorini::motion::{DynamicProblem, Integrator, Scheme, TimeFunction, stable_step};
 use signorini::scene::SchemeSpec;
 use signorini::{ContactProblem, Error, Precision, Scene, Settings, SparseMatrix, SymmetricMatrix};
 

@@ -1,6 +1,6 @@
 //! Motions that make no sense are refused before the first step, or at the step where they leave all bounds.
 
-use signorini::dynamic::{DynamicProblem, Integrator, Scheme, TimeFunction, stable_step};
+use signorini::motion::{DynamicProblem, Integrator, Scheme, TimeFunction, stable_step};
 use signorini::{ContactProblem, Error, Settings, SparseMatrix, SymmetricMatrix};
 
 fn symmetric(dofs: usize, entries: &[(usize, usize, f64)]) -> SymmetricMatrix {

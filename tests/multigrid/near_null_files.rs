@@ -8,7 +8,8 @@ use std::path::Path;
 use crate::bodies::{built, clamped_block, clamped_square};
 use crate::program::Desk;
 use serde_json::json;
-use signorini::{ContactProblem, Method, Settings, matrix_market, solve};
+use signorini::qp::matrix_market;
+use signorini::{ContactProblem, Method, Settings, solve};
 
 fn write(folder: &Path, problem: &ContactProblem) {
     for (name, text) in matrix_market::problem_files(problem) {
@@ -43,8 +44,8 @@ fn unsupported() -> (ContactProblem, Vec<[f64; 3]>) {
     let model = built(&clamped_square(30, json!([{"boundary": "top", "approach": "+y", "shape": plane}]), 0.0));
     let body = model.body();
     let free = vec![None; body.nodal_dofs()];
-    let dofs = signorini::assembly::DofMap::new(free).unwrap();
-    let stiffness = signorini::assembly::stiffness(body, &dofs).unwrap();
+    let dofs = signorini::fem::assembly::DofMap::new(free).unwrap();
+    let stiffness = signorini::fem::assembly::stiffness(body, &dofs).unwrap();
     let mut entries: Vec<_> = model.rows().iter().enumerate().map(|(row, at)| (row, 2 * at.node + 1, 1.0)).collect();
     let rows = model.rows().len() + 2;
     entries.extend([(rows - 2, 0, 1.0), (rows - 1, 0, -1.0)]);

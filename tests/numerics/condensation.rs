@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use crate::oracles::{Draws, random};
-use signorini::sparse::Cholesky;
+use signorini::qp::linear::Cholesky;
 use signorini::{
     Condense, ContactProblem, Error, Method, Prepared, Scene, Settings, Solution, SparseMatrix, SymmetricMatrix, solve,
 };

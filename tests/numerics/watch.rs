@@ -2,7 +2,7 @@
 
 use crate::program::scene;
 use serde_json::{Value, json};
-use signorini::dynamic::Integrator;
+use signorini::motion::Integrator;
 use signorini::study::{TradeoffGrid, compare, even_gaps, motion_tradeoff, sweep, tradeoff};
 use signorini::{Condense, Error, Iterative, Method, Prepared, Scene, Settings, Solution, Start, Watch, solve};
 

@@ -3,7 +3,7 @@
 use crate::bodies::{built, clamped_square, difference, largest, solve_with_closed_rows};
 use serde_json::{Value, json};
 use signorini::scene::Warning;
-use signorini::sparse::Cholesky;
+use signorini::qp::linear::Cholesky;
 use signorini::{Error, Model, Scene};
 
 const ROUNDING: f64 = 1e-14;
@@ -244,7 +244,7 @@ fn a_motion_found_free_costs_no_elastic_energy() {
     // Nodes in order; the pinned one, number 4, has no entry in the direction.
     let mut nodal = direction.clone();
     nodal.splice(8..8, [0.0, 0.0]);
-    let force = signorini::assembly::internal_force(held.body(), &nodal).unwrap();
+    let force = signorini::fem::assembly::internal_force(held.body(), &nodal).unwrap();
     assert!(largest(&force) < 1e-11, "{:e}", largest(&force));
 }
 

@@ -3,11 +3,12 @@
 
 use nalgebra::{DMatrix, DVector};
 use serde_json::{Value, json};
-use signorini::formulation::Formulation;
-use signorini::material::Material;
-use signorini::mesh::{ElementKind, Mesh, rectangle};
-use signorini::sparse::Cholesky;
-use signorini::{ContactProblem, Model, Scene, assembly, body::ElasticBody};
+use signorini::fem::formulation::Formulation;
+use signorini::fem::material::Material;
+use signorini::fem::mesh::{ElementKind, Mesh, rectangle};
+use signorini::qp::linear::Cholesky;
+use signorini::fem::{assembly, body::ElasticBody};
+use signorini::{ContactProblem, Model, Scene};
 
 const STRAIN: Formulation = Formulation::PlaneStrain { thickness: 0.5 };
 const STRESS: Formulation = Formulation::PlaneStress { thickness: 0.5 };

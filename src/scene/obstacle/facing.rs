@@ -1,10 +1,10 @@
 //! The surface of another body, node to node: n . (u - u_partner) <= gap.
 
 use super::Approachable;
-use crate::assembly::node_normals;
-use crate::body::ElasticBody;
+use crate::fem::assembly::node_normals;
+use crate::fem::body::ElasticBody;
 use crate::error::Error;
-use crate::mesh::Boundary;
+use crate::fem::mesh::Boundary;
 use crate::scene::condition::boundary;
 use crate::scene::schema::{FacingSpec, ObstacleSpec, Rule};
 use crate::scene::{PLACE_TOLERANCE, point, wrong};

@@ -15,7 +15,7 @@ mod surface;
 
 use super::schema::{ObstacleSpec, PlaneSpec, Rule, ShapeSpec};
 use super::{finite, number, point, vector, wrong};
-use crate::body::ElasticBody;
+use crate::fem::body::ElasticBody;
 use crate::error::Error;
 use facing::Facing;
 use frame::Frame;

@@ -10,7 +10,7 @@ use super::polyline::Polyline;
 use super::surface::{Foot, Surface};
 use super::{Approachable, misfit, plane_of, positive};
 use crate::error::Error;
-use crate::mesh::Mesh;
+use crate::fem::mesh::Mesh;
 use crate::scene::schema::{CircleSpec, ObstacleSpec, Rule, ShapeSpec};
 use crate::scene::{PLACE_TOLERANCE, ROUNDING, finite_pair, number, point, wrong};
 

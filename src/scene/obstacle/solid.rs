@@ -8,7 +8,7 @@ use super::polyline::Polyline;
 use super::surface::Surface;
 use super::{Approachable, misfit, positive};
 use crate::error::Error;
-use crate::mesh::Mesh;
+use crate::fem::mesh::Mesh;
 use crate::scene::schema::{Approach, Rule, ShapeSpec};
 use crate::scene::{ROUNDING, number, point, vector, wrong};
 

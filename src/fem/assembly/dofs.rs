@@ -1,0 +1,219 @@
+//! Free and supported dofs: eliminate, and expand again.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+use super::Frame;
+use crate::error::Error;
+use crate::fem::mesh::Mesh;
+
+/// Stands where a free dof has its number.
+const SUPPORTED: usize = usize::MAX;
+
+/// A part of a vector along an axis of a frame below this, relative to the vector, is rounding of the frame.
+const NO_COMPONENT: f64 = 1e-14;
+
+/// Which dofs are free, their numbers in the problem, and the displacement of the supported ones.
+///
+/// The dofs of a node run along the coordinate axes; those of a node with a [`Frame`] run along its axes, and are its
+/// local dofs. Nodal vectors run along the coordinate axes always.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DofMap {
+    /// Zero at free dofs.
+    prescribed: Vec<f64>,
+    /// [`SUPPORTED`] at supported dofs.
+    number: Vec<usize>,
+    free: Vec<usize>,
+    /// Dofs of a node; only frames ask.
+    dimension: usize,
+    frames: BTreeMap<usize, Frame>,
+}
+
+/// The displacement of a node along a vector: the sum of `coefficient * free dof`, and what supports prescribe.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Along {
+    /// Numbers of free dofs with their coefficients.
+    pub free: Vec<(usize, f64)>,
+    /// The part of the supported dofs, in length.
+    pub prescribed: f64,
+}
+
+impl DofMap {
+    /// From one entry per nodal dof: the prescribed displacement, or `None` where the dof is free.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] for a prescribed displacement that is not finite.
+    pub fn new(prescribed: Vec<Option<f64>>) -> Result<Self, Error> {
+        let (mut number, mut free) = (Vec::with_capacity(prescribed.len()), Vec::new());
+        for (dof, value) in prescribed.iter().enumerate() {
+            match *value {
+                Some(value) if !value.is_finite() => {
+                    let (name, at) = ("prescribed displacement", format!("dof {dof}"));
+                    return Err(Error::NotFinite { name, at, value, allowed: "finite" });
+                }
+                Some(_) => number.push(SUPPORTED),
+                None => {
+                    number.push(free.len());
+                    free.push(dof);
+                }
+            }
+        }
+        free.shrink_to_fit();
+        let prescribed = prescribed.into_iter().map(Option::unwrap_or_default).collect();
+        Ok(DofMap { prescribed, number, free, dimension: 1, frames: BTreeMap::new() })
+    }
+
+    /// From one entry per dof, `dimension` a node, where those of the nodes in `frames` are local: along the axes of
+    /// their frame.
+    ///
+    /// # Errors
+    /// As [`DofMap::new`]; [`Error::Mesh`] for a frame of a node that is not there.
+    pub fn with_frames(
+        prescribed: Vec<Option<f64>>,
+        dimension: usize,
+        frames: BTreeMap<usize, Frame>,
+    ) -> Result<Self, Error> {
+        let nodes = prescribed.len().checked_div(dimension).unwrap_or(0);
+        match frames.keys().find(|&&node| node >= nodes) {
+            Some(node) => Err(Error::Mesh { message: format!("a frame for node {node}, but there are {nodes} nodes") }),
+            None => Ok(DofMap { dimension, frames, ..Self::new(prescribed)? }),
+        }
+    }
+
+    /// All dofs of `mesh` free, but for those of the nodes of `boundaries`: they move by `displacement(point)`.
+    ///
+    /// # Errors
+    /// As [`DofMap::new`]; [`Error::Mesh`] for a boundary that the mesh does not have.
+    pub fn holding(
+        mesh: &Mesh,
+        boundaries: &[&str],
+        displacement: impl Fn([f64; 3]) -> [f64; 3],
+    ) -> Result<Self, Error> {
+        let dimension = mesh.dimension();
+        let mut prescribed = vec![None; dimension * mesh.nodes().len()];
+        for name in boundaries {
+            let missing = || Error::Mesh { message: format!("there is no boundary `{name}`") };
+            for node in mesh.boundary(name).ok_or_else(missing)?.nodes() {
+                let value = displacement(mesh.nodes()[node]);
+                for (axis, &component) in value.iter().enumerate().take(dimension) {
+                    prescribed[dimension * node + axis] = Some(component);
+                }
+            }
+        }
+        Self::new(prescribed)
+    }
+
+    /// Number of nodal dofs, free and supported.
+    pub fn nodal_count(&self) -> usize {
+        self.prescribed.len()
+    }
+
+    /// The frame of a node whose dofs are local.
+    #[inline]
+    pub fn frame(&self, node: usize) -> Option<&Frame> {
+        self.frames.get(&node)
+    }
+
+    /// The displacement of `node` along `vector`, which has one entry per coordinate: how a contact row or a measured
+    /// displacement is written in the free dofs.
+    pub fn along(&self, node: usize, vector: &[f64]) -> Along {
+        let mut local = vector.to_vec();
+        if let Some(frame) = self.frame(node) {
+            frame.turn_in(&mut local);
+            let rounding = NO_COMPONENT * local.iter().fold(0.0, |length: f64, part| length.hypot(*part));
+            local.iter_mut().filter(|part| part.abs() < rounding).for_each(|part| *part = 0.0);
+        }
+        let mut along = Along { free: Vec::with_capacity(local.len()), prescribed: 0.0 };
+        for (axis, &component) in local.iter().enumerate().filter(|entry| *entry.1 != 0.0) {
+            let dof = vector.len() * node + axis;
+            match self.number(dof) {
+                Some(number) => along.free.push((number, component)),
+                None => along.prescribed += component * self.prescribed(dof).unwrap_or(0.0),
+            }
+        }
+        along
+    }
+
+    /// The nodal dof of each free dof, increasing.
+    pub fn free(&self) -> &[usize] {
+        &self.free
+    }
+
+    /// The number of nodal dof `dof` among the free ones; `None` where it is supported.
+    #[inline]
+    pub fn number(&self, dof: usize) -> Option<usize> {
+        self.number.get(dof).copied().filter(|&number| number != SUPPORTED)
+    }
+
+    /// The displacement of nodal dof `dof` where it is supported.
+    pub fn prescribed(&self, dof: usize) -> Option<f64> {
+        let supported = self.number.get(dof) == Some(&SUPPORTED);
+        self.prescribed.get(dof).copied().filter(|_| supported)
+    }
+
+    /// Nodal displacements from those of the free dofs; supported dofs take their prescribed values.
+    ///
+    /// # Errors
+    /// [`Error::Length`] where `free` does not have one entry per free dof.
+    pub fn expand(&self, free: &[f64]) -> Result<Vec<f64>, Error> {
+        self.expand_with(free, |dof| self.prescribed(dof).unwrap_or(0.0))
+    }
+
+    /// A nodal motion from that of the free dofs; supported dofs stay at zero.
+    ///
+    /// # Errors
+    /// As [`DofMap::expand`].
+    pub fn expand_motion(&self, free: &[f64]) -> Result<Vec<f64>, Error> {
+        self.expand_with(free, |_| 0.0)
+    }
+
+    fn expand_with(&self, free: &[f64], supported: impl Fn(usize) -> f64) -> Result<Vec<f64>, Error> {
+        if free.len() != self.free.len() {
+            let (found, expected) = (free.len(), self.free.len());
+            return Err(Error::Length { name: "displacement", found, expected, of: "free dofs" });
+        }
+        let value = |(dof, &number): (usize, &usize)| if number == SUPPORTED { supported(dof) } else { free[number] };
+        let mut nodal: Vec<f64> = self.number.iter().enumerate().map(value).collect();
+        self.turn_back(&mut nodal);
+        Ok(nodal)
+    }
+
+    /// The entries of a nodal vector at the free dofs.
+    ///
+    /// # Errors
+    /// [`Error::Length`] where `nodal` does not have one entry per nodal dof.
+    pub fn restrict(&self, nodal: &[f64]) -> Result<Vec<f64>, Error> {
+        let local = self.turned_in(nodal)?;
+        Ok(self.free.iter().map(|&dof| local[dof]).collect())
+    }
+
+    /// The part of a nodal vector along the supported dofs: the reactions among the forces on all nodes.
+    ///
+    /// # Errors
+    /// As [`DofMap::restrict`].
+    pub fn supported_part(&self, nodal: &[f64]) -> Result<Vec<f64>, Error> {
+        let mut part = self.turned_in(nodal)?.into_owned();
+        self.free.iter().for_each(|&dof| part[dof] = 0.0);
+        self.turn_back(&mut part);
+        Ok(part)
+    }
+
+    /// A nodal vector with the entries of the nodes with frames along their axes.
+    fn turned_in<'a>(&self, nodal: &'a [f64]) -> Result<Cow<'a, [f64]>, Error> {
+        if nodal.len() != self.nodal_count() {
+            let (found, expected) = (nodal.len(), self.nodal_count());
+            return Err(Error::Length { name: "nodal vector", found, expected, of: "nodal dofs" });
+        }
+        let mut local = Cow::Borrowed(nodal);
+        for (node, frame) in &self.frames {
+            frame.turn_in(&mut local.to_mut()[self.dimension * node..self.dimension * (node + 1)]);
+        }
+        Ok(local)
+    }
+
+    fn turn_back(&self, local: &mut [f64]) {
+        for (node, frame) in &self.frames {
+            frame.turn_back(&mut local[self.dimension * node..self.dimension * (node + 1)]);
+        }
+    }
+}

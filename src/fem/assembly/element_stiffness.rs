@@ -1,0 +1,139 @@
+//! The stiffness of one element by the isotropic block formula: `K_ab[i][j] = sum_q w (lambda d_a[i] d_b[j] + mu g_a[j]
+//! g_b[i] + mu delta_ij g_a . g_b)`, g = grad N, d the dilatation of a unit displacement.
+
+use crate::fem::body::{ElasticBody, Integration};
+use crate::fem::element::{Cell, MAX_NODES, Tabulated};
+use crate::fem::material::Lame;
+
+/// Pairs of nodes a >= b.
+const PAIRS: usize = MAX_NODES * (MAX_NODES + 1) / 2;
+
+/// A block of a pair of nodes: row axis, column axis.
+pub(super) type Block = [[f64; 3]; 3];
+
+/// The stiffness of one element, in force per length: a block for every pair of its nodes.
+#[derive(Clone, Debug)]
+pub struct ElementStiffness {
+    blocks: [Block; PAIRS],
+}
+
+impl ElementStiffness {
+    /// The block of local nodes `a >= b`: entry `[i][j]` is the force on `a` along axis i per displacement of `b` along
+    /// axis j. The block of (b, a) is its transpose.
+    #[inline]
+    pub fn block(&self, a: usize, b: usize) -> &Block {
+        &self.blocks[pair(a, b)]
+    }
+}
+
+#[inline]
+fn pair(a: usize, b: usize) -> usize {
+    a * (a + 1) / 2 + b
+}
+
+/// The stiffness of the element `cell` of `body` in a material; `table` is the body's [`tabulated`](ElasticBody::tabulated) element.
+///
+/// In a body of revolution d_a has the hoop part N_a/r along r, which brings `2 mu h_a h_b`, h = N/r, too. With mean
+/// dilatation d is its mean over the element.
+pub fn element_stiffness(body: &ElasticBody, lame: Lame, table: &Tabulated, cell: &Cell) -> ElementStiffness {
+    let nodes = table.reference.nodes.len();
+    let mean = body.integration() == Integration::MeanDilatation;
+    let revolved = body.formulation().is_axisymmetric();
+    let Lame { lambda, mu } = lame;
+    // Gradients are per unit of the cell and determinants in units: what is left of it.
+    let scale = cell.unit().powi(table.reference.dimension as i32 - 2);
+    let mut products = [[[0.0; 3]; 3]; PAIRS];
+    let mut radial = Radial::default();
+    for at in &table.points {
+        let point = body.point(cell, at);
+        let weight = point.weight * scale;
+        for a in 0..nodes {
+            let g = point.gradients[a];
+            let weighted = [g[0] * weight, g[1] * weight, g[2] * weight];
+            for b in 0..=a {
+                let (block, other) = (&mut products[pair(a, b)], &point.gradients[b]);
+                for i in 0..3 {
+                    for j in 0..3 {
+                        block[i][j] += weighted[i] * other[j];
+                    }
+                }
+            }
+        }
+        if revolved || mean {
+            radial.volume += weight;
+            for a in 0..nodes {
+                let (g, h) = (point.gradients[a], point.hoop[a] * weight);
+                for (sum, slope) in radial.dilatation[a].iter_mut().zip(g) {
+                    *sum += weight * slope;
+                }
+                radial.dilatation[a][0] += h;
+                for b in 0..=a {
+                    let (other, h_other) = (point.gradients[b], point.hoop[b]);
+                    let place = pair(a, b);
+                    radial.squares[place] += h * h_other;
+                    for axis in 0..2 {
+                        radial.rows[place][axis] += h * other[axis];
+                        radial.columns[place][axis] += weight * g[axis] * h_other;
+                    }
+                }
+            }
+        }
+    }
+    for a in 0..nodes {
+        for b in 0..=a {
+            let place = pair(a, b);
+            let g = products[place];
+            let mut dilatation = g;
+            if mean {
+                for (i, row) in dilatation.iter_mut().enumerate() {
+                    for (j, entry) in row.iter_mut().enumerate() {
+                        *entry = radial.dilatation[a][i] * (radial.dilatation[b][j] / radial.volume);
+                    }
+                }
+            } else if revolved {
+                dilatation[0][0] += radial.squares[place];
+                for (axis, row) in dilatation.iter_mut().enumerate().take(2) {
+                    row[0] += radial.columns[place][axis];
+                }
+                for (entry, part) in dilatation[0].iter_mut().zip(radial.rows[place]) {
+                    *entry += part;
+                }
+            }
+            let shear = mu * (g[0][0] + g[1][1] + g[2][2]);
+            let block = &mut products[place];
+            for i in 0..3 {
+                for j in 0..3 {
+                    block[i][j] = lambda * dilatation[i][j] + mu * g[j][i];
+                }
+                block[i][i] += shear;
+            }
+            block[0][0] += 2.0 * mu * radial.squares[place];
+        }
+    }
+    ElementStiffness { blocks: products }
+}
+
+/// Integrals that only revolved elements and mean dilatation need.
+struct Radial {
+    volume: f64,
+    /// Of the dilatation of a unit displacement of each node along each axis.
+    dilatation: [[f64; 3]; MAX_NODES],
+    /// Of h_a h_b.
+    squares: [f64; PAIRS],
+    /// Of h_a grad N_b.
+    rows: [[f64; 2]; PAIRS],
+    /// Of grad N_a h_b.
+    columns: [[f64; 2]; PAIRS],
+}
+
+impl Default for Radial {
+    fn default() -> Self {
+        Radial {
+            volume: 0.0,
+            dilatation: [[0.0; 3]; MAX_NODES],
+            squares: [0.0; PAIRS],
+            rows: [[0.0; 2]; PAIRS],
+            columns: [[0.0; 2]; PAIRS],
+        }
+    }
+}

@@ -1,0 +1,40 @@
+//! The forces that hold a displaced body: f_a = sum_q w sigma grad N_a.
+
+use crate::fem::body::{BodyElement, ElasticBody, trace};
+use crate::error::Error;
+
+/// The nodal forces (length `dim * n_nodes`, in force) that hold the body in the nodal displacement `displacement`.
+///
+/// Computed from the strains, element by element: a rigid translation gives exactly zero, but for the radial one of a
+/// body of revolution, which is none.
+///
+/// # Errors
+/// [`Error::Length`] where the displacement does not have `dim` entries per node.
+pub fn internal_force(body: &ElasticBody, displacement: &[f64]) -> Result<Vec<f64>, Error> {
+    body.check_nodal("nodal displacement", displacement.len())?;
+    let dimension = body.dimension();
+    let table = body.tabulated();
+    let mut force = vec![0.0; displacement.len()];
+    for BodyElement { nodes, cell, lame } in body.elements() {
+        let local = body.gather(displacement, nodes);
+        let mean = body.mean_dilatation(&cell, &table, &local);
+        let scale = cell.unit().powi(dimension as i32 - 1);
+        for at in &table.points {
+            let point = body.point(&cell, at);
+            let strain = point.strain(&local, cell.unit());
+            let weight = point.weight * scale;
+            let [xx, yy, zz, xy, yz, zx] =
+                body.stress(lame, &strain, mean.unwrap_or_else(|| trace(&strain))).map(|component| component * weight);
+            let rows = [[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]];
+            for (local, &node) in nodes.iter().enumerate() {
+                let g = point.gradients[local];
+                for axis in 0..dimension {
+                    let row = rows[axis];
+                    force[dimension * node + axis] += row[0] * g[0] + row[1] * g[1] + row[2] * g[2];
+                }
+                force[dimension * node] += zz * point.hoop[local];
+            }
+        }
+    }
+    Ok(force)
+}

@@ -1,0 +1,126 @@
+//! M = integral of rho N_a N_b, in the free dofs: consistent, lumped, or redistributed so that contact nodes have none.
+
+use super::DofMap;
+use super::redistribution::Redistribution;
+use crate::fem::body::{BodyElement, ElasticBody};
+use crate::fem::element::{MAX_NODES, Tabulated};
+use crate::error::Error;
+use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
+
+/// The form of a mass matrix.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MassForm {
+    /// That of the shape functions.
+    #[default]
+    Consistent,
+    /// Diagonal: the sum of each row; on quadratic elements, where that is zero or negative at corners, the diagonal
+    /// scaled to the mass of the element.
+    Lumped,
+    /// Consistent, but for the contact nodes: they have no mass, and their neighbours have theirs. Total mass and centre
+    /// of each body are kept.
+    ///
+    /// A contact node without inertia does not bounce: it follows the body and the obstacle, so that the contact
+    /// pressure is that of the body and no sequence of blows.
+    Redistributed,
+}
+
+/// The mass of one element, node by node.
+pub(super) type ElementMass = [[f64; MAX_NODES]; MAX_NODES];
+
+/// The mass matrix of the free dofs, of the densities of the materials; `contact_nodes` are those that lose their mass
+/// where it is redistributed.
+///
+/// The quadrature has five points in each direction: exact on straight elements of both orders, about an axis too.
+///
+/// # Errors
+/// [`Error::Setting`] for a material without density, [`Error::Length`] where `dofs` does not belong to the mesh,
+/// [`Error::Mesh`] for a mesh too coarse to redistribute its mass, [`Error::NotFinite`] where the mass overflows.
+///
+/// # Source
+/// H. B. Khenous, P. Laborde, Y. Renard, *Mass redistribution method for finite element contact problems in
+/// elastodynamics*, Eur. J. Mech. A 27 (2008) 918-932: the mass matrix without contact nodes that keeps mass and centre.
+pub fn mass(
+    body: &ElasticBody,
+    dofs: &DofMap,
+    form: MassForm,
+    contact_nodes: &[usize],
+) -> Result<SymmetricMatrix, Error> {
+    body.check_nodal("dof map", dofs.nodal_count())?;
+    let elements = element_masses(body)?;
+    let mut nodal = match form {
+        MassForm::Redistributed => Redistribution::of(body, &elements, contact_nodes)?.triplets(body, &elements),
+        MassForm::Consistent | MassForm::Lumped => {
+            let mut triplets = Vec::new();
+            for (nodes, element) in body.mesh().elements().zip(&elements) {
+                let lumped = (form == MassForm::Lumped).then(|| lumped(element, nodes.len()));
+                for (a, &row) in nodes.iter().enumerate() {
+                    match &lumped {
+                        Some(diagonal) => triplets.push((row, row, diagonal[a])),
+                        None => triplets.extend(nodes.iter().zip(&element[a]).map(|(&column, &m)| (row, column, m))),
+                    }
+                }
+            }
+            triplets
+        }
+    };
+    nodal.retain(|&(row, column, _)| row >= column);
+    let nodes = body.mesh().nodes().len();
+    in_free_dofs(body.dimension(), dofs, &SparseMatrix::from_triplets(nodes, nodes, &nodal)?)
+}
+
+/// The consistent mass of every element, in its order.
+fn element_masses(body: &ElasticBody) -> Result<Vec<ElementMass>, Error> {
+    let table = Tabulated::fine(body.mesh().kind().reference());
+    let mut densities = Vec::with_capacity(body.regions().len());
+    for region in body.regions() {
+        let missing = Error::Setting { name: "density", value: f64::NAN, allowed: "positive and finite" };
+        densities.extend(std::iter::repeat_n(region.material().density().ok_or(missing)?, region.elements().len()));
+    }
+    let of_element = |(BodyElement { nodes, cell, .. }, density): (BodyElement<'_>, f64)| {
+        let mut mass = [[0.0; MAX_NODES]; MAX_NODES];
+        let scale = density * cell.unit().powi(body.dimension() as i32);
+        for at in &table.points {
+            let weight = body.point(&cell, at).weight * scale;
+            for (row, share) in mass.iter_mut().zip(at.shape).take(nodes.len()) {
+                row.iter_mut().zip(at.shape).take(nodes.len()).for_each(|(m, other)| *m += weight * share * other);
+            }
+        }
+        mass
+    };
+    Ok(body.elements().zip(densities).map(of_element).collect())
+}
+
+/// The diagonal that stands for the mass of an element of so many nodes.
+fn lumped(element: &ElementMass, nodes: usize) -> [f64; MAX_NODES] {
+    let mut diagonal = element.map(|row| row.iter().sum());
+    if diagonal[..nodes].iter().any(|&sum| sum <= 1e-12 * element[0][0].abs()) {
+        let (total, trace) = (diagonal.iter().sum::<f64>(), (0..nodes).map(|a| element[a][a]).sum::<f64>());
+        (0..nodes).for_each(|a| diagonal[a] = element[a][a] * total / trace);
+    }
+    diagonal
+}
+
+/// The matrix of the free dofs from one entry for every pair of nodes, row not before column: the same for each axis.
+fn in_free_dofs(dimension: usize, dofs: &DofMap, nodal: &SparseMatrix) -> Result<SymmetricMatrix, Error> {
+    let mut entries = Vec::with_capacity(dimension * nodal.entries());
+    for (row, column, value) in nodal.triplets() {
+        let frames = (dofs.frame(row), dofs.frame(column));
+        for i in 0..dimension {
+            let Some(first) = dofs.number(dimension * row + i) else { continue };
+            for j in 0..dimension {
+                let cosine = match frames {
+                    _ if row == column => f64::from(i == j),
+                    (None, None) => f64::from(i == j),
+                    (Some(turned), None) => turned.axes()[i][j],
+                    (None, Some(turned)) => turned.axes()[j][i],
+                    (Some(one), Some(other)) => (0..3).map(|axis| one.axes()[i][axis] * other.axes()[j][axis]).sum(),
+                };
+                if let Some(second) = dofs.number(dimension * column + j).filter(|_| cosine != 0.0) {
+                    entries.push((first, second, value * cosine));
+                }
+            }
+        }
+    }
+    let free = dofs.free().len();
+    SymmetricMatrix::from_lower(SparseMatrix::from_triplets(free, free, &entries)?)
+}

@@ -1,0 +1,165 @@
+//! Mass taken from contact nodes and given to their neighbours, the density of the body tilted by as little as keeps
+//! mass and centre.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::mass::ElementMass;
+use crate::fem::body::{ElasticBody, Region};
+use crate::error::Error;
+
+/// Mass and centre are kept to within this, relative to the mass and the size of the body.
+const KEPT: f64 = 1e-10;
+
+/// A factor on the density of an element below this is no small correction: the mesh is too coarse.
+const LEAST_FACTOR: f64 = 0.1;
+
+/// Who inherits the mass of each node, and the factor on the density of each element.
+pub(super) struct Redistribution {
+    /// Nodes with their shares, which add up to one; empty for a node that keeps its mass.
+    heirs: Vec<Vec<(usize, f64)>>,
+    factors: Vec<f64>,
+}
+
+impl Redistribution {
+    /// Of the given masses of all elements, the nodes `massless` losing theirs.
+    ///
+    /// # Errors
+    /// [`Error::Mesh`] for a mesh too coarse to keep mass and centre of a body.
+    pub fn of(body: &ElasticBody, elements: &[ElementMass], massless: &[usize]) -> Result<Self, Error> {
+        let mut heirs = heirs(body, elements, massless)?;
+        heirs.resize(body.mesh().nodes().len(), Vec::new());
+        let mut redistribution = Redistribution { heirs, factors: vec![1.0; elements.len()] };
+        for region in body.regions() {
+            if massless.iter().any(|node| region.nodes().contains(node)) {
+                redistribution.tilt(body, elements, region)?;
+            }
+        }
+        Ok(redistribution)
+    }
+
+    /// The entries of the redistributed mass, for every pair of nodes.
+    pub fn triplets(&self, body: &ElasticBody, elements: &[ElementMass]) -> Vec<(usize, usize, f64)> {
+        let mut triplets = Vec::new();
+        for ((nodes, element), factor) in body.mesh().elements().zip(elements).zip(&self.factors) {
+            for (&a, row) in nodes.iter().zip(element) {
+                for (&b, &mass) in nodes.iter().zip(row) {
+                    match self.loser(a, b) {
+                        None => triplets.push((a, b, factor * mass)),
+                        Some(node) => {
+                            let inherit = |&(heir, share): &(usize, f64)| (heir, heir, factor * mass * share);
+                            triplets.extend(self.heirs[node].iter().map(inherit));
+                        }
+                    }
+                }
+            }
+        }
+        triplets
+    }
+
+    /// The node that loses the mass between two nodes, if one does.
+    fn loser(&self, a: usize, b: usize) -> Option<usize> {
+        [a, b].into_iter().find(|&node| !self.heirs[node].is_empty())
+    }
+
+    /// Density factors `1 + c_0 + c . (x - centre)` that give a body its mass and its centre back.
+    fn tilt(&mut self, body: &ElasticBody, elements: &[ElementMass], region: &Region) -> Result<(), Error> {
+        let (nodes, dimension) = (body.mesh().nodes(), body.dimension());
+        let (low, high) = crate::fem::mesh::extent(&nodes[region.nodes()]);
+        let size = (0..3).fold(0.0, |size: f64, axis| size.max(high[axis] - low[axis]));
+        // Coordinates relative to the middle of the body and its size, a one in front.
+        let place = |at: [f64; 3]| {
+            let mut place = [1.0; 4];
+            (0..3).for_each(|axis| place[axis + 1] = (at[axis] - (low[axis] + high[axis]) / 2.0) / size);
+            place
+        };
+        let at_node = |node: usize| match self.heirs[node].as_slice() {
+            [] => place(nodes[node]),
+            heirs => heirs.iter().fold([0.0; 4], |sum, &(heir, share)| {
+                let at = place(nodes[heir]);
+                [0, 1, 2, 3].map(|axis| sum[axis] + share * at[axis])
+            }),
+        };
+        let count = dimension + 1;
+        let (mut matrix, mut missing) = (DMatrix::<f64>::zeros(count, count), DVector::<f64>::zeros(count));
+        let mut middles = Vec::with_capacity(region.elements().len());
+        let mut total = 0.0;
+        for element in region.elements() {
+            let of_element = body.mesh().element(element);
+            let (mut moment, mut redistributed) = ([0.0; 4], [0.0; 4]);
+            for (&a, row) in of_element.iter().zip(&elements[element]) {
+                for (&b, &mass) in of_element.iter().zip(row) {
+                    let (was, is) = (place(nodes[a]), at_node(self.loser(a, b).unwrap_or(a)));
+                    for axis in 0..4 {
+                        moment[axis] += mass * was[axis];
+                        redistributed[axis] += mass * is[axis];
+                    }
+                }
+            }
+            let middle = moment.map(|value| value / moment[0]);
+            for i in 0..count {
+                missing[i] += moment[i] - redistributed[i];
+                (0..count).for_each(|j| matrix[(i, j)] += redistributed[i] * middle[j]);
+            }
+            total += moment[0];
+            middles.push(middle);
+        }
+        let too_coarse = || Error::Mesh {
+            message:
+                "it is too coarse for a redistributed mass: behind its contact nodes it needs nodes enough to keep \
+                      mass and centre; take smaller cells, or a consistent or lumped mass"
+                    .into(),
+        };
+        let correction = matrix.clone().svd(true, true).solve(&missing, 1e-12).map_err(|_| too_coarse())?;
+        if (&matrix * &correction - missing).amax() > KEPT * total {
+            return Err(too_coarse());
+        }
+        for (element, middle) in region.elements().zip(middles) {
+            let factor = 1.0 + (0..count).map(|i| correction[i] * middle[i]).sum::<f64>();
+            if factor.is_nan() || factor < LEAST_FACTOR {
+                return Err(too_coarse());
+            }
+            self.factors[element] = factor;
+        }
+        Ok(())
+    }
+}
+
+/// Who inherits the mass of each massless node: its neighbours by the mass that they share with it, ring by ring where
+/// those have none either.
+fn heirs(body: &ElasticBody, elements: &[ElementMass], massless: &[usize]) -> Result<Vec<Vec<(usize, f64)>>, Error> {
+    let count = body.mesh().nodes().len();
+    let mut waiting: Vec<bool> = vec![false; count];
+    massless.iter().filter(|&&node| node < count).for_each(|&node| waiting[node] = true);
+    let mut shared: Vec<Vec<(usize, f64)>> = vec![Vec::new(); count];
+    for (nodes, element) in body.mesh().elements().zip(elements) {
+        for (&a, row) in nodes.iter().zip(element).filter(|(a, _)| waiting[**a]) {
+            shared[a].extend(nodes.iter().zip(row).filter(|(b, _)| **b != a).map(|(&b, mass)| (b, mass.abs())));
+        }
+    }
+    let mut heirs: Vec<Vec<(usize, f64)>> = vec![Vec::new(); count];
+    let mut left: Vec<usize> = (0..count).filter(|&node| waiting[node]).collect();
+    while !left.is_empty() {
+        let ring: Vec<usize> =
+            left.iter().copied().filter(|&node| shared[node].iter().any(|&(other, _)| !waiting[other])).collect();
+        if ring.is_empty() {
+            let message = "every node of a body is a contact node, so that none is left to carry its mass; take smaller \
+                           cells, or a consistent or lumped mass";
+            return Err(Error::Mesh { message: message.into() });
+        }
+        for &node in &ring {
+            let known = || shared[node].iter().filter(|(other, _)| !waiting[*other]);
+            let total: f64 = known().map(|(_, mass)| mass).sum();
+            let mut inherit: Vec<(usize, f64)> = Vec::new();
+            for &(other, mass) in known() {
+                match heirs[other].as_slice() {
+                    [] => inherit.push((other, mass / total)),
+                    further => inherit.extend(further.iter().map(|&(heir, share)| (heir, share * mass / total))),
+                }
+            }
+            heirs[node] = inherit;
+        }
+        ring.iter().for_each(|&node| waiting[node] = false);
+        left.retain(|&node| waiting[node]);
+    }
+    Ok(heirs)
+}

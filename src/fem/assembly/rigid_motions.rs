@@ -1,0 +1,36 @@
+//! The rigid motions of a body at its free dofs: what costs no energy but for the supports.
+
+use super::DofMap;
+use crate::fem::body::ElasticBody;
+
+/// The rigid motions at the free dofs, one vector each: the translations, then the rotations about the middle of the mesh,
+/// over half its size so that all are dimensionless and of order one.
+///
+/// A body of revolution is taken for its half plane: its cells do not know how far the axis is.
+pub fn rigid_motions(body: &ElasticBody, dofs: &DofMap) -> Vec<Vec<f64>> {
+    let (mesh, dimension) = (body.mesh(), body.dimension());
+    let (least, most) = mesh.extent();
+    let size = mesh.size();
+    let rotations: &[[usize; 2]] = match dimension {
+        1 => &[],
+        2 => &[[0, 1]],
+        _ => &[[1, 2], [2, 0], [0, 1]],
+    };
+    let mut motions = vec![Vec::with_capacity(dofs.free().len()); dimension + rotations.len()];
+    for &dof in dofs.free() {
+        let (node, axis) = (dof / dimension, dof % dimension);
+        let mut direction = [0.0; 3];
+        match dofs.frame(node) {
+            Some(frame) => direction = frame.axes()[axis],
+            None => direction[axis] = 1.0,
+        }
+        let from_middle = [0, 1, 2].map(|i| (2.0 * mesh.nodes()[node][i] - least[i] - most[i]) / size);
+        for (translation, motion) in motions[..dimension].iter_mut().enumerate() {
+            motion.push(direction[translation]);
+        }
+        for (&[first, second], motion) in rotations.iter().zip(&mut motions[dimension..]) {
+            motion.push(from_middle[first] * direction[second] - from_middle[second] * direction[first]);
+        }
+    }
+    motions
+}

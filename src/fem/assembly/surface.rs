@@ -1,0 +1,98 @@
+//! Integrals over boundaries: areas that belong to nodes, with their normals.
+
+use crate::fem::body::ElasticBody;
+use crate::fem::element::{Cell, PerNode, Tabulated};
+use crate::fem::mesh::{Boundary, FacetKind};
+
+/// A quadrature point of a facet.
+pub(super) struct FacetPoint<'a> {
+    /// The nodes of the facet.
+    pub nodes: &'a [usize],
+    /// Values of its shape functions, node by node.
+    pub shape: PerNode<f64>,
+    /// Coordinates.
+    pub at: [f64; 3],
+    /// Outward unit normal; of either sense where the boundary is no face of the mesh.
+    pub normal: [f64; 3],
+    /// Share of the area that the point stands for; thickness, cross-section or circumference included.
+    pub area: f64,
+}
+
+/// Hands every quadrature point of a boundary to `visit`, facet by facet.
+pub(super) fn for_each_point(body: &ElasticBody, boundary: &Boundary, visit: &mut dyn FnMut(&FacetPoint)) {
+    let mesh = body.mesh();
+    let reference = boundary.kind.reference();
+    let table = Tabulated::new(reference, body.formulation().is_axisymmetric());
+    let owners = mesh.faces_of(boundary);
+    let faces = mesh.kind().reference().faces;
+    for (facet, owner) in boundary.facets().zip(owners) {
+        if facet.iter().any(|&node| node >= mesh.nodes().len()) {
+            continue;
+        }
+        let cell = Cell::new(reference, &body.coordinates(facet));
+        let sense = owner.map_or(1.0, |(element, face)| {
+            let nodes = mesh.element(element);
+            let of_face: Vec<usize> = faces[face].iter().map(|&local| nodes[local]).collect();
+            sense(boundary.kind, facet, &of_face, face)
+        });
+        for at in &table.points {
+            let vector = cell.area_vector(&at.derivative);
+            let length = vector[0].hypot(vector[1]).hypot(vector[2]);
+            let place = cell.place(&at.shape);
+            let scale = cell.unit().powi(reference.dimension as i32);
+            visit(&FacetPoint {
+                nodes: facet,
+                shape: at.shape,
+                at: place,
+                normal: vector.map(|component| sense * component / length),
+                area: length * at.weight * scale * body.formulation().measure(place[0]),
+            });
+        }
+    }
+}
+
+/// 1 where a facet's nodes run as those of the element's face, whose area vector points outwards, or else -1.
+fn sense(kind: FacetKind, facet: &[usize], face: &[usize], number: usize) -> f64 {
+    let alike = match kind {
+        // The end of a bar has no order: its first face looks along -x.
+        FacetKind::Point1 => number > 0,
+        FacetKind::Line2 | FacetKind::Line3 => facet.first() == face.first(),
+        FacetKind::T3 | FacetKind::Q4 => {
+            let place = face.iter().position(|node| Some(node) == facet.first()).unwrap_or(0);
+            facet.get(1) == face.get((place + 1) % face.len())
+        }
+    };
+    if alike { 1.0 } else { -1.0 }
+}
+
+/// The nodes of a boundary in its order, each with its tributary area: the integral of its shape function over the
+/// boundary, thickness, cross-section or circumference included. The areas add up to the area of the boundary.
+pub fn tributary_areas(body: &ElasticBody, boundary: &Boundary) -> Vec<(usize, f64)> {
+    let nodes = boundary.nodes();
+    let mut area = vec![0.0; body.mesh().nodes().len()];
+    for_each_point(body, boundary, &mut |point| {
+        for (&node, share) in point.nodes.iter().zip(point.shape) {
+            area[node] += share * point.area;
+        }
+    });
+    nodes.into_iter().map(|node| (node, area.get(node).copied().unwrap_or(0.0))).collect()
+}
+
+/// The nodes of a boundary in its order, each with its outward unit normal: the mean over the facets around the node.
+/// Zero where these cancel.
+pub fn node_normals(body: &ElasticBody, boundary: &Boundary) -> Vec<(usize, [f64; 3])> {
+    let nodes = boundary.nodes();
+    let mut sums = vec![[0.0; 3]; body.mesh().nodes().len()];
+    for_each_point(body, boundary, &mut |point| {
+        for (&node, share) in point.nodes.iter().zip(point.shape) {
+            // The square, because the shape functions of the ends of a quadratic edge change sign.
+            let weight = share * share * point.area;
+            sums[node].iter_mut().zip(point.normal).for_each(|(sum, component)| *sum += weight * component);
+        }
+    });
+    let unit = |sum: [f64; 3]| {
+        let length = sum[0].hypot(sum[1]).hypot(sum[2]);
+        if length > 0.0 { sum.map(|component| component / length) } else { sum }
+    };
+    nodes.into_iter().map(|node| (node, unit(sums.get(node).copied().unwrap_or_default()))).collect()
+}

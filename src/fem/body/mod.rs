@@ -1,0 +1,217 @@
+//! The elastic body: a mesh, its elements, a material, a formulation; strains and stresses in it.
+
+mod point;
+mod region;
+
+pub(crate) use point::trace;
+pub use point::{LocalPoint, Symmetric};
+pub use region::Region;
+
+use crate::fem::element::{Cell, ElementKind, MAX_NODES, PerNode, Tabulated};
+use crate::error::Error;
+use crate::fem::formulation::Formulation;
+use crate::fem::material::{Lame, Material};
+use crate::fem::mesh::Mesh;
+
+/// Radii of a body of revolution above minus this times its size are rounding of zero.
+const ON_THE_AXIS: f64 = 1e-12;
+
+/// How the stiffness of an element is integrated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Integration {
+    /// All of it at all quadrature points.
+    #[default]
+    Standard,
+    /// The dilatation is replaced by its mean over the element (B-bar): no locking as Poisson's ratio nears 0.5.
+    MeanDilatation,
+}
+
+/// A homogeneous elastic body, or several that only contact joins, checked once, when it is built.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ElasticBody {
+    mesh: Mesh,
+    formulation: Formulation,
+    integration: Integration,
+    /// In the order of their nodes and elements; one where there is one body.
+    regions: Vec<Region>,
+}
+
+/// An element in place.
+#[derive(Clone, Copy, Debug)]
+pub struct BodyElement<'a> {
+    /// Its nodes, in the order of its kind.
+    pub nodes: &'a [usize],
+    /// The element in place.
+    pub cell: Cell,
+    /// The Lamé constants of its material in the formulation.
+    pub lame: Lame,
+}
+
+impl ElasticBody {
+    /// The body of `mesh` and `material` in `formulation`, with [`Integration::Standard`].
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for an area or thickness that is not positive and finite, or a Poisson's ratio that the
+    /// formulation does not allow; [`Error::Mesh`] for a mesh of another dimension, an element whose Jacobian is not
+    /// positive, a node of a body of revolution at a negative radius.
+    pub fn new(mesh: Mesh, material: Material, formulation: Formulation) -> Result<Self, Error> {
+        formulation.check()?;
+        let lame = material.lame(&formulation)?;
+        let fail = |message| Err(Error::Mesh { message });
+        if mesh.dimension() != formulation.dimension() {
+            let (element, name) = (mesh.kind().name(), formulation.name());
+            return fail(format!("a mesh of {element} does not fit {name}"));
+        }
+        if formulation.is_axisymmetric() {
+            let least = -ON_THE_AXIS * mesh.size();
+            if let Some(node) = mesh.nodes().iter().position(|at| at[0] < least) {
+                let radius = mesh.nodes()[node][0];
+                return fail(format!("node {node} lies at the radius x = {radius:e}; about the y axis x must be >= 0"));
+            }
+        }
+        let regions = vec![Region::whole(&mesh, material, lame)];
+        let body = ElasticBody { mesh, formulation, integration: Integration::Standard, regions };
+        let table = body.tabulated();
+        for (index, BodyElement { nodes, cell, .. }) in body.elements().enumerate() {
+            if let Err(reason) = cell.check(&table) {
+                return fail(format!("element {index} (nodes {nodes:?}, from 0): {reason}"));
+            }
+        }
+        Ok(body)
+    }
+
+    /// The same body with another integration of its stiffness.
+    ///
+    /// # Errors
+    /// [`Error::Mesh`] for mean dilatation with other elements than Q4 and Hex8, or in plane stress.
+    pub fn with_integration(mut self, integration: Integration) -> Result<Self, Error> {
+        if integration == Integration::MeanDilatation {
+            let element = self.mesh.kind();
+            if !matches!(element, ElementKind::Q4 | ElementKind::Hex8) {
+                let name = element.name();
+                let message = format!("mean dilatation is for Q4 and Hex8 elements, not for {name}");
+                return Err(Error::Mesh { message });
+            }
+            if !self.formulation.can_lock() {
+                let message = "mean dilatation does nothing in plane stress, where no element locks".into();
+                return Err(Error::Mesh { message });
+            }
+        }
+        self.integration = integration;
+        Ok(self)
+    }
+
+    /// This body and `other` in one: two bodies that no element joins, so that nothing but contact can.
+    ///
+    /// Nodes and elements of `other` follow those of this body; its boundaries are called `name.boundary`.
+    ///
+    /// # Errors
+    /// [`Error::Mesh`] where formulation, element or integration of the two differ, or a boundary of that name exists.
+    pub fn beside(mut self, other: &ElasticBody, name: &str) -> Result<Self, Error> {
+        let fail = |message| Err(Error::Mesh { message });
+        if self.formulation != other.formulation {
+            let (one, two) = (self.formulation.name(), other.formulation.name());
+            return fail(format!("bodies of one model have one formulation and cross-section; here {one} and {two}"));
+        }
+        let (kind, other_kind) = (self.mesh.kind(), other.mesh.kind());
+        if kind != other_kind {
+            let (one, two) = (kind.name(), other_kind.name());
+            return fail(format!("bodies of one model have one kind of element; here {one} and {two}"));
+        }
+        if self.integration != other.integration {
+            return fail("bodies of one model have one integration".into());
+        }
+        let (nodes, elements) = (self.mesh.nodes().len(), self.mesh.element_count());
+        self.mesh = self.mesh.beside(&other.mesh, name)?;
+        self.regions.extend(other.regions.iter().map(|region| region.shifted(name, nodes, elements)));
+        Ok(self)
+    }
+
+    /// The mesh.
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// The bodies that it is made of: one, but for [`ElasticBody::beside`].
+    pub fn regions(&self) -> &[Region] {
+        &self.regions
+    }
+
+    /// The formulation.
+    pub fn formulation(&self) -> &Formulation {
+        &self.formulation
+    }
+
+    /// How the stiffness is integrated.
+    pub fn integration(&self) -> Integration {
+        self.integration
+    }
+
+    /// Number of coordinates, and of dofs per node.
+    pub fn dimension(&self) -> usize {
+        self.formulation.dimension()
+    }
+
+    /// Number of nodal dofs, `dimension * n_nodes`.
+    pub fn nodal_dofs(&self) -> usize {
+        self.dimension() * self.mesh.nodes().len()
+    }
+
+    /// The shape functions of the element, tabulated at the quadrature points that the formulation asks for.
+    pub fn tabulated(&self) -> Tabulated {
+        Tabulated::new(self.mesh.kind().reference(), self.formulation.is_axisymmetric())
+    }
+
+    /// Every element in place, region by region.
+    pub fn elements(&self) -> impl Iterator<Item = BodyElement<'_>> + '_ {
+        let reference = self.mesh.kind().reference();
+        let materials =
+            self.regions.iter().flat_map(|region| std::iter::repeat_n(region.lame(), region.elements().len()));
+        self.mesh.elements().zip(materials).map(move |(nodes, lame)| {
+            let cell = Cell::new(reference, &self.coordinates(nodes));
+            BodyElement { nodes, cell, lame }
+        })
+    }
+
+    /// The coordinates of up to [`MAX_NODES`] nodes.
+    pub(crate) fn coordinates(&self, nodes: &[usize]) -> PerNode<[f64; 3]> {
+        let mut coordinates = [[0.0; 3]; MAX_NODES];
+        for (at, &node) in coordinates.iter_mut().zip(nodes) {
+            *at = self.mesh.nodes()[node];
+        }
+        coordinates
+    }
+
+    /// The entries of a nodal vector (`dimension` per node) that belong to the nodes of an element.
+    pub(crate) fn gather(&self, nodal: &[f64], nodes: &[usize]) -> PerNode<[f64; 3]> {
+        let dimension = self.dimension();
+        let mut values = [[0.0; 3]; MAX_NODES];
+        for (value, &node) in values.iter_mut().zip(nodes) {
+            value[..dimension].copy_from_slice(&nodal[dimension * node..dimension * (node + 1)]);
+        }
+        values
+    }
+
+    /// The stress of a strain in a material; `dilatation` stands for its trace, which a mean over the element may
+    /// replace.
+    pub fn stress(&self, Lame { lambda, mu }: Lame, strain: &Symmetric, dilatation: f64) -> Symmetric {
+        let mut stress = strain.map(|component| 2.0 * mu * component);
+        stress[..3].iter_mut().for_each(|normal| *normal += lambda * dilatation);
+        if let Formulation::PlaneStress { .. } = self.formulation {
+            stress[2] = 0.0;
+        }
+        stress
+    }
+
+    /// Checks that a nodal vector has `dimension` entries per node.
+    ///
+    /// # Errors
+    /// [`Error::Length`] where it has not.
+    pub(crate) fn check_nodal(&self, name: &'static str, found: usize) -> Result<(), Error> {
+        let expected = self.nodal_dofs();
+        if found != expected {
+            return Err(Error::Length { name, found, expected, of: "nodal dofs" });
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,88 @@
+//! A point in an element: gradients, hoop terms, weight; strains there.
+
+use super::{ElasticBody, Integration};
+use crate::fem::element::{Cell, MAX_NODES, PerNode, Tabulated, TabulatedPoint};
+
+/// A symmetric tensor `[xx, yy, zz, xy, yz, zx]`; in a body of revolution zz is the hoop component.
+///
+/// Strains have the tensor's shear components, half of the engineering shear strains.
+pub type Symmetric = [f64; 6];
+
+/// The shape functions at a point of an element in place, in the unit of the cell.
+#[derive(Clone, Copy, Debug)]
+pub struct LocalPoint {
+    /// Gradients, per unit.
+    pub gradients: PerNode<[f64; 3]>,
+    /// Shape function over radius, per unit: the hoop strain of a unit radial displacement. Zero but in bodies of
+    /// revolution.
+    pub hoop: PerNode<f64>,
+    /// Quadrature weight times determinant times area, thickness or circumference; the determinant in units.
+    pub weight: f64,
+}
+
+impl ElasticBody {
+    /// The point of an element at a tabulated point.
+    #[inline]
+    pub fn point(&self, cell: &Cell, at: &TabulatedPoint) -> LocalPoint {
+        let map = cell.map(&at.derivative);
+        let mut hoop = [0.0; MAX_NODES];
+        let mut radius = 0.0;
+        if self.formulation().is_axisymmetric() {
+            radius = cell.place(&at.shape)[0];
+            let per_radius = cell.unit() / radius;
+            hoop = at.shape.map(|value| value * per_radius);
+        }
+        LocalPoint {
+            gradients: map.gradients,
+            hoop,
+            weight: map.determinant * at.weight * self.formulation().measure(radius),
+        }
+    }
+
+    /// The mean dilatation of an element where its integration asks for it, per length; `None` where it does not.
+    pub(crate) fn mean_dilatation(
+        &self,
+        cell: &Cell,
+        table: &Tabulated,
+        displacement: &PerNode<[f64; 3]>,
+    ) -> Option<f64> {
+        if self.integration() != Integration::MeanDilatation {
+            return None;
+        }
+        let (mut integral, mut volume) = (0.0, 0.0);
+        for at in &table.points {
+            let point = self.point(cell, at);
+            integral += point.weight * trace(&point.strain(displacement, cell.unit()));
+            volume += point.weight;
+        }
+        Some(integral / volume)
+    }
+}
+
+impl LocalPoint {
+    /// The strain at the point of an element with the given `unit`, from the displacement of its nodes.
+    #[inline]
+    pub fn strain(&self, displacement: &PerNode<[f64; 3]>, unit: f64) -> Symmetric {
+        let mut slope = [[0.0; 3]; 3];
+        let mut hoop = self.hoop[0] * displacement[0][0];
+        for node in 1..MAX_NODES {
+            // Relative to the first node: a translation strains nothing, to the last bit.
+            for (axis, row) in slope.iter_mut().enumerate() {
+                let relative = displacement[node][axis] - displacement[0][axis];
+                for (entry, gradient) in row.iter_mut().zip(&self.gradients[node]) {
+                    *entry += relative * gradient;
+                }
+            }
+            hoop += self.hoop[node] * displacement[node][0];
+        }
+        let shear = |i: usize, j: usize| (slope[i][j] + slope[j][i]) / 2.0;
+        [slope[0][0], slope[1][1], slope[2][2] + hoop, shear(0, 1), shear(1, 2), shear(2, 0)]
+            .map(|component| component / unit)
+    }
+}
+
+/// The dilatation of a strain.
+#[inline]
+pub(crate) fn trace(strain: &Symmetric) -> f64 {
+    strain[0] + strain[1] + strain[2]
+}

@@ -1,0 +1,105 @@
+//! Elastic bars in impact: waves that run up and down a bar.
+
+/// A free elastic bar on [0, L] that flies with `speed` towards a wall at the distance `gap` beyond x = L.
+///
+/// The end that touches stops, a wave of compression runs to the free end and comes back as a wave of release: the wall
+/// feels the constant force `rho c v0 A` for exactly `2 L/c`, then the bar flies back with v0 and without a wave.
+///
+/// # Source
+/// K. F. Graff, *Wave Motion in Elastic Solids*, Oxford, 1975, section 2.4.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ImpactingBar {
+    /// Length L.
+    pub length: f64,
+    /// Axial stiffness EA, in force.
+    pub axial_stiffness: f64,
+    /// Mass per length, rho A.
+    pub line_density: f64,
+    /// Speed v0 towards the wall, positive.
+    pub speed: f64,
+    /// Distance from the end of the bar to the wall at t = 0, zero or positive.
+    pub gap: f64,
+}
+
+impl ImpactingBar {
+    /// The speed of waves, `c = sqrt(EA / (rho A))`.
+    pub fn wave_speed(&self) -> f64 {
+        (self.axial_stiffness / self.line_density).sqrt()
+    }
+
+    /// When contact begins and when it ends: `g/v0` and `g/v0 + 2 L/c`.
+    pub fn contact(&self) -> [f64; 2] {
+        let begin = self.gap / self.speed;
+        [begin, begin + 2.0 * self.length / self.wave_speed()]
+    }
+
+    /// The force of the wall on the bar during contact, `rho c v0 A`, `>= 0`.
+    ///
+    /// ```
+    /// use signorini::fem::closed_forms::ImpactingBar;
+    /// let bar = ImpactingBar { length: 10.0, axial_stiffness: 900.0, line_density: 1.0, speed: 10.0, gap: 5.0 };
+    /// assert_eq!((bar.force(), bar.contact()[0], bar.impulse(), bar.energy()), (300.0, 0.5, 200.0, 500.0));
+    /// ```
+    pub fn force(&self) -> f64 {
+        self.line_density * self.wave_speed() * self.speed
+    }
+
+    /// Force times time of the whole contact: twice the momentum of the bar.
+    pub fn impulse(&self) -> f64 {
+        2.0 * self.line_density * self.length * self.speed
+    }
+
+    /// The energy of the bar, at any time.
+    pub fn energy(&self) -> f64 {
+        self.line_density * self.length * self.speed * self.speed / 2.0
+    }
+
+    /// The displacement at x in [0, L] at time t: the point flies on until compression reaches it, rests until the
+    /// release reaches it, and flies back.
+    pub fn displacement(&self, x: f64, t: f64) -> f64 {
+        let begin = self.contact()[0];
+        let compressed = begin + (self.length - x) / self.wave_speed();
+        let released = begin + (self.length + x) / self.wave_speed();
+        self.speed * (t.min(compressed) - (t - released).max(0.0))
+    }
+}
+
+/// The bar of length, stiffness and density 1 on [0, 1], held at x = 1, with a wall that allows `u(0) >= 0`, which lets
+/// go at rest from `u = (1 - x)/2`: its motion has the period 3, and the wall presses with 1/2 for one third of it.
+///
+/// # Source
+/// F. Dabaghi, A. Petrov, J. Pousin, Y. Renard, *Convergence of mass redistribution method for the one-dimensional wave
+/// equation with a unilateral constraint at the boundary*, ESAIM: M2AN 48 (2014) 1147-1169.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BouncingBar;
+
+impl BouncingBar {
+    /// The period.
+    pub const PERIOD: f64 = 3.0;
+    /// The energy, at any time.
+    pub const ENERGY: f64 = 0.125;
+
+    /// The pressure of the wall at time t, `>= 0`.
+    pub fn pressure(self, t: f64) -> f64 {
+        if (1.0..2.0).contains(&t.rem_euclid(Self::PERIOD)) { 0.5 } else { 0.0 }
+    }
+
+    /// The displacement at x in [0, 1] at time t.
+    ///
+    /// ```
+    /// use signorini::fem::closed_forms::BouncingBar;
+    /// let at = |t| BouncingBar.displacement(0.25, t);
+    /// assert_eq!([at(0.0), at(0.5), at(1.5), at(3.0), at(5.75)], [0.375, 0.25, -0.125, 0.375, 0.375]);
+    /// ```
+    pub fn displacement(self, x: f64, t: f64) -> f64 {
+        let t = t.rem_euclid(Self::PERIOD);
+        if t < 1.0 {
+            (1.0 - x.max(t)) / 2.0
+        } else if t < 2.0 {
+            let t = t - 1.0;
+            ((t - x.max(1.0 - x)).max(0.0) - t.min(x).min(1.0 - x)) / 2.0
+        } else {
+            (t - 2.0).min(1.0 - x) / 2.0
+        }
+    }
+}

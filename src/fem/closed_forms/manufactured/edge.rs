@@ -1,0 +1,68 @@
+//! The state at a generic edge of a contact: pressure of the square root of the distance.
+
+use super::complex::Complex;
+use super::stress_function::StressFunction;
+use super::{ContactSolution, PlaneElasticity};
+
+/// Contact with the plane y = 0 up to x = x0: `p = 1.5 p0 sqrt(x0 - x)`, without body force.
+///
+/// `Zbar = -p0 zeta^1.5` with `zeta = (x0 - x) + i y`.
+///
+/// ```
+/// use signorini::fem::closed_forms::manufactured::{ContactSolution, GenericEdge, PlaneElasticity};
+/// let elasticity = PlaneElasticity::plane_strain(1.0, 0.3);
+/// let edge = GenericEdge { elasticity, edge: 0.53, pressure: 1.0 };
+/// assert!((edge.pressure(0.28) - 0.75).abs() < 1e-15);
+/// assert!((edge.stress([0.28, 0.0])[1] + 0.75).abs() < 1e-14);
+/// // (kappa + 1)/(4 mu) p0 (x - x0)^1.5 = 2/E* 0.25^1.5
+/// assert!((edge.displacement([0.78, 0.0])[1] - 0.91 * 0.25).abs() < 1e-15);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GenericEdge {
+    /// The elastic constants.
+    pub elasticity: PlaneElasticity,
+    /// The edge of the contact, x0.
+    pub edge: f64,
+    /// The factor p0 of the pressure, in force per area per square root of length.
+    pub pressure: f64,
+}
+
+impl GenericEdge {
+    fn stress_function(&self, [x, y]: [f64; 2]) -> StressFunction {
+        let zeta = Complex { re: self.edge - x, im: y };
+        StressFunction {
+            integral: zeta.power(1.5).scaled(-self.pressure),
+            value: zeta.power(0.5).scaled(-1.5 * self.pressure),
+            slope: zeta.power(-0.5).scaled(-0.75 * self.pressure),
+        }
+    }
+}
+
+impl ContactSolution for GenericEdge {
+    fn elasticity(&self) -> PlaneElasticity {
+        self.elasticity
+    }
+
+    fn displacement(&self, at: [f64; 2]) -> [f64; 2] {
+        // The stress function lives in the mirrored coordinate x0 - x.
+        let [along, across] = self.stress_function(at).displacement(&self.elasticity, at[1]);
+        [-along, across]
+    }
+
+    fn gradient(&self, at: [f64; 2]) -> [[f64; 2]; 2] {
+        let [[xx, xy], [yx, yy]] = self.stress_function(at).gradient(&self.elasticity, at[1]);
+        [[xx, -xy], [-yx, yy]]
+    }
+
+    fn body_force(&self, _: [f64; 2]) -> [f64; 2] {
+        [0.0, 0.0]
+    }
+
+    fn pressure(&self, x: f64) -> f64 {
+        1.5 * self.pressure * (self.edge - x).max(0.0).sqrt()
+    }
+
+    fn gap(&self, _: f64) -> f64 {
+        0.0
+    }
+}

@@ -1,0 +1,40 @@
+//! Named parts of a mesh's surface.
+
+use crate::fem::element::FacetKind;
+
+/// A named part of the mesh's surface: the ends of a bar, edges of a plane mesh, faces of a mesh in space.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Boundary {
+    /// Its name, as `top`.
+    pub name: String,
+    /// What its facets are.
+    pub kind: FacetKind,
+    /// The nodes of facet 0, then of facet 1, ..., each in the order of its reference cell; edges stand in their order
+    /// along the boundary where they make a line.
+    pub connectivity: Vec<usize>,
+}
+
+impl Boundary {
+    /// The boundary called `name` of facets of one kind.
+    pub fn new(name: impl Into<String>, kind: FacetKind, connectivity: Vec<usize>) -> Self {
+        Boundary { name: name.into(), kind, connectivity }
+    }
+
+    /// Number of facets.
+    pub fn facet_count(&self) -> usize {
+        self.connectivity.len() / self.kind.nodes()
+    }
+
+    /// The nodes of each facet.
+    pub fn facets(&self) -> impl Iterator<Item = &[usize]> + '_ {
+        self.connectivity.chunks_exact(self.kind.nodes())
+    }
+
+    /// The nodes, each once, in the order in which one meets them along the facets.
+    pub fn nodes(&self) -> Vec<usize> {
+        let along = self.kind.reference().along;
+        let mut seen = vec![false; self.connectivity.iter().max().map_or(0, |&last| last + 1)];
+        let in_order = self.facets().flat_map(|facet| along.iter().map(|&local| facet[local]));
+        in_order.filter(|&node| !std::mem::replace(&mut seen[node], true)).collect()
+    }
+}

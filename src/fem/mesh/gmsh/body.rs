@@ -1,0 +1,184 @@
+//! The elements of the body: which they are, of which kind, in which plane, and which way round.
+
+use std::collections::HashSet;
+
+use super::cells::CellType;
+use super::{Element, GmshFile};
+use crate::fem::element::{Cell, ElementKind, MAX_NODES, Tabulated};
+use crate::error::Error;
+use crate::fem::mesh::{Mesh, fail};
+
+/// A node farther from the plane than this times the size of the body lies outside it: far above the rounding of a mesh
+/// generator, far below any cell.
+const FLAT: f64 = 1e-9;
+
+/// Why quadratic elements in space are refused.
+const WRONG_SIGN: &str = "under a uniform pressure the consistent nodal forces on their faces have the wrong sign or \
+                          vanish at the corners (20-node bricks: -1/12 at a corner, +1/3 at a mid-side; ten-node \
+                          tetrahedra: 0 at a corner), so that they cannot carry contact; take four-node tetrahedra or \
+                          eight-node bricks (in Gmsh, `Mesh.ElementOrder = 1`)";
+
+/// The place of a node of the file in the mesh, if it is in the body.
+pub(super) type Numbers = Vec<Option<usize>>;
+
+/// The elements of the body.
+pub(super) struct Body<'a> {
+    kind: ElementKind,
+    elements: Vec<Element<'a>>,
+}
+
+impl<'a> Body<'a> {
+    /// The elements of the group called `domain`, or of the highest dimension.
+    pub fn select(file: &'a GmshFile, domain: Option<&str>) -> Result<Self, Error> {
+        let names = file.names_in_use();
+        let dimension = match domain {
+            Some(name) => names.iter().rev().find(|(_, other)| other == name).map(|(dimension, _)| *dimension),
+            None => file.blocks.iter().map(|block| block.cell.dimension).max(),
+        };
+        let Some(dimension) = dimension.filter(|&dimension| dimension > 0) else {
+            let Some(name) = domain else {
+                return Err(
+                    file.fault(file.last_line, "there are no elements beyond points; a body needs at least one")
+                );
+            };
+            let names: Vec<String> =
+                names.into_iter().filter(|(dimension, _)| *dimension > 0).map(|(_, n)| n).collect();
+            return fail(match names.is_empty() {
+                true => format!("there is no physical group `{name}`; the file has none"),
+                false => format!("there is no physical group `{name}` of elements; there are {}", names.join(", ")),
+            });
+        };
+        let chosen = |groups: &[u64]| match domain {
+            Some(name) => groups.iter().any(|&tag| file.name_of(dimension, tag) == name),
+            None => true,
+        };
+        let mut elements = Vec::new();
+        // Version 2.2 writes an element once for each of its groups.
+        let mut known: HashSet<&[usize]> = HashSet::new();
+        for block in file.blocks.iter().filter(|block| block.cell.dimension == dimension && chosen(&block.groups)) {
+            elements.extend(file.elements_of(block).filter(|element| known.insert(element.nodes)));
+        }
+        let kind = kind(file, &elements)?;
+        Ok(Body { kind, elements })
+    }
+
+    /// The mesh without boundaries, and the place of every node of the file in it.
+    pub fn mesh(&self, file: &GmshFile, scale: f64) -> Result<(Mesh, Numbers), Error> {
+        let mut used = vec![false; file.nodes.len()];
+        self.elements.iter().flat_map(|element| element.nodes).for_each(|&node| used[node] = true);
+        let mut nodes = Vec::new();
+        let mut numbers: Numbers = vec![None; used.len()];
+        for (place, at) in file.nodes.iter().enumerate().filter(|&(place, _)| used[place]) {
+            numbers[place] = Some(nodes.len());
+            nodes.push(at.map(|value| value * scale));
+        }
+        self.flatten(file, &used, &mut nodes)?;
+        let mut connectivity = Vec::with_capacity(self.elements.len() * self.kind.nodes());
+        for element in &self.elements {
+            connectivity.extend(element.nodes.iter().filter_map(|&node| numbers[node]));
+        }
+        if self.kind.dimension() < 3 {
+            turn_if_clockwise(self.kind, &nodes, &mut connectivity);
+        }
+        self.check(file, &nodes, &connectivity)?;
+        Ok((Mesh::new(nodes, self.kind, connectivity, Vec::new())?, numbers))
+    }
+
+    /// Checks that the nodes lie in a plane z = const, or on a line along x, and puts them at 0 there.
+    fn flatten(&self, file: &GmshFile, used: &[bool], nodes: &mut [[f64; 3]]) -> Result<(), Error> {
+        let dimension = self.kind.dimension();
+        let Some(&first) = nodes.first() else { return Ok(()) };
+        let away = |at: &[f64; 3], axis: usize| (at[axis] - first[axis]).abs();
+        let size = nodes.iter().flat_map(|at| [0, 1, 2].map(|axis| away(at, axis))).fold(0.0, f64::max);
+        let places = (0..used.len()).filter(|&place| used[place]);
+        for (at, place) in nodes.iter_mut().zip(places) {
+            for axis in dimension..3 {
+                if away(at, axis) > FLAT * size {
+                    let (tag, found, name) = (file.node_tags[place], file.nodes[place][axis], ["x", "y", "z"][axis]);
+                    let others = used.iter().position(|used| *used).map_or(0.0, |first| file.nodes[first][axis]);
+                    let space = if dimension == 1 { "a bar lies along x" } else { "a plane body lies in z = const" };
+                    let message = format!("node {tag} has {name} = {found}, but the first node has {others}; {space}");
+                    return Err(file.fault(file.node_lines[place], message));
+                }
+                at[axis] = 0.0;
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks that no element is turned inside out or without volume.
+    fn check(&self, file: &GmshFile, nodes: &[[f64; 3]], connectivity: &[usize]) -> Result<(), Error> {
+        let table = Tabulated::new(self.kind.reference(), false);
+        for (element, places) in self.elements.iter().zip(connectivity.chunks_exact(self.kind.nodes())) {
+            let mut coordinates = [[0.0; 3]; MAX_NODES];
+            for (at, &place) in coordinates.iter_mut().zip(places) {
+                *at = nodes[place];
+            }
+            if let Err(reason) = Cell::new(self.kind.reference(), &coordinates).check(&table) {
+                return Err(file.fault(element.line, format!("element {}: {reason}", element.tag)));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The one kind of all elements.
+fn kind(file: &GmshFile, elements: &[Element]) -> Result<ElementKind, Error> {
+    let mut counts: Vec<(&CellType, usize, usize)> = Vec::new();
+    for element in elements {
+        match counts.iter_mut().find(|(cell, ..)| *cell == element.cell) {
+            Some((_, count, _)) => *count += 1,
+            None => counts.push((element.cell, 1, element.line)),
+        }
+    }
+    match counts[..] {
+        [] => Err(file.fault(file.last_line, "there are no elements; a body needs at least one")),
+        [(cell, _, line)] => accepted(cell).map_err(|reason| file.fault(line, reason)),
+        [_, (.., line), ..] => {
+            let found: Vec<String> = counts.iter().map(|(cell, count, _)| format!("{count} {}", cell.plural)).collect();
+            Err(file.fault(line, format!("the body mixes {}; it must be of one kind of element", found.join(", "))))
+        }
+    }
+}
+
+/// The element here that an element type is; their nodes have the same order.
+fn accepted(cell: &CellType) -> Result<ElementKind, String> {
+    let refused = |reason: &str| Err(format!("{} are refused: {reason}", cell.plural));
+    match cell.number {
+        1 => Ok(ElementKind::Line2),
+        2 => Ok(ElementKind::T3),
+        3 => Ok(ElementKind::Q4),
+        4 => Ok(ElementKind::Tet4),
+        5 => Ok(ElementKind::Hex8),
+        9 => Ok(ElementKind::T6),
+        16 => Ok(ElementKind::Q8),
+        10 => refused("quadratic quadrilaterals have eight nodes here (in Gmsh, `Mesh.SecondOrderIncomplete = 1`)"),
+        11 | 12 | 17 => refused(WRONG_SIGN),
+        8 => refused("a bar has two nodes here (in Gmsh, `Mesh.ElementOrder = 1`)"),
+        _ => refused("bodies in space are of four-node tetrahedra or eight-node bricks here"),
+    }
+}
+
+/// Turns every element round, if none of them runs the right way: along x in a bar, counterclockwise in the plane.
+fn turn_if_clockwise(kind: ElementKind, nodes: &[[f64; 3]], connectivity: &mut [usize]) {
+    let corners = kind.corners();
+    let runs_wrong = |element: &[usize]| {
+        let start = nodes[element[0]];
+        let arm = |corner: usize| [0, 1].map(|axis| nodes[element[corner]][axis] - start[axis]);
+        if corners == 2 {
+            return arm(1)[0] < 0.0;
+        }
+        let doubled: f64 =
+            (2..corners).map(|corner| (arm(corner - 1), arm(corner))).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum();
+        doubled < 0.0
+    };
+    if !connectivity.chunks_exact(kind.nodes()).all(runs_wrong) {
+        return;
+    }
+    for element in connectivity.chunks_exact_mut(kind.nodes()) {
+        // The first corner stays; mid-side k, between corners k and k + 1, becomes the last but k.
+        let start = if corners == 2 { 0 } else { 1 };
+        element[start..corners].reverse();
+        element[corners..].reverse();
+    }
+}

@@ -1,0 +1,73 @@
+//! Physical groups one dimension below the body: its boundaries.
+
+use std::collections::HashSet;
+
+use super::body::Numbers;
+use super::{Element, GmshFile};
+use crate::error::Error;
+use crate::fem::mesh::outline::chained;
+use crate::fem::mesh::{Boundary, Mesh};
+
+/// The boundaries of `mesh`, in the order of the file. Groups off the body are a fault, unless it is a part of the
+/// file.
+pub(super) fn of(file: &GmshFile, mesh: &Mesh, numbers: &Numbers, is_part: bool) -> Result<Vec<Boundary>, Error> {
+    let dimension = mesh.dimension() - 1;
+    let mut boundaries = Vec::new();
+    for (_, name) in file.names_in_use().into_iter().filter(|(other, _)| *other == dimension) {
+        let mut connectivity = Vec::new();
+        let mut known = HashSet::new();
+        let facets = facets(file, dimension, &name);
+        let placed = Boundary::new(name.as_str(), mesh.kind().facet(), in_mesh(file, mesh, &facets, numbers)?);
+        let faces = mesh.faces_of(&placed);
+        for (facet, face) in facets.iter().zip(faces) {
+            match face {
+                // Version 2.2 writes an element once for each of its groups.
+                Some(face) if known.insert(face) => connectivity.extend(nodes_of(mesh, face)),
+                Some(_) => {}
+                None if is_part => {}
+                None => {
+                    let message =
+                        format!("element {} of the physical group `{name}` is no face of the body", facet.tag);
+                    return Err(file.fault(facet.line, message));
+                }
+            }
+        }
+        if !connectivity.is_empty() {
+            let kind = mesh.kind().facet();
+            boundaries.push(Boundary::new(name, kind, chained(kind, connectivity)));
+        }
+    }
+    Ok(boundaries)
+}
+
+/// The elements of all groups of this dimension and name.
+fn facets<'a>(file: &'a GmshFile, dimension: usize, name: &str) -> Vec<Element<'a>> {
+    let blocks = file.blocks.iter().filter(|block| block.cell.dimension == dimension);
+    let named = blocks.filter(|block| block.groups.iter().any(|&tag| file.name_of(dimension, tag) == name));
+    named.flat_map(|block| file.elements_of(block)).collect()
+}
+
+/// The nodes of facets in the numbers of the mesh; a node outside the body gets a number beyond the last.
+fn in_mesh(file: &GmshFile, mesh: &Mesh, facets: &[Element], numbers: &Numbers) -> Result<Vec<usize>, Error> {
+    let wanted = mesh.kind().facet().nodes();
+    let mut nodes = Vec::with_capacity(facets.len() * wanted);
+    for facet in facets {
+        if facet.nodes.len() != wanted {
+            let message = format!(
+                "element {} is one of {}, but the faces of {} have {wanted} nodes",
+                facet.tag,
+                facet.cell.plural,
+                mesh.kind().name()
+            );
+            return Err(file.fault(facet.line, message));
+        }
+        nodes.extend(facet.nodes.iter().map(|&node| numbers[node].unwrap_or(usize::MAX - 1)));
+    }
+    Ok(nodes)
+}
+
+/// The nodes of a face in the order of its element: the outside is to the right of an edge.
+fn nodes_of(mesh: &Mesh, (element, face): (usize, usize)) -> Vec<usize> {
+    let nodes = mesh.elements().nth(element).unwrap_or_default();
+    mesh.kind().reference().faces[face].iter().map(|&local| nodes[local]).collect()
+}

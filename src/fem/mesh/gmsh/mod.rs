@@ -1,0 +1,154 @@
+//! Meshes written by Gmsh: `.msh` files of version 4.1 and 2.2 in ASCII.
+//!
+//! Physical groups carry the names: the elements of the highest dimension are the body, and every group one dimension
+//! below becomes a boundary. A group without a name is called by its number.
+//!
+//! ```
+//! use signorini::fem::mesh::gmsh::GmshFile;
+//!
+//! let text = r#"$MeshFormat
+//! 2.2 0 8
+//! $EndMeshFormat
+//! $PhysicalNames
+//! 1
+//! 1 7 "floor"
+//! $EndPhysicalNames
+//! $Nodes
+//! 3
+//! 10 0 0 0
+//! 30 0 1 0
+//! 20 2 0 0
+//! $EndNodes
+//! $Elements
+//! 2
+//! 1 1 2 7 1 10 20
+//! 2 2 2 0 1 10 20 30
+//! $EndElements
+//! "#;
+//! let mesh = GmshFile::parse(text, "triangle.msh")?.mesh(None, 0.5)?;
+//! assert_eq!(mesh.nodes()[2], [1.0, 0.0, 0.0]);
+//! assert_eq!(mesh.boundary("floor").map(|floor| floor.nodes()), Some(vec![0, 2]));
+//! # Ok::<(), signorini::Error>(())
+//! ```
+//!
+//! # Source
+//! C. Geuzaine, J.-F. Remacle, *Gmsh Reference Manual*, chapter "Gmsh file formats", MSH file format and its version 2.
+
+mod body;
+mod boundaries;
+mod cells;
+mod content;
+mod groups;
+mod lines;
+mod sections;
+mod version2;
+mod version4;
+
+use std::path::{Path, PathBuf};
+
+use cells::CellType;
+pub use groups::PhysicalGroup;
+
+use super::Mesh;
+use crate::error::Error;
+use crate::file::{MOST_OF_TABLE, read_capped};
+
+/// What stands in a file: nodes, elements of any type, physical groups.
+#[derive(Clone, Debug)]
+pub struct GmshFile {
+    file: PathBuf,
+    /// In the order of the file, with their tags and lines.
+    nodes: Vec<[f64; 3]>,
+    node_tags: Vec<usize>,
+    node_lines: Vec<usize>,
+    blocks: Vec<Block>,
+    groups: Vec<PhysicalGroup>,
+    last_line: usize,
+}
+
+/// Elements of one type in the same physical groups.
+#[derive(Clone, Debug)]
+struct Block {
+    cell: &'static CellType,
+    groups: Vec<u64>,
+    tags: Vec<usize>,
+    /// Where each element stands in the file.
+    lines: Vec<usize>,
+    /// The nodes of element 0, then of element 1, ...: tags while the file is read, then places in `nodes`.
+    nodes: Vec<usize>,
+}
+
+/// One element of a block.
+#[derive(Clone, Copy, Debug)]
+struct Element<'a> {
+    cell: &'static CellType,
+    tag: usize,
+    line: usize,
+    nodes: &'a [usize],
+}
+
+impl GmshFile {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`Error::File`] for a file that cannot be read, and as [`GmshFile::parse`].
+    pub fn read(file: impl AsRef<Path>) -> Result<Self, Error> {
+        let path = file.as_ref();
+        let bytes = read_capped(path, MOST_OF_TABLE)?;
+        // What is no text is a binary file, and is refused by its first lines.
+        Self::parse(&String::from_utf8_lossy(&bytes), path)
+    }
+
+    /// Reads the text of a file; `file` is named in errors.
+    ///
+    /// # Errors
+    /// [`Error::FileSyntax`] with the line: for a version other than 4.1 and 2.2, a binary file, a section that is
+    /// missing or ends early or announces another number of lines than it has, a number of the wrong kind, coordinates
+    /// that are not finite, an element type that is not known, an element whose node does not exist, a group without
+    /// elements.
+    pub fn parse(text: &str, file: impl AsRef<Path>) -> Result<Self, Error> {
+        sections::read(file.as_ref(), text)
+    }
+
+    /// The physical groups, in the order of the file; without those that have no name.
+    pub fn groups(&self) -> &[PhysicalGroup] {
+        &self.groups
+    }
+
+    /// The mesh of the body: of the elements in the physical group called `domain`, or else of all elements of the
+    /// highest dimension. Coordinates are multiplied by `scale`.
+    ///
+    /// Nodes that no element of the body uses are left out; the others keep the order of the file. A plane mesh lies in
+    /// any plane z = const, a bar along x. Elements that run clockwise are turned, if all of them do. Facets of a
+    /// boundary run along each other, with the body to the left of edges, and counterclockwise seen from outside in
+    /// space. With a `domain`, groups elsewhere are left out.
+    ///
+    /// # Errors
+    /// [`Error::FileSyntax`] with the line: for elements of more than one kind, or of a kind that carries no contact, a
+    /// node outside the plane, an element that is turned inside out or has no volume, a group whose facets are no faces
+    /// of the body. [`Error::Mesh`] for a `domain` that does not exist, [`Error::Setting`] for a scale that is not
+    /// positive and finite.
+    pub fn mesh(&self, domain: Option<&str>, scale: f64) -> Result<Mesh, Error> {
+        if !(scale.is_normal() && scale > 0.0) {
+            return Err(Error::Setting { name: "scale", value: scale, allowed: "positive and finite" });
+        }
+        let body = body::Body::select(self, domain)?;
+        let (mut mesh, numbers) = body.mesh(self, scale)?;
+        mesh.boundaries = boundaries::of(self, &mesh, &numbers, domain.is_some())?;
+        Ok(mesh)
+    }
+
+    fn elements_of<'a>(&'a self, block: &'a Block) -> impl Iterator<Item = Element<'a>> + 'a {
+        let nodes = block.nodes.chunks_exact(block.cell.nodes);
+        block.tags.iter().zip(&block.lines).zip(nodes).map(|((&tag, &line), nodes)| Element {
+            cell: block.cell,
+            tag,
+            line,
+            nodes,
+        })
+    }
+
+    fn fault(&self, line: usize, message: impl Into<String>) -> Error {
+        lines::fault(&self.file, line, message)
+    }
+}

@@ -1,0 +1,114 @@
+//! Stress recovery: at the centroids, and extrapolated to the nodes and averaged there; the error of the mesh from it.
+
+mod discretisation;
+
+pub use discretisation::discretisation_error;
+
+use nalgebra::Matrix3;
+
+use crate::fem::body::{BodyElement, ElasticBody, Symmetric, trace};
+use crate::error::Error;
+use crate::fem::formulation::Formulation;
+
+/// The stress at a point, in force per area; tension is positive.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stress {
+    /// Normal stress along x; the radial stress of a body of revolution.
+    pub sigma_xx: f64,
+    /// Normal stress along y.
+    pub sigma_yy: f64,
+    /// Normal stress along z: `nu (sigma_xx + sigma_yy)` in plane strain, 0 in plane stress, the hoop stress of a body
+    /// of revolution.
+    pub sigma_zz: f64,
+    /// Shear stress between x and y.
+    pub sigma_xy: f64,
+    /// Shear stress between y and z; 0 but in space.
+    pub sigma_yz: f64,
+    /// Shear stress between z and x; 0 but in space.
+    pub sigma_zx: f64,
+    /// The largest principal stress; of those in the plane, but in space.
+    pub sigma_1: f64,
+    /// The second principal stress. In the plane the smaller one, and so the largest compression there.
+    pub sigma_2: f64,
+    /// The smallest principal stress in space; elsewhere sigma_zz, whatever its size.
+    pub sigma_3: f64,
+    /// The von Mises stress of all components.
+    pub von_mises: f64,
+}
+
+impl Stress {
+    /// The stress of the given components in the plane, and across it.
+    pub fn new(sigma_xx: f64, sigma_yy: f64, sigma_xy: f64, sigma_zz: f64) -> Self {
+        let centre = (sigma_xx + sigma_yy) / 2.0;
+        let radius = ((sigma_xx - sigma_yy) / 2.0).hypot(sigma_xy);
+        // sqrt(((s1-s2)^2 + (s2-s3)^2 + (s3-s1)^2)/2) with (s1-s2)/2 = radius, (s1+s2)/2 = centre, s3 = sigma_zz.
+        let von_mises = (3_f64.sqrt() * radius).hypot(centre - sigma_zz);
+        let (sigma_1, sigma_2, sigma_3) = (centre + radius, centre - radius, sigma_zz);
+        let (sigma_yz, sigma_zx) = (0.0, 0.0);
+        Stress { sigma_xx, sigma_yy, sigma_zz, sigma_xy, sigma_yz, sigma_zx, sigma_1, sigma_2, sigma_3, von_mises }
+    }
+
+    /// The stress of the components `[xx, yy, zz, xy, yz, zx]` in space.
+    pub fn in_space([sigma_xx, sigma_yy, sigma_zz, sigma_xy, sigma_yz, sigma_zx]: Symmetric) -> Self {
+        let tensor =
+            Matrix3::new(sigma_xx, sigma_xy, sigma_zx, sigma_xy, sigma_yy, sigma_yz, sigma_zx, sigma_yz, sigma_zz);
+        let finite = tensor.iter().all(|component| component.is_finite());
+        let mut principal: [f64; 3] = if finite { tensor.symmetric_eigenvalues().into() } else { [f64::NAN; 3] };
+        principal.sort_by(|a, b| b.total_cmp(a));
+        let [sigma_1, sigma_2, sigma_3] = principal;
+        let normal = (sigma_xx - sigma_yy).hypot(sigma_yy - sigma_zz).hypot(sigma_zz - sigma_xx) / 2_f64.sqrt();
+        let shear = sigma_xy.hypot(sigma_yz).hypot(sigma_zx) * 3_f64.sqrt();
+        let von_mises = normal.hypot(shear);
+        Stress { sigma_xx, sigma_yy, sigma_zz, sigma_xy, sigma_yz, sigma_zx, sigma_1, sigma_2, sigma_3, von_mises }
+    }
+}
+
+/// The stress of a displaced body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StressField {
+    /// One per element, at its centroid.
+    pub elements: Vec<Stress>,
+    /// One per node: extrapolated from the quadrature points, averaged over the elements around the node.
+    pub nodes: Vec<Stress>,
+}
+
+/// The stress in `body` at the nodal displacement `displacement` (length `dim * n_nodes`, order `[x_0, y_0, ...]`).
+///
+/// Exact where the displacement is linear. In each element the nodes take the linear function (multilinear in
+/// quadrilaterals and hexahedra) that fits the stresses at the quadrature points by least squares.
+///
+/// # Errors
+/// [`Error::Length`] where the displacement does not have `dim` entries per node.
+pub fn stress(body: &ElasticBody, displacement: &[f64]) -> Result<StressField, Error> {
+    body.check_nodal("nodal displacement", displacement.len())?;
+    let node_count = body.mesh().nodes().len();
+    let table = body.tabulated();
+    let extrapolation = table.extrapolation();
+    let finished = |s: Symmetric| match body.formulation() {
+        Formulation::Space => Stress::in_space(s),
+        _ => Stress::new(s[0], s[1], s[3], s[2]),
+    };
+    let mut elements = Vec::with_capacity(body.mesh().element_count());
+    let mut sums: Vec<(Symmetric, usize)> = vec![([0.0; 6], 0); node_count];
+    for BodyElement { nodes, cell, lame } in body.elements() {
+        let local = body.gather(displacement, nodes);
+        let mean = body.mean_dilatation(&cell, &table, &local);
+        let stress_at = |at| {
+            let strain = body.point(&cell, at).strain(&local, cell.unit());
+            body.stress(lame, &strain, mean.unwrap_or_else(|| trace(&strain)))
+        };
+        elements.push(finished(stress_at(&table.centroid)));
+        for (index, at) in table.points.iter().enumerate() {
+            let at_point = stress_at(at);
+            for (local, &node) in nodes.iter().enumerate() {
+                let weight = extrapolation[(local, index)];
+                for (sum, component) in sums[node].0.iter_mut().zip(at_point) {
+                    *sum += weight * component;
+                }
+            }
+        }
+        nodes.iter().for_each(|&node| sums[node].1 += 1);
+    }
+    let average = |(sum, count): &(Symmetric, usize)| finished(sum.map(|component| component / *count as f64));
+    Ok(StressField { elements, nodes: sums.iter().map(average).collect() })
+}

@@ -1,0 +1,236 @@
+//! The loop over steps: prepare once, advance many times.
+
+use std::time::Instant;
+
+use super::central_difference::CentralDifference;
+use super::contact_stabilised::ContactStabilised;
+use super::midpoint::Midpoint;
+use super::newmark::Newmark;
+use super::{DynamicProblem, Observation, Scheme, State};
+use crate::error::Error;
+use crate::qp::problem::ContactProblem;
+use crate::solution::ContactSet;
+use crate::qp::solve::{Method, Prepared, Settings};
+use crate::qp::linear::{dot, largest};
+use crate::watch::Watch;
+
+/// Rounding of the displacement and the gaps, relative to the largest of them: no penetration at the start.
+const ROUNDING: f64 = 1e-12;
+
+/// A scheme with everything prepared that does not change from step to step.
+pub(super) trait Advance {
+    /// The first state.
+    fn start(&self, problem: &DynamicProblem, step: f64, state: State) -> Result<State, Error>;
+    /// The state after one step.
+    fn advance(&self, problem: &DynamicProblem, step: f64, state: &State) -> Result<State, Error>;
+}
+
+/// A motion with its scheme and its step.
+///
+/// The matrix of the steps is factorised when the integrator is made, and never again.
+pub struct Integrator {
+    problem: DynamicProblem,
+    step: f64,
+    scheme: Box<dyn Advance>,
+    state: State,
+    watch: Watch,
+    /// Seconds of the longest step so far.
+    longest: f64,
+}
+
+impl Integrator {
+    /// Prepares the motion of `problem` in steps of `step`; `settings` choose how the contact problem of a step is solved.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for a step that is not positive and finite, a parameter of the scheme or a setting out of its
+    /// range, an initial penetration, a mass that does not suit the scheme; [`Error::Numerical`] for a step beyond the
+    /// stable one of an explicit scheme; those of [`Prepared::new`].
+    pub fn new(problem: DynamicProblem, scheme: Scheme, step: f64, settings: &Settings) -> Result<Self, Error> {
+        if !(step.is_finite() && step > 0.0) {
+            return Err(Error::Setting { name: "step", value: step, allowed: "positive and finite" });
+        }
+        scheme.check()?;
+        let reach = largest(problem.displacement())
+            .max(problem.contact().gap().iter().filter(|gap| gap.is_finite()).fold(0.0, |max, gap| gap.abs().max(max)));
+        let penetration = problem.penetration(problem.displacement());
+        if penetration > ROUNDING * reach {
+            let allowed = "zero: no contact row may be violated at the start";
+            return Err(Error::Setting { name: "initial penetration", value: penetration, allowed });
+        }
+        if scheme != Scheme::Midpoint && !problem.massless().is_empty() {
+            let allowed = "positive: dofs without mass are for the midpoint rule";
+            return Err(Error::Setting { name: "mass of a dof", value: 0.0, allowed });
+        }
+        // What is not asked for in a step: the interior point has no warm start.
+        let mut settings = settings.started()?;
+        if settings.method == Method::Auto {
+            settings.method = Method::ActiveSet;
+        }
+        if settings.method == Method::Penalty {
+            // Its answers are never exact; whoever chooses it takes them as they are.
+            settings.tolerance = f64::MAX;
+        }
+        let watch = settings.watch.clone();
+        let prepared: Box<dyn Advance> = match scheme {
+            Scheme::Midpoint => Box::new(Midpoint::new(&problem, step, &settings)?),
+            Scheme::Trapezoidal => Box::new(Newmark::new(&problem, step, 0.0, &settings)?),
+            Scheme::Hht { alpha } => Box::new(Newmark::new(&problem, step, alpha, &settings)?),
+            Scheme::Penalty { penalty } => Box::new(Newmark::with_penalty(&problem, step, penalty, &settings)?),
+            Scheme::ContactStabilised => Box::new(ContactStabilised::new(&problem, step, &settings)?),
+            Scheme::CentralDifference { restitution } => {
+                Box::new(CentralDifference::new(&problem, step, restitution, &settings)?)
+            }
+        };
+        let violation = problem.contact().violation(problem.displacement());
+        let rows = problem.contact().rows();
+        let state = State {
+            steps: 0,
+            displacement: problem.displacement().to_vec(),
+            velocity: problem.velocity().to_vec(),
+            acceleration: vec![0.0; problem.contact().dofs()],
+            elastic: problem.contact().stiffness().mul(problem.displacement()),
+            momentum: problem.mass().mul(problem.velocity()),
+            multiplier: vec![0.0; rows],
+            contact_set: ContactSet::from_fn(rows, |row| violation[row] >= -ROUNDING * reach),
+        };
+        let state = prepared.start(&problem, step, state)?;
+        if watch.is_over() {
+            return Err(Error::Interrupted);
+        }
+        Ok(Integrator { problem, step, scheme: prepared, state, watch, longest: 0.0 })
+    }
+
+    /// One step further.
+    ///
+    /// # Errors
+    /// Those of a contact solve; [`Error::Numerical`] where the motion grows beyond all bounds; [`Error::Interrupted`] where
+    /// the watch of the settings ends the run, in the state after the last whole step.
+    pub fn advance(&mut self) -> Result<&State, Error> {
+        if self.watch.time_left().is_some_and(|left| left <= self.longest) {
+            return Err(Error::Interrupted);
+        }
+        let clock = Instant::now();
+        let next = self.scheme.advance(&self.problem, self.step, &self.state);
+        self.longest = self.longest.max(clock.elapsed().as_secs_f64());
+        if self.watch.is_stopped() {
+            // The solves of this step may have been cut short.
+            return Err(Error::Interrupted);
+        }
+        let next = next?;
+        if let Some(value) = next.displacement.iter().chain(&next.velocity).find(|value| !value.is_finite()) {
+            let reason = format!("the motion has the value {value} after step {}", next.steps);
+            return Err(Error::Numerical { step: "time integration", reason });
+        }
+        self.state = next;
+        Ok(&self.state)
+    }
+
+    /// The state now.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// Goes on from a state that an integrator of the same problem, scheme and step left.
+    ///
+    /// # Errors
+    /// [`Error::Length`] for a state of another problem.
+    pub fn resume(&mut self, state: State) -> Result<(), Error> {
+        let (dofs, rows) = (self.problem.contact().dofs(), self.problem.contact().rows());
+        let lengths = [
+            ("displacement", state.displacement.len(), dofs, "dofs"),
+            ("velocity", state.velocity.len(), dofs, "dofs"),
+            ("acceleration", state.acceleration.len(), dofs, "dofs"),
+            ("elastic forces", state.elastic.len(), dofs, "dofs"),
+            ("momentum", state.momentum.len(), dofs, "dofs"),
+            ("multiplier", state.multiplier.len(), rows, "contact rows"),
+            ("contact set", state.contact_set.rows(), rows, "contact rows"),
+        ];
+        if let Some(&(name, found, expected, of)) = lengths.iter().find(|entry| entry.1 != entry.2) {
+            return Err(Error::Length { name, found, expected, of });
+        }
+        self.state = state;
+        Ok(())
+    }
+
+    /// Time now: so many times the step.
+    pub fn time(&self) -> f64 {
+        self.state.steps as f64 * self.step
+    }
+
+    /// The step, in time.
+    pub fn step(&self) -> f64 {
+        self.step
+    }
+
+    /// The problem.
+    pub fn problem(&self) -> &DynamicProblem {
+        &self.problem
+    }
+
+    /// Energies, force and penetration now.
+    pub fn observe(&self) -> Observation {
+        let State { displacement, velocity, elastic, momentum, multiplier, contact_set, .. } = &self.state;
+        let [strain, potential] = self.problem.energies(displacement, elastic, self.time());
+        Observation {
+            time: self.time(),
+            force: multiplier.iter().fold(0.0, |force, lambda| force - lambda),
+            closed: contact_set.count(),
+            penetration: self.problem.penetration(displacement),
+            kinetic: dot(velocity, momentum) / 2.0,
+            strain,
+            potential,
+        }
+    }
+}
+
+/// A matrix prepared for one contact problem after another on the rows of a motion.
+pub(super) struct Stepping {
+    prepared: Prepared,
+    settings: Settings,
+}
+
+/// What a step found: change of the displacement, multipliers, closed rows.
+pub(super) struct Found {
+    pub change: Vec<f64>,
+    pub multiplier: Vec<f64>,
+    pub contact_set: ContactSet,
+}
+
+impl Stepping {
+    /// Factorises the matrix of `problem`; its load and gaps say nothing but which rows there are.
+    pub fn new(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
+        let prepared = Prepared::with_settings(problem, settings)?;
+        // A step is done whole or not at all: there is no half of it to return.
+        Ok(Stepping { prepared, settings: Settings { watch: settings.watch.unhurried(), ..settings.clone() } })
+    }
+
+    /// Number of dofs.
+    pub fn dofs(&self) -> usize {
+        self.prepared.dofs()
+    }
+
+    /// Solves with a force and gaps, from the set of the last step.
+    pub fn solve(&self, force: Vec<f64>, gap: Vec<f64>, start: &ContactSet) -> Result<Found, Error> {
+        let boundary = self.prepared.step_at(force, gap, start, &self.settings)?;
+        let change = boundary.displacement();
+        Ok(Found { change, multiplier: boundary.multiplier, contact_set: boundary.contact_set })
+    }
+
+    /// The change that a force alone causes, as if no row were closed; `None` without a factor of the matrix.
+    pub fn response(&self, force: Vec<f64>) -> Result<Option<Vec<f64>>, Error> {
+        self.prepared.response(force)
+    }
+
+    /// The change of the displacement alone; certified only where the method did not settle on a set.
+    pub fn change(&self, force: Vec<f64>, gap: Vec<f64>, start: &ContactSet) -> Result<Vec<f64>, Error> {
+        match self.prepared.settled_at(force.clone(), gap.clone(), start, &self.settings)? {
+            Some(change) => Ok(change),
+            None => Ok(self.solve(force, gap, start)?.change),
+        }
+    }
+}
+
+/// `a + factor b`, entry by entry.
+pub(super) fn plus(a: &[f64], factor: f64, b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a + factor * b).collect()
+}

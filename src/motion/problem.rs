@@ -1,0 +1,196 @@
+//! The motion of a body with contact: mass, damping, loads in time, initial state.
+
+use super::TimeFunction;
+use crate::error::Error;
+use crate::qp::problem::ContactProblem;
+use crate::qp::linear::{SparseMatrix, SymmetricMatrix, dot};
+
+/// The motion of a body with contact, from a given displacement and velocity:
+///
+/// ```text
+/// M a + C v + K u = f(t) + B' lambda,   B u - g <= 0,   lambda <= 0,   lambda_i (B u - g)_i = 0,   C = c_m M + c_k K
+/// ```
+///
+/// Time, mass, length and force are of one consistent system of units. A dof whose diagonal entry of M is zero has no
+/// mass.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DynamicProblem {
+    contact: ContactProblem,
+    /// Transposed contact rows: the entries of a row are a column.
+    by_row: SparseMatrix,
+    mass: SymmetricMatrix,
+    /// c_m and c_k.
+    damping: [f64; 2],
+    loads: Vec<(TimeFunction, Vec<f64>)>,
+    displacement: Vec<f64>,
+    velocity: Vec<f64>,
+    /// Forces on the free dofs that hold prescribed displacements, and their strain energy.
+    held: (Vec<f64>, f64),
+}
+
+impl DynamicProblem {
+    /// The motion from rest of the body of `contact`, whose load is constant, with the mass M (n x n).
+    ///
+    /// # Errors
+    /// [`Error::Shape`] for a mass that does not fit, [`Error::Setting`] for a negative diagonal entry.
+    pub fn new(contact: ContactProblem, mass: SymmetricMatrix) -> Result<Self, Error> {
+        let dofs = contact.dofs();
+        if mass.dim() != dofs {
+            let (found, expected) = ((mass.dim(), mass.dim()), (dofs, dofs));
+            return Err(Error::Shape { name: "mass", found, expected });
+        }
+        if let Some(&value) = mass.diagonal().iter().find(|&&entry| entry < 0.0) {
+            return Err(Error::Setting { name: "diagonal entry of the mass", value, allowed: "zero or positive" });
+        }
+        let zeros = vec![0.0; dofs];
+        Ok(DynamicProblem {
+            by_row: contact.contact().transposed(),
+            contact,
+            mass,
+            damping: [0.0; 2],
+            loads: Vec::new(),
+            displacement: zeros.clone(),
+            velocity: zeros.clone(),
+            held: (zeros, 0.0),
+        })
+    }
+
+    /// The same with Rayleigh damping `C = mass M + stiffness K`, in one over time and in time.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for a coefficient that is negative or not finite.
+    pub fn with_damping(mut self, mass: f64, stiffness: f64) -> Result<Self, Error> {
+        for (name, value) in [("mass damping", mass), ("stiffness damping", stiffness)] {
+            if !(value.is_finite() && value >= 0.0) {
+                return Err(Error::Setting { name, value, allowed: "zero or positive, and finite" });
+            }
+        }
+        self.damping = [mass, stiffness];
+        Ok(self)
+    }
+
+    /// The same with one more load (length n, in force), multiplied by a factor that changes with time.
+    ///
+    /// # Errors
+    /// As [`TimeFunction::check`]; [`Error::Length`] and [`Error::NotFinite`] for a load that does not fit.
+    pub fn with_load(mut self, factor: TimeFunction, load: Vec<f64>) -> Result<Self, Error> {
+        factor.check()?;
+        let load = self.contact.with_load(load)?.load().to_vec();
+        self.loads.push((factor, load));
+        Ok(self)
+    }
+
+    /// The same from another displacement and velocity (length n each, in length and length over time).
+    ///
+    /// # Errors
+    /// [`Error::Length`] and [`Error::NotFinite`] for vectors that do not fit.
+    pub fn starting_from(mut self, displacement: Vec<f64>, velocity: Vec<f64>) -> Result<Self, Error> {
+        for (name, values) in [("initial displacement", &displacement), ("initial velocity", &velocity)] {
+            let (found, expected) = (values.len(), self.contact.dofs());
+            if found != expected {
+                return Err(Error::Length { name, found, expected, of: "dofs" });
+            }
+            if let Some((index, &value)) = values.iter().enumerate().find(|entry| !entry.1.is_finite()) {
+                return Err(Error::NotFinite { name, at: format!("entry {index}"), value, allowed: "finite" });
+            }
+        }
+        (self.displacement, self.velocity) = (displacement, velocity);
+        Ok(self)
+    }
+
+    /// The same, told which part of the constant load holds prescribed displacements (length n, in force), and the
+    /// strain energy of these alone: it tells strain energy from potential energy, nothing else.
+    pub fn holding(mut self, forces: Vec<f64>, energy: f64) -> Self {
+        self.held = (forces, energy);
+        self
+    }
+
+    /// Stiffness, constant load, contact rows and gaps.
+    pub fn contact(&self) -> &ContactProblem {
+        &self.contact
+    }
+
+    /// The mass M (n x n).
+    pub fn mass(&self) -> &SymmetricMatrix {
+        &self.mass
+    }
+
+    /// The coefficients `[c_m, c_k]` of the damping.
+    pub fn damping(&self) -> [f64; 2] {
+        self.damping
+    }
+
+    /// The initial displacement, length n.
+    pub fn displacement(&self) -> &[f64] {
+        &self.displacement
+    }
+
+    /// The initial velocity, length n.
+    pub fn velocity(&self) -> &[f64] {
+        &self.velocity
+    }
+
+    /// The kinetic energy at the start and the work of deformation, `(v'M v + u'K u)/2`.
+    pub fn initial_energy(&self) -> f64 {
+        let [u, v] = [&self.displacement, &self.velocity];
+        (dot(v, &self.mass.mul(v)) + dot(u, &self.contact.stiffness().mul(u))) / 2.0
+    }
+
+    /// The load at time `t`, length n.
+    pub fn load_at(&self, t: f64) -> Vec<f64> {
+        let mut load = self.contact.load().to_vec();
+        for (factor, of_factor) in &self.loads {
+            let factor = factor.at(t);
+            load.iter_mut().zip(of_factor).for_each(|(sum, part)| *sum += factor * part);
+        }
+        load
+    }
+
+    /// Dofs without mass, increasing.
+    pub fn massless(&self) -> Vec<usize> {
+        (0..).zip(self.mass.diagonal()).filter(|entry| entry.1 == 0.0).map(|(dof, _)| dof).collect()
+    }
+
+    /// The deepest penetration, `max(B u - g, 0)`, in length.
+    pub fn penetration(&self, displacement: &[f64]) -> f64 {
+        self.remaining_gap(displacement).into_iter().fold(0.0, |deepest, gap| (-gap).max(deepest))
+    }
+
+    /// What is left of the gaps after a displacement, `g - B u`, one entry per row.
+    pub(super) fn remaining_gap(&self, displacement: &[f64]) -> Vec<f64> {
+        let moved = |row: usize| self.by_row.column(row).map(|(dof, b)| b * displacement[dof]).sum::<f64>();
+        self.contact.gap().iter().enumerate().map(|(row, gap)| gap - moved(row)).collect()
+    }
+
+    /// `mass M + damping C + stiffness K`.
+    pub(super) fn combination(&self, mass: f64, damping: f64, stiffness: f64) -> Result<SymmetricMatrix, Error> {
+        let [of_mass, of_stiffness] = self.damping;
+        let (m, k) = (mass + damping * of_mass, stiffness + damping * of_stiffness);
+        let parts = [(m, &self.mass), (k, self.contact.stiffness())];
+        let entries: Vec<_> = parts
+            .into_iter()
+            .filter(|part| part.0 != 0.0)
+            .flat_map(|(factor, matrix)| matrix.lower().triplets().map(move |(i, j, value)| (i, j, factor * value)))
+            .collect();
+        let dofs = self.contact.dofs();
+        SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &entries)?)
+    }
+
+    /// Subtracts `factor C v` from a force.
+    pub(super) fn damp(&self, factor: f64, velocity: &[f64], force: &mut [f64]) {
+        for (coefficient, matrix) in self.damping.into_iter().zip([&self.mass, self.contact.stiffness()]) {
+            if coefficient != 0.0 {
+                let product = matrix.mul(velocity);
+                force.iter_mut().zip(product).for_each(|(f, c)| *f -= factor * coefficient * c);
+            }
+        }
+    }
+
+    /// Strain energy of a displacement whose elastic forces K u are given, and the potential of the loads at time `t`.
+    pub(super) fn energies(&self, displacement: &[f64], elastic: &[f64], t: f64) -> [f64; 2] {
+        let (forces, energy) = &self.held;
+        let of_held = dot(forces, displacement);
+        let strain = dot(displacement, elastic) / 2.0 - of_held + energy;
+        [strain, 0.0 + of_held - dot(&self.load_at(t), displacement)]
+    }
+}

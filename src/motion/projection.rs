@@ -1,0 +1,39 @@
+//! Contact problems with the mass for a matrix: initial accelerations, projected predictions, impulses.
+
+use super::DynamicProblem;
+use super::integrator::{Found, Stepping};
+use crate::error::Error;
+use crate::qp::problem::ContactProblem;
+use crate::solution::ContactSet;
+use crate::qp::solve::Settings;
+
+/// The mass of a motion, prepared with its contact rows.
+pub(super) struct MassProjection {
+    stepping: Stepping,
+}
+
+impl MassProjection {
+    pub fn new(problem: &DynamicProblem, settings: &Settings) -> Result<Self, Error> {
+        let contact = problem.contact();
+        let mass = problem.mass().clone();
+        let of_mass =
+            ContactProblem::new(mass, vec![0.0; contact.dofs()], contact.contact().clone(), contact.gap().to_vec())?;
+        Ok(MassProjection { stepping: Stepping::new(&of_mass, settings)? })
+    }
+
+    /// The x with `M x = force + B' lambda` and `B x <= bound`.
+    pub fn solve(&self, force: Vec<f64>, bound: Vec<f64>, start: &ContactSet) -> Result<Found, Error> {
+        self.stepping.solve(force, bound, start)
+    }
+
+    /// The smallest x in the norm of the mass with `B x <= bound`; nothing is solved where that is zero.
+    pub fn smallest(&self, bound: Vec<f64>, start: &ContactSet) -> Result<Option<Found>, Error> {
+        if bound.iter().all(|&bound| bound >= 0.0) {
+            return Ok(None);
+        }
+        let rows = bound.iter().map(|&bound| bound < 0.0).collect::<Vec<_>>();
+        let closed = ContactSet::from_fn(start.rows(), |row| rows[row]);
+        let nothing = vec![0.0; self.stepping.dofs()];
+        self.solve(nothing, bound, &closed).map(Some)
+    }
+}

@@ -1,0 +1,28 @@
+//! The one barrier against panics from below: around the libraries that solve and factorise, and around nothing else.
+//!
+//! Own code does not panic on any input. Of a library nobody can promise that, and a panic that crosses it takes the
+//! caller's program along.
+
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// Runs `work`, a call of a library that touches nothing which outlives it; a panic comes back as its message.
+///
+/// ```
+/// use signorini::qp::barrier::guarded;
+///
+/// assert_eq!(guarded(|| 2 + 2), Ok(4));
+/// assert_eq!(guarded(|| -> i32 { panic!("no more") }), Err("it panicked: no more".to_string()));
+/// ```
+///
+/// # Errors
+/// The message of the panic.
+pub fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, String> {
+    // What `work` has left half done is dropped with it.
+    catch_unwind(AssertUnwindSafe(work)).map_err(|panic| format!("it panicked: {}", message(&*panic)))
+}
+
+fn message(panic: &(dyn Any + Send)) -> &str {
+    let literal = panic.downcast_ref::<&str>().copied();
+    literal.or_else(|| panic.downcast_ref::<String>().map(String::as_str)).unwrap_or("without a message")
+}

@@ -1,0 +1,290 @@
+//! Sparse Cholesky factorisation A = L L' on faer: analysed once, factorised as often as the values change.
+
+use std::sync::Arc;
+
+use faer::perm::PermRef;
+use faer::sparse::linalg::SupernodalThreshold;
+use faer::sparse::linalg::cholesky::{self as fc, supernodal};
+use faer::sparse::{FaerError, SymbolicSparseColMatRef};
+use faer::{Par, Side};
+
+use super::factor::{self, Real};
+use super::{Equilibration, SparseMatrix, SymmetricMatrix, dot, ldexp, ordering};
+use crate::qp::barrier::guarded;
+use crate::error::Error;
+
+/// Fill-reducing ordering and structure of the factor, for all matrices of one sparsity pattern.
+#[derive(Clone, Debug)]
+pub struct Analysis {
+    symbolic: Arc<fc::SymbolicCholesky<usize>>,
+    trailing: usize,
+    threads: usize,
+}
+
+/// The factor L of a positive definite matrix.
+#[derive(Clone, Debug)]
+pub struct Cholesky {
+    analysis: Analysis,
+    values: Values,
+    smallest_pivot: f64,
+}
+
+/// Shared, because a factor is the largest thing there is.
+#[derive(Clone, Debug)]
+enum Values {
+    Double(Arc<Vec<f64>>),
+    Single(Arc<Vec<f32>>),
+}
+
+/// Calls a function of `factor` for the values in their precision.
+macro_rules! by_precision {
+    ($values:expr, $slice:ident => $call:expr) => {
+        match &$values {
+            Values::Double($slice) => $call,
+            Values::Single($slice) => $call,
+        }
+    };
+}
+
+/// Why a factorisation did not end with a factor.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FactorError {
+    /// A pivot was not positive: the matrix is not positive definite.
+    NotPositiveDefinite,
+    /// Memory or index range was not enough, or the analysis failed.
+    Failed(String),
+}
+
+impl From<FactorError> for Error {
+    fn from(error: FactorError) -> Self {
+        match error {
+            FactorError::NotPositiveDefinite => {
+                Error::NotConvex { evidence: "a Cholesky pivot is not positive".into() }
+            }
+            FactorError::Failed(reason) => Error::Numerical { step: "sparse Cholesky factorisation", reason },
+        }
+    }
+}
+
+impl From<FaerError> for FactorError {
+    fn from(error: FaerError) -> Self {
+        FactorError::Failed(format!("{error:?}"))
+    }
+}
+
+/// A call of faer: a panic in it is a failure like any other.
+pub(super) fn call<T>(work: impl FnOnce() -> Result<T, FactorError>) -> Result<T, FactorError> {
+    guarded(work).map_err(FactorError::Failed)?
+}
+
+fn structure(matrix: &SparseMatrix) -> SymbolicSparseColMatRef<'_, usize> {
+    SymbolicSparseColMatRef::new_checked(
+        matrix.rows(),
+        matrix.columns(),
+        matrix.column_starts(),
+        None,
+        matrix.row_indices(),
+    )
+}
+
+impl Analysis {
+    /// Orders and analyses the pattern of `matrix`.
+    ///
+    /// # Errors
+    /// [`FactorError::Failed`] when memory or the index range does not suffice.
+    pub fn of(matrix: &SymmetricMatrix) -> Result<Self, FactorError> {
+        Self::with_last(matrix, &[])
+    }
+
+    /// As [`Analysis::of`], with the columns of `last` eliminated last, in the order given: the trailing block of the
+    /// factor is then that of their Schur complement.
+    ///
+    /// # Errors
+    /// As [`Analysis::of`].
+    pub fn with_last(matrix: &SymmetricMatrix, last: &[usize]) -> Result<Self, FactorError> {
+        let lower = matrix.lower();
+        let order = call(|| ordering::order(lower, last))?;
+        let mut place = vec![0; order.len()];
+        order.iter().enumerate().for_each(|(position, &column)| place[column] = position);
+        let params = fc::CholeskySymbolicParams {
+            supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+            ..Default::default()
+        };
+        let symbolic = call(|| {
+            let order = fc::SymmetricOrdering::Custom(PermRef::new_checked(&order, &place, order.len()));
+            Ok(fc::factorize_symbolic_cholesky(structure(lower), Side::Lower, order, params)?)
+        })?;
+        Ok(Analysis { symbolic: Arc::new(symbolic), trailing: last.len(), threads: 1 })
+    }
+
+    /// The same analysis, whose factorisations use so many threads.
+    pub fn with_threads(self, threads: usize) -> Self {
+        Analysis { threads, ..self }
+    }
+
+    /// Number of values of the factor, zeros inside supernodes included.
+    pub fn factor_entries(&self) -> usize {
+        self.symbolic.len_val()
+    }
+
+    /// Number of multiplications of a factorisation, as if each column went through its own.
+    pub fn multiplications(&self) -> f64 {
+        let Some(nodes) = self.supernodes() else { return 0.0 };
+        let (starts, below) = (nodes.supernode_begin(), nodes.col_ptr_for_row_idx());
+        (0..nodes.n_supernodes())
+            .map(|node| {
+                let (columns, rows) = (nodes.supernode_end()[node] - starts[node], below[node + 1] - below[node]);
+                (0..columns).map(|column| ((columns - column + rows) as f64).powi(2) / 2.0).sum::<f64>()
+            })
+            .sum()
+    }
+
+    /// Factorises `matrix`, whose pattern must be the analysed one.
+    ///
+    /// # Errors
+    /// [`FactorError::NotPositiveDefinite`] for a pivot that is not positive.
+    pub fn factor(&self, matrix: &SymmetricMatrix) -> Result<Cholesky, FactorError> {
+        let (values, smallest_pivot) = self.factor_entries_of(matrix, |_, _, value| value)?;
+        Ok(Cholesky { analysis: self.clone(), values: Values::Double(Arc::new(values)), smallest_pivot })
+    }
+
+    /// Factorises the equilibrated `c D A D` of `matrix` without building it, in double precision or, with half the
+    /// memory and some seven digits of each entry, in `single`.
+    ///
+    /// # Errors
+    /// As [`Analysis::factor`]; in single precision a pivot may also be lost to rounding.
+    pub fn factor_equilibrated(
+        &self,
+        matrix: &SymmetricMatrix,
+        equilibration: &Equilibration,
+        single: bool,
+    ) -> Result<Cholesky, FactorError> {
+        let scale = &equilibration.diagonal;
+        let entry = |row: usize, column: usize, value| ldexp(value, equilibration.factor + scale[row] + scale[column]);
+        let (values, smallest_pivot) = if single {
+            let rounded = |row: usize, column: usize, value| entry(row, column, value) as f32;
+            let (values, pivot) = self.factor_entries_of(matrix, rounded)?;
+            (Values::Single(Arc::new(values)), pivot)
+        } else {
+            let (values, pivot) = self.factor_entries_of(matrix, entry)?;
+            (Values::Double(Arc::new(values)), pivot)
+        };
+        Ok(Cholesky { analysis: self.clone(), values, smallest_pivot })
+    }
+
+    fn factor_entries_of<T: Real>(
+        &self,
+        matrix: &SymmetricMatrix,
+        entry: impl Fn(usize, usize, f64) -> T,
+    ) -> Result<(Vec<T>, f64), FactorError> {
+        // Only a matrix without columns has no supernodes.
+        let Some(supernodes) = self.supernodes() else { return Ok((Vec::new(), f64::INFINITY)) };
+        let par = if self.threads > 1 { Par::rayon(self.threads) } else { Par::Seq };
+        let (permuted, entries) = self.permuted(matrix.lower(), entry);
+        call(|| factor::factorise(supernodes, &permuted, &entries, par))
+    }
+
+    /// The structure of the lower triangle of P A P', rows in no order, and its entries as `entry(row, column, value)`
+    /// makes them.
+    fn permuted<T: Real>(
+        &self,
+        lower: &SparseMatrix,
+        entry: impl Fn(usize, usize, f64) -> T,
+    ) -> (SparseMatrix, Vec<T>) {
+        let place = self.symbolic.perm().map_or(&[][..], |perm| perm.arrays().1);
+        let mut starts = vec![0_usize; lower.columns() + 1];
+        for (column, &to) in place.iter().enumerate() {
+            lower.column(column).for_each(|(row, _)| starts[to.min(place[row]) + 1] += 1);
+        }
+        (0..lower.columns()).for_each(|column| starts[column + 1] += starts[column]);
+        let mut next = starts.clone();
+        let (mut rows, mut values) = (vec![0; lower.entries()], vec![T::rounded(0.0); lower.entries()]);
+        for (column, &to) in place.iter().enumerate() {
+            for (row, value) in lower.column(column) {
+                let (first, second) = (to.min(place[row]), to.max(place[row]));
+                rows[next[first]] = second;
+                values[next[first]] = entry(row, column, value);
+                next[first] += 1;
+            }
+        }
+        (SparseMatrix::from_parts(lower.rows(), starts, rows, Vec::new()), values)
+    }
+
+    fn supernodes(&self) -> Option<&supernodal::SymbolicSupernodalCholesky<usize>> {
+        match self.symbolic.raw() {
+            fc::SymbolicCholeskyRaw::Supernodal(inner) => Some(inner),
+            fc::SymbolicCholeskyRaw::Simplicial(_) => None,
+        }
+    }
+}
+
+impl Cholesky {
+    /// Analyses and factorises `matrix`.
+    ///
+    /// # Errors
+    /// As [`Analysis::of`] and [`Analysis::factor`].
+    pub fn of(matrix: &SymmetricMatrix) -> Result<Self, FactorError> {
+        Analysis::of(matrix)?.factor(matrix)
+    }
+
+    /// Number of rows and of columns.
+    pub fn dim(&self) -> usize {
+        self.analysis.symbolic.nrows()
+    }
+
+    /// Number of values of the factor, zeros inside supernodes included.
+    pub fn entries(&self) -> usize {
+        by_precision!(self.values, values => values.len())
+    }
+
+    /// Are its values in single precision?
+    pub fn is_single(&self) -> bool {
+        matches!(self.values, Values::Single(_))
+    }
+
+    /// The solution x of A x = b, length `dim`. Should faer fail, or b not fit, then nothing in x is a number, which no
+    /// certificate accepts.
+    pub fn solve(&self, b: &[f64]) -> Vec<f64> {
+        by_precision!(self.values, values => factor::solve(&self.analysis.symbolic, values, b.to_vec()))
+    }
+
+    /// `b' A^-1 b`: the squared length of L^-1 P b, by one sweep where a solution takes two.
+    pub fn inverse_product(&self, b: &[f64]) -> f64 {
+        let y = self.forward(b);
+        dot(&y, &y)
+    }
+
+    /// The sweep L y = P b through the factor, in the order of elimination; its last entries belong to the columns that
+    /// were put last.
+    pub fn forward(&self, b: &[f64]) -> Vec<f64> {
+        let Some(nodes) = self.analysis.supernodes() else { return Vec::new() };
+        let ordered: Vec<f64> = self.order().iter().map(|&column| b.get(column).copied().unwrap_or(f64::NAN)).collect();
+        by_precision!(self.values, values => factor::forward(nodes, values, ordered))
+    }
+
+    /// The sweep L' P x = y, `y` in the order of elimination, `x` in that of the matrix.
+    pub fn backward(&self, y: Vec<f64>) -> Vec<f64> {
+        let Some(nodes) = self.analysis.supernodes() else { return Vec::new() };
+        let ordered = by_precision!(self.values, values => factor::backward(nodes, values, y));
+        let mut x = vec![0.0; ordered.len()];
+        self.order().iter().zip(&ordered).for_each(|(&column, &value)| x[column] = value);
+        x
+    }
+
+    /// The trailing block of L that belongs to the columns put last: m x m, lower triangle, column by column with zeros
+    /// above the diagonal. Its product with its transpose is their Schur complement.
+    pub fn trailing_block(&self) -> Vec<f64> {
+        let (size, dim) = (self.analysis.trailing, self.analysis.symbolic.nrows());
+        let Some(nodes) = self.analysis.supernodes() else { return Vec::new() };
+        by_precision!(self.values, values => factor::trailing_block(nodes, values, dim - size, size))
+    }
+
+    fn order(&self) -> &[usize] {
+        self.analysis.symbolic.perm().map_or(&[], |perm| perm.arrays().0)
+    }
+
+    /// The smallest pivot, min over j of L_jj^2: small against the diagonal of A when A is close to singular.
+    pub fn smallest_pivot(&self) -> f64 {
+        self.smallest_pivot
+    }
+}

@@ -1,0 +1,108 @@
+//! The hierarchy in a face: where single displacements are held, as those of closed contact rows.
+//!
+//! With Q the projection onto what is held, the first prolongator becomes (I - Q) P and every coarse matrix A changes by a
+//! C that reaches only where the face does: nothing else is built again.
+//!
+//! ```text
+//! A_1 - C_1 = P' (I - Q) A (I - Q) P,     C_1 = S + S' - P' (Q A Q) P  with S = P' (Q A) P,     C_k+1 = P' C_k P
+//! ```
+//!
+//! # Source
+//! R. Kornhuber, *Monotone multigrid methods for elliptic variational inequalities I*, Numer. Math. 69 (1994) 167-184:
+//! truncated basis functions.
+
+use super::blocks::BlockMatrix;
+use super::chebyshev::Chebyshev;
+use super::hierarchy::{Coarsest, Hierarchy};
+use super::real::Real;
+use crate::qp::linear::FactorError;
+
+/// A unit vector along which nothing moves: dofs and coefficients. Those of one face are orthogonal.
+pub type Direction = Vec<(usize, f64)>;
+
+/// What the levels of a hierarchy have of their own in a face.
+#[derive(Debug)]
+pub struct FaceLevels<T> {
+    /// Q.
+    pub held: BlockMatrix<T>,
+    /// C of each level but the finest.
+    pub changes: Vec<BlockMatrix<T>>,
+    /// Smoothers of each level but the finest and the coarsest.
+    pub smoothers: Vec<Chebyshev<T>>,
+    /// The factor of the coarsest matrix.
+    pub coarsest: Coarsest,
+}
+
+impl<T: Real> FaceLevels<T> {
+    /// The hierarchy where nothing moves along `directions`.
+    ///
+    /// # Errors
+    /// As [`Hierarchy::new`].
+    pub fn new(hierarchy: &Hierarchy<T>, directions: &[Direction]) -> Result<Self, FactorError> {
+        let held = projection(hierarchy, directions);
+        let threads = hierarchy.threads;
+        let (mut changes, mut smoothers): (Vec<BlockMatrix<T>>, Vec<Chebyshev<T>>) = (Vec::new(), Vec::new());
+        let mut coarser =
+            hierarchy.levels.iter().skip(1).map(|level| &level.matrix).chain([&hierarchy.coarsest_matrix]);
+        for (depth, level) in hierarchy.levels.iter().enumerate() {
+            let through =
+                |inner: &BlockMatrix<T>| level.restriction.product(&inner.product(&level.prolongator, 1), threads);
+            let change = match changes.last() {
+                None => {
+                    let rows = held.product(&level.matrix, 1);
+                    let one_side = through(&rows);
+                    one_side.plus(1.0, &one_side.transposed()).plus(-1.0, &through(&rows.product(&held, 1)))
+                }
+                Some(above) => through(above),
+            };
+            let Some(matrix) = coarser.next() else { break };
+            if let Some(next) = hierarchy.levels.get(depth + 1) {
+                smoothers.push(next.smoother.changed(matrix, &change));
+            }
+            changes.push(change);
+        }
+        let coarsest = match changes.last() {
+            Some(change) => Coarsest::of(&hierarchy.coarsest_matrix.plus(-1.0, change))?,
+            None => Coarsest::of(&held_matrix(&hierarchy.coarsest_matrix, &held))?,
+        };
+        Ok(FaceLevels { held, changes, smoothers, coarsest })
+    }
+}
+
+/// `(I - Q) A (I - Q) + Q`, for a hierarchy of one level.
+fn held_matrix<T: Real>(matrix: &BlockMatrix<T>, held: &BlockMatrix<T>) -> BlockMatrix<T> {
+    let rows = held.product(matrix, 1);
+    let both = rows.product(held, 1);
+    matrix.plus(-1.0, &rows).plus(-1.0, &rows.transposed()).plus(1.0, &both).plus(1.0, held)
+}
+
+/// Q = sum of q q' over the directions.
+fn projection<T: Real>(hierarchy: &Hierarchy<T>, directions: &[Direction]) -> BlockMatrix<T> {
+    let (size, count) = (hierarchy.nodes.size, hierarchy.nodes.count);
+    let mut entries: Vec<(u32, u32, f64)> = Vec::new();
+    for direction in directions {
+        for &(first, a) in direction {
+            for &(second, b) in direction {
+                entries.push((hierarchy.nodes.place[first], hierarchy.nodes.place[second], a * b));
+            }
+        }
+    }
+    let node = |place: u32| place as usize / size;
+    entries.sort_unstable_by_key(|&(row, column, _)| (node(row), node(column)));
+    let mut held = BlockMatrix::empty(0, count, (size, size));
+    let mut next = 0;
+    for row in 0..count {
+        while let Some(&(place, column, value)) = entries.get(next).filter(|entry| node(entry.0) == row) {
+            let is_new = held.indices.len() == held.starts[row] || held.indices.last() != Some(&(node(column) as u32));
+            if is_new {
+                held.indices.push(node(column) as u32);
+                held.values.resize(held.values.len() + size * size, T::default());
+            }
+            let block = held.values.len() - size * size;
+            held.values[block + place as usize % size * size + column as usize % size] += T::of(value);
+            next += 1;
+        }
+        held.starts.push(held.indices.len());
+    }
+    held
+}

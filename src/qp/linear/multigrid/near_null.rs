@@ -1,0 +1,109 @@
+//! Displacements that cost next to no energy: what a hierarchy must not lose on its way down.
+
+use super::nodes::Nodes;
+use crate::error::Error;
+use crate::qp::linear::{SymmetricMatrix, dot, largest};
+
+/// A vector of which less than this is left after those before it are taken off follows from them.
+const DEPENDENT: f64 = 1e-8;
+
+/// The near-null space of a stiffness: for a body its rigid motions, for a scalar problem the constants.
+///
+/// One vector for each motion, one entry per free dof, linearly independent. Bodies that share no dof are carried by the
+/// same vectors, as rigid motions of all space.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NearNullSpace {
+    vectors: Vec<Vec<f64>>,
+}
+
+impl NearNullSpace {
+    /// From its vectors, length `dofs` each.
+    ///
+    /// # Errors
+    /// [`Error::Length`] for a vector of another length, [`Error::NotFinite`], [`Error::Setting`] for no vector, more
+    /// vectors than dofs, and a vector that follows from those before it.
+    pub fn new(vectors: Vec<Vec<f64>>, dofs: usize) -> Result<Self, Error> {
+        if vectors.is_empty() || vectors.len() > dofs {
+            let allowed = "at least 1 and at most the number of dofs";
+            return Err(Error::Setting {
+                name: "the number of near-null vectors",
+                value: vectors.len() as f64,
+                allowed,
+            });
+        }
+        for vector in &vectors {
+            if vector.len() != dofs {
+                let found = vector.len();
+                return Err(Error::Length { name: "near-null vector", found, expected: dofs, of: "dofs" });
+            }
+            if let Some((dof, &value)) = vector.iter().enumerate().find(|entry| !entry.1.is_finite()) {
+                let at = format!("entry {dof}");
+                return Err(Error::NotFinite { name: "near-null vector", at, value, allowed: "finite" });
+            }
+        }
+        match first_dependent(&vectors) {
+            Some(index) => Err(Error::Setting {
+                name: "the rank of the near-null space",
+                value: index as f64,
+                allowed: "its number of vectors: they must be linearly independent, each by more than 1e-8 of its length",
+            }),
+            None => Ok(NearNullSpace { vectors }),
+        }
+    }
+
+    /// From vectors that are known to be finite; one that follows from others, as a motion of which supports leave nothing,
+    /// does no harm. `None` without vectors.
+    pub(crate) fn of_motions(vectors: Vec<Vec<f64>>) -> Option<Self> {
+        let dofs = vectors.first().map_or(0, Vec::len);
+        (dofs > 0 && vectors.iter().all(|vector| vector.len() == dofs)).then_some(NearNullSpace { vectors })
+    }
+
+    /// The constants: one vector for each of the dofs that a node has, in their order, by the pattern of `matrix` alone.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for a matrix without dofs.
+    pub fn constants(matrix: &SymmetricMatrix) -> Result<Self, Error> {
+        let (size, components) = Nodes::components(matrix);
+        let vector = |of: usize| components.iter().map(|&component| f64::from(u8::from(component == of))).collect();
+        Self::new((0..size).map(vector).collect(), matrix.dim())
+    }
+
+    /// The vectors.
+    pub fn vectors(&self) -> &[Vec<f64>] {
+        &self.vectors
+    }
+
+    /// Number of vectors.
+    pub fn count(&self) -> usize {
+        self.vectors.len()
+    }
+
+    /// Length of each vector.
+    pub fn dofs(&self) -> usize {
+        self.vectors.first().map_or(0, Vec::len)
+    }
+}
+
+/// The first vector that follows from those before it, by modified Gram-Schmidt.
+fn first_dependent(vectors: &[Vec<f64>]) -> Option<usize> {
+    let mut orthonormal: Vec<Vec<f64>> = Vec::with_capacity(vectors.len());
+    for (index, vector) in vectors.iter().enumerate() {
+        let size = largest(vector);
+        if size == 0.0 {
+            return Some(index);
+        }
+        let mut rest: Vec<f64> = vector.iter().map(|value| value / size).collect();
+        let whole = dot(&rest, &rest).sqrt();
+        for known in &orthonormal {
+            let along = dot(known, &rest);
+            rest.iter_mut().zip(known).for_each(|(rest, known)| *rest -= along * known);
+        }
+        let length = dot(&rest, &rest).sqrt();
+        if length <= DEPENDENT * whole {
+            return Some(index);
+        }
+        rest.iter_mut().for_each(|value| *value /= length);
+        orthonormal.push(rest);
+    }
+    None
+}

@@ -1,0 +1,174 @@
+//! Problem directories: which file holds what.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use super::parse::{Content, Values, parse};
+use super::{format_matrix, format_symmetric, format_vector};
+use crate::error::Error;
+use crate::file::{MOST_OF_TABLE, read_capped};
+use crate::qp::problem::ContactProblem;
+use crate::solution::Solution;
+use crate::qp::linear::multigrid::NearNullSpace;
+use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
+
+/// Reads the problem of a directory.
+///
+/// # Errors
+/// [`Error::File`] and [`Error::FileSyntax`] for a file that is missing or malformed, and those of
+/// [`ContactProblem::new`].
+pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
+    let file = directory.join("K.mtx");
+    let stiffness = read(&file, Values::Finite)?;
+    check_filled(&file, &stiffness, stiffness.rows.max(stiffness.columns))?;
+    let (is_symmetric, stiffness) = (stiffness.symmetric, matrix(stiffness)?);
+    let stiffness =
+        if is_symmetric { SymmetricMatrix::from_lower(stiffness) } else { SymmetricMatrix::from_full(&stiffness) }?;
+    let load = read_vector(&directory.join("f.mtx"))?;
+    let file = directory.join("B.mtx");
+    let contact = read(&file, Values::Finite)?;
+    // A body has many dofs without a contact row: as many columns as the stiffness are right.
+    let empty = if contact.columns == load.len() { contact.rows } else { contact.rows.max(contact.columns) };
+    check_filled(&file, &contact, empty)?;
+    let contact = matrix(contact)?;
+    let gap = vector(&directory.join("g.mtx"), Values::FiniteOrInfinite)?;
+    let problem = ContactProblem::new(stiffness, load, contact, gap)?;
+    match near_null(directory, problem.dofs())? {
+        Some(near_null) => problem.with_near_null(near_null),
+        None => Ok(problem),
+    }
+}
+
+/// What `near_null.mtx` says of the body, one column for each vector, or `coordinates.mtx`, one row for each node whose dofs
+/// follow each other, all of them free.
+fn near_null(directory: &Path, dofs: usize) -> Result<Option<NearNullSpace>, Error> {
+    let file = directory.join("near_null.mtx");
+    let (file, vectors) = if file.exists() {
+        let content = read(&file, Values::Finite)?;
+        if content.rows != dofs || content.columns == 0 {
+            let found = format!("it is {} x {}", content.rows, content.columns);
+            return Err(fault(
+                file,
+                format!("{found}, but it must have {dofs} rows, one per dof, and a column at least"),
+            ));
+        }
+        (file, columns(content))
+    } else {
+        let file = directory.join("coordinates.mtx");
+        if !file.exists() {
+            return Ok(None);
+        }
+        let content = read(&file, Values::Finite)?;
+        let (nodes, dimension) = (content.rows, content.columns);
+        if !(1..=3).contains(&dimension) || nodes.checked_mul(dimension) != Some(dofs) {
+            let message = format!(
+                "it is {nodes} x {dimension}, which makes {} dofs, but there are {dofs}; it must have a row for each node \
+                 and a column for each coordinate, 1 to 3 (where supports have taken dofs out, use near_null.mtx)",
+                nodes.saturating_mul(dimension)
+            );
+            return Err(fault(file, message));
+        }
+        (file, rigid_motions(&columns(content)))
+    };
+    NearNullSpace::new(vectors, dofs).map(Some).map_err(|error| fault(file, error.to_string()))
+}
+
+fn fault(file: PathBuf, message: String) -> Error {
+    Error::FileSyntax { file, line: 1, message }
+}
+
+fn columns(content: Content) -> Vec<Vec<f64>> {
+    let mut columns = vec![vec![0.0; content.rows]; content.columns];
+    content.entries.iter().for_each(|&(row, column, value)| columns[column][row] += value);
+    columns
+}
+
+/// Translations and rotations of nodes with the coordinates `axes`, node by node.
+fn rigid_motions(axes: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let (dimension, nodes) = (axes.len(), axes.first().map_or(0, Vec::len));
+    let mut motions = vec![vec![0.0; dimension * nodes]; dimension];
+    for (axis, motion) in motions.iter_mut().enumerate() {
+        (0..nodes).for_each(|node| motion[dimension * node + axis] = 1.0);
+    }
+    for first in 0..dimension {
+        for second in first + 1..dimension {
+            let mut rotation = vec![0.0; dimension * nodes];
+            let middle = [first, second].map(|axis| axes[axis].iter().sum::<f64>() / nodes.max(1) as f64);
+            for node in 0..nodes {
+                rotation[dimension * node + first] = middle[1] - axes[second][node];
+                rotation[dimension * node + second] = axes[first][node] - middle[0];
+            }
+            motions.push(rotation);
+        }
+    }
+    motions
+}
+
+/// Name and text of the file of a problem's near-null space, where it has one.
+pub fn near_null_file(problem: &ContactProblem) -> Option<(&'static str, String)> {
+    let vectors = problem.near_null()?.vectors();
+    let mut text = format!("%%MatrixMarket matrix array real general\n{} {}\n", problem.dofs(), vectors.len());
+    for value in vectors.iter().flatten() {
+        // Writing into a String cannot fail.
+        let _ = writeln!(text, "{value:e}");
+    }
+    Some(("near_null.mtx", text))
+}
+
+/// Reads a vector of finite numbers: one column, or one row.
+///
+/// # Errors
+/// [`Error::File`] and [`Error::FileSyntax`].
+pub fn read_vector(file: &Path) -> Result<Vec<f64>, Error> {
+    vector(file, Values::Finite)
+}
+
+fn vector(file: &Path, values: Values) -> Result<Vec<f64>, Error> {
+    let content = read(file, values)?;
+    if content.columns != 1 && content.rows != 1 {
+        let message = format!("a vector has one column, but this is {} x {}", content.rows, content.columns);
+        return Err(Error::FileSyntax { file: file.to_path_buf(), line: content.line, message });
+    }
+    check_filled(file, &content, content.rows.saturating_mul(content.columns))?;
+    let mut vector = vec![0.0; content.rows * content.columns];
+    for (row, column, value) in content.entries {
+        // Entries of the same place are added, as in a matrix.
+        vector[row + column] += value;
+    }
+    Ok(vector)
+}
+
+/// Name and text of the files of a problem.
+pub fn problem_files(problem: &ContactProblem) -> [(&'static str, String); 4] {
+    [
+        ("K.mtx", format_symmetric(problem.stiffness())),
+        ("f.mtx", format_vector(problem.load())),
+        ("B.mtx", format_matrix(problem.contact())),
+        ("g.mtx", format_vector(problem.gap())),
+    ]
+}
+
+/// Name and text of the files of an answer.
+pub fn solution_files(solution: &Solution) -> [(&'static str, String); 2] {
+    [("u.mtx", format_vector(&solution.displacement)), ("lambda.mtx", format_vector(&solution.multiplier))]
+}
+
+fn read(file: &Path, values: Values) -> Result<Content, Error> {
+    let bytes = read_capped(file, MOST_OF_TABLE)?;
+    // Comments of older collections hold names in other encodings; numbers are ASCII in all of them.
+    parse(file, &String::from_utf8_lossy(&bytes), values)
+}
+
+/// Refuses more rows or columns (`lines` of them) than the entries of a file make credible.
+fn check_filled(file: &Path, content: &Content, lines: usize) -> Result<(), Error> {
+    if content.believes(lines) {
+        return Ok(());
+    }
+    let (rows, columns, entries) = (content.rows, content.columns, content.entries.len());
+    let message = format!("{rows} x {columns} with {entries} entries is almost empty; write the size that it has");
+    Err(Error::FileSyntax { file: file.to_path_buf(), line: content.line, message })
+}
+
+fn matrix(content: Content) -> Result<SparseMatrix, Error> {
+    SparseMatrix::from_triplets(content.rows, content.columns, &content.entries)
+}

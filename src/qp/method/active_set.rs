@@ -1,0 +1,226 @@
+//! The active-set loop with Lagrange multipliers.
+//!
+//! ```text
+//! C <- 0; repeat: solve  [ K  -C ] [u]   [ f   ]
+//!                        [ C  I-C] [l] = [ C g ]      C <- diag heaviside( (I-C)(u-g) - C l )     until C is settled
+//! ```
+//!
+//! A primal-dual active set, or semismooth Newton, method: from most starts it ends in a few steps. It can cycle. When
+//! a set comes back, the loop goes on by block principal pivoting with single pivots (largest row first) whenever a
+//! block exchange does not reduce the number of violations: finite for every P-matrix. Closed rows that contradict each
+//! other, and a set that comes back under pivoting too, end the loop unsettled.
+//!
+//! # Source
+//! J. J. Júdice and F. M. Pires, *A block principal pivoting algorithm for large-scale strictly monotone linear
+//! complementarity problems*, Computers & Operations Research 21 (1994) 587-596.
+
+use std::collections::HashSet;
+
+use super::{Holding, Outcome, SIGN_TOLERANCE, ScaledProblem, multiplier_rounding};
+use crate::error::Error;
+use crate::qp::problem::ContactProblem;
+use crate::solution::{ContactSet, Iteration};
+use crate::qp::linear::{Cholesky, largest};
+
+/// Weight of the closed rows in K + w B_C'B_C, on a diagonal of order one: every correction of the multipliers gains
+/// about four digits, and the factorisation loses as many.
+const WEIGHT: f64 = 65536.0;
+
+/// Free motions that may be stopped, where there are fewer rows.
+const MOST_STOPS: usize = 100;
+
+/// Corrections of the multipliers; four or five suffice where the closed rows are consistent.
+const CORRECTIONS: usize = 25;
+
+/// Closed rows that still miss their gap by this, relative to the displacement, contradict each other.
+const CONTRADICTION: f64 = 1e-9;
+
+/// Block exchanges that may fail to reduce the number of violations before a single pivot.
+const PATIENCE: usize = 3;
+
+/// Balance of forces with the rows of a set closed.
+#[derive(Clone, Debug)]
+pub struct Equilibrium {
+    /// Displacement, one entry per dof.
+    pub displacement: Vec<f64>,
+    /// Multiplier, one entry per row, zero on open rows, of either sign on closed ones.
+    pub multiplier: Vec<f64>,
+    /// Could all rows of the set be closed together?
+    pub consistent: bool,
+}
+
+/// Runs the loop from the set `start`.
+///
+/// # Errors
+/// [`Error::Unbounded`] and [`Error::UnderHeld`] for a free motion that no row stops, [`Error::NotConvex`],
+/// [`Error::Numerical`].
+pub fn solve(scaled: &ScaledProblem, start: ContactSet, max_iterations: usize) -> Result<Outcome, Error> {
+    let rows = scaled.problem.rows();
+    let mut closed = start;
+    let mut displacement = vec![0.0; scaled.problem.dofs()];
+    let mut multiplier = vec![0.0; rows];
+    let mut history = Vec::new();
+    let mut seen = HashSet::new();
+    let mut rule = Rule::Exchange;
+    let mut settled = false;
+    let mut stops = 0;
+    while !settled && history.len() + stops < max_iterations && (history.is_empty() || !scaled.watch().is_over()) {
+        scaled.watch().step("active set", history.len() + 1);
+        let cholesky = match scaled.hold(&closed, WEIGHT)? {
+            Holding::Held(cholesky) => cholesky,
+            Holding::Free(motion) => match scaled.stopping_rows(&motion, &displacement, &closed) {
+                // A motion that rows stop again and again must not keep the loop alive.
+                Some(stopped) if stops < MOST_STOPS.max(rows) => {
+                    stops += 1;
+                    closed = stopped;
+                    continue;
+                }
+                Some(_) => {
+                    break;
+                }
+                None => return Err(motion.into_error()),
+            },
+        };
+        let balance = equilibrium(scaled.problem, &cholesky, &closed);
+        history.push(Iteration { contact_set: closed.clone(), penalty: 0.0 });
+        if !balance.consistent {
+            break;
+        }
+        (displacement, multiplier) = (balance.displacement, balance.multiplier);
+        let wrong = wrong_rows(scaled.problem, &displacement, &multiplier, &closed);
+        if wrong.is_empty() {
+            settled = true;
+        } else {
+            if !seen.insert((closed.clone(), rule)) {
+                if matches!(rule, Rule::Pivoting { .. }) {
+                    // Pivoting comes back to a set where rounding decides signs: it would do so for ever.
+                    break;
+                }
+                rule = rule.pivoting(wrong.len());
+            }
+            let exchanged = rule.choose(&wrong);
+            exchanged.iter().for_each(|&row| closed.set(row, !closed.contains(row)));
+        }
+    }
+    multiplier.iter_mut().for_each(|value| *value = value.min(0.0));
+    let variant = match (settled, rule) {
+        (false, _) => "-unsettled",
+        (true, Rule::Exchange) => "",
+        (true, Rule::Pivoting { single: false, .. }) => "-block-pivoting",
+        (true, Rule::Pivoting { single: true, .. }) => "-single-pivoting",
+    };
+    let iterations = history.len();
+    Ok(Outcome { displacement, multiplier, contact_set: closed, iterations, history, settled, variant })
+}
+
+/// Balance of forces with the rows of `closed` held at their gaps, pushing or pulling, and all others free.
+///
+/// # Errors
+/// [`Error::Unbounded`] and [`Error::UnderHeld`] where they do not hold the body, [`Error::Infeasible`] where they
+/// contradict each other.
+pub fn with_contact_set(scaled: &ScaledProblem, closed: &ContactSet) -> Result<Equilibrium, Error> {
+    match scaled.hold(closed, WEIGHT)? {
+        Holding::Held(cholesky) => {
+            let balance = equilibrium(scaled.problem, &cholesky, closed);
+            let reason = "the closed rows contradict each other".to_string();
+            if balance.consistent {
+                Ok(balance)
+            } else {
+                Err(Error::Infeasible { reason, rows: closed.iter().collect(), weights: Vec::new(), overlap: 0.0 })
+            }
+        }
+        Holding::Free(motion) => Err(motion.into_error()),
+    }
+}
+
+/// How the next set is made from the rows that are wrong in this one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum Rule {
+    /// All of them change sides.
+    Exchange,
+    /// All of them while their number falls, else the last one alone.
+    Pivoting { fewest: usize, patience: usize, single: bool },
+}
+
+impl Rule {
+    fn pivoting(self, fewest: usize) -> Self {
+        match self {
+            Rule::Exchange => Rule::Pivoting { fewest, patience: 0, single: false },
+            pivoting => pivoting,
+        }
+    }
+
+    fn choose<'a>(&mut self, wrong: &'a [usize]) -> &'a [usize] {
+        let Rule::Pivoting { fewest, patience, single } = self else { return wrong };
+        if wrong.len() < *fewest {
+            (*fewest, *patience) = (wrong.len(), PATIENCE);
+            wrong
+        } else if *patience > 0 {
+            *patience -= 1;
+            wrong
+        } else {
+            *single = true;
+            &wrong[wrong.len() - 1..]
+        }
+    }
+}
+
+/// The size of the displacements that matter: those of the contact rows, or what the load does to a stiffness of order
+/// one where all of these are zero but for rounding.
+fn reach(problem: &ContactProblem, u: &[f64]) -> f64 {
+    largest(&problem.contact().mul(u)).max(largest(problem.load()))
+}
+
+/// The rows that are on the wrong side: open and penetrating, or closed and pulling, beyond rounding.
+fn wrong_rows(problem: &ContactProblem, u: &[f64], multiplier: &[f64], closed: &ContactSet) -> Vec<usize> {
+    let reach = reach(problem, u);
+    let rounding = multiplier_rounding(problem, u, multiplier);
+    let violation = problem.violation(u);
+    (0..problem.rows())
+        .filter(|&row| match closed.contains(row) {
+            false => violation[row] > SIGN_TOLERANCE * (reach + problem.gap()[row].abs()),
+            true => multiplier[row] > rounding[row],
+        })
+        .collect()
+}
+
+/// Solves the saddle-point system of the closed rows by corrections with the factorised K + w B_C'B_C:
+///
+/// ```text
+/// (K + w B_C'B_C) du = f + B_C'l - K u + w B_C'(g - B u),     dl = w (g - B u - B du)  on C
+/// ```
+///
+/// The residuals are those of the exact system, so that neither the weight nor redundant rows spoil the answer.
+pub(super) fn equilibrium(problem: &ContactProblem, cholesky: &Cholesky, closed: &ContactSet) -> Equilibrium {
+    let (rows, contact, gap) = (problem.rows(), problem.contact(), problem.gap());
+    let mut u = vec![0.0; problem.dofs()];
+    let mut multiplier = vec![0.0; rows];
+    let on_closed = |values: Vec<f64>| -> Vec<f64> {
+        values.into_iter().enumerate().map(|(row, value)| if closed.contains(row) { value } else { 0.0 }).collect()
+    };
+    let missing = |u: &[f64]| on_closed(contact.mul(u).iter().zip(gap).map(|(b, g)| g - b).collect());
+    let load = largest(problem.load());
+    let mut last_step = f64::INFINITY;
+    for _ in 0..CORRECTIONS {
+        let distance = missing(&u);
+        let push: Vec<f64> = multiplier.iter().zip(&distance).map(|(l, d)| l + WEIGHT * d).collect();
+        let (elastic, contact_force) = (problem.stiffness().mul(&u), contact.mul_transposed(&push));
+        let force: Vec<f64> = (0..u.len()).map(|dof| problem.load()[dof] - elastic[dof] + contact_force[dof]).collect();
+        let du = cholesky.solve(&force);
+        let dl: Vec<f64> = on_closed(contact.mul(&du).iter().zip(&distance).map(|(b, d)| WEIGHT * (d - b)).collect());
+        u.iter_mut().zip(&du).for_each(|(u, du)| *u += du);
+        multiplier.iter_mut().zip(&dl).for_each(|(l, dl)| *l += dl);
+        let step = relative_size(&du, largest(&u).max(load)) + relative_size(&dl, largest(&multiplier).max(load));
+        if step <= f64::EPSILON || step > 0.5 * last_step {
+            break;
+        }
+        last_step = step;
+    }
+    let reach = reach(problem, &u).max(largest(&on_closed(gap.to_vec())));
+    let consistent = largest(&missing(&u)) <= CONTRADICTION * reach;
+    Equilibrium { displacement: u, multiplier, consistent }
+}
+
+fn relative_size(step: &[f64], size: f64) -> f64 {
+    if size == 0.0 { 0.0 } else { largest(step) / size }
+}

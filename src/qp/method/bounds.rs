@@ -1,0 +1,194 @@
+//! Rows as bounds: reflections that turn every row onto one unknown of its own.
+
+use std::collections::{BTreeSet, HashMap};
+
+use crate::error::Error;
+use crate::solution::ContactSet;
+use crate::qp::linear::SparseMatrix;
+use crate::qp::linear::multigrid::Direction;
+
+/// Parts of a unit vector below this are rounding of the turning.
+const ROUNDING: f64 = 1e-12;
+
+/// A row on one side of its unknown: `coefficient * v <= gap`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Side {
+    row: usize,
+    coefficient: f64,
+    value: f64,
+}
+
+/// The bounds of one unknown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bound {
+    /// The unknown, among the turned ones.
+    pub unknown: usize,
+    /// The least value, `-inf` where there is none.
+    pub lower: f64,
+    /// The greatest value, `+inf` where there is none.
+    pub upper: f64,
+    sides: [Option<Side>; 2],
+}
+
+/// `v -= 2 w (w'v)`.
+#[derive(Clone, Debug)]
+struct Reflection {
+    vector: Direction,
+}
+
+impl Reflection {
+    fn apply(&self, v: &mut [f64]) {
+        let along: f64 = self.vector.iter().map(|&(place, w)| w * v[place]).sum();
+        self.vector.iter().for_each(|&(place, w)| v[place] -= 2.0 * along * w);
+    }
+}
+
+/// Rows B u <= g as bounds on unknowns v = H u, with H orthogonal: a product of one reflection for each row that has more
+/// than one entry.
+#[derive(Clone, Debug)]
+pub struct Bounds {
+    reflections: Vec<Reflection>,
+    /// The reflections that touch each place.
+    touching: HashMap<usize, Vec<usize>>,
+    bounds: Vec<Bound>,
+    rows: usize,
+}
+
+impl Bounds {
+    /// The bounds that rows B (m x n) and gaps g make. Rows without entries or with an infinite gap make none.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] for two rows that share an unknown and are neither parallel nor at right angles: no turning
+    /// makes bounds of them.
+    pub fn of(contact: &SparseMatrix, gap: &[f64]) -> Result<Self, Error> {
+        let by_row = contact.transposed();
+        let mut all = Bounds { reflections: Vec::new(), touching: HashMap::new(), bounds: Vec::new(), rows: gap.len() };
+        let mut bound_of: HashMap<usize, usize> = HashMap::new();
+        for row in (0..gap.len()).filter(|&row| gap[row].is_finite()) {
+            let entries: Vec<(usize, f64)> = by_row.column(row).filter(|entry| entry.1 != 0.0).collect();
+            let length = entries.iter().fold(0.0, |length: f64, entry| length.hypot(entry.1));
+            let turned = all.reflected(entries.iter().map(|&(place, b)| (place, b / length)).collect(), false);
+            let Some(&(first, _)) = turned.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())) else { continue };
+            let taken: Vec<usize> = turned.iter().filter_map(|entry| bound_of.get(&entry.0).copied()).collect();
+            let index = match (taken[..].first(), turned.len()) {
+                (Some(&index), 1) => index,
+                (Some(&index), _) => {
+                    let other = all.bounds[index].sides.iter().flatten().next().map_or(0, |side| side.row);
+                    let reason = format!(
+                        "contact rows {other} and {row} (indices from 0) share an unknown and are neither parallel nor at \
+                         right angles; another method must take them"
+                    );
+                    return Err(Error::Numerical { step: "turning contact rows into bounds", reason });
+                }
+                (None, _) => {
+                    bound_of.insert(first, all.bounds.len());
+                    let (lower, upper) = (f64::NEG_INFINITY, f64::INFINITY);
+                    all.bounds.push(Bound { unknown: first, lower, upper, sides: [None; 2] });
+                    all.bounds.len() - 1
+                }
+            };
+            let sign = if turned.len() == 1 { turned[0].1.signum() } else { all.reflect(turned, first) };
+            let coefficient = sign * length;
+            all.bounds[index].take(Side { row, coefficient, value: gap[row] / coefficient });
+        }
+        Ok(all)
+    }
+
+    /// A unit vector after those reflections that touch it, in their order, or `back` in the opposite one.
+    fn reflected(&self, vector: Direction, back: bool) -> Direction {
+        let mut entries: HashMap<usize, f64> = vector.into_iter().collect();
+        let of_place = |place: &usize| self.touching.get(place).into_iter().flatten().copied();
+        let mut waiting: BTreeSet<usize> = entries.keys().flat_map(of_place).collect();
+        while let Some(next) = if back { waiting.pop_last() } else { waiting.pop_first() } {
+            let reflection = &self.reflections[next].vector;
+            let along: f64 = reflection.iter().map(|&(p, w)| w * entries.get(&p).copied().unwrap_or(0.0)).sum();
+            for &(place, w) in reflection {
+                *entries.entry(place).or_insert(0.0) -= 2.0 * along * w;
+                waiting.extend(of_place(&place).filter(|&other| if back { other < next } else { other > next }));
+            }
+        }
+        let mut reflected: Direction = entries.into_iter().filter(|entry| entry.1.abs() > ROUNDING).collect();
+        reflected.sort_unstable_by_key(|entry| entry.0);
+        reflected
+    }
+
+    /// Adds the reflection that turns a unit vector onto `place`, up to the sign that is returned.
+    fn reflect(&mut self, mut unit: Direction, place: usize) -> f64 {
+        let own = unit.iter().find(|entry| entry.0 == place).map_or(1.0, |entry| entry.1);
+        // |u + sign e|^2 = 2 + 2 |u_place|.
+        let length = (2.0 + 2.0 * own.abs()).sqrt();
+        for entry in &mut unit {
+            if entry.0 == place {
+                entry.1 += own.signum();
+            }
+            entry.1 /= length;
+            self.touching.entry(entry.0).or_default().push(self.reflections.len());
+        }
+        self.reflections.push(Reflection { vector: unit });
+        -own.signum()
+    }
+
+    /// The bounds.
+    pub fn bounds(&self) -> &[Bound] {
+        &self.bounds
+    }
+
+    /// Are all rows bounds as they stand?
+    pub fn is_plain(&self) -> bool {
+        self.reflections.is_empty()
+    }
+
+    /// H u in place.
+    pub fn turn(&self, v: &mut [f64]) {
+        self.reflections.iter().for_each(|reflection| reflection.apply(v));
+    }
+
+    /// H' v in place.
+    pub fn turn_back(&self, v: &mut [f64]) {
+        self.reflections.iter().rev().for_each(|reflection| reflection.apply(v));
+    }
+
+    /// The unit vector along which the unknown of a bound moves: its column of H'.
+    pub fn direction(&self, bound: &Bound) -> Direction {
+        self.reflected(vec![(bound.unknown, 1.0)], true)
+    }
+
+    /// The multipliers of the rows where the forces on the unknowns with bounds are `force` (those that are out of
+    /// balance there), and the rows that are closed.
+    pub fn multipliers(&self, force: impl Fn(usize) -> f64) -> (Vec<f64>, ContactSet) {
+        let (mut multiplier, mut closed) = (vec![0.0; self.rows], ContactSet::open(self.rows));
+        for (index, bound) in self.bounds.iter().enumerate() {
+            let force = force(index);
+            // A force down is that of the upper bound.
+            let side = bound.sides[usize::from(force < 0.0)];
+            if let Some(side) = side.filter(|_| force != 0.0) {
+                multiplier[side.row] = force / side.coefficient;
+                closed.set(side.row, true);
+            }
+        }
+        (multiplier, closed)
+    }
+
+    /// Is the row that makes the upper (`true`) or the lower bound in the set?
+    pub fn is_closed(&self, index: usize, upper: bool, closed: &ContactSet) -> bool {
+        self.bounds[index].sides[usize::from(upper)].is_some_and(|side| closed.contains(side.row))
+    }
+}
+
+impl Bound {
+    fn take(&mut self, side: Side) {
+        let upper = side.coefficient > 0.0;
+        let place = &mut self.sides[usize::from(upper)];
+        let is_tighter = |old: &Side| if upper { side.value < old.value } else { side.value > old.value };
+        if place.as_ref().is_none_or(is_tighter) {
+            *place = Some(side);
+            if upper {
+                self.upper = side.value;
+            } else {
+                self.lower = side.value;
+            }
+        }
+        // Rows that meet but for rounding are an equality.
+        self.lower = self.lower.min(self.upper);
+    }
+}

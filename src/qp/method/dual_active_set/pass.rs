@@ -1,0 +1,242 @@
+//! One pass of the method: from a base point to the nearest point of the polyhedron, row by row.
+
+use std::collections::HashSet;
+
+use super::basis::{Basis, DEPENDENT, norm};
+use super::polyhedron::Polyhedron;
+use crate::error::Error;
+use crate::solution::{ContactSet, Iteration};
+use crate::qp::linear::{dot, largest};
+use crate::watch::Watch;
+
+/// Units in the last place of the terms below which a violation is rounding. The pass that follows, with accurate
+/// distances, makes any value up to 1e-4 give the same sets.
+const VIOLATED: f64 = 16.0 * f64::EPSILON;
+
+/// A contradiction counts where a point that meets the rows would lie this many times farther off than the rows and the
+/// free point do. Rows that depend on each other but for the rounding of their entries are met 1e16 times as far.
+const FAR: f64 = 1e22;
+
+/// Corrected weights below this share of the largest are zero but for rounding.
+const NO_WEIGHT: f64 = 1e-24;
+
+/// Corrections of the weights: the first gains all digits but the last, the second and the third as many again.
+const WEIGHT_CORRECTIONS: usize = 3;
+
+/// How a pass ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Ending {
+    /// No row is violated beyond rounding.
+    Met,
+    /// It was cut short, or came back to a set where rounding decides.
+    Stopped,
+}
+
+/// The state of a pass: the change w of the point and the pressures y.
+pub(super) struct Pass<'a> {
+    polyhedron: &'a Polyhedron,
+    watch: &'a Watch,
+    pub basis: &'a mut Basis,
+    /// Pressures y = -lambda of all rows, scaled; positive on closed rows only.
+    pub pressures: &'a mut [f64],
+    pub history: &'a mut Vec<Iteration>,
+    /// The pressures of the base that the target has been relieved of.
+    carried: Vec<f64>,
+    /// The free point, less the closed rows under their pressures at the base.
+    target: Vec<f64>,
+    /// Distances of the base from all rows.
+    distances: Vec<f64>,
+    /// The change of the point.
+    pub point: Vec<f64>,
+    /// Length of the base and of the change, for what is far.
+    base: f64,
+    /// Rows that depend on closed ones and cannot be met, but do not prove a contradiction.
+    given_up: HashSet<usize>,
+}
+
+impl<'a> Pass<'a> {
+    /// A pass from a base with the given imbalance `target` and `distances`, the rows of `basis` closed under `pressures`.
+    pub fn new(
+        polyhedron: &'a Polyhedron,
+        watch: &'a Watch,
+        (basis, pressures, history): (&'a mut Basis, &'a mut [f64], &'a mut Vec<Iteration>),
+        (target, distances): (Vec<f64>, Vec<f64>),
+        base: f64,
+    ) -> Self {
+        let mut carried = vec![0.0; pressures.len()];
+        basis.rows().iter().for_each(|&row| carried[row] = pressures[row]);
+        let point = target.clone();
+        let given_up = HashSet::new();
+        Pass { polyhedron, watch, basis, pressures, history, carried, target, distances, point, base, given_up }
+    }
+
+    /// Closes and opens rows until none is violated.
+    ///
+    /// # Errors
+    /// [`Error::Infeasible`] with verified weights.
+    pub fn run(&mut self) -> Result<Ending, Error> {
+        self.open_pulling();
+        let mut seen = HashSet::new();
+        while let Some((row, violation)) = self.most_violated() {
+            if self.watch.is_over() || !self.polyhedron.affords(self.basis.rows().len()) {
+                return Ok(Ending::Stopped);
+            }
+            self.watch.step("dual active set", self.history.len() + 1);
+            if self.close(row, violation)? {
+                let mut closed = ContactSet::open(self.pressures.len());
+                self.basis.rows().iter().for_each(|&row| closed.set(row, true));
+                self.history.push(Iteration { contact_set: closed.clone(), penalty: 0.0 });
+                if !seen.insert(closed) {
+                    return Ok(Ending::Stopped);
+                }
+            } else {
+                self.given_up.insert(row);
+            }
+        }
+        Ok(Ending::Met)
+    }
+
+    /// Opens rows until the closed ones push, which is where the method may start.
+    fn open_pulling(&mut self) {
+        loop {
+            self.balance();
+            let rows = self.basis.rows().iter().enumerate();
+            let pulling = rows.map(|(place, &row)| (place, self.pressures[row])).filter(|entry| entry.1 < 0.0);
+            match pulling.min_by(|a, b| a.1.total_cmp(&b.1)) {
+                Some((place, _)) => self.open(place),
+                None => return,
+            }
+        }
+    }
+
+    /// Point and pressures of the closed rows, from the data.
+    fn balance(&mut self) {
+        let distances: Vec<f64> = self.basis.rows().iter().map(|&row| self.distances[row]).collect();
+        let (point, change) = self.basis.nearest(&self.target, &distances);
+        self.point = point;
+        for (&row, change) in self.basis.rows().iter().zip(&change) {
+            self.pressures[row] = self.carried[row] + change;
+        }
+    }
+
+    fn open(&mut self, place: usize) {
+        let row = self.basis.rows()[place];
+        self.basis.open(place);
+        self.pressures[row] = 0.0;
+        let carried = std::mem::take(&mut self.carried[row]);
+        if carried != 0.0 {
+            let direction = self.polyhedron.row(row);
+            self.target.iter_mut().zip(&direction).for_each(|(entry, c)| *entry += carried * c);
+        }
+    }
+
+    /// The row that is violated most, and by how much.
+    fn most_violated(&self) -> Option<(usize, f64)> {
+        let moved = self.polyhedron.problem.contact().mul(&self.polyhedron.displacement(&self.point));
+        let size = norm(&self.point) + norm(&self.target);
+        let violated = |row: usize| {
+            let violation = moved[row] - self.distances[row];
+            let rounding = VIOLATED * (self.polyhedron.lengths[row] * size + self.distances[row].abs());
+            (violation > rounding && !self.given_up.contains(&row)).then_some((row, violation))
+        };
+        (0..moved.len()).filter_map(violated).max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Closes `row`, opening others on the way whose pressure comes to an end. `false` where the row cannot be met.
+    fn close(&mut self, row: usize, mut violation: f64) -> Result<bool, Error> {
+        let before = self.basis.rows().to_vec();
+        let direction = self.polyhedron.row(row);
+        loop {
+            let split = self.basis.split(&direction);
+            let whole = if split.depends { f64::INFINITY } else { violation / dot(&split.across, &split.across) };
+            let (step, first) = self.blocking(&split.weights);
+            if whole <= step && whole.is_finite() {
+                self.basis.close(row, split);
+                self.balance();
+                return Ok(true);
+            }
+            let Some(place) = first else {
+                self.check_contradiction(row, &split.weights)?;
+                self.restore(&before);
+                return Ok(false);
+            };
+            for (&closed, weight) in self.basis.rows().iter().zip(&split.weights) {
+                self.pressures[closed] = (self.pressures[closed] - step * weight).max(0.0);
+            }
+            if !split.depends {
+                violation -= step * dot(&split.across, &split.across);
+            }
+            self.open(place);
+        }
+    }
+
+    /// How far the new pressure may grow until that of a closed row comes to an end, and the place of that row.
+    fn blocking(&self, weights: &[f64]) -> (f64, Option<usize>) {
+        let rounding = DEPENDENT * (1.0 + largest(weights));
+        let mut first = (f64::INFINITY, None);
+        for (place, (&row, &weight)) in self.basis.rows().iter().zip(weights).enumerate() {
+            let step = self.pressures[row].max(0.0) / weight;
+            if weight > rounding && step < first.0 {
+                first = (step, Some(place));
+            }
+        }
+        first
+    }
+
+    /// Goes back to a set that was closed before.
+    fn restore(&mut self, rows: &[usize]) {
+        self.pressures.fill(0.0);
+        *self.basis = of_rows(self.polyhedron, rows);
+        self.balance();
+    }
+
+    /// Does `row` contradict the closed rows? Under the weights y (1 for it, -r for them) the rows would have to overlap,
+    /// `-g'y > 0`, and what is left of them, `delta = |L^-1 B'y|`, be so small that a point which meets them is absurdly
+    /// far away. Rows that depend on each other but for the rounding of their entries are met far away, and are no
+    /// contradiction: the weights have twice the working precision, to tell them from rows that do depend.
+    ///
+    /// # Errors
+    /// [`Error::Infeasible`] if so.
+    fn check_contradiction(&self, row: usize, shares: &[f64]) -> Result<(), Error> {
+        let Polyhedron { problem, lengths, reach, .. } = self.polyhedron;
+        let mut weights = vec![0.0; problem.rows()];
+        weights[row] = 1.0;
+        self.basis.rows().iter().zip(shares).for_each(|(&closed, share)| weights[closed] = (-share).max(0.0));
+        let mut rest = vec![0.0; problem.rows()];
+        let left = |weights: &[f64], rest: &[f64]| self.polyhedron.of_force(&self.polyhedron.force(weights, rest));
+        for _ in 0..WEIGHT_CORRECTIONS {
+            let change = self.basis.solve_upper(self.basis.along(&left(&weights, &rest)));
+            for (&closed, change) in self.basis.rows().iter().zip(&change) {
+                let weight = rest[closed] - change;
+                let sum = (weights[closed] + weight).max(0.0);
+                (rest[closed], weights[closed]) =
+                    if sum > 0.0 { (weight - (sum - weights[closed]), sum) } else { (0.0, 0.0) };
+            }
+        }
+        let left = norm(&left(&weights, &rest));
+        let (rows, weights) = taking_part(&weights, NO_WEIGHT * largest(&weights));
+        // The largest weight is the unit of the overlap.
+        let overlap = problem.overlap(&rows, &weights).map_or(0.0, |overlap| overlap * largest(&weights));
+        let nearest = rows.iter().map(|&row| problem.gap()[row].abs() / lengths[row]).fold(0.0, f64::max);
+        let far = FAR * (reach + nearest + self.base + norm(&self.point));
+        if overlap > 0.0 && overlap > left * far {
+            return Err(self.polyhedron.contradiction(rows, &weights));
+        }
+        Ok(())
+    }
+}
+
+/// The basis of rows that do not depend on each other, from the data.
+pub(super) fn of_rows(polyhedron: &Polyhedron, rows: &[usize]) -> Basis {
+    let mut basis = Basis::default();
+    for &row in rows {
+        let split = basis.split(&polyhedron.row(row));
+        basis.close(row, split);
+    }
+    basis
+}
+
+/// The rows with a weight above `tiny`, and their weights.
+fn taking_part(weights: &[f64], tiny: f64) -> (Vec<usize>, Vec<f64>) {
+    weights.iter().copied().enumerate().filter(|entry| entry.1 > tiny).unzip()
+}

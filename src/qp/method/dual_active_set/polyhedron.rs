@@ -1,0 +1,171 @@
+//! The problem as the least distance to a polyhedron.
+//!
+//! With K = L L' and w = L' u the problem is to find the point of `C w <= g`, `C = B L^-T`, nearest to `h = L^-1 f`.
+//! Dofs are scaled by `diag(K)^-1/2` and rows by `1 / |L^-1 b|`, both to powers of two, so that lengths are energies and
+//! the rows are about as long as each other.
+
+use std::cell::Cell;
+
+use super::basis::norm;
+use crate::error::Error;
+use crate::qp::method::{Outcome, ScaledProblem};
+use crate::qp::problem::ContactProblem;
+use crate::solution::{ContactSet, Iteration};
+use crate::qp::linear::{
+    Accumulator, AugmentedMatrix, Cholesky, Equilibration, FactorError, SparseMatrix, exponent, ldexp,
+};
+
+/// Weight of the proximal term `1/2 weight |u - u_k|^2` that makes a semidefinite K, with a diagonal between 1 and 4,
+/// definite. With 1e-6 as many problems are solved, with 1 about half of them.
+const PROXIMAL: f64 = 1e-9;
+
+/// Multiplications that the method may cost: about a minute on one core.
+const MOST_WORK: f64 = 5e10;
+
+/// Values of an orthonormal basis that it may keep: 400 MB.
+const MOST_VALUES: usize = 50_000_000;
+
+/// The scaled problem with the factor L of its stiffness.
+#[derive(Debug)]
+pub(super) struct Polyhedron {
+    pub problem: ContactProblem,
+    /// B', whose columns are the rows.
+    by_row: SparseMatrix,
+    /// L of K, or of K with the proximal term.
+    factor: Cholesky,
+    /// `|L^-1 b|` of each row b.
+    pub lengths: Vec<f64>,
+    /// `|L^-1 f|`.
+    pub reach: f64,
+    equilibration: Equilibration,
+    /// Exponent of the scale of each row.
+    scales: Vec<i32>,
+    work: Cell<f64>,
+}
+
+impl Polyhedron {
+    /// That of a problem; `None` where its factorisation fails or would take too many sweeps.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] for want of memory, [`Error::NotFinite`] where data leave the range of double precision.
+    pub fn of(scaled: &ScaledProblem) -> Result<Option<Self>, Error> {
+        let of = scaled.problem;
+        let equilibration = Equilibration::of(of.stiffness());
+        let stiffness = equilibration.apply(of.stiffness());
+        let no_rows = SparseMatrix::from_triplets(0, of.dofs(), &[])?;
+        let body = AugmentedMatrix::new(&stiffness, &no_rows)?;
+        let factor_with = |weight: f64| match body.factor(&body.matrix(|_| 0.0, weight)) {
+            Ok(factor) => Ok(Some(factor)),
+            Err(FactorError::NotPositiveDefinite) => Ok(None),
+            Err(error) => Err(Error::from(error)),
+        };
+        let definite = if scaled.definite { factor_with(0.0)? } else { None };
+        let factor = match definite {
+            Some(factor) => factor,
+            None => match factor_with(PROXIMAL)? {
+                Some(factor) => factor,
+                None => return Ok(None),
+            },
+        };
+        if (of.rows() * factor.entries()) as f64 > MOST_WORK {
+            return Ok(None);
+        }
+        let dofs: Vec<f64> = equilibration.diagonal.iter().map(|&d| ldexp(1.0, d)).collect();
+        let contact = of.contact().scaled(&vec![1.0; of.rows()], &dofs);
+        let by_row = contact.transposed();
+        let length = |row: usize| {
+            let mut dense = vec![0.0; of.dofs()];
+            by_row.column(row).for_each(|(dof, b)| dense[dof] = b);
+            norm(&factor.forward(&dense))
+        };
+        let lengths: Vec<f64> = (0..of.rows()).map(length).collect();
+        let scales: Vec<i32> = lengths.iter().map(|&length| -exponent(length)).collect();
+        let lengths = lengths.iter().zip(&scales).map(|(&length, &scale)| ldexp(length, scale)).collect();
+        let rows: Vec<f64> = scales.iter().map(|&scale| ldexp(1.0, scale)).collect();
+        let contact = contact.scaled(&rows, &vec![1.0; of.dofs()]);
+        let by_row = contact.transposed();
+        let load = of.load().iter().zip(&equilibration.diagonal);
+        let load: Vec<f64> = load.map(|(&f, &d)| ldexp(f, d + equilibration.factor)).collect();
+        let gap = of.gap().iter().zip(&scales).map(|(&g, &scale)| ldexp(g, scale)).collect();
+        let reach = norm(&factor.forward(&load));
+        let problem = ContactProblem::new(stiffness, load, contact, gap)?;
+        let work = Cell::new((of.rows() * factor.entries()) as f64);
+        Ok(Some(Polyhedron { problem, by_row, factor, lengths, reach, equilibration, scales, work }))
+    }
+
+    /// Notes the multiplications of a step with `closed` rows: `false` once there were too many.
+    pub fn affords(&self, closed: usize) -> bool {
+        let dofs = self.problem.dofs();
+        self.work.set(self.work.get() + (4 * self.factor.entries() + 12 * dofs * closed) as f64);
+        self.work.get() <= MOST_WORK && dofs * closed <= MOST_VALUES
+    }
+
+    /// The row c = L^-1 b of C, length n.
+    pub fn row(&self, row: usize) -> Vec<f64> {
+        let mut dense = vec![0.0; self.problem.dofs()];
+        self.by_row.column(row).for_each(|(dof, b)| dense[dof] = b);
+        self.factor.forward(&dense)
+    }
+
+    /// L^-1 r of a force r.
+    pub fn of_force(&self, force: &[f64]) -> Vec<f64> {
+        self.factor.forward(force)
+    }
+
+    /// u = L^-T w.
+    pub fn displacement(&self, point: &[f64]) -> Vec<f64> {
+        self.factor.backward(point.to_vec())
+    }
+
+    /// g - B u of each row, rounded once.
+    pub fn distances(&self, displacement: &[f64]) -> Vec<f64> {
+        let mut sums = Accumulator::new(self.problem.gap());
+        for (row, dof, b) in self.problem.contact().triplets() {
+            sums.add_product(row, -b, displacement[dof]);
+        }
+        sums.into_sums()
+    }
+
+    /// B'y of the rows' weights `y = weights + rest`, rounded once.
+    pub fn force(&self, weights: &[f64], rest: &[f64]) -> Vec<f64> {
+        let mut sums = Accumulator::new(&vec![0.0; self.problem.dofs()]);
+        for (row, dof, b) in self.problem.contact().triplets() {
+            sums.add_product(dof, b, weights[row]);
+            sums.add_product(dof, b, rest[row]);
+        }
+        sums.into_sums()
+    }
+
+    /// That the rows `rows` contradict each other under `weights`, in the units of the problem that was scaled.
+    pub fn contradiction(&self, rows: Vec<usize>, weights: &[f64]) -> Error {
+        let weights: Vec<f64> =
+            rows.iter().zip(weights).map(|(&row, &weight)| ldexp(weight, self.scales[row])).collect();
+        let reason = format!("no displacement satisfies all contact rows; those that contradict are {rows:?}");
+        // In the unit of the scaled gaps; whoever expands it computes it again.
+        Error::Infeasible { reason, rows, weights, overlap: 0.0 }
+    }
+
+    /// The answer in the units of the problem that was scaled; `pressures` are `-lambda`.
+    pub fn expand(
+        &self,
+        displacement: &[f64],
+        pressures: &[f64],
+        closed: &[usize],
+        history: Vec<Iteration>,
+        settled: bool,
+    ) -> Outcome {
+        let displacement = displacement.iter().zip(&self.equilibration.diagonal).map(|(&v, &d)| ldexp(v, d)).collect();
+        let of_row = |(&y, &scale): (&f64, &i32)| -ldexp(y.max(0.0), scale - self.equilibration.factor);
+        let mut contact_set = ContactSet::open(pressures.len());
+        closed.iter().for_each(|&row| contact_set.set(row, true));
+        Outcome {
+            displacement,
+            multiplier: pressures.iter().zip(&self.scales).map(of_row).collect(),
+            contact_set,
+            iterations: history.len(),
+            history,
+            settled,
+            variant: if settled { super::VARIANT } else { "-dual-unsettled" },
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! Does a set of closed rows hold the body? If not: along which direction is it free, and does the load drive it?
+
+use super::ScaledProblem;
+use crate::error::Error;
+use crate::solution::ContactSet;
+use crate::qp::linear::{Cholesky, FactorError, largest};
+
+/// Shifts with which a singular matrix is made definite, smallest first.
+const SHIFTS: [f64; 3] = [1e-12, 1e-10, 1e-8];
+
+/// Projections of the load: each gains several digits, since eigenvalues differ by many orders of magnitude.
+const STEPS: usize = 5;
+
+/// Work of the load on a free motion, and other sums over one, are rounding below this share of their own terms.
+pub(crate) const WORK_TOLERANCE: f64 = 1e-9;
+
+/// A row this close to the obstacle, on displacements of order one, has no play.
+pub(super) const PLAY: f64 = 1e-9;
+
+/// Entries of a null vector with largest entry one, and forces on a diagonal of order one, below this are rounding.
+const NOISE: f64 = 1e-13;
+
+/// The vector with largest entry one and without the entries that are rounding.
+fn normalised(mut direction: Vec<f64>) -> Vec<f64> {
+    let size = largest(&direction);
+    direction.iter_mut().for_each(|value| *value = if value.abs() > NOISE * size { *value / size } else { 0.0 });
+    direction
+}
+
+/// The answer to whether the closed rows hold the body.
+#[derive(Debug)]
+pub enum Holding {
+    /// They do; the factorisation of K + w B_C'B_C.
+    Held(Cholesky),
+    /// They do not.
+    Free(FreeMotion),
+}
+
+/// A direction d with K d = 0 and B_C d = 0, largest entry one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FreeMotion {
+    /// The direction, one entry per dof.
+    pub direction: Vec<f64>,
+    /// Does the load do work on it? Then `f'd > 0`.
+    pub driven: bool,
+}
+
+impl FreeMotion {
+    /// The error that this motion is when no row stops it.
+    pub fn into_error(self) -> Error {
+        let motion = where_largest(&self.direction);
+        match self.driven {
+            true => Error::Unbounded { motion, direction: self.direction },
+            false => Error::UnderHeld { motion, direction: self.direction },
+        }
+    }
+}
+
+/// Where the largest entries of a direction are, in words.
+pub(super) fn where_largest(direction: &[f64]) -> String {
+    let mut entries: Vec<(usize, f64)> = direction.iter().copied().enumerate().collect();
+    entries.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+    let named: Vec<String> = entries.iter().take(3).filter(|e| e.1 != 0.0).map(|e| e.0.to_string()).collect();
+    format!("most of it at dof {} (indices from 0)", named.join(", "))
+}
+
+impl ScaledProblem<'_> {
+    /// Is K positive semidefinite to the largest of the shifts?
+    ///
+    /// # Errors
+    /// [`Error::NotConvex`] if not, [`Error::Numerical`] for want of memory.
+    pub(super) fn check_convex(&self) -> Result<(), Error> {
+        let nothing_closed = ContactSet::open(self.problem.rows());
+        self.factor(&self.matrix(&nothing_closed, 0.0, SHIFTS[SHIFTS.len() - 1])).map(|_| ()).map_err(Error::from)
+    }
+
+    /// Factorises K + weight B_C'B_C and finds out whether it is definite.
+    ///
+    /// # Errors
+    /// [`Error::NotConvex`] where K has a negative eigenvalue, [`Error::Numerical`] for want of memory.
+    pub fn hold(&self, closed: &ContactSet, weight: f64) -> Result<Holding, Error> {
+        let matrix = self.matrix(closed, weight, 0.0);
+        match self.factor(&matrix) {
+            Ok(cholesky) if self.definite || cholesky.is_definite(&matrix) => Ok(Holding::Held(cholesky)),
+            Ok(_) | Err(FactorError::NotPositiveDefinite) => self.free_motion(closed, weight).map(Holding::Free),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// The projection of the load onto the null space, or, where the load does no work there, any null vector.
+    fn free_motion(&self, closed: &ContactSet, weight: f64) -> Result<FreeMotion, Error> {
+        // A weight changes nothing about null vectors, and a large one hides the shift in its rounding.
+        let weight = weight.min(1.0);
+        for shift in SHIFTS {
+            let cholesky = match self.factor(&self.matrix(closed, weight, shift)) {
+                Ok(cholesky) => cholesky,
+                Err(FactorError::NotPositiveDefinite) => continue,
+                Err(error) => return Err(error.into()),
+            };
+            let mut projected = self.problem.load().to_vec();
+            for _ in 0..STEPS {
+                projected = cholesky.solve(&projected);
+                projected.iter_mut().for_each(|value| *value *= shift);
+            }
+            let projected = normalised(projected);
+            let still = self.matrix(closed, weight, 0.0).mul(&projected);
+            let driven = largest(&still) <= NOISE && self.problem.share_of_work(&projected) > WORK_TOLERANCE;
+            let direction = if driven { projected } else { normalised(cholesky.softest_vector()) };
+            return Ok(FreeMotion { direction, driven });
+        }
+        Err(Error::NotConvex { evidence: "a Cholesky pivot is negative".into() })
+    }
+
+    /// The open rows that stop a motion first, when it starts from `displacement`; a motion that the load does not
+    /// drive may go either way. `None` where no row stops it.
+    pub(super) fn stopping_rows(
+        &self,
+        motion: &FreeMotion,
+        displacement: &[f64],
+        closed: &ContactSet,
+    ) -> Option<ContactSet> {
+        let approach = self.approach(&motion.direction);
+        let violation = self.problem.violation(displacement);
+        let ways: &[f64] = if motion.driven { &[1.0] } else { &[1.0, -1.0] };
+        for way in ways {
+            let time = |row: usize| match approach[row] * way {
+                speed if speed > 0.0 && !closed.contains(row) => Some((-violation[row]).max(0.0) / speed),
+                _ => None,
+            };
+            let first = (0..self.problem.rows()).filter_map(time).fold(f64::INFINITY, f64::min);
+            if first.is_finite() {
+                let mut stopped = closed.clone();
+                (0..self.problem.rows())
+                    .filter(|&row| time(row).is_some_and(|t| t <= first * (1.0 + WORK_TOLERANCE)))
+                    .for_each(|row| stopped.set(row, true));
+                return Some(stopped);
+            }
+        }
+        None
+    }
+
+    /// How fast each row closes on a motion: B d, zero where that is rounding of its own terms.
+    pub(super) fn approach(&self, direction: &[f64]) -> Vec<f64> {
+        let terms = self.problem.contact().mul_abs(direction);
+        let speed = self.problem.contact().mul(direction);
+        speed.iter().zip(&terms).map(|(&v, term)| if v.abs() > WORK_TOLERANCE * term { v } else { 0.0 }).collect()
+    }
+
+    /// Does a motion, largest entry one, cost no energy: is `K d` rounding of its own terms at each dof, or of what moving
+    /// that dof alone would take?
+    pub(super) fn costs_nothing(&self, direction: &[f64]) -> bool {
+        let stiffness = self.problem.stiffness();
+        let (force, terms, alone) = (stiffness.mul(direction), stiffness.mul_abs(direction), stiffness.diagonal());
+        (0..force.len()).all(|dof| force[dof].abs() <= WORK_TOLERANCE * terms[dof].max(alone[dof]))
+    }
+
+    /// Is what an error claims of a motion true, in the terms of each dof and row? Sums of squares, which find the motion,
+    /// lose what is small beside others.
+    pub fn is_true(&self, claim: &Error) -> bool {
+        let stops = |direction: &[f64], way: f64| self.approach(direction).iter().any(|&speed| speed * way > 0.0);
+        match claim {
+            Error::UnderHeld { direction, .. } => {
+                self.costs_nothing(direction) && !(stops(direction, 1.0) && stops(direction, -1.0))
+            }
+            Error::Unbounded { direction, .. } => self.costs_nothing(direction) && !stops(direction, 1.0),
+            _ => true,
+        }
+    }
+
+    /// Is a claim true at sight, because the motion opens every row? Then the rows can be met together, and none can
+    /// balance the load.
+    pub fn is_evident(&self, claim: &Error) -> bool {
+        let (Error::UnderHeld { direction, .. } | Error::Unbounded { direction, .. }) = claim else { return false };
+        let opens = |way: f64| self.approach(direction).iter().all(|&speed| speed * way < 0.0);
+        self.is_true(claim) && (opens(1.0) || matches!(claim, Error::UnderHeld { .. }) && opens(-1.0))
+    }
+}

@@ -1,0 +1,167 @@
+//! The methods: each takes a scaled problem and returns displacement, multiplier, contact set and history.
+//!
+//! Nothing here knows what a body is: the words are those of the QP.
+
+pub mod active_set;
+mod bounds;
+pub mod dual_active_set;
+mod holding;
+pub mod interior_point;
+pub mod mprgp;
+pub mod parametric;
+pub mod penalty;
+
+use std::cell::Cell;
+use std::time::Instant;
+
+pub(crate) use holding::WORK_TOLERANCE;
+pub use holding::{FreeMotion, Holding};
+
+use crate::error::Error;
+use crate::qp::problem::ContactProblem;
+use crate::solution::{ContactSet, Iteration};
+use crate::qp::linear::{AugmentedMatrix, Cholesky, FactorError, SymmetricMatrix, largest};
+use crate::watch::Watch;
+
+/// Differences below this, relative to the largest displacement or multiplier, are rounding: the sign of a weakly
+/// active row is compared with it, or such a row would close and open for ever.
+pub(crate) const SIGN_TOLERANCE: f64 = 1e-12;
+
+/// Rounding of a multiplier, in units of the last place of the forces that balance it.
+const FORCE_ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// A scaled problem with its pattern analysed: what every method works on.
+#[derive(Debug)]
+pub struct ScaledProblem<'a> {
+    /// The data, dimensionless and of order one.
+    pub problem: &'a ContactProblem,
+    /// Is K positive definite by itself?
+    pub definite: bool,
+    augmented: &'a AugmentedMatrix,
+    factor_seconds: Cell<f64>,
+    watch: Watch,
+}
+
+impl<'a> ScaledProblem<'a> {
+    /// The problem with the analysed pattern of its K + B'B.
+    pub fn new(problem: &'a ContactProblem, augmented: &'a AugmentedMatrix, definite: bool) -> Self {
+        ScaledProblem { problem, definite, augmented, factor_seconds: Cell::new(0.0), watch: Watch::default() }
+    }
+
+    /// The same problem, whose loops end with what they have when `watch` says so.
+    pub fn watched(self, watch: &Watch) -> Self {
+        ScaledProblem { watch: watch.clone(), ..self }
+    }
+
+    /// What the loops look at, and tell their iterations.
+    pub fn watch(&self) -> &Watch {
+        &self.watch
+    }
+
+    /// Seconds spent in factorisations so far.
+    pub fn factor_seconds(&self) -> f64 {
+        self.factor_seconds.get()
+    }
+
+    /// The matrix K + shift I + weight B_C' B_C of the closed rows C.
+    fn matrix(&self, closed: &ContactSet, weight: f64, shift: f64) -> SymmetricMatrix {
+        self.augmented.matrix(|row| if closed.contains(row) { weight } else { 0.0 }, shift)
+    }
+
+    fn factor(&self, matrix: &SymmetricMatrix) -> Result<Cholesky, FactorError> {
+        let clock = Instant::now();
+        let factor = self.augmented.factor(matrix);
+        self.factor_seconds.set(self.factor_seconds.get() + clock.elapsed().as_secs_f64());
+        factor
+    }
+
+    /// Where a loop starts: from C = 0 where K is definite; otherwise all rows are taken for springs, which hold the
+    /// body, and those in compression are closed.
+    ///
+    /// # Errors
+    /// [`Error::Unbounded`] and [`Error::UnderHeld`] for a motion that not even all rows together hold,
+    /// [`Error::NotConvex`].
+    pub fn start(&self) -> Result<ContactSet, Error> {
+        let rows = self.problem.rows();
+        if self.definite {
+            return Ok(ContactSet::open(rows));
+        }
+        self.check_convex()?;
+        match self.hold(&ContactSet::closed(rows), 1.0)? {
+            Holding::Held(cholesky) => {
+                let pull = self.problem.contact().mul_transposed(self.problem.gap());
+                let force: Vec<f64> = self.problem.load().iter().zip(&pull).map(|(f, g)| f + g).collect();
+                let violation = self.problem.violation(&cholesky.solve(&force));
+                Ok(ContactSet::from_fn(rows, |row| violation[row] > 0.0))
+            }
+            Holding::Free(motion) => Err(motion.into_error()),
+        }
+    }
+
+    /// Is the answer the only one? It is where K and the rows under pressure hold the body; where they leave a motion,
+    /// the open rows would have to stop it both ways without play.
+    ///
+    /// # Errors
+    /// [`Error::UnderHeld`] with a motion that changes neither force nor energy.
+    pub fn check_unique(&self, outcome: &Outcome) -> Result<(), Error> {
+        if self.definite {
+            return Ok(());
+        }
+        let rounding = multiplier_rounding(self.problem, &outcome.displacement, &outcome.multiplier);
+        let pressed = ContactSet::from_fn(self.problem.rows(), |row| outcome.multiplier[row] < -rounding[row]);
+        match self.hold(&pressed, 1.0)? {
+            Holding::Held(_) => Ok(()),
+            Holding::Free(motion) if motion.driven => Ok(()),
+            Holding::Free(motion) => {
+                let violation = self.problem.violation(&outcome.displacement);
+                let approach = self.approach(&motion.direction);
+                let is_free = self.costs_nothing(&motion.direction) && pressed.iter().all(|row| approach[row] == 0.0);
+                let stopped = |way: f64| {
+                    (0..self.problem.rows()).any(|row| approach[row] * way > 0.0 && violation[row] > -holding::PLAY)
+                };
+                if !is_free || stopped(1.0) && stopped(-1.0) { Ok(()) } else { Err(motion.into_error()) }
+            }
+        }
+    }
+}
+
+/// Multipliers of either sign below this are rounding, row by row.
+fn multiplier_rounding(problem: &ContactProblem, u: &[f64], multiplier: &[f64]) -> Vec<f64> {
+    let strongest = SIGN_TOLERANCE * largest(multiplier);
+    let mut forces = problem.stiffness().mul_abs(u);
+    forces.iter_mut().zip(problem.load()).for_each(|(sum, f)| *sum += f.abs());
+    let rounding = problem.contact().mul_abs(&forces);
+    rounding.iter().map(|rounding| strongest + FORCE_ROUNDING * rounding).collect()
+}
+
+/// What a method found, in scaled quantities.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// Displacement v, one entry per dof.
+    pub displacement: Vec<f64>,
+    /// Multiplier, one entry per row, `<= 0`.
+    pub multiplier: Vec<f64>,
+    /// The closed rows.
+    pub contact_set: ContactSet,
+    /// Iterations of the method.
+    pub iterations: usize,
+    /// The sets on the way.
+    pub history: Vec<Iteration>,
+    /// Did the loop end because the set was settled?
+    pub settled: bool,
+    /// Empty, or the variant that ended the loop, to be appended to the method's name.
+    pub variant: &'static str,
+}
+
+impl Outcome {
+    /// Did the last resort, [`dual_active_set`], find it?
+    pub fn is_last_resort(&self) -> bool {
+        self.variant.starts_with(dual_active_set::VARIANT)
+    }
+
+    /// This outcome, found after another that fell short.
+    pub fn after(self, before: Outcome) -> Self {
+        let history = [before.history, self.history].concat();
+        Outcome { iterations: before.iterations + self.iterations, history, ..self }
+    }
+}

@@ -1,0 +1,327 @@
+//! What MPRGP has in hand, and the steps that it takes.
+
+use super::Start;
+use crate::error::Error;
+use crate::qp::method::bounds::{Bound, Bounds};
+use crate::qp::method::holding::where_largest;
+use crate::qp::problem::ContactProblem;
+use crate::solution::Iteration;
+use crate::qp::linear::multigrid::{Direction, Face};
+use crate::qp::linear::{dot, largest};
+
+/// Rows that are open at the start although nothing has moved keep this share of their depth as distance.
+const INSIDE: f64 = 1e-3;
+
+/// Energy of a direction below this share of what its unknowns would cost one by one is rounding of zero.
+const NO_ENERGY: f64 = 1e-13;
+
+/// Bounds that are met within this share of the first are met with it.
+const FIRST: f64 = 1e-12;
+
+/// Where an unknown with bounds is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum At {
+    Free,
+    Lower,
+    Upper,
+    /// Both bounds are one.
+    Fixed,
+}
+
+/// The unknowns, turned, their gradient, and which of them are at bounds.
+pub struct Iterate<'a> {
+    pub problem: &'a ContactProblem,
+    pub bounds: &'a Bounds,
+    pub load: Vec<f64>,
+    /// Diagonal of K at the unknowns with bounds and at all others.
+    diagonal: Vec<f64>,
+    pub x: Vec<f64>,
+    pub gradient: Vec<f64>,
+    pub at: Vec<At>,
+    threads: usize,
+}
+
+/// A direction with its product.
+pub struct Conjugate {
+    pub p: Vec<f64>,
+    moved: Vec<f64>,
+    pub energy: f64,
+    /// Free gradient along it.
+    slope: f64,
+    /// Does it cost nothing and meet no bound?
+    pub is_free: bool,
+}
+
+impl Conjugate {
+    pub fn of(step: Vec<f64>, last: Option<Conjugate>, gradient: &[f64], iterate: &Iterate) -> Self {
+        let mut p = step;
+        if let Some(last) = last {
+            let share = dot(&p, &last.moved) / last.energy;
+            p.iter_mut().zip(&last.p).for_each(|(p, before)| *p -= share * before);
+        }
+        let slope = dot(gradient, &p);
+        if slope < 0.0 {
+            // Rounding of the cycle may turn a direction uphill.
+            p.iter_mut().for_each(|p| *p = -*p);
+        }
+        let slope = slope.abs();
+        let moved = iterate.product(&p);
+        let energy = dot(&p, &moved);
+        let costs_nothing = iterate.is_rounding(&p, energy);
+        let is_free = costs_nothing && iterate.longest_step(&p).is_infinite();
+        let energy = if costs_nothing { 0.0 } else { energy };
+        Conjugate { p, moved, energy, slope, is_free }
+    }
+}
+
+impl<'a> Iterate<'a> {
+    pub fn new(problem: &'a ContactProblem, bounds: &'a Bounds, start: Start, threads: usize) -> Self {
+        let mut load = problem.load().to_vec();
+        bounds.turn(&mut load);
+        let mut x = start.displacement.map_or_else(|| vec![0.0; problem.dofs()], <[f64]>::to_vec);
+        bounds.turn(&mut x);
+        let diagonal = problem.stiffness().diagonal();
+        let at = vec![At::Free; bounds.bounds().len()];
+        let mut iterate = Iterate { problem, bounds, load, diagonal, x, gradient: Vec::new(), at, threads };
+        for (index, bound) in bounds.bounds().iter().enumerate() {
+            if let Some(closed) = start.contact_set {
+                let value = &mut iterate.x[bound.unknown];
+                if bounds.is_closed(index, true, closed) {
+                    *value = bound.upper;
+                } else if bounds.is_closed(index, false, closed) {
+                    *value = bound.lower;
+                } else if *value >= bound.upper {
+                    *value = bound.upper - INSIDE * bound.upper.abs();
+                } else if *value <= bound.lower {
+                    *value = bound.lower + INSIDE * bound.lower.abs();
+                }
+            }
+        }
+        iterate.project();
+        iterate.refresh_gradient();
+        iterate
+    }
+
+    /// Is `p'Kp` rounding of zero?
+    pub fn is_rounding(&self, p: &[f64], energy: f64) -> bool {
+        let scale: f64 = p.iter().zip(&self.diagonal).map(|(p, d)| d * p * p).sum();
+        energy.abs() <= NO_ENERGY * scale || !energy.is_finite()
+    }
+
+    pub fn product(&self, v: &[f64]) -> Vec<f64> {
+        if self.bounds.is_plain() {
+            return self.problem.stiffness().mul_on(self.threads, v);
+        }
+        let mut u = v.to_vec();
+        self.bounds.turn_back(&mut u);
+        let mut moved = self.problem.stiffness().mul_on(self.threads, &u);
+        self.bounds.turn(&mut moved);
+        moved
+    }
+
+    pub fn refresh_gradient(&mut self) {
+        self.gradient = self.product(&self.x);
+        self.gradient.iter_mut().zip(&self.load).for_each(|(g, f)| *g -= f);
+    }
+
+    /// As [`Iterate::refresh_gradient`], in twice the working precision.
+    pub fn refresh_gradient_accurately(&mut self) {
+        let mut u = self.x.clone();
+        self.bounds.turn_back(&mut u);
+        let mut rest = self.problem.accurate_residual(&u, &vec![0.0; self.problem.rows()]);
+        self.bounds.turn(&mut rest);
+        rest.iter_mut().for_each(|rest| *rest = -*rest);
+        self.gradient = rest;
+    }
+
+    /// Moves the unknowns into their bounds, and sees which are at them.
+    fn project(&mut self) {
+        for (bound, at) in self.bounds.bounds().iter().zip(&mut self.at) {
+            let value = &mut self.x[bound.unknown];
+            *value = value.min(bound.upper).max(bound.lower);
+            *at = match (*value == bound.lower, *value == bound.upper) {
+                (true, true) => At::Fixed,
+                (true, false) => At::Lower,
+                (false, true) => At::Upper,
+                (false, false) => At::Free,
+            };
+        }
+    }
+
+    /// The gradient of a bound that is closed, as far as the bound takes it.
+    pub fn held_gradient(&self, index: usize) -> f64 {
+        let gradient = self.gradient[self.bounds.bounds()[index].unknown];
+        match self.at[index] {
+            At::Free => 0.0,
+            At::Lower => gradient.max(0.0),
+            At::Upper => gradient.min(0.0),
+            At::Fixed => gradient,
+        }
+    }
+
+    /// The gradient of a bound that is closed, as far as the unknown wants to leave it.
+    fn chopped_gradient(&self, index: usize) -> f64 {
+        match self.at[index] {
+            At::Free => 0.0,
+            _ => self.gradient[self.bounds.bounds()[index].unknown] - self.held_gradient(index),
+        }
+    }
+
+    pub fn free_gradient(&self) -> Vec<f64> {
+        let mut free = self.gradient.clone();
+        self.keep_free(&mut free);
+        free
+    }
+
+    pub fn keep_free(&self, values: &mut [f64]) {
+        for (bound, at) in self.bounds.bounds().iter().zip(&self.at) {
+            if *at != At::Free {
+                values[bound.unknown] = 0.0;
+            }
+        }
+    }
+
+    /// The largest force that is out of balance or wrong-signed, relative to the largest of load and multipliers.
+    pub fn residual(&self) -> f64 {
+        let bounds = 0..self.at.len();
+        let held = bounds.clone().map(|index| self.held_gradient(index).abs()).fold(0.0, f64::max);
+        let chopped = bounds.map(|index| self.chopped_gradient(index).abs()).fold(0.0, f64::max);
+        let wrong = largest(&self.free_gradient()).max(chopped);
+        if wrong == 0.0 { 0.0 } else { wrong / held.max(largest(&self.load)) }
+    }
+
+    /// Does the chopped gradient outweigh the free one?
+    pub fn is_disproportionate(&self) -> bool {
+        let weighted = |value: f64, unknown: usize| value * value / self.diagonal[unknown];
+        let free: f64 = self.free_gradient().iter().enumerate().map(|(unknown, &g)| weighted(g, unknown)).sum();
+        let chopped = |(index, bound): (usize, &Bound)| weighted(self.chopped_gradient(index), bound.unknown);
+        self.bounds.bounds().iter().enumerate().map(chopped).sum::<f64>() > free
+    }
+
+    /// A step along the chopped gradient to the least energy, as far as the other bounds let it.
+    pub fn proportion(&mut self) {
+        let mut direction = vec![0.0; self.x.len()];
+        for (index, bound) in self.bounds.bounds().iter().enumerate() {
+            direction[bound.unknown] = self.chopped_gradient(index) / self.diagonal[bound.unknown];
+        }
+        let moved = self.product(&direction);
+        let length = (dot(&self.gradient, &direction) / dot(&direction, &moved)).min(self.longest_step(&direction));
+        self.step_along(&direction, &moved, length);
+        self.project();
+    }
+
+    fn step_along(&mut self, direction: &[f64], moved: &[f64], length: f64) {
+        self.x.iter_mut().zip(direction).for_each(|(x, d)| *x -= length * d);
+        self.gradient.iter_mut().zip(moved).for_each(|(g, m)| *g -= length * m);
+    }
+
+    /// The longest t for which x - t d keeps within the bounds.
+    pub fn longest_step(&self, direction: &[f64]) -> f64 {
+        let room = |bound: &Bound| {
+            let (value, speed) = (self.x[bound.unknown], direction[bound.unknown]);
+            match speed {
+                _ if speed > 0.0 => (value - bound.lower) / speed,
+                _ if speed < 0.0 => (value - bound.upper) / speed,
+                _ => f64::INFINITY,
+            }
+        };
+        self.bounds.bounds().iter().map(room).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The step of length `room`, which the first bounds end; rounding must not stop short of them, or it would for ever.
+    fn step_to_bounds(&mut self, direction: &Conjugate, room: f64) {
+        let meets = |bound: &Bound, x: &[f64]| {
+            let (value, speed) = (x[bound.unknown], direction.p[bound.unknown]);
+            let met = if speed > 0.0 { bound.lower } else { bound.upper };
+            (speed != 0.0 && (value - met) / speed <= room * (1.0 + FIRST)).then_some((bound.unknown, met))
+        };
+        let met: Vec<(usize, f64)> = self.bounds.bounds().iter().filter_map(|bound| meets(bound, &self.x)).collect();
+        self.step_along(&direction.p, &direction.moved, room);
+        met.iter().for_each(|&(unknown, value)| self.x[unknown] = value);
+        self.project();
+    }
+
+    /// The CG step, or where it would cross bounds, the expansion.
+    pub fn advance(&mut self, direction: &Conjugate) {
+        let length = direction.slope / direction.energy;
+        let room = self.longest_step(&direction.p);
+        if length <= room {
+            self.step_along(&direction.p, &direction.moved, length);
+            self.project();
+            return;
+        }
+        let (x, gradient, at) = (self.x.clone(), self.gradient.clone(), self.at.clone());
+        if length.is_finite() {
+            self.x.iter_mut().zip(&direction.p).for_each(|(x, p)| *x -= length * p);
+            self.project();
+            self.refresh_gradient();
+            let change: f64 = (self.x.iter().zip(&x))
+                .zip(self.gradient.iter().zip(&gradient))
+                .map(|((new, old), (g, before))| (new - old) * (g + before))
+                .sum();
+            if change < 0.0 {
+                return;
+            }
+        }
+        (self.x, self.gradient, self.at) = (x, gradient, at);
+        self.step_to_bounds(direction, room);
+        let share = 1.0 / self.largest_eigenvalue();
+        let free = self.free_gradient();
+        for ((x, g), d) in self.x.iter_mut().zip(&free).zip(&self.diagonal) {
+            *x -= share * g / d;
+        }
+        self.project();
+        self.refresh_gradient();
+    }
+
+    /// An upper bound on the eigenvalues of `D^-1 K`, by Gershgorin's circles.
+    fn largest_eigenvalue(&self) -> f64 {
+        let weights: Vec<f64> = self.diagonal.iter().map(|d| 1.0 / d.sqrt()).collect();
+        let sums = self.problem.stiffness().mul_abs(&weights);
+        sums.iter().zip(&weights).map(|(sum, weight)| sum * weight).fold(1.0, f64::max)
+    }
+
+    /// What may not move, in the dofs of the problem.
+    pub fn held(&self) -> Vec<Direction> {
+        let closed = self.bounds.bounds().iter().zip(&self.at).filter(|entry| *entry.1 != At::Free);
+        closed.map(|(bound, _)| self.bounds.direction(bound)).collect()
+    }
+
+    pub fn preconditioned(&self, face: &Face, gradient: &[f64]) -> Vec<f64> {
+        let mut step = self.cycled(face, gradient);
+        self.keep_free(&mut step);
+        step
+    }
+
+    /// One cycle in a face.
+    pub fn cycled(&self, face: &Face, force: &[f64]) -> Vec<f64> {
+        let mut force = force.to_vec();
+        self.bounds.turn_back(&mut force);
+        let mut step = face.cycle(&force);
+        self.bounds.turn(&mut step);
+        step
+    }
+
+    /// The set as it stands.
+    pub fn step(&self) -> Iteration {
+        let (_, contact_set) = self.bounds.multipliers(|index| match self.at[index] {
+            At::Free => 0.0,
+            At::Lower => 1.0,
+            At::Upper | At::Fixed => -1.0,
+        });
+        Iteration { contact_set, penalty: 0.0 }
+    }
+
+    /// The direction is what shows that K is not positive on the face.
+    pub fn negative_energy(&self, direction: Conjugate) -> Error {
+        let Conjugate { mut p, energy, .. } = direction;
+        self.bounds.turn_back(&mut p);
+        let size = largest(&p);
+        let evidence = format!(
+            "a direction p along which nothing is held, {} and 1 there, has p'Kp = {:e}",
+            where_largest(&p),
+            energy / (size * size)
+        );
+        Error::NotConvex { evidence }
+    }
+}

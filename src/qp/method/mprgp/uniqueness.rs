@@ -1,0 +1,124 @@
+//! Motions without energy. Without a factor the cycles must tell: they leave such a motion as it is, and nothing else.
+
+use super::iterate::{At, Iterate};
+use crate::error::Error;
+use crate::qp::method::SIGN_TOLERANCE;
+use crate::qp::method::bounds::Bound;
+use crate::qp::method::holding::{FreeMotion, PLAY, WORK_TOLERANCE};
+use crate::qp::linear::multigrid::Multigrid;
+use crate::qp::linear::{dot, largest};
+
+/// Cycles in which all motions that cost energy die away; where they have not, the body counts as held.
+const CYCLES: usize = 60;
+
+/// What is left of a motion that had only parts with energy.
+const GONE: f64 = 1e-8;
+
+/// Energy that falls by less than this factor in a cycle has come down to rounding.
+const LAST_FALL: f64 = 0.25;
+
+impl Iterate<'_> {
+    /// Do K and the rows under pressure hold every motion, or the open rows both ways without play?
+    ///
+    /// # Errors
+    /// [`Error::UnderHeld`] with a motion that changes neither force nor energy, and those of the face.
+    pub fn check_unique(&self, multigrid: &Multigrid) -> Result<(), Error> {
+        let strongest = (0..self.at.len()).map(|index| self.held_gradient(index).abs()).fold(0.0, f64::max);
+        let is_pressed =
+            |index| self.at[index] == At::Fixed || self.held_gradient(index).abs() > SIGN_TOLERANCE * strongest;
+        let golden = 0.618_033_988_749_895;
+        let every = (0..self.x.len()).map(|i| (i as f64 * golden).fract() - 0.5).collect();
+        match self.without_energy(multigrid, every, is_pressed)? {
+            Some(motion) if !self.is_stopped_both_ways(&motion) => Err(self.free_motion(motion)),
+            _ => Ok(()),
+        }
+    }
+
+    /// Does the load drive a motion without energy that no row stops? Asked of the rows that are closed, and of none: a
+    /// displacement that has run away closes any.
+    ///
+    /// # Errors
+    /// [`Error::Unbounded`] with that motion, and those of the face.
+    pub fn check_bounded(&self, multigrid: &Multigrid) -> Result<(), Error> {
+        for any_held in [false, true] {
+            let is_held = |index: usize| any_held && self.at[index] != At::Free;
+            let Some(motion) = self.without_energy(multigrid, self.load.clone(), is_held)? else { continue };
+            let way = dot(&self.load, &motion).signum();
+            let stops = |bound: &Bound| {
+                let speed = way * motion[bound.unknown];
+                (speed > WORK_TOLERANCE && bound.upper.is_finite())
+                    || (speed < -WORK_TOLERANCE && bound.lower.is_finite())
+            };
+            let error = self.free_motion(motion.clone());
+            if matches!(error, Error::Unbounded { .. }) && !self.bounds.bounds().iter().any(stops) {
+                return Err(error);
+            }
+        }
+        Ok(())
+    }
+
+    /// What cycles leave of `motion` where nothing moves that `is_held`: a motion without energy, largest entry one; `None`
+    /// where they leave nothing. Asked only where the coarsest matrix is singular to its precision.
+    fn without_energy(
+        &self,
+        multigrid: &Multigrid,
+        mut motion: Vec<f64>,
+        is_held: impl Fn(usize) -> bool,
+    ) -> Result<Option<Vec<f64>>, Error> {
+        if !multigrid.is_shifted() {
+            return Ok(None);
+        }
+        let bounds = self.bounds.bounds();
+        let held: Vec<usize> = (0..bounds.len()).filter(|&index| is_held(index)).collect();
+        let face =
+            multigrid.face(&held.iter().map(|&index| self.bounds.direction(&bounds[index])).collect::<Vec<_>>())?;
+        if !face.is_shifted() {
+            return Ok(None);
+        }
+        let keep = |values: &mut [f64]| held.iter().for_each(|&index| values[bounds[index].unknown] = 0.0);
+        keep(&mut motion);
+        // The smoothest part first: what a load of that form moves.
+        motion = self.cycled(&face, &motion);
+        keep(&mut motion);
+        let whole = largest(&motion);
+        let mut before = f64::INFINITY;
+        for _ in 0..CYCLES {
+            let mut force = self.product(&motion);
+            let energy = dot(&motion, &force).abs();
+            if self.is_rounding(&motion, energy) && energy >= LAST_FALL * before {
+                let size = largest(&motion);
+                motion.iter_mut().for_each(|value| *value /= size);
+                return Ok((size > GONE * whole).then_some(motion));
+            }
+            before = energy;
+            keep(&mut force);
+            let mut step = self.cycled(&face, &force);
+            keep(&mut step);
+            motion.iter_mut().zip(&step).for_each(|(motion, step)| *motion -= step);
+        }
+        Ok(None)
+    }
+
+    /// Do open rows without play stop the motion one way and the other?
+    fn is_stopped_both_ways(&self, motion: &[f64]) -> bool {
+        let play = PLAY * largest(&self.x);
+        let stops = |way: f64| {
+            self.bounds.bounds().iter().any(|bound| {
+                let (value, speed) = (self.x[bound.unknown], way * motion[bound.unknown]);
+                let room = if speed > 0.0 { bound.upper - value } else { value - bound.lower };
+                speed.abs() > WORK_TOLERANCE && room <= play
+            })
+        };
+        stops(1.0) && stops(-1.0)
+    }
+
+    /// The error that a motion without energy is, the way that the load drives it.
+    pub fn free_motion(&self, mut direction: Vec<f64>) -> Error {
+        self.bounds.turn_back(&mut direction);
+        let work = dot(self.problem.load(), &direction);
+        let size = largest(&direction).copysign(work);
+        direction.iter_mut().for_each(|value| *value /= size);
+        let driven = work.abs() > WORK_TOLERANCE * size.abs() * largest(self.problem.load());
+        FreeMotion { direction, driven }.into_error()
+    }
+}

@@ -1,0 +1,242 @@
+//! The exact path of a contact problem whose gaps or load move along a line.
+//!
+//! With the compliance G = B K^-1 B' of the contact rows and the violation b of the free body, the problem is
+//!
+//! ```text
+//! d = b + G l,   d <= 0,   l <= 0,   d'l = 0,        b(t) = b_0 + t b_1
+//! ```
+//!
+//! Its solution is piecewise linear in t. The walk follows one piece to the first t at which an open row touches or a
+//! closed row loses its pressure, changes that row, and goes on: every such t is found exactly. Where several rows change
+//! at once, the set that holds next is the one whose slopes have the right signs.
+//!
+//! # Source
+//! R. W. Cottle, J.-S. Pang, R. E. Stone, *The Linear Complementarity Problem*, section 4.5 (parametric principal pivoting).
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+
+use super::SIGN_TOLERANCE;
+use crate::error::Error;
+use crate::solution::ContactSet;
+use crate::qp::linear::largest;
+use crate::watch::Watch;
+
+/// A row whose compliance is this small, relative, once the rows before it are held, depends on them.
+const DEPENDENT: f64 = 1e-10;
+
+/// A path may change this many rows for each row there is before it is given up.
+const CHANGES_PER_ROW: usize = 50;
+
+/// The compliance of the contact rows, with the violation of the free body as a function of t.
+#[derive(Clone, Debug)]
+pub struct Compliance {
+    matrix: DMatrix<f64>,
+    constant: Vec<f64>,
+    slope: Vec<f64>,
+}
+
+/// A row that changes sides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Event {
+    /// Where on the path.
+    pub at: f64,
+    /// Which row.
+    pub row: usize,
+    /// Does it touch? Otherwise it releases.
+    pub touches: bool,
+}
+
+/// A stretch of the path on which the contact set does not change.
+#[derive(Clone, Debug)]
+pub struct Piece {
+    /// Where it begins.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+    /// The rows that are closed on it.
+    pub contact_set: ContactSet,
+    constant: Vec<f64>,
+    slope: Vec<f64>,
+}
+
+impl Piece {
+    /// The multiplier of every row at `t`.
+    pub fn multiplier(&self, t: f64) -> Vec<f64> {
+        self.constant.iter().zip(&self.slope).map(|(a, b)| (a + t * b).min(0.0)).collect()
+    }
+}
+
+impl Compliance {
+    /// From the symmetric matrix G (m x m, column by column) and b(t) = `constant` + t `slope`.
+    pub fn new(matrix: Vec<f64>, constant: Vec<f64>, slope: Vec<f64>) -> Self {
+        let rows = constant.len();
+        Compliance { matrix: DMatrix::from_vec(rows, rows, matrix), constant, slope }
+    }
+
+    fn rows(&self) -> usize {
+        self.constant.len()
+    }
+
+    /// The rows of `closed` without those that depend on others before them: held once is held. On the walk a dependent
+    /// row does not join, because its violation does not grow.
+    fn independent(&self, closed: &ContactSet) -> ContactSet {
+        let mut kept: Vec<(usize, Vec<f64>)> = Vec::new();
+        for row in closed.iter() {
+            // One row of a Cholesky factorisation: its entries against the kept rows, then its pivot.
+            let mut entries: Vec<f64> = Vec::with_capacity(kept.len() + 1);
+            for (other, of_other) in &kept {
+                let known: f64 = entries.iter().zip(of_other).map(|(a, b)| a * b).sum();
+                entries.push((self.matrix[(row, *other)] - known) / of_other[of_other.len() - 1]);
+            }
+            let whole = self.matrix[(row, row)];
+            let pivot = whole - entries.iter().map(|entry| entry * entry).sum::<f64>();
+            if pivot > DEPENDENT * whole {
+                entries.push(pivot.sqrt());
+                kept.push((row, entries));
+            }
+        }
+        let mut set = ContactSet::open(self.rows());
+        kept.iter().for_each(|(row, _)| set.set(*row, true));
+        set
+    }
+
+    /// Multiplier and violation of the set `closed` as linear functions of t: constant and slope of each.
+    fn respond(&self, closed: &ContactSet) -> Result<Linear, Error> {
+        let list: Vec<usize> = closed.iter().collect();
+        let block = DMatrix::from_fn(list.len(), list.len(), |i, j| self.matrix[(list[i], list[j])]);
+        let is_independent = |factor: &Cholesky<f64, Dyn>| {
+            let pivots = factor.l_dirty().diagonal();
+            list.iter().zip(pivots.iter()).all(|(&row, l)| l * l > DEPENDENT * self.matrix[(row, row)])
+        };
+        let factor = Cholesky::new(block).filter(is_independent).ok_or_else(|| Error::Numerical {
+            step: "the exact path",
+            reason: format!("the {} rows that would be closed together depend on each other", list.len()),
+        })?;
+        let part = |b: &[f64]| self.part(&factor, &list, b);
+        let ((multiplier, violation), (multiplier_slope, violation_slope)) = (part(&self.constant), part(&self.slope));
+        Ok(Linear { multiplier, violation, multiplier_slope, violation_slope })
+    }
+
+    fn part(&self, factor: &Cholesky<f64, Dyn>, list: &[usize], b: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let right = DVector::from_iterator(list.len(), list.iter().map(|&row| -b[row]));
+        let on_list = factor.solve(&right);
+        let (mut multiplier, mut violation) = (vec![0.0; self.rows()], b.to_vec());
+        for (&row, &value) in list.iter().zip(on_list.iter()) {
+            multiplier[row] = value;
+            violation.iter_mut().zip(self.matrix.column(row).iter()).for_each(|(d, g)| *d += g * value);
+        }
+        list.iter().for_each(|&row| violation[row] = 0.0);
+        (multiplier, violation)
+    }
+
+    /// Walks from t = 0 to t = 1, from the set that holds at the beginning.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] where the closed rows are dependent beyond repair, or where the walk does not end;
+    /// [`Error::Interrupted`].
+    pub fn walk(&self, start: &ContactSet, watch: &Watch) -> Result<(Vec<Piece>, Vec<Event>), Error> {
+        let (mut pieces, mut events) = (Vec::new(), Vec::new());
+        let mut closed = self.independent(start);
+        let mut now = 0.0;
+        let length = largest(&self.constant).max(largest(&self.slope));
+        for change in 0..CHANGES_PER_ROW * (self.rows() + 1) {
+            if watch.is_over() {
+                return Err(Error::Interrupted);
+            }
+            watch.step("exact path", change + 1);
+            let line = self.respond(&closed)?;
+            let force = largest(&line.multiplier).max(largest(&line.multiplier_slope));
+            let scales = Scales { length: SIGN_TOLERANCE * length, force: SIGN_TOLERANCE * force };
+            let next = (0..self.rows())
+                .filter_map(|row| line.change(row, &closed, &scales).map(|t| (t.max(now), row)))
+                .min_by(|a, b| a.0.total_cmp(&b.0));
+            let end = next.map_or(1.0, |(t, _)| t.min(1.0));
+            if end > now || next.is_none_or(|(t, _)| t >= 1.0) {
+                let (constant, slope) = (line.multiplier.clone(), line.multiplier_slope.clone());
+                pieces.push(Piece { from: now, to: end, contact_set: closed.clone(), constant, slope });
+            }
+            match next {
+                Some((t, row)) if t < 1.0 => {
+                    now = t;
+                    let undecided: Vec<usize> = (0..self.rows())
+                        .filter(|&other| other == row || line.is_weak(other, t, &closed, &scales))
+                        .collect();
+                    let after = self.turn(&closed, row, &undecided, &scales)?;
+                    for &row in &undecided {
+                        if after.contains(row) != closed.contains(row) {
+                            events.push(Event { at: t, row, touches: after.contains(row) });
+                        }
+                    }
+                    closed = after;
+                }
+                _ => return Ok((pieces, events)),
+            }
+        }
+        let reason = format!("the set still changes at {now} of the way after {} changes", events.len());
+        Err(Error::Numerical { step: "the exact path", reason })
+    }
+
+    /// The set that holds next: the `undecided` rows are closed with falling or open with falling violation. Block
+    /// pivoting on these rows, single pivots where that does not help.
+    fn turn(
+        &self,
+        closed: &ContactSet,
+        first: usize,
+        undecided: &[usize],
+        scales: &Scales,
+    ) -> Result<ContactSet, Error> {
+        let mut next = closed.clone();
+        next.set(first, !closed.contains(first));
+        let mut fewest = undecided.len() + 1;
+        for _ in 0..CHANGES_PER_ROW * undecided.len() {
+            let line = self.respond(&next)?;
+            let wrong: Vec<usize> = undecided
+                .iter()
+                .copied()
+                .filter(|&row| match next.contains(row) {
+                    true => line.multiplier_slope[row] > scales.force,
+                    false => line.violation_slope[row] > scales.length,
+                })
+                .collect();
+            if wrong.is_empty() {
+                break;
+            }
+            let exchanged = if wrong.len() < fewest { &wrong[..] } else { &wrong[wrong.len() - 1..] };
+            fewest = fewest.min(wrong.len());
+            exchanged.iter().for_each(|&row| next.set(row, !next.contains(row)));
+        }
+        Ok(next)
+    }
+}
+
+/// Slopes and values below these are rounding.
+struct Scales {
+    length: f64,
+    force: f64,
+}
+
+/// Multiplier and violation of every row as linear functions of t.
+struct Linear {
+    multiplier: Vec<f64>,
+    violation: Vec<f64>,
+    multiplier_slope: Vec<f64>,
+    violation_slope: Vec<f64>,
+}
+
+impl Linear {
+    /// Where the row changes sides, if it heads there.
+    fn change(&self, row: usize, closed: &ContactSet, scales: &Scales) -> Option<f64> {
+        let (value, slope, least) = match closed.contains(row) {
+            true => (self.multiplier[row], self.multiplier_slope[row], scales.force),
+            false => (self.violation[row], self.violation_slope[row], scales.length),
+        };
+        (slope > least).then(|| -value / slope)
+    }
+
+    fn is_weak(&self, row: usize, t: f64, closed: &ContactSet, scales: &Scales) -> bool {
+        match closed.contains(row) {
+            true => (self.multiplier[row] + t * self.multiplier_slope[row]).abs() <= scales.force,
+            false => (self.violation[row] + t * self.violation_slope[row]).abs() <= scales.length,
+        }
+    }
+}

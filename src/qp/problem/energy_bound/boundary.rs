@@ -1,0 +1,422 @@
+//! The bound where the energy norm knows the contact boundary: repaired in energy, all rows together.
+//!
+//! A force `alpha r + B' x` has its sweep through the factor on the boundary alone but for that of r, which is made once.
+//! With Z = L_tt^-1 B_t' multipliers eta move the rows by c Z'Z eta. Two repairs are tried:
+//!
+//! * v is the equilibrium of the rows that look closed. Where all of them push, v is the exact answer, and the bound is the
+//!   error itself;
+//! * the rows that look closed are put at their gaps by the smallest motion, and keep the forces of the answer.
+
+use std::cell::OnceCell;
+
+use super::super::energy_norm::Boundary;
+use super::{Answer, ContactProblem, EnergyNorm, ErrorBound};
+use crate::qp::linear::{dot, exponent, ldexp};
+
+/// Times that the rows which look closed are corrected; from then on rows are only added.
+const EXCHANGES: usize = 10;
+
+/// Pivots below this share of their row's own compliance belong to rows that follow from others.
+const DEPENDENT: f64 = 1e-12;
+
+/// Corrections of the multipliers that put rows at their gaps; each gains the digits that the dependence of rows leaves.
+const CORRECTIONS: usize = 4;
+
+/// Rounding of a sum of forces, in units of its terms.
+const CANCELLED: f64 = 4.0 * f64::EPSILON;
+
+/// Forces that cancel each other do no harm where their rounding is below this share of the bound.
+const SMALL: f64 = 1e-3;
+
+/// Rounding of a row's distance after a motion, in units of its terms.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+impl ContactProblem {
+    /// The bound from the repair on the boundary; `None` where the rows that look closed cannot be met together.
+    pub(super) fn bound_on_boundary(
+        &self,
+        norm: &EnergyNorm,
+        boundary: &Boundary,
+        answer: &Answer,
+        closed: &[bool],
+    ) -> Option<ErrorBound> {
+        let residual = |answer: &Answer| match norm.springs() {
+            Some(springs) => springs.residual(self, answer),
+            None => answer.residual.clone(),
+        };
+        let first = Answer { residual: residual(answer), ..*answer };
+        let repair = Repair::new(self, norm, boundary, &first)?;
+        let witness = repair.best_witness(closed)?;
+        let bound = repair.bound(&witness);
+        if !witness.has_dependent && repair.cancelled(&witness) <= SMALL * bound.whole {
+            return Some(bound);
+        }
+        // Rows that follow from others: what is rounding of a large motion may be a large distance between them. The same
+        // again from the witness itself, whose motions and changes of force are small.
+        let motion = repair.motion(&witness.error);
+        let moved: Vec<f64> = answer.displacement.iter().zip(&motion).map(|(u, d)| u + d).collect();
+        let multiplier = repair.expanded(&witness.multiplier);
+        let violation = self.accurate_violation(&moved);
+        let near = Answer {
+            displacement: &moved,
+            multiplier: &multiplier,
+            residual: self.accurate_residual(&moved, &multiplier),
+            violation: &violation,
+        };
+        let near = Answer { residual: residual(&near), ..near };
+        let repair = Repair::new(self, norm, boundary, &near)?;
+        let of_near = repair.bound(&repair.best_witness(&witness.closed)?);
+        let step: Vec<f64> = moved.iter().zip(answer.displacement).map(|(v, u)| v - u).collect();
+        Some(of_near.farther(self, &step))
+    }
+}
+
+/// The force `alpha r + B' x`, x in the units of normalised rows.
+struct Force {
+    alpha: f64,
+    rows: Vec<f64>,
+    /// Magnitudes of the terms of x: what rounding of their sum is measured by.
+    terms: Vec<f64>,
+}
+
+impl Force {
+    fn new(alpha: f64, rows: Vec<f64>) -> Self {
+        let terms = rows.iter().map(|x| x.abs()).collect();
+        Force { alpha, rows, terms }
+    }
+
+    /// The force with more of each row.
+    fn plus(&self, more: &[f64]) -> Self {
+        let rows = self.rows.iter().zip(more).map(|(a, b)| a + b).collect();
+        let terms = self.terms.iter().zip(more).map(|(a, b)| a + b.abs()).collect();
+        Force { alpha: self.alpha, rows, terms }
+    }
+
+    fn is_none(&self) -> bool {
+        self.alpha == 0.0 && self.rows.iter().all(|&x| x == 0.0)
+    }
+}
+
+/// A feasible v and multipliers mu: `v - u = K^-1 error`, and what is left of the forces at (v, mu).
+struct Witness {
+    error: Force,
+    left: Force,
+    multiplier: Vec<f64>,
+    closed: Vec<bool>,
+    /// What the corrections have left of the distance of each closed row.
+    off: Vec<f64>,
+    /// Does a closed row follow from others?
+    has_dependent: bool,
+}
+
+/// An answer on the contact boundary, in equilibrated units, rows normalised by powers of two.
+struct Repair<'a> {
+    problem: &'a ContactProblem,
+    norm: &'a EnergyNorm,
+    boundary: &'a Boundary,
+    answer: &'a Answer<'a>,
+    /// The entries of each row: place on the boundary, coefficient.
+    rows: Vec<Vec<(usize, f64)>>,
+    /// Exponent by which each row was multiplied.
+    shift: Vec<i32>,
+    violation: Vec<f64>,
+    multiplier: Vec<f64>,
+    /// `L_tt^-1 B_i'` of each row that was asked for.
+    halves: Vec<OnceCell<Vec<f64>>>,
+    /// The sweep of the residual: squares of the interior, and the boundary.
+    interior: f64,
+    swept: Vec<f64>,
+}
+
+impl<'a> Repair<'a> {
+    fn new(
+        problem: &'a ContactProblem,
+        norm: &'a EnergyNorm,
+        boundary: &'a Boundary,
+        answer: &'a Answer<'a>,
+    ) -> Option<Self> {
+        let mut rows = norm.rows_on(boundary, &problem.contact)?;
+        let largest = |row: &Vec<(usize, f64)>| row.iter().fold(0.0, |largest: f64, entry| largest.max(entry.1.abs()));
+        let shift: Vec<i32> = rows.iter().map(|row| -exponent(largest(row))).collect();
+        for (row, &shift) in rows.iter_mut().zip(&shift) {
+            row.iter_mut().for_each(|entry| entry.1 = ldexp(entry.1, shift));
+        }
+        let scaled = |values: &[f64], sign: i32, unit: i32| -> Vec<f64> {
+            values.iter().zip(&shift).map(|(&value, &shift)| ldexp(value, sign * shift - unit)).collect()
+        };
+        let (violation, multiplier) = (scaled(answer.violation, 1, norm.factor()), scaled(answer.multiplier, -1, 0));
+        let (interior, swept) = norm.sweep(&answer.residual);
+        let halves = vec![OnceCell::new(); rows.len()];
+        Some(Repair { problem, norm, boundary, answer, rows, shift, violation, multiplier, halves, interior, swept })
+    }
+
+    fn spread(&self, weights: &[f64]) -> Vec<f64> {
+        let mut sum = vec![0.0; self.boundary.len()];
+        for (row, &weight) in self.rows.iter().zip(weights).filter(|entry| *entry.1 != 0.0) {
+            row.iter().for_each(|&(place, b)| sum[place] += weight * b);
+        }
+        self.boundary.forward(sum)
+    }
+
+    fn half(&self, row: usize) -> &[f64] {
+        self.halves[row].get_or_init(|| {
+            let mut column = vec![0.0; self.boundary.len()];
+            self.rows[row].iter().for_each(|&(place, b)| column[place] += b);
+            self.boundary.forward(column)
+        })
+    }
+
+    /// The sweep of a force on the boundary.
+    fn sweep(&self, force: &Force) -> Vec<f64> {
+        let mut sweep = self.spread(&force.rows);
+        sweep.iter_mut().zip(&self.swept).for_each(|(entry, swept)| *entry += force.alpha * swept);
+        sweep
+    }
+
+    /// The energy norm of the motion that a force causes.
+    fn length(&self, force: &Force) -> f64 {
+        let sweep = self.sweep(force);
+        ldexp(force.alpha * force.alpha * self.interior + dot(&sweep, &sweep), self.norm.factor()).sqrt()
+    }
+
+    /// The energy norm of the motion that a unit force along a row causes.
+    fn reach(&self, row: usize) -> f64 {
+        let half = self.half(row);
+        ldexp(dot(half, half), self.norm.factor()).sqrt()
+    }
+
+    /// An upper bound on the energy norm of the motion along a row that it feels as one; the diagonal of the equilibrated
+    /// stiffness is at most 4.
+    fn along(&self, row: usize) -> f64 {
+        let (sum, square) =
+            self.rows[row].iter().fold((0.0, 0.0), |(sum, square), &(_, b)| (sum + b.abs(), square + b * b));
+        ldexp((2.0 * sum / square).powi(2), self.norm.factor()).sqrt()
+    }
+
+    /// The motion of the whole body that a force causes, length n.
+    fn motion(&self, force: &Force) -> Vec<f64> {
+        let rows: Vec<f64> = force.rows.iter().zip(&self.shift).map(|(&x, &shift)| ldexp(x, shift)).collect();
+        let contact = self.problem.contact.mul_transposed(&rows);
+        let total: Vec<f64> = self.answer.residual.iter().zip(contact).map(|(r, b)| force.alpha * r + b).collect();
+        self.norm.displacement(&total)
+    }
+
+    fn bound(&self, witness: &Witness) -> ErrorBound {
+        let Witness { error, left, multiplier, closed, off, .. } = witness;
+        let of_left = self.length(left);
+        let springs = self.norm.springs();
+        if springs.is_some_and(|springs| !springs.hold(&self.expanded(multiplier), closed, of_left)) {
+            return ErrorBound::none();
+        }
+        // A closed row that is off its gap is put there along itself, which moves the answer and its residual; and forces that
+        // cancel each other leave their rounding.
+        let put = |row: usize| {
+            let moved = if off[row] > 0.0 { 2.0 * off[row] * self.along(row) } else { 0.0 };
+            moved + self.cancelled_on(witness, row)
+        };
+        let put: Vec<f64> = (0..off.len()).map(put).collect();
+        let of_error = match springs {
+            // The springs' own energy is no error, but rounding knows them.
+            Some(_) => self.problem.length(&self.motion(error)) + (self.norm.rounding() - 1.0) * self.length(error),
+            None => self.length(error),
+        };
+        let whole = of_error + of_left + put.iter().sum::<f64>();
+        let parts = self.problem.parts();
+        let of_parts = (parts.count() > 1).then(|| {
+            let mut sizes = vec![0.0; parts.count()];
+            self.problem.parts_of_rows(parts).iter().zip(&put).for_each(|(&part, put)| sizes[part] += put);
+            [error, left].iter().for_each(|force| self.problem.add_sizes(parts, &self.motion(force), &mut sizes));
+            sizes
+        });
+        ErrorBound { whole, of_parts }
+    }
+
+    /// What rounding of forces that cancel each other may be worth, row by row, in energy norm.
+    fn cancelled_on(&self, witness: &Witness, row: usize) -> f64 {
+        let terms = witness.error.terms[row] + witness.left.terms[row];
+        if terms > 0.0 { CANCELLED * terms * self.reach(row) } else { 0.0 }
+    }
+
+    /// The same of all rows.
+    fn cancelled(&self, witness: &Witness) -> f64 {
+        (0..self.rows.len()).map(|row| self.cancelled_on(witness, row)).sum()
+    }
+
+    /// Multipliers in the units of the problem.
+    fn expanded(&self, multiplier: &[f64]) -> Vec<f64> {
+        multiplier.iter().zip(&self.shift).map(|(&mu, &shift)| ldexp(mu, shift)).collect()
+    }
+
+    /// The equilibrium of the rows that look closed where all of them push, or else the better of both repairs.
+    fn best_witness(&self, closed: &[bool]) -> Option<Witness> {
+        let settled = self.settle(closed, true);
+        if settled.as_ref().is_some_and(|witness| witness.left.is_none()) {
+            return settled;
+        }
+        let size = |witness: &Witness| self.bound(witness).size();
+        [settled, self.settle(closed, false)].into_iter().flatten().min_by(|a, b| size(a).total_cmp(&size(b)))
+    }
+
+    /// A feasible point at which the closed rows are at their gaps: their equilibrium, or with the forces of the answer.
+    fn settle(&self, closed: &[bool], in_equilibrium: bool) -> Option<Witness> {
+        let rows = self.rows.len();
+        let mut closed = closed.to_vec();
+        let mut first = vec![false; rows];
+        for exchange in 0..=rows {
+            // The deepest first: of two rows that contradict each other as equalities the tighter one is kept.
+            let mut set: Vec<usize> = (0..rows).filter(|&row| closed[row]).collect();
+            set.sort_by(|&a, &b| {
+                (first[b], self.violation[b])
+                    .partial_cmp(&(first[a], self.violation[a]))
+                    .unwrap_or(std::cmp::Ordering::Equal)
+            });
+            let base = match in_equilibrium {
+                // Open rows lose their forces.
+                true => {
+                    let dropped = |row: usize| if closed[row] { 0.0 } else { -self.multiplier[row] };
+                    Force::new(1.0, (0..rows).map(dropped).collect())
+                }
+                false => Force::new(0.0, vec![0.0; rows]),
+            };
+            let Fitted { change, distance, tolerance, independent } = self.fit(&set, &base);
+            let violated: Vec<usize> =
+                (0..rows).filter(|&row| !closed[row] && distance[row] > tolerance[row]).collect();
+            let missed = |row: usize| closed[row] && distance[row].abs() > tolerance[row];
+            let follows: Vec<usize> = set
+                .iter()
+                .zip(&independent)
+                .filter(|entry| !entry.1 && missed(*entry.0))
+                .map(|entry| *entry.0)
+                .collect();
+            let (deeper, looser): (Vec<usize>, Vec<usize>) = follows.iter().partition(|&&row| distance[row] > 0.0);
+            let pulling: Vec<usize> = match in_equilibrium {
+                true => set.iter().copied().filter(|&row| self.multiplier[row] + change[row] > 0.0).collect(),
+                false => Vec::new(),
+            };
+            let is_met = violated.is_empty() && deeper.is_empty() && looser.is_empty();
+            if is_met && (pulling.is_empty() || exchange >= EXCHANGES) {
+                let off = |row: usize| if missed(row) { distance[row].abs() } else { 0.0 };
+                let off = (0..rows).map(off).collect();
+                let has_dependent = first.iter().any(|&first| first) || independent.contains(&false);
+                return Some(Witness { off, has_dependent, ..self.witness(base, change, &closed, in_equilibrium) });
+            }
+            if deeper.iter().any(|&row| first[row]) {
+                return None;
+            }
+            deeper.iter().for_each(|&row| first[row] = true);
+            violated.iter().for_each(|&row| closed[row] = true);
+            looser.iter().filter(|_| deeper.is_empty()).for_each(|&row| closed[row] = false);
+            if exchange < EXCHANGES {
+                pulling.iter().for_each(|&row| closed[row] = false);
+            }
+        }
+        None
+    }
+
+    /// The witness of rows that are at their gaps under `base` and `change`.
+    fn witness(&self, base: Force, change: Vec<f64>, closed: &[bool], in_equilibrium: bool) -> Witness {
+        let alpha = base.alpha;
+        let error = base.plus(&change);
+        let balanced = |row: usize| self.multiplier[row] + if in_equilibrium { change[row] } else { 0.0 };
+        // What pulls is no multiplier.
+        let multiplier: Vec<f64> =
+            (0..change.len()).map(|row| if closed[row] { balanced(row).min(0.0) } else { 0.0 }).collect();
+        let left = |row: usize| match in_equilibrium {
+            true if closed[row] => -balanced(row).max(0.0),
+            true => 0.0,
+            false => multiplier[row] - self.multiplier[row] - change[row],
+        };
+        let rows = (0..change.len()).map(left).collect();
+        let off = vec![0.0; change.len()];
+        Witness {
+            error,
+            left: Force::new(1.0 - alpha, rows),
+            multiplier,
+            closed: closed.to_vec(),
+            off,
+            has_dependent: false,
+        }
+    }
+
+    /// The multipliers that put the rows of `set` at their gaps beside the force `base`.
+    fn fit(&self, set: &[usize], base: &Force) -> Fitted {
+        let gram = Gram::of(set.iter().map(|&row| self.half(row)).collect());
+        let mut change = vec![0.0; self.rows.len()];
+        let mut moved = self.boundary.backward(self.sweep(base));
+        let mut correction = 0;
+        loop {
+            let terms = |row: usize| self.rows[row].iter().map(|&(place, b)| b * moved[place]);
+            let distance: Vec<f64> =
+                (0..self.rows.len()).map(|row| self.violation[row] + terms(row).sum::<f64>()).collect();
+            let rounding =
+                |row: usize| ROUNDING * terms(row).fold(self.violation[row].abs(), |sum, term| sum + term.abs());
+            let tolerance: Vec<f64> = (0..self.rows.len()).map(rounding).collect();
+            let is_met = |(&row, &kept): (&usize, &bool)| !kept || distance[row].abs() <= tolerance[row];
+            if set.iter().zip(&gram.independent).all(is_met) || correction == CORRECTIONS {
+                return Fitted { change, distance, tolerance, independent: gram.independent };
+            }
+            correction += 1;
+            let step = gram.solve(set.iter().map(|&row| -distance[row]).collect());
+            let mut added = vec![0.0; self.rows.len()];
+            set.iter().zip(step).for_each(|(&row, step)| added[row] = step);
+            change.iter_mut().zip(&added).for_each(|(sum, step)| *sum += step);
+            // The motion of each step is added up, so that its rounding is that of the last and smallest one.
+            moved.iter_mut().zip(self.boundary.backward(self.spread(&added))).for_each(|(sum, step)| *sum += step);
+        }
+    }
+}
+
+/// Rows after a fit: the change of each multiplier, distances and what is rounding of them, and which rows of the set do not
+/// follow from those before them.
+struct Fitted {
+    change: Vec<f64>,
+    distance: Vec<f64>,
+    tolerance: Vec<f64>,
+    independent: Vec<bool>,
+}
+
+/// The Cholesky factor of `Z'Z`, without the columns that follow from those before them.
+struct Gram {
+    size: usize,
+    factor: Vec<f64>,
+    independent: Vec<bool>,
+}
+
+impl Gram {
+    fn of(columns: Vec<&[f64]>) -> Self {
+        let size = columns.len();
+        let mut factor = vec![0.0; size * size];
+        let mut independent = vec![true; size];
+        for i in 0..size {
+            let own = dot(columns[i], columns[i]);
+            let (before, row) = factor.split_at_mut(i * size);
+            for j in (0..i).filter(|&j| independent[j]) {
+                let known = dot(&before[j * size..j * size + j], &row[..j]);
+                row[j] = (dot(columns[i], columns[j]) - known) / before[j * size + j];
+            }
+            let pivot = own - dot(&row[..i], &row[..i]);
+            independent[i] = pivot > DEPENDENT * own;
+            if independent[i] {
+                row[i] = pivot.sqrt();
+            } else {
+                row[..i].fill(0.0);
+            }
+        }
+        Gram { size, factor, independent }
+    }
+
+    /// Solves `Z'Z x = b` for the independent columns; x is zero on the others.
+    fn solve(&self, b: Vec<f64>) -> Vec<f64> {
+        let (size, factor) = (self.size, &self.factor);
+        let mut x = b;
+        for i in 0..size {
+            let known = dot(&factor[i * size..i * size + i], &x[..i]);
+            x[i] = if self.independent[i] { (x[i] - known) / factor[i * size + i] } else { 0.0 };
+        }
+        for i in (0..size).rev().filter(|&i| self.independent[i]) {
+            let known: f64 = (i + 1..size).map(|j| factor[j * size + i] * x[j]).sum();
+            x[i] = (x[i] - known) / factor[i * size + i];
+        }
+        x
+    }
+}

@@ -1,0 +1,244 @@
+//! The contact problem as a convex QP, checked once, and the certificate of an answer to it.
+
+mod certificate;
+mod claims;
+mod contradiction;
+mod energy_bound;
+mod energy_norm;
+mod multigrid_bound;
+mod parts;
+mod proof;
+mod scales;
+mod units;
+
+pub(crate) use claims::Motion;
+pub use energy_norm::EnergyNorm;
+
+use std::sync::{Arc, OnceLock};
+
+use parts::Parts;
+use scales::Diagonal;
+
+use crate::error::Error;
+use crate::qp::linear::multigrid::NearNullSpace;
+use crate::qp::linear::{Accumulator, SparseMatrix, SymmetricMatrix};
+
+/// Frictionless unilateral contact as a convex quadratic program:
+///
+/// ```text
+/// minimise 1/2 u'K u - f'u   subject to   B u - g <= 0
+/// K u - f - B' lambda = 0,  B u - g <= 0,  lambda <= 0,  lambda_i (B u - g)_i = 0
+/// ```
+///
+/// Checked once, when it is built: shapes, finite values, symmetry. Whether K is positive semidefinite, and whether
+/// supports and obstacle hold the body, is found out when it is solved.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContactProblem {
+    stiffness: SymmetricMatrix,
+    load: Vec<f64>,
+    contact: SparseMatrix,
+    gap: Vec<f64>,
+    near_null: Option<Arc<NearNullSpace>>,
+    diagonal: FoundOnce<Diagonal>,
+    parts: FoundOnce<Parts>,
+}
+
+/// What follows from the matrices of a problem, or from which of its rows have an obstacle too: found when it is first asked
+/// for, and shared by the same problem under other loads and gaps.
+#[derive(Clone, Debug)]
+struct FoundOnce<T>(Arc<OnceLock<T>>);
+
+impl<T> FoundOnce<T> {
+    fn not_yet() -> Self {
+        FoundOnce(Arc::new(OnceLock::new()))
+    }
+
+    fn get_or_find(&self, find: impl FnOnce() -> T) -> &T {
+        self.0.get_or_init(find)
+    }
+}
+
+impl<T> PartialEq for FoundOnce<T> {
+    /// What follows from equal data is equal.
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+/// Gaps that other QP solvers take for infinite; any other finite gap is a length.
+const NO_OBSTACLE: [f64; 2] = [1e20, 1e30];
+
+/// The gaps with `+inf` for every [`NO_OBSTACLE`].
+fn with_infinite(mut gap: Vec<f64>) -> Vec<f64> {
+    gap.iter_mut().filter(|gap| NO_OBSTACLE.contains(gap)).for_each(|gap| *gap = f64::INFINITY);
+    gap
+}
+
+impl ContactProblem {
+    /// The problem of stiffness K (n x n, N/m), load f (n, N), contact rows B (m x n) and initial gaps g (m, m).
+    ///
+    /// A row of B is positive towards the obstacle. A gap is negative where the obstacle starts inside the body and
+    /// `f64::INFINITY`, or exactly 1e20 or 1e30, where there is none.
+    ///
+    /// # Errors
+    /// [`Error::Length`] and [`Error::Shape`] for sizes that do not fit, [`Error::NotFinite`] for a load that is not
+    /// finite or a gap that is NaN or minus infinity, [`Error::NotConvex`] for a negative diagonal entry of K.
+    pub fn new(
+        stiffness: SymmetricMatrix,
+        load: Vec<f64>,
+        contact: SparseMatrix,
+        gap: Vec<f64>,
+    ) -> Result<Self, Error> {
+        let dofs = stiffness.dim();
+        if contact.columns() != dofs {
+            let (found, expected) = ((contact.rows(), contact.columns()), (contact.rows(), dofs));
+            return Err(Error::Shape { name: "contact matrix", found, expected });
+        }
+        check_load(&load, dofs)?;
+        check_gap(&gap, contact.rows())?;
+        if let Some((dof, value)) = stiffness.diagonal().iter().enumerate().find(|entry| *entry.1 < 0.0) {
+            return Err(Error::NotConvex { evidence: format!("diagonal entry {dof} is {value:e}, indices from 0") });
+        }
+        let gap = with_infinite(gap);
+        let (diagonal, parts) = (FoundOnce::not_yet(), FoundOnce::not_yet());
+        Ok(ContactProblem { stiffness, load, contact, gap, near_null: None, diagonal, parts })
+    }
+
+    /// The same problem with what multigrid should know of its body: displacements that cost next to no energy, as the
+    /// rigid motions.
+    ///
+    /// # Errors
+    /// [`Error::Length`] where they are not those of so many dofs.
+    pub fn with_near_null(self, near_null: impl Into<Arc<NearNullSpace>>) -> Result<Self, Error> {
+        let near_null = near_null.into();
+        let (found, expected) = (near_null.dofs(), self.dofs());
+        if found != expected {
+            return Err(Error::Length { name: "near-null vector", found, expected, of: "dofs" });
+        }
+        Ok(ContactProblem { near_null: Some(near_null), ..self })
+    }
+
+    /// The near-null space, where one was given.
+    pub fn near_null(&self) -> Option<&Arc<NearNullSpace>> {
+        self.near_null.as_ref()
+    }
+
+    /// Number of dofs n.
+    pub fn dofs(&self) -> usize {
+        self.load.len()
+    }
+
+    /// Number of contact rows m.
+    pub fn rows(&self) -> usize {
+        self.gap.len()
+    }
+
+    /// The stiffness K (n x n), in N/m.
+    pub fn stiffness(&self) -> &SymmetricMatrix {
+        &self.stiffness
+    }
+
+    /// The external load f, length n, in N.
+    pub fn load(&self) -> &[f64] {
+        &self.load
+    }
+
+    /// The contact rows B (m x n), dimensionless, positive towards the obstacle.
+    pub fn contact(&self) -> &SparseMatrix {
+        &self.contact
+    }
+
+    /// The initial gaps g, length m, in m; negative where the obstacle starts inside the body.
+    pub fn gap(&self) -> &[f64] {
+        &self.gap
+    }
+
+    /// The same body and obstacle with other gaps.
+    ///
+    /// # Errors
+    /// As [`ContactProblem::new`].
+    pub fn with_gap(&self, gap: Vec<f64>) -> Result<Self, Error> {
+        self.with(self.load.clone(), gap)
+    }
+
+    /// The same body and obstacle under another load.
+    ///
+    /// # Errors
+    /// As [`ContactProblem::new`].
+    pub fn with_load(&self, load: Vec<f64>) -> Result<Self, Error> {
+        self.with(load, self.gap.clone())
+    }
+
+    /// The same body and contact rows with another load and other gaps; the matrices are shared.
+    ///
+    /// # Errors
+    /// As [`ContactProblem::new`].
+    pub fn with(&self, load: Vec<f64>, gap: Vec<f64>) -> Result<Self, Error> {
+        check_load(&load, self.dofs())?;
+        check_gap(&gap, self.rows())?;
+        let (stiffness, contact, near_null) = (self.stiffness.clone(), self.contact.clone(), self.near_null.clone());
+        let gap = with_infinite(gap);
+        let same_rows = gap.iter().zip(&self.gap).all(|(gap, before)| gap.is_finite() == before.is_finite());
+        let parts = if same_rows { self.parts.clone() } else { FoundOnce::not_yet() };
+        let diagonal = self.diagonal.clone();
+        Ok(ContactProblem { stiffness, load, contact, gap, near_null, diagonal, parts })
+    }
+
+    /// The diagonal of K, found when it is first asked for.
+    fn diagonal(&self) -> &Diagonal {
+        self.diagonal.get_or_find(|| Diagonal::of(&self.stiffness))
+    }
+
+    /// The violation B u - g of each row, length m: positive is penetration; `-inf` where there is no obstacle.
+    pub fn violation(&self, displacement: &[f64]) -> Vec<f64> {
+        let mut violation = self.contact.mul(displacement);
+        for (value, gap) in violation.iter_mut().zip(&self.gap) {
+            *value -= gap;
+        }
+        violation
+    }
+}
+
+impl ContactProblem {
+    /// The work f'd of the load on a motion d, as a share of its terms `|f|'|d|`, between -1 and 1.
+    pub(crate) fn share_of_work(&self, motion: &[f64]) -> f64 {
+        let mut work = Accumulator::new(&[0.0]);
+        self.load.iter().zip(motion).for_each(|(&f, &d)| work.add_product(0, f, d));
+        let terms: f64 = self.load.iter().zip(motion).map(|(f, d)| (f * d).abs()).sum();
+        if terms > 0.0 { work.into_sums()[0] / terms } else { 0.0 }
+    }
+}
+
+/// Is `load` one of so many dofs?
+///
+/// # Errors
+/// [`Error::Length`], [`Error::NotFinite`].
+pub(crate) fn check_load(load: &[f64], dofs: usize) -> Result<(), Error> {
+    if load.len() != dofs {
+        return Err(Error::Length { name: "load vector", found: load.len(), expected: dofs, of: "dofs" });
+    }
+    match load.iter().enumerate().find(|entry| !entry.1.is_finite()) {
+        Some((index, &value)) => {
+            let at = format!("entry {index}");
+            Err(Error::NotFinite { name: "load vector", at, value, allowed: "finite" })
+        }
+        None => Ok(()),
+    }
+}
+
+/// Is `gap` one of so many rows?
+///
+/// # Errors
+/// [`Error::Length`], [`Error::NotFinite`] for a gap that is NaN or minus infinity.
+pub(crate) fn check_gap(gap: &[f64], rows: usize) -> Result<(), Error> {
+    if gap.len() != rows {
+        return Err(Error::Length { name: "gap vector", found: gap.len(), expected: rows, of: "contact rows" });
+    }
+    match gap.iter().enumerate().find(|entry| entry.1.is_nan() || *entry.1 == f64::NEG_INFINITY) {
+        Some((index, &value)) => {
+            let allowed = "finite, or +inf for a row without obstacle";
+            Err(Error::NotFinite { name: "gap vector", at: format!("entry {index}"), value, allowed })
+        }
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,358 @@
+//! What is said of a problem without a unique answer: not convex, infeasible, unbounded, under-held. A method that ends with such
+//! a claim, or without a bound, is a reason to look; what is said then rests on the problem alone.
+//!
+//! With N a basis of the null space of K, everything turns on cones in the few coordinates a of d = N a:
+//!
+//! ```text
+//! unbounded    d = N a with  B d <= 0                              and  f'd > 0
+//! under-held   d = N a with  B d = 0 under pressure, <= 0 touching  and  f'd = 0,  from a displacement u that is an answer
+//! ```
+//!
+//! The point of a cone that is nearest to some c is itself the answer to a contact problem, with K = I. It is zero exactly if
+//! no direction of the cone leans towards c. Where a method left no answer, steps with `K + rho E` instead of K find one.
+
+use super::attempts::{method_ending, nothing_found};
+use super::{Method, Precision, Settings};
+use crate::error::Error;
+use crate::qp::problem::{ContactProblem, Motion};
+use crate::solution::Solution;
+use crate::qp::linear::{FactorError, SparseMatrix, SymmetricMatrix, dot, exponent, generic, largest, ldexp};
+use crate::qp::transform::Scaling;
+
+/// Coordinates below this share of their terms are what the null space leaves of zero.
+const ROUNDING: f64 = 1e-10;
+
+/// Rows under pressure that lie within this share of others are combinations of them.
+const DEPENDENT: f64 = 1e-9;
+
+/// A point of a cone that is nearer to its tip than this share of c is the tip.
+const TIP: f64 = 1e-8;
+
+/// A row presses if its force on a dof is beyond this share of the forces that are in balance there: less is their rounding.
+const PRESSED: f64 = 1e-13;
+
+/// A row that is open by less than this share of its displacement and gap may touch.
+const TOUCHING: f64 = 1e-7;
+
+/// The same, as a share of what the load would move.
+const STRAINED: f64 = 1e-13;
+
+/// Exponent of rho: on a diagonal of order one, far above rounding and far below what resists.
+const STEP: i32 = -20;
+
+/// Steps after which one that gains nothing is the last: the first finds a place, the second its forces.
+const FEWEST_STEPS: usize = 3;
+
+/// Steps with `K + rho E`, each of which takes a factor `rho / eigenvalue` off the error.
+const MOST_STEPS: usize = 12;
+
+/// The ending of a solve, with every claim rechecked; where an ending left no answer, the one that is found here.
+///
+/// # Errors
+/// As [`solve`](super::solve()).
+pub(super) fn rechecked(
+    problem: &ContactProblem,
+    settings: &Settings,
+    ending: Result<Solution, Error>,
+) -> Result<Solution, Error> {
+    let before = match ending {
+        Err(error) if is_doubtful(&error, settings.tolerance) => error,
+        sure => return sure,
+    };
+    if settings.watch.is_over() {
+        return Err(not_decided(problem, before)?);
+    }
+    let scaling = Scaling::of(problem.stiffness(), problem.contact())?;
+    let (load, gap) = (scaling.load(problem.load(), 0), scaling.gap(problem.gap(), 0));
+    let scaled = match ContactProblem::new(scaling.stiffness().clone(), load, scaling.contact().clone(), gap) {
+        Ok(scaled) => scaled,
+        // Beyond the range of doubles nothing can be rechecked.
+        Err(_) => return Err(not_decided(problem, before)?),
+    };
+    let null = match scaled.stiffness().null_space() {
+        Ok(null) => null,
+        Err(FactorError::NotPositiveDefinite) => {
+            let direction = scaled.stiffness().negative_direction()?;
+            let claim = direction.and_then(|p| scaled.not_convex_along(&p));
+            return Err(claim.map_or_else(|| not_decided(problem, before), Ok)?);
+        }
+        Err(error) => return Err(error.into()),
+    };
+    let Some(null) = null else { return Err(not_decided(problem, before)?) };
+    let looked = Looked { scaled: &scaled, scaling: &scaling, by_row: scaled.contact().transposed(), null };
+    if let Some(motion) = looked.escape() {
+        return Err(Error::Unbounded { motion: motion.in_words(), direction: looked.expanded(&motion) });
+    }
+    let holds = |solution: &Solution| solution.certificate.conditions_hold(settings.tolerance);
+    let solution = match before {
+        Error::NotCertified { solution, .. } if holds(&solution) => *solution,
+        before => looked.answer(problem, settings, before)?,
+    };
+    if let Some(motion) = looked.freedom(problem, &solution).filter(|_| holds(&solution)) {
+        return Err(Error::UnderHeld { motion: motion.in_words(), direction: looked.expanded(&motion) });
+    }
+    judged(settings, solution)
+}
+
+/// Does an ending make a claim, or leave open whether there is one? An answer that misses its conditions says nothing.
+fn is_doubtful(error: &Error, tolerance: f64) -> bool {
+    match error {
+        Error::NotConvex { .. } | Error::Unbounded { .. } | Error::UnderHeld { .. } => true,
+        Error::NotCertified { solution, .. } => {
+            !solution.certificate.has_bound() && solution.certificate.conditions_hold(tolerance)
+        }
+        _ => false,
+    }
+}
+
+/// The ending of a claim that cannot be rechecked: no answer, and why.
+fn not_decided(problem: &ContactProblem, before: Error) -> Result<Error, Error> {
+    match before {
+        before @ Error::NotCertified { .. } => Ok(before),
+        claim => nothing_found(problem, 0.0, 0.0).map(|error| match error {
+            Error::NotCertified { solution, value, tolerance, .. } => {
+                let solution = Box::new(Solution { reason: Some(format!("not rechecked: {claim}")), ..*solution });
+                Error::NotCertified { solution, condition: "a claim that could not be rechecked", value, tolerance }
+            }
+            other => other,
+        }),
+    }
+}
+
+fn judged(settings: &Settings, solution: Solution) -> Result<Solution, Error> {
+    let goal = settings.goal();
+    if goal.is_met_by(&solution.certificate) {
+        return Ok(solution);
+    }
+    let (condition, value, tolerance) = goal.decisive(&solution.certificate);
+    Err(Error::NotCertified { solution: Box::new(solution), condition, value, tolerance })
+}
+
+/// A scaled problem with a basis of the null space of its stiffness.
+struct Looked<'a> {
+    scaled: &'a ContactProblem,
+    scaling: &'a Scaling,
+    /// The contact rows as columns.
+    by_row: SparseMatrix,
+    null: Vec<Vec<f64>>,
+}
+
+impl Looked<'_> {
+    /// The direction in the displacements of the problem itself, largest entry one.
+    fn expanded(&self, motion: &Motion) -> Vec<f64> {
+        let mut direction = self.scaling.expand_displacement(&motion.direction, 0);
+        let size = largest(&direction);
+        direction.iter_mut().for_each(|value| *value /= size);
+        direction
+    }
+
+    /// A motion without energy that the load drives and no row stops.
+    fn escape(&self) -> Option<Motion> {
+        let rows: Vec<Vec<f64>> = self.bounded_rows().map(|row| self.coordinates_of_row(row)).collect();
+        let nearest = nearest_of_cone(&rows, &self.coordinates_of_load())?;
+        self.motion(&nearest).filter(Motion::escapes)
+    }
+
+    /// A motion without energy that leads from an answer to others.
+    fn freedom(&self, problem: &ContactProblem, solution: &Solution) -> Option<Motion> {
+        let (u, lambda) = (&solution.displacement, &solution.multiplier);
+        let violation = problem.accurate_violation(u);
+        let sizes = problem.contact().mul_abs(u);
+        let presses = pressed(problem, u, lambda);
+        let presses = |row: usize| presses[row];
+        // What the load would move dofs that nothing but their own stiffness holds: all that is left of u may be rounding of it.
+        let unit = self.scaling.expand_displacement(&vec![STRAINED * largest(self.scaled.load()); u.len()], 0);
+        let strained = problem.contact().mul_abs(&unit);
+        let touches =
+            |row: usize| violation[row] >= -(TOUCHING * (sizes[row] + problem.gap()[row].abs()) + strained[row]);
+        let mut left = Complement::of(self.null.len());
+        self.bounded_rows().filter(|&row| presses(row)).for_each(|row| left.remove(&self.coordinates_of_row(row)));
+        let mut rows: Vec<Vec<f64>> = (self.bounded_rows())
+            .filter(|&row| !presses(row) && touches(row))
+            .map(|row| left.coordinates(&self.coordinates_of_row(row)))
+            .collect();
+        rows.push(left.coordinates(&self.coordinates_of_load()).iter().map(|value| -value).collect());
+        let stays = |motion: &Motion| {
+            motion.is_in_balance()
+                && self.bounded_rows().all(|row| match motion.approach[row] {
+                    speed if speed > 0.0 => !presses(row) && !touches(row),
+                    speed if speed < 0.0 => !presses(row),
+                    _ => true,
+                })
+        };
+        // No direction of a cone leans towards c or towards -c only if all are at right angles to it.
+        [1.0, -1.0].iter().find_map(|way| {
+            let towards: Vec<f64> = generic(left.basis.len(), 0).iter().map(|value| way * value).collect();
+            let nearest = nearest_of_cone(&rows, &towards)?;
+            self.motion(&left.expanded(&nearest, self.null.len())).filter(stays)
+        })
+    }
+
+    fn bounded_rows(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.scaled.rows()).filter(|&row| self.scaled.gap()[row].is_finite())
+    }
+
+    fn motion(&self, coordinates: &[f64]) -> Option<Motion> {
+        let mut direction = vec![0.0; self.scaled.dofs()];
+        for (a, vector) in coordinates.iter().zip(&self.null) {
+            direction.iter_mut().zip(vector).for_each(|(d, value)| *d += a * value);
+        }
+        self.scaled.motion_along(&direction)
+    }
+
+    fn coordinates_of_load(&self) -> Vec<f64> {
+        self.null.iter().map(|vector| product(self.scaled.load().iter().copied().enumerate(), vector)).collect()
+    }
+
+    fn coordinates_of_row(&self, row: usize) -> Vec<f64> {
+        self.null.iter().map(|vector| product(self.by_row.column(row), vector)).collect()
+    }
+
+    /// An answer by steps with `K + rho E`, E the diagonal that the scaling makes the identity: minimise the energy plus
+    /// `rho/2` times the squared distance, in E, from the last answer.
+    ///
+    /// # Errors
+    /// Those of the solves, with [`Error::Infeasible`] for contact rows that contradict each other.
+    ///
+    /// # Source
+    /// R. T. Rockafellar, *Monotone operators and the proximal point algorithm*, SIAM J. Control Optim. 14 (1976) 877-898.
+    fn answer(&self, problem: &ContactProblem, settings: &Settings, before: Error) -> Result<Solution, Error> {
+        let equilibration = self.scaling.equilibration();
+        let added: Vec<f64> =
+            equilibration.diagonal.iter().map(|d| ldexp(1.0, STEP - equilibration.factor - 2 * d)).collect();
+        let entries: Vec<(usize, usize, f64)> = (problem.stiffness().lower().triplets())
+            .chain(added.iter().enumerate().map(|(dof, &value)| (dof, dof, value)))
+            .collect();
+        let dofs = problem.dofs();
+        let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &entries)?)?;
+        let settings_of_step = Settings {
+            method: Method::ActiveSet,
+            precision: Precision::Double,
+            accuracy: None,
+            prove: false,
+            ..settings.clone()
+        };
+        let mut best: Option<Solution> = None;
+        let mut centre = vec![0.0; dofs];
+        for step in 1..=MOST_STEPS {
+            let load = (problem.load().iter().zip(&added).zip(&centre)).map(|((f, e), u)| f + e * u).collect();
+            let of_step =
+                ContactProblem::new(stiffness.clone(), load, problem.contact().clone(), problem.gap().to_vec())?;
+            let found = match method_ending(&of_step, &settings_of_step) {
+                Ok(solution) => solution,
+                Err(Error::NotCertified { solution, .. }) => *solution,
+                Err(infeasible @ Error::Infeasible { .. }) => return Err(infeasible),
+                Err(_) => break,
+            };
+            centre.clone_from(&found.displacement);
+            let certificate = problem.certify(&found.displacement, &found.multiplier)?;
+            let is_better = best.as_ref().is_none_or(|best| certificate.worst().1 < 0.5 * best.certificate.worst().1);
+            if is_better {
+                let reason = Some(format!("by {step} steps with K + rho E, since the stiffness is singular: {before}"));
+                best = Some(Solution { certificate, reason, ..found });
+            }
+            if settings.watch.is_over() || step >= FEWEST_STEPS && !is_better {
+                break;
+            }
+        }
+        match best {
+            Some(solution) => Ok(solution),
+            None => Err(not_decided(problem, before)?),
+        }
+    }
+}
+
+/// Does each row press?
+fn pressed(problem: &ContactProblem, u: &[f64], lambda: &[f64]) -> Vec<bool> {
+    let sizes: Vec<f64> = lambda.iter().map(|value| value.abs()).collect();
+    let contact = problem.contact().mul_abs_transposed(&sizes);
+    let elastic = problem.stiffness().mul_abs(u);
+    let mut presses = vec![false; problem.rows()];
+    for (row, dof, b) in problem.contact().triplets() {
+        let terms = contact[dof] + elastic[dof] + problem.load()[dof].abs();
+        presses[row] |= (b * lambda[row]).abs() > PRESSED * terms;
+    }
+    presses
+}
+
+/// The sum of `b_i v_i`, zero where its terms cancel.
+fn product(entries: impl Iterator<Item = (usize, f64)>, vector: &[f64]) -> f64 {
+    let (sum, terms) = entries.fold((0.0, 0.0_f64), |(sum, terms), (dof, b)| {
+        let term = b * vector[dof];
+        (sum + term, terms + term.abs())
+    });
+    if f64::abs(sum) > ROUNDING * terms { sum } else { 0.0 }
+}
+
+/// The point of the cone `{a: rows a <= 0}` that is nearest to c, as the answer to a contact problem with K = I; `None` where
+/// that is its tip.
+fn nearest_of_cone(rows: &[Vec<f64>], c: &[f64]) -> Option<Vec<f64>> {
+    let (size, dofs) = (largest(c), c.len());
+    if dofs == 0 || !(size > 0.0 && size.is_finite()) {
+        return None;
+    }
+    let diagonal: Vec<(usize, usize, f64)> = (0..dofs).map(|dof| (dof, dof, 1.0)).collect();
+    let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &diagonal).ok()?).ok()?;
+    let entries: Vec<(usize, usize, f64)> = (rows.iter().enumerate())
+        .flat_map(|(number, row)| {
+            let unit = exponent(largest(row));
+            row.iter().enumerate().filter(|e| *e.1 != 0.0).map(move |(dof, &b)| (number, dof, ldexp(b, -unit)))
+        })
+        .collect();
+    let contact = SparseMatrix::from_triplets(rows.len(), dofs, &entries).ok()?;
+    let load = c.iter().map(|value| value / size).collect();
+    let problem = ContactProblem::new(stiffness, load, contact, vec![0.0; rows.len()]).ok()?;
+    let nearest = match method_ending(&problem, &Settings::with_method(Method::Auto)) {
+        Ok(solution) => solution.displacement,
+        Err(Error::NotCertified { solution, .. }) => solution.displacement,
+        Err(_) => return None,
+    };
+    let distance = largest(&nearest);
+    let kept = |value: &f64| if value.abs() > ROUNDING * distance { *value } else { 0.0 };
+    (distance > TIP).then(|| nearest.iter().map(kept).collect())
+}
+
+/// What is at right angles to some vectors of coordinates: an orthonormal basis.
+struct Complement {
+    basis: Vec<Vec<f64>>,
+}
+
+impl Complement {
+    /// All coordinates.
+    fn of(coordinates: usize) -> Self {
+        let unit = |place: usize| (0..coordinates).map(|other| if other == place { 1.0 } else { 0.0 }).collect();
+        Complement { basis: (0..coordinates).map(unit).collect() }
+    }
+
+    fn coordinates(&self, vector: &[f64]) -> Vec<f64> {
+        self.basis.iter().map(|basis| product(vector.iter().copied().enumerate(), basis)).collect()
+    }
+
+    /// Takes a vector out: a reflection turns it onto one basis vector, which is dropped.
+    fn remove(&mut self, vector: &[f64]) {
+        let mut along = self.coordinates(vector);
+        let length = dot(&along, &along).sqrt();
+        if length <= DEPENDENT * dot(vector, vector).sqrt() {
+            return;
+        }
+        let place = (0..along.len()).max_by(|&a, &b| along[a].abs().total_cmp(&along[b].abs())).unwrap_or(0);
+        along[place] += length.copysign(along[place]);
+        let square = dot(&along, &along);
+        let mut reflector = vec![0.0; vector.len()];
+        for (share, basis) in along.iter().zip(&self.basis) {
+            reflector.iter_mut().zip(basis).for_each(|(sum, value)| *sum += share * value);
+        }
+        for (share, basis) in along.iter().zip(&mut self.basis) {
+            basis.iter_mut().zip(&reflector).for_each(|(value, r)| *value -= 2.0 * share / square * r);
+        }
+        self.basis.swap_remove(place);
+    }
+
+    fn expanded(&self, coordinates: &[f64], length: usize) -> Vec<f64> {
+        let mut sum = vec![0.0; length];
+        for (share, basis) in coordinates.iter().zip(&self.basis) {
+            sum.iter_mut().zip(basis).for_each(|(sum, value)| *sum += share * value);
+        }
+        sum
+    }
+}

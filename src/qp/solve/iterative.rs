@@ -1,0 +1,162 @@
+//! The way without a factorisation of the body: one multigrid hierarchy, MPRGP, the certificate.
+
+use std::time::Instant;
+
+use super::estimate::{Estimate, Kept, check_memory, check_time};
+use super::{Settings, pace};
+use crate::error::Error;
+use crate::qp::method::mprgp::{self, Limits, Start};
+use crate::qp::problem::{ContactProblem, check_gap};
+use crate::solution::{Seconds, Solution};
+use crate::qp::linear::multigrid::{Multigrid, NearNullSpace};
+use crate::qp::transform::RowSelection;
+
+/// The method ends this much below the tolerance of the certificate, whose scales differ from its own.
+const MARGIN: f64 = 0.1;
+
+/// Where the certificate is not met, the method goes on to this share of what it reached.
+const NEXT: f64 = 0.01;
+
+/// Where an accuracy is named, the method first ends at this share of it: forces are less accurate than the energy.
+const FIRST: f64 = 0.1;
+
+/// Where the bound is above the accuracy, the next one is aimed at this share of it.
+const AIM: f64 = 0.3;
+
+/// Forces out of balance by less than this, relative, are rounding.
+const ROUNDING: f64 = 1e-15;
+
+/// A contact problem with the multigrid hierarchy of its stiffness: built once, for all gaps and starts.
+///
+/// Nothing is scaled: the hierarchy brings itself to order one, and MPRGP compares only relative quantities. The bound on
+/// the energy error comes from a few cycles more; it rests on a measured eigenvalue, as its certificates say.
+#[derive(Debug)]
+pub struct Iterative {
+    problem: ContactProblem,
+    multigrid: Multigrid,
+    seconds: f64,
+}
+
+impl Iterative {
+    /// Builds the hierarchy from the near-null space of `problem`, or from constants where it has none.
+    ///
+    /// # Errors
+    /// Those of [`Multigrid::new`].
+    pub fn new(problem: &ContactProblem, threads: usize) -> Result<Self, Error> {
+        let clock = Instant::now();
+        let multigrid = match problem.near_null() {
+            Some(near_null) => Multigrid::new(problem.stiffness(), near_null, threads),
+            None => Multigrid::new(problem.stiffness(), &NearNullSpace::constants(problem.stiffness())?, threads),
+        }?;
+        Ok(Iterative { problem: problem.clone(), multigrid, seconds: clock.elapsed().as_secs_f64() })
+    }
+
+    /// The hierarchy.
+    pub fn multigrid(&self) -> &Multigrid {
+        &self.multigrid
+    }
+
+    /// Seconds that the hierarchy took.
+    pub fn seconds(&self) -> f64 {
+        self.seconds
+    }
+
+    /// Solves with the gaps of the problem, from `start`, such as the contact set of a coarser mesh.
+    ///
+    /// # Errors
+    /// As [`Iterative::solve_gap`].
+    pub fn solve(&self, start: Start, settings: &Settings) -> Result<Solution, Error> {
+        self.solve_gap(self.problem.gap().to_vec(), start, settings)
+    }
+
+    /// Solves with other gaps, from `start`, such as the answer at the last ones.
+    ///
+    /// # Errors
+    /// * [`Error::Length`] and [`Error::NotFinite`] for gaps or a start that do not fit,
+    /// * [`Error::Infeasible`] for contact rows that contradict each other,
+    /// * [`Error::Numerical`] for rows that no turning makes bounds of,
+    /// * [`Error::Unbounded`] and [`Error::UnderHeld`] for a motion that nothing stops, where the method meets one,
+    /// * [`Error::NotConvex`] for a direction of negative energy,
+    /// * [`Error::NotCertified`] with the best answer, where the method stagnates above the tolerance.
+    pub fn solve_gap(&self, gap: Vec<f64>, start: Start, settings: &Settings) -> Result<Solution, Error> {
+        let settings = &settings.started()?;
+        let watch = &settings.watch;
+        let clock = Instant::now();
+        check_gap(&gap, self.problem.rows())?;
+        RowSelection::of(self.problem.contact(), &gap)?;
+        if let Some(found) = start.displacement.map(<[f64]>::len).filter(|&found| found != self.problem.dofs()) {
+            return Err(Error::Length { name: "start displacement", found, expected: self.problem.dofs(), of: "dofs" });
+        }
+        let problem = self.problem.with_gap(gap)?;
+        let goal = settings.goal();
+        let mut tolerance = settings.accuracy.map_or(MARGIN * settings.tolerance, |accuracy| FIRST * accuracy);
+        let mut most_cycles = settings.max_iterations;
+        let limits = |tolerance, most_cycles| Limits { tolerance, most_cycles, watch };
+        let mut found = mprgp::solve(&problem, &self.multigrid, start, limits(tolerance, most_cycles))?;
+        let certificate = loop {
+            let certificate = problem.certify_by_cycles(&self.multigrid, &found.displacement, &found.multiplier)?;
+            most_cycles = settings.max_iterations.saturating_sub(found.iterations);
+            let bound = certificate.energy_error_bound;
+            tolerance *= match settings.accuracy {
+                Some(accuracy) if bound.is_finite() => (AIM * accuracy / bound).clamp(NEXT, AIM),
+                _ => NEXT,
+            };
+            let met = goal.is_met_by(&certificate);
+            if met || !found.settled || tolerance < ROUNDING || most_cycles == 0 || watch.is_over() {
+                break certificate;
+            }
+            let start = Start { displacement: Some(&found.displacement), contact_set: None };
+            let mut next = mprgp::solve(&problem, &self.multigrid, start, limits(tolerance, most_cycles))?;
+            next.iterations += found.iterations;
+            found.history.append(&mut next.history);
+            next.history = found.history;
+            found = next;
+        };
+        let solution = Solution {
+            displacement: found.displacement,
+            multiplier: found.multiplier,
+            contact_set: found.contact_set,
+            method: format!("{}{}", super::Method::Mprgp.name(), found.variant),
+            iterations: found.iterations,
+            history: found.history,
+            certificate,
+            proven: None,
+            refinements: None,
+            lost_pivot: None,
+            reason: None,
+            attempts: Vec::new(),
+            condensed_dofs: problem.dofs(),
+            seconds: Seconds { factor: 0.0, solve: clock.elapsed().as_secs_f64() },
+        };
+        if goal.is_met_by(&solution.certificate) {
+            return Ok(solution);
+        }
+        let (condition, value, tolerance) = goal.decisive(&solution.certificate);
+        Err(Error::NotCertified { solution: Box::new(solution), condition, value, tolerance })
+    }
+}
+
+/// Builds the hierarchy and solves from nothing known.
+pub(super) fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
+    if settings.watch.is_stopped() {
+        return Err(Error::Interrupted);
+    }
+    check_memory(problem, Kept::Multigrid, settings)?;
+    pace::learn(&settings.watch);
+    let estimate = Estimate::of(problem).hierarchy_seconds;
+    check_time(&settings.watch, estimate)?;
+    settings.watch.step("multigrid hierarchy", 0);
+    let iterative = settings.watch.timed(estimate, || Iterative::new(problem, settings.threads))?;
+    let timed = |mut solution: Solution| {
+        solution.seconds.factor += iterative.seconds;
+        solution.seconds.solve += iterative.seconds;
+        solution
+    };
+    match iterative.solve(Start::default(), settings) {
+        Ok(solution) => Ok(timed(solution)),
+        Err(Error::NotCertified { solution, condition, value, tolerance }) => {
+            Err(Error::NotCertified { solution: Box::new(timed(*solution)), condition, value, tolerance })
+        }
+        Err(error) => Err(error),
+    }
+}

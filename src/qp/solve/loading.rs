@@ -1,0 +1,76 @@
+//! A load on a prepared body, swept through its factor once for all gaps.
+
+use super::Prepared;
+use crate::qp::linear::{exponent, largest, ldexp};
+
+/// A load in all the forms in which a solve needs it.
+#[derive(Clone, Debug)]
+pub(super) struct Loading {
+    /// The load f of the problem, length n.
+    pub load: Vec<f64>,
+    /// Exponent of the reference displacement of what follows.
+    pub unit: i32,
+    /// Forward sweep of the scaled load, where the body is condensed.
+    pub sweep: Vec<f64>,
+    /// The scaled load on the dofs that the methods work on.
+    scaled: Vec<f64>,
+    /// The largest displacement that the load alone causes, where the stiffness is definite.
+    free: Option<f64>,
+    /// The load over the stiffness.
+    statics: f64,
+}
+
+impl Loading {
+    /// Scales `load` (length n) in a unit that fits it and `gap`, the gaps of the selected rows, and sweeps it.
+    pub fn of(prepared: &Prepared, load: Vec<f64>, gap: &[f64]) -> Self {
+        let stiffness = prepared.stiffest;
+        let statics = if stiffness > 0.0 { largest(&load) / stiffness } else { 0.0 };
+        let unit = exponent(largest(gap).max(statics));
+        let scaled = prepared.scaling.load(&load, unit);
+        let (sweep, scaled, free) = match &prepared.condensation {
+            Some(condensed) => {
+                let sweep = condensed.sweep(&scaled);
+                let free = prepared.norm.is_some().then(|| largest(&condensed.free_displacement(&sweep)));
+                let condensed = condensed.load(&sweep);
+                (sweep, condensed, free)
+            }
+            None => {
+                let free = prepared.norm.as_ref().map(|norm| largest(&norm.scaled_displacement(&scaled)));
+                (Vec::new(), scaled, free)
+            }
+        };
+        Loading { load, unit, sweep, scaled, free: free.map(|free| ldexp(free, unit)), statics }
+    }
+
+    /// The load together with a force (length n) on contact dofs alone, which no sweep has to carry.
+    pub fn with_contact_force(mut self, prepared: &Prepared, force: &[f64]) -> Self {
+        if let Some(condensed) = &prepared.condensation {
+            let scaled = prepared.scaling.load(force, self.unit);
+            self.scaled.iter_mut().zip(condensed.dofs()).for_each(|(entry, &dof)| *entry += scaled[dof]);
+        }
+        self
+    }
+
+    /// The same forms, said to be those of another load.
+    pub fn with_load(&self, load: Vec<f64>) -> Self {
+        Loading { load, ..self.clone() }
+    }
+
+    /// The exponent of the reference displacement with the gaps of the selected rows.
+    ///
+    /// The reference displacement is what the load alone does or the obstacle enforces, where the stiffness is definite,
+    /// but no more than the gaps and the load over the stiffness, where a soft support would let the free body run away.
+    pub fn unit_with(&self, gap: &[f64]) -> i32 {
+        let local = largest(gap).max(self.statics);
+        let enforced = gap.iter().fold(0.0, |enforced: f64, gap| enforced.max(-gap));
+        match self.free.map(|free| free.max(enforced)) {
+            Some(reach) if reach > 0.0 && reach < local => exponent(reach),
+            _ => exponent(local),
+        }
+    }
+
+    /// The load on the dofs that the methods work on, for u0 = `2^unit`.
+    pub fn scaled(&self, unit: i32) -> Vec<f64> {
+        self.scaled.iter().map(|&value| ldexp(value, self.unit - unit)).collect()
+    }
+}

@@ -1,0 +1,68 @@
+//! Seconds that a step of a solve takes, estimated on the machine of the fit; [`Watch::timed`] learns how this one compares.
+
+use std::hint::black_box;
+
+use super::rules::factor_seconds;
+use crate::qp::problem::ContactProblem;
+use crate::qp::linear::{Analysis, SparseMatrix, SymmetricMatrix};
+use crate::watch::Watch;
+
+/// Seconds of ordering and analysis for an entry of the lower triangle, nested dissection included.
+const ORDERING: f64 = 4e-7;
+
+/// Seconds of a multiplication in the plain loops of a condensation, and in a sweep through a dense triangle.
+const PLAIN: f64 = 4e-10;
+
+/// Seconds of a multiplication in the interior point, whose factor is built entry by entry.
+const ENTRY_BY_ENTRY: f64 = 1.5e-9;
+
+/// Its order needs so many times the multiplications of ours.
+const MORE_FILL: f64 = 3.0;
+
+/// Cells along a side of the lattice whose matrix is factorised to learn the pace.
+const LATTICE: usize = 64;
+
+/// Seconds of ordering and analysing the stiffness of `problem`.
+pub(super) fn ordering(problem: &ContactProblem) -> f64 {
+    ORDERING * problem.stiffness().lower().entries() as f64
+}
+
+/// Seconds of one factorisation in double precision.
+pub(super) fn factorisation(analysis: &Analysis) -> f64 {
+    factor_seconds(analysis.multiplications(), analysis.factor_entries())[0]
+}
+
+/// Seconds of one step of the interior point on a matrix that is analysed so, with a row for each of its contact dofs.
+pub(super) fn interior_point(analysis: &Analysis) -> f64 {
+    MORE_FILL * ENTRY_BY_ENTRY * analysis.multiplications()
+}
+
+/// Seconds of the product of a dense triangle with its transpose, and of its use as a matrix.
+pub(super) fn dense(size: usize) -> f64 {
+    PLAIN * (size as f64).powi(3) / 3.0
+}
+
+/// Seconds of sweeps through so many values.
+pub(super) fn sweeps(count: usize, values: f64) -> f64 {
+    PLAIN * count as f64 * values
+}
+
+/// Learns the pace from a small factorisation, if there is a deadline and nothing was timed before.
+pub(super) fn learn(watch: &Watch) {
+    if watch.time_left().is_none() || watch.pace().is_some() {
+        return;
+    }
+    let columns = LATTICE * LATTICE;
+    let below = |column: usize| {
+        let beside = (column % LATTICE + 1 < LATTICE).then_some((column + 1, column, -1.0));
+        let above = (column + LATTICE < columns).then_some((column + LATTICE, column, -1.0));
+        [Some((column, column, 5.0)), beside, above].into_iter().flatten()
+    };
+    let entries: Vec<_> = (0..columns).flat_map(below).collect();
+    let lattice = SparseMatrix::from_triplets(columns, columns, &entries).and_then(SymmetricMatrix::from_lower);
+    let Ok(lattice) = lattice else { return };
+    let Ok(analysis) = Analysis::of(&lattice) else { return };
+    // The first run fetches code and memory.
+    let _ = black_box(analysis.factor(&lattice));
+    let _ = black_box(watch.timed(factorisation(&analysis), || analysis.factor(&lattice)));
+}

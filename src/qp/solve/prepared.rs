@@ -1,0 +1,576 @@
+//! A problem with everything done that does not depend on load and gap: factor once, contact many.
+
+use std::sync::{Arc, OnceLock};
+use std::time::Instant;
+
+use super::boundary::{BoundarySolution, Found};
+use super::estimate::check_time;
+use super::loading::Loading;
+use super::rules::Way;
+use super::{Condense, Method, Path, Settings, last_resort, pace, run};
+use crate::error::Error;
+use crate::qp::method::parametric::Compliance;
+use crate::qp::method::{ScaledProblem, WORK_TOLERANCE, active_set};
+use crate::qp::problem::{ContactProblem, EnergyNorm, check_gap, check_load};
+use crate::solution::{Certificate, ContactSet, Iteration, Seconds, Solution};
+use crate::qp::linear::{AugmentedMatrix, Equilibration, dot, largest, ldexp};
+use crate::qp::transform::{Condensation, RowSelection, Scaling};
+use crate::watch::Watch;
+
+/// Factorisations for one step of a loop where K is not definite by itself.
+const SINGULAR: f64 = 3.0;
+
+/// A contact problem, scaled, condensed where that pays, factorised, its load swept through the factor.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    pub(super) problem: ContactProblem,
+    pub(super) selection: RowSelection,
+    pub(super) scaling: Scaling,
+    /// The largest diagonal entry of the stiffness.
+    pub(super) stiffest: f64,
+    pub(super) norm: Option<EnergyNorm>,
+    /// The smallest pivot of the scaled stiffness, where it is below [`LOST_PIVOT`](super::preparation::LOST_PIVOT).
+    pub(super) lost_pivot: Option<f64>,
+    pub(super) condensation: Option<Condensation>,
+    pub(super) augmented: AugmentedMatrix,
+    /// Energy norm of the condensed stiffness, made when it is first asked for.
+    pub(super) condensed_norm: OnceLock<Option<EnergyNorm>>,
+    /// The load of the problem, swept when it is first solved with.
+    pub(super) loading: OnceLock<Arc<Loading>>,
+    /// What was chosen, where the choice was left to the program.
+    pub(super) way: Option<Way>,
+    pub(super) multiplications: f64,
+    /// Seconds that proving which rows are open and closed takes, estimated.
+    pub(super) proof_seconds: f64,
+    pub(super) seconds: Seconds,
+}
+
+impl Prepared {
+    /// Scales, condenses and factorises `problem`.
+    ///
+    /// # Errors
+    /// [`Error::Infeasible`] for rows that contradict each other at the gaps of `problem`, [`Error::NotConvex`],
+    /// [`Error::Numerical`] where memory does not suffice.
+    pub fn new(problem: &ContactProblem, condense: Condense) -> Result<Self, Error> {
+        Self::with_settings(problem, &Settings { condense, ..Settings::default() })
+    }
+
+    /// Number of dofs of the problem.
+    pub fn dofs(&self) -> usize {
+        self.problem.dofs()
+    }
+
+    /// Number of unknowns that the methods work on.
+    pub fn condensed_dofs(&self) -> usize {
+        self.condensation.as_ref().map_or(self.problem.dofs(), |condensed| condensed.stiffness().dim())
+    }
+
+    /// Number of values of the factor of the stiffness; zero where the methods factorise by themselves.
+    pub fn factor_entries(&self) -> usize {
+        self.condensation.as_ref().map_or(0, Condensation::factor_entries)
+    }
+
+    /// Bytes of these values.
+    pub fn factor_bytes(&self) -> usize {
+        self.factor_entries() * if self.is_single() { size_of::<f32>() } else { size_of::<f64>() }
+    }
+
+    /// Multiplications of the factorisation of the stiffness.
+    pub fn multiplications(&self) -> f64 {
+        self.multiplications
+    }
+
+    /// May the answer fall short of its goal where a slower way would not?
+    pub(super) fn is_a_shortcut(&self) -> bool {
+        self.is_single() || self.way.is_some_and(|way| way != Way::ActiveSet)
+    }
+
+    /// What the preparation cost.
+    pub fn seconds(&self) -> Seconds {
+        self.seconds
+    }
+
+    /// Solves with the load and the gaps of the problem that was prepared.
+    ///
+    /// # Errors
+    /// As [`solve`](super::solve).
+    pub fn solve(&self, settings: &Settings) -> Result<Solution, Error> {
+        self.solve_gap(self.problem.gap().to_vec(), None, settings)
+    }
+
+    /// Solves with other gaps, the active-set steps starting from `start` where it is given.
+    ///
+    /// # Errors
+    /// As [`solve`](super::solve); [`Error::Length`] and [`Error::NotFinite`] for gaps that do not fit, or that are
+    /// infinite in other rows than those of the problem that was prepared.
+    pub fn solve_gap(&self, gap: Vec<f64>, start: Option<&ContactSet>, settings: &Settings) -> Result<Solution, Error> {
+        let settings = &settings.started()?;
+        self.complete(self.find(self.own_load(), gap, start, settings)?, settings)
+    }
+
+    /// Solves with another load, the active-set steps starting from `start` where it is given.
+    ///
+    /// # Errors
+    /// As [`Prepared::solve_gap`], for the load.
+    pub fn solve_load(
+        &self,
+        load: Vec<f64>,
+        start: Option<&ContactSet>,
+        settings: &Settings,
+    ) -> Result<Solution, Error> {
+        let settings = &settings.started()?;
+        let loading = self.other_load(load, self.problem.gap())?;
+        self.complete(self.find(loading, self.problem.gap().to_vec(), start, settings)?, settings)
+    }
+
+    /// Contact set, multipliers and forces with other gaps, the active-set steps starting from `start` where it is given.
+    ///
+    /// The displacement of the body is not computed, so that a condensed problem costs what its contact boundary costs.
+    ///
+    /// # Errors
+    /// As [`Prepared::solve_gap`]; the tolerance is held against the certificate of the condensed problem.
+    pub fn boundary_at_gap(
+        &self,
+        gap: Vec<f64>,
+        start: Option<&ContactSet>,
+        settings: &Settings,
+    ) -> Result<BoundarySolution<'_>, Error> {
+        let settings = &settings.started()?;
+        self.on_boundary(self.find(self.own_load(), gap, start, settings)?, settings)
+    }
+
+    /// As [`Prepared::boundary_at_gap`], with another load, which costs one sweep through the factor of the body.
+    ///
+    /// # Errors
+    /// As [`Prepared::boundary_at_gap`], for the load.
+    pub fn boundary_at_load(
+        &self,
+        load: Vec<f64>,
+        start: Option<&ContactSet>,
+        settings: &Settings,
+    ) -> Result<BoundarySolution<'_>, Error> {
+        self.boundary_at(load, self.problem.gap().to_vec(), start, settings)
+    }
+
+    /// As [`Prepared::boundary_at_load`], with other gaps too.
+    ///
+    /// # Errors
+    /// As [`Prepared::boundary_at_gap`], for load and gaps.
+    pub fn boundary_at(
+        &self,
+        load: Vec<f64>,
+        gap: Vec<f64>,
+        start: Option<&ContactSet>,
+        settings: &Settings,
+    ) -> Result<BoundarySolution<'_>, Error> {
+        let settings = &settings.started()?;
+        let loading = self.other_load(load, &gap)?;
+        self.on_boundary(self.find(loading, gap, start, settings)?, settings)
+    }
+
+    /// The exact path of the answer while the gaps move from `from` to `to` (length m each) on a straight line.
+    ///
+    /// # Errors
+    /// As [`Prepared::solve_gap`] for both ends; [`Error::Interrupted`]; [`Error::NotCondensed`] for a problem that was not condensed or whose
+    /// stiffness is not definite by itself.
+    pub fn path(&self, from: &[f64], to: &[f64], settings: &Settings) -> Result<Path<'_>, Error> {
+        let Some(condensed) = self.condensation.as_ref().filter(|_| self.norm.is_some() && !self.is_single()) else {
+            return Err(Error::NotCondensed { step: "the exact path" });
+        };
+        self.check_gap(to)?;
+        let settings = &settings.started()?;
+        let found = self.find(self.own_load(), from.to_vec(), None, settings)?;
+        let start = self.on_boundary(found, settings)?;
+        let Found { loading, unit, problem, .. } = &start.found;
+        let free = condensed.contact().mul(&condensed.free_displacement(&loading.sweep));
+        let at_end = self.scaling.gap(&self.selection.gap(to), *unit);
+        let constant =
+            free.iter().zip(problem.gap()).map(|(&free, gap)| ldexp(free, loading.unit - unit) - gap).collect();
+        let slope = problem.gap().iter().zip(&at_end).map(|(first, last)| first - last).collect();
+        let compliance = Compliance::new(condensed.compliance(), constant, slope);
+        let (pieces, mut events) =
+            compliance.walk(&self.selection.restrict_set(&start.contact_set), &settings.watch)?;
+        events.iter_mut().for_each(|event| event.row = self.selection.kept()[event.row]);
+        Ok(Path { prepared: self, from: from.to_vec(), to: to.to_vec(), unit: *unit, pieces, events })
+    }
+
+    pub(super) fn expand_multiplier(&self, multiplier: &[f64], unit: i32) -> Vec<f64> {
+        self.selection.expand_multiplier(&self.scaling.expand_multiplier(multiplier, unit))
+    }
+
+    pub(super) fn expand_set(&self, set: &ContactSet) -> ContactSet {
+        self.selection.expand_set(set)
+    }
+
+    /// Runs the method of `settings`, on the contact boundary where the problem is condensed.
+    pub(super) fn find(
+        &self,
+        loading: Arc<Loading>,
+        gap: Vec<f64>,
+        start: Option<&ContactSet>,
+        settings: &Settings,
+    ) -> Result<Found, Error> {
+        let settings = &self.resolved(&settings.started()?);
+        self.check_gap(&gap)?;
+        let found = self.find_step(loading, gap, start, settings)?;
+        if self.is_single() { self.refined(found, settings) } else { Ok(found) }
+    }
+
+    /// The settings with the method that was chosen, where they leave the choice.
+    pub(super) fn resolved(&self, settings: &Settings) -> Settings {
+        match settings.method {
+            Method::Auto => self.way.unwrap_or(Way::ActiveSet).settings(settings),
+            _ => settings.clone(),
+        }
+    }
+
+    /// One run of the method.
+    pub(super) fn find_step(
+        &self,
+        loading: Arc<Loading>,
+        gap: Vec<f64>,
+        start: Option<&ContactSet>,
+        settings: &Settings,
+    ) -> Result<Found, Error> {
+        let clock = Instant::now();
+        let watch = self.watch_of_loop(settings)?;
+        let (problem, unit) = self.scaled(&loading, &gap)?;
+        let task = ScaledProblem::new(&problem, &self.augmented, self.norm.is_some()).watched(&watch);
+        let start = start.map(|set| self.selection.restrict_set(set));
+        let bound = |displacement: &[f64], multiplier: &[f64]| {
+            let certificate = match self.condensed_norm(&problem).ok().flatten() {
+                Some(norm) => problem.certify_in(Some(norm), displacement, multiplier),
+                None => problem.certify(displacement, multiplier),
+            };
+            let of_whole = self.share_of_boundary(&loading, unit, &problem, displacement);
+            certificate.map_or(f64::INFINITY, |certificate| certificate.energy_error_bound * of_whole)
+        };
+        let outcome =
+            run(&task, start, settings, &bound).map_err(|error| self.expand_error(error, &loading.load, &gap))?;
+        let seconds = Seconds { factor: task.factor_seconds(), solve: clock.elapsed().as_secs_f64() };
+        Ok(Found { loading, gap, problem, unit, outcome, seconds, refined: None })
+    }
+
+    /// A watch that is over as soon as there is no time left for one more factorisation of a loop.
+    ///
+    /// # Errors
+    /// [`Error::OutOfTime`] where there is none for the first.
+    fn watch_of_loop(&self, settings: &Settings) -> Result<Watch, Error> {
+        if settings.watch.time_left().is_none() {
+            return Ok(settings.watch.clone());
+        }
+        let analysis = self.augmented.analysis();
+        // Where K is not definite, the start and the test of uniqueness factorise too.
+        let factors = if self.norm.is_some() { 1.0 } else { SINGULAR };
+        let of_loop = factors * pace::factorisation(analysis);
+        let (first, each) = match settings.method {
+            Method::Qp => (2.0 * pace::interior_point(analysis), pace::interior_point(analysis).max(of_loop)),
+            _ => (of_loop, of_loop),
+        };
+        check_time(&settings.watch, first)?;
+        Ok(settings.watch.keeping(each))
+    }
+
+    /// The answer on the boundary, certified there.
+    fn on_boundary(&self, found: Found, settings: &Settings) -> Result<BoundarySolution<'_>, Error> {
+        self.judged(found, settings, true)
+    }
+
+    /// The answer on the boundary, its conditions recomputed there, and its error bound where it is `bounded`.
+    pub(super) fn judged(
+        &self,
+        found: Found,
+        settings: &Settings,
+        bounded: bool,
+    ) -> Result<BoundarySolution<'_>, Error> {
+        let on_boundary = |found: &Found| -> Result<Certificate, Error> {
+            let Found { problem, outcome, .. } = found;
+            match if bounded { self.condensed_norm(problem)? } else { None } {
+                None if bounded => problem.certify(&outcome.displacement, &outcome.multiplier),
+                norm => problem.certify_in(norm, &outcome.displacement, &outcome.multiplier),
+            }
+        };
+        let is_met = |certificate: &Certificate| match bounded {
+            true => settings.goal().is_met_by(certificate),
+            false => certificate.conditions_hold(settings.tolerance),
+        };
+        let (found, condensed_certificate) = if self.is_single() {
+            // The condensed problem is that of the last step only.
+            let (found, solution) = self.best(found, settings)?;
+            (found, solution.certificate)
+        } else {
+            let certificate = on_boundary(&found)?;
+            match is_met(&certificate) {
+                true => (found, certificate),
+                false => {
+                    // The certificate of the whole answer tells what is wrong, unless it knows better.
+                    let found = self.best(found, settings)?.0;
+                    let certificate = on_boundary(&found)?;
+                    (found, certificate)
+                }
+            }
+        };
+        let Found { unit, outcome, .. } = &found;
+        Ok(BoundarySolution {
+            multiplier: self.expand_multiplier(&outcome.multiplier, *unit),
+            contact_set: self.selection.expand_set(&outcome.contact_set),
+            iterations: outcome.iterations,
+            condensed_certificate,
+            prepared: self,
+            found,
+        })
+    }
+
+    /// The energy norm of the problem that the methods work on.
+    fn condensed_norm(&self, problem: &ContactProblem) -> Result<Option<&EnergyNorm>, Error> {
+        let Some(norm) = &self.norm else { return Ok(None) };
+        if self.condensed_norm.get().is_none() {
+            let of_problem = match &self.condensation {
+                None => Some(norm.equilibrated()),
+                Some(_) => {
+                    let unscaled = Equilibration::none(problem.dofs());
+                    let factor = self.augmented.factor(&self.augmented.matrix(|_| 0.0, 0.0)).ok();
+                    factor.map(|factor| EnergyNorm::new(factor, unscaled, (0..problem.dofs()).collect()))
+                }
+            };
+            // Another thread may have been faster, with the same result.
+            let _ = self.condensed_norm.set(of_problem);
+        }
+        Ok(self.condensed_norm.get().and_then(Option::as_ref))
+    }
+
+    /// The energy norm of a displacement of the condensed problem over that of the whole body.
+    fn share_of_boundary(&self, loading: &Loading, unit: i32, problem: &ContactProblem, displacement: &[f64]) -> f64 {
+        let Some(condensed) = &self.condensation else { return 1.0 };
+        let on_boundary = dot(displacement, &problem.stiffness().mul(displacement));
+        let interior = ldexp(condensed.interior_energy(&loading.sweep), 2 * (loading.unit - unit));
+        if interior > 0.0 { (on_boundary / (on_boundary + interior)).max(0.0).sqrt() } else { 1.0 }
+    }
+
+    /// The whole answer, certified.
+    pub(super) fn complete(&self, found: Found, settings: &Settings) -> Result<Solution, Error> {
+        self.best(found, settings).map(|best| best.1)
+    }
+
+    /// The whole answer, certified, and what was found for it: by a second attempt where `found` falls short.
+    fn best(&self, found: Found, settings: &Settings) -> Result<(Found, Solution), Error> {
+        let goal = settings.goal();
+        let solution = self.whole(&found, settings)?;
+        let mut best = (found, solution);
+        if goal.is_met_by(&best.1.certificate) {
+            return Ok(best);
+        }
+        let miss = |solution: &Solution| {
+            let (_, value, _) = goal.decisive(&solution.certificate);
+            if value.is_nan() { f64::INFINITY } else { value }
+        };
+        let other = self.second_attempt(&best.0, settings)?;
+        if let Some(other) = other.filter(|_| self.resolved(settings).allows_last_resort(miss(&best.1))) {
+            let solution = self.whole(&other, settings)?;
+            if miss(&solution) < miss(&best.1) {
+                best = (other, solution);
+            }
+        }
+        let solution = &best.1;
+        if goal.is_met_by(&solution.certificate) {
+            return Ok(best);
+        }
+        let (condition, value, tolerance) = goal.decisive(&solution.certificate);
+        Err(Error::NotCertified { solution: Box::new(best.1), condition, value, tolerance })
+    }
+
+    /// What the last resort finds, where `found` is not its answer already.
+    ///
+    /// # Errors
+    /// [`Error::Infeasible`] for contact rows that contradict each other.
+    fn second_attempt(&self, found: &Found, settings: &Settings) -> Result<Option<Found>, Error> {
+        let clock = Instant::now();
+        // Of an answer that was cut short it is known why it falls short.
+        if found.outcome.is_last_resort() || settings.watch.is_over() {
+            return Ok(None);
+        }
+        let task = ScaledProblem::new(&found.problem, &self.augmented, self.norm.is_some()).watched(&settings.watch);
+        let outcome = last_resort(&task, found.outcome.clone())
+            .map_err(|error| self.expand_error(error, &found.loading.load, &found.gap))?;
+        let seconds = Seconds { solve: found.seconds.solve + clock.elapsed().as_secs_f64(), ..found.seconds };
+        Ok(outcome.is_last_resort().then(|| Found { outcome, seconds, ..found.clone() }))
+    }
+
+    /// The whole answer with its certificate.
+    fn whole(&self, found: &Found, settings: &Settings) -> Result<Solution, Error> {
+        let clock = Instant::now();
+        settings.watch.step("certificate", 0);
+        let displacement = self.displacement(found);
+        let method = self.resolved(settings).method;
+        let Found { loading, gap, unit, outcome, seconds, refined, .. } = found;
+        let norm = match refined {
+            Some(refined) => self.norm.as_ref().map(|norm| norm.off_by(refined.contraction)),
+            None => self.norm.clone(),
+        };
+        let multiplier = self.expand_multiplier(&outcome.multiplier, *unit);
+        let problem = self.problem.with(loading.load.clone(), gap.clone())?;
+        let certificate = match &norm {
+            Some(norm) => problem.certify_in(Some(norm), &displacement, &multiplier)?,
+            None => problem.certify(&displacement, &multiplier)?,
+        };
+        let expand_iteration = |step: &Iteration| Iteration {
+            contact_set: self.selection.expand_set(&step.contact_set),
+            penalty: step.penalty,
+        };
+        let mut solution = Solution {
+            displacement,
+            multiplier,
+            contact_set: self.selection.expand_set(&outcome.contact_set),
+            method: format!("{}{}", method.name(), outcome.variant),
+            iterations: outcome.iterations,
+            history: outcome.history.iter().map(expand_iteration).collect(),
+            certificate,
+            proven: None,
+            refinements: refined.as_ref().map(|refined| refined.steps),
+            reason: None,
+            attempts: Vec::new(),
+            lost_pivot: self.lost_pivot,
+            condensed_dofs: self.condensed_dofs(),
+            seconds: Seconds { solve: seconds.solve + clock.elapsed().as_secs_f64(), ..*seconds },
+        };
+        if !self.is_single() && self.resolved(settings).wants_best() {
+            solution = self.corrected(solution, &problem, settings)?;
+        }
+        let clock = Instant::now();
+        let may_prove = settings.prove && !settings.watch.is_stopped() && settings.watch.allows(self.proof_seconds);
+        let proven = norm.as_ref().filter(|_| may_prove);
+        solution.proven = proven.and_then(|norm| problem.prove_in(norm, &solution.displacement, &solution.multiplier));
+        solution.seconds.solve += clock.elapsed().as_secs_f64();
+        Ok(solution)
+    }
+
+    /// The certificate of an answer to `problem`, this one under some load and gaps.
+    pub(super) fn certificate(
+        &self,
+        problem: &ContactProblem,
+        displacement: &[f64],
+        multiplier: &[f64],
+    ) -> Result<Certificate, Error> {
+        match &self.norm {
+            Some(norm) => problem.certify_in(Some(norm), displacement, multiplier),
+            None => problem.certify(displacement, multiplier),
+        }
+    }
+
+    /// Displacement and multiplier with the rows of `closed` held at their gaps.
+    pub(super) fn with_contact_set(&self, closed: &ContactSet) -> Result<(Vec<f64>, Vec<f64>), Error> {
+        let loading = self.own_load();
+        let (problem, unit) = self.scaled(&loading, self.problem.gap())?;
+        let task = ScaledProblem::new(&problem, &self.augmented, self.norm.is_some());
+        let held = active_set::with_contact_set(&task, &self.selection.restrict_set(closed))
+            .map_err(|error| self.expand_error(error, self.problem.load(), self.problem.gap()))?;
+        Ok((self.expand(&loading, unit, &held.displacement), self.expand_multiplier(&held.multiplier, unit)))
+    }
+
+    /// The displacement of the whole body.
+    pub(super) fn displacement(&self, found: &Found) -> Vec<f64> {
+        let mut displacement = self.expand(&found.loading, found.unit, &found.outcome.displacement);
+        if let Some(refined) = &found.refined {
+            displacement.iter_mut().zip(&refined.base).for_each(|(step, base)| *step += base);
+        }
+        displacement
+    }
+
+    /// Is the factor in single precision?
+    pub fn is_single(&self) -> bool {
+        self.norm.is_some() && self.condensation.as_ref().is_some_and(Condensation::is_single)
+    }
+
+    /// Rows that were left out when the problem was prepared must still be no constraints, and no others.
+    fn check_gap(&self, gap: &[f64]) -> Result<(), Error> {
+        check_gap(gap, self.problem.rows())?;
+        if self.selection.under(gap)?.kept() == self.selection.kept() {
+            return Ok(());
+        }
+        let (row, &value) = (gap.iter().enumerate())
+            .find(|(row, gap)| gap.is_finite() != self.problem.gap()[*row].is_finite())
+            .unwrap_or((0, &f64::NAN));
+        let allowed = "infinite in the same rows as when the problem was prepared";
+        Err(Error::NotFinite { name: "gap vector", at: format!("entry {row}"), value, allowed })
+    }
+
+    fn load(&self, load: Vec<f64>, gap: &[f64]) -> Arc<Loading> {
+        Arc::new(Loading::of(self, load, &self.selection.gap(gap)))
+    }
+
+    fn own_load(&self) -> Arc<Loading> {
+        self.loading.get_or_init(|| self.load(self.problem.load().to_vec(), self.problem.gap())).clone()
+    }
+
+    pub(super) fn other_load(&self, load: Vec<f64>, gap: &[f64]) -> Result<Arc<Loading>, Error> {
+        check_load(&load, self.dofs())?;
+        check_gap(gap, self.problem.rows())?;
+        Ok(self.load(load, gap))
+    }
+
+    /// The problem that the methods work on, and the exponent of its reference displacement.
+    fn scaled(&self, loading: &Loading, gap: &[f64]) -> Result<(ContactProblem, i32), Error> {
+        let gap = self.selection.gap(gap);
+        let unit = loading.unit_with(&gap);
+        let (stiffness, contact) = match &self.condensation {
+            Some(condensed) => (condensed.stiffness(), condensed.contact()),
+            None => (self.scaling.stiffness(), self.scaling.contact()),
+        };
+        let (load, gap) = (loading.scaled(unit), self.scaling.gap(&gap, unit));
+        Ok((ContactProblem::new(stiffness.clone(), load, contact.clone(), gap)?, unit))
+    }
+
+    /// The displacement of the whole body, in its own unit.
+    pub(super) fn expand(&self, loading: &Loading, unit: i32, displacement: &[f64]) -> Vec<f64> {
+        match &self.condensation {
+            Some(condensed) => {
+                // In the unit of the sweep.
+                let moved: Vec<f64> = displacement.iter().map(|&v| ldexp(v, unit - loading.unit)).collect();
+                self.scaling.expand_displacement(&condensed.expand(&loading.sweep, &moved), loading.unit)
+            }
+            None => self.scaling.expand_displacement(displacement, unit),
+        }
+    }
+
+    /// Rows and directions of an error in the terms of the original problem.
+    fn expand_error(&self, error: Error, load: &[f64], gap: &[f64]) -> Error {
+        let Ok(problem) = self.problem.with(load.to_vec(), gap.to_vec()) else { return error };
+        let normalised = |direction: Vec<f64>| {
+            let whole = match &self.condensation {
+                // A free motion moves the interior along without force.
+                Some(condensed) => condensed.expand(&vec![0.0; self.problem.dofs()], &direction),
+                None => direction,
+            };
+            let mut direction = self.scaling.expand_displacement(&whole, 0);
+            let size = largest(&direction);
+            direction.iter_mut().for_each(|value| *value /= size);
+            direction
+        };
+        match error {
+            Error::Unbounded { motion, direction } => {
+                let direction = normalised(direction);
+                // Condensing leaves the rounding of a load in balance, which is all that drives the boundary then.
+                match problem.share_of_work(&direction) > WORK_TOLERANCE {
+                    true => Error::Unbounded { motion, direction },
+                    false => Error::UnderHeld { motion, direction },
+                }
+            }
+            Error::UnderHeld { motion, direction } => Error::UnderHeld { motion, direction: normalised(direction) },
+            Error::Infeasible { rows, weights, .. } => {
+                let mut scaled = vec![0.0; self.selection.kept().len()];
+                rows.iter().zip(&weights).for_each(|(&row, &weight)| scaled[row] = weight);
+                let rows: Vec<usize> = rows.into_iter().map(|row| self.selection.kept()[row]).collect();
+                // Rows are scaled as multipliers are; the unit of weights is free.
+                let all = self.expand_multiplier(&scaled, self.scaling.equilibration().factor);
+                let weights: Vec<f64> =
+                    if weights.is_empty() { weights } else { rows.iter().map(|&row| all[row]).collect() };
+                let overlap = problem.overlap(&rows, &weights).unwrap_or(0.0);
+                let by = if overlap > 0.0 { format!(": they overlap by {overlap:.3e}") } else { String::new() };
+                let reason =
+                    format!("no displacement satisfies the contact rows {rows:?} together{by} (indices from 0)");
+                Error::Infeasible { reason, rows, weights, overlap }
+            }
+            other => other,
+        }
+    }
+}

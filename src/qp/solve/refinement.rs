@@ -1,0 +1,181 @@
+//! Refinement: an answer brought to the digits of doubles, or to the accuracy asked for, with the factor at hand.
+//!
+//! With the factor K~, in single precision or in double precision with the digits that condensation and bending have left, every
+//! step solves the contact problem of what is left,
+//!
+//! ```text
+//! minimise 1/2 d' K~ d - (f - K u)' d   subject to   B d <= g - B u
+//! ```
+//!
+//! condensed, by the same method, and adds d to u. What is left is computed with twice the working precision. Where d is zero the
+//! conditions are those of the problem itself; until then the error shrinks by `|I - K~^-1 K|` from step to step. With
+//! a factor in single precision that contraction is measured, and widens the bound of the certificate, which knows K~ only.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::boundary::Found;
+use super::loading::Loading;
+use super::{Prepared, Settings};
+use crate::error::Error;
+use crate::qp::problem::ContactProblem;
+use crate::solution::{ContactSet, Solution};
+use crate::qp::linear::dot;
+
+/// Steps after which there is nothing more to gain.
+const MOST_STEPS: usize = 30;
+
+/// Steps after an answer in double precision: each gains the digits that the factor has left.
+const MOST_CORRECTIONS: usize = 6;
+
+/// A contraction above this makes the bound of the certificate worthless.
+const LARGEST_CONTRACTION: f64 = 0.2;
+
+/// Steps below this share of the displacement are rounding, and say nothing of the contraction.
+const ROUNDING: f64 = 1e-9;
+
+/// A step of this share of the displacement changes it no more.
+const NOTHING: f64 = 4.0 * f64::EPSILON;
+
+/// The accuracy that is aimed at is this share of the one asked for, because the contraction is an estimate.
+const AIM: f64 = 0.1;
+
+/// What refinement has done so far.
+#[derive(Clone, Debug)]
+pub(super) struct Refined {
+    /// The displacement before the last step, length n.
+    pub base: Vec<f64>,
+    /// The largest measured contraction.
+    pub contraction: f64,
+    /// Steps after the first answer.
+    pub steps: usize,
+}
+
+impl Prepared {
+    /// Refines what the method found with the factor in single precision.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] where the stiffness is too ill-conditioned for it, and those of the method.
+    pub(super) fn refined(&self, first: Found, settings: &Settings) -> Result<Found, Error> {
+        let (load, gap) = (first.loading.load.clone(), first.gap.clone());
+        let mut rest = load.clone();
+        let mut found = first;
+        let mut refined = Refined { base: vec![0.0; self.problem.dofs()], contraction: 0.0, steps: 0 };
+        let mut last_length = f64::INFINITY;
+        loop {
+            let step = self.expand(&found.loading, found.unit, &found.outcome.displacement);
+            let displacement: Vec<f64> = refined.base.iter().zip(&step).map(|(u, d)| u + d).collect();
+            // K~ d is what is left of the load and the contact force.
+            let multiplier = self.expand_multiplier(&found.outcome.multiplier, found.unit);
+            let contact = self.problem.contact().mul_transposed(&multiplier);
+            let work: f64 = step.iter().zip(rest.iter().zip(&contact)).map(|(d, (r, c))| d * (r + c)).sum();
+            let elastic = self.problem.stiffness().mul(&displacement);
+            let (length, size) = (work.max(0.0).sqrt(), dot(&displacement, &elastic).max(0.0).sqrt());
+            let ratio = if last_length > 0.0 { length / last_length } else { 0.0 };
+            if last_length.is_finite() && last_length > ROUNDING * size {
+                refined.contraction = refined.contraction.max(ratio);
+            }
+            if refined.contraction > LARGEST_CONTRACTION {
+                let reason = "the stiffness is too ill-conditioned for it; take double precision".to_string();
+                return Err(Error::Numerical { step: "refinement of a factor in single precision", reason });
+            }
+            let good_enough = settings
+                .accuracy
+                .is_some_and(|accuracy| refined.steps > 0 && length * refined.contraction <= AIM * accuracy * size);
+            let no_gain = refined.steps > 0 && (length <= NOTHING * size || ratio > 0.5);
+            if good_enough || no_gain || settings.watch.is_over() || refined.steps == MOST_STEPS {
+                return Ok(Found {
+                    gap,
+                    loading: Arc::new(found.loading.with_load(load)),
+                    refined: Some(refined),
+                    ..found
+                });
+            }
+            rest = load.iter().zip(&elastic).map(|(f, k)| f - k).collect();
+            let (history, iterations) = (found.outcome.history, found.outcome.iterations);
+            let (set, seconds) = (self.expand_set(&found.outcome.contact_set), found.seconds);
+            let problem = self.problem.with(load.clone(), gap.clone())?;
+            found = self.step_from(&problem, &displacement, &multiplier, &set, settings)?;
+            // Of a step that keeps the set there is nothing to tell.
+            let kept = found
+                .outcome
+                .history
+                .iter()
+                .all(|entry| Some(&entry.contact_set) == history.last().map(|last| &last.contact_set));
+            found.outcome.history = if kept { history } else { [history, found.outcome.history].concat() };
+            found.outcome.iterations = iterations;
+            found.seconds.factor += seconds.factor;
+            found.seconds.solve += seconds.solve;
+            refined.base = displacement;
+            refined.steps += 1;
+            last_length = length;
+        }
+    }
+
+    /// The answer d to the contact problem of what an answer (u, lambda) to `problem` leaves, from its contact set, and the
+    /// whole multiplier.
+    fn step_from(
+        &self,
+        problem: &ContactProblem,
+        displacement: &[f64],
+        multiplier: &[f64],
+        set: &ContactSet,
+        settings: &Settings,
+    ) -> Result<Found, Error> {
+        // The contact force is balanced on its own dofs; only what is out of balance is swept.
+        let imbalance = problem.accurate_residual(displacement, multiplier);
+        let contact = problem.contact().mul_transposed(multiplier);
+        let released: Vec<f64> = contact.iter().map(|force| -force).collect();
+        let left: Vec<f64> = problem.accurate_violation(displacement).iter().map(|violation| -violation).collect();
+        let loading = match self.condensation {
+            Some(_) => Loading::of(self, imbalance, &self.selection.gap(&left)).with_contact_force(self, &released),
+            None => {
+                let rest = imbalance.iter().zip(&released).map(|(r, b)| r + b).collect();
+                Loading::of(self, rest, &self.selection.gap(&left))
+            }
+        };
+        self.find_step(Arc::new(loading), left, Some(set), settings)
+    }
+
+    /// A solution that falls short, refined for as long as that brings it closer to its goal.
+    ///
+    /// # Errors
+    /// Those of the certificate.
+    pub(super) fn corrected(
+        &self,
+        mut solution: Solution,
+        problem: &ContactProblem,
+        settings: &Settings,
+    ) -> Result<Solution, Error> {
+        // Another step must come so much closer.
+        const GAIN: f64 = 0.5;
+        for _ in 0..MOST_CORRECTIONS {
+            if settings.goal().is_met_by(&solution.certificate) || settings.watch.is_over() {
+                break;
+            }
+            let clock = Instant::now();
+            settings.watch.step("refinement", 0);
+            let (displacement, multiplier) = (&solution.displacement, &solution.multiplier);
+            // What cannot be solved for what is left may still stand as it is.
+            let Ok(step) = self.step_from(problem, displacement, multiplier, &solution.contact_set, settings) else {
+                break;
+            };
+            let moved = self.expand(&step.loading, step.unit, &step.outcome.displacement);
+            let displacement: Vec<f64> = displacement.iter().zip(&moved).map(|(u, d)| u + d).collect();
+            let multiplier = self.expand_multiplier(&step.outcome.multiplier, step.unit);
+            let certificate = self.certificate(problem, &displacement, &multiplier)?;
+            let (before, after) = (solution.certificate.worst().1, certificate.worst().1);
+            if after.is_nan() || after > GAIN * before || (solution.certificate.has_bound() && !certificate.has_bound())
+            {
+                break;
+            }
+            solution.contact_set = self.expand_set(&step.outcome.contact_set);
+            (solution.displacement, solution.multiplier, solution.certificate) =
+                (displacement, multiplier, certificate);
+            solution.refinements = Some(solution.refinements.unwrap_or(0) + 1);
+            solution.seconds.solve += clock.elapsed().as_secs_f64();
+            solution.seconds.factor += step.seconds.factor;
+        }
+        Ok(solution)
+    }
+}

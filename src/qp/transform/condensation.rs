@@ -1,0 +1,245 @@
+//! Condensation onto the dofs that appear in the contact rows, by one Cholesky factorisation.
+//!
+//! With the contact dofs t ordered last in K = L L':
+//!
+//! ```text
+//! S = K_tt - K_ti K_ii^-1 K_it = L_tt L_tt'      the stiffness that the contact boundary feels
+//! y = L^-1 f,  f_c = L_tt y_t                     the load that reaches it
+//! L' u = (y_i, L_tt' u_t)                         the way back to the whole body
+//! ```
+//!
+//! A body that only its contact rows hold has a singular K. There `K + B'B` is factorised, whose Schur complement is
+//! `S + B_t'B_t`: the interior blocks, and so both sweeps, are the same.
+
+use crate::error::Error;
+use crate::qp::linear::{Analysis, Cholesky, FactorError, SparseMatrix, SymmetricMatrix, dot};
+
+/// Contact dofs beyond this share of all leave little to condense.
+const LARGEST_SHARE: f64 = 0.25;
+
+/// A dense factorisation on the contact dofs may cost this many times the estimate for the sparse one, which is low.
+const DENSE_WORK: f64 = 3.0;
+
+/// Dense matrices on the contact dofs that exist at one time, in the memory of their values.
+const DENSE_MATRICES: f64 = 5.0;
+
+/// A difference below this share of its terms is rounding: the factorisation of a large body loses a few digits.
+const LEFT_OVER: f64 = 1e-12;
+
+/// Values that are not worth counting.
+const FEW_VALUES: f64 = 1e6;
+
+/// The condensed stiffness, with the way back to the whole body.
+#[derive(Clone, Debug)]
+pub struct Condensation {
+    contact_dofs: Vec<usize>,
+    cholesky: Cholesky,
+    trailing: Vec<f64>,
+    stiffness: SymmetricMatrix,
+    contact: SparseMatrix,
+}
+
+impl Condensation {
+    /// The dofs that appear in the rows B, in increasing order.
+    pub fn contact_dofs(contact: &SparseMatrix) -> Vec<usize> {
+        (0..contact.columns()).filter(|&dof| contact.column(dof).any(|entry| entry.1 != 0.0)).collect()
+    }
+
+    /// The analysis of `stiffness` with the contact dofs last, or `None` where condensing onto so many does not pay.
+    ///
+    /// # Errors
+    /// As [`Analysis::with_last`].
+    pub fn analyse(stiffness: &SymmetricMatrix, contact_dofs: &[usize]) -> Result<Option<Analysis>, FactorError> {
+        let (dim, count) = (stiffness.dim() as f64, contact_dofs.len() as f64);
+        if count == 0.0 || count > LARGEST_SHARE * dim {
+            return Ok(None);
+        }
+        let analysis = Analysis::with_last(stiffness, contact_dofs)?;
+        // The work of the interior is at least the square of its entries over its columns.
+        let interior_entries = (analysis.factor_entries() as f64 - count * count / 2.0).max(0.0);
+        let interior_work = interior_entries * interior_entries / (dim - count);
+        let quick = count.powi(3) / 3.0 <= DENSE_WORK * interior_work;
+        let small = DENSE_MATRICES * count * count <= FEW_VALUES.max(analysis.factor_entries() as f64);
+        Ok((quick && small).then_some(analysis))
+    }
+
+    /// Condenses with a factorisation of K (`shifted` false) or K + B'B (`shifted` true) that put `contact_dofs` last.
+    ///
+    /// # Errors
+    /// Those of the sparse matrices, should the data leave the range of double precision.
+    pub fn new(
+        cholesky: Cholesky,
+        contact_dofs: Vec<usize>,
+        contact: &SparseMatrix,
+        shifted: bool,
+    ) -> Result<Self, Error> {
+        let size = contact_dofs.len();
+        let trailing = cholesky.trailing_block();
+        let entries: Vec<_> = contact_dofs
+            .iter()
+            .enumerate()
+            .flat_map(|(column, &dof)| contact.column(dof).map(move |(row, value)| (row, column, value)))
+            .collect();
+        let contact = SparseMatrix::from_triplets(contact.rows(), size, &entries)?;
+        let mut schur = lower_times_transpose(&trailing, size);
+        if shifted {
+            let before = schur.clone();
+            let by_row = contact.transposed();
+            for row in 0..by_row.columns() {
+                for (i, a) in by_row.column(row) {
+                    for (j, b) in by_row.column(row).filter(|entry| entry.0 <= i) {
+                        schur[j * size + i] -= a * b;
+                    }
+                }
+            }
+            // What is left of equal terms is rounding, and would hold a body that nothing holds.
+            for (entry, before) in schur.iter_mut().zip(&before) {
+                if entry.abs() <= LEFT_OVER * before.abs() {
+                    *entry = 0.0;
+                }
+            }
+        }
+        let stiffness = SymmetricMatrix::from_lower(dense_triangle(schur, size)?)?;
+        Ok(Condensation { contact_dofs, cholesky, trailing, stiffness, contact })
+    }
+
+    /// Number of values of the factor.
+    pub fn factor_entries(&self) -> usize {
+        self.cholesky.entries()
+    }
+
+    /// The contact dofs, in increasing order.
+    pub fn dofs(&self) -> &[usize] {
+        &self.contact_dofs
+    }
+
+    /// Is the factor in single precision?
+    pub fn is_single(&self) -> bool {
+        self.cholesky.is_single()
+    }
+
+    /// The condensed stiffness S.
+    pub fn stiffness(&self) -> &SymmetricMatrix {
+        &self.stiffness
+    }
+
+    /// The contact rows in the contact dofs.
+    pub fn contact(&self) -> &SparseMatrix {
+        &self.contact
+    }
+
+    /// The forward sweep y of a load, to be kept for [`load`](Self::load) and [`expand`](Self::expand).
+    pub fn sweep(&self, load: &[f64]) -> Vec<f64> {
+        // Many a body is loaded by its obstacle alone.
+        if load.iter().all(|&force| force == 0.0) { load.to_vec() } else { self.cholesky.forward(load) }
+    }
+
+    /// The condensed load L_tt y_t.
+    pub fn load(&self, sweep: &[f64]) -> Vec<f64> {
+        let size = self.contact_dofs.len();
+        let last = &sweep[sweep.len() - size..];
+        let mut load = vec![0.0; size];
+        for (column, y) in last.iter().enumerate() {
+            for (row, entry) in load.iter_mut().enumerate().skip(column) {
+                *entry += self.trailing[column * size + row] * y;
+            }
+        }
+        load
+    }
+
+    /// The square of the energy norm that the load alone adds inside the body, whatever the contact dofs do.
+    pub fn interior_energy(&self, sweep: &[f64]) -> f64 {
+        let interior = &sweep[..sweep.len() - self.contact_dofs.len()];
+        dot(interior, interior)
+    }
+
+    /// The displacement of the contact dofs that the load alone causes, where K is definite.
+    pub fn free_displacement(&self, sweep: &[f64]) -> Vec<f64> {
+        let size = self.contact_dofs.len();
+        let mut x = sweep[sweep.len() - size..].to_vec();
+        for row in (0..size).rev() {
+            let column = &self.trailing[row * size..(row + 1) * size];
+            let known: f64 = (row + 1..size).map(|i| column[i] * x[i]).sum();
+            x[row] = (x[row] - known) / column[row];
+        }
+        x
+    }
+
+    /// The compliance B S^-1 B' of the contact rows (m x m, column by column), where K is definite.
+    pub fn compliance(&self) -> Vec<f64> {
+        let (rows, size) = (self.contact.rows(), self.contact_dofs.len());
+        let by_row = self.contact.transposed();
+        // The columns of L_tt^-1 B_t', one for each row.
+        let mut halves = vec![0.0; rows * size];
+        for (row, half) in halves.chunks_exact_mut(size).enumerate() {
+            by_row.column(row).for_each(|(dof, value)| half[dof] += value);
+            let first = by_row.column(row).map(|entry| entry.0).min().unwrap_or(size);
+            for j in first..size {
+                let column = &self.trailing[j * size..(j + 1) * size];
+                half[j] /= column[j];
+                let value = half[j];
+                half[j + 1..].iter_mut().zip(&column[j + 1..]).for_each(|(entry, l)| *entry -= l * value);
+            }
+        }
+        let mut compliance = vec![0.0; rows * rows];
+        for i in 0..rows {
+            for j in 0..=i {
+                let value = dot(&halves[i * size..(i + 1) * size], &halves[j * size..(j + 1) * size]);
+                compliance[i * rows + j] = value;
+                compliance[j * rows + i] = value;
+            }
+        }
+        compliance
+    }
+
+    /// The displacement of the whole body from that of the contact dofs.
+    pub fn expand(&self, sweep: &[f64], displacement: &[f64]) -> Vec<f64> {
+        let size = self.contact_dofs.len();
+        let first = sweep.len() - size;
+        let mut y = sweep.to_vec();
+        for (column, entry) in y[first..].iter_mut().enumerate() {
+            *entry = (column..size).map(|row| self.trailing[column * size + row] * displacement[row]).sum();
+        }
+        let mut expanded = self.cholesky.backward(y);
+        // The sweep gives these back but for rounding.
+        self.contact_dofs.iter().zip(displacement).for_each(|(&dof, &u)| expanded[dof] = u);
+        expanded
+    }
+}
+
+/// The lower triangle of a dense matrix (n x n, column by column), with every entry of it.
+///
+/// # Errors
+/// [`Error::NotFinite`] for an entry that is not finite.
+fn dense_triangle(matrix: Vec<f64>, size: usize) -> Result<SparseMatrix, Error> {
+    let entries = size * (size + 1) / 2;
+    let (mut starts, mut rows, mut values) =
+        (Vec::with_capacity(size + 1), Vec::with_capacity(entries), Vec::with_capacity(entries));
+    starts.push(0);
+    for column in 0..size {
+        rows.extend(column..size);
+        values.extend_from_slice(&matrix[column * size + column..(column + 1) * size]);
+        starts.push(rows.len());
+    }
+    if let Some(&value) = values.iter().find(|value| !value.is_finite()) {
+        let at = "the condensed stiffness".to_string();
+        return Err(Error::NotFinite { name: "matrix", at, value, allowed: "finite" });
+    }
+    Ok(SparseMatrix::from_parts(size, starts, rows, values))
+}
+
+/// The lower triangle of L L' for a lower triangular L (n x n, column by column).
+fn lower_times_transpose(factor: &[f64], size: usize) -> Vec<f64> {
+    let mut product = vec![0.0; size * size];
+    for k in 0..size {
+        let column = &factor[k * size..(k + 1) * size];
+        for j in k..size {
+            let scale = column[j];
+            let target = &mut product[j * size..(j + 1) * size];
+            for i in j..size {
+                target[i] += scale * column[i];
+            }
+        }
+    }
+    product
+}

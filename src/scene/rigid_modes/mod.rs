@@ -1,0 +1,205 @@
+//! Rigid motions: which of them nothing resists, and their names.
+
+mod unit;
+
+use nalgebra::DMatrix;
+
+use super::model::Parts;
+use super::rows::ContactRow;
+use crate::fem::body::ElasticBody;
+use crate::error::Error;
+use unit::UnitMotions;
+
+/// A motion is held where the singular value that belongs to it exceeds this times the largest; exact geometry gives
+/// zero to rounding, 1e-16, and any support or normal that a scene means is far above.
+const HELD: f64 = 1e-10;
+
+/// A part of a motion below this, relative to the whole, does not enter its name.
+const NAMED: f64 = 1e-6;
+
+/// The rigid motions of the bodies of a model, each body moving for itself.
+///
+/// Amplitudes are the multiples of the unit motions, six for each body in turn.
+#[derive(Clone, Debug)]
+pub(super) struct RigidMotions {
+    bodies: Vec<UnitMotions>,
+    dimension: usize,
+}
+
+impl RigidMotions {
+    pub fn of(body: &ElasticBody) -> Self {
+        RigidMotions {
+            bodies: body.regions().iter().map(|region| UnitMotions::of(body, region)).collect(),
+            dimension: body.dimension(),
+        }
+    }
+
+    /// The places of those amplitudes whose motions cost no energy.
+    fn modes(&self) -> Vec<usize> {
+        let of_body = |(body, motions): (usize, &UnitMotions)| motions.modes.iter().map(move |mode| 6 * body + mode);
+        self.bodies.iter().enumerate().flat_map(|entry| of_body(entry).collect::<Vec<_>>()).collect()
+    }
+
+    /// The component along `direction` of each unit motion at a node; zero for those of other bodies.
+    fn along(&self, nodes: &[[f64; 3]], node: usize, direction: [f64; 3]) -> Vec<f64> {
+        let of_body = |motions: &UnitMotions| match motions.nodes.contains(&node) {
+            true => motions.along(nodes[node], direction),
+            false => [0.0; 6],
+        };
+        self.bodies.iter().flat_map(of_body).collect()
+    }
+
+    /// The component of each unit motion at a nodal dof: along an axis of the node's frame where it has one.
+    fn at_dof(&self, parts: &Parts, dof: usize) -> Vec<f64> {
+        let (nodes, node, axis) = (parts.body.mesh().nodes(), dof / self.dimension, dof % self.dimension);
+        let direction = parts.dofs.frame(node).map_or_else(|| unit::along_axis(axis), |frame| frame.axes()[axis]);
+        self.along(nodes, node, direction)
+    }
+
+    /// The component of each unit motion along a contact row: how much it closes the row.
+    fn in_row(&self, nodes: &[[f64; 3]], row: &ContactRow) -> Vec<f64> {
+        let mut components = vec![0.0; 6 * self.bodies.len()];
+        for (node, sign) in row.ends() {
+            let of_node = self.along(nodes, node, row.normal);
+            components.iter_mut().zip(of_node).for_each(|(component, part)| *component += sign * part);
+        }
+        components
+    }
+
+    /// Refuses bodies with a rigid motion that neither supports nor contact rows resist.
+    ///
+    /// # Errors
+    /// [`Error::UnderHeld`] that names every such motion.
+    pub fn check_held(&self, parts: &Parts, rows: &[ContactRow]) -> Result<(), Error> {
+        let free = self.free(parts, rows);
+        let Some(first) = free.first() else { return Ok(()) };
+        let names: Vec<String> = free.iter().map(|motion| self.describe(motion, false)).collect();
+        let direction = parts.dofs.free().iter().map(|&dof| dot(&self.at_dof(parts, dof), first)).collect();
+        Err(Error::UnderHeld { motion: format!("{}: {}", names.join(", "), advice(!rows.is_empty())), direction })
+    }
+
+    /// A basis of the motions that nothing resists: unit motions first.
+    fn free(&self, parts: &Parts, rows: &[ContactRow]) -> Vec<Vec<f64>> {
+        let nodes = parts.body.mesh().nodes();
+        let supported = (0..parts.dofs.nodal_count()).filter(|&dof| parts.dofs.number(dof).is_none());
+        let of_supports = supported.map(|dof| self.at_dof(parts, dof));
+        let of_rows = rows.iter().map(|row| self.in_row(nodes, row));
+        let mut resisted: Vec<Vec<f64>> = of_supports.chain(of_rows).collect();
+        let (modes, amplitudes) = (self.modes(), 6 * self.bodies.len());
+        // A row for each motion at least, or the decomposition leaves out what they do not span.
+        resisted.resize(resisted.len().max(modes.len()), vec![0.0; amplitudes]);
+        let matrix = DMatrix::from_fn(resisted.len(), modes.len(), |row, column| resisted[row][modes[column]]);
+        let svd = matrix.svd(false, true);
+        let Some(right) = svd.v_t else { return Vec::new() };
+        let largest = svd.singular_values.max();
+        let mut null: Vec<Vec<f64>> = Vec::new();
+        for row in (0..modes.len()).filter(|&row| svd.singular_values[row] <= HELD * largest) {
+            let mut motion = vec![0.0; amplitudes];
+            modes.iter().enumerate().for_each(|(column, &mode)| motion[mode] = right[(row, column)]);
+            null.push(motion);
+        }
+        // Rotate the basis towards the unit motions, then take what is left.
+        let mut basis: Vec<Vec<f64>> = Vec::new();
+        for mode in modes {
+            if null.iter().map(|motion| motion[mode].powi(2)).sum::<f64>() > 1.0 - NAMED {
+                let mut unit = vec![0.0; amplitudes];
+                unit[mode] = 1.0;
+                basis.push(unit);
+            }
+        }
+        let units = basis.len();
+        for motion in &mut null {
+            for known in &basis {
+                let part = dot(motion, known);
+                motion.iter_mut().zip(known).for_each(|(value, known)| *value -= part * known);
+            }
+            let length = dot(motion, motion).sqrt();
+            if length > NAMED {
+                basis.push(motion.iter().map(|part| part / length).collect());
+            }
+        }
+        let rest = basis.split_off(units);
+        basis.extend(translations_first(&rest));
+        basis
+    }
+
+    /// The name of the rigid motion next to a nodal motion (length `dim * n_nodes`), if every body moves rigidly.
+    pub fn name_of(&self, nodes: &[[f64; 3]], motion: &[f64]) -> Option<String> {
+        if !motion.iter().all(|value| value.is_finite()) {
+            return None;
+        }
+        let (mut amplitudes, mut rest) = (Vec::new(), 0.0_f64);
+        for body in &self.bodies {
+            let target = &motion[self.dimension * body.nodes.start..self.dimension * body.nodes.end];
+            let (fitted, away) = body.fit(&nodes[body.nodes.clone()], target)?;
+            amplitudes.extend(fitted);
+            rest = rest.hypot(away);
+        }
+        let whole = dot(motion, motion).sqrt();
+        (rest <= NAMED * whole && whole > 0.0).then(|| self.describe(&amplitudes, true))
+    }
+
+    /// The name of a motion, body by body where there are several; `signed` where its sense matters.
+    fn describe(&self, amplitudes: &[f64], signed: bool) -> String {
+        let whole = dot(amplitudes, amplitudes).sqrt();
+        let mut names = Vec::new();
+        for (body, part) in self.bodies.iter().zip(amplitudes.as_chunks::<6>().0) {
+            if dot(part, part).sqrt() <= NAMED * whole {
+                continue;
+            }
+            let motion = body.describe(part, signed);
+            names.push(match body.name.as_str() {
+                _ if self.bodies.len() == 1 => motion,
+                "" => format!("{motion} of the first body"),
+                name => format!("{motion} of `{name}`"),
+            });
+        }
+        names.join(" with ")
+    }
+
+    /// The largest virtual work of the nodal `forces` (each of length `dim * n_nodes`) on the unit motions of the
+    /// bodies, relative to the sum of the magnitudes of all forces; those along motions that the bodies have not are
+    /// left out.
+    pub fn imbalance(&self, nodes: &[[f64; 3]], forces: &[&[f64]]) -> f64 {
+        let (mut largest, mut magnitude) = (0.0_f64, 0.0);
+        for body in &self.bodies {
+            let mut works = [0.0; 6];
+            for node in body.nodes.clone() {
+                for of_node in forces.iter().map(|forces| &forces[self.dimension * node..self.dimension * (node + 1)]) {
+                    let mut force = [0.0; 3];
+                    for (axis, component) in of_node.iter().enumerate().filter(|entry| body.modes.contains(&entry.0)) {
+                        force[axis] = *component;
+                    }
+                    for (work, part) in works.iter_mut().zip(body.along(nodes[node], force)) {
+                        *work += part;
+                    }
+                    magnitude += force[0].hypot(force[1]).hypot(force[2]);
+                }
+            }
+            largest = works.iter().fold(largest, |largest, work| largest.max(work.abs()));
+        }
+        if magnitude == 0.0 { 0.0 } else { largest / magnitude }
+    }
+}
+
+/// The same space of motions, its translations before what turns: orthonormal before and after.
+fn translations_first(motions: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let amplitudes = motions.first().map_or(0, Vec::len);
+    let turning = |row: usize, part: usize| if part % 6 < 3 { 0.0 } else { motions[row][part] };
+    let turning = DMatrix::from_fn(motions.len(), amplitudes, turning);
+    let mix = if motions.len() > 1 { turning.svd(true, false).u } else { None };
+    let Some(mix) = mix else { return motions.to_vec() };
+    let part = |column: usize, part: usize| (0..motions.len()).map(|row| mix[(row, column)] * motions[row][part]).sum();
+    let mixed = |column: usize| (0..amplitudes).map(|place| part(column, place)).collect();
+    // Singular values decrease: what turns least stands last.
+    (0..motions.len()).rev().map(mixed).collect()
+}
+
+/// What to do about a free motion.
+pub(super) fn advice(has_rows: bool) -> &'static str {
+    if has_rows { "a frictionless obstacle does not hold it, add a guide" } else { "add a support" }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}

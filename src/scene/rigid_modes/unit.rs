@@ -1,0 +1,138 @@
+//! The unit rigid motions of one body, and the names of their combinations.
+
+use std::ops::Range;
+
+use nalgebra::DMatrix;
+
+use super::{NAMED, dot};
+use crate::fem::body::{ElasticBody, Region};
+use crate::fem::mesh::extent;
+use crate::scene::point;
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// Translations along x, y, z, and rotations about axes through the centre along x, y, z, as multiples of unit motions:
+/// a rotation is measured by the displacement that it gives at the distance `size` from the axis.
+pub(super) type Amplitudes = [f64; 6];
+
+/// The unit motions of a body; its centre and size make them comparable.
+#[derive(Clone, Debug)]
+pub(super) struct UnitMotions {
+    /// The body's name; empty for the first.
+    pub name: String,
+    pub nodes: Range<usize>,
+    centre: [f64; 3],
+    size: f64,
+    dimension: usize,
+    /// Which of the six unit motions cost no energy: one in a bar and in a body of revolution, three in the plane.
+    pub modes: &'static [usize],
+}
+
+impl UnitMotions {
+    pub fn of(body: &ElasticBody, region: &Region) -> Self {
+        let (low, high) = extent(&body.mesh().nodes()[region.nodes()]);
+        let modes: &[usize] = match body.dimension() {
+            1 => &[0],
+            2 if body.formulation().is_axisymmetric() => &[1],
+            2 => &[0, 1, 5],
+            _ => &[0, 1, 2, 3, 4, 5],
+        };
+        let span = [0, 1, 2].map(|axis| high[axis] - low[axis]);
+        UnitMotions {
+            name: region.name().into(),
+            nodes: region.nodes(),
+            centre: [0, 1, 2].map(|axis| low[axis] + span[axis] / 2.0),
+            size: span[0].hypot(span[1]).hypot(span[2]) / 2.0,
+            dimension: body.dimension(),
+            modes,
+        }
+    }
+
+    /// The displacement of unit motion `mode` at a point.
+    fn at(&self, mode: usize, point: [f64; 3]) -> [f64; 3] {
+        let [x, y, z] = [0, 1, 2].map(|axis| (point[axis] - self.centre[axis]) / self.size);
+        match mode {
+            0 => [1.0, 0.0, 0.0],
+            1 => [0.0, 1.0, 0.0],
+            2 => [0.0, 0.0, 1.0],
+            3 => [0.0, -z, y],
+            4 => [z, 0.0, -x],
+            _ => [-y, x, 0.0],
+        }
+    }
+
+    /// The component along `direction` of each unit motion at a point; motions that the body has not give 0.
+    pub fn along(&self, point: [f64; 3], direction: [f64; 3]) -> Amplitudes {
+        let mut components = [0.0; 6];
+        for &mode in self.modes {
+            components[mode] = dot(&self.at(mode, point), &direction);
+        }
+        components
+    }
+
+    /// The amplitudes next to a motion of `nodes` (`dim` entries each) by least squares, and the length of what is left.
+    pub fn fit(&self, nodes: &[[f64; 3]], motion: &[f64]) -> Option<(Amplitudes, f64)> {
+        let unit = |axis: usize| [0, 1, 2].map(|other| if other == axis { 1.0 } else { 0.0 });
+        let components: Vec<Amplitudes> =
+            (0..motion.len()).map(|dof| self.along(nodes[dof / self.dimension], unit(dof % self.dimension))).collect();
+        let design = DMatrix::from_fn(motion.len(), self.modes.len(), |dof, mode| components[dof][self.modes[mode]]);
+        let target = DMatrix::from_column_slice(motion.len(), 1, motion);
+        let fitted = design.clone().svd(true, true).solve(&target, f64::EPSILON).ok()?;
+        let mut amplitudes = [0.0; 6];
+        self.modes.iter().enumerate().for_each(|(row, &mode)| amplitudes[mode] = fitted[(row, 0)]);
+        Some((amplitudes, (design * &fitted - &target).norm()))
+    }
+
+    /// The name of a motion; `signed` where its sense matters.
+    pub fn describe(&self, &[x, y, z, a, b, c]: &Amplitudes, signed: bool) -> String {
+        let (shift, turn) = ([x, y, z], [a, b, c]);
+        let (distance, angle) = (dot(&shift, &shift).sqrt(), dot(&turn, &turn).sqrt());
+        let sign = |part: f64| if signed && part < 0.0 { "-" } else { "" };
+        if angle <= NAMED * distance.hypot(angle) {
+            return match along_one_axis(shift) {
+                Some(axis) => format!("translation along {}{}", sign(shift[axis]), AXES[axis]),
+                None => format!("translation along {}", direction(&shift[..self.dimension])),
+            };
+        }
+        let axis = along_one_axis(turn).map_or_else(|| direction(&turn), |axis| AXES[axis].into());
+        // Where translation and rotation cancel, but for what runs along the axis.
+        let [u, v, w] = [
+            (turn[1] * shift[2] - turn[2] * shift[1]) / (angle * angle),
+            (turn[2] * shift[0] - turn[0] * shift[2]) / (angle * angle),
+            (turn[0] * shift[1] - turn[1] * shift[0]) / (angle * angle),
+        ];
+        let pole = [u, v, w].map(|part| part * self.size);
+        let tidy = [0, 1, 2].map(|axis| {
+            let at = self.centre[axis] + pole[axis];
+            if at.abs() <= NAMED * self.size { 0.0 } else { six_digits(at) }
+        });
+        let pitch = dot(&shift, &turn).abs() > NAMED * angle * distance.hypot(angle);
+        let along = if pitch { ", with a translation along it" } else { "" };
+        format!("rotation about {axis} through {}{along}", point(&tidy[..self.dimension]))
+    }
+}
+
+/// The unit vector along an axis.
+pub(super) fn along_axis(axis: usize) -> [f64; 3] {
+    [0, 1, 2].map(|other| if other == axis { 1.0 } else { 0.0 })
+}
+
+/// The axis along which a vector lies, but for rounding.
+fn along_one_axis(vector: [f64; 3]) -> Option<usize> {
+    let length = dot(&vector, &vector).sqrt();
+    (0..3).find(|&axis| (0..3).all(|other| other == axis || vector[other].abs() <= NAMED * length))
+}
+
+/// A direction in words, of length 1.
+fn direction(vector: &[f64]) -> String {
+    let length = dot(vector, vector).sqrt();
+    // Adding zero takes the sign off a part that is rounded to nothing.
+    let three_digits = |part: &f64| (part / length * 1e3).round() / 1e3 + 0.0;
+    let components: Vec<String> = vector.iter().map(|part| format!("{:.3}", three_digits(part))).collect();
+    format!("({})", components.join(", "))
+}
+
+/// Rounded to six significant digits: a pole is a computed place.
+fn six_digits(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
+}
