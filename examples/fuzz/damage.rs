@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use signorini::qp::matrix_market::read_problem;
 use signorini::fem::mesh::gmsh::GmshFile;
+use signorini::qp::matrix_market::read_problem;
 use signorini::{Error, Scene};
 
 use super::draws::Draws;

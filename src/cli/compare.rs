@@ -2,7 +2,7 @@
 
 use super::input::{Content, Input};
 use super::options::{Compare, Format};
-use super::solve::settings;
+use super::settings::settings;
 use super::{Outcome, warn};
 use crate::error::Error;
 use crate::output::{compare_json, compare_text, gallery, write_files};

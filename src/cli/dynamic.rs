@@ -4,13 +4,13 @@ use std::time::Instant;
 
 use super::input::{scene_title, unit_names, warnings};
 use super::options::{Format, Solve};
-use super::solve::settings;
+use super::settings::settings;
 use super::{Outcome, warn};
-use crate::motion::Integrator;
 use crate::error::Error;
+use crate::motion::Integrator;
 use crate::output::{MotionFolder, MotionSeconds, motion_is_certified, motion_json, motion_text, write_files};
-use crate::scene::Scene;
 use crate::qp::solve::Method;
+use crate::scene::Scene;
 use crate::study::MotionSummary;
 use crate::watch::Watch;
 

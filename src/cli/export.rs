@@ -4,8 +4,8 @@ use super::input::{still_model, warnings};
 use super::options::Export;
 use super::{Outcome, warn};
 use crate::error::Error;
-use crate::qp::matrix_market;
 use crate::output::write_files;
+use crate::qp::matrix_market;
 
 pub(super) fn run(options: &Export) -> Result<Outcome, Error> {
     let model = still_model(&options.scene, &options.limits)?;

@@ -5,8 +5,8 @@ use std::time::Instant;
 
 use super::options::Limits;
 use crate::error::Error;
-use crate::qp::matrix_market;
 use crate::output::UnitNames;
+use crate::qp::matrix_market;
 use crate::qp::problem::ContactProblem;
 use crate::scene::{Model, Scene};
 use crate::solution::{Goal, Solution};

@@ -8,6 +8,7 @@ mod interrupt;
 mod memory;
 mod options;
 mod progress;
+mod settings;
 mod solve;
 mod sweep;
 mod tradeoff;

@@ -1,26 +1,17 @@
 //! `signorini solve`: one answer.
 
 use super::input::{Content, Input, Source};
-use super::options::{Common, Format, Solve};
+use super::options::{Format, Solve};
+use super::settings::settings;
 use super::{Outcome, dynamic, warn};
 use crate::error::Error;
 use crate::output::{gallery, solve_json, solve_text, write_files};
-use crate::qp::solve::{Condense, Method, Settings, solve};
+use crate::qp::solve::{Method, solve};
 use crate::study::discretisation_error;
 use crate::watch::Watch;
 
 /// Assembly that takes so many seconds at the most is done without time too: the report then says what the rest needs.
 const AT_ONCE: f64 = 1e-3;
-
-pub(super) fn settings(method: Method, common: &Common, watch: &Watch) -> Settings {
-    let mut settings = Settings::with_method(method);
-    settings.tolerance = common.tolerance;
-    settings.threads = common.threads;
-    settings.condense = if common.no_condense { Condense::Never } else { Condense::Auto };
-    settings.memory = Some(common.limits.most_memory());
-    settings.watch = watch.clone();
-    settings
-}
 
 pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
     let common = &options.common;

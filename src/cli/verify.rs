@@ -3,8 +3,8 @@
 use super::Outcome;
 use super::options::{Format, Verify};
 use crate::error::Error;
-use crate::qp::matrix_market::{read_problem, read_vector};
 use crate::output::{verify_json, verify_text};
+use crate::qp::matrix_market::{read_problem, read_vector};
 use crate::study::{ModelSize, Verification};
 
 pub(super) fn run(options: &Verify) -> Result<Outcome, Error> {

@@ -1,8 +1,8 @@
 //! Norms of the error against an exact solution: `||u - u_h||` in energy and in L2.
 
+use crate::error::Error;
 use crate::fem::body::{BodyElement, ElasticBody, Symmetric, trace};
 use crate::fem::element::{Part, PerNode, QuadraturePoint, ReferenceElement, Tabulated};
-use crate::error::Error;
 use crate::fem::material::Lame;
 
 /// An exact solution at one point.

@@ -12,13 +12,13 @@
 //! J. J. Moreau, *Numerical aspects of the sweeping process*, Comput. Methods Appl. Mech. Eng. 177 (1999) 329-349: the
 //! impact law.
 
-use super::integrator::{Advance, plus};
 use super::projection::MassProjection;
 use super::stable_step::check_step;
+use super::step::{Advance, plus};
 use super::{DynamicProblem, State};
 use crate::error::Error;
-use crate::solution::ContactSet;
 use crate::qp::solve::Settings;
+use crate::solution::ContactSet;
 
 pub(super) struct CentralDifference {
     restitution: f64,

@@ -9,8 +9,8 @@
 //! P. Deuflhard, R. Krause, S. Ertel, *A contact-stabilized Newmark method for dynamical contact problems*, Int. J.
 //! Numer. Methods Eng. 73 (2008) 1274-1290.
 
-use super::integrator::{Advance, Stepping, plus};
 use super::projection::MassProjection;
+use super::step::{Advance, Stepping, plus};
 use super::{DynamicProblem, State};
 use crate::error::Error;
 use crate::qp::problem::ContactProblem;

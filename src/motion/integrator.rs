@@ -6,24 +6,16 @@ use super::central_difference::CentralDifference;
 use super::contact_stabilised::ContactStabilised;
 use super::midpoint::Midpoint;
 use super::newmark::Newmark;
+use super::step::Advance;
 use super::{DynamicProblem, Observation, Scheme, State};
 use crate::error::Error;
-use crate::qp::problem::ContactProblem;
-use crate::solution::ContactSet;
-use crate::qp::solve::{Method, Prepared, Settings};
 use crate::qp::linear::{dot, largest};
+use crate::qp::solve::{Method, Settings};
+use crate::solution::ContactSet;
 use crate::watch::Watch;
 
 /// Rounding of the displacement and the gaps, relative to the largest of them: no penetration at the start.
 const ROUNDING: f64 = 1e-12;
-
-/// A scheme with everything prepared that does not change from step to step.
-pub(super) trait Advance {
-    /// The first state.
-    fn start(&self, problem: &DynamicProblem, step: f64, state: State) -> Result<State, Error>;
-    /// The state after one step.
-    fn advance(&self, problem: &DynamicProblem, step: f64, state: &State) -> Result<State, Error>;
-}
 
 /// A motion with its scheme and its step.
 ///
@@ -181,56 +173,4 @@ impl Integrator {
             potential,
         }
     }
-}
-
-/// A matrix prepared for one contact problem after another on the rows of a motion.
-pub(super) struct Stepping {
-    prepared: Prepared,
-    settings: Settings,
-}
-
-/// What a step found: change of the displacement, multipliers, closed rows.
-pub(super) struct Found {
-    pub change: Vec<f64>,
-    pub multiplier: Vec<f64>,
-    pub contact_set: ContactSet,
-}
-
-impl Stepping {
-    /// Factorises the matrix of `problem`; its load and gaps say nothing but which rows there are.
-    pub fn new(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
-        let prepared = Prepared::with_settings(problem, settings)?;
-        // A step is done whole or not at all: there is no half of it to return.
-        Ok(Stepping { prepared, settings: Settings { watch: settings.watch.unhurried(), ..settings.clone() } })
-    }
-
-    /// Number of dofs.
-    pub fn dofs(&self) -> usize {
-        self.prepared.dofs()
-    }
-
-    /// Solves with a force and gaps, from the set of the last step.
-    pub fn solve(&self, force: Vec<f64>, gap: Vec<f64>, start: &ContactSet) -> Result<Found, Error> {
-        let boundary = self.prepared.step_at(force, gap, start, &self.settings)?;
-        let change = boundary.displacement();
-        Ok(Found { change, multiplier: boundary.multiplier, contact_set: boundary.contact_set })
-    }
-
-    /// The change that a force alone causes, as if no row were closed; `None` without a factor of the matrix.
-    pub fn response(&self, force: Vec<f64>) -> Result<Option<Vec<f64>>, Error> {
-        self.prepared.response(force)
-    }
-
-    /// The change of the displacement alone; certified only where the method did not settle on a set.
-    pub fn change(&self, force: Vec<f64>, gap: Vec<f64>, start: &ContactSet) -> Result<Vec<f64>, Error> {
-        match self.prepared.settled_at(force.clone(), gap.clone(), start, &self.settings)? {
-            Some(change) => Ok(change),
-            None => Ok(self.solve(force, gap, start)?.change),
-        }
-    }
-}
-
-/// `a + factor b`, entry by entry.
-pub(super) fn plus(a: &[f64], factor: f64, b: &[f64]) -> Vec<f64> {
-    a.iter().zip(b).map(|(a, b)| a + factor * b).collect()
 }

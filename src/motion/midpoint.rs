@@ -17,13 +17,13 @@
 //! O. Gonzalez, *Exact energy and momentum conserving algorithms for general models in nonlinear elasticity*, Comput.
 //! Methods Appl. Mech. Eng. 190 (2000) 1763-1783: midpoint forces corrected so that their work is the change of energy.
 
-use super::integrator::{Advance, Found, Stepping, plus};
+use super::step::{Advance, Found, Stepping, plus};
 use super::{DynamicProblem, State};
 use crate::error::Error;
-use crate::qp::problem::ContactProblem;
-use crate::solution::ContactSet;
-use crate::qp::solve::Settings;
 use crate::qp::linear::{SparseMatrix, SymmetricMatrix, dot, largest};
+use crate::qp::problem::ContactProblem;
+use crate::qp::solve::Settings;
+use crate::solution::ContactSet;
 
 /// Energy that a step may be off by, relative to that of motion and strain, before its contact force is corrected.
 const TOLERATED: f64 = 1e-5;

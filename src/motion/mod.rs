@@ -34,6 +34,7 @@ mod projection;
 mod scheme;
 mod stable_step;
 mod state;
+mod step;
 mod time_function;
 
 pub use integrator::Integrator;

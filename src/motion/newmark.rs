@@ -9,8 +9,8 @@
 //! H. M. Hilber, T. J. R. Hughes, R. L. Taylor, *Improved numerical dissipation for time integration algorithms in
 //! structural dynamics*, Earthq. Eng. Struct. Dyn. 5 (1977) 283-292.
 
-use super::integrator::{Advance, Stepping, plus};
 use super::projection::MassProjection;
+use super::step::{Advance, Stepping, plus};
 use super::{DynamicProblem, State};
 use crate::error::Error;
 use crate::qp::problem::ContactProblem;

@@ -2,8 +2,8 @@
 
 use super::TimeFunction;
 use crate::error::Error;
-use crate::qp::problem::ContactProblem;
 use crate::qp::linear::{SparseMatrix, SymmetricMatrix, dot};
+use crate::qp::problem::ContactProblem;
 
 /// The motion of a body with contact, from a given displacement and velocity:
 ///

@@ -1,11 +1,11 @@
 //! Contact problems with the mass for a matrix: initial accelerations, projected predictions, impulses.
 
 use super::DynamicProblem;
-use super::integrator::{Found, Stepping};
+use super::step::{Found, Stepping};
 use crate::error::Error;
 use crate::qp::problem::ContactProblem;
-use crate::solution::ContactSet;
 use crate::qp::solve::Settings;
+use crate::solution::ContactSet;
 
 /// The mass of a motion, prepared with its contact rows.
 pub(super) struct MassProjection {

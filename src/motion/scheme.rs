@@ -1,7 +1,7 @@
 //! The schemes, and what is known of them.
 
-use crate::fem::assembly::MassForm;
 use crate::error::Error;
+use crate::fem::assembly::MassForm;
 
 /// A scheme of time integration.
 ///

@@ -5,8 +5,8 @@ use super::{
     colour_bar::{self, ColourRange},
     drawing::{Anchor, Drawing},
     legend::{self, Entry},
+    mark::draw_dot,
     obstacle,
-    panels::draw_dot,
     ticks::{Quantity, Scale, brief, common_exponent},
     typeface,
 };

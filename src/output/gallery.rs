@@ -7,12 +7,12 @@ use super::{
     line_plots, ticks::brief, write_atomically, write_files, write_picture,
 };
 use crate::error::Error;
-use crate::qp::matrix_market::solution_files;
 use crate::fem::mesh::ElementKind;
 use crate::fem::recovery::Stress;
+use crate::qp::matrix_market::solution_files;
+use crate::qp::solve::with_contact_set;
 use crate::scene::Model;
 use crate::solution::{ContactSet, Solution};
-use crate::qp::solve::with_contact_set;
 use crate::study::{Comparison, Sweep, SweepCorner, SweepPoint};
 
 /// More iterations than this are not drawn one by one.

@@ -14,6 +14,7 @@ pub mod drawing;
 pub mod file;
 pub mod gallery;
 mod legend;
+mod mark;
 mod motion;
 mod motion_report;
 mod motion_tradeoff;

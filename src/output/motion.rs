@@ -16,9 +16,9 @@ use super::gallery::{Scene, fields};
 use super::{
     ContactPicture, Plot, Quantity, Series, common_limits, common_window, line_plots, write_atomically, write_picture,
 };
-use crate::motion::{Observation, State};
 use crate::error::Error;
 use crate::file::{MOST_OF_TABLE, read_text_capped};
+use crate::motion::{Observation, State};
 use crate::scene::Model;
 use crate::solution::ContactSet;
 use crate::study::MotionSummary;

@@ -4,8 +4,8 @@ use serde_json::{Value, json};
 
 use super::report::{UnitNames, entry, plural, printable, quantity};
 use crate::motion::Scheme;
-use crate::scene::{Dynamics, Model};
 use crate::qp::solve::Method;
+use crate::scene::{Dynamics, Model};
 use crate::study::MotionSummary;
 
 /// What a run cost, in seconds.

@@ -3,10 +3,11 @@
 use super::{
     axes::Frame,
     body::ContactPicture,
-    colour::{Colour, WHITE},
+    colour::Colour,
     colour_bar::{self, ColourRange},
     contour::Field,
     drawing::{Drawing, Paint},
+    mark::draw_dot,
     ticks::Scale,
 };
 
@@ -16,8 +17,6 @@ const FINEST_MESH: f64 = 1.6;
 const BODY: Colour = Colour(0xf1, 0xf4, 0xf8);
 const MESH: Colour = Colour(0x9a, 0xa4, 0xb2);
 const OUTLINE: Colour = Colour(0x3a, 0x42, 0x4e);
-const CLOSED: Colour = Colour(0xd5, 0x2b, 0x1e);
-const OPEN: Colour = Colour(0x5a, 0x64, 0x72);
 
 impl ContactPicture<'_> {
     /// Left: paints the field level over level; says whether some elements have no value.
@@ -84,15 +83,6 @@ impl ContactPicture<'_> {
         let mut steps: Vec<f64> = steps.filter(|step| step.is_finite()).collect();
         steps.sort_by(f64::total_cmp);
         steps.get(steps.len() / 2).map_or(5.0, |median| (0.42 * median).clamp(1.8, 5.0))
-    }
-}
-
-/// A candidate.
-pub(crate) fn draw_dot(drawing: &mut Drawing, place: [f64; 2], radius: f64, closed: bool) {
-    if closed {
-        drawing.circle(place, radius, &Paint::fill(CLOSED).with_stroke(WHITE, 0.8));
-    } else {
-        drawing.circle(place, 0.62 * radius, &Paint::fill(WHITE).with_stroke(OPEN, 1.1));
     }
 }
 

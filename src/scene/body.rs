@@ -2,8 +2,8 @@
 
 use super::schema::{BodySpec, IntegrationSpec, MaterialSpec, ModelSpec, Scene};
 use super::{Warning, located, wrong};
-use crate::fem::body::{ElasticBody, Integration};
 use crate::error::Error;
+use crate::fem::body::{ElasticBody, Integration};
 use crate::fem::formulation::Formulation;
 use crate::fem::material::Material;
 

@@ -2,11 +2,12 @@
 
 use super::body::locking;
 use super::condition::boundary;
-use super::model::{Model, Parts};
+use super::model::Model;
+use super::parts::Parts;
 use super::schema::Scene;
 use super::{Obstacle, number, wrong};
-use crate::fem::assembly::tributary_areas;
 use crate::error::Error;
+use crate::fem::assembly::tributary_areas;
 
 impl Scene {
     /// Discretises the scene and poses its contact problem.

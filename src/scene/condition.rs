@@ -3,9 +3,9 @@
 use super::held::{COORDINATES, Component, Held, Holder, unit_normal};
 use super::schema::{LoadSpec, Place, Scene, SupportSpec};
 use super::{PLACE_TOLERANCE, finite, point, vector, wrong};
+use crate::error::Error;
 use crate::fem::assembly::{DofMap, add_body_force, add_pressure, add_traction};
 use crate::fem::body::ElasticBody;
-use crate::error::Error;
 use crate::fem::mesh::{Boundary, Mesh};
 
 /// Radii below this times the body's size lie on the axis of revolution.

@@ -4,13 +4,13 @@ use super::schema::{
     AnalysisSpec, DynamicSpec, FactorSpec, FieldSpec, LoadInTimeSpec, MassSpec, PenetrationSpec, Scene, SchemeSpec,
 };
 use super::{Model, ROUNDING, Warning, finite, located, number, point, vector, wrong};
+use crate::error::Error;
 use crate::fem::assembly::{MassForm, free_load, internal_force, mass};
 use crate::fem::body::ElasticBody;
 use crate::motion::{DynamicProblem, Scheme, TimeFunction, stable_step};
-use crate::error::Error;
+use crate::qp::linear::dot;
 use crate::qp::problem::ContactProblem;
 use crate::qp::solve::{Method, Settings, solve};
-use crate::qp::linear::dot;
 
 /// Where the fields stand in a scene.
 const PATH: &str = "analysis.dynamic";

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::{number, point, wrong};
-use crate::fem::assembly::{DofMap, Frame, perpendicular};
 use crate::error::Error;
+use crate::fem::assembly::{DofMap, Frame, perpendicular};
 use crate::fem::mesh::Mesh;
 
 /// A normal that leans by less than this out of those before it depends on them: the rounding of written components.

@@ -2,35 +2,21 @@
 
 use std::sync::Arc;
 
+use super::parts::Parts;
 use super::rigid_modes::RigidMotions;
 use super::rows::{self, ContactRow};
 use super::{Obstacle, Units, Warning, wrong};
+use crate::error::Error;
 use crate::fem::assembly::{DofMap, free_load, internal_force, rigid_motions, stiffness};
 use crate::fem::body::ElasticBody;
-use crate::error::Error;
 use crate::fem::mesh::Mesh;
-use crate::qp::problem::ContactProblem;
 use crate::fem::recovery::{self, StressField};
 use crate::qp::linear::SymmetricMatrix;
 use crate::qp::linear::multigrid::NearNullSpace;
+use crate::qp::problem::ContactProblem;
 
 /// Tributary areas below this, relative to the largest, are rounding of zero; radii, relative to the size of the body.
 const NO_AREA: f64 = 1e-12;
-
-/// What a change of the gap leaves alone.
-#[derive(Debug)]
-pub(super) struct Parts {
-    pub title: String,
-    pub units: Units,
-    pub body: ElasticBody,
-    pub dofs: DofMap,
-    /// External load at all nodes, length `dim * n_nodes`.
-    pub load: Vec<f64>,
-    pub obstacles: Vec<Obstacle>,
-    pub warnings: Vec<Warning>,
-    /// Is its motion asked for? Inertia then resists what nothing holds.
-    pub moves: bool,
-}
 
 /// A discretised scene: mesh, contact problem, and what its rows and dofs mean.
 ///

@@ -1,6 +1,6 @@
 //! Contact rows: B u <= g in the free dofs, from the candidates of every obstacle.
 
-use super::model::Parts;
+use super::parts::Parts;
 use super::{ROUNDING, Warning, finite, point, wrong};
 use crate::error::Error;
 use crate::qp::linear::SparseMatrix;

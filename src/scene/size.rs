@@ -5,8 +5,8 @@ use std::path::Path;
 use super::schema::{AxisSpec, BodySpec, ElementSpec, Scene, ShapeSpec, SolidElementSpec, ZoneSpec};
 use super::wrong;
 use crate::error::Error;
-use crate::qp::memory;
 use crate::fem::mesh::MAX_NODES;
+use crate::qp::memory;
 
 /// Where a dense matrix would have more than this share of the values of the factor, nothing is condensed.
 const DENSE_SHARE: f64 = 0.4;

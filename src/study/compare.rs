@@ -3,10 +3,10 @@
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::qp::problem::ContactProblem;
-use crate::solution::Solution;
-use crate::qp::solve::{Method, Settings, solve};
 use crate::qp::linear::{dot, largest};
+use crate::qp::problem::ContactProblem;
+use crate::qp::solve::{Method, Settings, solve};
+use crate::solution::Solution;
 
 /// Two exact methods agree in the displacement to this share of its largest entry: both end with a linear solve, whose
 /// rounding the condition of the stiffness may enlarge a millionfold.

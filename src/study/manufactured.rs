@@ -2,19 +2,19 @@
 
 use std::time::Instant;
 
-use crate::fem::closed_forms::manufactured::{ContactSolution, PlaneElasticity};
+use crate::error::Error;
 use crate::fem::assembly::{DofMap, add_body_force_field, free_load, stiffness, tributary_areas};
 use crate::fem::body::{ElasticBody, Integration};
+use crate::fem::closed_forms::manufactured::{ContactSolution, PlaneElasticity};
 use crate::fem::element::{ElementKind, QuadraturePoint};
-use crate::error::Error;
 use crate::fem::formulation::Formulation;
 use crate::fem::material::Material;
 use crate::fem::mesh::rectangle;
 use crate::fem::norms::{ErrorNorms, ExactState, error_norms, error_norms_by};
-use crate::qp::problem::ContactProblem;
 use crate::fem::recovery::{discretisation_error, stress};
-use crate::qp::solve::solve_qp;
 use crate::qp::linear::SparseMatrix;
+use crate::qp::problem::ContactProblem;
+use crate::qp::solve::solve_qp;
 
 /// The contact pressure at one node.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,10 +4,10 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use crate::motion::Integrator;
 use crate::error::Error;
-use crate::scene::{AnalysisSpec, DynamicSpec, Dynamics, Model, Scene, SchemeSpec};
+use crate::motion::Integrator;
 use crate::qp::solve::Settings;
+use crate::scene::{AnalysisSpec, DynamicSpec, Dynamics, Model, Scene, SchemeSpec};
 
 /// The schemes, the default first.
 const SCHEMES: [SchemeSpec; 6] = [

@@ -8,9 +8,9 @@ use super::{ModelSize, Summary};
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
 use crate::fem::recovery;
+use crate::qp::solve::{Event, Prepared, Settings, solve};
 use crate::scene::Model;
 use crate::solution::{ContactSet, Goal, Solution};
-use crate::qp::solve::{Event, Prepared, Settings, solve};
 
 /// Gaps half way that differ by this from the mean of the ends, relative, are not on a straight line.
 const STRAIGHT: f64 = 1e-12;

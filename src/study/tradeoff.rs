@@ -6,10 +6,10 @@ use serde::Serialize;
 
 use super::discretisation_error;
 use crate::error::Error;
+use crate::qp::linear::dot;
+use crate::qp::solve::{Condense, Method, Precision, Prepared, Settings, solve};
 use crate::scene::{Model, Scene};
 use crate::solution::Solution;
-use crate::qp::solve::{Condense, Method, Precision, Prepared, Settings, solve};
-use crate::qp::linear::dot;
 use crate::watch::Watch;
 
 /// Tolerances that the interior point is given.

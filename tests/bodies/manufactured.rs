@@ -10,8 +10,8 @@
 mod reference_errors;
 
 use reference_errors::{REFERENCE, reference_rule};
-use signorini::fem::closed_forms::manufactured::{ContactSolution, GenericEdge, HertzBlock, PlaneElasticity, Smooth};
 use signorini::fem::body::Integration;
+use signorini::fem::closed_forms::manufactured::{ContactSolution, GenericEdge, HertzBlock, PlaneElasticity, Smooth};
 use signorini::fem::element::ElementKind::{self, Q4, Q8, T3, T6};
 use signorini::study::{SolvedBlock, solve_block};
 

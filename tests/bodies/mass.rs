@@ -4,9 +4,9 @@
 //! functions contain exactly.
 
 use crate::bodies::{distort, distorted, nodal_of};
+use signorini::error::Error;
 use signorini::fem::assembly::{DofMap, Frame, MassForm, add_body_force_field, mass};
 use signorini::fem::body::ElasticBody;
-use signorini::error::Error;
 use signorini::fem::formulation::Formulation;
 use signorini::fem::material::Material;
 use signorini::fem::mesh::{ElementKind, bar, cuboid};

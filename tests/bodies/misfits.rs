@@ -2,11 +2,11 @@
 
 use signorini::fem::assembly::{DofMap, MassForm, mass};
 use signorini::fem::body::ElasticBody;
-use signorini::motion::DynamicProblem;
 use signorini::fem::formulation::Formulation;
 use signorini::fem::material::Material;
 use signorini::fem::mesh::{ElementKind, Mesh, bar, cuboid, rectangle, ring};
 use signorini::fem::recovery::{discretisation_error, stress};
+use signorini::motion::DynamicProblem;
 use signorini::{ContactProblem, Error, Settings, SparseMatrix, SymmetricMatrix, solve};
 
 const LINES: [f64; 3] = [0.0, 1.0, 2.0];

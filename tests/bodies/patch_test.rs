@@ -116,7 +116,8 @@ fn assembled_stiffness_and_internal_force_agree() {
 #[test]
 fn stiffness_of_a_square_element_has_its_known_entries() {
     // Q4, plane stress, nu = 0, E = t = 1, unit square: K_xx = 1/3 + 1/6, K_xy = 1/8 by hand.
-    let mesh = signorini::fem::mesh::rectangle(&[0.0, 1.0], &[0.0, 1.0], signorini::fem::mesh::ElementKind::Q4).unwrap();
+    let mesh =
+        signorini::fem::mesh::rectangle(&[0.0, 1.0], &[0.0, 1.0], signorini::fem::mesh::ElementKind::Q4).unwrap();
     let material = signorini::fem::material::Material::new(1.0, 0.0).unwrap();
     let formulation = Formulation::PlaneStress { thickness: 1.0 };
     let body = signorini::fem::body::ElasticBody::new(mesh, material, formulation).unwrap();

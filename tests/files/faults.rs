@@ -9,8 +9,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
-use signorini::qp::matrix_market::read_problem;
 use signorini::fem::mesh::gmsh::GmshFile;
+use signorini::qp::matrix_market::read_problem;
 use signorini::{Error, Scene, solve_qp};
 
 /// A sentence longer than this says too much.

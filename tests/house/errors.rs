@@ -5,8 +5,8 @@ use std::fs;
 use std::path::Path;
 
 use crate::oracles::Dense;
-use signorini::qp::matrix_market::read_problem;
 use signorini::fem::mesh::gmsh::GmshFile;
+use signorini::qp::matrix_market::read_problem;
 use signorini::{
     Condense, ContactProblem, Error, Method, Prepared, Scene, Settings, SparseMatrix, SymmetricMatrix, solve, solve_qp,
 };

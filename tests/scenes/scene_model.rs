@@ -2,8 +2,8 @@
 
 use crate::bodies::{built, clamped_square, difference, largest, solve_with_closed_rows};
 use serde_json::{Value, json};
-use signorini::scene::Warning;
 use signorini::qp::linear::Cholesky;
+use signorini::scene::Warning;
 use signorini::{Error, Model, Scene};
 
 const ROUNDING: f64 = 1e-14;

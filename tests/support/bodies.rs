@@ -6,8 +6,8 @@ use serde_json::{Value, json};
 use signorini::fem::formulation::Formulation;
 use signorini::fem::material::Material;
 use signorini::fem::mesh::{ElementKind, Mesh, rectangle};
-use signorini::qp::linear::Cholesky;
 use signorini::fem::{assembly, body::ElasticBody};
+use signorini::qp::linear::Cholesky;
 use signorini::{ContactProblem, Model, Scene};
 
 const STRAIN: Formulation = Formulation::PlaneStrain { thickness: 0.5 };

@@ -1,7 +1,7 @@
 //! The forces that hold a displaced body: f_a = sum_q w sigma grad N_a.
 
-use crate::fem::body::{BodyElement, ElasticBody, trace};
 use crate::error::Error;
+use crate::fem::body::{BodyElement, ElasticBody, trace};
 
 /// The nodal forces (length `dim * n_nodes`, in force) that hold the body in the nodal displacement `displacement`.
 ///

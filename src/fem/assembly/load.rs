@@ -2,9 +2,9 @@
 
 use super::surface::for_each_point;
 use super::{DofMap, internal_force};
+use crate::error::Error;
 use crate::fem::body::{BodyElement, ElasticBody};
 use crate::fem::element::Tabulated;
-use crate::error::Error;
 use crate::fem::mesh::Boundary;
 
 /// Adds to the nodal load (length `dim * n_nodes`) a constant traction (x, y, z; force per area) on a boundary.

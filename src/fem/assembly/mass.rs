@@ -1,10 +1,10 @@
 //! M = integral of rho N_a N_b, in the free dofs: consistent, lumped, or redistributed so that contact nodes have none.
 
 use super::DofMap;
-use super::redistribution::Redistribution;
+use super::redistribution::{ElementMass, Redistribution};
+use crate::error::Error;
 use crate::fem::body::{BodyElement, ElasticBody};
 use crate::fem::element::{MAX_NODES, Tabulated};
-use crate::error::Error;
 use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
 
 /// The form of a mass matrix.
@@ -23,9 +23,6 @@ pub enum MassForm {
     /// pressure is that of the body and no sequence of blows.
     Redistributed,
 }
-
-/// The mass of one element, node by node.
-pub(super) type ElementMass = [[f64; MAX_NODES]; MAX_NODES];
 
 /// The mass matrix of the free dofs, of the densities of the materials; `contact_nodes` are those that lose their mass
 /// where it is redistributed.

@@ -3,15 +3,18 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::mass::ElementMass;
-use crate::fem::body::{ElasticBody, Region};
 use crate::error::Error;
+use crate::fem::body::{ElasticBody, Region};
+use crate::fem::element::MAX_NODES;
 
 /// Mass and centre are kept to within this, relative to the mass and the size of the body.
 const KEPT: f64 = 1e-10;
 
 /// A factor on the density of an element below this is no small correction: the mesh is too coarse.
 const LEAST_FACTOR: f64 = 0.1;
+
+/// The mass of one element, node by node.
+pub(super) type ElementMass = [[f64; MAX_NODES]; MAX_NODES];
 
 /// Who inherits the mass of each node, and the factor on the density of each element.
 pub(super) struct Redistribution {

@@ -3,9 +3,9 @@
 use super::element_stiffness::Block;
 use super::pattern::lower_pattern;
 use super::{DofMap, Frame, element_stiffness};
+use crate::error::Error;
 use crate::fem::body::{BodyElement, ElasticBody};
 use crate::fem::element::MAX_NODES;
-use crate::error::Error;
 use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
 
 /// The free dofs of one node: the number of the first, how many, and the axis of each, of the frame where there is one.

@@ -7,8 +7,8 @@ pub(crate) use point::trace;
 pub use point::{LocalPoint, Symmetric};
 pub use region::Region;
 
-use crate::fem::element::{Cell, ElementKind, MAX_NODES, PerNode, Tabulated};
 use crate::error::Error;
+use crate::fem::element::{Cell, ElementKind, MAX_NODES, PerNode, Tabulated};
 use crate::fem::formulation::Formulation;
 use crate::fem::material::{Lame, Material};
 use crate::fem::mesh::Mesh;

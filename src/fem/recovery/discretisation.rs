@@ -1,9 +1,9 @@
 //! The error of the mesh, estimated: the stress of the elements against the recovered one.
 
 use super::{Stress, StressField};
+use crate::error::Error;
 use crate::fem::body::{BodyElement, ElasticBody, Symmetric, trace};
 use crate::fem::element::{MAX_NODES, PerNode, Tabulated};
-use crate::error::Error;
 use crate::fem::formulation::Formulation;
 use crate::fem::material::Lame;
 

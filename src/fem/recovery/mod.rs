@@ -6,8 +6,8 @@ pub use discretisation::discretisation_error;
 
 use nalgebra::Matrix3;
 
-use crate::fem::body::{BodyElement, ElasticBody, Symmetric, trace};
 use crate::error::Error;
+use crate::fem::body::{BodyElement, ElasticBody, Symmetric, trace};
 use crate::fem::formulation::Formulation;
 
 /// The stress at a point, in force per area; tension is positive.

@@ -3,15 +3,13 @@
 use std::sync::Arc;
 
 use faer::perm::PermRef;
+use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{self as fc, supernodal};
-use faer::sparse::{FaerError, SymbolicSparseColMatRef};
 use faer::{Par, Side};
 
-use super::factor::{self, Real};
+use super::factor::{self, FactorError, Real, call};
 use super::{Equilibration, SparseMatrix, SymmetricMatrix, dot, ldexp, ordering};
-use crate::qp::barrier::guarded;
-use crate::error::Error;
 
 /// Fill-reducing ordering and structure of the factor, for all matrices of one sparsity pattern.
 #[derive(Clone, Debug)]
@@ -44,37 +42,6 @@ macro_rules! by_precision {
             Values::Single($slice) => $call,
         }
     };
-}
-
-/// Why a factorisation did not end with a factor.
-#[derive(Clone, Debug, PartialEq)]
-pub enum FactorError {
-    /// A pivot was not positive: the matrix is not positive definite.
-    NotPositiveDefinite,
-    /// Memory or index range was not enough, or the analysis failed.
-    Failed(String),
-}
-
-impl From<FactorError> for Error {
-    fn from(error: FactorError) -> Self {
-        match error {
-            FactorError::NotPositiveDefinite => {
-                Error::NotConvex { evidence: "a Cholesky pivot is not positive".into() }
-            }
-            FactorError::Failed(reason) => Error::Numerical { step: "sparse Cholesky factorisation", reason },
-        }
-    }
-}
-
-impl From<FaerError> for FactorError {
-    fn from(error: FaerError) -> Self {
-        FactorError::Failed(format!("{error:?}"))
-    }
-}
-
-/// A call of faer: a panic in it is a failure like any other.
-pub(super) fn call<T>(work: impl FnOnce() -> Result<T, FactorError>) -> Result<T, FactorError> {
-    guarded(work).map_err(FactorError::Failed)?
 }
 
 fn structure(matrix: &SparseMatrix) -> SymbolicSparseColMatRef<'_, usize> {

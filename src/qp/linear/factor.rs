@@ -6,12 +6,44 @@
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::solvers::LltError;
 use faer::sparse::linalg::cholesky::{self as fc, supernodal};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::sparse::{FaerError, SparseColMatRef, SymbolicSparseColMatRef};
 use faer::traits::RealField;
 use faer::{Conj, MatMut, Par};
 
-use super::cholesky::{FactorError, call};
 use super::{SparseMatrix, exponent, largest, ldexp};
+use crate::error::Error;
+use crate::qp::barrier::guarded;
+
+/// Why a factorisation did not end with a factor.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FactorError {
+    /// A pivot was not positive: the matrix is not positive definite.
+    NotPositiveDefinite,
+    /// Memory or index range was not enough, or the analysis failed.
+    Failed(String),
+}
+
+impl From<FactorError> for Error {
+    fn from(error: FactorError) -> Self {
+        match error {
+            FactorError::NotPositiveDefinite => {
+                Error::NotConvex { evidence: "a Cholesky pivot is not positive".into() }
+            }
+            FactorError::Failed(reason) => Error::Numerical { step: "sparse Cholesky factorisation", reason },
+        }
+    }
+}
+
+impl From<FaerError> for FactorError {
+    fn from(error: FaerError) -> Self {
+        FactorError::Failed(format!("{error:?}"))
+    }
+}
+
+/// A call of faer: a panic in it is a failure like any other.
+pub(super) fn call<T>(work: impl FnOnce() -> Result<T, FactorError>) -> Result<T, FactorError> {
+    guarded(work).map_err(FactorError::Failed)?
+}
 
 /// `f64` or `f32`.
 pub(super) trait Real: RealField + Copy + Into<f64> {

@@ -16,7 +16,8 @@ mod vector;
 
 pub use accumulator::Accumulator;
 pub use augmented::AugmentedMatrix;
-pub use cholesky::{Analysis, Cholesky, FactorError};
+pub use cholesky::{Analysis, Cholesky};
+pub use factor::FactorError;
 pub use null_space::generic;
 pub use power_of_two::{Equilibration, exponent, ldexp};
 pub use symmetric::SymmetricMatrix;

@@ -7,10 +7,10 @@ use super::parse::{Content, Values, parse};
 use super::{format_matrix, format_symmetric, format_vector};
 use crate::error::Error;
 use crate::file::{MOST_OF_TABLE, read_capped};
-use crate::qp::problem::ContactProblem;
-use crate::solution::Solution;
 use crate::qp::linear::multigrid::NearNullSpace;
 use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
+use crate::qp::problem::ContactProblem;
+use crate::solution::Solution;
 
 /// Reads the problem of a directory.
 ///

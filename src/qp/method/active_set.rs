@@ -18,9 +18,9 @@ use std::collections::HashSet;
 
 use super::{Holding, Outcome, SIGN_TOLERANCE, ScaledProblem, multiplier_rounding};
 use crate::error::Error;
+use crate::qp::linear::{Cholesky, largest};
 use crate::qp::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
-use crate::qp::linear::{Cholesky, largest};
 
 /// Weight of the closed rows in K + w B_C'B_C, on a diagonal of order one: every correction of the multipliers gains
 /// about four digits, and the factorisation loses as many.

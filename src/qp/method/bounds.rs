@@ -3,9 +3,9 @@
 use std::collections::{BTreeSet, HashMap};
 
 use crate::error::Error;
-use crate::solution::ContactSet;
 use crate::qp::linear::SparseMatrix;
 use crate::qp::linear::multigrid::Direction;
+use crate::solution::ContactSet;
 
 /// Parts of a unit vector below this are rounding of the turning.
 const ROUNDING: f64 = 1e-12;

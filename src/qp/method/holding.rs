@@ -2,8 +2,8 @@
 
 use super::ScaledProblem;
 use crate::error::Error;
-use crate::solution::ContactSet;
 use crate::qp::linear::{Cholesky, FactorError, largest};
+use crate::solution::ContactSet;
 
 /// Shifts with which a singular matrix is made definite, smallest first.
 const SHIFTS: [f64; 3] = [1e-12, 1e-10, 1e-8];

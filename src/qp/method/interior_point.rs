@@ -4,11 +4,11 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverError, SolverStatus, SupportedConeT};
 
 use super::ScaledProblem;
-use crate::qp::barrier::guarded;
 use crate::error::Error;
+use crate::qp::barrier::guarded;
+use crate::qp::linear::{SparseMatrix, exponent, largest, ldexp};
 use crate::qp::problem::ContactProblem;
 use crate::solution::ContactSet;
-use crate::qp::linear::{SparseMatrix, exponent, largest, ldexp};
 use crate::watch::Watch;
 
 /// A gap this many times the displacement is out of reach: the row is left out, where it would only spoil the scale.

@@ -18,9 +18,9 @@ pub(crate) use holding::WORK_TOLERANCE;
 pub use holding::{FreeMotion, Holding};
 
 use crate::error::Error;
+use crate::qp::linear::{AugmentedMatrix, Cholesky, FactorError, SymmetricMatrix, largest};
 use crate::qp::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
-use crate::qp::linear::{AugmentedMatrix, Cholesky, FactorError, SymmetricMatrix, largest};
 use crate::watch::Watch;
 
 /// Differences below this, relative to the largest displacement or multiplier, are rounding: the sign of a weakly

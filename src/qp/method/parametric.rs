@@ -17,8 +17,8 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::SIGN_TOLERANCE;
 use crate::error::Error;
-use crate::solution::ContactSet;
 use crate::qp::linear::largest;
+use crate::solution::ContactSet;
 use crate::watch::Watch;
 
 /// A row whose compliance is this small, relative, once the rows before it are held, depends on them.

@@ -14,8 +14,8 @@ use std::collections::HashSet;
 
 use super::{Holding, Outcome, ScaledProblem};
 use crate::error::Error;
-use crate::solution::{ContactSet, Iteration};
 use crate::qp::linear::{Cholesky, largest};
+use crate::solution::{ContactSet, Iteration};
 
 /// The penalty at which the two parts of the error meet: one over the square root of the machine precision.
 pub const BEST_PENALTY: f64 = 1e8;

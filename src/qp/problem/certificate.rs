@@ -5,9 +5,9 @@ use super::parts::Parts;
 use super::scales::{Forces, Scales, larger, relative};
 use super::{ContactProblem, EnergyNorm};
 use crate::error::Error;
-use crate::solution::Certificate;
 use crate::qp::linear::multigrid::Multigrid;
 use crate::qp::linear::{Accumulator, dot};
+use crate::solution::Certificate;
 
 /// Rounding moves an entry of u or lambda by half a unit in the last place; what a sum of such errors may be is excused
 /// twice, once for the rounding and once for the arithmetic that made the entry.

@@ -10,8 +10,8 @@
 use super::energy_bound::Answer;
 use super::{ContactProblem, EnergyNorm};
 use crate::error::Error;
-use crate::solution::{ContactSet, ProvenSet};
 use crate::qp::linear::{dot, ldexp};
+use crate::solution::{ContactSet, ProvenSet};
 
 /// Multiplications that the compliance of the rows in question may cost; beyond, one dof of each row is moved alone.
 const MOST_WORK: f64 = 2e9;

@@ -14,10 +14,10 @@
 use super::attempts::{method_ending, nothing_found};
 use super::{Method, Precision, Settings};
 use crate::error::Error;
-use crate::qp::problem::{ContactProblem, Motion};
-use crate::solution::Solution;
 use crate::qp::linear::{FactorError, SparseMatrix, SymmetricMatrix, dot, exponent, generic, largest, ldexp};
+use crate::qp::problem::{ContactProblem, Motion};
 use crate::qp::transform::Scaling;
+use crate::solution::Solution;
 
 /// Coordinates below this share of their terms are what the null space leaves of zero.
 const ROUNDING: f64 = 1e-10;

@@ -5,11 +5,11 @@ use std::time::Instant;
 use super::estimate::{Estimate, Kept, check_memory, check_time};
 use super::{Settings, pace};
 use crate::error::Error;
+use crate::qp::linear::multigrid::{Multigrid, NearNullSpace};
 use crate::qp::method::mprgp::{self, Limits, Start};
 use crate::qp::problem::{ContactProblem, check_gap};
-use crate::solution::{Seconds, Solution};
-use crate::qp::linear::multigrid::{Multigrid, NearNullSpace};
 use crate::qp::transform::RowSelection;
+use crate::solution::{Seconds, Solution};
 
 /// The method ends this much below the tolerance of the certificate, whose scales differ from its own.
 const MARGIN: f64 = 0.1;

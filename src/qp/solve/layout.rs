@@ -4,8 +4,8 @@ use super::estimate::{Estimate, Kept, check_memory, check_time};
 use super::rules::Way;
 use super::{Condense, Method, Precision, Settings, pace};
 use crate::error::Error;
-use crate::qp::problem::{ContactProblem, EnergyNorm};
 use crate::qp::linear::Analysis;
+use crate::qp::problem::{ContactProblem, EnergyNorm};
 use crate::qp::transform::{Condensation, Scaling};
 
 /// An order of elimination with its structure, and what is kept of it.

@@ -3,8 +3,8 @@
 use std::hint::black_box;
 
 use super::rules::factor_seconds;
-use crate::qp::problem::ContactProblem;
 use crate::qp::linear::{Analysis, SparseMatrix, SymmetricMatrix};
+use crate::qp::problem::ContactProblem;
 use crate::watch::Watch;
 
 /// Seconds of ordering and analysis for an entry of the lower triangle, nested dissection included.

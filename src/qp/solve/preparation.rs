@@ -9,10 +9,10 @@ use super::layout::Layout;
 use super::rules::{Way, factor_seconds};
 use super::{Prepared, Settings, pace};
 use crate::error::Error;
-use crate::qp::problem::{ContactProblem, EnergyNorm};
-use crate::solution::Seconds;
 use crate::qp::linear::{AugmentedMatrix, Cholesky, FactorError, largest};
+use crate::qp::problem::{ContactProblem, EnergyNorm};
 use crate::qp::transform::{Condensation, RowSelection, Scaling};
+use crate::solution::Seconds;
 
 /// A pivot of the equilibrated stiffness below this is too uncertain in single precision.
 const SINGLE_PIVOT: f64 = 1e-4;

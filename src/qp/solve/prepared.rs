@@ -9,12 +9,12 @@ use super::loading::Loading;
 use super::rules::Way;
 use super::{Condense, Method, Path, Settings, last_resort, pace, run};
 use crate::error::Error;
+use crate::qp::linear::{AugmentedMatrix, Equilibration, dot, largest, ldexp};
 use crate::qp::method::parametric::Compliance;
 use crate::qp::method::{ScaledProblem, WORK_TOLERANCE, active_set};
 use crate::qp::problem::{ContactProblem, EnergyNorm, check_gap, check_load};
-use crate::solution::{Certificate, ContactSet, Iteration, Seconds, Solution};
-use crate::qp::linear::{AugmentedMatrix, Equilibration, dot, largest, ldexp};
 use crate::qp::transform::{Condensation, RowSelection, Scaling};
+use crate::solution::{Certificate, ContactSet, Iteration, Seconds, Solution};
 use crate::watch::Watch;
 
 /// Factorisations for one step of a loop where K is not definite by itself.

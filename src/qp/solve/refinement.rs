@@ -18,9 +18,9 @@ use super::boundary::Found;
 use super::loading::Loading;
 use super::{Prepared, Settings};
 use crate::error::Error;
+use crate::qp::linear::dot;
 use crate::qp::problem::ContactProblem;
 use crate::solution::{ContactSet, Solution};
-use crate::qp::linear::dot;
 
 /// Steps after which there is nothing more to gain.
 const MOST_STEPS: usize = 30;

@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 
 use crate::error::Error;
-use crate::solution::ContactSet;
 use crate::qp::linear::{Accumulator, SparseMatrix, exponent, ldexp};
+use crate::solution::ContactSet;
 
 /// Two opposed gaps that overlap by less than this times their size meet: the rows are an equality.
 const MEETING: f64 = 4.0 * f64::EPSILON;

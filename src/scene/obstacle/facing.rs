@@ -1,9 +1,9 @@
 //! The surface of another body, node to node: n . (u - u_partner) <= gap.
 
 use super::Approachable;
+use crate::error::Error;
 use crate::fem::assembly::node_normals;
 use crate::fem::body::ElasticBody;
-use crate::error::Error;
 use crate::fem::mesh::Boundary;
 use crate::scene::condition::boundary;
 use crate::scene::schema::{FacingSpec, ObstacleSpec, Rule};

@@ -15,8 +15,8 @@ mod surface;
 
 use super::schema::{ObstacleSpec, PlaneSpec, Rule, ShapeSpec};
 use super::{finite, number, point, vector, wrong};
-use crate::fem::body::ElasticBody;
 use crate::error::Error;
+use crate::fem::body::ElasticBody;
 use facing::Facing;
 use frame::Frame;
 use half_space::HalfSpace;

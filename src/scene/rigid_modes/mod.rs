@@ -4,10 +4,10 @@ mod unit;
 
 use nalgebra::DMatrix;
 
-use super::model::Parts;
+use super::parts::Parts;
 use super::rows::ContactRow;
-use crate::fem::body::ElasticBody;
 use crate::error::Error;
+use crate::fem::body::ElasticBody;
 use unit::UnitMotions;
 
 /// A motion is held where the singular value that belongs to it exceeds this times the largest; exact geometry gives

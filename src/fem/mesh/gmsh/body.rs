@@ -4,8 +4,8 @@ use std::collections::HashSet;
 
 use super::cells::CellType;
 use super::{Element, GmshFile};
-use crate::fem::element::{Cell, ElementKind, MAX_NODES, Tabulated};
 use crate::error::Error;
+use crate::fem::element::{Cell, ElementKind, MAX_NODES, Tabulated};
 use crate::fem::mesh::{Mesh, fail};
 
 /// A node farther from the plane than this times the size of the body lies outside it: far above the rounding of a mesh

@@ -13,7 +13,8 @@
 
 use super::blocks::BlockMatrix;
 use super::chebyshev::Chebyshev;
-use super::hierarchy::{Coarsest, Hierarchy};
+use super::coarsest::Coarsest;
+use super::hierarchy::Hierarchy;
 use super::real::Real;
 use crate::qp::linear::FactorError;
 

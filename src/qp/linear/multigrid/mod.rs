@@ -12,7 +12,9 @@
 mod aggregation;
 mod blocks;
 mod chebyshev;
+mod coarsest;
 mod conjugate_gradients;
+mod cycle;
 mod dual_norm;
 mod face;
 mod hierarchy;

@@ -5,8 +5,8 @@ use std::collections::HashSet;
 use super::basis::{Basis, DEPENDENT, norm};
 use super::polyhedron::Polyhedron;
 use crate::error::Error;
-use crate::solution::{ContactSet, Iteration};
 use crate::qp::linear::{dot, largest};
+use crate::solution::{ContactSet, Iteration};
 use crate::watch::Watch;
 
 /// Units in the last place of the terms below which a violation is rounding. The pass that follows, with accurate

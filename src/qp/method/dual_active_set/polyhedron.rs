@@ -8,12 +8,12 @@ use std::cell::Cell;
 
 use super::basis::norm;
 use crate::error::Error;
-use crate::qp::method::{Outcome, ScaledProblem};
-use crate::qp::problem::ContactProblem;
-use crate::solution::{ContactSet, Iteration};
 use crate::qp::linear::{
     Accumulator, AugmentedMatrix, Cholesky, Equilibration, FactorError, SparseMatrix, exponent, ldexp,
 };
+use crate::qp::method::{Outcome, ScaledProblem};
+use crate::qp::problem::ContactProblem;
+use crate::solution::{ContactSet, Iteration};
 
 /// Weight of the proximal term `1/2 weight |u - u_k|^2` that makes a semidefinite K, with a diagonal between 1 and 4,
 /// definite. With 1e-6 as many problems are solved, with 1 about half of them.

@@ -2,12 +2,12 @@
 
 use super::Start;
 use crate::error::Error;
+use crate::qp::linear::multigrid::{Direction, Face};
+use crate::qp::linear::{dot, largest};
 use crate::qp::method::bounds::{Bound, Bounds};
 use crate::qp::method::holding::where_largest;
 use crate::qp::problem::ContactProblem;
 use crate::solution::Iteration;
-use crate::qp::linear::multigrid::{Direction, Face};
-use crate::qp::linear::{dot, largest};
 
 /// Rows that are open at the start although nothing has moved keep this share of their depth as distance.
 const INSIDE: f64 = 1e-3;

@@ -21,9 +21,9 @@ mod uniqueness;
 use super::Outcome;
 use super::bounds::Bounds;
 use crate::error::Error;
+use crate::qp::linear::multigrid::Multigrid;
 use crate::qp::problem::ContactProblem;
 use crate::solution::ContactSet;
-use crate::qp::linear::multigrid::Multigrid;
 use crate::watch::Watch;
 use iterate::{Conjugate, Iterate};
 

@@ -2,11 +2,11 @@
 
 use super::iterate::{At, Iterate};
 use crate::error::Error;
+use crate::qp::linear::multigrid::Multigrid;
+use crate::qp::linear::{dot, largest};
 use crate::qp::method::SIGN_TOLERANCE;
 use crate::qp::method::bounds::Bound;
 use crate::qp::method::holding::{FreeMotion, PLAY, WORK_TOLERANCE};
-use crate::qp::linear::multigrid::Multigrid;
-use crate::qp::linear::{dot, largest};
 
 /// Cycles in which all motions that cost energy die away; where they have not, the body counts as held.
 const CYCLES: usize = 60;

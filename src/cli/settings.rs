@@ -1,0 +1,16 @@
+//! The settings of a solve from the options that every command shares.
+
+use super::options::Common;
+use crate::qp::solve::{Condense, Method, Settings};
+use crate::watch::Watch;
+
+/// The settings that `common` asks for, for one method, ended by `watch`.
+pub(super) fn settings(method: Method, common: &Common, watch: &Watch) -> Settings {
+    let mut settings = Settings::with_method(method);
+    settings.tolerance = common.tolerance;
+    settings.threads = common.threads;
+    settings.condense = if common.no_condense { Condense::Never } else { Condense::Auto };
+    settings.memory = Some(common.limits.most_memory());
+    settings.watch = watch.clone();
+    settings
+}

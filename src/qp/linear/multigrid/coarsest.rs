@@ -1,0 +1,87 @@
+//! The factor of the coarsest matrix.
+
+use super::blocks::BlockMatrix;
+use super::real::Real;
+use crate::qp::linear::{Cholesky, Equilibration, FactorError, SparseMatrix, SymmetricMatrix, ldexp};
+
+/// Pivots of the coarsest matrix, whose diagonal is of order one, below so many units in the last place are rounding: a
+/// body that nothing holds.
+const LEAST_PIVOT: f64 = 1000.0;
+
+/// What then holds it, on a diagonal of order one: its contact will, about as stiffly as a coarse cell.
+const SHIFT: f64 = 1e-3;
+
+/// The factor of a coarsest matrix.
+#[derive(Debug)]
+pub(super) struct Coarsest {
+    cholesky: Cholesky,
+    equilibration: Equilibration,
+    is_shifted: bool,
+}
+
+impl Coarsest {
+    /// Factorises a coarsest matrix; one that is singular to the precision of its entries is held by a shift.
+    ///
+    /// # Errors
+    /// [`FactorError`] where it has a negative eigenvalue, or memory does not suffice.
+    pub fn of<T: Real>(blocks: &BlockMatrix<T>) -> Result<Self, FactorError> {
+        let matrix = lower_part(blocks);
+        let equilibration = Equilibration::of(&matrix);
+        let matrix = equilibration.apply(&matrix);
+        match Cholesky::of(&matrix) {
+            Ok(cholesky) if cholesky.smallest_pivot() > LEAST_PIVOT * T::EPSILON => {
+                Ok(Coarsest { cholesky, equilibration, is_shifted: false })
+            }
+            Ok(_) | Err(FactorError::NotPositiveDefinite) => {
+                let mut lower = matrix.lower().clone();
+                let held = lower.triplets().map(|(i, j, v)| if i == j { v + SHIFT } else { v }).collect();
+                lower = lower.with_values(held);
+                let cholesky = Cholesky::of(&SymmetricMatrix::from_sorted_lower(lower))?;
+                Ok(Coarsest { cholesky, equilibration, is_shifted: true })
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Number of values of the factor.
+    pub fn entries(&self) -> usize {
+        self.cholesky.entries()
+    }
+
+    /// Was it singular to the precision of its entries, so that it had to be held?
+    pub fn is_shifted(&self) -> bool {
+        self.is_shifted
+    }
+
+    /// The displacement under a force.
+    pub fn solve(&self, force: &[f64]) -> Vec<f64> {
+        let scale = &self.equilibration.diagonal;
+        let scaled: Vec<f64> =
+            force.iter().zip(scale).map(|(&f, &d)| ldexp(f, d + self.equilibration.factor)).collect();
+        self.cholesky.solve(&scaled).iter().zip(scale).map(|(&u, &d)| ldexp(u, d)).collect()
+    }
+}
+
+fn lower_part<T: Real>(blocks: &BlockMatrix<T>) -> SymmetricMatrix {
+    let size = blocks.height;
+    let dim = blocks.rows() * size;
+    let (mut starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
+    // The matrix is symmetric: row `node` of blocks is column `node`.
+    for node in 0..blocks.rows() {
+        for j in 0..size {
+            let column = node * size + j;
+            for (other, block) in blocks.row(node) {
+                for i in 0..size {
+                    let row = other * size + i;
+                    let value = block[j * size + i].double();
+                    if row >= column && (value != 0.0 || row == column) {
+                        rows.push(row);
+                        values.push(value);
+                    }
+                }
+            }
+            starts.push(rows.len());
+        }
+    }
+    SymmetricMatrix::from_sorted_lower(SparseMatrix::from_parts(dim, starts, rows, values))
+}

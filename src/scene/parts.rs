@@ -1,0 +1,20 @@
+//! What a model consists of before its contact rows.
+
+use super::{Obstacle, Units, Warning};
+use crate::fem::assembly::DofMap;
+use crate::fem::body::ElasticBody;
+
+/// What a change of the gap leaves alone.
+#[derive(Debug)]
+pub(super) struct Parts {
+    pub title: String,
+    pub units: Units,
+    pub body: ElasticBody,
+    pub dofs: DofMap,
+    /// External load at all nodes, length `dim * n_nodes`.
+    pub load: Vec<f64>,
+    pub obstacles: Vec<Obstacle>,
+    pub warnings: Vec<Warning>,
+    /// Is its motion asked for? Inertia then resists what nothing holds.
+    pub moves: bool,
+}
