@@ -59,11 +59,13 @@
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod error;
 pub mod fem;
 pub mod file;
 pub mod motion;
+#[cfg(feature = "pictures")]
 pub mod output;
 pub mod qp;
 pub mod scene;

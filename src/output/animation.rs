@@ -1,6 +1,6 @@
 //! Drawings one after another as an animated PNG: it shows wherever a PNG does, in full colour.
 
-use resvg::tiny_skia::Pixmap;
+use tiny_skia::Pixmap;
 
 use super::Drawing;
 use crate::error::Error;

@@ -1,19 +1,10 @@
-//! A drawing: shapes and texts in pixels, written as SVG and rasterised to PNG.
+//! A drawing: shapes and texts in pixels, written as SVG or painted as PNG.
 
-use std::fmt::Write;
-
-use resvg::{tiny_skia, usvg};
+use tiny_skia::Pixmap;
 
 pub use super::paint::{Anchor, Paint};
-use super::{
-    colour::INK,
-    paint::{hex, hundredths, number},
-    typeface,
-};
+use super::{raster, svg};
 use crate::error::Error;
-
-/// Largest number of pixels of a PNG: 400 MB of memory while it is drawn.
-const MOST_PIXELS: f64 = 1e8;
 
 /// Coordinates beyond this are no part of a picture; renderers compute in single precision.
 const FARTHEST: f64 = 1e6;
@@ -23,15 +14,48 @@ const FARTHEST: f64 = 1e6;
 pub struct Drawing {
     width: f64,
     height: f64,
-    body: String,
-    clips: usize,
+    shapes: Vec<Shape>,
+}
+
+/// What a drawing consists of; each shape is drawn over those before it.
+#[derive(Clone, Debug)]
+pub(super) enum Shape {
+    /// Lines in hundredths of a pixel. `closed` ones are filled together by the even-odd rule.
+    Path {
+        pieces: Vec<Vec<[i64; 2]>>,
+        closed: bool,
+        paint: Paint,
+    },
+    Circle {
+        centre: [f64; 2],
+        radius: f64,
+        paint: Paint,
+    },
+    Text(Text),
+    /// Shapes cut to the rectangle with its upper left corner at `corner`.
+    Clipped {
+        corner: [f64; 2],
+        size: [f64; 2],
+        shapes: Vec<Shape>,
+    },
+}
+
+/// A text with its baseline at `position`, from left to right or upwards.
+#[derive(Clone, Debug)]
+pub(super) struct Text {
+    pub position: [f64; 2],
+    pub text: String,
+    pub size: f64,
+    pub anchor: Anchor,
+    pub bold: bool,
+    pub upward: bool,
 }
 
 impl Drawing {
     /// An empty drawing of `width` times `height` pixels; at least one pixel each way.
     pub fn new(width: f64, height: f64) -> Self {
         let side = |length: f64| if length.is_finite() { length.clamp(1.0, 20_000.0).round() } else { 1.0 };
-        Drawing { width: side(width), height: side(height), body: String::new(), clips: 0 }
+        Drawing { width: side(width), height: side(height), shapes: Vec::new() }
     }
 
     /// Width in pixels.
@@ -52,9 +76,7 @@ impl Drawing {
     /// A circle.
     pub fn circle(&mut self, centre: [f64; 2], radius: f64, paint: &Paint) {
         if drawable(centre) && radius.is_finite() && radius > 0.0 {
-            let [x, y] = centre.map(number);
-            let _ =
-                writeln!(self.body, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{}\"{}/>", number(radius), paint.attributes());
+            self.shapes.push(Shape::Circle { centre, radius, paint: *paint });
         }
     }
 
@@ -86,74 +108,45 @@ impl Drawing {
     }
 
     fn path<P: AsRef<[[f64; 2]]>>(&mut self, pieces: &[P], closed: bool, paint: &Paint) {
-        let data: String = pieces.iter().map(|piece| path_data(piece.as_ref(), closed)).collect();
-        if data.is_empty() {
-            return;
+        let pieces: Vec<Vec<[i64; 2]>> =
+            pieces.iter().map(|piece| in_hundredths(piece.as_ref())).filter(|piece| !piece.is_empty()).collect();
+        if !pieces.is_empty() {
+            self.shapes.push(Shape::Path { pieces, closed, paint: *paint });
         }
-        let rule = if closed && pieces.len() > 1 { " fill-rule=\"evenodd\"" } else { "" };
-        // Round joins: a mitre would make a spike of every sharp corner of a contour.
-        let join = if paint.stroke.is_some() { " stroke-linejoin=\"round\"" } else { "" };
-        let _ = writeln!(self.body, "<path d=\"{data}\"{rule}{join}{}/>", paint.attributes());
     }
 
     /// A text in the colour of axes with its baseline at `position`.
     pub fn text(&mut self, position: [f64; 2], text: &str, size: f64, anchor: Anchor) {
-        self.any_text(position, text, size, anchor, false, 0.0);
+        self.any_text(Text { position, text: text.to_owned(), size, anchor, bold: false, upward: false });
     }
 
     /// A bold text with its baseline at `position`.
     pub fn bold_text(&mut self, position: [f64; 2], text: &str, size: f64, anchor: Anchor) {
-        self.any_text(position, text, size, anchor, true, 0.0);
+        self.any_text(Text { position, text: text.to_owned(), size, anchor, bold: true, upward: false });
     }
 
     /// A text that reads upwards, with its baseline through `position`.
     pub fn upward_text(&mut self, position: [f64; 2], text: &str, size: f64, anchor: Anchor) {
-        self.any_text(position, text, size, anchor, false, -90.0);
+        self.any_text(Text { position, text: text.to_owned(), size, anchor, bold: false, upward: true });
     }
 
-    fn any_text(&mut self, position: [f64; 2], text: &str, size: f64, anchor: Anchor, bold: bool, turn: f64) {
-        if text.trim().is_empty() || !drawable(position) {
-            return;
+    fn any_text(&mut self, text: Text) {
+        if !text.text.trim().is_empty() && drawable(text.position) {
+            self.shapes.push(Shape::Text(text));
         }
-        let [x, y] = position.map(number);
-        let anchor = match anchor {
-            Anchor::Start => "",
-            Anchor::Middle => " text-anchor=\"middle\"",
-            Anchor::End => " text-anchor=\"end\"",
-        };
-        let weight = if bold { " font-weight=\"bold\"" } else { "" };
-        let place = if turn == 0.0 {
-            format!(" x=\"{x}\" y=\"{y}\"")
-        } else {
-            format!(" transform=\"translate({x} {y}) rotate({turn})\"")
-        };
-        let (ink, size, text) = (hex(INK), number(size), typeface::escape(text));
-        let _ = writeln!(self.body, "<text{place} font-size=\"{size}\"{anchor}{weight} fill=\"{ink}\">{text}</text>");
     }
 
     /// Draws what `content` draws, cut to the rectangle with its upper left corner at `corner`.
     pub fn clipped(&mut self, corner: [f64; 2], size: [f64; 2], content: impl FnOnce(&mut Drawing)) {
-        self.clips += 1;
-        let (id, [x, y], [width, height]) = (self.clips, corner.map(number), size.map(|side| number(side.max(0.0))));
-        let _ = writeln!(
-            self.body,
-            "<clipPath id=\"clip{id}\"><rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\"/></clipPath>\n\
-             <g clip-path=\"url(#clip{id})\">"
-        );
+        let outside = std::mem::take(&mut self.shapes);
         content(self);
-        self.body.push_str("</g>\n");
+        let shapes = std::mem::replace(&mut self.shapes, outside);
+        self.shapes.push(Shape::Clipped { corner, size: size.map(|side| side.max(0.0)), shapes });
     }
 
     /// The drawing as SVG text, with a white background.
     pub fn svg(&self) -> String {
-        let (width, height) = (self.width, self.height);
-        format!(
-            "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" \
-             height=\"{height}\" viewBox=\"0 0 {width} {height}\" font-family=\"{}\">\n\
-             <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n{}</svg>\n",
-            typeface::FAMILY,
-            self.body
-        )
+        svg::written([self.width, self.height], &self.shapes)
     }
 
     /// The same picture as PNG, with `scale` pixels of the image for one pixel of the drawing.
@@ -167,20 +160,8 @@ impl Drawing {
     }
 
     /// The same picture as pixels.
-    pub(super) fn pixels(&self, scale: f64) -> Result<tiny_skia::Pixmap, Error> {
-        let [width, height] = [self.width, self.height].map(|side| (side * scale).round());
-        if !(scale > 0.0 && width >= 1.0 && height >= 1.0 && width * height <= MOST_PIXELS) {
-            let allowed = "positive, and an image of at least one and at most 1e8 pixels must come of it";
-            return Err(Error::Setting { name: "scale of the picture", value: scale, allowed });
-        }
-        let failed = |reason: String| Error::Numerical { step: "rasterising a picture", reason };
-        let tree =
-            usvg::Tree::from_str(&self.svg(), &typeface::options()).map_err(|error| failed(error.to_string()))?;
-        let mut pixels = tiny_skia::Pixmap::new(width as u32, height as u32)
-            .ok_or_else(|| failed(format!("no image of {width} x {height} pixels")))?;
-        let transform = tiny_skia::Transform::from_scale((width / self.width) as f32, (height / self.height) as f32);
-        resvg::render(&tree, transform, &mut pixels.as_mut());
-        Ok(pixels)
+    pub(super) fn pixels(&self, scale: f64) -> Result<Pixmap, Error> {
+        raster::painted([self.width, self.height], &self.shapes, scale)
     }
 }
 
@@ -189,31 +170,10 @@ fn drawable(point: [f64; 2]) -> bool {
     point.iter().all(|coordinate| coordinate.abs() <= FARTHEST)
 }
 
-/// The points as SVG path data: an absolute start and relative steps, exact in hundredths of a pixel.
-fn path_data(points: &[[f64; 2]], closed: bool) -> String {
-    let mut data = String::new();
-    let mut last: Option<[i64; 2]> = None;
-    for &point in points.iter().filter(|&&point| drawable(point)) {
-        let here = point.map(|coordinate| (coordinate * 100.0).round() as i64);
-        if let Some(before) = last {
-            let step = [here[0] - before[0], here[1] - before[1]];
-            match step {
-                [0, 0] => continue,
-                [along, 0] => data += &format!("h{}", hundredths(along)),
-                [0, along] => data += &format!("v{}", hundredths(along)),
-                [along, down] => {
-                    let down = hundredths(down);
-                    let space = if down.starts_with('-') { "" } else { " " };
-                    data += &format!("l{}{space}{down}", hundredths(along));
-                }
-            }
-        } else {
-            data += &format!("M{} {}", hundredths(here[0]), hundredths(here[1]));
-        }
-        last = Some(here);
-    }
-    if closed && last.is_some() {
-        data.push('z');
-    }
-    data
+/// The points that can be drawn in hundredths of a pixel, none twice in a row.
+fn in_hundredths(points: &[[f64; 2]]) -> Vec<[i64; 2]> {
+    let near = points.iter().filter(|&&point| drawable(point));
+    let mut rounded: Vec<[i64; 2]> = near.map(|point| point.map(|x| (x * 100.0).round() as i64)).collect();
+    rounded.dedup();
+    rounded
 }

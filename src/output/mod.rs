@@ -1,8 +1,8 @@
 //! Answers shown: reports as text and JSON, pictures (SVG and PNG), `.vtu` files for ParaView, problem files.
 //!
 //! Pictures and `.vtu` files take plain data (nodes, elements, values, labels) and know nothing of scenes, meshes or
-//! methods; [`gallery`] alone fills them from a model and its answer. A picture is a [`Drawing`]: its SVG text is the
-//! truth, the PNG is that text rasterised with an embedded typeface, so that both show the same on every machine.
+//! methods; [`gallery`] alone fills them from a model and its answer. A picture is a [`Drawing`]: the
+//! same shapes are written as SVG and painted as PNG with an embedded typeface, so that both show the same on every machine.
 
 mod animation;
 mod axes;
@@ -22,8 +22,10 @@ mod obstacle;
 mod paint;
 mod panels;
 pub mod plot;
+mod raster;
 mod report;
 mod style;
+mod svg;
 pub mod ticks;
 mod tradeoff;
 mod typeface;

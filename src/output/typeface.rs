@@ -1,26 +1,30 @@
 //! The embedded typeface: what a text measures, and how one is made to fit.
 
-use std::sync::{Arc, LazyLock};
+use std::sync::LazyLock;
 
-use resvg::usvg;
+use tiny_skia::PathBuilder;
+use ttf_parser::{Face, GlyphId, OutlineBuilder};
 
 /// The family of the embedded fonts, then what a viewer of the SVG may take instead.
 pub(crate) const FAMILY: &str = "'Signorini Sans','DejaVu Sans',Verdana,sans-serif";
 
-const REGULAR: &[u8] = include_bytes!("font/signorini-sans.ttf");
-const BOLD: &[u8] = include_bytes!("font/signorini-sans-bold.ttf");
-
-static FONTS: LazyLock<Arc<usvg::fontdb::Database>> = LazyLock::new(|| {
-    let mut fonts = usvg::fontdb::Database::new();
-    fonts.load_font_data(REGULAR.to_vec());
-    fonts.load_font_data(BOLD.to_vec());
-    fonts.set_sans_serif_family("Signorini Sans");
-    Arc::new(fonts)
+/// The regular and the bold face. They have no tables for kerning and ligatures: a text is its letters side by side.
+static FACES: LazyLock<[Option<Face<'static>>; 2]> = LazyLock::new(|| {
+    let files: [&[u8]; 2] = [include_bytes!("font/signorini-sans.ttf"), include_bytes!("font/signorini-sans-bold.ttf")];
+    files.map(|file| Face::parse(file, 0).ok())
 });
 
-/// Parsing options that know only the embedded fonts, so that the machine's fonts do not matter.
-pub(crate) fn options() -> usvg::Options<'static> {
-    usvg::Options { font_family: "Signorini Sans".to_owned(), fontdb: FONTS.clone(), ..usvg::Options::default() }
+fn face(bold: bool) -> Option<&'static Face<'static>> {
+    FACES[usize::from(bold)].as_ref()
+}
+
+/// The letters of a text, one after another, each with its width in units of the face; a letter that the face does not have
+/// is its box.
+fn letters<'a>(face: &'a Face<'static>, text: &'a str) -> impl Iterator<Item = (GlyphId, f64)> + 'a {
+    text.chars().map(|character| {
+        let glyph = face.glyph_index(character).unwrap_or_default();
+        (glyph, f64::from(face.glyph_hor_advance(glyph).unwrap_or(0)))
+    })
 }
 
 /// `text` as XML character data: markup escaped, characters that XML forbids replaced.
@@ -43,21 +47,53 @@ pub(crate) fn escape(text: &str) -> String {
 
 /// Width of `text` at `size`, in the units of `size`.
 pub(crate) fn width(text: &str, size: f64, bold: bool) -> f64 {
-    if text.trim().is_empty() {
-        return 0.0;
+    let Some(face) = face(bold) else { return 0.0 };
+    letters(face, text).map(|letter| letter.1).sum::<f64>() * size / f64::from(face.units_per_em())
+}
+
+/// Adds the outlines of the letters of `text` to `path`; `place(along, above)` tells where a point of it stands, from the start
+/// of the baseline.
+pub(crate) fn outline(text: &str, size: f64, bold: bool, path: &mut PathBuilder, place: impl Fn(f64, f64) -> [f32; 2]) {
+    let Some(face) = face(bold) else { return };
+    let unit = size / f64::from(face.units_per_em());
+    let mut start = 0.0;
+    for (glyph, width) in letters(face, text) {
+        let place = |x: f32, y: f32| place(unit * (start + f64::from(x)), unit * f64::from(y));
+        face.outline_glyph(glyph, &mut Outline { path, place });
+        start += width;
     }
-    // Laid out by the same code that draws it, at a fixed size: widths are proportional, for there are no hints.
-    let weight = if bold { "bold" } else { "normal" };
-    let svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"9\" height=\"9\"><text font-family=\"{FAMILY}\" \
-         font-size=\"100\" font-weight=\"{weight}\" xml:space=\"preserve\">{}</text></svg>",
-        escape(text)
-    );
-    let measured = usvg::Tree::from_str(&svg, &options())
-        .ok()
-        .and_then(|tree| tree.root().children().first().map(|node| f64::from(node.bounding_box().width())));
-    // Six tenths of the size is the mean width of a letter.
-    measured.unwrap_or(60.0 * text.chars().count() as f64) * size / 100.0
+}
+
+/// Takes the outline of one letter to its place.
+struct Outline<'a, F> {
+    path: &'a mut PathBuilder,
+    place: F,
+}
+
+impl<F: Fn(f32, f32) -> [f32; 2]> OutlineBuilder for Outline<'_, F> {
+    fn move_to(&mut self, x: f32, y: f32) {
+        let [x, y] = (self.place)(x, y);
+        self.path.move_to(x, y);
+    }
+
+    fn line_to(&mut self, x: f32, y: f32) {
+        let [x, y] = (self.place)(x, y);
+        self.path.line_to(x, y);
+    }
+
+    fn quad_to(&mut self, x1: f32, y1: f32, x: f32, y: f32) {
+        let ([x1, y1], [x, y]) = ((self.place)(x1, y1), (self.place)(x, y));
+        self.path.quad_to(x1, y1, x, y);
+    }
+
+    fn curve_to(&mut self, x1: f32, y1: f32, x2: f32, y2: f32, x: f32, y: f32) {
+        let ([x1, y1], [x2, y2], [x, y]) = ((self.place)(x1, y1), (self.place)(x2, y2), (self.place)(x, y));
+        self.path.cubic_to(x1, y1, x2, y2, x, y);
+    }
+
+    fn close(&mut self) {
+        self.path.close();
+    }
 }
 
 /// `text` and the size at which it fits into `available`: first smaller, then cut with an ellipsis.

@@ -52,6 +52,7 @@ impl Scene {
     }
 
     /// The JSON Schema of scenes.
+    #[cfg(feature = "cli")]
     pub fn json_schema() -> serde_json::Value {
         schemars::schema_for!(Scene).to_value()
     }

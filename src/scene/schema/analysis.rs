@@ -1,12 +1,12 @@
 //! What is to be found out about a scene: its equilibrium, or, where it says so, its motion.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::super::parse::{choice, given, object, objects, word};
 
 /// The analysis; a scene without one is static.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum AnalysisSpec {
     /// The motion from given displacements and velocities.
@@ -14,7 +14,8 @@ pub enum AnalysisSpec {
 }
 
 /// The motion of the bodies: the scene integrated in time. Every material needs a density.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct DynamicSpec {
     /// How long, positive, in time.
@@ -66,7 +67,8 @@ fn frames() -> usize {
 }
 
 /// The schemes to choose from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum SchemeSpec {
     /// Midpoint rule, its contact nodes without mass: keeps energy, and the pressure does not chatter.
@@ -85,7 +87,8 @@ pub enum SchemeSpec {
 }
 
 /// The forms of the mass to choose from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum MassSpec {
     /// That of the shape functions.
@@ -97,7 +100,8 @@ pub enum MassSpec {
 }
 
 /// Rayleigh damping C = `mass` M + `stiffness` K.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct DampingSpec {
     /// Share of the mass, zero or positive, in one over time.
@@ -107,7 +111,8 @@ pub struct DampingSpec {
 }
 
 /// Initial displacement and velocity of one body or of all.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct InitialSpec {
     /// Name of a further body; all bodies where it is left out.
@@ -122,7 +127,8 @@ pub struct InitialSpec {
 }
 
 /// A linear field: `value + gradient . x`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct FieldSpec {
     /// Value at the origin, one entry for each coordinate.
@@ -133,7 +139,8 @@ pub struct FieldSpec {
 }
 
 /// What to do with nodes that start inside an obstacle.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum PenetrationSpec {
     /// An error that says where and by how much.
@@ -144,7 +151,8 @@ pub enum PenetrationSpec {
 }
 
 /// How one load changes with time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct LoadInTimeSpec {
     /// Which entry of `loads`, from 0.
@@ -155,7 +163,8 @@ pub struct LoadInTimeSpec {
 }
 
 /// A factor over time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum FactorSpec {
     /// Straight lines between points; constant before the first and after the last.
@@ -169,7 +178,8 @@ pub enum FactorSpec {
 }
 
 /// Points of a factor over time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct FactorTableSpec {
     /// Times, at least one, increasing.
@@ -179,7 +189,8 @@ pub struct FactorTableSpec {
 }
 
 /// A sine over time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct SineSpec {
     /// Frequency, positive, in one over time.
@@ -190,7 +201,8 @@ pub struct SineSpec {
 }
 
 /// An interval of time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct IntervalSpec {
     /// Its beginning.

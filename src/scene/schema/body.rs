@@ -1,13 +1,13 @@
 //! Bodies and materials as they are written in a scene.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::super::parse::{choice, given, object, word};
 use super::{DiscSpec, GmshSpec, HalfBallSpec, HalfDiscSpec, RingSpec, one};
 
 /// The elastic body.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum BodySpec {
     /// A rectangle with a structured mesh; its boundaries are `left`, `right`, `bottom`, `top`. In an axisymmetric
@@ -34,7 +34,8 @@ pub enum BodySpec {
 }
 
 /// A bar along x.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct BarSpec {
     /// The axis along x.
@@ -46,7 +47,8 @@ pub struct BarSpec {
 }
 
 /// A rectangle: the product of two divided axes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RectangleSpec {
     /// The axis along x.
@@ -64,7 +66,8 @@ pub struct RectangleSpec {
 }
 
 /// A box: the product of three divided axes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct BoxSpec {
     /// The axis along x.
@@ -85,7 +88,8 @@ pub struct BoxSpec {
 }
 
 /// One axis of a structured mesh.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct AxisSpec {
     /// Breakpoints, at least two, increasing.
@@ -98,7 +102,8 @@ pub struct AxisSpec {
 }
 
 /// The elements of the plane to choose from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum ElementSpec {
     /// Linear triangle.
@@ -113,7 +118,8 @@ pub enum ElementSpec {
 }
 
 /// The elements of space to choose from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum SolidElementSpec {
     /// Linear tetrahedron.
@@ -124,7 +130,8 @@ pub enum SolidElementSpec {
 }
 
 /// How the stiffness of an element is integrated.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum IntegrationSpec {
     /// All of it at all quadrature points.
@@ -136,7 +143,8 @@ pub enum IntegrationSpec {
 }
 
 /// An isotropic linear elastic material.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct MaterialSpec {
     /// Young's modulus, positive, in force per area.
@@ -149,7 +157,8 @@ pub struct MaterialSpec {
 }
 
 /// An elastic body beside the first: of the same model, thickness and element.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct FurtherBodySpec {
     /// Its name; its boundaries are called `name.boundary`.

@@ -1,12 +1,12 @@
 //! Supports and loads as they are written in a scene.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::super::parse::{choice, given, number, object};
 
 /// Where on the body.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Place {
     /// All nodes of a named boundary.
@@ -19,7 +19,8 @@ pub enum Place {
 ///
 /// A `normal` makes it a roller on an inclined plane: the component of the displacement along it is prescribed, those
 /// along the plane are free. About an axis the plane is a cone.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct SupportSpec {
     /// Where.
@@ -43,7 +44,8 @@ pub struct SupportSpec {
 }
 
 /// An external load.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum LoadSpec {
     /// A constant traction on a boundary.
@@ -57,7 +59,8 @@ pub enum LoadSpec {
 }
 
 /// A constant traction on a boundary.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct TractionSpec {
     /// The boundary.
@@ -67,7 +70,8 @@ pub struct TractionSpec {
 }
 
 /// A constant pressure on a boundary.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct PressureSpec {
     /// The boundary.
@@ -77,7 +81,8 @@ pub struct PressureSpec {
 }
 
 /// A force at a node.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ForceSpec {
     /// The point; there must be a node.

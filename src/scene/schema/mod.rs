@@ -1,6 +1,5 @@
 //! The scene as it is written: typed, with defaults, unknown fields refused.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 mod analysis;
@@ -33,7 +32,8 @@ use super::parse::{choice, choices, object, objects, word};
 ///
 /// Any consistent system of units. Points and vectors have as many entries as the model has coordinates: `[x]` in a
 /// bar, `[x, y]` in the plane and about an axis, `[x, y, z]` in space.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Scene {
     /// Address of the JSON Schema of scenes, for editors.
@@ -88,7 +88,8 @@ fn one() -> f64 {
 }
 
 /// Names of the units.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct Units {
     /// Unit of length, as `m`.
@@ -115,7 +116,8 @@ impl Units {
 }
 
 /// The space of a model, and what happens in the directions that it leaves out.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum ModelSpec {
     /// A bar along x, free across.

@@ -1,13 +1,13 @@
 //! Obstacles as they are written in a scene.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::super::parse::{choice, object, word};
 use super::solid::{ConeSpec, CylinderSpec, HeightMapSpec, SphereSpec};
 
 /// A frictionless obstacle and the boundary that may touch it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ObstacleSpec {
     /// The boundary whose nodes are the candidates.
@@ -24,7 +24,8 @@ pub struct ObstacleSpec {
 }
 
 /// A direction along an axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub enum Approach {
     /// Along x.
     #[serde(rename = "+x")]
@@ -73,7 +74,8 @@ impl Approach {
 }
 
 /// How a candidate node's contact row is made.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Rule {
     /// Along the approach direction: `u . approach <= distance along it`; one entry per row.
@@ -84,7 +86,8 @@ pub enum Rule {
 }
 
 /// The surface of an obstacle, over the coordinates across the approach direction.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum ShapeSpec {
     /// A plane.
@@ -128,7 +131,8 @@ impl ShapeSpec {
 }
 
 /// The surface of another elastic body: across every candidate lies one of its nodes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct FacingSpec {
     /// The boundary of the other body, as `name.boundary`.
@@ -136,7 +140,8 @@ pub struct FacingSpec {
 }
 
 /// A plane.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct PlaneSpec {
     /// A point of the plane.
@@ -146,7 +151,8 @@ pub struct PlaneSpec {
 }
 
 /// A parabola.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ParabolaSpec {
     /// The point nearest to the body.
@@ -156,7 +162,8 @@ pub struct ParabolaSpec {
 }
 
 /// A circle, given by its centre or by its apex.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct CircleSpec {
     /// The centre.
@@ -170,7 +177,8 @@ pub struct CircleSpec {
 }
 
 /// A wedge.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct WedgeSpec {
     /// The point nearest to the body.
@@ -180,7 +188,8 @@ pub struct WedgeSpec {
 }
 
 /// A polyline through points.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct TableSpec {
     /// At least two points [x, y], increasing in the coordinate across the approach direction, from the first

@@ -1,13 +1,13 @@
 //! Bodies with round sides, and bodies from mesh files, as they are written in a scene.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::super::parse::{object, word, words};
 use super::{AxisSpec, ElementSpec, IntegrationSpec, one};
 
 /// A mesh written by Gmsh: a `.msh` file of version 4.1 or 2.2 in ASCII. A bar has the cross-section 1.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct GmshSpec {
     /// The file, below the folder of the scene unless that is allowed to read outside; a relative name starts there.
@@ -24,7 +24,8 @@ pub struct GmshSpec {
 }
 
 /// Half of a disc, the lower one where not said otherwise.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct HalfDiscSpec {
     /// The centre [x, y].
@@ -50,7 +51,8 @@ pub struct HalfDiscSpec {
 }
 
 /// A disc, graded towards its lowest and its highest point.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct DiscSpec {
     /// The centre [x, y].
@@ -73,7 +75,8 @@ pub struct DiscSpec {
 }
 
 /// Half of a ball, the lower one where not said otherwise, of `hex8`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct HalfBallSpec {
     /// The centre [x, y, z].
@@ -97,7 +100,8 @@ pub struct HalfBallSpec {
 }
 
 /// The half of a disc or a ball.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum HalfSpec {
     /// Below the centre.
@@ -114,7 +118,8 @@ impl HalfSpec {
 }
 
 /// The axis across a plane of symmetry.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum SymmetrySpec {
     /// Along x.
@@ -124,7 +129,8 @@ pub enum SymmetrySpec {
 }
 
 /// A ring or a sector of it: the product of a radial axis and an angle.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RingSpec {
     /// The centre [x, y].
@@ -145,7 +151,8 @@ pub struct RingSpec {
 }
 
 /// The finely meshed zone around the lowest (highest) point of a round body.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ZoneSpec {
     /// How far the cells of one size reach from the lowest point, to each side and into the body: positive, at most the

@@ -1,10 +1,10 @@
 //! Obstacles in space as they are written in a scene.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A sphere, given by its centre or by its apex.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct SphereSpec {
     /// The centre.
@@ -18,7 +18,8 @@ pub struct SphereSpec {
 }
 
 /// A cylinder without ends, given by a point of its axis or of its apex line.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct CylinderSpec {
     /// Any point of the axis.
@@ -34,7 +35,8 @@ pub struct CylinderSpec {
 }
 
 /// A cone that opens along the approach direction.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ConeSpec {
     /// The point nearest to the body.
@@ -44,7 +46,8 @@ pub struct ConeSpec {
 }
 
 /// Heights on a grid over the two coordinates across the approach direction.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct HeightMapSpec {
     /// Grid lines of the first coordinate across the approach direction (x, or y where that is along x): at least two,

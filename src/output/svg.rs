@@ -1,0 +1,90 @@
+//! Shapes as SVG text.
+
+use std::fmt::Write;
+
+use super::colour::INK;
+use super::drawing::{Shape, Text};
+use super::paint::{Anchor, hex, hundredths, number};
+use super::typeface;
+
+/// The SVG text of a picture of `width` times `height` pixels, on white.
+pub(super) fn written([width, height]: [f64; 2], shapes: &[Shape]) -> String {
+    let mut body = String::new();
+    write_shapes(&mut body, shapes, &mut 0);
+    format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" \
+         height=\"{height}\" viewBox=\"0 0 {width} {height}\" font-family=\"{}\">\n\
+         <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n{body}</svg>\n",
+        typeface::FAMILY,
+    )
+}
+
+/// Writes the shapes; `clips` counts the clip paths, whose names must differ.
+fn write_shapes(body: &mut String, shapes: &[Shape], clips: &mut usize) {
+    for shape in shapes {
+        match shape {
+            Shape::Path { pieces, closed, paint } => {
+                let data: String = pieces.iter().map(|piece| path_data(piece, *closed)).collect();
+                let rule = if *closed && pieces.len() > 1 { " fill-rule=\"evenodd\"" } else { "" };
+                // Round joins: a mitre would make a spike of every sharp corner of a contour.
+                let join = if paint.stroke.is_some() { " stroke-linejoin=\"round\"" } else { "" };
+                let _ = writeln!(body, "<path d=\"{data}\"{rule}{join}{}/>", paint.attributes());
+            }
+            Shape::Circle { centre, radius, paint } => {
+                let ([x, y], radius) = (centre.map(number), number(*radius));
+                let _ = writeln!(body, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"{}/>", paint.attributes());
+            }
+            Shape::Text(text) => write_text(body, text),
+            Shape::Clipped { corner, size, shapes } => {
+                *clips += 1;
+                let (id, [x, y], [width, height]) = (*clips, corner.map(number), size.map(number));
+                let _ = writeln!(
+                    body,
+                    "<clipPath id=\"clip{id}\"><rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\"/></clipPath>\n\
+                     <g clip-path=\"url(#clip{id})\">"
+                );
+                write_shapes(body, shapes, clips);
+                body.push_str("</g>\n");
+            }
+        }
+    }
+}
+
+fn write_text(body: &mut String, text: &Text) {
+    let [x, y] = text.position.map(number);
+    let anchor = match text.anchor {
+        Anchor::Start => "",
+        Anchor::Middle => " text-anchor=\"middle\"",
+        Anchor::End => " text-anchor=\"end\"",
+    };
+    let weight = if text.bold { " font-weight=\"bold\"" } else { "" };
+    let place = match text.upward {
+        false => format!(" x=\"{x}\" y=\"{y}\""),
+        true => format!(" transform=\"translate({x} {y}) rotate(-90)\""),
+    };
+    let (ink, size, words) = (hex(INK), number(text.size), typeface::escape(&text.text));
+    let _ = writeln!(body, "<text{place} font-size=\"{size}\"{anchor}{weight} fill=\"{ink}\">{words}</text>");
+}
+
+/// The points as SVG path data: an absolute start and relative steps.
+fn path_data(points: &[[i64; 2]], closed: bool) -> String {
+    let mut data = String::new();
+    let mut last: Option<[i64; 2]> = None;
+    for &here in points {
+        match last.map(|before| [here[0] - before[0], here[1] - before[1]]) {
+            None => data += &format!("M{} {}", hundredths(here[0]), hundredths(here[1])),
+            Some([along, 0]) => data += &format!("h{}", hundredths(along)),
+            Some([0, down]) => data += &format!("v{}", hundredths(down)),
+            Some([along, down]) => {
+                let down = hundredths(down);
+                let space = if down.starts_with('-') { "" } else { " " };
+                data += &format!("l{}{space}{down}", hundredths(along));
+            }
+        }
+        last = Some(here);
+    }
+    if closed {
+        data.push('z');
+    }
+    data
+}
