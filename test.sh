@@ -45,7 +45,7 @@ example multigrid --most-dofs 20000
 example impact
 example dynamic_cost --short
 for scene in examples/*.json; do program compare "$scene" --out "$out/$(basename "$scene" .json)"; done
-for scene in examples/impact/*.json; do program solve "$scene" --out "$out/$(basename "$scene" .json)"; done
+for scene in tools/impact/*.json; do program solve "$scene" --out "$out/$(basename "$scene" .json)"; done
 program sweep examples/indentation.json --gaps -0.01:-0.10:10 --out "$out/sweep"
 
 step "reference, its own tests";    reference/environment.sh

@@ -6,7 +6,7 @@ use divan::{Bencher, black_box};
 use signorini::qp::linear::Cholesky;
 use signorini::{Condense, Method, Model, Prepared, Settings, solve};
 
-#[path = "../examples/contact_cost/case.rs"]
+#[path = "../tools/contact_cost/case.rs"]
 mod case;
 
 const CASES: [&str; 3] = ["Q4 64", "Q4 128", "Hex8 12"];

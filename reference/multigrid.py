@@ -1,4 +1,4 @@
-"""The linear solve of the block of examples/multigrid by pyamg, as a yardstick: hierarchy, cycles, seconds.
+"""The linear solve of the block of tools/multigrid by pyamg, as a yardstick: hierarchy, cycles, seconds.
 
     pip install pyamg && OMP_NUM_THREADS=1 python reference/multigrid.py 16 32 64
 

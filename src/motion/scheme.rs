@@ -24,7 +24,7 @@ use crate::fem::assembly::MassForm;
 /// k travels with `c (1 + (1/12 - (c dt/h)^2/6) (k h)^2/2)`. The front that comes back is smeared over some cells, and what
 /// trails behind it stays in the body: the rebound is slow by a share that falls with h^(2/3).
 ///
-/// `examples/impact` prints the figures.
+/// `tools/impact` prints the figures.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Scheme {
     /// The midpoint rule: contact at the middle of each step; massless dofs follow in equilibrium at its end.

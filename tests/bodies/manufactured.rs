@@ -6,7 +6,7 @@
 //! PARAMETERS  E = 1, nu = 0.3, plane strain; smooth k = 3, x0 = 0.5, A = B = 1; edge x0 = 0.53, p0 = 1; Hertz a = 0.53, p0 = 1
 //! REFERENCE   errors of an independent implementation, and the quadrature that it used; theory of the rates
 
-#[path = "../../examples/verification/reference_errors.rs"]
+#[path = "../../tools/verification/reference_errors.rs"]
 mod reference_errors;
 
 use reference_errors::{REFERENCE, reference_rule};

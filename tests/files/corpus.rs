@@ -3,11 +3,11 @@
 //! `cargo run --release --example fuzz -- TARGET INPUTS SEED --keep` adds to `tests/corpus`. A file is named after the right file
 //! that was damaged and the code of its error; `problems` has a line for each contact problem, its seed and its ending.
 
-#[path = "../../examples/fuzz/damage.rs"]
+#[path = "../../tools/fuzz/damage.rs"]
 mod damage;
-#[path = "../../examples/fuzz/draws.rs"]
+#[path = "../../tools/fuzz/draws.rs"]
 mod draws;
-#[path = "../../examples/fuzz/problem.rs"]
+#[path = "../../tools/fuzz/problem.rs"]
 mod problem;
 
 use std::collections::BTreeSet;

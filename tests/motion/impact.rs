@@ -2,10 +2,10 @@
 //!
 //! REFERENCE: waves in bars (`analytical::ImpactingBar`, `analytical::BouncingBar`).
 
-#[path = "../../examples/impact/cases.rs"]
+#[path = "../../tools/impact/cases.rs"]
 mod cases;
 #[allow(dead_code)]
-#[path = "../../examples/impact/measure.rs"]
+#[path = "../../tools/impact/measure.rs"]
 mod measure;
 
 use cases::cases;
@@ -82,7 +82,7 @@ fn central_differences_meet_the_pressure_and_do_not_penetrate() {
 
 #[test]
 fn the_stable_step_of_a_bar_is_the_time_of_a_wave_through_a_cell() {
-    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/impact/bar.json")).unwrap();
+    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/tools/impact/bar.json")).unwrap();
     let text = text.replace("\"dynamic\": {", "\"dynamic\": {\"scheme\": \"central-difference\",");
     let scene = Scene::from_json(&text, "scene").unwrap();
     let dynamics = scene.dynamics(&scene.build().unwrap()).unwrap().unwrap();
@@ -161,7 +161,7 @@ fn a_load_in_time_moves_an_oscillator_as_the_closed_form_says() {
 
 #[test]
 fn a_run_that_is_resumed_goes_on_bit_for_bit() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/impact/bar.json");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tools/impact/bar.json");
     let scene = Scene::read(path).unwrap();
     let dynamics = scene.dynamics(&scene.build().unwrap()).unwrap().unwrap();
     let new =

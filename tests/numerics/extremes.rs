@@ -2,9 +2,9 @@
 //!
 //! `BLESS=1 cargo test --test numerics extremes` writes `tests/extremes.txt` anew.
 
-#[path = "../../examples/extremes/cases.rs"]
+#[path = "../../tools/extremes/cases.rs"]
 mod cases;
-#[path = "../../examples/extremes/entry.rs"]
+#[path = "../../tools/extremes/entry.rs"]
 mod entry;
 
 use std::fs;

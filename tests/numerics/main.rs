@@ -1,6 +1,6 @@
 //! The QP: methods, certificate, bound, proofs, condensation and precision, on raw problems and small scenes.
 
-#[path = "../../examples/fuzz/draws.rs"]
+#[path = "../../tools/fuzz/draws.rs"]
 mod draws;
 #[path = "../support/oracles/exact/mod.rs"]
 mod exact;

@@ -4,16 +4,16 @@
 //! REFERENCE   closed forms of `signorini::fem::closed_forms`
 
 #[allow(dead_code)]
-#[path = "../../examples/verification/answer.rs"]
+#[path = "../../tools/verification/answer.rs"]
 mod answer;
-#[path = "../../examples/verification/closed_forms.rs"]
+#[path = "../../tools/verification/closed_forms.rs"]
 mod closed_forms;
 #[allow(dead_code)]
-#[path = "../../examples/verification/contact_patch.rs"]
+#[path = "../../tools/verification/contact_patch.rs"]
 mod contact_patch;
-#[path = "../../examples/verification/punches.rs"]
+#[path = "../../tools/verification/punches.rs"]
 mod punches;
-#[path = "../../examples/verification/round_bodies.rs"]
+#[path = "../../tools/verification/round_bodies.rs"]
 mod round_bodies;
 
 use answer::{Answer, Solved};

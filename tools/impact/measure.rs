@@ -7,7 +7,7 @@ use signorini::{Error, Scene, Settings};
 /// A bar whose motion is known.
 pub struct Case {
     pub name: &'static str,
-    /// Its scene, a file in `examples/impact`.
+    /// Its scene, a file in `tools/impact`.
     pub scene: &'static str,
     /// Displacement at x and t.
     pub displacement: fn(f64, f64) -> f64,
@@ -45,7 +45,7 @@ pub struct Run {
 
 /// Runs `case` on `cells` cells with time steps of `courant` times the time of a wave through a cell.
 pub fn run(case: &Case, scheme: SchemeSpec, courant: f64, cells: usize) -> Result<Run, Error> {
-    let path = format!("{}/examples/impact/{}.json", env!("CARGO_MANIFEST_DIR"), case.scene);
+    let path = format!("{}/tools/impact/{}.json", env!("CARGO_MANIFEST_DIR"), case.scene);
     let mut scene = Scene::read(path)?;
     if let signorini::scene::BodySpec::Bar(bar) = &mut scene.body {
         bar.x.divisions = vec![cells];

@@ -1,6 +1,6 @@
 //! Fits the rules of `Method::Auto` to measured times, and checks them on scenes that they were not fitted to.
 //!
-//! `cargo run --release --example fit_rules` measures the training problems, writes `examples/fit_rules/measured.csv` and
+//! `cargo run --release --example fit_rules` measures the training problems, writes `tools/fit_rules/measured.csv` and
 //! fits `src/solve/fitted.json` to it; `-- --fit` fits to the times that are there; `-- --check` measures the others.
 
 #[path = "../contact_cost/clock.rs"]
@@ -12,7 +12,7 @@ mod training;
 use std::fs;
 use std::process::ExitCode;
 
-const MEASURED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/fit_rules/measured.csv");
+const MEASURED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tools/fit_rules/measured.csv");
 const FITTED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/src/solve/fitted.json");
 
 fn main() -> ExitCode {
