@@ -6,6 +6,7 @@ pub mod body;
 pub mod closed_forms;
 pub mod element;
 pub mod formulation;
+pub(crate) mod geometry;
 pub mod material;
 pub mod mesh;
 pub mod norms;

@@ -6,6 +6,7 @@ use super::{PLACE_TOLERANCE, finite, point, vector, wrong};
 use crate::error::Error;
 use crate::fem::assembly::{DofMap, add_body_force, add_pressure, add_traction};
 use crate::fem::body::ElasticBody;
+use crate::fem::geometry::distance;
 use crate::fem::mesh::{Boundary, Mesh};
 
 /// Radii below this times the body's size lie on the axis of revolution.
@@ -126,7 +127,7 @@ pub(super) fn boundary<'a>(mesh: &'a Mesh, name: &str, path: &str) -> Result<&'a
 fn node_at(mesh: &Mesh, at: &[f64], path: &str) -> Result<usize, Error> {
     let dimension = mesh.dimension();
     let place = vector(path, at, dimension)?;
-    let away = |node: &[f64; 3]| (node[0] - place[0]).hypot(node[1] - place[1]).hypot(node[2] - place[2]);
+    let away = |node: &[f64; 3]| distance(*node, place);
     let tolerance = PLACE_TOLERANCE * mesh.size();
     let there: Vec<usize> = (0..mesh.nodes().len()).filter(|&node| away(&mesh.nodes()[node]) <= tolerance).collect();
     match (&there[..], mesh.nearest_node(place)) {

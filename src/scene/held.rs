@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use super::{number, point, wrong};
 use crate::error::Error;
 use crate::fem::assembly::{DofMap, Frame, perpendicular};
+use crate::fem::geometry::dot;
 use crate::fem::mesh::Mesh;
 
 /// A normal that leans by less than this out of those before it depends on them: the rounding of written components.
@@ -171,8 +172,4 @@ fn contradiction(component: &Component, implied: f64, before: &[Component]) -> S
     let names = if names.is_empty() { last } else { format!("{} and {last}", names.join(", ")) };
     let (value, implied) = (number(component.value), number(implied + 0.0));
     format!("{value} contradicts the {implied} that {names} {verb} for")
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

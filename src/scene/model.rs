@@ -9,6 +9,7 @@ use super::{Obstacle, Units, Warning, wrong};
 use crate::error::Error;
 use crate::fem::assembly::{DofMap, free_load, internal_force, rigid_motions, stiffness};
 use crate::fem::body::ElasticBody;
+use crate::fem::geometry::distance;
 use crate::fem::mesh::Mesh;
 use crate::fem::recovery::{self, StressField};
 use crate::qp::linear::SymmetricMatrix;
@@ -169,10 +170,7 @@ impl Model {
             if has_area(row) {
                 return of_row(index);
             }
-            let away = |other: &ContactRow| {
-                let (a, b) = (nodes[row.node], nodes[other.node]);
-                (a[0] - b[0]).hypot(a[1] - b[1]).hypot(a[2] - b[2])
-            };
+            let away = |other: &ContactRow| distance(nodes[row.node], nodes[other.node]);
             let others = self.rows.iter().enumerate().filter(|(_, other)| other.obstacle == row.obstacle);
             let with_area = others.filter(|(_, other)| has_area(other));
             with_area.min_by(|a, b| away(a.1).total_cmp(&away(b.1))).map_or(0.0, |(next, _)| of_row(next))

@@ -1,6 +1,7 @@
 //! The frame of a node at an inclined support: orthonormal axes, the supported ones first.
 
 use crate::error::Error;
+use crate::fem::geometry::{dot, unit};
 
 /// Axes of unit length and right angles, however they were computed, are so to within this.
 const ORTHONORMAL: f64 = 1e-12;
@@ -80,13 +81,4 @@ pub(crate) fn perpendicular(vector: [f64; 3], axes: &[[f64; 3]]) -> [f64; 3] {
         let along = dot(rest, *axis);
         [0, 1, 2].map(|i| rest[i] - along * axis[i])
     })
-}
-
-fn unit(vector: [f64; 3]) -> [f64; 3] {
-    let length = dot(vector, vector).sqrt();
-    vector.map(|part| part / length)
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

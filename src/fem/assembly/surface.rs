@@ -2,6 +2,7 @@
 
 use crate::fem::body::ElasticBody;
 use crate::fem::element::{Cell, PerNode, Tabulated};
+use crate::fem::geometry::{length, unit};
 use crate::fem::mesh::{Boundary, FacetKind};
 
 /// A quadrature point of a facet.
@@ -37,15 +38,15 @@ pub(super) fn for_each_point(body: &ElasticBody, boundary: &Boundary, visit: &mu
         });
         for at in &table.points {
             let vector = cell.area_vector(&at.derivative);
-            let length = vector[0].hypot(vector[1]).hypot(vector[2]);
+            let size = length(vector);
             let place = cell.place(&at.shape);
             let scale = cell.unit().powi(reference.dimension as i32);
             visit(&FacetPoint {
                 nodes: facet,
                 shape: at.shape,
                 at: place,
-                normal: vector.map(|component| sense * component / length),
-                area: length * at.weight * scale * body.formulation().measure(place[0]),
+                normal: vector.map(|component| sense * component / size),
+                area: size * at.weight * scale * body.formulation().measure(place[0]),
             });
         }
     }
@@ -90,9 +91,5 @@ pub fn node_normals(body: &ElasticBody, boundary: &Boundary) -> Vec<(usize, [f64
             sums[node].iter_mut().zip(point.normal).for_each(|(sum, component)| *sum += weight * component);
         }
     });
-    let unit = |sum: [f64; 3]| {
-        let length = sum[0].hypot(sum[1]).hypot(sum[2]);
-        if length > 0.0 { sum.map(|component| component / length) } else { sum }
-    };
     nodes.into_iter().map(|node| (node, unit(sums.get(node).copied().unwrap_or_default()))).collect()
 }

@@ -1,6 +1,7 @@
 //! One cell in place: x = sum N_a x_a, the Jacobian J = dx/dxi, gradients dN/dx, area vectors.
 
 use super::{MAX_NODES, PerNode, ReferenceElement, Tabulated};
+use crate::fem::geometry::cross;
 
 /// The Jacobian of an element that is turned inside out or has no volume.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -143,11 +144,6 @@ impl Cell {
             _ => cross(tangents[0], tangents[1]),
         }
     }
-}
-
-#[inline]
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// Determinant of the leading `dimension` rows and columns.

@@ -3,6 +3,7 @@
 use super::lattice::{Lattice, half_steps};
 use super::{ElementKind, MAX_NODES, Mesh, Zone, fail};
 use crate::error::Error;
+use crate::fem::geometry::length;
 
 /// Half the width of the core over the radius: cells neither flat at its corners nor small in its middle.
 pub(super) const CORE: f64 = 0.4;
@@ -123,8 +124,7 @@ impl Grading {
         if outward == 0.0 {
             return core.map(|value| value * CORE * self.radius);
         }
-        let length = core[0].hypot(core[1]).hypot(core[2]);
-        let stretch = (1.0 - outward) * CORE + outward / length;
+        let stretch = (1.0 - outward) * CORE + outward / length(core);
         core.map(|value| value * stretch * self.radius)
     }
 }

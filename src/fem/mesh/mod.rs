@@ -28,6 +28,7 @@ pub use ring::ring;
 pub use zone::Zone;
 
 use crate::error::Error;
+use crate::fem::geometry::distance;
 
 /// More nodes than this are refused before anything is allocated: ten million dofs are far beyond what a direct
 /// factorisation of a plane problem holds in memory.
@@ -222,10 +223,6 @@ pub(crate) fn extent(nodes: &[[f64; 3]]) -> ([f64; 3], [f64; 3]) {
         }
     }
     (low, high)
-}
-
-fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1]).hypot(a[2] - b[2])
 }
 
 fn fail<T>(message: String) -> Result<T, Error> {

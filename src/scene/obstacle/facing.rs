@@ -4,6 +4,7 @@ use super::Approachable;
 use crate::error::Error;
 use crate::fem::assembly::node_normals;
 use crate::fem::body::ElasticBody;
+use crate::fem::geometry::{dot, length, minus, unit};
 use crate::fem::mesh::Boundary;
 use crate::scene::condition::boundary;
 use crate::scene::schema::{FacingSpec, ObstacleSpec, Rule};
@@ -112,22 +113,4 @@ impl Facing {
         let pair = self.pairs.get(candidate)?;
         Some(Approachable { normal: pair.normal, distance: pair.distance + gap * dot(pair.normal, approach) })
     }
-}
-
-fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn length(vector: [f64; 3]) -> f64 {
-    vector[0].hypot(vector[1]).hypot(vector[2])
-}
-
-/// The vector at length 1; zero stays zero.
-fn unit(vector: [f64; 3]) -> [f64; 3] {
-    let length = length(vector);
-    if length > 0.0 { vector.map(|component| component / length) } else { vector }
 }

@@ -2,6 +2,7 @@
 
 use super::patch::{Foot, Patch};
 use crate::error::Error;
+use crate::fem::geometry::dot;
 use crate::scene::schema::HeightMapSpec;
 use crate::scene::{PLACE_TOLERANCE, finite, number, wrong};
 
@@ -195,8 +196,4 @@ fn check_lines(lines: &[f64], path: &str) -> Result<(), Error> {
         }
     }
     Ok(())
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

@@ -1,5 +1,6 @@
 //! One bilinear cell of a height map: the points of it that are closest to a node.
 
+use crate::fem::geometry::dot;
 /// A cell is cut into so many strips to find the valleys of the distance over it: one cell has a handful at most.
 const STRIPS: usize = 16;
 
@@ -156,8 +157,4 @@ impl Patch {
         }
         Some(own)
     }
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

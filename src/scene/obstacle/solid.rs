@@ -8,6 +8,7 @@ use super::polyline::Polyline;
 use super::surface::Surface;
 use super::{Approachable, misfit, positive};
 use crate::error::Error;
+use crate::fem::geometry::{cross, dot};
 use crate::fem::mesh::Mesh;
 use crate::scene::schema::{Approach, Rule, ShapeSpec};
 use crate::scene::{ROUNDING, number, point, vector, wrong};
@@ -168,12 +169,4 @@ fn axis_across(axis: [f64; 3], path: &str, approach: [f64; 3]) -> Result<[f64; 3
     let level = [0, 1, 2].map(|i| scaled[i] - lean * approach[i]);
     let length = dot(level, level).sqrt();
     Ok(level.map(|part| part / length))
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
