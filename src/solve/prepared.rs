@@ -80,6 +80,11 @@ impl Prepared {
         self.multiplications
     }
 
+    /// Do the methods work on the contact dofs alone?
+    pub(super) fn is_condensed(&self) -> bool {
+        self.condensation.is_some()
+    }
+
     /// May the answer fall short of its goal where a slower way would not?
     pub(super) fn is_a_shortcut(&self) -> bool {
         self.is_single() || self.way.is_some_and(|way| way != Way::ActiveSet)

@@ -44,7 +44,7 @@ impl Method {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Condense {
-    /// Where an estimate of work and memory says that it pays.
+    /// Where an estimate of work and memory says that it pays; where that loses digits, all dofs are tried next.
     #[default]
     Auto,
     /// Never: the methods work on all dofs.
