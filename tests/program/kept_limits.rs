@@ -142,6 +142,71 @@ fn no_error_quotes_a_file_that_is_no_mesh() {
     }
 }
 
+#[test]
+fn no_error_quotes_a_file_that_a_link_leads_to_outside_the_folder() {
+    let secrets = [
+        "hunter2:x:0\n",
+        "%%MatrixMarket matrix hunter2 real general\n",
+        "%%MatrixMarket matrix coordinate hunter2 general\n",
+        "%%MatrixMarket matrix coordinate real hunter2\n",
+        "%%MatrixMarket matrix coordinate real general\nhunter2\n",
+        "%%MatrixMarket matrix coordinate real general\n2 2 1\n1 1 hunter2\n",
+        "%%MatrixMarket matrix array real general\n1 1\nhunter2\n",
+    ];
+    let desk = Desk::new();
+    for secret in secrets {
+        desk.write("secret", secret);
+        for name in ["K", "f", "B", "g"] {
+            desk.problem("p", &Problem::right());
+            let file = desk.path(&format!("p/{name}.mtx"));
+            fs::remove_file(&file).unwrap();
+            std::os::unix::fs::symlink("../secret", &file).unwrap();
+            for format in ["text", "json"] {
+                let run = desk.run(&["solve", "p", "--format", format]).fails_with(1, &[&format!("p/{name}.mtx:")]);
+                assert!(!run.stderr.contains("hunter2") && !run.stdout.contains("hunter2"), "{}", run.stderr);
+            }
+            // In the folder itself what is wrong is shown.
+            fs::remove_file(&file).unwrap();
+            fs::write(&file, secret).unwrap();
+            desk.run(&["solve", "p"]).fails_with(1, &["hunter2"]);
+        }
+    }
+}
+
+/// What a run is resumed from is its own: nothing else is told of, waited for, or cut off.
+#[test]
+fn a_motion_is_resumed_from_its_own_files_only() {
+    let desk = Desk::new();
+    desk.write("bar.json", bar(0.1, 4).to_string());
+    let begun = |desk: &Desk| desk.run(&["solve", "bar.json", "--out", "run"]).ends_with(0);
+    let resumed = |desk: &Desk| desk.run(&["solve", "bar.json", "--out", "run", "--resume"]);
+    begun(&desk);
+    for secret in ["\"hunter2\"", "{\"scene\": \"hunter2\", \"steps\": \"hunter2\"}", "hunter2"] {
+        desk.write("secret", secret);
+        fs::remove_file(desk.path("run/checkpoint.json")).unwrap();
+        std::os::unix::fs::symlink("../secret", desk.path("run/checkpoint.json")).unwrap();
+        let run = resumed(&desk).fails_with(1, &["checkpoint.json:1", "it is no checkpoint of a motion"]);
+        assert!(!run.stderr.contains("hunter2"), "{}", run.stderr);
+    }
+    let history = desk.path("run/history.csv");
+    fs::remove_file(desk.path("run/checkpoint.json")).unwrap();
+    begun(&desk);
+    let foreign = "hunter2\n".repeat(10_000);
+    let refused = |phrase: &str| drop(resumed(&desk).fails_with(1, &["cannot resume", "history.csv", phrase]));
+    fs::write(desk.path("foreign.csv"), &foreign).unwrap();
+    fs::remove_file(&history).unwrap();
+    std::os::unix::fs::symlink("../foreign.csv", &history).unwrap();
+    refused("it is no regular file");
+    assert_eq!(fs::read_to_string(desk.path("foreign.csv")).unwrap(), foreign);
+    fs::remove_file(&history).unwrap();
+    fs::write(&history, &foreign).unwrap();
+    refused("it is no history of a motion");
+    assert_eq!(fs::read_to_string(&history).unwrap(), foreign);
+    fs::remove_file(&history).unwrap();
+    assert!(Command::new("mkfifo").arg(&history).status().unwrap().success());
+    refused("it is no regular file");
+}
+
 /// A block of so many by so many cells, one unit high, under a parabola.
 fn block(cells: [usize; 2], element: &str) -> Value {
     let width = cells[0] as f64 / cells[1] as f64;
