@@ -8,6 +8,7 @@ use crate::error::Error;
 use crate::solution::Certificate;
 use crate::sparse::multigrid::Multigrid;
 use crate::sparse::{Accumulator, dot};
+use crate::watch::Watch;
 
 /// Rounding moves an entry of u or lambda by half a unit in the last place; what a sum of such errors may be is excused
 /// twice, once for the rounding and once for the arithmetic that made the entry.
@@ -17,7 +18,7 @@ const ROUNDING: f64 = f64::EPSILON;
 #[derive(Clone, Copy)]
 enum Bounding<'a> {
     Factor(&'a EnergyNorm),
-    Cycles(&'a Multigrid),
+    Cycles(&'a Multigrid, &'a Watch),
 }
 
 fn worst(values: impl IntoIterator<Item = f64>) -> f64 {
@@ -60,13 +61,15 @@ impl ContactProblem {
     }
 
     /// As [`ContactProblem::certify`], with the energy bound by the cycles of the hierarchy of K, which needs no factor and
-    /// rests on a measured eigenvalue; without a bound where K is singular to the precision of its levels.
+    /// rests on a measured eigenvalue; without a bound where K is singular to the precision of its levels, or where `watch` is
+    /// over before it is found.
     ///
     /// # Errors
     /// [`Error::Length`] for vectors that do not fit.
     pub(crate) fn certify_by_cycles(
         &self,
         multigrid: &Multigrid,
+        watch: &Watch,
         displacement: &[f64],
         multiplier: &[f64],
     ) -> Result<Certificate, Error> {
@@ -74,7 +77,7 @@ impl ContactProblem {
         if self.far_units(displacement).is_some() {
             return self.certify_in(None, displacement, multiplier);
         }
-        Ok(self.recomputed(Some(Bounding::Cycles(multigrid)), displacement, multiplier))
+        Ok(self.recomputed(Some(Bounding::Cycles(multigrid, watch)), displacement, multiplier))
     }
 
     fn recomputed(&self, bounding: Option<Bounding>, u: &[f64], lambda: &[f64]) -> Certificate {
@@ -126,13 +129,13 @@ impl ContactProblem {
             part_error_bound: f64::INFINITY,
             energy_error_excess: f64::INFINITY,
             parts: parts.count(),
-            bound_is_measured: matches!(bounding, Some(Bounding::Cycles(_))),
+            bound_is_measured: matches!(bounding, Some(Bounding::Cycles(..))),
         };
         if let Some(bounding) = bounding {
             let answer = Answer { displacement: u, multiplier: lambda, residual, violation: &violation };
             let bound = match bounding {
                 Bounding::Factor(norm) => self.energy_error_bound(norm, &answer),
-                Bounding::Cycles(multigrid) => self.energy_error_bound_by(multigrid, &answer),
+                Bounding::Cycles(multigrid, watch) => self.energy_error_bound_by(multigrid, &answer, watch),
             };
             let rounding = parts.sums(|dof| u[dof].abs() * terms[dof]);
             certificate.judge(&bound, &scales, dot(u, &elastic), &rounding);

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::energy_bound::Springs;
 use crate::error::Error;
 use crate::sparse::{Analysis, Cholesky, Equilibration, FactorError, SparseMatrix, SymmetricMatrix, dot, ldexp};
+use crate::watch::Watch;
 
 /// Contact dofs beyond this share of all are not ordered last: the boundary would be most of the body.
 const LARGEST_SHARE: f64 = 0.25;
@@ -37,6 +38,8 @@ pub struct EnergyNorm {
     widening: f64,
     /// The springs that made a singular K definite.
     springs: Option<Arc<Springs>>,
+    /// When a bound in this norm must be done with.
+    watch: Watch,
 }
 
 /// The contact dofs t, eliminated last: their block of the factor is that of the Schur complement.
@@ -83,12 +86,22 @@ impl EnergyNorm {
         let values = last.len().saturating_mul(last.len());
         let worth = !last.is_empty() && values <= FEW_VALUES.max(cholesky.entries());
         let boundary = worth.then(|| Arc::new(Boundary { block: cholesky.trailing_block(), dofs: last }));
-        EnergyNorm { cholesky, equilibration, boundary, widening: 1.0, springs: None }
+        EnergyNorm { cholesky, equilibration, boundary, widening: 1.0, springs: None, watch: Watch::default() }
     }
 
     /// The energy norm of the equilibrated stiffness itself.
     pub fn equilibrated(&self) -> Self {
         EnergyNorm { equilibration: Equilibration::none(self.cholesky.dim()), ..self.clone() }
+    }
+
+    /// The same norm, whose bounds are cut short when `watch` says so: a weaker one, or none, is what is left.
+    pub fn watched(&self, watch: &Watch) -> Self {
+        EnergyNorm { watch: watch.clone(), ..self.clone() }
+    }
+
+    /// Must a bound be done with?
+    pub(super) fn is_over(&self) -> bool {
+        self.watch.is_over()
     }
 
     /// The same norm, for a factor K~ whose contraction `|I - K~^-1 K|` is measured to be this.

@@ -80,7 +80,8 @@ impl Iterative {
     /// * [`Error::NotCertified`] with the best answer, where the method stagnates above the tolerance.
     pub fn solve_gap(&self, gap: Vec<f64>, start: Start, settings: &Settings) -> Result<Solution, Error> {
         let settings = &settings.started()?;
-        let watch = &settings.watch;
+        // Once the loop ends, its answer is still to be certified.
+        let watch = &settings.watch.keeping(pace::certificate(&self.problem));
         let clock = Instant::now();
         check_gap(&gap, self.problem.rows())?;
         RowSelection::of(self.problem.contact(), &gap)?;
@@ -94,7 +95,13 @@ impl Iterative {
         let limits = |tolerance, most_cycles| Limits { tolerance, most_cycles, watch };
         let mut found = mprgp::solve(&problem, &self.multigrid, start, limits(tolerance, most_cycles))?;
         let certificate = loop {
-            let certificate = problem.certify_by_cycles(&self.multigrid, &found.displacement, &found.multiplier)?;
+            watch.step("certificate", 0);
+            let certificate = problem.certify_by_cycles(
+                &self.multigrid,
+                &settings.watch.finishing(),
+                &found.displacement,
+                &found.multiplier,
+            )?;
             most_cycles = settings.max_iterations.saturating_sub(found.iterations);
             let bound = certificate.energy_error_bound;
             tolerance *= match settings.accuracy {
@@ -144,7 +151,7 @@ pub(super) fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Sol
     check_memory(problem, Kept::Multigrid, settings)?;
     pace::learn(&settings.watch);
     let estimate = Estimate::of(problem).hierarchy_seconds;
-    check_time(&settings.watch, estimate)?;
+    check_time(&settings.watch, estimate + pace::certificate(problem))?;
     settings.watch.step("multigrid hierarchy", 0);
     let iterative = settings.watch.timed(estimate, || Iterative::new(problem, settings.threads))?;
     let timed = |mut solution: Solution| {

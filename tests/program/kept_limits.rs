@@ -4,7 +4,8 @@
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::time::Duration;
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
 
 use crate::program::{Desk, Problem, scene};
 use serde_json::{Value, json};
@@ -373,6 +374,61 @@ fn no_way_begins_a_step_that_its_time_does_not_suffice_for() {
                 }
                 other => panic!("{method:?}: {:?}", other.map(|found| found.method)),
             }
+        }
+    }
+}
+
+/// A flat strip of Q8 cells that touches with all its rows: the bound on its boundary takes longer than all else.
+fn touching(cells: usize) -> Value {
+    let mut scene = block([cells, 2], "q8");
+    scene["obstacles"][0]["shape"] = json!({"plane": {"point": [0, 1], "normal": [0, 1]}});
+    scene
+}
+
+#[test]
+fn a_certificate_that_is_asked_to_end_leaves_a_weaker_bound() {
+    let model = Scene::from_json(&touching(300).to_string(), "touching").unwrap().build().unwrap();
+    let solved = |stops: bool| {
+        let began = Arc::new(Mutex::new(None));
+        let seen = began.clone();
+        let mut settings = Settings::with_method(Method::ActiveSet);
+        settings.watch = Watch::observed(move |watch| {
+            if watch.activity().step == "certificate" {
+                seen.lock().unwrap().get_or_insert_with(Instant::now);
+                if stops {
+                    watch.stop();
+                }
+            }
+        });
+        let solution = match solve(model.problem(), &settings) {
+            Err(Error::NotCertified { solution, .. }) => *solution,
+            found => found.unwrap(),
+        };
+        let seconds = began.lock().unwrap().unwrap().elapsed().as_secs_f64();
+        (solution, seconds)
+    };
+    let ((whole, patient), (cut, hurried)) = (solved(false), solved(true));
+    assert_eq!((&cut.displacement, &cut.multiplier), (&whole.displacement, &whole.multiplier));
+    assert!(cut.certificate.conditions_hold(1e-9), "{:?}", cut.certificate);
+    assert!(cut.certificate.energy_error_bound >= whole.certificate.energy_error_bound);
+    assert!(hurried < 0.5 * patient, "{hurried} s of {patient} s");
+}
+
+#[test]
+fn an_answer_comes_by_a_fifth_more_than_its_time() {
+    // Of the machine: other tests run beside this one.
+    const DELAY: f64 = 1.5;
+    let desk = Desk::new();
+    desk.write("touching.json", touching(1000).to_string());
+    desk.write("fine.json", block([120, 120], "q8").to_string());
+    desk.write("strip.json", strip(1000).to_string());
+    for scene in ["touching.json", "fine.json", "strip.json"] {
+        for time in [0.1, 1.0, 5.0] {
+            let clock = Instant::now();
+            let run = desk.run(&["solve", scene, "--time", &time.to_string(), "--format", "json"]);
+            let seconds = clock.elapsed().as_secs_f64();
+            assert!([0, 4].contains(&run.code), "{scene}: {}", run.stderr);
+            assert!(seconds <= 1.2 * time + DELAY, "{scene}: {seconds} s of {time} s");
         }
     }
 }

@@ -181,6 +181,9 @@ impl<'a> Repair<'a> {
 
     /// The energy norm of the motion that a unit force along a row causes.
     fn reach(&self, row: usize) -> f64 {
+        if self.norm.is_over() {
+            return f64::INFINITY;
+        }
         let half = self.half(row);
         ldexp(dot(half, half), self.norm.factor()).sqrt()
     }
@@ -278,7 +281,7 @@ impl<'a> Repair<'a> {
                 }
                 false => Force::new(0.0, vec![0.0; rows]),
             };
-            let Fitted { change, distance, tolerance, independent } = self.fit(&set, &base);
+            let Fitted { change, distance, tolerance, independent } = self.fit(&set, &base)?;
             let violated: Vec<usize> =
                 (0..rows).filter(|&row| !closed[row] && distance[row] > tolerance[row]).collect();
             let missed = |row: usize| closed[row] && distance[row].abs() > tolerance[row];
@@ -338,9 +341,10 @@ impl<'a> Repair<'a> {
         }
     }
 
-    /// The multipliers that put the rows of `set` at their gaps beside the force `base`.
-    fn fit(&self, set: &[usize], base: &Force) -> Fitted {
-        let gram = Gram::of(set.iter().map(|&row| self.half(row)).collect());
+    /// The multipliers that put the rows of `set` at their gaps beside the force `base`; `None` where there is no time.
+    fn fit(&self, set: &[usize], base: &Force) -> Option<Fitted> {
+        let half = |&row: &usize| if self.norm.is_over() { None } else { Some(self.half(row)) };
+        let gram = Gram::of(set.iter().map(half).collect::<Option<_>>()?, || self.norm.is_over())?;
         let mut change = vec![0.0; self.rows.len()];
         let mut moved = self.boundary.backward(self.sweep(base));
         let mut correction = 0;
@@ -353,7 +357,7 @@ impl<'a> Repair<'a> {
             let tolerance: Vec<f64> = (0..self.rows.len()).map(rounding).collect();
             let is_met = |(&row, &kept): (&usize, &bool)| !kept || distance[row].abs() <= tolerance[row];
             if set.iter().zip(&gram.independent).all(is_met) || correction == CORRECTIONS {
-                return Fitted { change, distance, tolerance, independent: gram.independent };
+                return Some(Fitted { change, distance, tolerance, independent: gram.independent });
             }
             correction += 1;
             let step = gram.solve(set.iter().map(|&row| -distance[row]).collect());
@@ -383,11 +387,15 @@ struct Gram {
 }
 
 impl Gram {
-    fn of(columns: Vec<&[f64]>) -> Self {
+    /// `None` where it `is_over` before it is done.
+    fn of(columns: Vec<&[f64]>, is_over: impl Fn() -> bool) -> Option<Self> {
         let size = columns.len();
         let mut factor = vec![0.0; size * size];
         let mut independent = vec![true; size];
         for i in 0..size {
+            if is_over() {
+                return None;
+            }
             let own = dot(columns[i], columns[i]);
             let (before, row) = factor.split_at_mut(i * size);
             for j in (0..i).filter(|&j| independent[j]) {
@@ -402,7 +410,7 @@ impl Gram {
                 row[..i].fill(0.0);
             }
         }
-        Gram { size, factor, independent }
+        Some(Gram { size, factor, independent })
     }
 
     /// Solves `Z'Z x = b` for the independent columns; x is zero on the others.

@@ -85,6 +85,8 @@ impl ContactProblem {
     pub(super) fn energy_error_bound(&self, norm: &EnergyNorm, answer: &Answer) -> ErrorBound {
         let closed = self.rows_that_look_closed(answer);
         let on_boundary = norm.boundary().and_then(|boundary| self.bound_on_boundary(norm, boundary, answer, &closed));
+        // What was cut short is nothing.
+        let on_boundary = on_boundary.filter(|bound| bound.whole.is_finite() || !norm.is_over());
         let bound = on_boundary.unwrap_or_else(|| {
             let as_it_stands = self.bound_row_by_row(norm, answer, None);
             self.bound_row_by_row(norm, answer, Some(&closed)).smaller(as_it_stands)
