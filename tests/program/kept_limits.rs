@@ -9,6 +9,8 @@ use std::time::{Duration, Instant};
 
 use crate::program::{Desk, Problem, scene};
 use serde_json::{Value, json};
+use signorini::memory::{START, of_problem};
+use signorini::solve::{Condense, Prepared};
 use signorini::{Error, Method, Scene, Settings, Watch, solve};
 
 /// A bar of 20 cells that flies against a wall, 120 steps a unit of time.
@@ -321,6 +323,30 @@ fn a_limit_of_memory_tries_what_fits_and_tells_what_failed() {
         }
     }
     assert!(on_all_dofs > 0 && refused_after_multigrid > 0, "{on_all_dofs}, {refused_after_multigrid}");
+}
+
+#[test]
+fn a_refusal_names_the_least_memory_that_suffices() {
+    for scene in [strip(300), block([60, 60], "q4"), block([40, 40], "q8")] {
+        let problem = Scene::from_json(&scene.to_string(), "scene").unwrap().build().unwrap().problem().clone();
+        for condense in [Condense::Auto, Condense::Never] {
+            let prepared = |memory: f64| {
+                let mut settings = Settings::default();
+                (settings.condense, settings.memory) = (condense, Some(memory));
+                Prepared::with_settings(&problem, &settings)
+            };
+            let entries = 2 * problem.stiffness().lower().entries() - problem.dofs();
+            let mut memory = START + 1.01 * of_problem(problem.dofs() as f64, entries as f64);
+            let mut refusals = 0;
+            while let Err(error) = prepared(memory) {
+                let Error::TooLarge { bytes, .. } = error else { panic!("{error}") };
+                assert!(bytes > memory && refusals < 4, "{bytes} of {memory}");
+                (memory, refusals) = (1.0001 * bytes, refusals + 1);
+            }
+            assert!(refusals > 0);
+            assert!(matches!(prepared(0.99 * memory), Err(Error::TooLarge { .. })), "less than {memory} is enough");
+        }
+    }
 }
 
 #[test]
