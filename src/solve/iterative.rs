@@ -5,11 +5,13 @@ use std::time::Instant;
 use super::estimate::{Estimate, Kept, check_memory, check_time};
 use super::{Settings, pace};
 use crate::error::Error;
+use crate::method::Outcome;
 use crate::method::mprgp::{self, Limits, Start};
 use crate::problem::{ContactProblem, check_gap};
-use crate::solution::{Seconds, Solution};
+use crate::solution::{Certificate, Seconds, Solution};
 use crate::sparse::multigrid::{Multigrid, NearNullSpace};
 use crate::transform::RowSelection;
+use crate::watch::Watch;
 
 /// The method ends this much below the tolerance of the certificate, whose scales differ from its own.
 const MARGIN: f64 = 0.1;
@@ -95,13 +97,7 @@ impl Iterative {
         let limits = |tolerance, most_cycles| Limits { tolerance, most_cycles, watch };
         let mut found = mprgp::solve(&problem, &self.multigrid, start, limits(tolerance, most_cycles))?;
         let certificate = loop {
-            watch.step("certificate", 0);
-            let certificate = problem.certify_by_cycles(
-                &self.multigrid,
-                &settings.watch.finishing(),
-                &found.displacement,
-                &found.multiplier,
-            )?;
+            let certificate = self.certificate(&problem, &found, &settings.watch)?;
             most_cycles = settings.max_iterations.saturating_sub(found.iterations);
             let bound = certificate.energy_error_bound;
             tolerance *= match settings.accuracy {
@@ -140,6 +136,12 @@ impl Iterative {
         }
         let (condition, value, tolerance) = goal.decisive(&solution.certificate);
         Err(Error::NotCertified { solution: Box::new(solution), condition, value, tolerance })
+    }
+
+    /// The certificate of what was found for `problem`, with the bound that there is time for.
+    fn certificate(&self, problem: &ContactProblem, found: &Outcome, watch: &Watch) -> Result<Certificate, Error> {
+        watch.step("certificate", 0);
+        problem.certify_by_cycles(&self.multigrid, &watch.finishing(), &found.displacement, &found.multiplier)
     }
 }
 
