@@ -22,6 +22,9 @@ use crate::transform::Scaling;
 /// Coordinates below this share of their terms are what the null space leaves of zero.
 const ROUNDING: f64 = 1e-10;
 
+/// Rounding of sums in twice the working precision, as a share of their terms.
+const TWICE: f64 = 1e-30;
+
 /// Rows under pressure that lie within this share of others are combinations of them.
 const DEPENDENT: f64 = 1e-9;
 
@@ -32,13 +35,16 @@ const TIP: f64 = 1e-8;
 const PRESSED: f64 = 1e-13;
 
 /// A row that is open by less than this share of its displacement and gap may touch.
-const TOUCHING: f64 = 1e-7;
+const TOUCHING: f64 = 1e-8;
 
 /// The same, as a share of what the load would move.
 const STRAINED: f64 = 1e-13;
 
 /// Exponent of rho: on a diagonal of order one, far above rounding and far below what resists.
 const STEP: i32 = -20;
+
+/// What a step with the added diagonal makes of rounding is below this share of its terms.
+const OF_STEP: f64 = 1e-14;
 
 /// Steps after which one that gains nothing is the last: the first finds a place, the second its forces.
 const FEWEST_STEPS: usize = 3;
@@ -56,7 +62,7 @@ pub(super) fn rechecked(
     ending: Result<Solution, Error>,
 ) -> Result<Solution, Error> {
     let before = match ending {
-        Err(error) if is_doubtful(&error, settings.tolerance) => error,
+        Err(error) if is_doubtful(&error, settings) => error,
         sure => return sure,
     };
     if settings.watch.is_over() {
@@ -94,12 +100,15 @@ pub(super) fn rechecked(
     judged(settings, solution)
 }
 
-/// Does an ending make a claim, or leave open whether there is one? An answer that misses its conditions says nothing.
-fn is_doubtful(error: &Error, tolerance: f64) -> bool {
+/// Does an ending make a claim, or leave open whether there is one? Without a bound it does where its answer holds its
+/// conditions, or where a factor has shown the stiffness to be singular and the answer was to be as good as can be.
+fn is_doubtful(error: &Error, settings: &Settings) -> bool {
     match error {
         Error::NotConvex { .. } | Error::Unbounded { .. } | Error::UnderHeld { .. } => true,
         Error::NotCertified { solution, .. } => {
-            !solution.certificate.has_bound() && solution.certificate.conditions_hold(tolerance)
+            let is_singular = solution.lost_pivot.is_some() && settings.wants_best();
+            let is_open = is_singular || solution.certificate.conditions_hold(settings.tolerance);
+            !solution.certificate.has_bound() && is_open
         }
         _ => false,
     }
@@ -173,7 +182,7 @@ impl Looked<'_> {
             .collect();
         rows.push(left.coordinates(&self.coordinates_of_load()).iter().map(|value| -value).collect());
         let stays = |motion: &Motion| {
-            motion.is_in_balance()
+            self.is_in_balance(problem, solution, motion)
                 && self.bounded_rows().all(|row| match motion.approach[row] {
                     speed if speed > 0.0 => !presses(row) && !touches(row),
                     speed if speed < 0.0 => !presses(row),
@@ -186,6 +195,19 @@ impl Looked<'_> {
             let nearest = nearest_of_cone(&rows, &towards)?;
             self.motion(&left.expanded(&nearest, self.null.len())).filter(stays)
         })
+    }
+
+    /// Does the load do no work on a motion d? With `K d = 0`, and `B d = 0` where a row presses, `f'd` is `r'd` for the residual
+    /// r of any u and lambda. That of an answer is rounding, and the rounding of d takes from it what is rounding of rounding.
+    fn is_in_balance(&self, problem: &ContactProblem, solution: &Solution, motion: &Motion) -> bool {
+        let pressing: Vec<f64> = (solution.multiplier.iter().zip(&motion.approach))
+            .map(|(&force, &speed)| if speed == 0.0 { force } else { 0.0 })
+            .collect();
+        let (residual, direction) =
+            (problem.accurate_residual(&solution.displacement, &pressing), self.expanded(motion));
+        let most = TWICE * dot(&forces_at(problem, &solution.displacement, &pressing), &absolute(&direction));
+        let terms = dot(&absolute(&residual), &absolute(&direction));
+        dot(&residual, &direction).abs() <= ROUNDING * terms + most
     }
 
     fn bounded_rows(&self) -> impl Iterator<Item = usize> + '_ {
@@ -245,11 +267,15 @@ impl Looked<'_> {
                 Err(_) => break,
             };
             centre.clone_from(&found.displacement);
-            let certificate = problem.certify(&found.displacement, &found.multiplier)?;
-            let is_better = best.as_ref().is_none_or(|best| certificate.worst().1 < 0.5 * best.certificate.worst().1);
-            if is_better {
-                let reason = Some(format!("by {step} steps with K + rho E, since the stiffness is singular: {before}"));
-                best = Some(Solution { certificate, reason, ..found });
+            let mut is_better = false;
+            for (displacement, multiplier) in without_rounding(problem, &added, &centre, &found.multiplier) {
+                let certificate = problem.certify(&displacement, &multiplier)?;
+                if best.as_ref().is_none_or(|best| certificate.worst().1 < 0.5 * best.certificate.worst().1) {
+                    let reason =
+                        Some(format!("by {step} steps with K + rho E, since the stiffness is singular: {before}"));
+                    best = Some(Solution { displacement, multiplier, certificate, reason, ..found.clone() });
+                    is_better = true;
+                }
             }
             if settings.watch.is_over() || step >= FEWEST_STEPS && !is_better {
                 break;
@@ -262,15 +288,38 @@ impl Looked<'_> {
     }
 }
 
+/// An answer of a step as it is, without the forces that the added diagonal makes of the rounding of the displacement, and
+/// also without the displacements that it makes of the rounding of the forces.
+fn without_rounding(problem: &ContactProblem, added: &[f64], u: &[f64], lambda: &[f64]) -> [(Vec<f64>, Vec<f64>); 3] {
+    let held: Vec<f64> = added.iter().zip(u).map(|(e, u)| e * u.abs()).collect();
+    let mut counts = vec![false; problem.rows()];
+    for (row, dof, b) in problem.contact().triplets() {
+        counts[row] |= (b * lambda[row]).abs() > OF_STEP * held[dof];
+    }
+    let pressing: Vec<f64> =
+        lambda.iter().zip(&counts).map(|(&value, &counts)| if counts { value } else { 0.0 }).collect();
+    let terms = forces_at(problem, u, &pressing);
+    let moved = (0..u.len()).map(|dof| if held[dof] > OF_STEP * terms[dof] { u[dof] } else { 0.0 }).collect();
+    [(u.to_vec(), lambda.to_vec()), (u.to_vec(), pressing.clone()), (moved, pressing)]
+}
+
+fn absolute(values: &[f64]) -> Vec<f64> {
+    values.iter().map(|value| value.abs()).collect()
+}
+
+/// The sizes of the forces that are in balance at each dof.
+fn forces_at(problem: &ContactProblem, u: &[f64], lambda: &[f64]) -> Vec<f64> {
+    let contact = problem.contact().mul_abs_transposed(&absolute(lambda));
+    let elastic = problem.stiffness().mul_abs(u);
+    (0..u.len()).map(|dof| contact[dof] + elastic[dof] + problem.load()[dof].abs()).collect()
+}
+
 /// Does each row press?
 fn pressed(problem: &ContactProblem, u: &[f64], lambda: &[f64]) -> Vec<bool> {
-    let sizes: Vec<f64> = lambda.iter().map(|value| value.abs()).collect();
-    let contact = problem.contact().mul_abs_transposed(&sizes);
-    let elastic = problem.stiffness().mul_abs(u);
+    let terms = forces_at(problem, u, lambda);
     let mut presses = vec![false; problem.rows()];
     for (row, dof, b) in problem.contact().triplets() {
-        let terms = contact[dof] + elastic[dof] + problem.load()[dof].abs();
-        presses[row] |= (b * lambda[row]).abs() > PRESSED * terms;
+        presses[row] |= (b * lambda[row]).abs() > PRESSED * terms[dof];
     }
     presses
 }

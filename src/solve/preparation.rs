@@ -47,7 +47,7 @@ impl Prepared {
             0.0 => pace::sweeps(problem.rows(), analysis.factor_entries() as f64),
             boundary => pace::sweeps(problem.rows(), boundary * boundary),
         };
-        let least_pivot = Cell::new(None);
+        let least_pivot = Cell::new(has_empty_diagonal.then_some(0.0));
         let factor = |single| {
             let estimate = factor_seconds(multiplications, analysis.factor_entries())[usize::from(single)];
             let scaled = scaling.equilibration();
