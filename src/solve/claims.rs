@@ -46,6 +46,9 @@ const STEP: i32 = -20;
 /// What a step with the added diagonal makes of rounding is below this share of its terms.
 const OF_STEP: f64 = 1e-14;
 
+/// A step gains something if the square of its length is below this share of that of the one before.
+const SHORTER: f64 = 1e-2;
+
 /// Steps after which one that gains nothing is the last: the first finds a place, the second its forces.
 const FEWEST_STEPS: usize = 3;
 
@@ -230,6 +233,12 @@ impl Looked<'_> {
         self.null.iter().map(|vector| product(self.by_row.column(row), vector)).collect()
     }
 
+    /// The diagonal of `rho E`.
+    fn added(&self) -> Vec<f64> {
+        let equilibration = self.scaling.equilibration();
+        equilibration.diagonal.iter().map(|d| ldexp(1.0, STEP - equilibration.factor - 2 * d)).collect()
+    }
+
     /// An answer by steps with `K + rho E`, E the diagonal that the scaling makes the identity: minimise the energy plus
     /// `rho/2` times the squared distance, in E, from the last answer.
     ///
@@ -239,14 +248,9 @@ impl Looked<'_> {
     /// # Source
     /// R. T. Rockafellar, *Monotone operators and the proximal point algorithm*, SIAM J. Control Optim. 14 (1976) 877-898.
     fn answer(&self, problem: &ContactProblem, settings: &Settings, before: Error) -> Result<Solution, Error> {
-        let equilibration = self.scaling.equilibration();
-        let added: Vec<f64> =
-            equilibration.diagonal.iter().map(|d| ldexp(1.0, STEP - equilibration.factor - 2 * d)).collect();
-        let entries: Vec<(usize, usize, f64)> = (problem.stiffness().lower().triplets())
-            .chain(added.iter().enumerate().map(|(dof, &value)| (dof, dof, value)))
-            .collect();
+        let added = self.added();
+        let stiffness = with_diagonal(problem.stiffness(), &added)?;
         let dofs = problem.dofs();
-        let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &entries)?)?;
         let settings_of_step = Settings {
             method: Method::ActiveSet,
             precision: Precision::Double,
@@ -255,7 +259,7 @@ impl Looked<'_> {
             ..settings.clone()
         };
         let mut best: Option<Solution> = None;
-        let mut centre = vec![0.0; dofs];
+        let (mut centre, mut before_last) = (vec![0.0; dofs], f64::INFINITY);
         for step in 1..=MOST_STEPS {
             let load = (problem.load().iter().zip(&added).zip(&centre)).map(|((f, e), u)| f + e * u).collect();
             let of_step =
@@ -266,8 +270,11 @@ impl Looked<'_> {
                 Err(infeasible @ Error::Infeasible { .. }) => return Err(infeasible),
                 Err(_) => break,
             };
+            let moved = (0..dofs).map(|dof| added[dof] * (found.displacement[dof] - centre[dof]).powi(2)).sum::<f64>();
             centre.clone_from(&found.displacement);
-            let mut is_better = false;
+            // The steps become shorter until they are rounding, also where the conditions cannot tell.
+            let mut is_better = moved < SHORTER * before_last;
+            before_last = moved;
             for (displacement, multiplier) in without_rounding(problem, &added, &centre, &found.multiplier) {
                 let certificate = problem.certify(&displacement, &multiplier)?;
                 if best.as_ref().is_none_or(|best| certificate.worst().1 < 0.5 * best.certificate.worst().1) {
@@ -288,19 +295,29 @@ impl Looked<'_> {
     }
 }
 
+fn with_diagonal(stiffness: &SymmetricMatrix, added: &[f64]) -> Result<SymmetricMatrix, Error> {
+    let diagonal = added.iter().enumerate().map(|(dof, &value)| (dof, dof, value));
+    let entries: Vec<(usize, usize, f64)> = stiffness.lower().triplets().chain(diagonal).collect();
+    SymmetricMatrix::from_lower(SparseMatrix::from_triplets(added.len(), added.len(), &entries)?)
+}
+
 /// An answer of a step as it is, without the forces that the added diagonal makes of the rounding of the displacement, and
-/// also without the displacements that it makes of the rounding of the forces.
+/// also without the displacements that such forces make.
 fn without_rounding(problem: &ContactProblem, added: &[f64], u: &[f64], lambda: &[f64]) -> [(Vec<f64>, Vec<f64>); 3] {
-    let held: Vec<f64> = added.iter().zip(u).map(|(e, u)| e * u.abs()).collect();
-    let mut counts = vec![false; problem.rows()];
-    for (row, dof, b) in problem.contact().triplets() {
-        counts[row] |= (b * lambda[row]).abs() > OF_STEP * held[dof];
+    let mut rounding = vec![0.0_f64; problem.rows()];
+    for (row, dof, b) in problem.contact().triplets().filter(|entry| entry.2 != 0.0) {
+        rounding[row] = rounding[row].max(OF_STEP * (added[dof] * u[dof] / b).abs());
     }
-    let pressing: Vec<f64> =
-        lambda.iter().zip(&counts).map(|(&value, &counts)| if counts { value } else { 0.0 }).collect();
-    let terms = forces_at(problem, u, &pressing);
-    let moved = (0..u.len()).map(|dof| if held[dof] > OF_STEP * terms[dof] { u[dof] } else { 0.0 }).collect();
-    [(u.to_vec(), lambda.to_vec()), (u.to_vec(), pressing.clone()), (moved, pressing)]
+    let counts = |(&force, least): (&f64, &f64)| if force.abs() > *least { force } else { 0.0 };
+    let pressing: Vec<f64> = lambda.iter().zip(&rounding).map(counts).collect();
+    let forces = problem.contact().mul_abs_transposed(&absolute(&pressing));
+    let left = problem.contact().mul_abs_transposed(&rounding);
+    let alone = problem.stiffness().diagonal();
+    let moved = |dof: usize| {
+        let least = left[dof] + OF_STEP * (forces[dof] + problem.load()[dof].abs());
+        if (alone[dof] + added[dof]) * u[dof].abs() > least { u[dof] } else { 0.0 }
+    };
+    [(u.to_vec(), lambda.to_vec()), (u.to_vec(), pressing.clone()), ((0..u.len()).map(moved).collect(), pressing)]
 }
 
 fn absolute(values: &[f64]) -> Vec<f64> {
