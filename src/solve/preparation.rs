@@ -48,7 +48,7 @@ impl Prepared {
             boundary => pace::sweeps(problem.rows(), boundary * boundary),
         };
         let norm_seconds = pace::ordering(problem) + pace::factorisation(&analysis);
-        let least_pivot = Cell::new(None);
+        let least_pivot = Cell::new(has_empty_diagonal.then_some(0.0));
         let factor = |single| {
             let estimate = factor_seconds(multiplications, analysis.factor_entries())[usize::from(single)];
             let scaled = scaling.equilibration();
