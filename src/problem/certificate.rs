@@ -20,6 +20,16 @@ enum Bounding<'a> {
     Cycles(&'a Multigrid),
 }
 
+/// The forces on each dof, with twice the working precision.
+struct Balance {
+    /// `f + B' lambda - K u`.
+    residual: Vec<f64>,
+    /// `K u`.
+    elastic: Vec<f64>,
+    /// `|K| |u|`, the scale of rounding in it.
+    terms: Vec<f64>,
+}
+
 fn worst(values: impl IntoIterator<Item = f64>) -> f64 {
     values.into_iter().fold(0.0, |worst, value| larger(value.abs(), worst))
 }
@@ -60,10 +70,11 @@ impl ContactProblem {
     }
 
     /// As [`ContactProblem::certify`], with the energy bound by the cycles of the hierarchy of K, which needs no factor and
-    /// rests on a measured eigenvalue; without a bound where K is singular to the precision of its levels.
+    /// rests on a measured eigenvalue; without a bound where K is singular to the precision of its levels. A hierarchy of one
+    /// level is a factor already, of so few dofs that another in double precision costs nothing.
     ///
     /// # Errors
-    /// [`Error::Length`] for vectors that do not fit.
+    /// As [`ContactProblem::certify`].
     pub(crate) fn certify_by_cycles(
         &self,
         multigrid: &Multigrid,
@@ -71,6 +82,9 @@ impl ContactProblem {
         multiplier: &[f64],
     ) -> Result<Certificate, Error> {
         self.check_answer(displacement, multiplier)?;
+        if multigrid.unknowns().len() <= 1 {
+            return self.certify(displacement, multiplier);
+        }
         if self.far_units(displacement).is_some() {
             return self.certify_in(None, displacement, multiplier);
         }
@@ -80,8 +94,7 @@ impl ContactProblem {
     fn recomputed(&self, bounding: Option<Bounding>, u: &[f64], lambda: &[f64]) -> Certificate {
         let parts = self.parts();
         let contact = self.contact.mul_transposed(lambda);
-        let (residual, terms) = self.accurate_residual_and_terms(u, lambda);
-        let elastic: Vec<f64> = (0..self.dofs()).map(|dof| self.load[dof] + contact[dof] - residual[dof]).collect();
+        let Balance { residual, elastic, terms } = self.accurate_balance(u, lambda);
         let violation = self.accurate_violation(u);
         let (contact_terms, lengths) = (self.contact.mul_abs_transposed(lambda), self.contact.mul_abs(u));
         let scales = Scales::of(
@@ -151,17 +164,19 @@ impl ContactProblem {
 
     /// `f + B' lambda - K u` of the given doubles, with twice the working precision.
     pub(crate) fn accurate_residual(&self, u: &[f64], lambda: &[f64]) -> Vec<f64> {
-        self.accurate_residual_and_terms(u, lambda).0
+        self.accurate_balance(u, lambda).residual
     }
 
-    /// The same, and `|K| |u|`.
-    fn accurate_residual_and_terms(&self, u: &[f64], lambda: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let mut sums = Accumulator::new(&self.load);
+    /// The same, and what it consists of.
+    fn accurate_balance(&self, u: &[f64], lambda: &[f64]) -> Balance {
+        let mut sums = Accumulator::new(&vec![0.0; self.dofs()]);
         let terms = sums.subtract_product(&self.stiffness, u);
-        for dof in 0..self.dofs() {
+        let elastic = sums.sums().map(|sum| -sum).collect();
+        for (dof, &load) in self.load.iter().enumerate() {
+            sums.add_product(dof, load, 1.0);
             self.contact.column(dof).for_each(|(row, b)| sums.add_product(dof, b, lambda[row]));
         }
-        (sums.into_sums(), terms)
+        Balance { residual: sums.into_sums(), elastic, terms }
     }
 
     /// `B u - g` of the given doubles, with twice the working precision; `-inf` where there is no obstacle.

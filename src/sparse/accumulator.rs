@@ -95,6 +95,11 @@ impl Accumulator {
 
     /// The sums, each rounded once; not finite where a term is beyond 1e300.
     pub fn into_sums(self) -> Vec<f64> {
-        self.sums.iter().map(|sum| sum.value + sum.rest).collect()
+        self.sums().collect()
+    }
+
+    /// The sums so far, each rounded once.
+    pub fn sums(&self) -> impl Iterator<Item = f64> {
+        self.sums.iter().map(|sum| sum.value + sum.rest)
     }
 }
