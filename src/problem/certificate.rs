@@ -6,8 +6,8 @@ use super::scales::{Forces, Scales, larger, relative};
 use super::{ContactProblem, EnergyNorm};
 use crate::error::Error;
 use crate::solution::Certificate;
+use crate::sparse::Accumulator;
 use crate::sparse::multigrid::Multigrid;
-use crate::sparse::{Accumulator, dot};
 
 /// Rounding moves an entry of u or lambda by half a unit in the last place; what a sum of such errors may be is excused
 /// twice, once for the rounding and once for the arithmetic that made the entry.
@@ -24,8 +24,8 @@ enum Bounding<'a> {
 struct Balance {
     /// `f + B' lambda - K u`.
     residual: Vec<f64>,
-    /// `K u`.
-    elastic: Vec<f64>,
+    /// `u' K u`.
+    strain: f64,
     /// `|K| |u|`, the scale of rounding in it.
     terms: Vec<f64>,
 }
@@ -94,14 +94,11 @@ impl ContactProblem {
     fn recomputed(&self, bounding: Option<Bounding>, u: &[f64], lambda: &[f64]) -> Certificate {
         let parts = self.parts();
         let contact = self.contact.mul_transposed(lambda);
-        let Balance { residual, elastic, terms } = self.accurate_balance(u, lambda);
+        let Balance { residual, strain, terms } = self.accurate_balance(u, lambda);
         let violation = self.accurate_violation(u);
         let (contact_terms, lengths) = (self.contact.mul_abs_transposed(lambda), self.contact.mul_abs(u));
-        let scales = Scales::of(
-            self,
-            parts,
-            &Forces { displacement: u, multiplier: lambda, contact: &contact, elastic: &elastic },
-        );
+        let scales =
+            Scales::of(self, parts, &Forces { displacement: u, multiplier: lambda, contact: &contact, strain });
 
         let is_rounding = |dof: usize| residual[dof].abs() <= ROUNDING * (terms[dof] + contact_terms[dof]);
         let excess = |dof: usize| if is_rounding(dof) { 0.0 } else { residual[dof] };
@@ -148,7 +145,7 @@ impl ContactProblem {
                 Bounding::Cycles(multigrid) => self.energy_error_bound_by(multigrid, &answer),
             };
             let rounding = parts.sums(|dof| u[dof].abs() * terms[dof]);
-            certificate.judge(&bound, &scales, dot(u, &elastic), &rounding);
+            certificate.judge(&bound, &scales, strain, &rounding);
         }
         certificate
     }
@@ -171,12 +168,13 @@ impl ContactProblem {
     fn accurate_balance(&self, u: &[f64], lambda: &[f64]) -> Balance {
         let mut sums = Accumulator::new(&vec![0.0; self.dofs()]);
         let terms = sums.subtract_product(&self.stiffness, u);
-        let elastic = sums.sums().map(|sum| -sum).collect();
+        // A body that moves far and bends little has so little energy that forces rounded before would leave none of it.
+        let strain = -sums.products_by(u, |_| 0, 1)[0];
         for (dof, &load) in self.load.iter().enumerate() {
             sums.add_product(dof, load, 1.0);
             self.contact.column(dof).for_each(|(row, b)| sums.add_product(dof, b, lambda[row]));
         }
-        Balance { residual: sums.into_sums(), elastic, terms }
+        Balance { residual: sums.into_sums(), strain, terms }
     }
 
     /// `B u - g` of the given doubles, with twice the working precision; `-inf` where there is no obstacle.
@@ -197,6 +195,15 @@ impl ContactProblem {
         within: impl Fn(usize) -> I,
         u: &[f64],
     ) -> Vec<f64> {
+        self.unrounded_product(within, u).into_sums()
+    }
+
+    /// The same, not rounded yet.
+    pub(super) fn unrounded_product<I: Iterator<Item = (usize, f64)>>(
+        &self,
+        within: impl Fn(usize) -> I,
+        u: &[f64],
+    ) -> Accumulator {
         let mut sums = Accumulator::new(&vec![0.0; u.len()]);
         for (column, &at_column) in u.iter().enumerate() {
             for (row, value) in within(column) {
@@ -206,7 +213,7 @@ impl ContactProblem {
                 }
             }
         }
-        sums.into_sums()
+        sums
     }
 
     /// The parts, found when they are first asked for.
