@@ -117,8 +117,13 @@ impl EnergyNorm {
     /// By how much a norm that comes from sweeps through the factor may be rounded: by some units in the last place over the
     /// smallest pivot, on a diagonal of order one.
     pub(super) fn rounding(&self) -> f64 {
-        let share = SWEEP_ROUNDING / self.cholesky.smallest_pivot().min(1.0);
+        let share = SWEEP_ROUNDING * self.loss();
         if share < LOST { 1.0 + ROUNDING + share } else { f64::INFINITY }
+    }
+
+    /// What a sweep makes of rounding of a force, on a diagonal of order one: one over the smallest pivot, at least one.
+    pub(super) fn loss(&self) -> f64 {
+        1.0 / self.cholesky.smallest_pivot().min(1.0)
     }
 
     /// The same norm with the stiffness in another unit, `2^unit`.

@@ -22,8 +22,9 @@ const ROUNDED: f64 = 1.0 + 1e-6;
 /// Pivots below this share of their row's own compliance belong to rows that follow from others, or nearly so.
 const DEPENDENT: f64 = 1e-8;
 
-/// A row takes part in a dependence where its share of the motion is above this share of the dependent row.
-const TAKES_PART: f64 = 1e-9;
+/// A row takes part in a dependence where its share of the motion is above this share of the dependent row: more than what
+/// rounding leaves. The share of a row on a stiff part is small beside one on a soft part.
+const TAKES_PART: f64 = 1e-12;
 
 impl ContactProblem {
     /// The rows of which an answer proves, by its distance and force, that the exact answer has them open or closed;

@@ -24,7 +24,7 @@ mod row_by_row;
 use super::parts::Parts;
 use super::{ContactProblem, EnergyNorm};
 use crate::error::Error;
-use crate::sparse::{SymmetricMatrix, dot, ldexp};
+use crate::sparse::{SymmetricMatrix, ldexp};
 
 /// An answer (u, lambda) and what its certificate has computed of it.
 pub(super) struct Answer<'a> {
@@ -151,8 +151,8 @@ impl ContactProblem {
 
     /// The energy norm of a motion.
     fn length(&self, motion: &[f64]) -> f64 {
-        let forces = self.accurate_product(|column| self.stiffness.lower().column(column), motion);
-        dot(motion, &forces).max(0.0).sqrt()
+        let forces = self.unrounded_product(|column| self.stiffness.lower().column(column), motion);
+        forces.products_by(motion, |_| 0, 1)[0].max(0.0).sqrt()
     }
 
     /// The energy norms of a motion by parts, added to `sizes`.
