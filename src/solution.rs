@@ -2,6 +2,9 @@
 
 use std::fmt;
 
+/// Rounding of the entries of an assembled stiffness, as a share of its diagonal.
+const ROUNDED_ENTRIES: f64 = 512.0 * f64::EPSILON;
+
 /// The contact indicator C of the formulation: which of `rows` contact rows are closed.
 ///
 /// Stored as bits, so that a method can keep its whole history of sets.
@@ -302,6 +305,13 @@ pub struct Solution {
 }
 
 impl Solution {
+    /// Digits of the displacement that the entries of the stiffness determine, about, where they are few: each entry is rounded
+    /// to double precision, and the softest motion feels that divided by the smallest pivot. The certificate takes the entries
+    /// as exact.
+    pub fn digits_of_stiffness(&self) -> Option<u32> {
+        self.lost_pivot.map(|pivot| (pivot / ROUNDED_ENTRIES).log10().round().max(0.0) as u32)
+    }
+
     /// Total contact force `-sum(lambda)`, `>= 0`, in the problem's unit of force.
     pub fn contact_force(&self) -> f64 {
         self.multiplier.iter().fold(0.0, |force, lambda| force - lambda)

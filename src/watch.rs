@@ -26,6 +26,8 @@ use std::time::{Duration, Instant};
 #[derive(Clone, Debug, Default)]
 pub struct Watch {
     deadline: Option<Instant>,
+    /// The time that there was when the deadline was set.
+    span: Duration,
     shared: Arc<Shared>,
 }
 
@@ -49,6 +51,9 @@ impl fmt::Debug for Observer {
         f.write_str(if self.0.is_some() { "Observer" } else { "no observer" })
     }
 }
+
+/// What makes an answer of what was found may take this share of the time beyond the deadline.
+const FINISHING: f64 = 0.1;
 
 /// Work that takes less tells nothing of the pace.
 const TELLING: f64 = 1e-3;
@@ -115,7 +120,7 @@ impl Watch {
     /// ```
     pub fn observed(observer: impl Fn(&Watch) + Send + Sync + 'static) -> Watch {
         let observer = Observer(Some(Box::new(observer)));
-        Watch { deadline: None, shared: Arc::new(Shared { observer, ..Shared::default() }) }
+        Watch { shared: Arc::new(Shared { observer, ..Shared::default() }), ..Watch::default() }
     }
 
     /// Asks the work to end with what it has.
@@ -144,14 +149,25 @@ impl Watch {
 
     /// The same, with a deadline so many `seconds` from now unless its own is sooner.
     pub fn within(&self, seconds: f64) -> Watch {
-        let deadline = Duration::try_from_secs_f64(seconds).ok().and_then(|time| Instant::now().checked_add(time));
-        let deadline = deadline.into_iter().chain(self.deadline).min();
-        Watch { deadline, shared: self.shared.clone() }
+        let time = Duration::try_from_secs_f64(seconds).ok();
+        let deadline = time.and_then(|time| Some((Instant::now().checked_add(time)?, time)));
+        match deadline {
+            Some((deadline, span)) if self.deadline.is_none_or(|own| deadline < own) => {
+                Watch { deadline: Some(deadline), span, shared: self.shared.clone() }
+            }
+            _ => self.clone(),
+        }
     }
 
     /// The same, without a deadline.
     pub fn unhurried(&self) -> Watch {
-        Watch { deadline: None, shared: self.shared.clone() }
+        Watch { deadline: None, span: Duration::ZERO, shared: self.shared.clone() }
+    }
+
+    /// The same for what makes an answer of what was found, as its certificate: it may take a little of the time more.
+    pub(crate) fn finishing(&self) -> Watch {
+        let deadline = self.deadline.and_then(|deadline| deadline.checked_add(self.span.mul_f64(FINISHING)));
+        Watch { deadline, ..self.clone() }
     }
 
     /// Seconds until the deadline, if there is one.

@@ -13,11 +13,15 @@ use crate::watch::Watch;
 /// Assembly that takes so many seconds at the most is done without time too: the report then says what the rest needs.
 const AT_ONCE: f64 = 1e-3;
 
+/// A report adds up what was assembled: it takes this share of the time.
+const REPORT: f64 = 0.5;
+
 pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
     let common = &options.common;
     // Reading and assembly count too.
     let watch = &options.time.map_or_else(|| watch.clone(), |time| watch.within(time));
     let source = Source::read(&options.input, &common.limits)?;
+    let mut report_seconds = 0.0;
     if let Source::Scene(scene, _) = &source {
         let needs_factor = !matches!(options.method.method(), Method::Auto | Method::Mprgp);
         if needs_factor || scene.analysis.is_some() {
@@ -26,6 +30,7 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
             scene.check_size_without_factor(common.limits.most_memory())?;
         }
         let needed = scene.size().assembly_seconds();
+        report_seconds = REPORT * needed;
         if let Some(time) = watch.time_left().filter(|_| needed > AT_ONCE && !watch.allows(needed)) {
             return Err(Error::OutOfTime { needed, time });
         }
@@ -42,7 +47,7 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
         Source::Directory(input) => *input,
     };
     warn(&input.warnings());
-    let mut settings = settings(options.method.method(), common, watch);
+    let mut settings = settings(options.method.method(), common, &watch.keeping(report_seconds));
     settings.prove = true;
     settings.accuracy = options.accuracy;
     (settings.precision, settings.extrapolate) = (options.precision.precision(), options.extrapolate);

@@ -6,7 +6,7 @@
 
 use std::fmt::Write as _;
 use std::fs::OpenOptions;
-use std::io::{BufRead, BufReader, Write};
+use std::io::{BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -110,22 +110,17 @@ impl MotionFolder {
             other => other,
         })?;
         let wrong = |message: String| Error::FileSyntax { file: path.clone(), line: 1, message };
-        let found: Checkpoint = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
+        let found: Checkpoint =
+            serde_json::from_str(&text).map_err(|error| not_ours(&path, "checkpoint of a motion", &error))?;
         if found.scene != scene && undated(&found.scene) != undated(&scene) {
             return Err(wrong("it belongs to another scene; take its own, or another folder".into()));
         }
         let history = folder.join(HISTORY);
-        let cut = OpenOptions::new().write(true).open(&history).and_then(|file| {
-            let length = file.metadata()?.len();
-            if length < found.history_bytes {
-                return Err(std::io::Error::new(
-                    std::io::ErrorKind::InvalidData,
-                    "it is shorter than its checkpoint says",
-                ));
-            }
-            file.set_len(found.history_bytes)
-        });
-        cut.map_err(|source| Error::File { action: "resume", path: history, source })?;
+        cut_history(&history, found.history_bytes).map_err(|source| Error::File {
+            action: "resume",
+            path: history,
+            source,
+        })?;
         let rows = found.multiplier.len();
         let mut contact_set = ContactSet::open(rows);
         found.closed.iter().for_each(|&row| contact_set.set(row, true));
@@ -229,11 +224,7 @@ impl MotionFolder {
     fn read_frame(&self, number: usize) -> Result<Frame, Error> {
         let path = self.frame_path(number);
         let text = read_text_capped(&path, MOST_OF_TABLE)?;
-        serde_json::from_str(&text).map_err(|error| Error::FileSyntax {
-            file: path,
-            line: error.line(),
-            message: error.to_string(),
-        })
+        serde_json::from_str(&text).map_err(|error| not_ours(&path, "frame of a motion", &error))
     }
 
     /// Draws force and energies over time (`history`), and of a body in the plane an animation (`motion.png`).
@@ -301,6 +292,31 @@ impl MotionFolder {
         }
         Ok(rows)
     }
+}
+
+/// Cuts a history off behind its first `bytes`; whatever is no history of a run in its own folder is left as it is.
+fn cut_history(path: &Path, bytes: u64) -> std::io::Result<()> {
+    let wrong = |message: &str| Err(std::io::Error::new(std::io::ErrorKind::InvalidData, message));
+    // To open a named pipe waits for a reader, and what is behind a link is not of this folder.
+    if !path.symlink_metadata()?.is_file() {
+        return wrong("it is no regular file");
+    }
+    let mut file = OpenOptions::new().read(true).write(true).open(path)?;
+    let mut heading = Vec::new();
+    (&mut file).take(HEADING.len() as u64).read_to_end(&mut heading)?;
+    if heading != HEADING.as_bytes() {
+        return wrong("it is no history of a motion");
+    }
+    if file.metadata()?.len() < bytes {
+        return wrong("it is shorter than its checkpoint says");
+    }
+    file.set_len(bytes.max(HEADING.len() as u64))
+}
+
+/// A file that does not have the form of what a run leaves; of its content nothing is told, it may be another's.
+fn not_ours(path: &Path, what: &str, error: &serde_json::Error) -> Error {
+    let message = format!("it is no {what} (column {})", error.column());
+    Error::FileSyntax { file: path.into(), line: error.line().max(1), message }
 }
 
 /// A scene without what may change while its motion goes on: how long it lasts and how many frames it shows.

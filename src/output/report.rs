@@ -37,6 +37,9 @@ const FAR_BELOW: f64 = 1e-2;
 /// Characters of the reason of an attempt that are shown; the JSON report has all.
 const LONGEST_REASON: usize = 50;
 
+/// Characters of a line beside its name.
+const LONGEST_LINE: usize = 84;
+
 /// The report of one answer, in lines of at most 100 characters.
 pub fn solve_text(title: &str, summary: &Summary, units: &UnitNames) -> String {
     let Summary { contact, model, seconds, .. } = summary;
@@ -86,6 +89,7 @@ pub fn solve_text(title: &str, summary: &Summary, units: &UnitNames) -> String {
         Some(accuracy) => accuracy_text(&summary.certificate, summary.is_certified(), accuracy),
         None => certificate_text(&summary.certificate, summary.is_certified(), summary.tolerance),
     };
+    text += &warnings_text(summary);
     text += &mesh_text(summary);
     text += &entry(
         "seconds",
@@ -116,6 +120,15 @@ fn proven_text(proven: &ProvenSummary) -> String {
     }
 }
 
+/// What may mislead, in full sentences.
+fn warnings_text(summary: &Summary) -> String {
+    let lines = |message: &str| {
+        let lines = wrapped(&printable(message)).into_iter().enumerate();
+        lines.map(|(number, line)| entry(if number == 0 { "warning" } else { "" }, &line)).collect::<String>()
+    };
+    summary.warnings.iter().map(|warning| lines(&warning.message)).collect()
+}
+
 /// What the mesh is worth, and whether the algebra is worth more.
 fn mesh_text(summary: &Summary) -> String {
     let Some(of_mesh) = summary.discretisation_error else { return String::new() };
@@ -127,6 +140,22 @@ fn mesh_text(summary: &Summary) -> String {
         text += &entry("", "the solver may be further off: a tighter tolerance comes before a finer mesh");
     }
     text
+}
+
+/// A sentence in lines that fit beside the names of entries.
+fn wrapped(sentence: &str) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in sentence.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if line.is_empty() => line.push_str(word),
+            Some(line) if line.chars().count() + word.chars().count() < LONGEST_LINE => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_string()),
+        }
+    }
+    lines
 }
 
 pub(super) fn entry(name: &str, content: &str) -> String {

@@ -17,6 +17,7 @@ pub use scene::{
     scene_summary, sweep,
 };
 pub use summary::{
-    CertificateSummary, ContactSummary, HistoryEntry, ModelSize, ProvenSummary, SecondsSummary, Summary, Verification,
+    AnswerWarning, CertificateSummary, ContactSummary, HistoryEntry, ModelSize, ProvenSummary, SecondsSummary, Summary,
+    Verification,
 };
 pub use tradeoff::{Advice, Tradeoff, TradeoffGrid, TradeoffMesh, TradeoffPoint, tradeoff};

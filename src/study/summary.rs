@@ -28,6 +28,9 @@ pub struct Summary {
     /// What else was tried, in order.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub attempts: Vec<AttemptSummary>,
+    /// What may mislead in the numbers below.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<AnswerWarning>,
     /// Closed rows and forces.
     pub contact: ContactSummary,
     /// Rows whose contact is beyond doubt, where they were asked for.
@@ -55,6 +58,15 @@ pub struct AttemptSummary {
     pub seconds: f64,
     /// Why its end was not the end.
     pub reason: String,
+}
+
+/// Something about an answer that its reader should know, certified or not.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct AnswerWarning {
+    /// The name of the kind of warning, the same in every version.
+    pub code: &'static str,
+    /// What it is, with numbers, its likely cause, and what helps.
+    pub message: String,
 }
 
 /// One iteration in numbers.
@@ -162,6 +174,25 @@ impl ModelSize {
     }
 }
 
+impl AnswerWarning {
+    /// That the entries of the stiffness determine few digits of the answer, however good its certificate.
+    fn lost_digits(solution: &Solution) -> Option<Self> {
+        let (digits, pivot) = (solution.digits_of_stiffness()?, solution.lost_pivot?);
+        let digits = match digits {
+            0 => "hardly a digit".to_string(),
+            1 => "only about 1 digit".to_string(),
+            digits => format!("only about {digits} digits"),
+        };
+        let message = format!(
+            "the entries of the stiffness are rounded to double precision, and determine {digits} of the displacement \
+             (smallest pivot {pivot:.0e} of the diagonal); the certificate takes them as exact. Likely causes: bending of \
+             slender bodies (take fewer elements along the thickness, quadratic elements, or a beam), or contrast of \
+             stiff parts on soft ones"
+        );
+        Some(AnswerWarning { code: "lost-digits", message })
+    }
+}
+
 impl From<&Attempt> for AttemptSummary {
     fn from(attempt: &Attempt) -> Self {
         let Attempt { method, seconds, reason } = attempt.clone();
@@ -211,6 +242,7 @@ impl Summary {
             refinements: solution.refinements,
             reason: solution.reason.clone(),
             attempts: solution.attempts.iter().map(AttemptSummary::from).collect(),
+            warnings: AnswerWarning::lost_digits(solution).into_iter().collect(),
             contact: ContactSummary {
                 count: solution.contact_set.count(),
                 force: solution.contact_force(),

@@ -6,6 +6,7 @@
 use std::path::Path;
 
 use crate::oracles::{Draws, random};
+use serde_json::json;
 use signorini::qp::linear::Cholesky;
 use signorini::{
     Condense, ContactProblem, Error, Method, Prepared, Scene, Settings, Solution, SparseMatrix, SymmetricMatrix, solve,
@@ -318,4 +319,45 @@ fn floating_body_condenses_and_escapes_as_a_whole() {
             other => panic!("{method:?}: {other:?}"),
         }
     }
+}
+
+/// A block of 8 x 8 cells between rollers, pressed by a flat obstacle: uniaxial strain.
+fn pressed_block(width: f64, height: f64) -> ContactProblem {
+    let axis = |length: f64| json!({"points": [0, length], "divisions": [8]});
+    let scene = json!({
+        "body": {"rectangle": {"x": axis(width), "y": axis(height), "element": "q4"}},
+        "material": {"young": 1, "poisson": 0.3},
+        "supports": [
+            {"on": {"boundary": "bottom"}, "y": 0},
+            {"on": {"boundary": "left"}, "x": 0},
+            {"on": {"boundary": "right"}, "x": 0}
+        ],
+        "obstacles": [{"boundary": "top", "approach": "+y",
+                       "shape": {"plane": {"point": [0, height], "normal": [0, 1]}}}],
+        "gap": -0.01 * height
+    });
+    Scene::from_json(&scene.to_string(), "block").unwrap().build().unwrap().problem().clone()
+}
+
+#[test]
+fn where_condensation_loses_the_digits_all_dofs_give_them() {
+    let force = |width: f64| 0.7 / (1.3 * 0.4) * 0.01 * width;
+    let wide = pressed_block(1e6, 1.0);
+    for method in [Method::Auto, Method::Qp, Method::ActiveSet, Method::Penalty] {
+        let mut settings = settings(method, Condense::Auto);
+        if method == Method::Penalty {
+            settings.tolerance = 1e-6;
+        }
+        let solution = answer(&wide, &settings);
+        assert_eq!(solution.condensed_dofs, wide.dofs(), "{method:?}");
+        let error = (solution.contact_force() / force(1e6) - 1.0).abs();
+        assert!(error <= 1e-12 || method == Method::Penalty && error <= 1e-6, "{method:?}: {error:e}");
+        // Both attempts are told, and their time counts.
+        let [attempt] = &solution.attempts[..] else { panic!("{method:?}: {:?}", solution.attempts) };
+        assert!(attempt.reason.contains("condensed dofs") && attempt.reason.contains("above"), "{attempt:?}");
+        assert!(attempt.seconds > 0.0 && solution.seconds.solve > attempt.seconds, "{attempt:?}");
+    }
+    // There is no second attempt where the first one holds.
+    let held = answer(&pressed_block(1.0, 1.0), &settings(Method::ActiveSet, Condense::Auto));
+    assert!(held.attempts.is_empty() && held.condensed_dofs < held.displacement.len(), "{:?}", held.attempts);
 }

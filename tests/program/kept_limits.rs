@@ -4,10 +4,13 @@
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::time::Duration;
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
 
 use crate::program::{Desk, Problem, scene};
 use serde_json::{Value, json};
+use signorini::qp::memory::{START, of_problem};
+use signorini::qp::solve::{Condense, Prepared};
 use signorini::{Error, Method, Scene, Settings, Watch, solve};
 
 /// A bar of 20 cells that flies against a wall, 120 steps a unit of time.
@@ -142,6 +145,71 @@ fn no_error_quotes_a_file_that_is_no_mesh() {
     }
 }
 
+#[test]
+fn no_error_quotes_a_file_that_a_link_leads_to_outside_the_folder() {
+    let secrets = [
+        "hunter2:x:0\n",
+        "%%MatrixMarket matrix hunter2 real general\n",
+        "%%MatrixMarket matrix coordinate hunter2 general\n",
+        "%%MatrixMarket matrix coordinate real hunter2\n",
+        "%%MatrixMarket matrix coordinate real general\nhunter2\n",
+        "%%MatrixMarket matrix coordinate real general\n2 2 1\n1 1 hunter2\n",
+        "%%MatrixMarket matrix array real general\n1 1\nhunter2\n",
+    ];
+    let desk = Desk::new();
+    for secret in secrets {
+        desk.write("secret", secret);
+        for name in ["K", "f", "B", "g"] {
+            desk.problem("p", &Problem::right());
+            let file = desk.path(&format!("p/{name}.mtx"));
+            fs::remove_file(&file).unwrap();
+            std::os::unix::fs::symlink("../secret", &file).unwrap();
+            for format in ["text", "json"] {
+                let run = desk.run(&["solve", "p", "--format", format]).fails_with(1, &[&format!("p/{name}.mtx:")]);
+                assert!(!run.stderr.contains("hunter2") && !run.stdout.contains("hunter2"), "{}", run.stderr);
+            }
+            // In the folder itself what is wrong is shown.
+            fs::remove_file(&file).unwrap();
+            fs::write(&file, secret).unwrap();
+            desk.run(&["solve", "p"]).fails_with(1, &["hunter2"]);
+        }
+    }
+}
+
+/// What a run is resumed from is its own: nothing else is told of, waited for, or cut off.
+#[test]
+fn a_motion_is_resumed_from_its_own_files_only() {
+    let desk = Desk::new();
+    desk.write("bar.json", bar(0.1, 4).to_string());
+    let begun = |desk: &Desk| desk.run(&["solve", "bar.json", "--out", "run"]).ends_with(0);
+    let resumed = |desk: &Desk| desk.run(&["solve", "bar.json", "--out", "run", "--resume"]);
+    begun(&desk);
+    for secret in ["\"hunter2\"", "{\"scene\": \"hunter2\", \"steps\": \"hunter2\"}", "hunter2"] {
+        desk.write("secret", secret);
+        fs::remove_file(desk.path("run/checkpoint.json")).unwrap();
+        std::os::unix::fs::symlink("../secret", desk.path("run/checkpoint.json")).unwrap();
+        let run = resumed(&desk).fails_with(1, &["checkpoint.json:1", "it is no checkpoint of a motion"]);
+        assert!(!run.stderr.contains("hunter2"), "{}", run.stderr);
+    }
+    let history = desk.path("run/history.csv");
+    fs::remove_file(desk.path("run/checkpoint.json")).unwrap();
+    begun(&desk);
+    let foreign = "hunter2\n".repeat(10_000);
+    let refused = |phrase: &str| drop(resumed(&desk).fails_with(1, &["cannot resume", "history.csv", phrase]));
+    fs::write(desk.path("foreign.csv"), &foreign).unwrap();
+    fs::remove_file(&history).unwrap();
+    std::os::unix::fs::symlink("../foreign.csv", &history).unwrap();
+    refused("it is no regular file");
+    assert_eq!(fs::read_to_string(desk.path("foreign.csv")).unwrap(), foreign);
+    fs::remove_file(&history).unwrap();
+    fs::write(&history, &foreign).unwrap();
+    refused("it is no history of a motion");
+    assert_eq!(fs::read_to_string(&history).unwrap(), foreign);
+    fs::remove_file(&history).unwrap();
+    assert!(Command::new("mkfifo").arg(&history).status().unwrap().success());
+    refused("it is no regular file");
+}
+
 /// A block of so many by so many cells, one unit high, under a parabola.
 fn block(cells: [usize; 2], element: &str) -> Value {
     let width = cells[0] as f64 / cells[1] as f64;
@@ -258,6 +326,30 @@ fn a_limit_of_memory_tries_what_fits_and_tells_what_failed() {
 }
 
 #[test]
+fn a_refusal_names_the_least_memory_that_suffices() {
+    for scene in [strip(300), block([60, 60], "q4"), block([40, 40], "q8")] {
+        let problem = Scene::from_json(&scene.to_string(), "scene").unwrap().build().unwrap().problem().clone();
+        for condense in [Condense::Auto, Condense::Never] {
+            let prepared = |memory: f64| {
+                let mut settings = Settings::default();
+                (settings.condense, settings.memory) = (condense, Some(memory));
+                Prepared::with_settings(&problem, &settings)
+            };
+            let entries = 2 * problem.stiffness().lower().entries() - problem.dofs();
+            let mut memory = START + 1.01 * of_problem(problem.dofs() as f64, entries as f64);
+            let mut refusals = 0;
+            while let Err(error) = prepared(memory) {
+                let Error::TooLarge { bytes, .. } = error else { panic!("{error}") };
+                assert!(bytes > memory && refusals < 4, "{bytes} of {memory}");
+                (memory, refusals) = (1.0001 * bytes, refusals + 1);
+            }
+            assert!(refusals > 0);
+            assert!(matches!(prepared(0.99 * memory), Err(Error::TooLarge { .. })), "less than {memory} is enough");
+        }
+    }
+}
+
+#[test]
 fn time_of_failed_attempts_counts_and_they_are_named() {
     // A factor in single precision is too poor for so slender cells.
     let problem = Scene::from_json(&strip(300).to_string(), "strip").unwrap().build().unwrap().problem().clone();
@@ -308,6 +400,61 @@ fn no_way_begins_a_step_that_its_time_does_not_suffice_for() {
                 }
                 other => panic!("{method:?}: {:?}", other.map(|found| found.method)),
             }
+        }
+    }
+}
+
+/// A flat strip of Q8 cells that touches with all its rows: the bound on its boundary takes longer than all else.
+fn touching(cells: usize) -> Value {
+    let mut scene = block([cells, 2], "q8");
+    scene["obstacles"][0]["shape"] = json!({"plane": {"point": [0, 1], "normal": [0, 1]}});
+    scene
+}
+
+#[test]
+fn a_certificate_that_is_asked_to_end_leaves_a_weaker_bound() {
+    let model = Scene::from_json(&touching(300).to_string(), "touching").unwrap().build().unwrap();
+    let solved = |stops: bool| {
+        let began = Arc::new(Mutex::new(None));
+        let seen = began.clone();
+        let mut settings = Settings::with_method(Method::ActiveSet);
+        settings.watch = Watch::observed(move |watch| {
+            if watch.activity().step == "certificate" {
+                seen.lock().unwrap().get_or_insert_with(Instant::now);
+                if stops {
+                    watch.stop();
+                }
+            }
+        });
+        let solution = match solve(model.problem(), &settings) {
+            Err(Error::NotCertified { solution, .. }) => *solution,
+            found => found.unwrap(),
+        };
+        let seconds = began.lock().unwrap().unwrap().elapsed().as_secs_f64();
+        (solution, seconds)
+    };
+    let ((whole, patient), (cut, hurried)) = (solved(false), solved(true));
+    assert_eq!((&cut.displacement, &cut.multiplier), (&whole.displacement, &whole.multiplier));
+    assert!(cut.certificate.conditions_hold(1e-9), "{:?}", cut.certificate);
+    assert!(cut.certificate.energy_error_bound >= whole.certificate.energy_error_bound);
+    assert!(hurried < 0.5 * patient, "{hurried} s of {patient} s");
+}
+
+#[test]
+fn an_answer_comes_by_a_fifth_more_than_its_time() {
+    // Of the machine: other tests run beside this one.
+    const DELAY: f64 = 1.5;
+    let desk = Desk::new();
+    desk.write("touching.json", touching(1000).to_string());
+    desk.write("fine.json", block([120, 120], "q8").to_string());
+    desk.write("strip.json", strip(1000).to_string());
+    for scene in ["touching.json", "fine.json", "strip.json"] {
+        for time in [0.1, 1.0, 5.0] {
+            let clock = Instant::now();
+            let run = desk.run(&["solve", scene, "--time", &time.to_string(), "--format", "json"]);
+            let seconds = clock.elapsed().as_secs_f64();
+            assert!([0, 4].contains(&run.code), "{scene}: {}", run.stderr);
+            assert!(seconds <= 1.2 * time + DELAY, "{scene}: {seconds} s of {time} s");
         }
     }
 }

@@ -8,6 +8,8 @@
 use std::f64::consts::PI;
 
 use serde_json::{Value, json};
+use signorini::output::{UnitNames, solve_json, solve_text};
+use signorini::study::scene_summary;
 use signorini::{Condense, Error, Method, Scene, Settings, Solution, solve};
 
 const PLANE: [&str; 4] = ["q4", "q8", "t3", "t6"];
@@ -185,4 +187,43 @@ fn an_answer_without_digits_names_bending() {
     assert!(matches!(error, Err(Error::NotCertified { .. })), "{text}");
     assert!(text.contains("the stiffness has lost its digits (smallest pivot"), "{text}");
     assert!(text.contains("bending") && text.contains("fewer elements along the thickness"), "{text}");
+}
+
+/// The answer is that of the rounded entries of K, to all digits of these; of the beam it has few. The report says so.
+#[test]
+fn a_certified_answer_whose_stiffness_has_few_digits_comes_with_a_warning() {
+    let block = |height: f64| {
+        let axis = |length: f64| json!({"points": [0, length], "divisions": [8]});
+        let scene = json!({
+            "body": {"rectangle": {"x": axis(1.0), "y": axis(height), "element": "q4"}},
+            "material": {"young": 1, "poisson": 0.3},
+            "supports": [
+                {"on": {"boundary": "bottom"}, "y": 0},
+                {"on": {"boundary": "left"}, "x": 0},
+                {"on": {"boundary": "right"}, "x": 0}
+            ],
+            "obstacles": [{"boundary": "top", "approach": "+y",
+                           "shape": {"plane": {"point": [0, height], "normal": [0, 1]}}}],
+            "gap": -0.01 * height
+        });
+        let model = Scene::from_json(&scene.to_string(), "block").unwrap().build().unwrap();
+        let solution = solve(model.problem(), &Settings::default()).unwrap_or_else(|e| panic!("{height:e}: {e}"));
+        let error = (solution.contact_force() / (0.7 / (1.3 * 0.4) * 0.01) - 1.0).abs();
+        (error, scene_summary(&model, &solution, TOLERANCE, 0.0).unwrap(), solution.digits_of_stiffness())
+    };
+    let (error, summary, digits) = block(1e6);
+    let digits = digits.unwrap();
+    assert!(summary.is_certified() && error <= 10.0_f64.powi(1 - digits as i32), "{error:e}, {digits} digits");
+    let report = solve_json(&summary);
+    let warning = &report["warnings"][0];
+    assert_eq!((&warning["code"], report["warnings"].as_array().unwrap().len()), (&json!("lost-digits"), 1));
+    let message = warning["message"].as_str().unwrap();
+    assert!(message.contains(&format!("{digits} digit")) && message.contains("smallest pivot"), "{message}");
+    assert!(message.contains("bending") && message.contains("contrast"), "{message}");
+    let text = solve_text("block", &summary, &UnitNames::default());
+    assert!(text.contains("  warning       the entries of the stiffness"), "{text}");
+    assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
+    let (_, summary, digits) = block(1.0);
+    assert!(digits.is_none() && solve_json(&summary).get("warnings").is_none());
+    assert!(!solve_text("block", &summary, &UnitNames::default()).contains("warning"));
 }

@@ -95,6 +95,21 @@ impl Accumulator {
 
     /// The sums, each rounded once; not finite where a term is beyond 1e300.
     pub fn into_sums(self) -> Vec<f64> {
-        self.sums.iter().map(|sum| sum.value + sum.rest).collect()
+        self.sums().collect()
+    }
+
+    /// The sums of `x_i` times sum i over each of `count` parts, rounded once.
+    pub fn products_by(&self, x: &[f64], part_of: impl Fn(usize) -> usize, count: usize) -> Vec<f64> {
+        let mut products = Accumulator::new(&vec![0.0; count]);
+        for (index, (sum, &x)) in self.sums.iter().zip(x).enumerate() {
+            products.add_product(part_of(index), sum.value, x);
+            products.add_product(part_of(index), sum.rest, x);
+        }
+        products.into_sums()
+    }
+
+    /// The sums so far, each rounded once.
+    pub fn sums(&self) -> impl Iterator<Item = f64> {
+        self.sums.iter().map(|sum| sum.value + sum.rest)
     }
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use super::parse::{Content, Values, parse};
+use super::parse::{Content, Quotes, Values, parse};
 use super::{format_matrix, format_symmetric, format_vector};
 use crate::error::Error;
 use crate::file::{MOST_OF_TABLE, read_capped};
@@ -156,7 +156,19 @@ pub fn solution_files(solution: &Solution) -> [(&'static str, String); 2] {
 fn read(file: &Path, values: Values) -> Result<Content, Error> {
     let bytes = read_capped(file, MOST_OF_TABLE)?;
     // Comments of older collections hold names in other encodings; numbers are ASCII in all of them.
-    parse(file, &String::from_utf8_lossy(&bytes), values)
+    parse(file, &String::from_utf8_lossy(&bytes), values, quotes(file))
+}
+
+/// What a link leads to outside the folder of `file` is not repeated in errors.
+fn quotes(file: &Path) -> Quotes {
+    let folder = match file.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    match (file.canonicalize(), folder.canonicalize()) {
+        (Ok(file), Ok(folder)) if file.starts_with(&folder) => Quotes::Allowed,
+        _ => Quotes::Withheld,
+    }
 }
 
 /// Refuses more rows or columns (`lines` of them) than the entries of a file make credible.

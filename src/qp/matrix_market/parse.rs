@@ -32,8 +32,17 @@ pub(super) enum Values {
     FiniteOrInfinite,
 }
 
+/// May an error repeat what stands in a file?
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Quotes {
+    Allowed,
+    /// A link leads out of the folder, perhaps to what the reader of the error may not see.
+    Withheld,
+}
+
 /// Parses `text`; `file` is named in errors.
-pub(super) fn parse(file: &Path, text: &str, values: Values) -> Result<Content, Error> {
+pub(super) fn parse(file: &Path, text: &str, values: Values, quotes: Quotes) -> Result<Content, Error> {
+    let excerpt = |words: &str| quotes.excerpt(words);
     // Some editors put a byte order mark in front.
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let fault = |line: usize, message: String| Error::FileSyntax { file: file.to_path_buf(), line, message };
@@ -43,23 +52,23 @@ pub(super) fn parse(file: &Path, text: &str, values: Values) -> Result<Content, 
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     let ["%%matrixmarket", "matrix", layout, field, symmetry] = words[..] else {
         let expected = "%%MatrixMarket matrix coordinate|array real|integer general|symmetric";
-        return Err(fault(1, format!("the first line is `{}`; it must be `{expected}`", excerpt(header))));
+        return Err(fault(1, format!("the first line is {}; it must be `{expected}`", excerpt(header))));
     };
     let is_array = match layout {
         "coordinate" => false,
         "array" => true,
         other => {
-            return Err(fault(1, format!("the layout is `{}`; it must be `coordinate` or `array`", excerpt(other))));
+            return Err(fault(1, format!("the layout is {}; it must be `coordinate` or `array`", excerpt(other))));
         }
     };
     if !["real", "integer", "double"].contains(&field) {
-        return Err(fault(1, format!("the field is `{}`; it must be `real` or `integer`", excerpt(field))));
+        return Err(fault(1, format!("the field is {}; it must be `real` or `integer`", excerpt(field))));
     }
     let symmetric = match symmetry {
         "general" => false,
         "symmetric" => true,
         other => {
-            return Err(fault(1, format!("the symmetry is `{}`; it must be `general` or `symmetric`", excerpt(other))));
+            return Err(fault(1, format!("the symmetry is {}; it must be `general` or `symmetric`", excerpt(other))));
         }
     };
 
@@ -69,7 +78,7 @@ pub(super) fn parse(file: &Path, text: &str, values: Values) -> Result<Content, 
     let numbers: Option<Vec<usize>> = sizes.split_whitespace().map(|word| word.parse().ok()).collect();
     let numbers = numbers.filter(|numbers| numbers.len() == wanted).ok_or_else(|| {
         let names = if is_array { "rows and columns" } else { "rows, columns and entries" };
-        fault(line, format!("the sizes are `{}`; they must be {wanted} whole numbers ({names})", excerpt(sizes)))
+        fault(line, format!("the sizes are {}; they must be {wanted} whole numbers ({names})", excerpt(sizes)))
     })?;
     let (rows, columns) = (numbers[0], numbers[1]);
     if rows.max(columns) > LARGEST_DIMENSION {
@@ -84,7 +93,7 @@ pub(super) fn parse(file: &Path, text: &str, values: Values) -> Result<Content, 
         let mut places =
             (0..columns).flat_map(|column| (if symmetric { column } else { 0 }..rows).map(move |row| (row, column)));
         for (line, word) in lines {
-            let value = number(word).ok_or_else(|| fault(line, format!("`{}` is not a number", excerpt(word))))?;
+            let value = number(word).ok_or_else(|| fault(line, format!("{} is not a number", excerpt(word))))?;
             values.check(value).map_err(|message| fault(line, message))?;
             let Some((row, column)) = places.next() else {
                 return Err(fault(line, format!("there are more values than the {rows} x {columns} announced")));
@@ -106,7 +115,7 @@ pub(super) fn parse(file: &Path, text: &str, values: Values) -> Result<Content, 
             let Some(((row, column), value)): Option<((usize, usize), f64)> = entry else {
                 return Err(fault(
                     line,
-                    format!("`{}` is not an entry; it must be `row column value`", excerpt(content)),
+                    format!("{} is not an entry; it must be `row column value`", excerpt(content)),
                 ));
             };
             if row == 0 || column == 0 || row > rows || column > columns {
@@ -153,11 +162,16 @@ impl Values {
     }
 }
 
-/// The beginning of what stands in a file.
-fn excerpt(words: &str) -> String {
-    match words.char_indices().nth(LONGEST_EXCERPT) {
-        Some((end, _)) => format!("{}...", &words[..end]),
-        None => words.to_string(),
+impl Quotes {
+    /// The beginning of what stands in a file, in quotation marks.
+    fn excerpt(self, words: &str) -> String {
+        match (self, words.char_indices().nth(LONGEST_EXCERPT)) {
+            (Quotes::Withheld, _) => {
+                "something that is not shown (a link leads to a file outside the folder)".to_string()
+            }
+            (Quotes::Allowed, Some((end, _))) => format!("`{}...`", &words[..end]),
+            (Quotes::Allowed, None) => format!("`{words}`"),
+        }
     }
 }
 

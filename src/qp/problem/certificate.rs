@@ -5,9 +5,10 @@ use super::parts::Parts;
 use super::scales::{Forces, Scales, larger, relative};
 use super::{ContactProblem, EnergyNorm};
 use crate::error::Error;
+use crate::qp::linear::Accumulator;
 use crate::qp::linear::multigrid::Multigrid;
-use crate::qp::linear::{Accumulator, dot};
 use crate::solution::Certificate;
+use crate::watch::Watch;
 
 /// Rounding moves an entry of u or lambda by half a unit in the last place; what a sum of such errors may be is excused
 /// twice, once for the rounding and once for the arithmetic that made the entry.
@@ -17,7 +18,17 @@ const ROUNDING: f64 = f64::EPSILON;
 #[derive(Clone, Copy)]
 enum Bounding<'a> {
     Factor(&'a EnergyNorm),
-    Cycles(&'a Multigrid),
+    Cycles(&'a Multigrid, &'a Watch),
+}
+
+/// The forces on each dof, with twice the working precision.
+struct Balance {
+    /// `f + B' lambda - K u`.
+    residual: Vec<f64>,
+    /// `u' K u`.
+    strain: f64,
+    /// `|K| |u|`, the scale of rounding in it.
+    terms: Vec<f64>,
 }
 
 fn worst(values: impl IntoIterator<Item = f64>) -> f64 {
@@ -60,35 +71,37 @@ impl ContactProblem {
     }
 
     /// As [`ContactProblem::certify`], with the energy bound by the cycles of the hierarchy of K, which needs no factor and
-    /// rests on a measured eigenvalue; without a bound where K is singular to the precision of its levels.
+    /// rests on a measured eigenvalue; without a bound where K is singular to the precision of its levels, or where `watch` is
+    /// over before it is found. A hierarchy of one level is a factor already, of so few dofs that another in double precision
+    /// costs nothing.
     ///
     /// # Errors
-    /// [`Error::Length`] for vectors that do not fit.
+    /// As [`ContactProblem::certify`].
     pub(crate) fn certify_by_cycles(
         &self,
         multigrid: &Multigrid,
+        watch: &Watch,
         displacement: &[f64],
         multiplier: &[f64],
     ) -> Result<Certificate, Error> {
         self.check_answer(displacement, multiplier)?;
+        if multigrid.unknowns().len() <= 1 {
+            return self.certify(displacement, multiplier);
+        }
         if self.far_units(displacement).is_some() {
             return self.certify_in(None, displacement, multiplier);
         }
-        Ok(self.recomputed(Some(Bounding::Cycles(multigrid)), displacement, multiplier))
+        Ok(self.recomputed(Some(Bounding::Cycles(multigrid, watch)), displacement, multiplier))
     }
 
     fn recomputed(&self, bounding: Option<Bounding>, u: &[f64], lambda: &[f64]) -> Certificate {
         let parts = self.parts();
         let contact = self.contact.mul_transposed(lambda);
-        let (residual, terms) = self.accurate_residual_and_terms(u, lambda);
-        let elastic: Vec<f64> = (0..self.dofs()).map(|dof| self.load[dof] + contact[dof] - residual[dof]).collect();
+        let Balance { residual, strain, terms } = self.accurate_balance(u, lambda);
         let violation = self.accurate_violation(u);
         let (contact_terms, lengths) = (self.contact.mul_abs_transposed(lambda), self.contact.mul_abs(u));
-        let scales = Scales::of(
-            self,
-            parts,
-            &Forces { displacement: u, multiplier: lambda, contact: &contact, elastic: &elastic },
-        );
+        let scales =
+            Scales::of(self, parts, &Forces { displacement: u, multiplier: lambda, contact: &contact, strain });
 
         let is_rounding = |dof: usize| residual[dof].abs() <= ROUNDING * (terms[dof] + contact_terms[dof]);
         let excess = |dof: usize| if is_rounding(dof) { 0.0 } else { residual[dof] };
@@ -126,16 +139,16 @@ impl ContactProblem {
             part_error_bound: f64::INFINITY,
             energy_error_excess: f64::INFINITY,
             parts: parts.count(),
-            bound_is_measured: matches!(bounding, Some(Bounding::Cycles(_))),
+            bound_is_measured: matches!(bounding, Some(Bounding::Cycles(..))),
         };
         if let Some(bounding) = bounding {
             let answer = Answer { displacement: u, multiplier: lambda, residual, violation: &violation };
             let bound = match bounding {
                 Bounding::Factor(norm) => self.energy_error_bound(norm, &answer),
-                Bounding::Cycles(multigrid) => self.energy_error_bound_by(multigrid, &answer),
+                Bounding::Cycles(multigrid, watch) => self.energy_error_bound_by(multigrid, &answer, watch),
             };
             let rounding = parts.sums(|dof| u[dof].abs() * terms[dof]);
-            certificate.judge(&bound, &scales, dot(u, &elastic), &rounding);
+            certificate.judge(&bound, &scales, strain, &rounding);
         }
         certificate
     }
@@ -151,17 +164,20 @@ impl ContactProblem {
 
     /// `f + B' lambda - K u` of the given doubles, with twice the working precision.
     pub(crate) fn accurate_residual(&self, u: &[f64], lambda: &[f64]) -> Vec<f64> {
-        self.accurate_residual_and_terms(u, lambda).0
+        self.accurate_balance(u, lambda).residual
     }
 
-    /// The same, and `|K| |u|`.
-    fn accurate_residual_and_terms(&self, u: &[f64], lambda: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let mut sums = Accumulator::new(&self.load);
+    /// The same, and what it consists of.
+    fn accurate_balance(&self, u: &[f64], lambda: &[f64]) -> Balance {
+        let mut sums = Accumulator::new(&vec![0.0; self.dofs()]);
         let terms = sums.subtract_product(&self.stiffness, u);
-        for dof in 0..self.dofs() {
+        // A body that moves far and bends little has so little energy that forces rounded before would leave none of it.
+        let strain = -sums.products_by(u, |_| 0, 1)[0];
+        for (dof, &load) in self.load.iter().enumerate() {
+            sums.add_product(dof, load, 1.0);
             self.contact.column(dof).for_each(|(row, b)| sums.add_product(dof, b, lambda[row]));
         }
-        (sums.into_sums(), terms)
+        Balance { residual: sums.into_sums(), strain, terms }
     }
 
     /// `B u - g` of the given doubles, with twice the working precision; `-inf` where there is no obstacle.
@@ -182,6 +198,15 @@ impl ContactProblem {
         within: impl Fn(usize) -> I,
         u: &[f64],
     ) -> Vec<f64> {
+        self.unrounded_product(within, u).into_sums()
+    }
+
+    /// The same, not rounded yet.
+    pub(super) fn unrounded_product<I: Iterator<Item = (usize, f64)>>(
+        &self,
+        within: impl Fn(usize) -> I,
+        u: &[f64],
+    ) -> Accumulator {
         let mut sums = Accumulator::new(&vec![0.0; u.len()]);
         for (column, &at_column) in u.iter().enumerate() {
             for (row, value) in within(column) {
@@ -191,7 +216,7 @@ impl ContactProblem {
                 }
             }
         }
-        sums.into_sums()
+        sums
     }
 
     /// The parts, found when they are first asked for.

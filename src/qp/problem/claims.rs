@@ -14,14 +14,11 @@ const ZERO: f64 = 1e-9;
 /// A load drives a motion if its work is beyond this share of its terms.
 const DRIVES: f64 = 1e-9;
 
-/// A load whose work is below this share of its terms is in balance, but for rounding of the motion.
-const IN_BALANCE: f64 = 1e-13;
-
-/// The same for a motion without rounding: twice the working precision.
-const EXACTLY: f64 = 1e-30;
-
 /// Entries of a motion are looked at in this unit of the largest: a translation becomes one without rounding.
 const GRID: f64 = 1073741824.0;
+
+/// An entry lies on the grid if it is this close to it, as rounding of a factorisation leaves it.
+const ON_GRID: f64 = 1e-12;
 
 /// Energy of a direction counts as negative beyond this share of its terms.
 const NEGATIVE: f64 = 1e-12;
@@ -35,20 +32,12 @@ pub(crate) struct Motion {
     pub approach: Vec<f64>,
     /// The share of its terms that is left of `f'd`.
     pub work: f64,
-    /// Is `K d` zero to the last digit?
-    is_exact: bool,
 }
 
 impl Motion {
     /// The error that it is, if the load drives the motion and no row stops it.
     pub fn escapes(&self) -> bool {
         self.work > DRIVES && self.approach.iter().all(|&speed| speed <= 0.0)
-    }
-
-    /// Does the load neither drive nor resist it? The least load drives an exact motion against a row, which then presses.
-    pub fn is_in_balance(&self) -> bool {
-        let meets_row = self.approach.iter().any(|speed| speed * self.work > 0.0);
-        self.work.abs() <= if self.is_exact && meets_row { EXACTLY } else { IN_BALANCE }
     }
 
     /// How the motion was rechecked, and most of it.
@@ -74,7 +63,9 @@ impl ContactProblem {
         let direction: Vec<f64> = direction.iter().map(kept).collect();
         let on_grid: Vec<f64> = direction.iter().map(|value| (value * GRID).round()).collect();
         let forces_of = |d: &[f64]| self.accurate_product(|column| self.stiffness.lower().column(column), d);
-        let is_exact = forces_of(&on_grid).iter().all(|&force| force == 0.0);
+        // A stiffness without entries resists nothing, and a direction off the grid would be turned for no reason.
+        let is_on_grid = on_grid.iter().zip(&direction).all(|(units, value)| (units / GRID - value).abs() <= ON_GRID);
+        let is_exact = is_on_grid && forces_of(&on_grid).iter().all(|&force| force == 0.0);
         let direction = if is_exact { on_grid.iter().map(|value| value / GRID).collect() } else { direction };
         let forces = forces_of(&direction);
         let terms = self.stiffness.mul_abs(&direction);
@@ -93,7 +84,7 @@ impl ContactProblem {
         self.load.iter().zip(&direction).for_each(|(&f, &d)| work.add_product(0, f, d));
         let terms: f64 = self.load.iter().zip(&sizes).map(|(f, d)| f.abs() * d).sum();
         let work = if terms > 0.0 { work.into_sums()[0] / terms } else { 0.0 };
-        Some(Motion { direction, approach, work, is_exact })
+        Some(Motion { direction, approach, work })
     }
 
     /// The error that a direction p of negative energy is, if `p'K p` is negative beyond rounding.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::energy_bound::Springs;
 use crate::error::Error;
 use crate::qp::linear::{Analysis, Cholesky, Equilibration, FactorError, SparseMatrix, SymmetricMatrix, dot, ldexp};
+use crate::watch::Watch;
 
 /// Contact dofs beyond this share of all are not ordered last: the boundary would be most of the body.
 const LARGEST_SHARE: f64 = 0.25;
@@ -37,6 +38,8 @@ pub struct EnergyNorm {
     widening: f64,
     /// The springs that made a singular K definite.
     springs: Option<Arc<Springs>>,
+    /// When a bound in this norm must be done with.
+    watch: Watch,
 }
 
 /// The contact dofs t, eliminated last: their block of the factor is that of the Schur complement.
@@ -83,12 +86,22 @@ impl EnergyNorm {
         let values = last.len().saturating_mul(last.len());
         let worth = !last.is_empty() && values <= FEW_VALUES.max(cholesky.entries());
         let boundary = worth.then(|| Arc::new(Boundary { block: cholesky.trailing_block(), dofs: last }));
-        EnergyNorm { cholesky, equilibration, boundary, widening: 1.0, springs: None }
+        EnergyNorm { cholesky, equilibration, boundary, widening: 1.0, springs: None, watch: Watch::default() }
     }
 
     /// The energy norm of the equilibrated stiffness itself.
     pub fn equilibrated(&self) -> Self {
         EnergyNorm { equilibration: Equilibration::none(self.cholesky.dim()), ..self.clone() }
+    }
+
+    /// The same norm, whose bounds are cut short when `watch` says so: a weaker one, or none, is what is left.
+    pub fn watched(&self, watch: &Watch) -> Self {
+        EnergyNorm { watch: watch.clone(), ..self.clone() }
+    }
+
+    /// Must a bound be done with?
+    pub(super) fn is_over(&self) -> bool {
+        self.watch.is_over()
     }
 
     /// The same norm, for a factor K~ whose contraction `|I - K~^-1 K|` is measured to be this.
@@ -104,8 +117,13 @@ impl EnergyNorm {
     /// By how much a norm that comes from sweeps through the factor may be rounded: by some units in the last place over the
     /// smallest pivot, on a diagonal of order one.
     pub(super) fn rounding(&self) -> f64 {
-        let share = SWEEP_ROUNDING / self.cholesky.smallest_pivot().min(1.0);
+        let share = SWEEP_ROUNDING * self.loss();
         if share < LOST { 1.0 + ROUNDING + share } else { f64::INFINITY }
+    }
+
+    /// What a sweep makes of rounding of a force, on a diagonal of order one: one over the smallest pivot, at least one.
+    pub(super) fn loss(&self) -> f64 {
+        1.0 / self.cholesky.smallest_pivot().min(1.0)
     }
 
     /// The same norm with the stiffness in another unit, `2^unit`.

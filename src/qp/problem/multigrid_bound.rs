@@ -11,15 +11,17 @@
 
 use super::ContactProblem;
 use super::energy_bound::{Answer, ErrorBound};
-use crate::qp::linear::multigrid::{Multigrid, dual_norm};
+use crate::qp::linear::multigrid::{Multigrid, dual_norm_within};
+use crate::watch::Watch;
 
 /// All that is computed of a bound may be rounded by this much.
 const ROUNDED: f64 = 1.0 + 1e-6;
 
 impl ContactProblem {
-    /// An upper bound on `|u - u*|_K`, as far as [`dual_norm`] finds the least eigenvalue; infinite where it finds none. A
-    /// stiffness that the hierarchy has found singular gets springs on the rows that press.
-    pub(super) fn energy_error_bound_by(&self, multigrid: &Multigrid, answer: &Answer) -> ErrorBound {
+    /// An upper bound on `|u - u*|_K`, as far as [`dual_norm_within`] finds the least eigenvalue; infinite where it finds none. A
+    /// stiffness that the hierarchy has found singular gets springs on the rows that press. Infinite too where `watch` is over
+    /// before that.
+    pub(super) fn energy_error_bound_by(&self, multigrid: &Multigrid, answer: &Answer, watch: &Watch) -> ErrorBound {
         let mut residual = answer.residual.clone();
         if answer.multiplier.iter().any(|&lambda| lambda > 0.0) {
             let pulled: Vec<f64> = answer.multiplier.iter().map(|lambda| lambda.max(0.0)).collect();
@@ -27,10 +29,12 @@ impl ContactProblem {
         }
         let springs = multigrid.is_shifted().then(|| self.springs(answer.displacement, answer.multiplier));
         let dual = match &springs {
-            None => dual_norm(&self.stiffness, multigrid, &residual),
-            Some(springs) => {
-                springs.added_to(self).ok().flatten().and_then(|stiffness| dual_norm(&stiffness, multigrid, &residual))
-            }
+            None => dual_norm_within(&self.stiffness, multigrid, &residual, watch),
+            Some(springs) => springs
+                .added_to(self)
+                .ok()
+                .flatten()
+                .and_then(|stiffness| dual_norm_within(&stiffness, multigrid, &residual, watch)),
         };
         let Some(dual) = dual else { return ErrorBound::none() };
         // Every row that presses is put at its gap below.

@@ -22,8 +22,9 @@ const ROUNDED: f64 = 1.0 + 1e-6;
 /// Pivots below this share of their row's own compliance belong to rows that follow from others, or nearly so.
 const DEPENDENT: f64 = 1e-8;
 
-/// A row takes part in a dependence where its share of the motion is above this share of the dependent row.
-const TAKES_PART: f64 = 1e-9;
+/// A row takes part in a dependence where its share of the motion is above this share of the dependent row: more than what
+/// rounding leaves. The share of a row on a stiff part is small beside one on a soft part.
+const TAKES_PART: f64 = 1e-12;
 
 impl ContactProblem {
     /// The rows of which an answer proves, by its distance and force, that the exact answer has them open or closed;
@@ -125,6 +126,9 @@ impl<'a> Halves<'a> {
 
     /// `sqrt(G_ii)`: how far a displacement of unit energy norm moves the row.
     fn reach(&self, row: usize) -> f64 {
+        if self.norm.is_over() {
+            return f64::INFINITY;
+        }
         let half = self.half(row);
         ldexp(dot(&half, &half), self.norm.factor()).sqrt()
     }
@@ -138,14 +142,20 @@ impl<'a> Halves<'a> {
 
     /// `sqrt((G_CC^-1)_ii)` of the rows C; infinite for those that follow from others.
     fn moved_together(&self, rows: &[usize]) -> Vec<f64> {
-        let halves: Vec<Vec<f64>> = rows.iter().map(|&row| self.half(row)).collect();
         let size = rows.len();
+        let in_time = |&row: &usize| if self.norm.is_over() { None } else { Some(self.half(row)) };
+        let Some(halves) = rows.iter().map(in_time).collect::<Option<Vec<_>>>() else {
+            return vec![f64::INFINITY; size];
+        };
         // L of G_CC row by row; a row that follows from those before it has none.
         let mut factor = vec![0.0; size * size];
         let mut kept = vec![true; size];
         let mut dependent = vec![false; size];
         let owns: Vec<f64> = halves.iter().map(|half| dot(half, half)).collect();
         for i in 0..size {
+            if self.norm.is_over() {
+                return vec![f64::INFINITY; size];
+            }
             let own = owns[i];
             let (before, row) = factor.split_at_mut(i * size);
             for j in (0..i).filter(|&j| kept[j]) {

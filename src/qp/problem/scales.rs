@@ -49,8 +49,8 @@ pub(super) struct Forces<'a> {
     pub multiplier: &'a [f64],
     /// B' lambda.
     pub contact: &'a [f64],
-    /// K u.
-    pub elastic: &'a [f64],
+    /// u' K u.
+    pub strain: f64,
 }
 
 /// The larger of two; what is not a number is larger than all.
@@ -66,7 +66,7 @@ pub(super) fn relative(value: f64, scale: f64) -> f64 {
 impl Scales {
     /// The scales of an answer to `problem`.
     pub fn of(problem: &ContactProblem, parts: &Parts, forces: &Forces) -> Self {
-        let Forces { displacement: u, multiplier, contact, elastic } = *forces;
+        let Forces { displacement: u, multiplier, contact, strain } = *forces;
         let softness: Vec<f64> = problem.diagonal().roots.iter().map(|root| 1.0 / root).collect();
         let (mut reach, mut part_of_row) = (vec![0.0; problem.rows()], vec![0; problem.rows()]);
         for (dof, &soft) in softness.iter().enumerate() {
@@ -84,8 +84,7 @@ impl Scales {
             let of_part = &mut force[parts.of_dof(dof)];
             *of_part = larger(largest * softness[dof], *of_part);
         }
-        let strain =
-            if parts.count() == 1 { parts.sums(|dof| u[dof] * elastic[dof]) } else { problem.energies(parts, u) };
+        let strain = if parts.count() == 1 { vec![strain] } else { problem.energies(parts, u) };
         let norm: Vec<f64> = strain.iter().map(|energy| energy.max(0.0).sqrt()).collect();
         let load_work = parts.sums(|dof| u[dof] * problem.load[dof]);
         let mut gap_work = vec![0.0; parts.count()];
@@ -141,7 +140,6 @@ impl ContactProblem {
             let of_part = move |entry: &(usize, f64)| parts.of_dof(entry.0) == parts.of_dof(column);
             self.stiffness.lower().column(column).filter(of_part)
         };
-        let forces = self.accurate_product(within, w);
-        parts.sums(|dof| w[dof] * forces[dof])
+        self.unrounded_product(within, w).products_by(w, |dof| parts.of_dof(dof), parts.count())
     }
 }

@@ -3,10 +3,10 @@
 use std::time::Instant;
 
 use super::estimate::{Choice, Estimate};
-use super::{Method, Precision, Prepared, Settings, claims, iterative};
+use super::{Condense, Method, Precision, Prepared, Settings, claims, iterative};
 use crate::error::Error;
 use crate::qp::problem::ContactProblem;
-use crate::solution::{Attempt, ContactSet, Seconds, Solution};
+use crate::solution::{Attempt, Certificate, ContactSet, Seconds, Solution};
 
 /// Solves a contact problem; `Ok` means that the answer is certified to `settings.tolerance`.
 ///
@@ -102,18 +102,29 @@ impl Attempts {
         match self.with_factor(problem, settings) {
             Err(Error::TooLarge { bytes, .. }) => no_room(bytes),
             Err(error @ (Error::OutOfTime { .. } | Error::Interrupted)) => {
-                self.add(Method::ActiveSet, clock.elapsed().as_secs_f64(), &error);
+                self.add(Way::on_all_dofs(Method::ActiveSet), clock.elapsed().as_secs_f64(), &error);
                 Err(fell_short)
             }
             decided => {
-                self.add(Method::Mprgp, seconds, &fell_short);
+                self.add(Way::on_all_dofs(Method::Mprgp), seconds, &fell_short);
                 decided
             }
         }
     }
 
-    /// The answer with a factor; where a shortcut falls short, by the active set in double precision.
+    /// The answer with a factor; where a shortcut falls short, by the active set in double precision, and where a condensed
+    /// problem does, on all dofs.
     fn with_factor(&mut self, problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
+        self.with_factor_from(None, problem, settings)
+    }
+
+    /// The same, the active-set steps starting from `start` where it is given.
+    fn with_factor_from(
+        &mut self,
+        start: Option<&ContactSet>,
+        problem: &ContactProblem,
+        settings: &Settings,
+    ) -> Result<Solution, Error> {
         let clock = Instant::now();
         let prepared = Prepared::with_settings(problem, settings)?;
         let preparation = prepared.seconds();
@@ -122,7 +133,7 @@ impl Attempts {
             solution.seconds.solve += preparation.solve;
             solution
         };
-        let fell_short = match prepared.solve(settings) {
+        let fell_short = match prepared.solve_gap(problem.gap().to_vec(), start, settings) {
             Ok(solution) => return Ok(with_preparation(solution)),
             Err(Error::NotCertified { solution, condition, value, tolerance }) => {
                 let solution = Box::new(with_preparation(*solution));
@@ -131,42 +142,37 @@ impl Attempts {
             Err(error @ Error::Numerical { .. }) => error,
             Err(error) => return Err(error),
         };
-        if !prepared.is_a_shortcut() || settings.watch.is_over() {
-            return Err(fell_short);
-        }
-        let shortcut = prepared.resolved(settings).method;
+        let Some((safer, start)) = safer(&prepared, settings, &fell_short) else { return Err(fell_short) };
+        let way = Way::of(&prepared, settings);
         drop(prepared);
         let seconds = clock.elapsed().as_secs_f64();
-        let method = if settings.method == Method::Auto { Method::ActiveSet } else { settings.method };
-        let safe = Settings { method, precision: Precision::Double, ..settings.clone() };
-        let bound = |error: &Error| match error {
-            Error::NotCertified { solution, .. } => solution.certificate.energy_error_bound,
-            _ => f64::INFINITY,
-        };
         let clock = Instant::now();
-        match self.with_factor(problem, &safe) {
-            // Where it is cut short, the shortcut may have come further.
-            Err(error @ (Error::NotCertified { .. } | Error::Interrupted | Error::OutOfTime { .. }))
-                if bound(&fell_short) < bound(&error) =>
-            {
-                self.add(method, clock.elapsed().as_secs_f64(), &error);
+        match self.with_factor_from(start.as_ref(), problem, &safer) {
+            // Where it is cut short, what was tried first may have come further.
+            Err(error) if is_better(&fell_short, &error) => {
+                let way = Way::on_all_dofs(safer.method);
+                self.add(way, clock.elapsed().as_secs_f64(), &error);
                 Err(fell_short)
             }
             solved => {
-                self.add(shortcut, seconds, &fell_short);
+                self.add(way, seconds, &fell_short);
                 solved
             }
         }
     }
 
-    /// Notes an attempt by `method` that took so many seconds and ended with `error`.
-    fn add(&mut self, method: Method, seconds: f64, error: &Error) {
-        let mut method = method.name().to_string();
+    /// Notes an attempt on some way that took so many seconds and ended with `error`.
+    fn add(&mut self, way: Way, seconds: f64, error: &Error) {
+        let mut method = way.method.name().to_string();
         if let Error::NotCertified { solution, .. } = error {
             self.factor_seconds += solution.seconds.factor;
             method.clone_from(&solution.method);
         }
-        self.made.push(Attempt { method, seconds, reason: ending(error) });
+        let reason = match way.condensed_dofs {
+            Some(dofs) => format!("on {dofs} condensed dofs {}", ending(error)),
+            None => ending(error),
+        };
+        self.made.push(Attempt { method, seconds, reason });
     }
 
     /// The answer with what was tried beside it, and the time of all.
@@ -174,6 +180,61 @@ impl Attempts {
         solution.seconds.factor += self.factor_seconds;
         solution.seconds.solve = self.clock.elapsed().as_secs_f64();
         Solution { attempts: self.made, ..solution }
+    }
+}
+
+/// What was tried: a method, and the unknowns that it worked on where they were fewer than all.
+struct Way {
+    method: Method,
+    condensed_dofs: Option<usize>,
+}
+
+impl Way {
+    fn of(prepared: &Prepared, settings: &Settings) -> Self {
+        let condensed_dofs = prepared.is_condensed().then(|| prepared.condensed_dofs());
+        Way { method: prepared.resolved(settings).method, condensed_dofs }
+    }
+
+    fn on_all_dofs(method: Method) -> Self {
+        Way { method, condensed_dofs: None }
+    }
+}
+
+/// Settings that may reach what `prepared` fell short of, and where they start: a shortcut is left first, then the
+/// condensation, which loses digits where the contact boundary feels little of the stiffness of the body.
+fn safer(prepared: &Prepared, settings: &Settings, fell_short: &Error) -> Option<(Settings, Option<ContactSet>)> {
+    if settings.watch.is_over() {
+        return None;
+    }
+    let method = if settings.method == Method::Auto { Method::ActiveSet } else { settings.method };
+    let safe = Settings { method, precision: Precision::Double, ..settings.clone() };
+    if prepared.is_a_shortcut() {
+        return Some((safe, None));
+    }
+    let (miss, start) = match fell_short {
+        // What rounding of the displacement explains is no loss of the condensation.
+        Error::NotCertified { solution, .. } if is_exact(&solution.certificate, settings) => return None,
+        Error::NotCertified { solution, value, .. } if !value.is_nan() => (*value, Some(solution.contact_set.clone())),
+        _ => (f64::INFINITY, None),
+    };
+    // What is asked for as it is, as a small penalty, falls short on all dofs too.
+    let may_gain = prepared.is_condensed() && safe.condense == Condense::Auto && safe.allows_last_resort(miss);
+    may_gain.then(|| (Settings { condense: Condense::Never, ..safe }, start))
+}
+
+/// Does an answer hold all that its displacement can, and fall short of an accuracy beyond that?
+fn is_exact(certificate: &Certificate, settings: &Settings) -> bool {
+    certificate.conditions_hold(settings.tolerance) && certificate.energy_error_excess == 0.0
+}
+
+/// Is what an attempt `before` left better than the `error` of the safer one?
+fn is_better(before: &Error, error: &Error) -> bool {
+    match (before, error) {
+        (Error::NotCertified { solution: before, .. }, Error::NotCertified { solution, .. }) => {
+            before.certificate.energy_error_bound < solution.certificate.energy_error_bound
+        }
+        (Error::NotCertified { .. }, Error::Interrupted | Error::OutOfTime { .. } | Error::Numerical { .. }) => true,
+        _ => false,
     }
 }
 

@@ -22,6 +22,9 @@ use crate::solution::Solution;
 /// Coordinates below this share of their terms are what the null space leaves of zero.
 const ROUNDING: f64 = 1e-10;
 
+/// Rounding of sums in twice the working precision, as a share of their terms.
+const TWICE: f64 = 1e-30;
+
 /// Rows under pressure that lie within this share of others are combinations of them.
 const DEPENDENT: f64 = 1e-9;
 
@@ -32,13 +35,19 @@ const TIP: f64 = 1e-8;
 const PRESSED: f64 = 1e-13;
 
 /// A row that is open by less than this share of its displacement and gap may touch.
-const TOUCHING: f64 = 1e-7;
+const TOUCHING: f64 = 1e-8;
 
 /// The same, as a share of what the load would move.
 const STRAINED: f64 = 1e-13;
 
 /// Exponent of rho: on a diagonal of order one, far above rounding and far below what resists.
 const STEP: i32 = -20;
+
+/// What a step with the added diagonal makes of rounding is below this share of its terms.
+const OF_STEP: f64 = 1e-14;
+
+/// A step gains something if the square of its length is below this share of that of the one before.
+const SHORTER: f64 = 1e-2;
 
 /// Steps after which one that gains nothing is the last: the first finds a place, the second its forces.
 const FEWEST_STEPS: usize = 3;
@@ -56,7 +65,7 @@ pub(super) fn rechecked(
     ending: Result<Solution, Error>,
 ) -> Result<Solution, Error> {
     let before = match ending {
-        Err(error) if is_doubtful(&error, settings.tolerance) => error,
+        Err(error) if is_doubtful(&error, settings) => error,
         sure => return sure,
     };
     if settings.watch.is_over() {
@@ -94,12 +103,15 @@ pub(super) fn rechecked(
     judged(settings, solution)
 }
 
-/// Does an ending make a claim, or leave open whether there is one? An answer that misses its conditions says nothing.
-fn is_doubtful(error: &Error, tolerance: f64) -> bool {
+/// Does an ending make a claim, or leave open whether there is one? Without a bound it does where its answer holds its
+/// conditions, or where a factor has shown the stiffness to be singular and the answer was to be as good as can be.
+fn is_doubtful(error: &Error, settings: &Settings) -> bool {
     match error {
         Error::NotConvex { .. } | Error::Unbounded { .. } | Error::UnderHeld { .. } => true,
         Error::NotCertified { solution, .. } => {
-            !solution.certificate.has_bound() && solution.certificate.conditions_hold(tolerance)
+            let is_singular = solution.lost_pivot.is_some() && settings.wants_best();
+            let is_open = is_singular || solution.certificate.conditions_hold(settings.tolerance);
+            !solution.certificate.has_bound() && is_open
         }
         _ => false,
     }
@@ -173,7 +185,7 @@ impl Looked<'_> {
             .collect();
         rows.push(left.coordinates(&self.coordinates_of_load()).iter().map(|value| -value).collect());
         let stays = |motion: &Motion| {
-            motion.is_in_balance()
+            self.is_in_balance(problem, solution, motion)
                 && self.bounded_rows().all(|row| match motion.approach[row] {
                     speed if speed > 0.0 => !presses(row) && !touches(row),
                     speed if speed < 0.0 => !presses(row),
@@ -186,6 +198,19 @@ impl Looked<'_> {
             let nearest = nearest_of_cone(&rows, &towards)?;
             self.motion(&left.expanded(&nearest, self.null.len())).filter(stays)
         })
+    }
+
+    /// Does the load do no work on a motion d? With `K d = 0`, and `B d = 0` where a row presses, `f'd` is `r'd` for the residual
+    /// r of any u and lambda. That of an answer is rounding, and the rounding of d takes from it what is rounding of rounding.
+    fn is_in_balance(&self, problem: &ContactProblem, solution: &Solution, motion: &Motion) -> bool {
+        let pressing: Vec<f64> = (solution.multiplier.iter().zip(&motion.approach))
+            .map(|(&force, &speed)| if speed == 0.0 { force } else { 0.0 })
+            .collect();
+        let (residual, direction) =
+            (problem.accurate_residual(&solution.displacement, &pressing), self.expanded(motion));
+        let most = TWICE * dot(&forces_at(problem, &solution.displacement, &pressing), &absolute(&direction));
+        let terms = dot(&absolute(&residual), &absolute(&direction));
+        dot(&residual, &direction).abs() <= ROUNDING * terms + most
     }
 
     fn bounded_rows(&self) -> impl Iterator<Item = usize> + '_ {
@@ -208,6 +233,12 @@ impl Looked<'_> {
         self.null.iter().map(|vector| product(self.by_row.column(row), vector)).collect()
     }
 
+    /// The diagonal of `rho E`.
+    fn added(&self) -> Vec<f64> {
+        let equilibration = self.scaling.equilibration();
+        equilibration.diagonal.iter().map(|d| ldexp(1.0, STEP - equilibration.factor - 2 * d)).collect()
+    }
+
     /// An answer by steps with `K + rho E`, E the diagonal that the scaling makes the identity: minimise the energy plus
     /// `rho/2` times the squared distance, in E, from the last answer.
     ///
@@ -217,14 +248,9 @@ impl Looked<'_> {
     /// # Source
     /// R. T. Rockafellar, *Monotone operators and the proximal point algorithm*, SIAM J. Control Optim. 14 (1976) 877-898.
     fn answer(&self, problem: &ContactProblem, settings: &Settings, before: Error) -> Result<Solution, Error> {
-        let equilibration = self.scaling.equilibration();
-        let added: Vec<f64> =
-            equilibration.diagonal.iter().map(|d| ldexp(1.0, STEP - equilibration.factor - 2 * d)).collect();
-        let entries: Vec<(usize, usize, f64)> = (problem.stiffness().lower().triplets())
-            .chain(added.iter().enumerate().map(|(dof, &value)| (dof, dof, value)))
-            .collect();
+        let added = self.added();
+        let stiffness = with_diagonal(problem.stiffness(), &added)?;
         let dofs = problem.dofs();
-        let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &entries)?)?;
         let settings_of_step = Settings {
             method: Method::ActiveSet,
             precision: Precision::Double,
@@ -233,7 +259,7 @@ impl Looked<'_> {
             ..settings.clone()
         };
         let mut best: Option<Solution> = None;
-        let mut centre = vec![0.0; dofs];
+        let (mut centre, mut before_last) = (vec![0.0; dofs], f64::INFINITY);
         for step in 1..=MOST_STEPS {
             let load = (problem.load().iter().zip(&added).zip(&centre)).map(|((f, e), u)| f + e * u).collect();
             let of_step =
@@ -244,12 +270,19 @@ impl Looked<'_> {
                 Err(infeasible @ Error::Infeasible { .. }) => return Err(infeasible),
                 Err(_) => break,
             };
+            let moved = (0..dofs).map(|dof| added[dof] * (found.displacement[dof] - centre[dof]).powi(2)).sum::<f64>();
             centre.clone_from(&found.displacement);
-            let certificate = problem.certify(&found.displacement, &found.multiplier)?;
-            let is_better = best.as_ref().is_none_or(|best| certificate.worst().1 < 0.5 * best.certificate.worst().1);
-            if is_better {
-                let reason = Some(format!("by {step} steps with K + rho E, since the stiffness is singular: {before}"));
-                best = Some(Solution { certificate, reason, ..found });
+            // The steps become shorter until they are rounding, also where the conditions cannot tell.
+            let mut is_better = moved < SHORTER * before_last;
+            before_last = moved;
+            for (displacement, multiplier) in without_rounding(problem, &added, &centre, &found.multiplier) {
+                let certificate = problem.certify(&displacement, &multiplier)?;
+                if best.as_ref().is_none_or(|best| certificate.worst().1 < 0.5 * best.certificate.worst().1) {
+                    let reason =
+                        Some(format!("by {step} steps with K + rho E, since the stiffness is singular: {before}"));
+                    best = Some(Solution { displacement, multiplier, certificate, reason, ..found.clone() });
+                    is_better = true;
+                }
             }
             if settings.watch.is_over() || step >= FEWEST_STEPS && !is_better {
                 break;
@@ -262,15 +295,48 @@ impl Looked<'_> {
     }
 }
 
+fn with_diagonal(stiffness: &SymmetricMatrix, added: &[f64]) -> Result<SymmetricMatrix, Error> {
+    let diagonal = added.iter().enumerate().map(|(dof, &value)| (dof, dof, value));
+    let entries: Vec<(usize, usize, f64)> = stiffness.lower().triplets().chain(diagonal).collect();
+    SymmetricMatrix::from_lower(SparseMatrix::from_triplets(added.len(), added.len(), &entries)?)
+}
+
+/// An answer of a step as it is, without the forces that the added diagonal makes of the rounding of the displacement, and
+/// also without the displacements that such forces make.
+fn without_rounding(problem: &ContactProblem, added: &[f64], u: &[f64], lambda: &[f64]) -> [(Vec<f64>, Vec<f64>); 3] {
+    let mut rounding = vec![0.0_f64; problem.rows()];
+    for (row, dof, b) in problem.contact().triplets().filter(|entry| entry.2 != 0.0) {
+        rounding[row] = rounding[row].max(OF_STEP * (added[dof] * u[dof] / b).abs());
+    }
+    let counts = |(&force, least): (&f64, &f64)| if force.abs() > *least { force } else { 0.0 };
+    let pressing: Vec<f64> = lambda.iter().zip(&rounding).map(counts).collect();
+    let forces = problem.contact().mul_abs_transposed(&absolute(&pressing));
+    let left = problem.contact().mul_abs_transposed(&rounding);
+    let alone = problem.stiffness().diagonal();
+    let moved = |dof: usize| {
+        let least = left[dof] + OF_STEP * (forces[dof] + problem.load()[dof].abs());
+        if (alone[dof] + added[dof]) * u[dof].abs() > least { u[dof] } else { 0.0 }
+    };
+    [(u.to_vec(), lambda.to_vec()), (u.to_vec(), pressing.clone()), ((0..u.len()).map(moved).collect(), pressing)]
+}
+
+fn absolute(values: &[f64]) -> Vec<f64> {
+    values.iter().map(|value| value.abs()).collect()
+}
+
+/// The sizes of the forces that are in balance at each dof.
+fn forces_at(problem: &ContactProblem, u: &[f64], lambda: &[f64]) -> Vec<f64> {
+    let contact = problem.contact().mul_abs_transposed(&absolute(lambda));
+    let elastic = problem.stiffness().mul_abs(u);
+    (0..u.len()).map(|dof| contact[dof] + elastic[dof] + problem.load()[dof].abs()).collect()
+}
+
 /// Does each row press?
 fn pressed(problem: &ContactProblem, u: &[f64], lambda: &[f64]) -> Vec<bool> {
-    let sizes: Vec<f64> = lambda.iter().map(|value| value.abs()).collect();
-    let contact = problem.contact().mul_abs_transposed(&sizes);
-    let elastic = problem.stiffness().mul_abs(u);
+    let terms = forces_at(problem, u, lambda);
     let mut presses = vec![false; problem.rows()];
     for (row, dof, b) in problem.contact().triplets() {
-        let terms = contact[dof] + elastic[dof] + problem.load()[dof].abs();
-        presses[row] |= (b * lambda[row]).abs() > PRESSED * terms;
+        presses[row] |= (b * lambda[row]).abs() > PRESSED * terms[dof];
     }
     presses
 }

@@ -6,10 +6,12 @@ use super::estimate::{Estimate, Kept, check_memory, check_time};
 use super::{Settings, pace};
 use crate::error::Error;
 use crate::qp::linear::multigrid::{Multigrid, NearNullSpace};
+use crate::qp::method::Outcome;
 use crate::qp::method::mprgp::{self, Limits, Start};
 use crate::qp::problem::{ContactProblem, check_gap};
 use crate::qp::transform::RowSelection;
-use crate::solution::{Seconds, Solution};
+use crate::solution::{Certificate, Seconds, Solution};
+use crate::watch::Watch;
 
 /// The method ends this much below the tolerance of the certificate, whose scales differ from its own.
 const MARGIN: f64 = 0.1;
@@ -80,7 +82,8 @@ impl Iterative {
     /// * [`Error::NotCertified`] with the best answer, where the method stagnates above the tolerance.
     pub fn solve_gap(&self, gap: Vec<f64>, start: Start, settings: &Settings) -> Result<Solution, Error> {
         let settings = &settings.started()?;
-        let watch = &settings.watch;
+        // Once the loop ends, its answer is still to be certified.
+        let watch = &settings.watch.keeping(pace::certificate(&self.problem));
         let clock = Instant::now();
         check_gap(&gap, self.problem.rows())?;
         RowSelection::of(self.problem.contact(), &gap)?;
@@ -94,7 +97,7 @@ impl Iterative {
         let limits = |tolerance, most_cycles| Limits { tolerance, most_cycles, watch };
         let mut found = mprgp::solve(&problem, &self.multigrid, start, limits(tolerance, most_cycles))?;
         let certificate = loop {
-            let certificate = problem.certify_by_cycles(&self.multigrid, &found.displacement, &found.multiplier)?;
+            let certificate = self.certificate(&problem, &found, &settings.watch)?;
             most_cycles = settings.max_iterations.saturating_sub(found.iterations);
             let bound = certificate.energy_error_bound;
             tolerance *= match settings.accuracy {
@@ -134,6 +137,12 @@ impl Iterative {
         let (condition, value, tolerance) = goal.decisive(&solution.certificate);
         Err(Error::NotCertified { solution: Box::new(solution), condition, value, tolerance })
     }
+
+    /// The certificate of what was found for `problem`, with the bound that there is time for.
+    fn certificate(&self, problem: &ContactProblem, found: &Outcome, watch: &Watch) -> Result<Certificate, Error> {
+        watch.step("certificate", 0);
+        problem.certify_by_cycles(&self.multigrid, &watch.finishing(), &found.displacement, &found.multiplier)
+    }
 }
 
 /// Builds the hierarchy and solves from nothing known.
@@ -144,7 +153,7 @@ pub(super) fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Sol
     check_memory(problem, Kept::Multigrid, settings)?;
     pace::learn(&settings.watch);
     let estimate = Estimate::of(problem).hierarchy_seconds;
-    check_time(&settings.watch, estimate)?;
+    check_time(&settings.watch, estimate + pace::certificate(problem))?;
     settings.watch.step("multigrid hierarchy", 0);
     let iterative = settings.watch.timed(estimate, || Iterative::new(problem, settings.threads))?;
     let timed = |mut solution: Solution| {

@@ -80,21 +80,23 @@ impl Layout {
             check_memory(problem, layout.kept(settings), settings)?;
             check_time(&settings.watch, layout.seconds(settings))
         };
-        let Err(refused) = fits(&layout) else { return Ok(layout) };
+        let Err(mut refused) = fits(&layout) else { return Ok(layout) };
         if way.is_none() {
             return Err(refused);
         }
         // What the rules choose for its speed may take more memory, or time before its first step, than there is.
         layout.way = Some(Way::ActiveSet);
         layout.is_single = false;
-        if fits(&layout).is_ok() {
-            return Ok(layout);
+        match fits(&layout) {
+            Ok(()) => return Ok(layout),
+            Err(error) => refused = lesser(refused, error),
         }
         if is_condensed && settings.precision != Precision::Double {
             layout.way = Some(Way::ActiveSetMixed);
             layout.is_single = true;
-            if fits(&layout).is_ok() {
-                return Ok(layout);
+            match fits(&layout) {
+                Ok(()) => return Ok(layout),
+                Err(error) => refused = lesser(refused, error),
             }
         }
         Err(refused)

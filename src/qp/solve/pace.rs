@@ -10,6 +10,9 @@ use crate::watch::Watch;
 /// Seconds of ordering and analysis for an entry of the lower triangle, nested dissection included.
 const ORDERING: f64 = 4e-7;
 
+/// Seconds of certificate and report for an entry of the lower triangle.
+const CERTIFICATE: f64 = 1e-7;
+
 /// Seconds of a multiplication in the plain loops of a condensation, and in a sweep through a dense triangle.
 const PLAIN: f64 = 4e-10;
 
@@ -25,6 +28,12 @@ const LATTICE: usize = 64;
 /// Seconds of ordering and analysing the stiffness of `problem`.
 pub(super) fn ordering(problem: &ContactProblem) -> f64 {
     ORDERING * problem.stiffness().lower().entries() as f64
+}
+
+/// Seconds of what follows the last step: the conditions of the certificate, which are summed with twice the working
+/// precision, and what a report adds up.
+pub(super) fn certificate(problem: &ContactProblem) -> f64 {
+    CERTIFICATE * problem.stiffness().lower().entries() as f64
 }
 
 /// Seconds of one factorisation in double precision.

@@ -47,7 +47,8 @@ impl Prepared {
             0.0 => pace::sweeps(problem.rows(), analysis.factor_entries() as f64),
             boundary => pace::sweeps(problem.rows(), boundary * boundary),
         };
-        let least_pivot = Cell::new(None);
+        let norm_seconds = pace::ordering(problem) + pace::factorisation(&analysis);
+        let least_pivot = Cell::new(has_empty_diagonal.then_some(0.0));
         let factor = |single| {
             let estimate = factor_seconds(multiplications, analysis.factor_entries())[usize::from(single)];
             let scaled = scaling.equilibration();
@@ -124,6 +125,7 @@ impl Prepared {
             way,
             multiplications,
             proof_seconds,
+            norm_seconds,
             condensed_norm: OnceLock::new(),
             loading: OnceLock::new(),
             seconds: Seconds { factor, solve: clock.elapsed().as_secs_f64() },

@@ -42,6 +42,8 @@ pub struct Prepared {
     pub(super) multiplications: f64,
     /// Seconds that proving which rows are open and closed takes, estimated.
     pub(super) proof_seconds: f64,
+    /// Seconds of the factorisation that a bound takes where the stiffness is not definite by itself, estimated.
+    pub(super) norm_seconds: f64,
     pub(super) seconds: Seconds,
 }
 
@@ -78,6 +80,11 @@ impl Prepared {
     /// Multiplications of the factorisation of the stiffness.
     pub fn multiplications(&self) -> f64 {
         self.multiplications
+    }
+
+    /// Do the methods work on the contact dofs alone?
+    pub(super) fn is_condensed(&self) -> bool {
+        self.condensation.is_some()
     }
 
     /// May the answer fall short of its goal where a slower way would not?
@@ -239,7 +246,10 @@ impl Prepared {
         let start = start.map(|set| self.selection.restrict_set(set));
         let bound = |displacement: &[f64], multiplier: &[f64]| {
             let certificate = match self.condensed_norm(&problem).ok().flatten() {
-                Some(norm) => problem.certify_in(Some(norm), displacement, multiplier),
+                Some(norm) => {
+                    let norm = norm.watched(&settings.watch.finishing());
+                    problem.certify_in(Some(&norm), displacement, multiplier)
+                }
                 None => problem.certify(displacement, multiplier),
             };
             let of_whole = self.share_of_boundary(&loading, unit, &problem, displacement);
@@ -251,7 +261,7 @@ impl Prepared {
         Ok(Found { loading, gap, problem, unit, outcome, seconds, refined: None })
     }
 
-    /// A watch that is over as soon as there is no time left for one more factorisation of a loop.
+    /// A watch that is over as soon as there is no time left for one more factorisation of a loop, and the certificate.
     ///
     /// # Errors
     /// [`Error::OutOfTime`] where there is none for the first.
@@ -268,7 +278,7 @@ impl Prepared {
             _ => (of_loop, of_loop),
         };
         check_time(&settings.watch, first)?;
-        Ok(settings.watch.keeping(each))
+        Ok(settings.watch.keeping(each + pace::certificate(&self.problem)))
     }
 
     /// The answer on the boundary, certified there.
@@ -403,15 +413,17 @@ impl Prepared {
         let displacement = self.displacement(found);
         let method = self.resolved(settings).method;
         let Found { loading, gap, unit, outcome, seconds, refined, .. } = found;
+        let finishing = settings.watch.finishing();
+        let norm = self.norm.as_ref().map(|norm| norm.watched(&finishing));
         let norm = match refined {
-            Some(refined) => self.norm.as_ref().map(|norm| norm.off_by(refined.contraction)),
-            None => self.norm.clone(),
+            Some(refined) => norm.map(|norm| norm.off_by(refined.contraction)),
+            None => norm,
         };
         let multiplier = self.expand_multiplier(&outcome.multiplier, *unit);
         let problem = self.problem.with(loading.load.clone(), gap.clone())?;
         let certificate = match &norm {
             Some(norm) => problem.certify_in(Some(norm), &displacement, &multiplier)?,
-            None => problem.certify(&displacement, &multiplier)?,
+            None => self.certificate(&problem, &displacement, &multiplier, &settings.watch)?,
         };
         let expand_iteration = |step: &Iteration| Iteration {
             contact_set: self.selection.expand_set(&step.contact_set),
@@ -444,15 +456,17 @@ impl Prepared {
         Ok(solution)
     }
 
-    /// The certificate of an answer to `problem`, this one under some load and gaps.
+    /// The certificate of an answer to `problem`, this one under some load and gaps: with what bound there is time for.
     pub(super) fn certificate(
         &self,
         problem: &ContactProblem,
         displacement: &[f64],
         multiplier: &[f64],
+        watch: &Watch,
     ) -> Result<Certificate, Error> {
         match &self.norm {
-            Some(norm) => problem.certify_in(Some(norm), displacement, multiplier),
+            Some(norm) => problem.certify_in(Some(&norm.watched(&watch.finishing())), displacement, multiplier),
+            None if !watch.finishing().allows(self.norm_seconds) => problem.certify_in(None, displacement, multiplier),
             None => problem.certify(displacement, multiplier),
         }
     }

@@ -163,7 +163,7 @@ impl Prepared {
             let moved = self.expand(&step.loading, step.unit, &step.outcome.displacement);
             let displacement: Vec<f64> = displacement.iter().zip(&moved).map(|(u, d)| u + d).collect();
             let multiplier = self.expand_multiplier(&step.outcome.multiplier, step.unit);
-            let certificate = self.certificate(problem, &displacement, &multiplier)?;
+            let certificate = self.certificate(problem, &displacement, &multiplier, &settings.watch)?;
             let (before, after) = (solution.certificate.worst().1, certificate.worst().1);
             if after.is_nan() || after > GAIN * before || (solution.certificate.has_bound() && !certificate.has_bound())
             {

@@ -44,7 +44,7 @@ impl Method {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Condense {
-    /// Where an estimate of work and memory says that it pays.
+    /// Where an estimate of work and memory says that it pays; where that loses digits, all dofs are tried next.
     #[default]
     Auto,
     /// Never: the methods work on all dofs.
@@ -85,7 +85,8 @@ pub struct Settings {
     /// Are the rows named whose contact is beyond doubt?
     pub prove: bool,
     /// Wall-clock seconds after which the best answer so far is returned, as [`Error::NotCertified`] if it falls short;
-    /// a factorisation that is under way is ended first.
+    /// a factorisation that is under way is ended first, and the bound of the certificate may take a tenth of the time more:
+    /// what it has not found then is a weaker bound, or none.
     pub time: Option<f64>,
     /// Bytes that a solve may take: [`Method::Auto`] takes no way whose estimate is above, and what would take more on the way
     /// that was named, by an estimate made before anything is factorised, is refused.

@@ -17,6 +17,7 @@
 
 use super::{Multigrid, to_order_one};
 use crate::qp::linear::{SymmetricMatrix, dot, ldexp};
+use crate::watch::Watch;
 
 /// What is taken of the least Ritz value: the least eigenvalue may be so much smaller.
 const SAFETY: f64 = 0.5;
@@ -49,6 +50,16 @@ pub struct DualNorm {
 /// Bounds `sqrt(r' A^-1 r)` by conjugate gradients with one cycle of `multigrid`, the hierarchy of `matrix` A or of A without
 /// terms of low rank; `None` where the cycles do not settle. A must be definite.
 pub fn dual_norm(matrix: &SymmetricMatrix, multigrid: &Multigrid, force: &[f64]) -> Option<DualNorm> {
+    dual_norm_within(matrix, multigrid, force, &Watch::default())
+}
+
+/// The same; `None` too where `watch` is over before the cycles settle.
+pub fn dual_norm_within(
+    matrix: &SymmetricMatrix,
+    multigrid: &Multigrid,
+    force: &[f64],
+    watch: &Watch,
+) -> Option<DualNorm> {
     let unit = to_order_one(force);
     let force: Vec<f64> = force.iter().map(|&value| ldexp(value, unit)).collect();
     if dot(&force, &force) == 0.0 {
@@ -60,6 +71,9 @@ pub fn dual_norm(matrix: &SymmetricMatrix, multigrid: &Multigrid, force: &[f64])
     let (mut lengths, mut shares): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
     let mut ritz = f64::INFINITY;
     for cycles in 1..=MOST_CYCLES {
+        if watch.is_over() {
+            return None;
+        }
         let mut direction = multigrid.cycle(&rest);
         let in_cycle = dot(&rest, &direction);
         if let Some((before, moved, energy)) = &last {

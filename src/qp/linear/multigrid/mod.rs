@@ -26,7 +26,7 @@ mod real;
 mod threads;
 
 pub use conjugate_gradients::{ConjugateGradients, conjugate_gradients};
-pub use dual_norm::{DualNorm, dual_norm};
+pub use dual_norm::{DualNorm, dual_norm, dual_norm_within};
 pub use face::Direction;
 pub use near_null::NearNullSpace;
 

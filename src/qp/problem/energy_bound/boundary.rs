@@ -16,13 +16,19 @@ use crate::qp::linear::{dot, exponent, ldexp};
 /// Times that the rows which look closed are corrected; from then on rows are only added.
 const EXCHANGES: usize = 10;
 
-/// Pivots below this share of their row's own compliance belong to rows that follow from others.
-const DEPENDENT: f64 = 1e-12;
+/// Pivots below this share of their row's own compliance are what rounding of products leaves of nearly parallel rows.
+const PARALLEL: f64 = 1e-12;
+
+/// What is left of a row across all others follows from them where it is below this share of the terms.
+const DEPENDENT: f64 = 64.0 * f64::EPSILON;
+
+/// Turns in which a row is made orthogonal to others: the second takes out what rounding of the first has left.
+const TURNS: usize = 2;
 
 /// Corrections of the multipliers that put rows at their gaps; each gains the digits that the dependence of rows leaves.
 const CORRECTIONS: usize = 4;
 
-/// Rounding of a sum of forces, in units of its terms.
+/// Rounding of a sum of forces, in units of its terms; a factor multiplies it by its [loss](EnergyNorm::loss).
 const CANCELLED: f64 = 4.0 * f64::EPSILON;
 
 /// Forces that cancel each other do no harm where their rounding is below this share of the bound.
@@ -48,11 +54,13 @@ impl ContactProblem {
         let repair = Repair::new(self, norm, boundary, &first)?;
         let witness = repair.best_witness(closed)?;
         let bound = repair.bound(&witness);
-        if !witness.has_dependent && repair.cancelled(&witness) <= SMALL * bound.whole {
+        let is_exact = norm.widening() == 1.0 && !witness.has_dependent;
+        if is_exact && repair.cancelled(&witness) <= SMALL * bound.whole {
             return Some(bound);
         }
-        // Rows that follow from others: what is rounding of a large motion may be a large distance between them. The same
-        // again from the witness itself, whose motions and changes of force are small.
+        // Rows that follow from others: what is rounding of a large motion may be a large distance between them. Forces that
+        // cancel each other leave what the factor has rounded. The same again from the witness itself, whose motions, forces
+        // and changes of force are small; how far the answer is from there needs no factor.
         let motion = repair.motion(&witness.error);
         let moved: Vec<f64> = answer.displacement.iter().zip(&motion).map(|(u, d)| u + d).collect();
         let multiplier = repair.expanded(&witness.multiplier);
@@ -103,8 +111,10 @@ struct Witness {
     left: Force,
     multiplier: Vec<f64>,
     closed: Vec<bool>,
-    /// What the corrections have left of the distance of each closed row.
+    /// What the corrections have left of the distance of each closed row that follows from others.
     off: Vec<f64>,
+    /// The motion that puts all other closed rows exactly at their gaps, by orthogonal directions of which each belongs to a row.
+    rest: Vec<f64>,
     /// Does a closed row follow from others?
     has_dependent: bool,
 }
@@ -181,6 +191,9 @@ impl<'a> Repair<'a> {
 
     /// The energy norm of the motion that a unit force along a row causes.
     fn reach(&self, row: usize) -> f64 {
+        if self.norm.is_over() {
+            return f64::INFINITY;
+        }
         let half = self.half(row);
         ldexp(dot(half, half), self.norm.factor()).sqrt()
     }
@@ -202,14 +215,14 @@ impl<'a> Repair<'a> {
     }
 
     fn bound(&self, witness: &Witness) -> ErrorBound {
-        let Witness { error, left, multiplier, closed, off, .. } = witness;
+        let Witness { error, left, multiplier, closed, off, rest, .. } = witness;
         let of_left = self.length(left);
         let springs = self.norm.springs();
         if springs.is_some_and(|springs| !springs.hold(&self.expanded(multiplier), closed, of_left)) {
             return ErrorBound::none();
         }
-        // A closed row that is off its gap is put there along itself, which moves the answer and its residual; and forces that
-        // cancel each other leave their rounding.
+        // Closed rows that are off their gaps are put there, all together or along themselves, which moves the answer and its
+        // residual; and forces that cancel each other leave their rounding.
         let put = |row: usize| {
             let moved = if off[row] > 0.0 { 2.0 * off[row] * self.along(row) } else { 0.0 };
             moved + self.cancelled_on(witness, row)
@@ -220,11 +233,17 @@ impl<'a> Repair<'a> {
             Some(_) => self.problem.length(&self.motion(error)) + (self.norm.rounding() - 1.0) * self.length(error),
             None => self.length(error),
         };
-        let whole = of_error + of_left + put.iter().sum::<f64>();
+        let together = |square: f64| 2.0 * ldexp(square, self.norm.factor()).sqrt();
+        let whole = of_error + of_left + put.iter().sum::<f64>() + together(dot(rest, rest));
         let parts = self.problem.parts();
         let of_parts = (parts.count() > 1).then(|| {
             let mut sizes = vec![0.0; parts.count()];
-            self.problem.parts_of_rows(parts).iter().zip(&put).for_each(|(&part, put)| sizes[part] += put);
+            let mut squares = vec![0.0; parts.count()];
+            for ((&part, put), rest) in self.problem.parts_of_rows(parts).iter().zip(&put).zip(rest) {
+                sizes[part] += put;
+                squares[part] += rest * rest;
+            }
+            sizes.iter_mut().zip(&squares).for_each(|(size, &square)| *size += together(square));
             [error, left].iter().for_each(|force| self.problem.add_sizes(parts, &self.motion(force), &mut sizes));
             sizes
         });
@@ -234,12 +253,15 @@ impl<'a> Repair<'a> {
     /// What rounding of forces that cancel each other may be worth, row by row, in energy norm.
     fn cancelled_on(&self, witness: &Witness, row: usize) -> f64 {
         let terms = witness.error.terms[row] + witness.left.terms[row];
-        if terms > 0.0 { CANCELLED * terms * self.reach(row) } else { 0.0 }
+        if terms > 0.0 { CANCELLED * self.norm.loss() * terms * self.reach(row) } else { 0.0 }
     }
 
-    /// The same of all rows.
+    /// The same of all rows and of the residual.
     fn cancelled(&self, witness: &Witness) -> f64 {
-        (0..self.rows.len()).map(|row| self.cancelled_on(witness, row)).sum()
+        let alpha = witness.error.alpha.abs() + witness.left.alpha.abs();
+        let residual = self.length(&Force::new(alpha, vec![0.0; self.rows.len()]));
+        let of_residual = CANCELLED * self.norm.loss() * residual;
+        (0..self.rows.len()).map(|row| self.cancelled_on(witness, row)).fold(of_residual, |sum, of_row| sum + of_row)
     }
 
     /// Multipliers in the units of the problem.
@@ -278,7 +300,7 @@ impl<'a> Repair<'a> {
                 }
                 false => Force::new(0.0, vec![0.0; rows]),
             };
-            let Fitted { change, distance, tolerance, independent } = self.fit(&set, &base);
+            let Fitted { change, distance, tolerance, independent, rest } = self.fit(&set, &base)?;
             let violated: Vec<usize> =
                 (0..rows).filter(|&row| !closed[row] && distance[row] > tolerance[row]).collect();
             let missed = |row: usize| closed[row] && distance[row].abs() > tolerance[row];
@@ -295,10 +317,15 @@ impl<'a> Repair<'a> {
             };
             let is_met = violated.is_empty() && deeper.is_empty() && looser.is_empty();
             if is_met && (pulling.is_empty() || exchange >= EXCHANGES) {
-                let off = |row: usize| if missed(row) { distance[row].abs() } else { 0.0 };
-                let off = (0..rows).map(off).collect();
+                let mut off = vec![0.0; rows];
+                follows.iter().for_each(|&row| off[row] = distance[row].abs());
                 let has_dependent = first.iter().any(|&first| first) || independent.contains(&false);
-                return Some(Witness { off, has_dependent, ..self.witness(base, change, &closed, in_equilibrium) });
+                return Some(Witness {
+                    off,
+                    rest,
+                    has_dependent,
+                    ..self.witness(base, change, &closed, in_equilibrium)
+                });
             }
             if deeper.iter().any(|&row| first[row]) {
                 return None;
@@ -327,20 +354,23 @@ impl<'a> Repair<'a> {
             false => multiplier[row] - self.multiplier[row] - change[row],
         };
         let rows = (0..change.len()).map(left).collect();
-        let off = vec![0.0; change.len()];
+        let (off, rest) = (vec![0.0; change.len()], vec![0.0; change.len()]);
         Witness {
             error,
             left: Force::new(1.0 - alpha, rows),
             multiplier,
             closed: closed.to_vec(),
             off,
+            rest,
             has_dependent: false,
         }
     }
 
-    /// The multipliers that put the rows of `set` at their gaps beside the force `base`.
-    fn fit(&self, set: &[usize], base: &Force) -> Fitted {
-        let gram = Gram::of(set.iter().map(|&row| self.half(row)).collect());
+    /// The multipliers that put the rows of `set` at their gaps beside the force `base`; `None` where there is no time.
+    fn fit(&self, set: &[usize], base: &Force) -> Option<Fitted> {
+        let half = |&row: &usize| if self.norm.is_over() { None } else { Some(self.half(row)) };
+        let columns: Vec<&[f64]> = set.iter().map(half).collect::<Option<_>>()?;
+        let triangle = Triangle::of(&columns, || self.norm.is_over())?;
         let mut change = vec![0.0; self.rows.len()];
         let mut moved = self.boundary.backward(self.sweep(base));
         let mut correction = 0;
@@ -352,11 +382,15 @@ impl<'a> Repair<'a> {
                 |row: usize| ROUNDING * terms(row).fold(self.violation[row].abs(), |sum, term| sum + term.abs());
             let tolerance: Vec<f64> = (0..self.rows.len()).map(rounding).collect();
             let is_met = |(&row, &kept): (&usize, &bool)| !kept || distance[row].abs() <= tolerance[row];
-            if set.iter().zip(&gram.independent).all(is_met) || correction == CORRECTIONS {
-                return Fitted { change, distance, tolerance, independent: gram.independent };
+            if set.iter().zip(&triangle.independent).all(is_met) || correction == CORRECTIONS {
+                let off = |&row: &usize| distance[row] + tolerance[row].copysign(distance[row]);
+                let mut rest = vec![0.0; self.rows.len()];
+                let across = triangle.solve_lower(set.iter().map(off).collect());
+                set.iter().zip(across).for_each(|(&row, across)| rest[row] = across);
+                return Some(Fitted { change, distance, tolerance, independent: triangle.independent, rest });
             }
             correction += 1;
-            let step = gram.solve(set.iter().map(|&row| -distance[row]).collect());
+            let step = triangle.solve(set.iter().map(|&row| -distance[row]).collect());
             let mut added = vec![0.0; self.rows.len()];
             set.iter().zip(step).for_each(|(&row, step)| added[row] = step);
             change.iter_mut().zip(&added).for_each(|(sum, step)| *sum += step);
@@ -373,50 +407,107 @@ struct Fitted {
     distance: Vec<f64>,
     tolerance: Vec<f64>,
     independent: Vec<bool>,
+    /// What is left of the distances, and rounding of it, by orthogonal directions.
+    rest: Vec<f64>,
 }
 
-/// The Cholesky factor of `Z'Z`, without the columns that follow from those before them.
-struct Gram {
-    size: usize,
-    factor: Vec<f64>,
+/// The triangle R of `Z'Z = R'R`, without the columns of Z that follow from those before them.
+struct Triangle {
+    /// The columns of R, each down to its diagonal entry.
+    columns: Vec<Vec<f64>>,
     independent: Vec<bool>,
 }
 
-impl Gram {
-    fn of(columns: Vec<&[f64]>) -> Self {
-        let size = columns.len();
-        let mut factor = vec![0.0; size * size];
-        let mut independent = vec![true; size];
-        for i in 0..size {
-            let own = dot(columns[i], columns[i]);
-            let (before, row) = factor.split_at_mut(i * size);
-            for j in (0..i).filter(|&j| independent[j]) {
-                let known = dot(&before[j * size..j * size + j], &row[..j]);
-                row[j] = (dot(columns[i], columns[j]) - known) / before[j * size + j];
+impl Triangle {
+    /// From the products of the columns. Where some are nearly parallel, as rows that reach a part much softer than the others,
+    /// the products have lost what tells them apart, and the columns themselves are made orthogonal.
+    ///
+    /// `None` where it `is_over` before it is done.
+    fn of(columns: &[&[f64]], is_over: impl Fn() -> bool) -> Option<Self> {
+        let of_products = Self::of_products(columns, &is_over)?;
+        if of_products.independent.contains(&false) { Self::of_columns(columns, &is_over) } else { Some(of_products) }
+    }
+
+    fn of_products(columns: &[&[f64]], is_over: &impl Fn() -> bool) -> Option<Self> {
+        let mut found = Triangle { columns: Vec::new(), independent: Vec::new() };
+        for (i, column) in columns.iter().enumerate() {
+            if is_over() {
+                return None;
             }
-            let pivot = own - dot(&row[..i], &row[..i]);
-            independent[i] = pivot > DEPENDENT * own;
-            if independent[i] {
-                row[i] = pivot.sqrt();
-            } else {
-                row[..i].fill(0.0);
+            let mut entries = vec![0.0; i + 1];
+            for j in (0..i).filter(|&j| found.independent[j]) {
+                let before = &found.columns[j];
+                entries[j] = (dot(column, columns[j]) - dot(&before[..j], &entries[..j])) / before[j];
             }
+            let own = dot(column, column);
+            let pivot = own - dot(&entries, &entries);
+            found.close(entries, pivot.max(0.0).sqrt(), pivot > PARALLEL * own);
         }
-        Gram { size, factor, independent }
+        Some(found)
+    }
+
+    fn of_columns(columns: &[&[f64]], is_over: &impl Fn() -> bool) -> Option<Self> {
+        let mut found = Triangle { columns: Vec::new(), independent: Vec::new() };
+        let mut directions: Vec<Vec<f64>> = Vec::new();
+        let lengths: Vec<f64> = columns.iter().map(|column| dot(column, column).sqrt()).collect();
+        for (i, column) in columns.iter().enumerate() {
+            if is_over() {
+                return None;
+            }
+            let (mut entries, mut across) = (vec![0.0; i + 1], column.to_vec());
+            for _ in 0..TURNS {
+                for (j, direction) in directions.iter().enumerate().filter(|entry| found.independent[entry.0]) {
+                    let share = dot(direction, &across);
+                    entries[j] += share;
+                    across.iter_mut().zip(direction).for_each(|(entry, d)| *entry -= share * d);
+                }
+            }
+            let left = dot(&across, &across).sqrt();
+            let mut weights = entries.clone();
+            found.solve_upper(&mut weights[..i]);
+            let terms =
+                weights.iter().zip(&lengths).fold(lengths[i], |sum, (weight, length)| sum + weight.abs() * length);
+            found.close(entries, left, left > DEPENDENT * terms);
+            across.iter_mut().for_each(|entry| *entry /= left);
+            directions.push(across);
+        }
+        Some(found)
+    }
+
+    /// Appends a column of R with this diagonal entry.
+    fn close(&mut self, mut entries: Vec<f64>, diagonal: f64, is_independent: bool) {
+        if is_independent {
+            let last = entries.len() - 1;
+            entries[last] = diagonal;
+        } else {
+            entries.fill(0.0);
+        }
+        self.columns.push(entries);
+        self.independent.push(is_independent);
     }
 
     /// Solves `Z'Z x = b` for the independent columns; x is zero on the others.
     fn solve(&self, b: Vec<f64>) -> Vec<f64> {
-        let (size, factor) = (self.size, &self.factor);
-        let mut x = b;
-        for i in 0..size {
-            let known = dot(&factor[i * size..i * size + i], &x[..i]);
-            x[i] = if self.independent[i] { (x[i] - known) / factor[i * size + i] } else { 0.0 };
-        }
-        for i in (0..size).rev().filter(|&i| self.independent[i]) {
-            let known: f64 = (i + 1..size).map(|j| factor[j * size + i] * x[j]).sum();
-            x[i] = (x[i] - known) / factor[i * size + i];
-        }
+        let mut x = self.solve_lower(b);
+        self.solve_upper(&mut x);
         x
+    }
+
+    /// `R'^-1 b`; zero on columns that follow from others.
+    fn solve_lower(&self, mut b: Vec<f64>) -> Vec<f64> {
+        for (i, column) in self.columns.iter().enumerate() {
+            let known = dot(&column[..i], &b[..i]);
+            b[i] = if self.independent[i] { (b[i] - known) / column[i] } else { 0.0 };
+        }
+        b
+    }
+
+    /// `R^-1 b`; zero on columns that follow from others.
+    fn solve_upper(&self, b: &mut [f64]) {
+        for (i, column) in self.columns.iter().enumerate().take(b.len()).rev() {
+            b[i] = if self.independent[i] { b[i] / column[i] } else { 0.0 };
+            let value = b[i];
+            b[..i].iter_mut().zip(column).for_each(|(entry, r)| *entry -= r * value);
+        }
     }
 }

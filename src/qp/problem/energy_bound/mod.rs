@@ -24,7 +24,7 @@ mod row_by_row;
 use super::parts::Parts;
 use super::{ContactProblem, EnergyNorm};
 use crate::error::Error;
-use crate::qp::linear::{SymmetricMatrix, dot, ldexp};
+use crate::qp::linear::{SymmetricMatrix, ldexp};
 
 /// An answer (u, lambda) and what its certificate has computed of it.
 pub(super) struct Answer<'a> {
@@ -85,6 +85,8 @@ impl ContactProblem {
     pub(super) fn energy_error_bound(&self, norm: &EnergyNorm, answer: &Answer) -> ErrorBound {
         let closed = self.rows_that_look_closed(answer);
         let on_boundary = norm.boundary().and_then(|boundary| self.bound_on_boundary(norm, boundary, answer, &closed));
+        // What was cut short is nothing.
+        let on_boundary = on_boundary.filter(|bound| bound.whole.is_finite() || !norm.is_over());
         let bound = on_boundary.unwrap_or_else(|| {
             let as_it_stands = self.bound_row_by_row(norm, answer, None);
             self.bound_row_by_row(norm, answer, Some(&closed)).smaller(as_it_stands)
@@ -149,8 +151,8 @@ impl ContactProblem {
 
     /// The energy norm of a motion.
     fn length(&self, motion: &[f64]) -> f64 {
-        let forces = self.accurate_product(|column| self.stiffness.lower().column(column), motion);
-        dot(motion, &forces).max(0.0).sqrt()
+        let forces = self.unrounded_product(|column| self.stiffness.lower().column(column), motion);
+        forces.products_by(motion, |_| 0, 1)[0].max(0.0).sqrt()
     }
 
     /// The energy norms of a motion by parts, added to `sizes`.

@@ -9,13 +9,11 @@ use super::solve::Exact;
 /// zero: the evidence is given in doubles.
 const ROUNDING: f64 = 1e-9;
 
-/// The numbers, with those that stand for zero replaced by it; each counts `size` times.
-fn cleaned(values: &[f64], sizes: impl Fn(usize) -> f64) -> Vec<Dyadic> {
-    let largest =
-        values.iter().enumerate().fold(0.0_f64, |largest, (place, value)| largest.max(value.abs() * sizes(place)));
-    let kept =
-        |(place, &value): (usize, &f64)| if value.abs() * sizes(place) > ROUNDING * largest { value } else { 0.0 };
-    values.iter().enumerate().map(kept).map(Dyadic::from).collect()
+/// The entries of a direction, with those that stand for zero replaced by it.
+fn cleaned(direction: &[f64]) -> Vec<Dyadic> {
+    let largest = direction.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let kept = |&value: &f64| if value.abs() > ROUNDING * largest { value } else { 0.0 };
+    direction.iter().map(kept).map(Dyadic::from).collect()
 }
 
 /// A sum of products, and the sum of their sizes.
@@ -49,8 +47,7 @@ fn infeasible(exact: &Exact, rows: &[usize], weights: &[f64]) -> Option<&'static
     let places: Option<Vec<usize>> =
         rows.iter().map(|row| exact.rows.iter().position(|bounded| bounded == row)).collect();
     let Some(places) = places else { return Some("a row has no bound") };
-    let size = |of: usize| exact.contact[places[of]].iter().map(|b| b.to_f64().abs()).fold(f64::MIN_POSITIVE, f64::max);
-    let weights = cleaned(weights, size);
+    let weights: Vec<Dyadic> = weights.iter().copied().map(Dyadic::from).collect();
     let cancels = |dof: usize| vanishes(&sum(places.iter().map(|&place| &exact.contact[place][dof]).zip(&weights)));
     let (overlap, _) = sum(places.iter().map(|&place| &exact.gap[place]).zip(&weights));
     match (0..exact.dofs()).all(cancels) {
@@ -65,7 +62,7 @@ fn unbounded(exact: &Exact, direction: &[f64]) -> Option<&'static str> {
     if !has_no_energy(exact, direction) {
         return Some("the direction has energy");
     }
-    let direction = cleaned(direction, |_| 1.0);
+    let direction = cleaned(direction);
     let moved: Vec<(Dyadic, Dyadic)> = exact.contact.iter().map(|row| sum(row.iter().zip(&direction))).collect();
     if moved.iter().any(|moved| moved.0.sign() > 0 && !vanishes(moved)) {
         return Some("a row stops the direction");
@@ -79,6 +76,6 @@ fn has_no_energy(exact: &Exact, direction: &[f64]) -> bool {
     if !is_finite || !moves {
         return false;
     }
-    let direction = cleaned(direction, |_| 1.0);
+    let direction = cleaned(direction);
     exact.stiffness.iter().all(|line| vanishes(&sum(line.iter().zip(&direction))))
 }
