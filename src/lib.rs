@@ -76,7 +76,7 @@ pub mod watch;
 pub use error::Error;
 pub use qp::linear::{SparseMatrix, SymmetricMatrix};
 pub use qp::problem::ContactProblem;
-pub use qp::solve::{
+pub use qp::{
     BoundarySolution, Condense, Iterative, Method, Path, Precision, Prepared, Settings, Start, solve, solve_qp,
 };
 pub use scene::{Model, Scene};

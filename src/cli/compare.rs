@@ -6,7 +6,7 @@ use super::settings::settings;
 use super::{Outcome, warn};
 use crate::error::Error;
 use crate::output::{compare_json, compare_text, gallery, write_files};
-use crate::qp::solve::Method;
+use crate::qp::Method;
 use crate::study::{Summary, compare};
 use crate::watch::Watch;
 

@@ -9,7 +9,7 @@ use super::{Outcome, warn};
 use crate::error::Error;
 use crate::motion::Integrator;
 use crate::output::{MotionFolder, MotionSeconds, motion_is_certified, motion_json, motion_text, write_files};
-use crate::qp::solve::Method;
+use crate::qp::Method;
 use crate::scene::Scene;
 use crate::study::MotionSummary;
 use crate::watch::Watch;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::memory::{self, parse_size};
-use crate::qp::solve;
+use crate::qp;
 
 /// Frictionless contact of elastic bodies with obstacles: a convex QP, cross-checked and certified.
 #[derive(Debug, Parser)]
@@ -271,24 +271,24 @@ impl Command {
 
 impl PrecisionName {
     /// The precision of the library.
-    pub fn precision(self) -> solve::Precision {
+    pub fn precision(self) -> qp::Precision {
         match self {
-            PrecisionName::Auto => solve::Precision::Auto,
-            PrecisionName::Double => solve::Precision::Double,
-            PrecisionName::Mixed => solve::Precision::Mixed,
+            PrecisionName::Auto => qp::Precision::Auto,
+            PrecisionName::Double => qp::Precision::Double,
+            PrecisionName::Mixed => qp::Precision::Mixed,
         }
     }
 }
 
 impl MethodName {
     /// The method of the library.
-    pub fn method(self) -> solve::Method {
+    pub fn method(self) -> qp::Method {
         match self {
-            MethodName::Auto => solve::Method::Auto,
-            MethodName::Qp => solve::Method::Qp,
-            MethodName::ActiveSet => solve::Method::ActiveSet,
-            MethodName::Penalty => solve::Method::Penalty,
-            MethodName::Mprgp => solve::Method::Mprgp,
+            MethodName::Auto => qp::Method::Auto,
+            MethodName::Qp => qp::Method::Qp,
+            MethodName::ActiveSet => qp::Method::ActiveSet,
+            MethodName::Penalty => qp::Method::Penalty,
+            MethodName::Mprgp => qp::Method::Mprgp,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The settings of a solve from the options that every command shares.
 
 use super::options::Common;
-use crate::qp::solve::{Condense, Method, Settings};
+use crate::qp::{Condense, Method, Settings};
 use crate::watch::Watch;
 
 /// The settings that `common` asks for, for one method, ended by `watch`.

@@ -6,7 +6,7 @@ use super::settings::settings;
 use super::{Outcome, dynamic, warn};
 use crate::error::Error;
 use crate::output::{gallery, solve_json, solve_text, write_files};
-use crate::qp::solve::{Method, solve};
+use crate::qp::{Method, solve};
 use crate::study::discretisation_error;
 use crate::watch::Watch;
 

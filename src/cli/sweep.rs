@@ -6,7 +6,7 @@ use super::settings::settings;
 use super::{Outcome, warn};
 use crate::error::Error;
 use crate::output::{gallery, sweep_json, sweep_text, write_files};
-use crate::qp::solve::Method;
+use crate::qp::Method;
 use crate::study::{even_gaps, sweep};
 use crate::watch::Watch;
 

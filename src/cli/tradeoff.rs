@@ -8,7 +8,7 @@ use crate::output::{
     motion_tradeoff_csv, motion_tradeoff_json, motion_tradeoff_plot, motion_tradeoff_text, tradeoff_csv, tradeoff_json,
     tradeoff_plot, tradeoff_text, write_files, write_picture,
 };
-use crate::qp::solve::Settings;
+use crate::qp::Settings;
 use crate::scene::Scene;
 use crate::study::{TradeoffGrid, motion_tradeoff, tradeoff};
 use crate::watch::Watch;

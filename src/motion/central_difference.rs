@@ -17,7 +17,7 @@ use super::stable_step::check_step;
 use super::step::{Advance, plus};
 use super::{DynamicProblem, State};
 use crate::error::Error;
-use crate::qp::solve::Settings;
+use crate::qp::Settings;
 use crate::solution::ContactSet;
 
 pub(super) struct CentralDifference {

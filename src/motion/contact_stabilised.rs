@@ -13,8 +13,8 @@ use super::projection::MassProjection;
 use super::step::{Advance, Stepping, plus};
 use super::{DynamicProblem, State};
 use crate::error::Error;
+use crate::qp::Settings;
 use crate::qp::problem::ContactProblem;
-use crate::qp::solve::Settings;
 
 pub(super) struct ContactStabilised {
     stepping: Stepping,

@@ -10,7 +10,7 @@ use super::step::Advance;
 use super::{DynamicProblem, Observation, Scheme, State};
 use crate::error::Error;
 use crate::qp::linear::{dot, largest};
-use crate::qp::solve::{Method, Settings};
+use crate::qp::{Method, Settings};
 use crate::solution::ContactSet;
 use crate::watch::Watch;
 

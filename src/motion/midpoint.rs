@@ -20,9 +20,9 @@
 use super::step::{Advance, Found, Stepping, plus};
 use super::{DynamicProblem, State};
 use crate::error::Error;
+use crate::qp::Settings;
 use crate::qp::linear::{SparseMatrix, SymmetricMatrix, dot, largest};
 use crate::qp::problem::ContactProblem;
-use crate::qp::solve::Settings;
 use crate::solution::ContactSet;
 
 /// Energy that a step may be off by, relative to that of motion and strain, before its contact force is corrected.

@@ -14,7 +14,7 @@ use super::step::{Advance, Stepping, plus};
 use super::{DynamicProblem, State};
 use crate::error::Error;
 use crate::qp::problem::ContactProblem;
-use crate::qp::solve::{Method, Settings};
+use crate::qp::{Method, Settings};
 
 pub(super) struct Newmark {
     alpha: f64,

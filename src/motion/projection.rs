@@ -3,8 +3,8 @@
 use super::DynamicProblem;
 use super::step::{Found, Stepping};
 use crate::error::Error;
+use crate::qp::Settings;
 use crate::qp::problem::ContactProblem;
-use crate::qp::solve::Settings;
 use crate::solution::ContactSet;
 
 /// The mass of a motion, prepared with its contact rows.

@@ -3,7 +3,7 @@
 use super::{DynamicProblem, State};
 use crate::error::Error;
 use crate::qp::problem::ContactProblem;
-use crate::qp::solve::{Prepared, Settings};
+use crate::qp::{Prepared, Settings};
 use crate::solution::ContactSet;
 
 /// A scheme with everything prepared that does not change from step to step.

@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::fem::mesh::ElementKind;
 use crate::fem::recovery::Stress;
 use crate::qp::matrix_market::solution_files;
-use crate::qp::solve::with_contact_set;
+use crate::qp::with_contact_set;
 use crate::scene::Model;
 use crate::solution::{ContactSet, Solution};
 use crate::study::{Comparison, Sweep, SweepCorner, SweepPoint};

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::report::{UnitNames, entry, plural, printable, quantity};
 use crate::motion::Scheme;
-use crate::qp::solve::Method;
+use crate::qp::Method;
 use crate::scene::{Dynamics, Model};
 use crate::study::MotionSummary;
 

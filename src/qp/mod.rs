@@ -1,10 +1,71 @@
 //! The certified quadratic program: minimise 1/2 u'K u - f'u subject to B u - g <= 0. It speaks no mechanics.
+//!
+//! From a problem to its answer:
+//!
+//! ```text
+//! problem -> plan -> rows selected -> scaled -> condensed -> method -> expanded -> unscaled -> certificate -> judged
+//! ```
+//!
+//! `plan` alone decides how a problem is solved, by the seconds and bytes of `cost`; an engine prepares it, once for many loads
+//! and gaps; `judged` alone says whether an answer falls short.
 
-pub mod barrier;
+mod attempts;
+mod barrier;
+mod claims;
+pub mod cost;
+mod engine;
+mod judged;
 pub mod linear;
 pub mod matrix_market;
-pub mod memory;
 pub mod method;
+mod plan;
 pub mod problem;
-pub mod solve;
+mod run;
+mod settings;
 pub mod transform;
+
+pub use barrier::guarded;
+pub use cost::Estimate;
+pub use engine::{BoundarySolution, Iterative, Path, Prepared};
+pub use method::mprgp::Start;
+pub use method::parametric::{Event, Piece};
+pub use settings::{Condense, Method, Precision, Settings};
+
+use crate::error::Error;
+use crate::solution::{ContactSet, Solution};
+use problem::ContactProblem;
+
+/// Solves a contact problem; `Ok` means that the answer is certified to `settings.tolerance`.
+///
+/// # Errors
+/// * [`Error::Setting`] for a setting outside its range,
+/// * [`Error::Infeasible`] for contact rows that contradict each other,
+/// * [`Error::Unbounded`] for a load that drives a motion which nothing stops,
+/// * [`Error::UnderHeld`] for a motion that nothing resists: the answer would not be unique,
+/// * [`Error::NotConvex`] for a stiffness with a negative eigenvalue,
+/// * [`Error::NotCertified`] with the best answer, where it does not meet the tolerance,
+/// * [`Error::NoRoom`] where no way within `settings.memory` leads to a certified answer, [`Error::TooLarge`] where the one
+///   that was named does not fit,
+/// * [`Error::Interrupted`] where the watch was asked to stop before there was an answer,
+/// * [`Error::Numerical`] where memory does not suffice.
+pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
+    let settings = &settings.started()?;
+    claims::rechecked(problem, settings, attempts::solved(problem, settings))
+}
+
+/// Solves a contact problem as a QP by the interior-point method, polished, certified to 1e-9.
+///
+/// # Errors
+/// As [`solve`].
+pub fn solve_qp(problem: &ContactProblem) -> Result<Solution, Error> {
+    solve(problem, &Settings::with_method(Method::Qp))
+}
+
+/// Displacement and multiplier of the body with the rows of `closed` held at their gaps and all others free: one
+/// iteration of the active-set loop. The multiplier has either sign.
+///
+/// # Errors
+/// As [`solve`], without [`Error::NotCertified`]; [`Error::Infeasible`] where the rows of the set contradict each other.
+pub fn with_contact_set(problem: &ContactProblem, closed: &ContactSet) -> Result<(Vec<f64>, Vec<f64>), Error> {
+    Prepared::new(problem, Condense::Auto)?.with_contact_set(closed)
+}

@@ -10,7 +10,7 @@ use crate::fem::body::ElasticBody;
 use crate::motion::{DynamicProblem, Scheme, TimeFunction, stable_step};
 use crate::qp::linear::dot;
 use crate::qp::problem::ContactProblem;
-use crate::qp::solve::{Method, Settings, solve};
+use crate::qp::{Method, Settings, solve};
 
 /// Where the fields stand in a scene.
 const PATH: &str = "analysis.dynamic";

@@ -6,7 +6,7 @@ use super::schema::{AxisSpec, BodySpec, ElementSpec, Scene, ShapeSpec, SolidElem
 use super::wrong;
 use crate::error::Error;
 use crate::fem::mesh::MAX_NODES;
-use crate::qp::memory;
+use crate::qp::cost::bytes;
 
 /// Where a dense matrix would have more than this share of the values of the factor, nothing is condensed.
 const DENSE_SHARE: f64 = 0.4;
@@ -84,8 +84,8 @@ impl Scene {
             dofs: 0.0,
             stiffness_entries: 0.0,
             factor_entries: 0.0,
-            bytes: memory::START,
-            multigrid_bytes: memory::START,
+            bytes: bytes::START,
+            multigrid_bytes: bytes::START,
         };
         let bodies = std::iter::once(&self.body).chain(self.further_bodies.iter().map(|further| &further.body));
         let radius = self.obstacles.iter().map(|obstacle| match &obstacle.shape {
@@ -114,10 +114,10 @@ impl Scene {
             size.dofs += nodes * dimension;
             size.stiffness_entries += entries;
             size.factor_entries += factor;
-            let (mesh, dofs) = (memory::of_mesh(nodes, cells * counts.connections), nodes * dimension);
-            let direct = memory::of_factor(factor, size_of::<f64>()) + memory::of_dense(dense.sqrt());
-            size.bytes += mesh + memory::of_problem(dofs, entries) + direct;
-            size.multigrid_bytes += mesh + memory::of_hierarchy(dofs, entries);
+            let (mesh, dofs) = (bytes::of_mesh(nodes, cells * counts.connections), nodes * dimension);
+            let direct = bytes::of_factor(factor, size_of::<f64>()) + bytes::of_dense(dense.sqrt());
+            size.bytes += mesh + bytes::of_problem(dofs, entries) + direct;
+            size.multigrid_bytes += mesh + bytes::of_hierarchy(dofs, entries);
         }
         size
     }

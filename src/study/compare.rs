@@ -5,7 +5,7 @@ use serde::Serialize;
 use crate::error::Error;
 use crate::qp::linear::{dot, largest};
 use crate::qp::problem::ContactProblem;
-use crate::qp::solve::{Method, Settings, solve};
+use crate::qp::{Method, Settings, solve};
 use crate::solution::Solution;
 
 /// Two exact methods agree in the displacement to this share of its largest entry: both end with a linear solve, whose

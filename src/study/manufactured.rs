@@ -14,7 +14,7 @@ use crate::fem::norms::{ErrorNorms, ExactState, error_norms, error_norms_by};
 use crate::fem::recovery::{discretisation_error, stress};
 use crate::qp::linear::SparseMatrix;
 use crate::qp::problem::ContactProblem;
-use crate::qp::solve::solve_qp;
+use crate::qp::solve_qp;
 
 /// The contact pressure at one node.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,7 +89,7 @@ fn in_space([x, y]: [f64; 2]) -> [f64; 3] {
 ///
 /// # Errors
 /// [`Error::Mesh`] for an element that is not plane or an integration that does not fit it, [`Error::Setting`] for
-/// elastic constants that are none, and as [`solve_qp`](crate::qp::solve::solve_qp).
+/// elastic constants that are none, and as [`solve_qp`](crate::qp::solve_qp).
 ///
 /// ```
 /// use signorini::fem::closed_forms::manufactured::{HertzBlock, PlaneElasticity};

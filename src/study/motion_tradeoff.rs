@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::error::Error;
 use crate::motion::Integrator;
-use crate::qp::solve::Settings;
+use crate::qp::Settings;
 use crate::scene::{AnalysisSpec, DynamicSpec, Dynamics, Model, Scene, SchemeSpec};
 
 /// The schemes, the default first.

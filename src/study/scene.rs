@@ -8,7 +8,7 @@ use super::{ModelSize, Summary};
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
 use crate::fem::recovery;
-use crate::qp::solve::{Event, Prepared, Settings, solve};
+use crate::qp::{Event, Prepared, Settings, solve};
 use crate::scene::Model;
 use crate::solution::{ContactSet, Goal, Solution};
 

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::discretisation_error;
 use crate::error::Error;
 use crate::qp::linear::dot;
-use crate::qp::solve::{Condense, Method, Precision, Prepared, Settings, solve};
+use crate::qp::{Condense, Method, Precision, Prepared, Settings, solve};
 use crate::scene::{Model, Scene};
 use crate::solution::Solution;
 use crate::watch::Watch;

@@ -2,7 +2,7 @@
 
 use crate::program::examples;
 use crate::random::springs;
-use signorini::qp::solve::{Condense, Method, Settings};
+use signorini::qp::{Condense, Method, Settings};
 use signorini::{ContactProblem, Error, Scene, Solution, SparseMatrix, SymmetricMatrix, solve};
 
 /// Errors below this are those of the reference, a solve in double precision on matrices of condition 1e4.

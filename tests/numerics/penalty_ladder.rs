@@ -1,6 +1,6 @@
 //! The penalty ladder told an accuracy, and Richardson's extrapolation over the penalty.
 
-use signorini::qp::solve::{Condense, Method, Settings};
+use signorini::qp::{Condense, Method, Settings};
 use signorini::{ContactProblem, Error, Scene, Solution, solve};
 
 /// The scenes whose stiffness is definite by itself and small enough to be solved on all dofs.

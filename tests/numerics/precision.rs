@@ -1,7 +1,7 @@
 //! The factor in single precision: the same answers, half the memory, and a refusal where it cannot carry them.
 
 use crate::random::springs;
-use signorini::qp::solve::{Condense, Method, Precision, Prepared, Settings};
+use signorini::qp::{Condense, Method, Precision, Prepared, Settings};
 use signorini::{ContactProblem, Error, Scene, Solution, SparseMatrix, SymmetricMatrix, solve};
 
 /// Two answers certified in double precision agree to this: rounding times the condition of the larger scenes.

@@ -1,7 +1,7 @@
 //! The proven contact set: never wrong, whatever the method was told, and whole where the answer is good.
 
 use crate::random::springs;
-use signorini::qp::solve::{Condense, Method, Settings};
+use signorini::qp::{Condense, Method, Settings};
 use signorini::{ContactProblem, Error, Scene, Solution, SparseMatrix, SymmetricMatrix, solve};
 
 /// Forces and distances below this share of the largest are not told apart from zero in the exact answer.

@@ -1,7 +1,7 @@
 //! The choice left to the program: an accuracy or a time is named, the answer keeps to it or says how far it got.
 
 use crate::program::{Desk, example, examples};
-use signorini::qp::solve::{Condense, Method, Precision, Prepared, Settings};
+use signorini::qp::{Condense, Method, Precision, Prepared, Settings};
 use signorini::{ContactProblem, Error, Scene, Solution, solve};
 
 fn problem(name: &str) -> ContactProblem {

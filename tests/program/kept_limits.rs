@@ -9,8 +9,8 @@ use std::time::{Duration, Instant};
 
 use crate::program::{Desk, Problem, scene};
 use serde_json::{Value, json};
-use signorini::qp::memory::{START, of_problem};
-use signorini::qp::solve::{Condense, Prepared};
+use signorini::qp::cost::bytes::{START, of_problem};
+use signorini::qp::{Condense, Prepared};
 use signorini::{Error, Method, Scene, Settings, Watch, solve};
 
 /// A bar of 20 cells that flies against a wall, 120 steps a unit of time.
@@ -354,7 +354,7 @@ fn time_of_failed_attempts_counts_and_they_are_named() {
     // A factor in single precision is too poor for so slender cells.
     let problem = Scene::from_json(&strip(300).to_string(), "strip").unwrap().build().unwrap().problem().clone();
     let mut settings = Settings::for_accuracy(1e-30);
-    settings.precision = signorini::qp::solve::Precision::Mixed;
+    settings.precision = signorini::qp::Precision::Mixed;
     let Err(Error::NotCertified { solution, .. }) = solve(&problem, &settings) else { panic!("1e-30 is out of reach") };
     let tried: f64 = solution.attempts.iter().map(|attempt| attempt.seconds).sum();
     assert_eq!(solution.attempts.len(), 1, "{:?}", solution.attempts);
@@ -384,7 +384,7 @@ fn a_step_that_is_estimated_to_take_longer_than_there_is_time_does_not_begin() {
 fn no_way_begins_a_step_that_its_time_does_not_suffice_for() {
     let model = Scene::from_json(&block([60, 60], "q4").to_string(), "block").unwrap().build().unwrap();
     for method in [Method::Auto, Method::Qp, Method::ActiveSet, Method::Penalty, Method::Mprgp] {
-        for condense in [signorini::qp::solve::Condense::Auto, signorini::qp::solve::Condense::Never] {
+        for condense in [signorini::qp::Condense::Auto, signorini::qp::Condense::Never] {
             // On a machine where everything takes a million times as long, a minute is nothing.
             let mut settings = Settings::within(60.0);
             (settings.method, settings.condense, settings.tolerance) = (method, condense, 1e-6);

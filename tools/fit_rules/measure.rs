@@ -2,7 +2,7 @@
 
 use super::clock::processor_seconds;
 
-use signorini::qp::solve::{Condense, Method, Precision, Prepared, Settings};
+use signorini::qp::{Condense, Method, Precision, Prepared, Settings};
 use signorini::{ContactProblem, Error, Solution, solve};
 
 /// The accuracies that rules are fitted for; zero is all that double precision gives.

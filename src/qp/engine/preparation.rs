@@ -4,13 +4,15 @@ use std::cell::Cell;
 use std::sync::OnceLock;
 use std::time::Instant;
 
-use super::estimate::{Kept, check_memory, check_time};
-use super::layout::Layout;
-use super::rules::{Way, factor_seconds};
-use super::{Prepared, Settings, pace};
+use super::factored::Prepared;
+use super::reduction::Reduction;
 use crate::error::Error;
+use crate::qp::cost::seconds::factor_seconds;
+use crate::qp::cost::{Kept, check_memory, check_time, seconds};
 use crate::qp::linear::{AugmentedMatrix, Cholesky, FactorError, largest};
+use crate::qp::plan::{Layout, Way};
 use crate::qp::problem::{ContactProblem, EnergyNorm};
+use crate::qp::settings::Settings;
 use crate::qp::transform::{Condensation, RowSelection, Scaling};
 use crate::solution::Seconds;
 
@@ -31,7 +33,7 @@ impl Prepared {
         let Settings { threads, watch, .. } = settings;
         let clock = Instant::now();
         watch.step("ordering", 0);
-        pace::learn(watch);
+        seconds::learn(watch);
         let selection = RowSelection::of(problem.contact(), problem.gap())?;
         let scaling = Scaling::of(problem.stiffness(), &selection.contact(problem.contact()))?;
         let diagonal = problem.stiffness().diagonal();
@@ -44,10 +46,10 @@ impl Prepared {
         }
         watch.step("factorisation", 0);
         let proof_seconds = match last.len() as f64 {
-            0.0 => pace::sweeps(problem.rows(), analysis.factor_entries() as f64),
-            boundary => pace::sweeps(problem.rows(), boundary * boundary),
+            0.0 => seconds::sweeps(problem.rows(), analysis.factor_entries() as f64),
+            boundary => seconds::sweeps(problem.rows(), boundary * boundary),
         };
-        let norm_seconds = pace::ordering(problem) + pace::factorisation(&analysis);
+        let norm_seconds = seconds::ordering(problem) + seconds::factorisation(&analysis);
         let least_pivot = Cell::new(has_empty_diagonal.then_some(0.0));
         let factor = |single| {
             let estimate = factor_seconds(multiplications, analysis.factor_entries())[usize::from(single)];
@@ -99,7 +101,7 @@ impl Prepared {
             };
             // Where even all rows together do not hold the body, the full problem tells why.
             if let Some(factor) = factor {
-                check_time(watch, pace::dense(last.len()))?;
+                check_time(watch, seconds::dense(last.len()))?;
                 condensation = Some(Condensation::new(factor, last.clone(), scaling.contact(), shifted)?);
             }
         }
@@ -115,12 +117,8 @@ impl Prepared {
         let factor = factor_clock.elapsed().as_secs_f64();
         Ok(Prepared {
             problem: problem.clone(),
-            selection,
-            scaling,
-            stiffest,
-            norm,
+            reduction: Reduction { selection, scaling, stiffest, norm, condensation },
             lost_pivot: least_pivot.get().filter(|&pivot| pivot < LOST_PIVOT),
-            condensation,
             augmented,
             way,
             multiplications,
@@ -140,7 +138,7 @@ impl Prepared {
 fn factor_with_rows(scaling: &Scaling, contact_dofs: &[usize], settings: &Settings) -> Result<Option<Cholesky>, Error> {
     let augmented = AugmentedMatrix::with_last(scaling.stiffness(), scaling.contact(), contact_dofs)?;
     let augmented = augmented.with_threads(settings.threads);
-    check_time(&settings.watch, pace::factorisation(augmented.analysis()))?;
+    check_time(&settings.watch, seconds::factorisation(augmented.analysis()))?;
     let matrix = augmented.matrix(|_| 1.0, 0.0);
     match augmented.factor(&matrix) {
         Ok(cholesky) if cholesky.is_definite(&matrix) => Ok(Some(cholesky)),

@@ -1,63 +1,20 @@
-//! From a contact problem to a certified answer: select rows, scale, condense, method, expand, certify.
+//! Runs a method on a scaled problem, and the last resort where that does not settle.
 
-mod attempts;
-mod boundary;
-mod claims;
-mod estimate;
-mod iterative;
-mod layout;
-mod loading;
-mod pace;
-mod path;
-mod preparation;
-mod prepared;
-mod refinement;
-mod rules;
-mod settings;
-mod stepping;
-
-pub use crate::qp::method::mprgp::Start;
-pub use crate::qp::method::parametric::{Event, Piece};
-pub use attempts::solve;
-pub use boundary::BoundarySolution;
-pub use estimate::Estimate;
-pub use iterative::Iterative;
-pub use path::Path;
-pub use prepared::Prepared;
-pub use settings::{Condense, Method, Precision, Settings};
-
+use super::settings::{Method, Settings};
 use crate::error::Error;
 use crate::qp::method::interior_point::{self, InteriorPoint};
 use crate::qp::method::penalty::{self, BEST_PENALTY, Ladder};
 use crate::qp::method::{Outcome, ScaledProblem, active_set, dual_active_set};
-use crate::qp::problem::ContactProblem;
-use crate::solution::{ContactSet, Iteration, Solution};
+use crate::solution::{ContactSet, Iteration};
 
 /// Iterations of the active-set loop after which its start is taken for a poor one.
 const PATIENCE: usize = 16;
-
-/// Solves a contact problem as a QP by the interior-point method, polished, certified to 1e-9.
-///
-/// # Errors
-/// As [`solve`].
-pub fn solve_qp(problem: &ContactProblem) -> Result<Solution, Error> {
-    solve(problem, &Settings::with_method(Method::Qp))
-}
-
-/// Displacement and multiplier of the body with the rows of `closed` held at their gaps and all others free: one
-/// iteration of the active-set loop. The multiplier has either sign.
-///
-/// # Errors
-/// As [`solve`], without [`Error::NotCertified`]; [`Error::Infeasible`] where the rows of the set contradict each other.
-pub fn with_contact_set(problem: &ContactProblem, closed: &ContactSet) -> Result<(Vec<f64>, Vec<f64>), Error> {
-    Prepared::new(problem, Condense::Auto)?.with_contact_set(closed)
-}
 
 /// Runs the method of `settings`, and the last resort where that does not settle; the active-set steps start from `start`
 /// where it is given.
 ///
 /// `bound` is that of the energy error of an answer to the scaled problem.
-fn run(
+pub(super) fn run(
     scaled: &ScaledProblem,
     start: Option<ContactSet>,
     settings: &Settings,
@@ -122,7 +79,7 @@ fn run_method(
 ///
 /// # Errors
 /// Those of [`dual_active_set::solve`].
-fn last_resort(scaled: &ScaledProblem, before: Outcome) -> Result<Outcome, Error> {
+pub(super) fn last_resort(scaled: &ScaledProblem, before: Outcome) -> Result<Outcome, Error> {
     if before.is_last_resort() || scaled.watch().is_over() {
         return Ok(before);
     }

@@ -11,8 +11,9 @@
 //! The point of a cone that is nearest to some c is itself the answer to a contact problem, with K = I. It is zero exactly if
 //! no direction of the cone leans towards c. Where a method left no answer, steps with `K + rho E` instead of K find one.
 
-use super::attempts::{method_ending, nothing_found};
-use super::{Method, Precision, Settings};
+use super::attempts;
+use super::judged::{judged, not_rechecked};
+use super::settings::{Method, Precision, Settings};
 use crate::error::Error;
 use crate::qp::linear::{FactorError, SparseMatrix, SymmetricMatrix, dot, exponent, generic, largest, ldexp};
 use crate::qp::problem::{ContactProblem, Motion};
@@ -100,7 +101,7 @@ pub(super) fn rechecked(
     if let Some(motion) = looked.freedom(problem, &solution).filter(|_| holds(&solution)) {
         return Err(Error::UnderHeld { motion: motion.in_words(), direction: looked.expanded(&motion) });
     }
-    judged(settings, solution)
+    judged(solution, settings.goal())
 }
 
 /// Does an ending make a claim, or leave open whether there is one? Without a bound it does where its answer holds its
@@ -121,23 +122,8 @@ fn is_doubtful(error: &Error, settings: &Settings) -> bool {
 fn not_decided(problem: &ContactProblem, before: Error) -> Result<Error, Error> {
     match before {
         before @ Error::NotCertified { .. } => Ok(before),
-        claim => nothing_found(problem, 0.0, 0.0).map(|error| match error {
-            Error::NotCertified { solution, value, tolerance, .. } => {
-                let solution = Box::new(Solution { reason: Some(format!("not rechecked: {claim}")), ..*solution });
-                Error::NotCertified { solution, condition: "a claim that could not be rechecked", value, tolerance }
-            }
-            other => other,
-        }),
+        claim => not_rechecked(problem, &claim),
     }
-}
-
-fn judged(settings: &Settings, solution: Solution) -> Result<Solution, Error> {
-    let goal = settings.goal();
-    if goal.is_met_by(&solution.certificate) {
-        return Ok(solution);
-    }
-    let (condition, value, tolerance) = goal.decisive(&solution.certificate);
-    Err(Error::NotCertified { solution: Box::new(solution), condition, value, tolerance })
 }
 
 /// A scaled problem with a basis of the null space of its stiffness.
@@ -264,7 +250,7 @@ impl Looked<'_> {
             let load = (problem.load().iter().zip(&added).zip(&centre)).map(|((f, e), u)| f + e * u).collect();
             let of_step =
                 ContactProblem::new(stiffness.clone(), load, problem.contact().clone(), problem.gap().to_vec())?;
-            let found = match method_ending(&of_step, &settings_of_step) {
+            let found = match attempts::solved(&of_step, &settings_of_step) {
                 Ok(solution) => solution,
                 Err(Error::NotCertified { solution, .. }) => *solution,
                 Err(infeasible @ Error::Infeasible { .. }) => return Err(infeasible),
@@ -368,7 +354,7 @@ fn nearest_of_cone(rows: &[Vec<f64>], c: &[f64]) -> Option<Vec<f64>> {
     let contact = SparseMatrix::from_triplets(rows.len(), dofs, &entries).ok()?;
     let load = c.iter().map(|value| value / size).collect();
     let problem = ContactProblem::new(stiffness, load, contact, vec![0.0; rows.len()]).ok()?;
-    let nearest = match method_ending(&problem, &Settings::with_method(Method::Auto)) {
+    let nearest = match attempts::solved(&problem, &Settings::with_method(Method::Auto)) {
         Ok(solution) => solution.displacement,
         Err(Error::NotCertified { solution, .. }) => solution.displacement,
         Err(_) => return None,

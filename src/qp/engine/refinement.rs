@@ -14,12 +14,13 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::boundary::Found;
+use super::factored::Prepared;
+use super::found::{Found, Refined};
 use super::loading::Loading;
-use super::{Prepared, Settings};
 use crate::error::Error;
 use crate::qp::linear::dot;
 use crate::qp::problem::ContactProblem;
+use crate::qp::settings::Settings;
 use crate::solution::{ContactSet, Solution};
 
 /// Steps after which there is nothing more to gain.
@@ -39,17 +40,6 @@ const NOTHING: f64 = 4.0 * f64::EPSILON;
 
 /// The accuracy that is aimed at is this share of the one asked for, because the contraction is an estimate.
 const AIM: f64 = 0.1;
-
-/// What refinement has done so far.
-#[derive(Clone, Debug)]
-pub(super) struct Refined {
-    /// The displacement before the last step, length n.
-    pub base: Vec<f64>,
-    /// The largest measured contraction.
-    pub contraction: f64,
-    /// Steps after the first answer.
-    pub steps: usize,
-}
 
 impl Prepared {
     /// Refines what the method found with the factor in single precision.
@@ -127,11 +117,12 @@ impl Prepared {
         let contact = problem.contact().mul_transposed(multiplier);
         let released: Vec<f64> = contact.iter().map(|force| -force).collect();
         let left: Vec<f64> = problem.accurate_violation(displacement).iter().map(|violation| -violation).collect();
-        let loading = match self.condensation {
-            Some(_) => Loading::of(self, imbalance, &self.selection.gap(&left)).with_contact_force(self, &released),
+        let loading = match self.reduction.condensation {
+            Some(_) => Loading::of(&self.reduction, imbalance, &self.reduction.selection.gap(&left))
+                .with_contact_force(&self.reduction, &released),
             None => {
                 let rest = imbalance.iter().zip(&released).map(|(r, b)| r + b).collect();
-                Loading::of(self, rest, &self.selection.gap(&left))
+                Loading::of(&self.reduction, rest, &self.reduction.selection.gap(&left))
             }
         };
         self.find_step(Arc::new(loading), left, Some(set), settings)

@@ -3,17 +3,19 @@
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
-use super::boundary::{BoundarySolution, Found};
-use super::estimate::check_time;
+use super::found::Found;
 use super::loading::Loading;
-use super::rules::Way;
-use super::{Condense, Method, Path, Settings, last_resort, pace, run};
+use super::reduction::Reduction;
 use crate::error::Error;
+use crate::qp::cost::{check_time, seconds};
+use crate::qp::judged::judged;
 use crate::qp::linear::{AugmentedMatrix, Equilibration, dot, largest, ldexp};
-use crate::qp::method::parametric::Compliance;
 use crate::qp::method::{ScaledProblem, WORK_TOLERANCE, active_set};
+use crate::qp::plan::{Tried, Way};
 use crate::qp::problem::{ContactProblem, EnergyNorm, check_gap, check_load};
-use crate::qp::transform::{Condensation, RowSelection, Scaling};
+use crate::qp::run::{last_resort, run};
+use crate::qp::settings::{Condense, Method, Settings};
+use crate::qp::transform::Condensation;
 use crate::solution::{Certificate, ContactSet, Iteration, Seconds, Solution};
 use crate::watch::Watch;
 
@@ -24,14 +26,9 @@ const SINGULAR: f64 = 3.0;
 #[derive(Clone, Debug)]
 pub struct Prepared {
     pub(super) problem: ContactProblem,
-    pub(super) selection: RowSelection,
-    pub(super) scaling: Scaling,
-    /// The largest diagonal entry of the stiffness.
-    pub(super) stiffest: f64,
-    pub(super) norm: Option<EnergyNorm>,
+    pub(super) reduction: Reduction,
     /// The smallest pivot of the scaled stiffness, where it is below [`LOST_PIVOT`](super::preparation::LOST_PIVOT).
     pub(super) lost_pivot: Option<f64>,
-    pub(super) condensation: Option<Condensation>,
     pub(super) augmented: AugmentedMatrix,
     /// Energy norm of the condensed stiffness, made when it is first asked for.
     pub(super) condensed_norm: OnceLock<Option<EnergyNorm>>,
@@ -64,12 +61,12 @@ impl Prepared {
 
     /// Number of unknowns that the methods work on.
     pub fn condensed_dofs(&self) -> usize {
-        self.condensation.as_ref().map_or(self.problem.dofs(), |condensed| condensed.stiffness().dim())
+        self.reduction.condensation.as_ref().map_or(self.problem.dofs(), |condensed| condensed.stiffness().dim())
     }
 
     /// Number of values of the factor of the stiffness; zero where the methods factorise by themselves.
     pub fn factor_entries(&self) -> usize {
-        self.condensation.as_ref().map_or(0, Condensation::factor_entries)
+        self.reduction.condensation.as_ref().map_or(0, Condensation::factor_entries)
     }
 
     /// Bytes of these values.
@@ -84,12 +81,16 @@ impl Prepared {
 
     /// Do the methods work on the contact dofs alone?
     pub(super) fn is_condensed(&self) -> bool {
-        self.condensation.is_some()
+        self.reduction.condensation.is_some()
     }
 
-    /// May the answer fall short of its goal where a slower way would not?
-    pub(super) fn is_a_shortcut(&self) -> bool {
-        self.is_single() || self.way.is_some_and(|way| way != Way::ActiveSet)
+    /// What a solve with `settings` tries here.
+    pub(in crate::qp) fn tried(&self, settings: &Settings) -> Tried {
+        Tried {
+            method: self.resolved(settings).method,
+            condensed_dofs: self.is_condensed().then(|| self.condensed_dofs()),
+            is_shortcut: self.is_single() || self.way.is_some_and(|way| way != Way::ActiveSet),
+        }
     }
 
     /// What the preparation cost.
@@ -130,83 +131,12 @@ impl Prepared {
         self.complete(self.find(loading, self.problem.gap().to_vec(), start, settings)?, settings)
     }
 
-    /// Contact set, multipliers and forces with other gaps, the active-set steps starting from `start` where it is given.
-    ///
-    /// The displacement of the body is not computed, so that a condensed problem costs what its contact boundary costs.
-    ///
-    /// # Errors
-    /// As [`Prepared::solve_gap`]; the tolerance is held against the certificate of the condensed problem.
-    pub fn boundary_at_gap(
-        &self,
-        gap: Vec<f64>,
-        start: Option<&ContactSet>,
-        settings: &Settings,
-    ) -> Result<BoundarySolution<'_>, Error> {
-        let settings = &settings.started()?;
-        self.on_boundary(self.find(self.own_load(), gap, start, settings)?, settings)
-    }
-
-    /// As [`Prepared::boundary_at_gap`], with another load, which costs one sweep through the factor of the body.
-    ///
-    /// # Errors
-    /// As [`Prepared::boundary_at_gap`], for the load.
-    pub fn boundary_at_load(
-        &self,
-        load: Vec<f64>,
-        start: Option<&ContactSet>,
-        settings: &Settings,
-    ) -> Result<BoundarySolution<'_>, Error> {
-        self.boundary_at(load, self.problem.gap().to_vec(), start, settings)
-    }
-
-    /// As [`Prepared::boundary_at_load`], with other gaps too.
-    ///
-    /// # Errors
-    /// As [`Prepared::boundary_at_gap`], for load and gaps.
-    pub fn boundary_at(
-        &self,
-        load: Vec<f64>,
-        gap: Vec<f64>,
-        start: Option<&ContactSet>,
-        settings: &Settings,
-    ) -> Result<BoundarySolution<'_>, Error> {
-        let settings = &settings.started()?;
-        let loading = self.other_load(load, &gap)?;
-        self.on_boundary(self.find(loading, gap, start, settings)?, settings)
-    }
-
-    /// The exact path of the answer while the gaps move from `from` to `to` (length m each) on a straight line.
-    ///
-    /// # Errors
-    /// As [`Prepared::solve_gap`] for both ends; [`Error::Interrupted`]; [`Error::NotCondensed`] for a problem that was not condensed or whose
-    /// stiffness is not definite by itself.
-    pub fn path(&self, from: &[f64], to: &[f64], settings: &Settings) -> Result<Path<'_>, Error> {
-        let Some(condensed) = self.condensation.as_ref().filter(|_| self.norm.is_some() && !self.is_single()) else {
-            return Err(Error::NotCondensed { step: "the exact path" });
-        };
-        self.check_gap(to)?;
-        let settings = &settings.started()?;
-        let found = self.find(self.own_load(), from.to_vec(), None, settings)?;
-        let start = self.on_boundary(found, settings)?;
-        let Found { loading, unit, problem, .. } = &start.found;
-        let free = condensed.contact().mul(&condensed.free_displacement(&loading.sweep));
-        let at_end = self.scaling.gap(&self.selection.gap(to), *unit);
-        let constant =
-            free.iter().zip(problem.gap()).map(|(&free, gap)| ldexp(free, loading.unit - unit) - gap).collect();
-        let slope = problem.gap().iter().zip(&at_end).map(|(first, last)| first - last).collect();
-        let compliance = Compliance::new(condensed.compliance(), constant, slope);
-        let (pieces, mut events) =
-            compliance.walk(&self.selection.restrict_set(&start.contact_set), &settings.watch)?;
-        events.iter_mut().for_each(|event| event.row = self.selection.kept()[event.row]);
-        Ok(Path { prepared: self, from: from.to_vec(), to: to.to_vec(), unit: *unit, pieces, events })
-    }
-
     pub(super) fn expand_multiplier(&self, multiplier: &[f64], unit: i32) -> Vec<f64> {
-        self.selection.expand_multiplier(&self.scaling.expand_multiplier(multiplier, unit))
+        self.reduction.selection.expand_multiplier(&self.reduction.scaling.expand_multiplier(multiplier, unit))
     }
 
     pub(super) fn expand_set(&self, set: &ContactSet) -> ContactSet {
-        self.selection.expand_set(set)
+        self.reduction.selection.expand_set(set)
     }
 
     /// Runs the method of `settings`, on the contact boundary where the problem is condensed.
@@ -242,8 +172,8 @@ impl Prepared {
         let clock = Instant::now();
         let watch = self.watch_of_loop(settings)?;
         let (problem, unit) = self.scaled(&loading, &gap)?;
-        let task = ScaledProblem::new(&problem, &self.augmented, self.norm.is_some()).watched(&watch);
-        let start = start.map(|set| self.selection.restrict_set(set));
+        let task = ScaledProblem::new(&problem, &self.augmented, self.reduction.norm.is_some()).watched(&watch);
+        let start = start.map(|set| self.reduction.selection.restrict_set(set));
         let bound = |displacement: &[f64], multiplier: &[f64]| {
             let certificate = match self.condensed_norm(&problem).ok().flatten() {
                 Some(norm) => {
@@ -271,71 +201,21 @@ impl Prepared {
         }
         let analysis = self.augmented.analysis();
         // Where K is not definite, the start and the test of uniqueness factorise too.
-        let factors = if self.norm.is_some() { 1.0 } else { SINGULAR };
-        let of_loop = factors * pace::factorisation(analysis);
+        let factors = if self.reduction.norm.is_some() { 1.0 } else { SINGULAR };
+        let of_loop = factors * seconds::factorisation(analysis);
         let (first, each) = match settings.method {
-            Method::Qp => (2.0 * pace::interior_point(analysis), pace::interior_point(analysis).max(of_loop)),
+            Method::Qp => (2.0 * seconds::interior_point(analysis), seconds::interior_point(analysis).max(of_loop)),
             _ => (of_loop, of_loop),
         };
         check_time(&settings.watch, first)?;
-        Ok(settings.watch.keeping(each + pace::certificate(&self.problem)))
-    }
-
-    /// The answer on the boundary, certified there.
-    fn on_boundary(&self, found: Found, settings: &Settings) -> Result<BoundarySolution<'_>, Error> {
-        self.judged(found, settings, true)
-    }
-
-    /// The answer on the boundary, its conditions recomputed there, and its error bound where it is `bounded`.
-    pub(super) fn judged(
-        &self,
-        found: Found,
-        settings: &Settings,
-        bounded: bool,
-    ) -> Result<BoundarySolution<'_>, Error> {
-        let on_boundary = |found: &Found| -> Result<Certificate, Error> {
-            let Found { problem, outcome, .. } = found;
-            match if bounded { self.condensed_norm(problem)? } else { None } {
-                None if bounded => problem.certify(&outcome.displacement, &outcome.multiplier),
-                norm => problem.certify_in(norm, &outcome.displacement, &outcome.multiplier),
-            }
-        };
-        let is_met = |certificate: &Certificate| match bounded {
-            true => settings.goal().is_met_by(certificate),
-            false => certificate.conditions_hold(settings.tolerance),
-        };
-        let (found, condensed_certificate) = if self.is_single() {
-            // The condensed problem is that of the last step only.
-            let (found, solution) = self.best(found, settings)?;
-            (found, solution.certificate)
-        } else {
-            let certificate = on_boundary(&found)?;
-            match is_met(&certificate) {
-                true => (found, certificate),
-                false => {
-                    // The certificate of the whole answer tells what is wrong, unless it knows better.
-                    let found = self.best(found, settings)?.0;
-                    let certificate = on_boundary(&found)?;
-                    (found, certificate)
-                }
-            }
-        };
-        let Found { unit, outcome, .. } = &found;
-        Ok(BoundarySolution {
-            multiplier: self.expand_multiplier(&outcome.multiplier, *unit),
-            contact_set: self.selection.expand_set(&outcome.contact_set),
-            iterations: outcome.iterations,
-            condensed_certificate,
-            prepared: self,
-            found,
-        })
+        Ok(settings.watch.keeping(each + seconds::certificate(&self.problem)))
     }
 
     /// The energy norm of the problem that the methods work on.
-    fn condensed_norm(&self, problem: &ContactProblem) -> Result<Option<&EnergyNorm>, Error> {
-        let Some(norm) = &self.norm else { return Ok(None) };
+    pub(super) fn condensed_norm(&self, problem: &ContactProblem) -> Result<Option<&EnergyNorm>, Error> {
+        let Some(norm) = &self.reduction.norm else { return Ok(None) };
         if self.condensed_norm.get().is_none() {
-            let of_problem = match &self.condensation {
+            let of_problem = match &self.reduction.condensation {
                 None => Some(norm.equilibrated()),
                 Some(_) => {
                     let unscaled = Equilibration::none(problem.dofs());
@@ -351,7 +231,7 @@ impl Prepared {
 
     /// The energy norm of a displacement of the condensed problem over that of the whole body.
     fn share_of_boundary(&self, loading: &Loading, unit: i32, problem: &ContactProblem, displacement: &[f64]) -> f64 {
-        let Some(condensed) = &self.condensation else { return 1.0 };
+        let Some(condensed) = &self.reduction.condensation else { return 1.0 };
         let on_boundary = dot(displacement, &problem.stiffness().mul(displacement));
         let interior = ldexp(condensed.interior_energy(&loading.sweep), 2 * (loading.unit - unit));
         if interior > 0.0 { (on_boundary / (on_boundary + interior)).max(0.0).sqrt() } else { 1.0 }
@@ -363,7 +243,7 @@ impl Prepared {
     }
 
     /// The whole answer, certified, and what was found for it: by a second attempt where `found` falls short.
-    fn best(&self, found: Found, settings: &Settings) -> Result<(Found, Solution), Error> {
+    pub(super) fn best(&self, found: Found, settings: &Settings) -> Result<(Found, Solution), Error> {
         let goal = settings.goal();
         let solution = self.whole(&found, settings)?;
         let mut best = (found, solution);
@@ -381,12 +261,8 @@ impl Prepared {
                 best = (other, solution);
             }
         }
-        let solution = &best.1;
-        if goal.is_met_by(&solution.certificate) {
-            return Ok(best);
-        }
-        let (condition, value, tolerance) = goal.decisive(&solution.certificate);
-        Err(Error::NotCertified { solution: Box::new(best.1), condition, value, tolerance })
+        let (found, solution) = best;
+        Ok((found, judged(solution, goal)?))
     }
 
     /// What the last resort finds, where `found` is not its answer already.
@@ -399,7 +275,8 @@ impl Prepared {
         if found.outcome.is_last_resort() || settings.watch.is_over() {
             return Ok(None);
         }
-        let task = ScaledProblem::new(&found.problem, &self.augmented, self.norm.is_some()).watched(&settings.watch);
+        let task =
+            ScaledProblem::new(&found.problem, &self.augmented, self.reduction.norm.is_some()).watched(&settings.watch);
         let outcome = last_resort(&task, found.outcome.clone())
             .map_err(|error| self.expand_error(error, &found.loading.load, &found.gap))?;
         let seconds = Seconds { solve: found.seconds.solve + clock.elapsed().as_secs_f64(), ..found.seconds };
@@ -414,7 +291,7 @@ impl Prepared {
         let method = self.resolved(settings).method;
         let Found { loading, gap, unit, outcome, seconds, refined, .. } = found;
         let finishing = settings.watch.finishing();
-        let norm = self.norm.as_ref().map(|norm| norm.watched(&finishing));
+        let norm = self.reduction.norm.as_ref().map(|norm| norm.watched(&finishing));
         let norm = match refined {
             Some(refined) => norm.map(|norm| norm.off_by(refined.contraction)),
             None => norm,
@@ -426,13 +303,13 @@ impl Prepared {
             None => self.certificate(&problem, &displacement, &multiplier, &settings.watch)?,
         };
         let expand_iteration = |step: &Iteration| Iteration {
-            contact_set: self.selection.expand_set(&step.contact_set),
+            contact_set: self.reduction.selection.expand_set(&step.contact_set),
             penalty: step.penalty,
         };
         let mut solution = Solution {
             displacement,
             multiplier,
-            contact_set: self.selection.expand_set(&outcome.contact_set),
+            contact_set: self.reduction.selection.expand_set(&outcome.contact_set),
             method: format!("{}{}", method.name(), outcome.variant),
             iterations: outcome.iterations,
             history: outcome.history.iter().map(expand_iteration).collect(),
@@ -464,7 +341,7 @@ impl Prepared {
         multiplier: &[f64],
         watch: &Watch,
     ) -> Result<Certificate, Error> {
-        match &self.norm {
+        match &self.reduction.norm {
             Some(norm) => problem.certify_in(Some(&norm.watched(&watch.finishing())), displacement, multiplier),
             None if !watch.finishing().allows(self.norm_seconds) => problem.certify_in(None, displacement, multiplier),
             None => problem.certify(displacement, multiplier),
@@ -472,11 +349,11 @@ impl Prepared {
     }
 
     /// Displacement and multiplier with the rows of `closed` held at their gaps.
-    pub(super) fn with_contact_set(&self, closed: &ContactSet) -> Result<(Vec<f64>, Vec<f64>), Error> {
+    pub(in crate::qp) fn with_contact_set(&self, closed: &ContactSet) -> Result<(Vec<f64>, Vec<f64>), Error> {
         let loading = self.own_load();
         let (problem, unit) = self.scaled(&loading, self.problem.gap())?;
-        let task = ScaledProblem::new(&problem, &self.augmented, self.norm.is_some());
-        let held = active_set::with_contact_set(&task, &self.selection.restrict_set(closed))
+        let task = ScaledProblem::new(&problem, &self.augmented, self.reduction.norm.is_some());
+        let held = active_set::with_contact_set(&task, &self.reduction.selection.restrict_set(closed))
             .map_err(|error| self.expand_error(error, self.problem.load(), self.problem.gap()))?;
         Ok((self.expand(&loading, unit, &held.displacement), self.expand_multiplier(&held.multiplier, unit)))
     }
@@ -492,13 +369,13 @@ impl Prepared {
 
     /// Is the factor in single precision?
     pub fn is_single(&self) -> bool {
-        self.norm.is_some() && self.condensation.as_ref().is_some_and(Condensation::is_single)
+        self.reduction.norm.is_some() && self.reduction.condensation.as_ref().is_some_and(Condensation::is_single)
     }
 
     /// Rows that were left out when the problem was prepared must still be no constraints, and no others.
-    fn check_gap(&self, gap: &[f64]) -> Result<(), Error> {
+    pub(super) fn check_gap(&self, gap: &[f64]) -> Result<(), Error> {
         check_gap(gap, self.problem.rows())?;
-        if self.selection.under(gap)?.kept() == self.selection.kept() {
+        if self.reduction.selection.under(gap)?.kept() == self.reduction.selection.kept() {
             return Ok(());
         }
         let (row, &value) = (gap.iter().enumerate())
@@ -509,10 +386,10 @@ impl Prepared {
     }
 
     fn load(&self, load: Vec<f64>, gap: &[f64]) -> Arc<Loading> {
-        Arc::new(Loading::of(self, load, &self.selection.gap(gap)))
+        Arc::new(Loading::of(&self.reduction, load, &self.reduction.selection.gap(gap)))
     }
 
-    fn own_load(&self) -> Arc<Loading> {
+    pub(super) fn own_load(&self) -> Arc<Loading> {
         self.loading.get_or_init(|| self.load(self.problem.load().to_vec(), self.problem.gap())).clone()
     }
 
@@ -524,25 +401,25 @@ impl Prepared {
 
     /// The problem that the methods work on, and the exponent of its reference displacement.
     fn scaled(&self, loading: &Loading, gap: &[f64]) -> Result<(ContactProblem, i32), Error> {
-        let gap = self.selection.gap(gap);
+        let gap = self.reduction.selection.gap(gap);
         let unit = loading.unit_with(&gap);
-        let (stiffness, contact) = match &self.condensation {
+        let (stiffness, contact) = match &self.reduction.condensation {
             Some(condensed) => (condensed.stiffness(), condensed.contact()),
-            None => (self.scaling.stiffness(), self.scaling.contact()),
+            None => (self.reduction.scaling.stiffness(), self.reduction.scaling.contact()),
         };
-        let (load, gap) = (loading.scaled(unit), self.scaling.gap(&gap, unit));
+        let (load, gap) = (loading.scaled(unit), self.reduction.scaling.gap(&gap, unit));
         Ok((ContactProblem::new(stiffness.clone(), load, contact.clone(), gap)?, unit))
     }
 
     /// The displacement of the whole body, in its own unit.
     pub(super) fn expand(&self, loading: &Loading, unit: i32, displacement: &[f64]) -> Vec<f64> {
-        match &self.condensation {
+        match &self.reduction.condensation {
             Some(condensed) => {
                 // In the unit of the sweep.
                 let moved: Vec<f64> = displacement.iter().map(|&v| ldexp(v, unit - loading.unit)).collect();
-                self.scaling.expand_displacement(&condensed.expand(&loading.sweep, &moved), loading.unit)
+                self.reduction.scaling.expand_displacement(&condensed.expand(&loading.sweep, &moved), loading.unit)
             }
-            None => self.scaling.expand_displacement(displacement, unit),
+            None => self.reduction.scaling.expand_displacement(displacement, unit),
         }
     }
 
@@ -550,12 +427,12 @@ impl Prepared {
     fn expand_error(&self, error: Error, load: &[f64], gap: &[f64]) -> Error {
         let Ok(problem) = self.problem.with(load.to_vec(), gap.to_vec()) else { return error };
         let normalised = |direction: Vec<f64>| {
-            let whole = match &self.condensation {
+            let whole = match &self.reduction.condensation {
                 // A free motion moves the interior along without force.
                 Some(condensed) => condensed.expand(&vec![0.0; self.problem.dofs()], &direction),
                 None => direction,
             };
-            let mut direction = self.scaling.expand_displacement(&whole, 0);
+            let mut direction = self.reduction.scaling.expand_displacement(&whole, 0);
             let size = largest(&direction);
             direction.iter_mut().for_each(|value| *value /= size);
             direction
@@ -571,11 +448,11 @@ impl Prepared {
             }
             Error::UnderHeld { motion, direction } => Error::UnderHeld { motion, direction: normalised(direction) },
             Error::Infeasible { rows, weights, .. } => {
-                let mut scaled = vec![0.0; self.selection.kept().len()];
+                let mut scaled = vec![0.0; self.reduction.selection.kept().len()];
                 rows.iter().zip(&weights).for_each(|(&row, &weight)| scaled[row] = weight);
-                let rows: Vec<usize> = rows.into_iter().map(|row| self.selection.kept()[row]).collect();
+                let rows: Vec<usize> = rows.into_iter().map(|row| self.reduction.selection.kept()[row]).collect();
                 // Rows are scaled as multipliers are; the unit of weights is free.
-                let all = self.expand_multiplier(&scaled, self.scaling.equilibration().factor);
+                let all = self.expand_multiplier(&scaled, self.reduction.scaling.equilibration().factor);
                 let weights: Vec<f64> =
                     if weights.is_empty() { weights } else { rows.iter().map(|&row| all[row]).collect() };
                 let overlap = problem.overlap(&rows, &weights).unwrap_or(0.0);

@@ -1,24 +1,19 @@
-//! What the direct and the iterative path will cost, from the size of a problem alone.
+//! What a solve costs: the one model of seconds and bytes, and the limits that are held against it.
 
-use super::Settings;
-use super::rules::factor_seconds;
-use crate::error::{Error, memory as written};
-use crate::qp::memory;
-use crate::qp::problem::ContactProblem;
+pub mod bytes;
+mod seconds;
+
+use super::problem::ContactProblem;
+use super::settings::Settings;
+use crate::error::Error;
 use crate::watch::Watch;
+use seconds::factor_seconds;
 
 /// Rigid motions of a body in space: its factor grows faster than that of a plane body.
 const MOTIONS_IN_SPACE: usize = 6;
 
 /// Values of the factor of a bar for an unknown, about.
 const ALONG_A_LINE: f64 = 4.0;
-
-/// The direct path is exact and its bound proven: it is left only where it takes so many times as long. In space that is
-/// beyond some 160,000 dofs.
-const CLEARLY: f64 = 20.0;
-
-/// An estimate may be so many times too large.
-const UNSURE: f64 = 2.0;
 
 /// Estimated time and memory of the two paths.
 ///
@@ -38,18 +33,8 @@ pub struct Estimate {
     pub multigrid_seconds: f64,
     /// Seconds of the hierarchy alone.
     pub hierarchy_seconds: f64,
-    knows_motions: bool,
-}
-
-/// The path that is taken, and why it is not the direct one.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Choice {
-    /// The direct path.
-    Factor,
-    /// Multigrid: it is much the faster.
-    Speed { reason: String },
-    /// Multigrid: nothing else fits into the memory.
-    Room { reason: String },
+    /// Does the problem know its rigid-body modes?
+    pub(super) knows_motions: bool,
 }
 
 impl Estimate {
@@ -65,57 +50,20 @@ impl Estimate {
         };
         let both = 2.0 * entries - dofs;
         Estimate {
-            direct_bytes: memory::START + memory::of_problem(dofs, both) + memory::of_factor(factor, size_of::<f64>()),
+            direct_bytes: bytes::START + bytes::of_problem(dofs, both) + bytes::of_factor(factor, size_of::<f64>()),
             factor_entries: factor,
             direct_seconds: seconds,
-            multigrid_bytes: memory::START + memory::of_hierarchy(dofs, both),
+            multigrid_bytes: bytes::START + bytes::of_hierarchy(dofs, both),
             multigrid_seconds: 1.3e-7 * entries,
             hierarchy_seconds: 4e-8 * entries,
             knows_motions: problem.near_null().is_some(),
         }
     }
-
-    /// Is the iterative path the better one: much the faster, or the only one within `most_bytes`?
-    pub fn prefers_multigrid(&self, most_bytes: f64) -> bool {
-        !matches!(self.choose(most_bytes), Ok(Choice::Factor) | Err(_))
-    }
-
-    /// The path to take within `most_bytes`; whether a factor fits that is not clearly too large, its analysis tells.
-    ///
-    /// # Errors
-    /// [`Error::NoRoom`] where neither fits.
-    pub(super) fn choose(&self, most_bytes: f64) -> Result<Choice, Error> {
-        let ratio = self.direct_seconds / self.multigrid_seconds;
-        // Constants alone make a poor hierarchy of a body.
-        if ratio > CLEARLY && self.knows_motions && self.multigrid_bytes <= most_bytes {
-            let reason = format!("by multigrid: a factorisation would take about {ratio:.0} times as long");
-            return Ok(Choice::Speed { reason });
-        }
-        if self.direct_bytes > UNSURE * most_bytes {
-            return self.without_factor(self.direct_bytes, most_bytes).map(|reason| Choice::Room { reason });
-        }
-        Ok(Choice::Factor)
-    }
-
-    /// Why multigrid is taken where a solve with a factor takes `factor` bytes, and that is too much.
-    ///
-    /// # Errors
-    /// [`Error::NoRoom`] where multigrid takes too much as well.
-    pub(super) fn without_factor(&self, factor: f64, most_bytes: f64) -> Result<String, Error> {
-        let multigrid = self.multigrid_bytes;
-        if multigrid > most_bytes {
-            return Err(Error::NoRoom { factor, multigrid, allowed: most_bytes, ended: None });
-        }
-        let [of_multigrid, of_factor, allowed] = [multigrid, factor, most_bytes].map(written);
-        Ok(format!(
-            "by multigrid, of about {of_multigrid}: with a factor it would take about {of_factor}, {allowed} are allowed"
-        ))
-    }
 }
 
 /// What a solve keeps beside the problem.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Kept {
+pub(in crate::qp) enum Kept {
     /// Nothing yet: the problem is being ordered.
     Nothing,
     /// The factor of the body, with so many values, and dense matrices on so many contact dofs.
@@ -127,35 +75,35 @@ pub(super) enum Kept {
 }
 
 /// Factors that exist at one time where every contact set has its own.
-pub(super) const FACTORS: f64 = 2.0;
+pub(in crate::qp) const FACTORS: f64 = 2.0;
 
 /// Refuses a problem that would take more memory than `settings` allow.
 ///
 /// # Errors
 /// [`Error::TooLarge`].
-pub(super) fn check_memory(problem: &ContactProblem, kept: Kept, settings: &Settings) -> Result<(), Error> {
+pub(in crate::qp) fn check_memory(problem: &ContactProblem, kept: Kept, settings: &Settings) -> Result<(), Error> {
     let Some(allowed) = settings.memory else { return Ok(()) };
     let (dofs, lower) = (problem.dofs() as f64, problem.stiffness().lower().entries() as f64);
     let stiffness_entries = 2.0 * lower - dofs;
-    let of_interior_point = |values: f64, is_used| if is_used { memory::of_interior_point(values) } else { 0.0 };
+    let of_interior_point = |values: f64, is_used| if is_used { bytes::of_interior_point(values) } else { 0.0 };
     let (factor_entries, beside) = match kept {
         Kept::Nothing => (0, 0.0),
         Kept::Condensed { values, is_single, contact_dofs, by_interior_point } => {
             let size = if is_single { size_of::<f32>() } else { size_of::<f64>() };
             let dense = contact_dofs as f64;
-            let on_boundary = memory::of_dense(dense) + of_interior_point(dense * dense / 2.0, by_interior_point);
-            (values, memory::of_factor(values as f64, size) + on_boundary)
+            let on_boundary = bytes::of_dense(dense) + of_interior_point(dense * dense / 2.0, by_interior_point);
+            (values, bytes::of_factor(values as f64, size) + on_boundary)
         }
         Kept::Factors { values, last, by_interior_point } => {
-            let factors = FACTORS * memory::of_factor(values as f64, size_of::<f64>());
-            let beside = memory::of_sets(stiffness_entries) + memory::of_boundary(last as f64);
+            let factors = FACTORS * bytes::of_factor(values as f64, size_of::<f64>());
+            let beside = bytes::of_sets(stiffness_entries) + bytes::of_boundary(last as f64);
             (values, factors + beside + of_interior_point(values as f64, by_interior_point))
         }
         Kept::Multigrid => (0, 0.0),
     };
     let bytes = match kept {
         Kept::Multigrid => Estimate::of(problem).multigrid_bytes,
-        _ => memory::START + memory::of_problem(dofs, stiffness_entries) + beside,
+        _ => bytes::START + bytes::of_problem(dofs, stiffness_entries) + beside,
     };
     if bytes > allowed {
         let factor_entries = factor_entries as f64;
@@ -168,7 +116,7 @@ pub(super) fn check_memory(problem: &ContactProblem, kept: Kept, settings: &Sett
 ///
 /// # Errors
 /// [`Error::OutOfTime`].
-pub(super) fn check_time(watch: &Watch, estimate: f64) -> Result<(), Error> {
+pub(in crate::qp) fn check_time(watch: &Watch, estimate: f64) -> Result<(), Error> {
     match watch.time_left() {
         Some(time) if !watch.allows(estimate) => Err(Error::OutOfTime { needed: watch.needed(estimate), time }),
         _ => Ok(()),

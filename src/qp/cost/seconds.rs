@@ -1,11 +1,39 @@
 //! Seconds that a step of a solve takes, estimated on the machine of the fit; [`Watch::timed`] learns how this one compares.
 
 use std::hint::black_box;
+use std::sync::LazyLock;
 
-use super::rules::factor_seconds;
+use serde::Deserialize;
+
 use crate::qp::linear::{Analysis, SparseMatrix, SymmetricMatrix};
 use crate::qp::problem::ContactProblem;
 use crate::watch::Watch;
+
+/// The costs that `cargo run --release --example fit_rules` writes.
+static FITTED: LazyLock<Fitted> =
+    LazyLock::new(|| serde_json::from_str(include_str!("../fitted.json")).unwrap_or_default());
+
+/// What was fitted, without the rules.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+struct Fitted {
+    double: Cost,
+    single: Cost,
+}
+
+/// Seconds that a step takes: a constant, and one for each multiplication and each value of the factor.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Cost {
+    constant: f64,
+    per_multiplication: f64,
+    per_value: f64,
+}
+
+impl Cost {
+    fn seconds(&self, multiplications: f64, values: f64) -> f64 {
+        self.constant + self.per_multiplication * multiplications + self.per_value * values
+    }
+}
 
 /// Seconds of ordering and analysis for an entry of the lower triangle, nested dissection included.
 const ORDERING: f64 = 4e-7;
@@ -25,39 +53,45 @@ const MORE_FILL: f64 = 3.0;
 /// Cells along a side of the lattice whose matrix is factorised to learn the pace.
 const LATTICE: usize = 64;
 
+/// Seconds of a factorisation with so many multiplications and values, in double and in single precision, as they were
+/// where the rules were fitted.
+pub(in crate::qp) fn factor_seconds(multiplications: f64, values: usize) -> [f64; 2] {
+    [FITTED.double, FITTED.single].map(|cost| cost.seconds(multiplications, values as f64))
+}
+
 /// Seconds of ordering and analysing the stiffness of `problem`.
-pub(super) fn ordering(problem: &ContactProblem) -> f64 {
+pub(in crate::qp) fn ordering(problem: &ContactProblem) -> f64 {
     ORDERING * problem.stiffness().lower().entries() as f64
 }
 
 /// Seconds of what follows the last step: the conditions of the certificate, which are summed with twice the working
 /// precision, and what a report adds up.
-pub(super) fn certificate(problem: &ContactProblem) -> f64 {
+pub(in crate::qp) fn certificate(problem: &ContactProblem) -> f64 {
     CERTIFICATE * problem.stiffness().lower().entries() as f64
 }
 
 /// Seconds of one factorisation in double precision.
-pub(super) fn factorisation(analysis: &Analysis) -> f64 {
+pub(in crate::qp) fn factorisation(analysis: &Analysis) -> f64 {
     factor_seconds(analysis.multiplications(), analysis.factor_entries())[0]
 }
 
 /// Seconds of one step of the interior point on a matrix that is analysed so, with a row for each of its contact dofs.
-pub(super) fn interior_point(analysis: &Analysis) -> f64 {
+pub(in crate::qp) fn interior_point(analysis: &Analysis) -> f64 {
     MORE_FILL * ENTRY_BY_ENTRY * analysis.multiplications()
 }
 
 /// Seconds of the product of a dense triangle with its transpose, and of its use as a matrix.
-pub(super) fn dense(size: usize) -> f64 {
+pub(in crate::qp) fn dense(size: usize) -> f64 {
     PLAIN * (size as f64).powi(3) / 3.0
 }
 
 /// Seconds of sweeps through so many values.
-pub(super) fn sweeps(count: usize, values: f64) -> f64 {
+pub(in crate::qp) fn sweeps(count: usize, values: f64) -> f64 {
     PLAIN * count as f64 * values
 }
 
 /// Learns the pace from a small factorisation, if there is a deadline and nothing was timed before.
-pub(super) fn learn(watch: &Watch) {
+pub(in crate::qp) fn learn(watch: &Watch) {
     if watch.time_left().is_none() || watch.pace().is_some() {
         return;
     }
@@ -74,4 +108,15 @@ pub(super) fn learn(watch: &Watch) {
     // The first run fetches code and memory.
     let _ = black_box(analysis.factor(&lattice));
     let _ = black_box(watch.timed(factorisation(&analysis), || analysis.factor(&lattice)));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::factor_seconds;
+
+    #[test]
+    fn the_fitted_costs_are_read() {
+        let [double, single] = factor_seconds(1e9, 1_000_000);
+        assert!(single > 0.0 && double > single && double < 10.0, "{double} {single}");
+    }
 }

@@ -1,8 +1,11 @@
 //! The exact path between two sets of gaps: every gap at which a row touches or releases, and every answer between.
 
-use super::{Prepared, Settings};
+use super::factored::Prepared;
+use super::found::Found;
 use crate::error::Error;
-use crate::qp::method::parametric::{Event, Piece};
+use crate::qp::linear::ldexp;
+use crate::qp::method::parametric::{Compliance, Event, Piece};
+use crate::qp::settings::Settings;
 use crate::solution::{ContactSet, Solution};
 
 /// The answers for all gaps `(1 - t) from + t to`, t from 0 to 1, as polylines.
@@ -71,5 +74,35 @@ impl Path<'_> {
     fn piece(&self, t: f64) -> Option<&Piece> {
         let index = self.pieces.partition_point(|piece| piece.to < t);
         self.pieces.get(index).or(self.pieces.last())
+    }
+}
+
+impl Prepared {
+    /// The exact path of the answer while the gaps move from `from` to `to` (length m each) on a straight line.
+    ///
+    /// # Errors
+    /// As [`Prepared::solve_gap`] for both ends; [`Error::Interrupted`]; [`Error::NotCondensed`] for a problem that was not condensed or whose
+    /// stiffness is not definite by itself.
+    pub fn path(&self, from: &[f64], to: &[f64], settings: &Settings) -> Result<Path<'_>, Error> {
+        let Some(condensed) =
+            self.reduction.condensation.as_ref().filter(|_| self.reduction.norm.is_some() && !self.is_single())
+        else {
+            return Err(Error::NotCondensed { step: "the exact path" });
+        };
+        self.check_gap(to)?;
+        let settings = &settings.started()?;
+        let found = self.find(self.own_load(), from.to_vec(), None, settings)?;
+        let start = self.on_boundary(found, settings)?;
+        let Found { loading, unit, problem, .. } = &start.found;
+        let free = condensed.contact().mul(&condensed.free_displacement(&loading.sweep));
+        let at_end = self.reduction.scaling.gap(&self.reduction.selection.gap(to), *unit);
+        let constant =
+            free.iter().zip(problem.gap()).map(|(&free, gap)| ldexp(free, loading.unit - unit) - gap).collect();
+        let slope = problem.gap().iter().zip(&at_end).map(|(first, last)| first - last).collect();
+        let compliance = Compliance::new(condensed.compliance(), constant, slope);
+        let (pieces, mut events) =
+            compliance.walk(&self.reduction.selection.restrict_set(&start.contact_set), &settings.watch)?;
+        events.iter_mut().for_each(|event| event.row = self.reduction.selection.kept()[event.row]);
+        Ok(Path { prepared: self, from: from.to_vec(), to: to.to_vec(), unit: *unit, pieces, events })
     }
 }

@@ -2,13 +2,14 @@
 
 use std::time::Instant;
 
-use super::estimate::{Estimate, Kept, check_memory, check_time};
-use super::{Settings, pace};
 use crate::error::Error;
+use crate::qp::cost::{Estimate, Kept, check_memory, check_time, seconds};
+use crate::qp::judged::{judged, with_solution};
 use crate::qp::linear::multigrid::{Multigrid, NearNullSpace};
 use crate::qp::method::Outcome;
 use crate::qp::method::mprgp::{self, Limits, Start};
 use crate::qp::problem::{ContactProblem, check_gap};
+use crate::qp::settings::{Method, Settings};
 use crate::qp::transform::RowSelection;
 use crate::solution::{Certificate, Seconds, Solution};
 use crate::watch::Watch;
@@ -83,7 +84,7 @@ impl Iterative {
     pub fn solve_gap(&self, gap: Vec<f64>, start: Start, settings: &Settings) -> Result<Solution, Error> {
         let settings = &settings.started()?;
         // Once the loop ends, its answer is still to be certified.
-        let watch = &settings.watch.keeping(pace::certificate(&self.problem));
+        let watch = &settings.watch.keeping(seconds::certificate(&self.problem));
         let clock = Instant::now();
         check_gap(&gap, self.problem.rows())?;
         RowSelection::of(self.problem.contact(), &gap)?;
@@ -119,7 +120,7 @@ impl Iterative {
             displacement: found.displacement,
             multiplier: found.multiplier,
             contact_set: found.contact_set,
-            method: format!("{}{}", super::Method::Mprgp.name(), found.variant),
+            method: format!("{}{}", Method::Mprgp.name(), found.variant),
             iterations: found.iterations,
             history: found.history,
             certificate,
@@ -131,11 +132,7 @@ impl Iterative {
             condensed_dofs: problem.dofs(),
             seconds: Seconds { factor: 0.0, solve: clock.elapsed().as_secs_f64() },
         };
-        if goal.is_met_by(&solution.certificate) {
-            return Ok(solution);
-        }
-        let (condition, value, tolerance) = goal.decisive(&solution.certificate);
-        Err(Error::NotCertified { solution: Box::new(solution), condition, value, tolerance })
+        judged(solution, goal)
     }
 
     /// The certificate of what was found for `problem`, with the bound that there is time for.
@@ -146,14 +143,14 @@ impl Iterative {
 }
 
 /// Builds the hierarchy and solves from nothing known.
-pub(super) fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
+pub(in crate::qp) fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
     if settings.watch.is_stopped() {
         return Err(Error::Interrupted);
     }
     check_memory(problem, Kept::Multigrid, settings)?;
-    pace::learn(&settings.watch);
+    seconds::learn(&settings.watch);
     let estimate = Estimate::of(problem).hierarchy_seconds;
-    check_time(&settings.watch, estimate + pace::certificate(problem))?;
+    check_time(&settings.watch, estimate + seconds::certificate(problem))?;
     settings.watch.step("multigrid hierarchy", 0);
     let iterative = settings.watch.timed(estimate, || Iterative::new(problem, settings.threads))?;
     let timed = |mut solution: Solution| {
@@ -161,11 +158,5 @@ pub(super) fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Sol
         solution.seconds.solve += iterative.seconds;
         solution
     };
-    match iterative.solve(Start::default(), settings) {
-        Ok(solution) => Ok(timed(solution)),
-        Err(Error::NotCertified { solution, condition, value, tolerance }) => {
-            Err(Error::NotCertified { solution: Box::new(timed(*solution)), condition, value, tolerance })
-        }
-        Err(error) => Err(error),
-    }
+    with_solution(iterative.solve(Start::default(), settings), timed)
 }

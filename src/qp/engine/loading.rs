@@ -1,6 +1,6 @@
-//! A load on a prepared body, swept through its factor once for all gaps.
+//! A load on a factorised body, swept through its factor once for all gaps.
 
-use super::Prepared;
+use super::reduction::Reduction;
 use crate::qp::linear::{exponent, largest, ldexp};
 
 /// A load in all the forms in which a solve needs it.
@@ -22,20 +22,20 @@ pub(super) struct Loading {
 
 impl Loading {
     /// Scales `load` (length n) in a unit that fits it and `gap`, the gaps of the selected rows, and sweeps it.
-    pub fn of(prepared: &Prepared, load: Vec<f64>, gap: &[f64]) -> Self {
-        let stiffness = prepared.stiffest;
+    pub fn of(reduction: &Reduction, load: Vec<f64>, gap: &[f64]) -> Self {
+        let stiffness = reduction.stiffest;
         let statics = if stiffness > 0.0 { largest(&load) / stiffness } else { 0.0 };
         let unit = exponent(largest(gap).max(statics));
-        let scaled = prepared.scaling.load(&load, unit);
-        let (sweep, scaled, free) = match &prepared.condensation {
+        let scaled = reduction.scaling.load(&load, unit);
+        let (sweep, scaled, free) = match &reduction.condensation {
             Some(condensed) => {
                 let sweep = condensed.sweep(&scaled);
-                let free = prepared.norm.is_some().then(|| largest(&condensed.free_displacement(&sweep)));
+                let free = reduction.norm.is_some().then(|| largest(&condensed.free_displacement(&sweep)));
                 let condensed = condensed.load(&sweep);
                 (sweep, condensed, free)
             }
             None => {
-                let free = prepared.norm.as_ref().map(|norm| largest(&norm.scaled_displacement(&scaled)));
+                let free = reduction.norm.as_ref().map(|norm| largest(&norm.scaled_displacement(&scaled)));
                 (Vec::new(), scaled, free)
             }
         };
@@ -43,9 +43,9 @@ impl Loading {
     }
 
     /// The load together with a force (length n) on contact dofs alone, which no sweep has to carry.
-    pub fn with_contact_force(mut self, prepared: &Prepared, force: &[f64]) -> Self {
-        if let Some(condensed) = &prepared.condensation {
-            let scaled = prepared.scaling.load(force, self.unit);
+    pub fn with_contact_force(mut self, reduction: &Reduction, force: &[f64]) -> Self {
+        if let Some(condensed) = &reduction.condensation {
+            let scaled = reduction.scaling.load(force, self.unit);
             self.scaled.iter_mut().zip(condensed.dofs()).for_each(|(entry, &dof)| *entry += scaled[dof]);
         }
         self

@@ -1,8 +1,9 @@
 //! What a motion asks of a prepared problem in every step, and what it can do without.
 
 use super::boundary::BoundarySolution;
-use super::{Prepared, Settings};
+use super::factored::Prepared;
 use crate::error::Error;
+use crate::qp::settings::Settings;
 use crate::solution::ContactSet;
 
 impl Prepared {
@@ -46,9 +47,9 @@ impl Prepared {
     /// # Errors
     /// [`Error::Length`] and [`Error::NotFinite`] for a force that does not fit.
     pub(crate) fn response(&self, force: Vec<f64>) -> Result<Option<Vec<f64>>, Error> {
-        let Some(norm) = &self.norm else { return Ok(None) };
+        let Some(norm) = &self.reduction.norm else { return Ok(None) };
         let loading = self.other_load(force, &vec![0.0; self.problem.rows()])?;
-        let moved = match &self.condensation {
+        let moved = match &self.reduction.condensation {
             Some(condensed) => condensed.free_displacement(&loading.sweep),
             None => norm.scaled_displacement(&loading.scaled(loading.unit)),
         };

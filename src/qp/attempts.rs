@@ -1,0 +1,188 @@
+//! One way after another until an answer is certified: which are tried, and what is told of those that were.
+
+use std::time::Instant;
+
+use super::cost::Estimate;
+use super::engine::{Prepared, multigrid};
+use super::judged::{out_of_time, with_solution};
+use super::plan::{Choice, Tried, safer};
+use super::problem::ContactProblem;
+use super::settings::{Method, Settings};
+use crate::error::Error;
+use crate::solution::{Attempt, ContactSet, Solution};
+
+/// How the ways that are tried end by themselves.
+///
+/// # Errors
+/// As [`solve`](super::solve()); a claim about the problem is not rechecked.
+pub(super) fn solved(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
+    let settings = &settings.started()?;
+    let mut attempts = Attempts { clock: Instant::now(), made: Vec::new(), factor_seconds: 0.0 };
+    let found = match settings.method {
+        Method::Auto => attempts.choose(problem, settings),
+        Method::Mprgp => multigrid::solve(problem, settings),
+        _ => attempts.with_factor(problem, settings),
+    };
+    let found = match found {
+        Err(Error::OutOfTime { needed, time }) => Err(out_of_time(problem, needed, time)?),
+        found => found,
+    };
+    with_solution(found, |solution| attempts.told(solution))
+}
+
+/// What was tried so far.
+struct Attempts {
+    clock: Instant,
+    made: Vec<Attempt>,
+    /// Seconds of the factorisations in it.
+    factor_seconds: f64,
+}
+
+impl Attempts {
+    /// The answer on the way that memory, time and size suggest; where it leads nowhere, on the other one.
+    fn choose(&mut self, problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
+        let estimate = Estimate::of(problem);
+        let (allowed, watch) = (settings.memory.unwrap_or(f64::INFINITY), &settings.watch);
+        let mut refused = None;
+        let reason = match estimate.choose(allowed)? {
+            Choice::Factor => match self.with_factor(problem, settings) {
+                Err(Error::TooLarge { bytes, .. }) => {
+                    refused = Some(bytes);
+                    estimate.without_factor(bytes, allowed)?
+                }
+                Err(error @ Error::OutOfTime { needed, time }) => {
+                    if estimate.multigrid_bytes > allowed || !watch.allows(estimate.hierarchy_seconds) {
+                        return Err(error);
+                    }
+                    format!("by multigrid: a factorisation would take about {needed:.1e} s, {time:.1e} s are left")
+                }
+                decided => return decided,
+            },
+            Choice::Speed { reason } | Choice::Room { reason } => reason,
+        };
+        let clock = Instant::now();
+        let fell_short = match by_multigrid(problem, settings, reason) {
+            Err(error @ (Error::NotCertified { .. } | Error::Numerical { .. } | Error::NotConvex { .. }))
+                if !watch.is_over() =>
+            {
+                error
+            }
+            decided => return decided,
+        };
+        let seconds = clock.elapsed().as_secs_f64();
+        let (multigrid, ended) = (estimate.multigrid_bytes, Some(ending(&fell_short)));
+        let no_room = |factor| Err(Error::NoRoom { factor, multigrid, allowed, ended });
+        if let Some(bytes) = refused {
+            return no_room(bytes);
+        }
+        // What the iteration cannot take, the direct path may.
+        let clock = Instant::now();
+        match self.with_factor(problem, settings) {
+            Err(Error::TooLarge { bytes, .. }) => no_room(bytes),
+            Err(error @ (Error::OutOfTime { .. } | Error::Interrupted)) => {
+                self.add(Tried::on_all_dofs(Method::ActiveSet), clock.elapsed().as_secs_f64(), &error);
+                Err(fell_short)
+            }
+            decided => {
+                self.add(Tried::on_all_dofs(Method::Mprgp), seconds, &fell_short);
+                decided
+            }
+        }
+    }
+
+    /// The answer with a factor; where a shortcut falls short, by the active set in double precision, and where a condensed
+    /// problem does, on all dofs.
+    fn with_factor(&mut self, problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
+        self.with_factor_from(None, problem, settings)
+    }
+
+    /// The same, the active-set steps starting from `start` where it is given.
+    fn with_factor_from(
+        &mut self,
+        start: Option<&ContactSet>,
+        problem: &ContactProblem,
+        settings: &Settings,
+    ) -> Result<Solution, Error> {
+        let clock = Instant::now();
+        let prepared = Prepared::with_settings(problem, settings)?;
+        let preparation = prepared.seconds();
+        let with_preparation = |mut solution: Solution| {
+            solution.seconds.factor += preparation.factor;
+            solution.seconds.solve += preparation.solve;
+            solution
+        };
+        let ending = prepared.solve_gap(problem.gap().to_vec(), start, settings);
+        let fell_short = match with_solution(ending, with_preparation) {
+            Err(error @ (Error::NotCertified { .. } | Error::Numerical { .. })) => error,
+            decided => return decided,
+        };
+        let tried = prepared.tried(settings);
+        let Some((safer, start)) = safer(&tried, settings, &fell_short) else { return Err(fell_short) };
+        drop(prepared);
+        let seconds = clock.elapsed().as_secs_f64();
+        let clock = Instant::now();
+        match self.with_factor_from(start.as_ref(), problem, &safer) {
+            // Where it is cut short, what was tried first may have come further.
+            Err(error) if is_better(&fell_short, &error) => {
+                let tried = Tried::on_all_dofs(safer.method);
+                self.add(tried, clock.elapsed().as_secs_f64(), &error);
+                Err(fell_short)
+            }
+            solved => {
+                self.add(tried, seconds, &fell_short);
+                solved
+            }
+        }
+    }
+
+    /// Notes an attempt on some way that took so many seconds and ended with `error`.
+    fn add(&mut self, tried: Tried, seconds: f64, error: &Error) {
+        let mut method = tried.method.name().to_string();
+        if let Error::NotCertified { solution, .. } = error {
+            self.factor_seconds += solution.seconds.factor;
+            method.clone_from(&solution.method);
+        }
+        let reason = match tried.condensed_dofs {
+            Some(dofs) => format!("on {dofs} condensed dofs {}", ending(error)),
+            None => ending(error),
+        };
+        self.made.push(Attempt { method, seconds, reason });
+    }
+
+    /// The answer with what was tried beside it, and the time of all.
+    fn told(self, mut solution: Solution) -> Solution {
+        solution.seconds.factor += self.factor_seconds;
+        solution.seconds.solve = self.clock.elapsed().as_secs_f64();
+        Solution { attempts: self.made, ..solution }
+    }
+}
+
+/// Is what an attempt `before` left better than the `error` of the safer one?
+fn is_better(before: &Error, error: &Error) -> bool {
+    match (before, error) {
+        (Error::NotCertified { solution: before, .. }, Error::NotCertified { solution, .. }) => {
+            before.certificate.energy_error_bound < solution.certificate.energy_error_bound
+        }
+        (Error::NotCertified { .. }, Error::Interrupted | Error::OutOfTime { .. } | Error::Numerical { .. }) => true,
+        _ => false,
+    }
+}
+
+/// How an attempt ended, in a few words.
+fn ending(error: &Error) -> String {
+    match error {
+        Error::NotCertified { condition, value, tolerance, .. } => {
+            format!("{condition} is {value:.1e}, above {tolerance:.1e}")
+        }
+        error => error.to_string(),
+    }
+}
+
+/// The answer without a factor, and why there is none.
+///
+/// # Errors
+/// As [`Iterative::solve_gap`](super::Iterative::solve_gap).
+fn by_multigrid(problem: &ContactProblem, settings: &Settings, reason: String) -> Result<Solution, Error> {
+    let reason = Some(reason);
+    with_solution(multigrid::solve(problem, settings), |solution| Solution { reason, ..solution })
+}

@@ -1,0 +1,367 @@
+//! What is decided of a solve, all of it here.
+//!
+//! What [`Method::Auto`] does, in this order:
+//!
+//! 1. **Factor or multigrid** (`Estimate::choose`): multigrid where a factorisation would take [`CLEARLY`] times as long, or
+//!    does not fit into the memory; else the direct path. Where that turns out to be too large or too slow, multigrid;
+//!    where multigrid falls short, the direct path if it fits.
+//! 2. **The layout of the factor** ([`Layout::within`]): condensed onto the contact dofs where that pays; else all dofs with the
+//!    contact boundary last, which makes bounds and proofs cheap; else all dofs. The first that fits into memory and time.
+//! 3. **The way on that layout** ([`Way::chosen`]): method and precision, by rules that were fitted to measured times.
+//! 4. **What follows an answer that falls short** ([`safer`]): a shortcut is left for the active set in double precision, a
+//!    condensed problem for all dofs.
+
+use std::sync::LazyLock;
+
+use serde::Deserialize;
+
+use super::cost::{Estimate, FACTORS, Kept, bytes, check_memory, check_time, seconds};
+use super::linear::Analysis;
+use super::problem::{ContactProblem, EnergyNorm};
+use super::settings::{Condense, Method, Precision, Settings};
+use super::transform::{Condensation, Scaling};
+use crate::error::{Error, memory as written};
+use crate::solution::{Certificate, ContactSet};
+
+/// The direct path is exact and its bound proven: it is left only where it takes so many times as long. In space that is
+/// beyond some 160,000 dofs.
+const CLEARLY: f64 = 20.0;
+
+/// An estimate may be so many times too large.
+const UNSURE: f64 = 2.0;
+
+/// The path that is taken, and why it is not the direct one.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Choice {
+    /// The direct path.
+    Factor,
+    /// Multigrid: it is much the faster.
+    Speed { reason: String },
+    /// Multigrid: nothing else fits into the memory.
+    Room { reason: String },
+}
+
+impl Estimate {
+    /// Is the iterative path the better one: much the faster, or the only one within `most_bytes`?
+    pub fn prefers_multigrid(&self, most_bytes: f64) -> bool {
+        !matches!(self.choose(most_bytes), Ok(Choice::Factor) | Err(_))
+    }
+
+    /// The path to take within `most_bytes`; whether a factor fits that is not clearly too large, its analysis tells.
+    ///
+    /// # Errors
+    /// [`Error::NoRoom`] where neither fits.
+    pub(super) fn choose(&self, most_bytes: f64) -> Result<Choice, Error> {
+        let ratio = self.direct_seconds / self.multigrid_seconds;
+        // Constants alone make a poor hierarchy of a body.
+        if ratio > CLEARLY && self.knows_motions && self.multigrid_bytes <= most_bytes {
+            let reason = format!("by multigrid: a factorisation would take about {ratio:.0} times as long");
+            return Ok(Choice::Speed { reason });
+        }
+        if self.direct_bytes > UNSURE * most_bytes {
+            return self.without_factor(self.direct_bytes, most_bytes).map(|reason| Choice::Room { reason });
+        }
+        Ok(Choice::Factor)
+    }
+
+    /// Why multigrid is taken where a solve with a factor takes `factor` bytes, and that is too much.
+    ///
+    /// # Errors
+    /// [`Error::NoRoom`] where multigrid takes too much as well.
+    pub(super) fn without_factor(&self, factor: f64, most_bytes: f64) -> Result<String, Error> {
+        let multigrid = self.multigrid_bytes;
+        if multigrid > most_bytes {
+            return Err(Error::NoRoom { factor, multigrid, allowed: most_bytes, ended: None });
+        }
+        let [of_multigrid, of_factor, allowed] = [multigrid, factor, most_bytes].map(written);
+        Ok(format!(
+            "by multigrid, of about {of_multigrid}: with a factor it would take about {of_factor}, {allowed} are allowed"
+        ))
+    }
+}
+
+/// The rules that `cargo run --release --example fit_rules` writes.
+static FITTED: LazyLock<Fitted> =
+    LazyLock::new(|| serde_json::from_str(include_str!("fitted.json")).unwrap_or_default());
+
+/// What was fitted, without the costs.
+#[derive(Clone, Debug, Default, Deserialize)]
+struct Fitted {
+    rules: Vec<Rule>,
+}
+
+/// A way to an answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Way {
+    ActiveSet,
+    ActiveSetMixed,
+    Qp,
+    QpUnpolished,
+    Penalty,
+    PenaltyRung,
+}
+
+/// For an accuracy, and all that are less: the ways by size.
+///
+/// The size of a condensed problem is the multiplications of its factor. That of an uncondensed one, where every
+/// iteration is a factorisation, is the multiplications for each row: it tells how wide a factor is beside its contact.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Rule {
+    condensed: bool,
+    accuracy: f64,
+    steps: Vec<Step>,
+}
+
+/// A way for all sizes up to one that the steps before do not cover; without a size, for all.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Step {
+    up_to: Option<f64>,
+    way: Way,
+}
+
+/// The interior point is told this share of the accuracy that is asked for.
+const INTERIOR_POINT_SHARE: f64 = 0.1;
+
+/// The one rung of a ladder that is expected to reach an accuracy is this over it.
+const PENALTY_OVER_ACCURACY: f64 = 100.0;
+
+impl Way {
+    /// The way for the method, accuracy and precision of `settings`; `None` where these leave no choice.
+    pub fn chosen(settings: &Settings, condensed: bool, multiplications: f64, rows: usize) -> Option<Way> {
+        if settings.method != Method::Auto {
+            return None;
+        }
+        let accuracy = settings.accuracy.unwrap_or(0.0);
+        let rule = FITTED.rules.iter().filter(|rule| rule.condensed == condensed && rule.accuracy <= accuracy);
+        let size = if condensed { multiplications } else { multiplications / rows.max(1) as f64 };
+        let rule = rule.max_by(|a, b| a.accuracy.total_cmp(&b.accuracy));
+        let step = rule.and_then(|rule| rule.steps.iter().find(|step| step.up_to.is_none_or(|most| size <= most)));
+        let way = step.map_or(Way::ActiveSet, |step| step.way);
+        Some(match (way, settings.precision) {
+            (Way::ActiveSetMixed, Precision::Double) => Way::ActiveSet,
+            (Way::ActiveSet, Precision::Mixed) => Way::ActiveSetMixed,
+            _ => way,
+        })
+    }
+
+    /// `settings` with this way.
+    pub fn settings(self, settings: &Settings) -> Settings {
+        let (method, precision) = match self {
+            Way::ActiveSet => (Method::ActiveSet, Precision::Double),
+            Way::ActiveSetMixed => (Method::ActiveSet, Precision::Mixed),
+            Way::Qp | Way::QpUnpolished => (Method::Qp, settings.precision),
+            Way::Penalty | Way::PenaltyRung => (Method::Penalty, settings.precision),
+        };
+        let mut settings = Settings { method, precision, ..settings.clone() };
+        if let (Way::QpUnpolished, Some(accuracy)) = (self, settings.accuracy) {
+            settings.polish = false;
+            settings.interior_point_tolerance = INTERIOR_POINT_SHARE * accuracy;
+        }
+        if let (Way::PenaltyRung, Some(accuracy)) = (self, settings.accuracy) {
+            settings.first_penalty = PENALTY_OVER_ACCURACY / accuracy;
+            settings.last_penalty = settings.first_penalty;
+        }
+        settings
+    }
+}
+
+/// An order of elimination with its structure, and what is kept of it.
+pub(super) struct Layout {
+    pub analysis: Analysis,
+    /// The dofs that are eliminated last.
+    pub last: Vec<usize>,
+    /// Are they those of a condensation?
+    pub is_condensed: bool,
+    pub multiplications: f64,
+    /// What was chosen, where the choice was left to the program.
+    pub way: Option<Way>,
+    /// Is the factor in single precision?
+    pub is_single: bool,
+}
+
+impl Layout {
+    /// The first layout that fits into the memory of `settings`.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`] with the least that one needs, [`Error::OutOfTime`], [`Error::Interrupted`].
+    pub fn within(problem: &ContactProblem, scaling: &Scaling, settings: &Settings) -> Result<Self, Error> {
+        check_room_to_order(problem, settings)?;
+        let contact_dofs = Condensation::contact_dofs(scaling.contact());
+        let mut refused: Option<Error> = None;
+        for number in 0.. {
+            check_time(&settings.watch, seconds::ordering(problem))?;
+            if settings.watch.is_stopped() {
+                return Err(Error::Interrupted);
+            }
+            let analysed = match number {
+                0 if settings.condense == Condense::Never => None,
+                0 => Condensation::analyse(problem.stiffness(), &contact_dofs)?
+                    .map(|found| (found, contact_dofs.clone())),
+                1 => {
+                    let last = EnergyNorm::last_dofs(scaling.contact());
+                    match last.is_empty() {
+                        true => None,
+                        false => Some((Analysis::with_last(problem.stiffness(), &last)?, last)),
+                    }
+                }
+                2 => Some((Analysis::of(problem.stiffness())?, Vec::new())),
+                _ => break,
+            };
+            let Some((analysis, last)) = analysed else { continue };
+            match Self::of(problem, settings, (analysis, last), number == 0) {
+                Err(error @ Error::TooLarge { .. }) => {
+                    refused = Some(match refused {
+                        None => error,
+                        Some(before) => lesser(before, error),
+                    });
+                }
+                decided => return decided,
+            }
+        }
+        Err(refused.unwrap_or(Error::Interrupted))
+    }
+
+    /// The layout with the way and the precision that fit into memory and time.
+    fn of(
+        problem: &ContactProblem,
+        settings: &Settings,
+        (analysis, last): (Analysis, Vec<usize>),
+        is_condensed: bool,
+    ) -> Result<Self, Error> {
+        let analysis = analysis.with_threads(settings.threads);
+        let multiplications = analysis.multiplications();
+        let way = Way::chosen(settings, is_condensed, multiplications, problem.rows());
+        let is_single = is_condensed && precision(way, settings) == Precision::Mixed;
+        let mut layout = Layout { analysis, last, is_condensed, multiplications, way, is_single };
+        let fits = |layout: &Layout| {
+            check_memory(problem, layout.kept(settings), settings)?;
+            check_time(&settings.watch, layout.seconds(settings))
+        };
+        let Err(mut refused) = fits(&layout) else { return Ok(layout) };
+        if way.is_none() {
+            return Err(refused);
+        }
+        // What the rules choose for its speed may take more memory, or time before its first step, than there is.
+        layout.way = Some(Way::ActiveSet);
+        layout.is_single = false;
+        match fits(&layout) {
+            Ok(()) => return Ok(layout),
+            Err(error) => refused = lesser(refused, error),
+        }
+        if is_condensed && settings.precision != Precision::Double {
+            layout.way = Some(Way::ActiveSetMixed);
+            layout.is_single = true;
+            match fits(&layout) {
+                Ok(()) => return Ok(layout),
+                Err(error) => refused = lesser(refused, error),
+            }
+        }
+        Err(refused)
+    }
+
+    fn kept(&self, settings: &Settings) -> Kept {
+        let (values, last) = (self.analysis.factor_entries(), self.last.len());
+        let by_interior_point = self.by_interior_point(settings);
+        match self.is_condensed {
+            true => Kept::Condensed { values, is_single: self.is_single, contact_dofs: last, by_interior_point },
+            false => Kept::Factors { values, last, by_interior_point },
+        }
+    }
+
+    fn by_interior_point(&self, settings: &Settings) -> bool {
+        self.way.map_or(settings.method, |way| way.settings(settings).method) == Method::Qp
+    }
+
+    /// Seconds until the first set of contact rows is settled, or the first step of the interior point is done.
+    fn seconds(&self, settings: &Settings) -> f64 {
+        let [double, single] = seconds::factor_seconds(self.multiplications, self.analysis.factor_entries());
+        let first = if self.is_single { single } else { double };
+        match (self.is_condensed, self.by_interior_point(settings)) {
+            (true, _) => first + seconds::dense(self.last.len()),
+            (false, false) => first + double,
+            (false, true) => first + 2.0 * seconds::interior_point(&self.analysis),
+        }
+    }
+}
+
+/// The precision of `settings` with a way.
+pub(super) fn precision(way: Option<Way>, settings: &Settings) -> Precision {
+    way.map_or(settings.precision, |way| way.settings(settings).precision)
+}
+
+/// Refuses a problem that is too large to be ordered, with what its factor would take, roughly.
+fn check_room_to_order(problem: &ContactProblem, settings: &Settings) -> Result<(), Error> {
+    match check_memory(problem, Kept::Nothing, settings) {
+        Err(Error::TooLarge { dofs, stiffness_entries, bytes, allowed, .. }) => {
+            let estimate = Estimate::of(problem);
+            let factors = if settings.condense == Condense::Never { FACTORS } else { 1.0 };
+            let bytes = bytes + factors * bytes::of_factor(estimate.factor_entries, size_of::<f64>());
+            Err(Error::TooLarge { dofs, stiffness_entries, factor_entries: estimate.factor_entries, bytes, allowed })
+        }
+        checked => checked,
+    }
+}
+
+/// Of two refusals the one that asks for less memory.
+fn lesser(one: Error, other: Error) -> Error {
+    match (&one, &other) {
+        (Error::TooLarge { bytes: few, .. }, Error::TooLarge { bytes: many, .. }) if few > many => other,
+        _ => one,
+    }
+}
+
+/// What was tried: a method, and the unknowns that it worked on if they were fewer than all.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tried {
+    pub method: Method,
+    pub condensed_dofs: Option<usize>,
+    /// May the answer fall short of its goal where a slower way would not?
+    pub is_shortcut: bool,
+}
+
+impl Tried {
+    /// A method on all dofs that is no shortcut.
+    pub fn on_all_dofs(method: Method) -> Self {
+        Tried { method, condensed_dofs: None, is_shortcut: false }
+    }
+}
+
+/// Settings that may reach what was `tried` and fell short, and the set that they start from: a shortcut is left first, then the
+/// condensation, which loses digits where the contact boundary feels little of the stiffness of the body.
+pub(super) fn safer(tried: &Tried, settings: &Settings, fell_short: &Error) -> Option<(Settings, Option<ContactSet>)> {
+    if settings.watch.is_over() {
+        return None;
+    }
+    let method = if settings.method == Method::Auto { Method::ActiveSet } else { settings.method };
+    let safe = Settings { method, precision: Precision::Double, ..settings.clone() };
+    if tried.is_shortcut {
+        return Some((safe, None));
+    }
+    let (miss, start) = match fell_short {
+        // What rounding of the displacement explains is no loss of the condensation.
+        Error::NotCertified { solution, .. } if is_exact(&solution.certificate, settings) => return None,
+        Error::NotCertified { solution, value, .. } if !value.is_nan() => (*value, Some(solution.contact_set.clone())),
+        _ => (f64::INFINITY, None),
+    };
+    // What is asked for as it is, as a small penalty, falls short on all dofs too.
+    let may_gain = tried.condensed_dofs.is_some() && safe.condense == Condense::Auto && safe.allows_last_resort(miss);
+    may_gain.then(|| (Settings { condense: Condense::Never, ..safe }, start))
+}
+
+/// Does an answer hold all that its displacement can, and fall short of an accuracy beyond that?
+fn is_exact(certificate: &Certificate, settings: &Settings) -> bool {
+    certificate.conditions_hold(settings.tolerance) && certificate.energy_error_excess == 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::FITTED;
+
+    #[test]
+    fn the_fitted_rules_are_read() {
+        assert!(FITTED.rules.iter().any(|rule| rule.condensed) && FITTED.rules.iter().any(|rule| !rule.condensed));
+    }
+}
