@@ -24,6 +24,7 @@ mod panels;
 pub mod plot;
 mod raster;
 mod report;
+mod shape;
 mod style;
 mod svg;
 pub mod ticks;

@@ -5,8 +5,8 @@ use tiny_skia::{
 };
 
 use super::colour::{Colour, INK};
-use super::drawing::{Shape, Text};
 use super::paint::{Anchor, Paint};
+use super::shape::{Shape, Text};
 use super::typeface;
 use crate::error::Error;
 

@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use super::colour::INK;
-use super::drawing::{Shape, Text};
 use super::paint::{Anchor, hex, hundredths, number};
+use super::shape::{Shape, Text};
 use super::typeface;
 
 /// The SVG text of a picture of `width` times `height` pixels, on white.

@@ -1,7 +1,7 @@
 //! What a solve costs: the one model of seconds and bytes, and the limits that are held against it.
 
 pub mod bytes;
-mod seconds;
+pub(in crate::qp) mod seconds;
 
 use super::problem::ContactProblem;
 use super::settings::Settings;

@@ -1,0 +1,37 @@
+//! What a drawing consists of.
+
+use super::paint::{Anchor, Paint};
+
+/// What a drawing consists of; each shape is drawn over those before it.
+#[derive(Clone, Debug)]
+pub(super) enum Shape {
+    /// Lines in hundredths of a pixel. `closed` ones are filled together by the even-odd rule.
+    Path {
+        pieces: Vec<Vec<[i64; 2]>>,
+        closed: bool,
+        paint: Paint,
+    },
+    Circle {
+        centre: [f64; 2],
+        radius: f64,
+        paint: Paint,
+    },
+    Text(Text),
+    /// Shapes cut to the rectangle with its upper left corner at `corner`.
+    Clipped {
+        corner: [f64; 2],
+        size: [f64; 2],
+        shapes: Vec<Shape>,
+    },
+}
+
+/// A text with its baseline at `position`, from left to right or upwards.
+#[derive(Clone, Debug)]
+pub(super) struct Text {
+    pub position: [f64; 2],
+    pub text: String,
+    pub size: f64,
+    pub anchor: Anchor,
+    pub bold: bool,
+    pub upward: bool,
+}
