@@ -2,8 +2,8 @@
 
 use super::input::{Content, Input};
 use super::options::{Compare, Format};
+use super::outcome::{Outcome, warn};
 use super::settings::settings;
-use super::{Outcome, warn};
 use crate::error::Error;
 use crate::output::{compare_json, compare_text, gallery, write_files};
 use crate::qp::Method;

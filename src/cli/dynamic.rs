@@ -4,8 +4,8 @@ use std::time::Instant;
 
 use super::input::{scene_title, unit_names, warnings};
 use super::options::{Format, Solve};
+use super::outcome::{Outcome, warn};
 use super::settings::settings;
-use super::{Outcome, warn};
 use crate::error::Error;
 use crate::motion::Integrator;
 use crate::output::{MotionFolder, MotionSeconds, motion_is_certified, motion_json, motion_text, write_files};

@@ -2,7 +2,7 @@
 
 use super::input::{still_model, warnings};
 use super::options::Export;
-use super::{Outcome, warn};
+use super::outcome::{Outcome, warn};
 use crate::error::Error;
 use crate::output::write_files;
 use crate::qp::matrix_market;

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::warn;
+use super::outcome::warn;
 use crate::watch::Watch;
 
 /// The exit code of a command that was interrupted.

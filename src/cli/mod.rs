@@ -7,6 +7,7 @@ mod input;
 mod interrupt;
 mod memory;
 mod options;
+mod outcome;
 mod progress;
 mod settings;
 mod solve;
@@ -15,7 +16,7 @@ mod tradeoff;
 mod verify;
 
 use std::ffi::OsString;
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -26,26 +27,8 @@ use crate::scene::Scene;
 use crate::watch::Watch;
 use interrupt::INTERRUPTED;
 use options::{Arguments, Command, Format};
+use outcome::{Ending, Outcome, Pictures, warn};
 use progress::Progress;
-
-/// How a command ended, as an exit code; a usage error is 2, from the argument parser.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Ending {
-    Certified = 0,
-    BadInput = 1,
-    NoSolution = 3,
-    NotCertified = 4,
-}
-
-/// What a command leaves: the text for standard output, how it ended, and what is drawn once the text is out.
-struct Outcome {
-    text: String,
-    ending: Ending,
-    pictures: Option<Pictures>,
-}
-
-/// Fields and pictures take their time, and nobody should have to wait for numbers because of them.
-type Pictures = Box<dyn FnOnce() -> Result<(), Error>>;
 
 /// Runs the program with `arguments`, the first of which is its name.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
@@ -105,34 +88,6 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         }
         _ if watch.is_stopped() => ExitCode::from(INTERRUPTED),
         _ => ExitCode::from(outcome.ending as u8),
-    }
-}
-
-/// Takes the line of a terminal that is being written back.
-const ERASED: &str = "\r\x1b[K";
-
-/// Writes to standard error, on a terminal in place of the line of progress; where it is closed there is nobody to tell.
-fn warn(text: &str) {
-    if text.is_empty() {
-        return;
-    }
-    let erased = if io::stderr().is_terminal() { ERASED } else { "" };
-    let _ = io::stderr().write_all(format!("{erased}{text}").as_bytes());
-}
-
-impl Outcome {
-    fn certified(text: String) -> Self {
-        Outcome::judged(text, true)
-    }
-
-    /// Certified or not, with that exit code.
-    fn judged(text: String, certified: bool) -> Self {
-        let ending = if certified { Ending::Certified } else { Ending::NotCertified };
-        Outcome { text, ending, pictures: None }
-    }
-
-    fn with_pictures(self, pictures: impl FnOnce() -> Result<(), Error> + 'static) -> Self {
-        Outcome { pictures: Some(Box::new(pictures)), ..self }
     }
 }
 

@@ -6,7 +6,7 @@ use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use super::{ERASED, warn};
+use super::outcome::{ERASED, warn};
 use crate::watch::{Activity, Part, Watch};
 
 /// How often the line is drawn.

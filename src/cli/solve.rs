@@ -1,9 +1,10 @@
 //! `signorini solve`: one answer.
 
+use super::dynamic;
 use super::input::{Content, Input, Source};
 use super::options::{Format, Solve};
+use super::outcome::{Outcome, warn};
 use super::settings::settings;
-use super::{Outcome, dynamic, warn};
 use crate::error::Error;
 use crate::output::{gallery, solve_json, solve_text, write_files};
 use crate::qp::{Method, solve};

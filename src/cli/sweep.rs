@@ -2,8 +2,8 @@
 
 use super::input::{scene_title, still_model, unit_names, warnings};
 use super::options::{Format, Sweep};
+use super::outcome::{Outcome, warn};
 use super::settings::settings;
-use super::{Outcome, warn};
 use crate::error::Error;
 use crate::output::{gallery, sweep_json, sweep_text, write_files};
 use crate::qp::Method;

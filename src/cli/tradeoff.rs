@@ -2,7 +2,7 @@
 
 use super::input::{build, read_scene, scene_title, warnings};
 use super::options::{Format, Tradeoff};
-use super::{Outcome, warn};
+use super::outcome::{Outcome, warn};
 use crate::error::Error;
 use crate::output::{
     motion_tradeoff_csv, motion_tradeoff_json, motion_tradeoff_plot, motion_tradeoff_text, tradeoff_csv, tradeoff_json,

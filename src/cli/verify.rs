@@ -1,7 +1,7 @@
 //! `signorini verify`: the certificate of an answer that came from elsewhere.
 
-use super::Outcome;
 use super::options::{Format, Verify};
+use super::outcome::Outcome;
 use crate::error::Error;
 use crate::output::{verify_json, verify_text};
 use crate::qp::matrix_market::{read_problem, read_vector};

@@ -1,7 +1,8 @@
 //! The bodies of a scene: mesh, material, formulation.
 
+use super::Warning;
+use super::entry::{located, wrong};
 use super::schema::{BodySpec, IntegrationSpec, MaterialSpec, ModelSpec, Scene};
-use super::{Warning, located, wrong};
 use crate::error::Error;
 use crate::fem::body::{ElasticBody, Integration};
 use crate::fem::formulation::Formulation;

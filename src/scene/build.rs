@@ -1,11 +1,11 @@
 //! From a scene to a model: every value is checked where it is used, and named by its JSON path.
 
+use super::Obstacle;
 use super::body::locking;
 use super::condition::boundary;
 use super::model::Model;
 use super::parts::Parts;
 use super::schema::Scene;
-use super::{Obstacle, number, wrong};
 use crate::error::Error;
 use crate::fem::assembly::tributary_areas;
 
@@ -29,15 +29,5 @@ impl Scene {
         let (title, units) = (self.title.clone(), self.units.clone());
         let moves = self.analysis.is_some();
         Model::new(Parts { title, units, body, dofs, load, obstacles, warnings, moves }, self.gap)
-    }
-}
-
-/// A setting that a lower module refused, at its place in the scene.
-pub(super) fn located(error: Error, prefix: &str) -> Error {
-    match error {
-        Error::Setting { name, value, allowed } => {
-            wrong(format!("{prefix}{name}"), format!("{} is not allowed: it must be {allowed}", number(value)))
-        }
-        other => other,
     }
 }

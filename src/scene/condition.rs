@@ -1,8 +1,8 @@
 //! Supports and loads of a scene, at the nodes.
 
+use super::entry::{PLACE_TOLERANCE, finite, point, vector, wrong};
 use super::held::{COORDINATES, Component, Held, Holder, unit_normal};
 use super::schema::{LoadSpec, Place, Scene, SupportSpec};
-use super::{PLACE_TOLERANCE, finite, point, vector, wrong};
 use crate::error::Error;
 use crate::fem::assembly::{DofMap, add_body_force, add_pressure, add_traction};
 use crate::fem::body::ElasticBody;

@@ -1,9 +1,10 @@
 //! The motion that a scene asks for: mass, scheme, step, initial state, loads in time.
 
+use super::entry::{ROUNDING, finite, located, number, point, vector, wrong};
 use super::schema::{
     AnalysisSpec, DynamicSpec, FactorSpec, FieldSpec, LoadInTimeSpec, MassSpec, PenetrationSpec, Scene, SchemeSpec,
 };
-use super::{Model, ROUNDING, Warning, finite, located, number, point, vector, wrong};
+use super::{Model, Warning};
 use crate::error::Error;
 use crate::fem::assembly::{MassForm, free_load, internal_force, mass};
 use crate::fem::body::ElasticBody;

@@ -1,7 +1,8 @@
 //! Errors of the solvers in the words of the scene: rigid motions by name, rows by node and obstacle.
 
+use super::Model;
+use super::entry::{number, point};
 use super::rigid_modes::{RigidMotions, advice};
-use super::{Model, number, point};
 use crate::error::Error;
 
 /// More nodes than this are counted, not listed.

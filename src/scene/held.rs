@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{number, point, wrong};
+use super::entry::{number, point, wrong};
 use crate::error::Error;
 use crate::fem::assembly::{DofMap, Frame, perpendicular};
 use crate::fem::geometry::dot;

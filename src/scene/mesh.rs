@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use super::body::DescribedBody;
+use super::entry::{located, wrong};
 use super::schema::{
     AxisSpec, BodySpec, ElementSpec, GmshSpec, HalfSpec, IntegrationSpec, SolidElementSpec, SymmetrySpec, ZoneSpec,
 };
-use super::{located, wrong};
 use crate::error::Error;
 use crate::fem::mesh::gmsh::GmshFile;
 use crate::fem::mesh::{self, Axis, ElementKind, Mesh, Zone};

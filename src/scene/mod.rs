@@ -18,6 +18,7 @@ mod body;
 mod build;
 mod condition;
 mod dynamics;
+mod entry;
 mod explain;
 mod held;
 mod locate;
@@ -47,53 +48,3 @@ pub use schema::{
 };
 pub use size::Size;
 pub use warning::Warning;
-
-use build::located;
-
-use crate::error::Error;
-
-/// A point named in a scene must lie on a node, and a table must reach a candidate, to within this times the body's
-/// size: above the rounding of written decimals, far below any cell.
-const PLACE_TOLERANCE: f64 = 1e-9;
-
-/// Lengths below this times the body's size are rounding of coordinates.
-const ROUNDING: f64 = 1e-12;
-
-fn wrong(path: impl Into<String>, message: impl Into<String>) -> Error {
-    Error::Scene { path: path.into(), message: message.into() }
-}
-
-fn finite(path: impl Into<String>, value: f64) -> Result<(), Error> {
-    if value.is_finite() { Ok(()) } else { Err(wrong(path, format!("{value} is not finite"))) }
-}
-
-fn finite_pair(path: &str, pair: [f64; 2]) -> Result<(), Error> {
-    finite(format!("{path}[0]"), pair[0])?;
-    finite(format!("{path}[1]"), pair[1])
-}
-
-/// A number as a reader writes it: plain in the middle, with an exponent at the extremes.
-fn number(value: f64) -> String {
-    let size = value.abs();
-    if size == 0.0 || (1e-4..1e7).contains(&size) { format!("{value}") } else { format!("{value:e}") }
-}
-
-/// A point as a reader writes it, with as many coordinates as it has entries.
-fn point(at: &[f64]) -> String {
-    let coordinates: Vec<String> = at.iter().map(|&coordinate| number(coordinate)).collect();
-    format!("({})", coordinates.join(", "))
-}
-
-/// A point or vector of a scene in `dimension` coordinates; those beyond are zero.
-fn vector(path: &str, entries: &[f64], dimension: usize) -> Result<[f64; 3], Error> {
-    if entries.len() != dimension {
-        let (found, names) = (entries.len(), ["[x]", "[x, y]", "[x, y, z]"][dimension - 1]);
-        return Err(wrong(path, format!("the array has {found} entries; in this model it has {dimension}: {names}")));
-    }
-    let mut vector = [0.0; 3];
-    for (index, (place, &entry)) in vector.iter_mut().zip(entries).enumerate() {
-        finite(format!("{path}[{index}]"), entry)?;
-        *place = entry;
-    }
-    Ok(vector)
-}

@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
+use super::entry::wrong;
 use super::parts::Parts;
 use super::rigid_modes::RigidMotions;
 use super::rows::{self, ContactRow};
-use super::{Obstacle, Units, Warning, wrong};
+use super::{Obstacle, Units, Warning};
 use crate::error::Error;
 use crate::fem::assembly::{DofMap, free_load, internal_force, rigid_motions, stiffness};
 use crate::fem::body::ElasticBody;

@@ -1,14 +1,10 @@
 //! From text to a typed scene: every failure has a path, a line and a column.
 
-use std::fmt;
 use std::io;
-use std::marker::PhantomData;
 use std::path::Path;
 
-use serde::de::value::MapAccessDeserializer;
-use serde::de::{Deserialize, Deserializer, Error as _, IgnoredAny, IntoDeserializer, MapAccess, SeqAccess, Visitor};
-
 use super::Scene;
+use super::schema::json::object;
 use crate::error::Error;
 use crate::file::{MOST_OF_SCENE, read_text_capped};
 
@@ -86,115 +82,4 @@ fn in_words(error: &serde_json::Error) -> String {
         message = message.replace(rust, json);
     }
     message
-}
-
-/// Accepts an object where a struct is expected, and nothing else: serde itself would take an array for it too.
-pub(super) fn object<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<T, D::Error> {
-    struct OfObject<T>(PhantomData<T>);
-    impl<'de, T: Deserialize<'de>> Visitor<'de> for OfObject<T> {
-        type Value = T;
-        fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-            formatter.write_str("an object")
-        }
-        fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<T, A::Error> {
-            T::deserialize(MapAccessDeserializer::new(map))
-        }
-    }
-    deserializer.deserialize_map(OfObject(PhantomData))
-}
-
-/// Accepts an object with a single key that chooses what its value is: the parser itself has no words for another form.
-pub(super) fn choice<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<T, D::Error> {
-    struct OfSingleKey<T>(PhantomData<T>);
-    impl<'de, T: Deserialize<'de>> Visitor<'de> for OfSingleKey<T> {
-        type Value = T;
-        fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-            formatter.write_str("an object with a single key")
-        }
-        fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<T, A::Error> {
-            let chosen = T::deserialize(MapAccessDeserializer::new(&mut map))?;
-            match map.next_key::<IgnoredAny>()? {
-                None => Ok(chosen),
-                Some(_) => Err(A::Error::custom("a second key, expected an object with a single key")),
-            }
-        }
-    }
-    deserializer.deserialize_map(OfSingleKey(PhantomData))
-}
-
-/// Accepts an array of choices.
-pub(super) fn choices<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<Vec<T>, D::Error> {
-    struct OneChoice<T>(T);
-    impl<'de, T: Deserialize<'de>> Deserialize<'de> for OneChoice<T> {
-        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-            choice(deserializer).map(OneChoice)
-        }
-    }
-    let items = Vec::<OneChoice<T>>::deserialize(deserializer)?;
-    Ok(items.into_iter().map(|OneChoice(item)| item).collect())
-}
-
-/// Accepts a word out of a list, and no other JSON value.
-pub(super) fn word<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<T, D::Error> {
-    struct OfWord<T>(PhantomData<T>);
-    impl<'de, T: Deserialize<'de>> Visitor<'de> for OfWord<T> {
-        type Value = T;
-        fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-            formatter.write_str("a string")
-        }
-        fn visit_str<E: serde::de::Error>(self, word: &str) -> Result<T, E> {
-            T::deserialize(word.into_deserializer())
-        }
-    }
-    deserializer.deserialize_str(OfWord(PhantomData))
-}
-
-/// Accepts an array of words.
-pub(super) fn words<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<Vec<T>, D::Error> {
-    struct OneWord<T>(T);
-    impl<'de, T: Deserialize<'de>> Deserialize<'de> for OneWord<T> {
-        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-            word(deserializer).map(OneWord)
-        }
-    }
-    let items = Vec::<OneWord<T>>::deserialize(deserializer)?;
-    Ok(items.into_iter().map(|OneWord(item)| item).collect())
-}
-
-/// Accepts an array of objects.
-pub(super) fn objects<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<Vec<T>, D::Error> {
-    struct OneObject<T>(T);
-    impl<'de, T: Deserialize<'de>> Deserialize<'de> for OneObject<T> {
-        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-            object(deserializer).map(OneObject)
-        }
-    }
-    struct OfObjects<T>(PhantomData<T>);
-    impl<'de, T: Deserialize<'de>> Visitor<'de> for OfObjects<T> {
-        type Value = Vec<T>;
-        fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-            formatter.write_str("an array of objects")
-        }
-        fn visit_seq<A: SeqAccess<'de>>(self, mut sequence: A) -> Result<Vec<T>, A::Error> {
-            let mut items = Vec::new();
-            while let Some(OneObject(item)) = sequence.next_element()? {
-                items.push(item);
-            }
-            Ok(items)
-        }
-    }
-    deserializer.deserialize_seq(OfObjects(PhantomData))
-}
-
-/// Accepts a number, and no `null`: some writers put `null` for a number that they could not compute.
-pub(super) fn number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
-    match Option::<f64>::deserialize(deserializer)? {
-        Some(value) => Ok(Some(value)),
-        None => Err(D::Error::custom("null is no number; leave the field out to leave the direction free")),
-    }
-}
-
-/// Accepts a value, and no `null`.
-pub(super) fn given<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {
-    T::deserialize(deserializer).map(Some)
 }

@@ -1,7 +1,7 @@
 //! The same scene on a finer mesh.
 
+use super::entry::wrong;
 use super::schema::{AxisSpec, BodySpec, Scene, ZoneSpec};
-use super::wrong;
 use crate::error::Error;
 
 impl Scene {

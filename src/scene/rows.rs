@@ -1,7 +1,8 @@
 //! Contact rows: B u <= g in the free dofs, from the candidates of every obstacle.
 
+use super::Warning;
+use super::entry::{ROUNDING, finite, point, wrong};
 use super::parts::Parts;
-use super::{ROUNDING, Warning, finite, point, wrong};
 use crate::error::Error;
 use crate::qp::linear::SparseMatrix;
 

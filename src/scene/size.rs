@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
+use super::entry::wrong;
 use super::schema::{AxisSpec, BodySpec, ElementSpec, Scene, ShapeSpec, SolidElementSpec, ZoneSpec};
-use super::wrong;
 use crate::error::Error;
 use crate::fem::mesh::MAX_NODES;
 use crate::qp::cost::bytes;

@@ -1,14 +1,14 @@
 //! The surface of another body, node to node: n . (u - u_partner) <= gap.
 
-use super::Approachable;
+use super::way::Approachable;
 use crate::error::Error;
 use crate::fem::assembly::node_normals;
 use crate::fem::body::ElasticBody;
 use crate::fem::geometry::{dot, length, minus, unit};
 use crate::fem::mesh::Boundary;
 use crate::scene::condition::boundary;
+use crate::scene::entry::{PLACE_TOLERANCE, point, wrong};
 use crate::scene::schema::{FacingSpec, ObstacleSpec, Rule};
-use crate::scene::{PLACE_TOLERANCE, point, wrong};
 
 /// A partner may be aside by this times its distance: at the end of a curved boundary the facets on one side only give
 /// the normal, half the angle of a facet off.

@@ -1,6 +1,6 @@
 //! A half space behind a plane, in any dimension: n . x = n . p.
 
-use super::Approachable;
+use super::way::Approachable;
 use crate::scene::Rule;
 
 /// A plane through `point` with a unit `normal` into the obstacle.

@@ -3,8 +3,8 @@
 use super::patch::{Foot, Patch};
 use crate::error::Error;
 use crate::fem::geometry::dot;
+use crate::scene::entry::{PLACE_TOLERANCE, finite, number, wrong};
 use crate::scene::schema::HeightMapSpec;
-use crate::scene::{PLACE_TOLERANCE, finite, number, wrong};
 
 /// Feet closer together than this, relative to the body's size, are one: neighbouring cells share their edges, and a
 /// search ends at the square root of rounding.

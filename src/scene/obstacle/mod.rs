@@ -10,30 +10,25 @@ mod patch;
 mod plane;
 mod polyline;
 mod profile;
+mod shape;
 mod solid;
 mod surface;
+mod way;
 
-use super::schema::{ObstacleSpec, PlaneSpec, Rule, ShapeSpec};
-use super::{finite, number, point, vector, wrong};
+use super::entry::wrong;
+use super::schema::{ObstacleSpec, Rule, ShapeSpec};
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use facing::Facing;
 use frame::Frame;
 use half_space::HalfSpace;
 use profile::Profile;
+use shape::{fits, misfit, plane_of};
 use solid::Solid;
+use way::Approachable;
 
 /// A component of a unit normal below this is rounding of the geometry, not a direction.
 const NO_COMPONENT: f64 = 1e-14;
-
-/// The way from a node to an obstacle: `normal . u <= distance`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Approachable {
-    /// Unit vector [x, y, z] into the obstacle.
-    pub normal: [f64; 3],
-    /// Signed distance along it; negative inside.
-    pub distance: f64,
-}
 
 /// An obstacle of a model: rigid, or the surface of another body.
 #[derive(Clone, Debug)]
@@ -166,56 +161,5 @@ impl Obstacle {
             }
             _ => Ok(None),
         }
-    }
-}
-
-/// Whether a model of `dimension` coordinates has the shape.
-fn fits(shape: &ShapeSpec, dimension: usize) -> bool {
-    match shape {
-        ShapeSpec::Plane(_) | ShapeSpec::Body(_) => true,
-        ShapeSpec::Parabola(_) | ShapeSpec::Circle(_) | ShapeSpec::Wedge(_) | ShapeSpec::Table(_) => dimension == 2,
-        ShapeSpec::Sphere(_) | ShapeSpec::Cylinder(_) | ShapeSpec::Cone(_) | ShapeSpec::HeightMap(_) => dimension == 3,
-    }
-}
-
-/// The refusal of a shape that does not fit: where it belongs, and what there is instead.
-fn misfit(shape: &ShapeSpec, path: String, dimension: usize) -> Error {
-    let of = if fits(shape, 2) { "the plane" } else { "space" };
-    let there = [
-        "on a line there are `plane` and `body`",
-        "in the plane there are `plane`, `parabola`, `circle`, `wedge`, `table` and `body`",
-        "in space there are `plane`, `sphere`, `cylinder`, `cone`, `height-map` and `body`",
-    ][dimension - 1];
-    wrong(path, format!("`{}` is a shape of {of}; {there}", shape.name()))
-}
-
-/// Point and unit normal of a plane in `dimension` coordinates.
-fn plane_of(spec: &PlaneSpec, path: &str, dimension: usize, approach: [f64; 3]) -> Result<([f64; 3], [f64; 3]), Error> {
-    let at = vector(&format!("{path}.point"), &spec.point, dimension)?;
-    let normal = vector(&format!("{path}.normal"), &spec.normal, dimension)?;
-    let length = normal[0].hypot(normal[1]).hypot(normal[2]);
-    if length == 0.0 {
-        let zero = point(&normal[..dimension]);
-        return Err(wrong(format!("{path}.normal"), format!("{zero} has no direction; the normal needs a length")));
-    }
-    let normal = normal.map(|component| component / length);
-    let towards = normal[0] * approach[0] + normal[1] * approach[1] + normal[2] * approach[2];
-    if !(towards > 0.0 && towards.is_finite()) {
-        let message = format!(
-            "{} must point into the obstacle: to the side of the approach direction {}",
-            point(&spec.normal),
-            point(&approach[..dimension])
-        );
-        return Err(wrong(format!("{path}.normal"), message));
-    }
-    Ok((at, normal))
-}
-
-fn positive(path: String, value: f64) -> Result<f64, Error> {
-    finite(path.as_str(), value)?;
-    if value > 0.0 {
-        Ok(value)
-    } else {
-        Err(wrong(path, format!("{} is not allowed: it must be positive", number(value))))
     }
 }

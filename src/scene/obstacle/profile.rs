@@ -7,12 +7,13 @@ use super::frame::{Frame, Local};
 use super::parabola::Parabola;
 use super::plane::Plane;
 use super::polyline::Polyline;
+use super::shape::{misfit, plane_of, positive};
 use super::surface::{Foot, Surface};
-use super::{Approachable, misfit, plane_of, positive};
+use super::way::Approachable;
 use crate::error::Error;
 use crate::fem::mesh::Mesh;
+use crate::scene::entry::{PLACE_TOLERANCE, ROUNDING, finite_pair, number, point, wrong};
 use crate::scene::schema::{CircleSpec, ObstacleSpec, Rule, ShapeSpec};
-use crate::scene::{PLACE_TOLERANCE, ROUNDING, finite_pair, number, point, wrong};
 
 /// The pictured surface goes beyond the body by this part of the body's extent on either side.
 const OUTLINE_MARGIN: f64 = 0.3;

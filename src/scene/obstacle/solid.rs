@@ -5,13 +5,14 @@ use std::sync::Arc;
 use super::circle::Circle;
 use super::height_map::{HeightMap, Reach};
 use super::polyline::Polyline;
+use super::shape::{misfit, positive};
 use super::surface::Surface;
-use super::{Approachable, misfit, positive};
+use super::way::Approachable;
 use crate::error::Error;
 use crate::fem::geometry::{cross, dot};
 use crate::fem::mesh::Mesh;
+use crate::scene::entry::{ROUNDING, number, point, vector, wrong};
 use crate::scene::schema::{Approach, Rule, ShapeSpec};
-use crate::scene::{ROUNDING, number, point, vector, wrong};
 
 /// An axis of a cylinder may lean by the rounding of its written components.
 const PERPENDICULAR: f64 = 1e-9;

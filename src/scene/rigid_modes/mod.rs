@@ -8,14 +8,11 @@ use super::parts::Parts;
 use super::rows::ContactRow;
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
-use unit::UnitMotions;
+use unit::{NAMED, UnitMotions, dot};
 
 /// A motion is held where the singular value that belongs to it exceeds this times the largest; exact geometry gives
 /// zero to rounding, 1e-16, and any support or normal that a scene means is far above.
 const HELD: f64 = 1e-10;
-
-/// A part of a motion below this, relative to the whole, does not enter its name.
-const NAMED: f64 = 1e-6;
 
 /// The rigid motions of the bodies of a model, each body moving for itself.
 ///
@@ -198,8 +195,4 @@ fn translations_first(motions: &[Vec<f64>]) -> Vec<Vec<f64>> {
 /// What to do about a free motion.
 pub(super) fn advice(has_rows: bool) -> &'static str {
     if has_rows { "a frictionless obstacle does not hold it, add a guide" } else { "add a support" }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }

@@ -4,10 +4,12 @@ use std::ops::Range;
 
 use nalgebra::DMatrix;
 
-use super::{NAMED, dot};
 use crate::fem::body::{ElasticBody, Region};
 use crate::fem::mesh::extent;
-use crate::scene::point;
+use crate::scene::entry::point;
+
+/// A part of a motion below this, relative to the whole, does not enter its name.
+pub(super) const NAMED: f64 = 1e-6;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
@@ -135,4 +137,9 @@ fn direction(vector: &[f64]) -> String {
 /// Rounded to six significant digits: a pole is a computed place.
 fn six_digits(value: f64) -> f64 {
     format!("{value:.5e}").parse().unwrap_or(value)
+}
+
+/// The scalar product of amplitudes, or of motions.
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::super::parse::{choice, given, object, objects, word};
+use super::json::{choice, given, object, objects, word};
 
 /// The analysis; a scene without one is static.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

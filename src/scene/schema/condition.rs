@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::super::parse::{choice, given, number, object};
+use super::json::{choice, given, number, object};
 
 /// Where on the body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -4,7 +4,9 @@ use serde::{Deserialize, Serialize};
 
 mod analysis;
 mod body;
+mod cells;
 mod condition;
+pub(super) mod json;
 mod obstacle;
 mod shape;
 mod solid;
@@ -13,10 +15,8 @@ pub use analysis::{
     AnalysisSpec, DampingSpec, DynamicSpec, FactorSpec, FactorTableSpec, FieldSpec, InitialSpec, IntervalSpec,
     LoadInTimeSpec, MassSpec, PenetrationSpec, SchemeSpec, SineSpec,
 };
-pub use body::{
-    AxisSpec, BarSpec, BodySpec, BoxSpec, ElementSpec, FurtherBodySpec, IntegrationSpec, MaterialSpec, RectangleSpec,
-    SolidElementSpec,
-};
+pub use body::{BarSpec, BodySpec, BoxSpec, FurtherBodySpec, MaterialSpec, RectangleSpec};
+pub use cells::{AxisSpec, ElementSpec, IntegrationSpec, SolidElementSpec};
 pub use condition::{ForceSpec, LoadSpec, Place, PressureSpec, SupportSpec, TractionSpec};
 pub use obstacle::{
     Approach, CircleSpec, FacingSpec, ObstacleSpec, ParabolaSpec, PlaneSpec, Rule, ShapeSpec, TableSpec, WedgeSpec,
@@ -26,7 +26,7 @@ pub use solid::{ConeSpec, CylinderSpec, HeightMapSpec, SphereSpec};
 
 use std::path::PathBuf;
 
-use super::parse::{choice, choices, object, objects, word};
+use json::{choice, choices, object, objects, word};
 
 /// A contact scene: an elastic body, its supports and loads, and the obstacles around it.
 ///

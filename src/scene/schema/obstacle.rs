@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::super::parse::{choice, object, word};
+use super::json::{choice, object, word};
 use super::solid::{ConeSpec, CylinderSpec, HeightMapSpec, SphereSpec};
 
 /// A frictionless obstacle and the boundary that may touch it.

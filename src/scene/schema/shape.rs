@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::super::parse::{object, word, words};
+use super::json::{object, word, words};
 use super::{AxisSpec, ElementSpec, IntegrationSpec, one};
 
 /// A mesh written by Gmsh: a `.msh` file of version 4.1 or 2.2 in ASCII. A bar has the cross-section 1.

@@ -1,6 +1,6 @@
 //! What MPRGP has in hand, and the steps that it takes.
 
-use super::Start;
+use super::start::Start;
 use crate::error::Error;
 use crate::qp::linear::multigrid::{Direction, Face};
 use crate::qp::linear::{dot, largest};

@@ -16,14 +16,16 @@
 //! Z. Dostál, *Optimal Quadratic Programming Algorithms*, Springer (2009), algorithm 5.8 and section 5.10.
 
 mod iterate;
+mod start;
 mod uniqueness;
+
+pub use start::Start;
 
 use super::Outcome;
 use super::bounds::Bounds;
 use crate::error::Error;
 use crate::qp::linear::multigrid::Multigrid;
 use crate::qp::problem::ContactProblem;
-use crate::solution::ContactSet;
 use crate::watch::Watch;
 use iterate::{Conjugate, Iterate};
 
@@ -33,15 +35,6 @@ const PATIENCE: usize = 60;
 
 /// A residual in twice the precision that is above this share of the one before will not come down any more.
 const NO_GAIN: f64 = 0.5;
-
-/// What is known beforehand.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Start<'a> {
-    /// A displacement near the answer, one entry per dof.
-    pub displacement: Option<&'a [f64]>,
-    /// A contact set near that of the answer.
-    pub contact_set: Option<&'a ContactSet>,
-}
 
 /// When the loop ends.
 #[derive(Clone, Copy, Debug)]
