@@ -37,24 +37,19 @@
 //! # Ok::<(), signorini::Error>(())
 //! ```
 //!
-//! # The modules, from the ground up
+//! # The rooms
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`qp`] | the certified quadratic program: problem, settings, solve, factor once and contact many; it speaks no mechanics |
+//! | [`fem`] | elastic bodies: meshes, elements, assembly, recovery of stresses, closed forms |
+//! | [`scene`] | scenes in JSON: bodies, supports, loads, obstacles; the model and the way back to it |
+//! | [`motion`] | contact in time: mass, schemes, the loop over steps |
+//! | [`study`] | comparison of methods, sweeps, trade-offs, refinement |
+//! | [`mod@output`] | reports, pictures, files (feature `pictures`) |
+//! | [`cli`] | the program (feature `cli`) |
 //!
 //! A module names only modules of lower floors; see `ARCHITECTURE.md`.
-//!
-//! | floor | modules |
-//! |---|---|
-//! | 0 | [`analytical`], [`barrier`], [`memory`], [`solution`], [`watch`] |
-//! | 1 | [`error`] |
-//! | 2 | [`mod@file`], [`sparse`], [`element`], [`formulation`] |
-//! | 3 | [`mesh`], [`material`] |
-//! | 4 | [`problem`], [`body`] |
-//! | 5 | [`transform`], [`method`], [`assembly`], [`recovery`], [`norm`] |
-//! | 6 | [`mod@solve`] |
-//! | 7 | [`dynamic`] |
-//! | 8 | [`scene`], [`matrix_market`] |
-//! | 9 | [`study`] |
-//! | 10 | [`output`] |
-//! | 11 | [`cli`] |
 
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]

@@ -8,4 +8,5 @@ mod oracles;
 mod architecture;
 mod errors;
 mod examples;
+mod imports;
 mod readme;
