@@ -42,6 +42,56 @@ fn table_of_signs_is_the_same_in_library_readme_and_reference() {
     }
 }
 
+/// The documents that a reader meets.
+fn documents() -> Vec<String> {
+    let docs = fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs")).unwrap();
+    let of_docs = docs.map(|entry| format!("docs/{}", entry.unwrap().file_name().to_str().unwrap()));
+    ["README.md", "ARCHITECTURE.md", "CHANGELOG.md", "reference/README.md"]
+        .map(String::from)
+        .into_iter()
+        .chain(of_docs)
+        .collect()
+}
+
+#[test]
+fn every_table_has_as_many_cells_in_all_rows() {
+    // A bar of a formula, `|B_i|`, stands in code of a table only as an escaped one.
+    let cells = |line: &str| line.replace("\\|", "").trim().trim_matches('|').split('|').count();
+    let mut tables = 0;
+    for name in documents().into_iter().filter(|name| name.ends_with(".md")) {
+        let text = read(&name);
+        let lines: Vec<&str> = text.lines().collect();
+        for pair in lines.windows(2).filter(|pair| pair[0].starts_with('|') && pair[1].starts_with('|')) {
+            assert_eq!(cells(pair[0]), cells(pair[1]), "{name}: {}", pair[1]);
+            tables += usize::from(pair[1].starts_with("|--") || pair[1].starts_with("| --"));
+        }
+    }
+    assert!(tables > 10, "{tables} tables");
+}
+
+#[test]
+fn every_link_to_a_file_leads_to_one() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut links = 0;
+    for name in documents().into_iter().filter(|name| name.ends_with(".md")) {
+        let text = read(&name);
+        let folder = root.join(&name).parent().unwrap().to_path_buf();
+        for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+            if !link.starts_with("http") && !link.starts_with('#') {
+                assert!(folder.join(link.split('#').next().unwrap()).exists(), "{name} links to {link}");
+                links += 1;
+            }
+        }
+    }
+    assert!(links > 10, "{links} links");
+}
+
+#[test]
+fn the_readme_stays_short() {
+    let lines = read("README.md").lines().count();
+    assert!(lines <= 200, "{lines} lines: move what is long to docs/");
+}
+
 #[test]
 fn every_command_of_the_readme_is_one_of_the_program() {
     let readme = read("README.md");
