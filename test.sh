@@ -35,7 +35,7 @@ step "documentation, as errors";    RUSTDOCFLAGS="-D warnings" cargo doc --quiet
 step "build";                       cargo test --quiet --no-run
 step "tests";                       cargo test --quiet
 step "examples, in short"
-example two_springs
+for lesson in two_springs one_scene find_the_contact_set many_gaps judge_an_answer bouncing_mass; do example $lesson; done
 example verification --short
 example extremes --most 100
 for target in scene mesh matrix; do example fuzz $target 20000; done

@@ -42,6 +42,12 @@ pub enum Error {
         /// Columns of the matrix.
         columns: usize,
     },
+    /// Compressed columns that are no matrix.
+    #[error("compressed columns: {message}")]
+    Pattern {
+        /// What is wrong, and where.
+        message: String,
+    },
     /// A number that is not finite where it must be.
     #[error("{name} has the value {value} at {at} (indices from 0); it must be {allowed}")]
     NotFinite {
@@ -235,10 +241,19 @@ pub enum Error {
 }
 
 impl Error {
+    /// The best answer that was found, if the error carries one.
+    pub fn into_best(self) -> Option<Solution> {
+        match self {
+            Error::NotCertified { solution, .. } => Some(*solution),
+            _ => None,
+        }
+    }
+
     /// The name of the kind of error, the same in every version: for programs that tell errors apart.
     pub fn code(&self) -> &'static str {
         match self {
             Error::Length { .. } => "length",
+            Error::Pattern { .. } => "pattern",
             Error::Shape { .. } => "shape",
             Error::IndexOutOfRange { .. } => "index-out-of-range",
             Error::NotFinite { .. } => "not-finite",

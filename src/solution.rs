@@ -67,6 +67,31 @@ impl ContactSet {
     }
 }
 
+/// One flag for each row: is it closed?
+impl FromIterator<bool> for ContactSet {
+    fn from_iter<I: IntoIterator<Item = bool>>(closed: I) -> Self {
+        let mut set = Self::default();
+        for is_closed in closed {
+            if set.rows.is_multiple_of(64) {
+                set.bits.push(0);
+            }
+            set.rows += 1;
+            set.set(set.rows - 1, is_closed);
+        }
+        set
+    }
+}
+
+/// The closed rows in increasing order.
+impl<'a> IntoIterator for &'a ContactSet {
+    type Item = usize;
+    type IntoIter = Box<dyn Iterator<Item = usize> + 'a>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        Box::new(self.iter())
+    }
+}
+
 impl fmt::Debug for ContactSet {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:?} of {}", self.iter().collect::<Vec<_>>(), self.rows)

@@ -20,6 +20,7 @@ use crate::error::Error;
 use crate::qp::Settings;
 use crate::solution::ContactSet;
 
+#[derive(Debug)]
 pub(super) struct CentralDifference {
     restitution: f64,
     mass: MassProjection,

@@ -16,6 +16,7 @@ use crate::error::Error;
 use crate::qp::Settings;
 use crate::qp::problem::ContactProblem;
 
+#[derive(Debug)]
 pub(super) struct ContactStabilised {
     stepping: Stepping,
     mass: MassProjection,

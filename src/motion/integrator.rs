@@ -20,6 +20,7 @@ const ROUNDING: f64 = 1e-12;
 /// A motion with its scheme and its step.
 ///
 /// The matrix of the steps is factorised when the integrator is made, and never again.
+#[derive(Debug)]
 pub struct Integrator {
     problem: DynamicProblem,
     step: f64,

@@ -37,12 +37,14 @@ const ROUNDING: f64 = 1e-9;
 /// Shares of the correction that are tried.
 const TRIALS: usize = 8;
 
+#[derive(Debug)]
 pub(super) struct Midpoint {
     stepping: Stepping,
     massless: Option<Massless>,
 }
 
 /// The dofs without mass, held by the others.
+#[derive(Debug)]
 struct Massless {
     dofs: Vec<usize>,
     /// Their rows among all.

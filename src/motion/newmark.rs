@@ -16,6 +16,7 @@ use crate::error::Error;
 use crate::qp::problem::ContactProblem;
 use crate::qp::{Method, Settings};
 
+#[derive(Debug)]
 pub(super) struct Newmark {
     alpha: f64,
     beta: f64,

@@ -8,6 +8,7 @@ use crate::qp::problem::ContactProblem;
 use crate::solution::ContactSet;
 
 /// The mass of a motion, prepared with its contact rows.
+#[derive(Debug)]
 pub(super) struct MassProjection {
     stepping: Stepping,
 }

@@ -1,5 +1,7 @@
 //! What every scheme needs for a step: the trait that it implements, the prepared contact problem of its steps, sums of vectors.
 
+use std::fmt;
+
 use super::{DynamicProblem, State};
 use crate::error::Error;
 use crate::qp::problem::ContactProblem;
@@ -7,7 +9,7 @@ use crate::qp::{Prepared, Settings};
 use crate::solution::ContactSet;
 
 /// A scheme with everything prepared that does not change from step to step.
-pub(super) trait Advance {
+pub(super) trait Advance: fmt::Debug + Send + Sync {
     /// The first state.
     fn start(&self, problem: &DynamicProblem, step: f64, state: State) -> Result<State, Error>;
     /// The state after one step.
@@ -15,6 +17,7 @@ pub(super) trait Advance {
 }
 
 /// A matrix prepared for one contact problem after another on the rows of a motion.
+#[derive(Debug)]
 pub(super) struct Stepping {
     prepared: Prepared,
     settings: Settings,

@@ -1,5 +1,7 @@
 //! What a solve may be told.
 
+use std::time::Duration;
+
 use crate::error::Error;
 use crate::qp::method::penalty::BEST_PENALTY;
 use crate::solution::Goal;
@@ -65,7 +67,14 @@ pub enum Precision {
     Mixed,
 }
 
-/// Settings of a solve; start from [`Settings::default`] or [`Settings::with_method`] and change fields.
+/// Settings of a solve; start from [`Settings::default`] or [`Settings::with_method`] and change what differs.
+///
+/// ```
+/// use signorini::{Method, Settings};
+///
+/// let settings = Settings::with_method(Method::ActiveSet).with_tolerance(1e-12).with_proof();
+/// assert_eq!(settings.tolerance, 1e-12);
+/// ```
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Settings {
@@ -148,6 +157,51 @@ impl Settings {
     /// The program chooses how; the best answer that so many seconds allow.
     pub fn within(seconds: f64) -> Self {
         Settings { time: Some(seconds), ..Settings::default() }
+    }
+
+    /// The same with a tolerance of the certificate, relative.
+    pub fn with_tolerance(self, tolerance: f64) -> Self {
+        Settings { tolerance, ..self }
+    }
+
+    /// The same with an accuracy in energy that is good enough, relative.
+    pub fn with_accuracy(self, accuracy: f64) -> Self {
+        Settings { accuracy: Some(accuracy), ..self }
+    }
+
+    /// The same with a limit of wall-clock time.
+    pub fn with_time(self, time: Duration) -> Self {
+        Settings { time: Some(time.as_secs_f64()), ..self }
+    }
+
+    /// The same with a limit of memory, in bytes.
+    pub fn with_memory(self, bytes: f64) -> Self {
+        Settings { memory: Some(bytes), ..self }
+    }
+
+    /// The same with a number of threads.
+    pub fn with_threads(self, threads: usize) -> Self {
+        Settings { threads, ..self }
+    }
+
+    /// The same with a precision of the factor.
+    pub fn with_precision(self, precision: Precision) -> Self {
+        Settings { precision, ..self }
+    }
+
+    /// The same with a rule for condensation.
+    pub fn with_condensation(self, condense: Condense) -> Self {
+        Settings { condense, ..self }
+    }
+
+    /// The same with the rows named that are proven open or closed.
+    pub fn with_proof(self) -> Self {
+        Settings { prove: true, ..self }
+    }
+
+    /// The same under a watch that can stop it and tells what is being done.
+    pub fn watched(self, watch: &Watch) -> Self {
+        Settings { watch: watch.clone(), ..self }
     }
 
     /// The same with the seconds counted from now, as the deadline of the watch.

@@ -45,6 +45,7 @@ fn provoked() -> Result<BTreeMap<&'static str, (&'static str, Error)>, Error> {
         ("Length", ("length", spring_and_wall.with_load(vec![1.0, 2.0]).unwrap_err())),
         ("Shape", ("shape", SymmetricMatrix::from_full(&not_square?).unwrap_err())),
         ("IndexOutOfRange", ("index-out-of-range", matrix(&[(2, 0, 1.0)]).unwrap_err())),
+        ("Pattern", ("pattern", SparseMatrix::from_csc(2, vec![0, 2], vec![1, 0], vec![1.0, 1.0]).unwrap_err())),
         ("NotFinite", ("not-finite", spring(1.0, &[1.0], &[f64::NAN]).unwrap_err())),
         ("NotSymmetric", ("not-symmetric", SymmetricMatrix::from_full(&matrix(&[(0, 1, 1.0)])?).unwrap_err())),
         ("NotConvex", ("not-convex", spring(-1.0, &[1.0], &[0.5]).unwrap_err())),

@@ -9,4 +9,5 @@ mod architecture;
 mod errors;
 mod examples;
 mod imports;
+mod public;
 mod readme;

@@ -92,6 +92,65 @@ impl SparseMatrix {
         Ok(Self::from_parts(rows, column_starts, row_indices, values))
     }
 
+    /// The matrix of `rows` rows with given compressed columns: `column_starts` of length `columns + 1`, and for each entry its
+    /// row, from 0 and increasing within a column, and its value. Nothing is copied.
+    ///
+    /// ```
+    /// use signorini::SparseMatrix;
+    ///
+    /// // [1 0; 2 3]
+    /// let matrix = SparseMatrix::from_csc(2, vec![0, 2, 3], vec![0, 1, 1], vec![1.0, 2.0, 3.0])?;
+    /// assert_eq!(matrix.mul(&[1.0, 1.0]), [1.0, 5.0]);
+    /// # Ok::<(), signorini::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Length`] for arrays that do not fit each other, [`Error::Pattern`] for starts that decrease or rows that do not
+    /// increase, [`Error::IndexOutOfRange`] for a row beyond the last, [`Error::NotFinite`] for a value that is not finite.
+    pub fn from_csc(
+        rows: usize,
+        column_starts: Vec<usize>,
+        row_indices: Vec<usize>,
+        values: Vec<f64>,
+    ) -> Result<Self, Error> {
+        let entries = values.len();
+        if row_indices.len() != entries {
+            return Err(Error::Length {
+                name: "row indices",
+                found: row_indices.len(),
+                expected: entries,
+                of: "values",
+            });
+        }
+        let columns = column_starts.len().saturating_sub(1);
+        if column_starts.first() != Some(&0) || column_starts.last() != Some(&entries) {
+            let message = format!("the column starts must begin with 0 and end with the number of values, {entries}");
+            return Err(Error::Pattern { message });
+        }
+        for (column, ends) in column_starts.windows(2).enumerate() {
+            let Some(of_column) = row_indices.get(ends[0]..ends[1]) else {
+                let message = format!("the column starts decrease after column {column} (indices from 0)");
+                return Err(Error::Pattern { message });
+            };
+            if let Some(&row) = of_column.iter().find(|&&row| row >= rows) {
+                return Err(Error::IndexOutOfRange { row, column, rows, columns });
+            }
+            if let Some(pair) = of_column.windows(2).find(|pair| pair[0] >= pair[1]) {
+                let message = format!(
+                    "row {} of column {column} does not lie beyond row {}, the one before (indices from 0)",
+                    pair[1], pair[0]
+                );
+                return Err(Error::Pattern { message });
+            }
+            let of_column = &values[ends[0]..ends[1]];
+            if let Some(place) = of_column.iter().position(|value| !value.is_finite()) {
+                let at = format!("({}, {column})", row_indices[ends[0] + place]);
+                return Err(Error::NotFinite { name: "matrix", at, value: of_column[place], allowed: "finite" });
+            }
+        }
+        Ok(Self::from_parts(rows, column_starts, row_indices, values))
+    }
+
     /// The matrix with given compressed columns, trusted to be sorted and in range.
     pub(crate) fn from_parts(
         rows: usize,

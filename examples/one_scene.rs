@@ -1,0 +1,28 @@
+//! A scene from a file: body, supports and obstacle in JSON, the answer in forces and pressures.
+//!
+//! A block of 1 m x 0.5 m is clamped below; a parabola is pressed 0.01 m into its top.
+
+use signorini::{Error, Scene, Settings, solve};
+
+fn main() -> Result<(), Error> {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/indentation.json");
+    let model = Scene::read(path)?.build()?;
+    let solution = solve(model.problem(), &Settings::default().with_proof())?;
+
+    let pressure = model.pressure(&solution.multiplier)?;
+    println!("   x [m]  pressure [Pa]");
+    for row in &solution.contact_set {
+        println!("{:8.3} {:14.0}", model.mesh().nodes()[model.rows()[row].node][0], pressure[row]);
+    }
+    let force = -solution.multiplier.iter().sum::<f64>();
+    println!("force {force:.3} N per metre, error at most {:.1e} in energy", solution.certificate.energy_error_bound);
+
+    // The block is symmetric about x = 0.5, and so is its contact; loads, supports and contact are in balance.
+    let closed: Vec<usize> = solution.contact_set.iter().collect();
+    assert_eq!(closed, (17..24).collect::<Vec<_>>());
+    assert!((pressure[17] - pressure[23]).abs() < 1e-9 * pressure[20]);
+    assert!(model.force_balance(&solution.displacement, &solution.multiplier)? < 1e-12);
+    // Every row is proven closed or open in the exact answer of this mesh.
+    assert!(solution.proven.is_some_and(|proven| proven.undecided().count() == 0));
+    Ok(())
+}

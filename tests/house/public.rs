@@ -1,0 +1,77 @@
+//! What every user may rely on: types that cross threads and print themselves, sets that are collections, matrices from
+//! compressed columns, the best answer inside an error.
+
+use std::fmt::Debug;
+
+use signorini::fem::body::ElasticBody;
+use signorini::fem::mesh::Mesh;
+use signorini::motion::{DynamicProblem, Integrator, Scheme, State};
+use signorini::scene::Dynamics;
+use signorini::{
+    BoundarySolution, Certificate, ContactProblem, ContactSet, Error, Goal, Iterative, Method, Model, Path, Prepared,
+    ProvenSet, Scene, Settings, Solution, SparseMatrix, SymmetricMatrix, Watch, solve,
+};
+
+fn crosses_threads<T: Send + Sync + Debug>() {}
+
+#[test]
+fn public_types_cross_threads_and_print_themselves() {
+    crosses_threads::<(ContactProblem, Solution, Certificate, ContactSet, ProvenSet, Goal)>();
+    crosses_threads::<(Settings, Method, Watch, Error)>();
+    crosses_threads::<(Prepared, Iterative, BoundarySolution, Path)>();
+    crosses_threads::<(SparseMatrix, SymmetricMatrix)>();
+    crosses_threads::<(Scene, Model, Dynamics, Mesh, ElasticBody)>();
+    crosses_threads::<(DynamicProblem, Integrator, Scheme, State)>();
+}
+
+#[test]
+fn a_contact_set_is_collected_from_flags_and_iterates_over_closed_rows() {
+    let flags: Vec<bool> = (0..130).map(|row| row % 3 == 0).collect();
+    let set: ContactSet = flags.iter().copied().collect();
+    assert_eq!((set.rows(), set.count()), (130, 44));
+    assert_eq!(set, ContactSet::from_fn(130, |row| flags[row]));
+    let mut closed = Vec::new();
+    for row in &set {
+        closed.push(row);
+    }
+    assert_eq!(closed, (0..130).step_by(3).collect::<Vec<_>>());
+    assert_eq!(std::iter::empty::<bool>().collect::<ContactSet>(), ContactSet::open(0));
+}
+
+#[test]
+fn compressed_columns_make_the_matrix_of_their_triplets_or_say_what_is_wrong() {
+    let from_csc = |starts: &[usize], rows: &[usize], values: &[f64]| {
+        SparseMatrix::from_csc(3, starts.to_vec(), rows.to_vec(), values.to_vec())
+    };
+    let expected = SparseMatrix::from_triplets(3, 2, &[(0, 0, 1.0), (2, 0, 2.0), (1, 1, 3.0)]).unwrap();
+    assert_eq!(from_csc(&[0, 2, 3], &[0, 2, 1], &[1.0, 2.0, 3.0]).unwrap(), expected);
+    assert_eq!(from_csc(&[0], &[], &[]).unwrap().columns(), 0);
+    for (starts, rows, values, words) in [
+        (&[0, 2, 3][..], &[0, 2][..], &[1.0, 2.0, 3.0][..], "row indices has length 2"),
+        (&[], &[], &[], "begin with 0"),
+        (&[1, 2, 3], &[0, 2, 1], &[1.0, 2.0, 3.0], "begin with 0"),
+        (&[0, 2, 2], &[0, 2, 1], &[1.0, 2.0, 3.0], "end with the number of values, 3"),
+        (&[0, 4, 3], &[0, 2, 1], &[1.0, 2.0, 3.0], "decrease after column 0"),
+        (&[0, 2, 1, 3], &[0, 2, 1], &[1.0, 2.0, 3.0], "decrease after column 1"),
+        (&[0, 2, 3], &[2, 0, 1], &[1.0, 2.0, 3.0], "row 0 of column 0 does not lie beyond row 2"),
+        (&[0, 2, 3], &[1, 1, 1], &[1.0, 2.0, 3.0], "row 1 of column 0 does not lie beyond row 1"),
+        (&[0, 2, 3], &[0, 3, 1], &[1.0, 2.0, 3.0], "entry (3, 0) lies outside"),
+        (&[0, 2, 3], &[0, 2, 1], &[1.0, f64::NAN, 3.0], "NaN at (2, 0)"),
+    ] {
+        let error = from_csc(starts, rows, values).unwrap_err().to_string();
+        assert!(error.contains(words), "{error}");
+    }
+}
+
+#[test]
+fn an_error_that_carries_an_answer_gives_it_away() {
+    let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(1, 1, &[(0, 0, 1.0)]).unwrap()).unwrap();
+    let contact = SparseMatrix::from_triplets(1, 1, &[(0, 0, 1.0)]).unwrap();
+    let problem = ContactProblem::new(stiffness, vec![2.0], contact, vec![0.5]).unwrap();
+    let mut settings = Settings::with_method(Method::Penalty);
+    settings.last_penalty = 1.0;
+    // One spring of the stiffness 1 beside the body's own: u = (2 + 0.5)/2.
+    let best = solve(&problem, &settings).unwrap_err().into_best().unwrap();
+    assert!((best.displacement[0] - 1.25).abs() < 1e-15, "{:?}", best.displacement);
+    assert!(Error::Interrupted.into_best().is_none());
+}
