@@ -38,8 +38,7 @@ step "examples, in short"
 for lesson in two_springs one_scene find_the_contact_set many_gaps judge_an_answer bouncing_mass; do example $lesson; done
 example verification --short
 example extremes --most 100
-for target in scene mesh matrix; do example fuzz $target 20000; done
-example fuzz problem 4000
+for target in scene mesh matrix problem; do example fuzz $target 20000; done
 example contact_cost --only "Q4 64,Hex8 6" --rounds 1
 example multigrid --most-dofs 20000
 example impact

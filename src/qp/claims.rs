@@ -12,10 +12,11 @@
 //! no direction of the cone leans towards c. Where a method left no answer, steps with `K + rho E` instead of K find one.
 
 use super::attempts;
+use super::cost::{Kept, check_memory, check_time, seconds};
 use super::judged::{judged, not_rechecked};
 use super::settings::{Method, Precision, Settings};
 use crate::error::Error;
-use crate::qp::linear::{FactorError, SparseMatrix, SymmetricMatrix, dot, exponent, generic, largest, ldexp};
+use crate::qp::linear::{Analysis, FactorError, SparseMatrix, SymmetricMatrix, dot, exponent, generic, largest, ldexp};
 use crate::qp::problem::{ContactProblem, Motion};
 use crate::qp::transform::Scaling;
 use crate::solution::Solution;
@@ -35,11 +36,20 @@ const TIP: f64 = 1e-8;
 /// A row presses if its force on a dof is beyond this share of the forces that are in balance there: less is their rounding.
 const PRESSED: f64 = 1e-13;
 
+/// Powers of two in a decade, about.
+const DECADE: i32 = 4;
+
 /// A row that is open by less than this share of its displacement and gap may touch.
 const TOUCHING: f64 = 1e-8;
 
 /// The same, as a share of what the load would move.
 const STRAINED: f64 = 1e-13;
+
+/// A body moves at most so many times as far as a dof that a force moves alone: soft enough for what is not slender.
+const BENDS: f64 = 1e3;
+
+/// Where a dof comes that a force moves and no stiffness holds.
+const FAR: f64 = 1e300;
 
 /// Exponent of rho: on a diagonal of order one, far above rounding and far below what resists.
 const STEP: i32 = -20;
@@ -79,6 +89,9 @@ pub(super) fn rechecked(
         // Beyond the range of doubles nothing can be rechecked.
         Err(_) => return Err(not_decided(problem, before)?),
     };
+    if check_room(&scaled, settings).is_err() {
+        return Err(not_decided(problem, before)?);
+    }
     let null = match scaled.stiffness().null_space() {
         Ok(null) => null,
         Err(FactorError::NotPositiveDefinite) => {
@@ -98,10 +111,28 @@ pub(super) fn rechecked(
         Error::NotCertified { solution, .. } if holds(&solution) => *solution,
         before => looked.answer(problem, settings, before)?,
     };
-    if let Some(motion) = looked.freedom(problem, &solution).filter(|_| holds(&solution)) {
+    // A problem that has a place within its rows, and no motion that the load drives, has an answer.
+    let motion = match solution.certificate.penetration <= settings.tolerance {
+        true => looked.drift(),
+        false => None,
+    };
+    if let Some(motion) = motion.or_else(|| looked.freedom(problem, &solution).filter(|_| holds(&solution))) {
         return Err(Error::UnderHeld { motion: motion.in_words(), direction: looked.expanded(&motion) });
     }
     judged(solution, settings.goal())
+}
+
+/// Refuses a factorisation of the stiffness that memory or time do not allow.
+///
+/// # Errors
+/// [`Error::TooLarge`], [`Error::OutOfTime`], and those of the analysis.
+fn check_room(problem: &ContactProblem, settings: &Settings) -> Result<(), Error> {
+    check_memory(problem, Kept::Nothing, settings)?;
+    check_time(&settings.watch, seconds::ordering(problem))?;
+    let analysis = Analysis::of(problem.stiffness())?;
+    let kept = Kept::Factors { values: analysis.factor_entries(), last: 0, by_interior_point: false };
+    check_memory(problem, kept, settings)?;
+    check_time(&settings.watch, seconds::factorisation(&analysis))
 }
 
 /// Does an ending make a claim, or leave open whether there is one? Without a bound it does where its answer holds its
@@ -151,18 +182,72 @@ impl Looked<'_> {
         self.motion(&nearest).filter(Motion::escapes)
     }
 
+    /// A motion without energy on which the load does no work, and that no row stops, wherever it starts: of a problem that has
+    /// an answer, it has others.
+    fn drift(&self) -> Option<Motion> {
+        let mut rows: Vec<Vec<f64>> = self.bounded_rows().map(|row| self.coordinates_of_row(row)).collect();
+        rows.push(self.coordinates_of_load().iter().map(|value| -value).collect());
+        [1.0, -1.0].iter().find_map(|way| {
+            let towards: Vec<f64> = generic(self.null.len(), 0).iter().map(|value| way * value).collect();
+            self.motion(&nearest_of_cone(&rows, &towards)?).filter(Motion::drifts)
+        })
+    }
+
     /// A motion without energy that leads from an answer to others.
     fn freedom(&self, problem: &ContactProblem, solution: &Solution) -> Option<Motion> {
-        let (u, lambda) = (&solution.displacement, &solution.multiplier);
+        let u = &solution.displacement;
         let violation = problem.accurate_violation(u);
         let sizes = problem.contact().mul_abs(u);
-        let presses = pressed(problem, u, lambda);
-        let presses = |row: usize| presses[row];
         // What the load would move dofs that nothing but their own stiffness holds: all that is left of u may be rounding of it.
         let unit = self.scaling.expand_displacement(&vec![STRAINED * largest(self.scaled.load()); u.len()], 0);
         let strained = problem.contact().mul_abs(&unit);
-        let touches =
-            |row: usize| violation[row] >= -(TOUCHING * (sizes[row] + problem.gap()[row].abs()) + strained[row]);
+        let (shares, forces) = self.pressing(problem, solution);
+        let exponents: Vec<i32> = forces.iter().map(|&force| exponent(force)).collect();
+        let mut least: Vec<i32> = (self.bounded_rows().filter(|&row| shares[row] > PRESSED))
+            .map(|row| exponents[row].div_euclid(DECADE))
+            .collect();
+        least.sort_unstable();
+        least.dedup();
+        // A force may be rounding of those elsewhere: the least ones are left out, one decade after another.
+        least.into_iter().chain([i32::MAX]).find_map(|least| {
+            let presses = |row: usize| shares[row] > PRESSED && exponents[row].div_euclid(DECADE) >= least;
+            let without = self.moved_without(problem, solution, &presses);
+            // A row that may press is closed.
+            let touches = |row: usize| {
+                let closed = TOUCHING * (sizes[row] + problem.gap()[row].abs()) + strained[row] + without[row];
+                violation[row] >= -closed || shares[row] > PRESSED
+            };
+            self.freedom_with(problem, solution, &presses, &touches)
+        })
+    }
+
+    /// How far rows may move if none but those that press carry a force: what is then out of balance moves its dof against no
+    /// more than the stiffness of that dof, and a body that bends moves further.
+    fn moved_without(
+        &self,
+        problem: &ContactProblem,
+        solution: &Solution,
+        presses: &dyn Fn(usize) -> bool,
+    ) -> Vec<f64> {
+        let kept: Vec<f64> = (solution.multiplier.iter().enumerate())
+            .map(|(row, &force)| if presses(row) { force } else { 0.0 })
+            .collect();
+        let residual = problem.accurate_residual(&solution.displacement, &kept);
+        let alone = problem.stiffness().diagonal();
+        let moved = |(force, stiffness): (f64, &f64)| {
+            if force == 0.0 { 0.0 } else { (BENDS * force.abs() / stiffness).min(FAR) }
+        };
+        problem.contact().mul_abs(&residual.into_iter().zip(&alone).map(moved).collect::<Vec<f64>>())
+    }
+
+    /// The same, where it is told which rows press and which touch.
+    fn freedom_with(
+        &self,
+        problem: &ContactProblem,
+        solution: &Solution,
+        presses: &dyn Fn(usize) -> bool,
+        touches: &dyn Fn(usize) -> bool,
+    ) -> Option<Motion> {
         let mut left = Complement::of(self.null.len());
         self.bounded_rows().filter(|&row| presses(row)).for_each(|row| left.remove(&self.coordinates_of_row(row)));
         let mut rows: Vec<Vec<f64>> = (self.bounded_rows())
@@ -184,6 +269,22 @@ impl Looked<'_> {
             let nearest = nearest_of_cone(&rows, &towards)?;
             self.motion(&left.expanded(&nearest, self.null.len())).filter(stays)
         })
+    }
+
+    /// The force of each row, in the dof where it is largest: as a share of those that are in balance there, and in the units
+    /// of the scaled problem.
+    fn pressing(&self, problem: &ContactProblem, solution: &Solution) -> (Vec<f64>, Vec<f64>) {
+        let terms = forces_at(problem, &solution.displacement, &solution.multiplier);
+        let units = &self.scaling.equilibration().diagonal;
+        let (mut shares, mut forces) = (vec![0.0_f64; problem.rows()], vec![0.0_f64; problem.rows()]);
+        for (row, dof, b) in problem.contact().triplets() {
+            let force = (b * solution.multiplier[row]).abs();
+            if force > 0.0 {
+                shares[row] = shares[row].max(force / terms[dof]);
+                forces[row] = forces[row].max(ldexp(force, units[dof]));
+            }
+        }
+        (shares, forces)
     }
 
     /// Does the load do no work on a motion d? With `K d = 0`, and `B d = 0` where a row presses, `f'd` is `r'd` for the residual
@@ -315,16 +416,6 @@ fn forces_at(problem: &ContactProblem, u: &[f64], lambda: &[f64]) -> Vec<f64> {
     let contact = problem.contact().mul_abs_transposed(&absolute(lambda));
     let elastic = problem.stiffness().mul_abs(u);
     (0..u.len()).map(|dof| contact[dof] + elastic[dof] + problem.load()[dof].abs()).collect()
-}
-
-/// Does each row press?
-fn pressed(problem: &ContactProblem, u: &[f64], lambda: &[f64]) -> Vec<bool> {
-    let terms = forces_at(problem, u, lambda);
-    let mut presses = vec![false; problem.rows()];
-    for (row, dof, b) in problem.contact().triplets() {
-        presses[row] |= (b * lambda[row]).abs() > PRESSED * terms[dof];
-    }
-    presses
 }
 
 /// The sum of `b_i v_i`, zero where its terms cancel.

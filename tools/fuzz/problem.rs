@@ -10,6 +10,9 @@ const HOLDS: f64 = 1e-7;
 /// Rounding of a displacement, in the forces that it makes.
 const ROUNDING: f64 = 1e-14;
 
+/// What stands still is measured by this share of what its forces could do, as in the certificate.
+const AT_REST: f64 = 1e-6;
+
 /// A problem: stiffness of any rank, rows that may be copies of each other, numbers of any size.
 pub fn problem(draws: &mut Draws) -> Result<ContactProblem, Error> {
     let (n, m) = (1 + draws.below(6), draws.below(7));
@@ -104,13 +107,14 @@ fn broken(problem: &ContactProblem, solution: &Solution) -> Option<&'static str>
     let of_load: f64 = u.iter().zip(problem.load()).map(|(u, f)| u * f).sum();
     let of_gap: f64 = (lambda.iter().zip(problem.gap())).filter(|entry| *entry.0 != 0.0).map(|(l, g)| l * g).sum();
     // What stands still is measured by what its forces could do.
-    let work = energy.max(of_load.abs()).max(of_gap.abs()).max(1e-6 * strong * strong);
+    let work = energy.max(of_load.abs()).max(of_gap.abs()).max(AT_REST * strong * strong);
+    let length = energy.sqrt().max(AT_REST * strong);
     let mut soft = vec![0.0_f64; problem.rows()];
     for (dof, &stiffness) in problem.stiffness().diagonal().iter().enumerate().filter(|entry| *entry.1 > 0.0) {
         problem
             .contact()
             .column(dof)
-            .for_each(|(row, b)| soft[row] = soft[row].max(b.abs() * (energy / stiffness).sqrt()));
+            .for_each(|(row, b)| soft[row] = soft[row].max(b.abs() * length / stiffness.sqrt()));
     }
     (0..problem.rows()).find_map(|row| {
         let gap = problem.gap()[row];

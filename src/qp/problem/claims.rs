@@ -14,6 +14,17 @@ const ZERO: f64 = 1e-9;
 /// A load drives a motion if its work is beyond this share of its terms.
 const DRIVES: f64 = 1e-9;
 
+/// A load does no work on a motion if that is within this share of its terms, as rounding of the sum leaves it: where rounding
+/// of the direction leaves more, the load may as well hold what it seems to leave free.
+const IDLE: f64 = 1e-30;
+
+/// A speed beyond this share of its terms is more than rounding of a direction in doubles leaves; up to [`SURE`], it is less
+/// than a direction that is found by a factorisation can tell.
+const UNSURE: f64 = 1e-15;
+
+/// See [`UNSURE`].
+const SURE: f64 = 1e-8;
+
 /// Entries of a motion are looked at in this unit of the largest: a translation becomes one without rounding.
 const GRID: f64 = 1073741824.0;
 
@@ -40,6 +51,11 @@ impl Motion {
         self.work > DRIVES && self.approach.iter().all(|&speed| speed <= 0.0)
     }
 
+    /// Does the load do no work on the motion, and does no row stop it?
+    pub fn drifts(&self) -> bool {
+        self.work.abs() <= IDLE && self.approach.iter().all(|&speed| speed <= 0.0)
+    }
+
     /// How the motion was rechecked, and most of it.
     pub fn in_words(&self) -> String {
         let mut entries: Vec<(usize, f64)> = self.direction.iter().copied().enumerate().collect();
@@ -53,7 +69,8 @@ impl Motion {
 }
 
 impl ContactProblem {
-    /// A direction of which the stiffness resists nothing, if it is one: `K d` vanishes in every dof.
+    /// A direction of which the stiffness resists nothing, if it is one: `K d` vanishes in every dof. A direction is none if it
+    /// cannot tell whether it closes, opens or slides along a row.
     pub(crate) fn motion_along(&self, direction: &[f64]) -> Option<Motion> {
         let size = largest(direction);
         if !(size > 0.0 && size.is_finite()) {
@@ -79,7 +96,15 @@ impl ContactProblem {
         let counts = |(row, speed): (usize, f64)| {
             if self.gap[row].is_finite() && speed.abs() > VANISHES * terms[row] { speed } else { 0.0 }
         };
-        let approach = approach.into_sums().into_iter().enumerate().map(counts).collect();
+        let sums = approach.into_sums();
+        let is_unsure = |(row, &speed): (usize, &f64)| {
+            let share = speed.abs() / terms[row];
+            self.gap[row].is_finite() && share > UNSURE && share < SURE
+        };
+        if sums.iter().enumerate().any(is_unsure) {
+            return None;
+        }
+        let approach = sums.into_iter().enumerate().map(counts).collect();
         let mut work = Accumulator::new(&[0.0]);
         self.load.iter().zip(&direction).for_each(|(&f, &d)| work.add_product(0, f, d));
         let terms: f64 = self.load.iter().zip(&sizes).map(|(f, d)| f.abs() * d).sum();
