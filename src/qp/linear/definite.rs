@@ -1,6 +1,6 @@
 //! Is a matrix positive definite, or did rounding let a singular one pass its Cholesky factorisation?
 
-use super::{Cholesky, SymmetricMatrix, largest};
+use super::{Cholesky, Equilibration, FactorError, SymmetricMatrix, largest};
 
 /// On a diagonal of order one, a smallest pivot above this leaves no doubt; below it the smallest eigenvalue is looked at.
 const SAFE_PIVOT: f64 = 1e-9;
@@ -10,6 +10,11 @@ pub(super) const NULL_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Steps of inverse iteration: each gains several digits, since eigenvalues differ by many orders of magnitude.
 const STEPS: usize = 5;
+
+/// On a diagonal of order one, a negative eigenvalue above this, or above so much for each column, is rounding of the entries
+/// and of the factor.
+const LEAST_NEGATIVE: f64 = 1e-12;
+const NEGATIVE_BY_COLUMN: f64 = 8.0 * f64::EPSILON;
 
 impl Cholesky {
     /// Is a matrix with a diagonal of order one definite beyond doubt, by the pivots of this factor alone?
@@ -37,5 +42,49 @@ impl Cholesky {
             x.iter_mut().for_each(|value| *value /= size);
         }
         x
+    }
+}
+
+impl SymmetricMatrix {
+    /// Is the matrix positive semidefinite, to rounding? Its equilibrated form with a trace of the unit matrix must have a factor.
+    ///
+    /// # Errors
+    /// Those of the factorisation but [`FactorError::NotPositiveDefinite`].
+    pub fn is_semidefinite(&self) -> Result<bool, FactorError> {
+        let diagonal = self.diagonal();
+        let has_none = |dof: usize| diagonal[dof] == 0.0;
+        let is_free = |row: usize, column: usize| row != column && (has_none(row) || has_none(column));
+        if diagonal.iter().any(|&value| value < 0.0)
+            || self.lower().triplets().any(|(row, column, value)| value != 0.0 && is_free(row, column))
+        {
+            return Ok(false);
+        }
+        let shift = LEAST_NEGATIVE.max(NEGATIVE_BY_COLUMN * self.dim() as f64);
+        match Equilibration::of(self).apply(self).shifted_factor(shift) {
+            Ok(_) => Ok(true),
+            Err(FactorError::NotPositiveDefinite) => Ok(false),
+            Err(error) => Err(error),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::SparseMatrix;
+    use super::*;
+
+    fn is_semidefinite(diagonal: [f64; 2], coupling: f64) -> bool {
+        let entries = [(0, 0, diagonal[0]), (1, 0, coupling), (1, 1, diagonal[1])];
+        let lower = SparseMatrix::from_triplets(2, 2, &entries).unwrap();
+        SymmetricMatrix::from_lower(lower).unwrap().is_semidefinite().unwrap()
+    }
+
+    #[test]
+    fn a_negative_eigenvalue_is_told_from_none() {
+        assert!(is_semidefinite([1e-20, 1e20], 1.0));
+        assert!(is_semidefinite([0.0, 1.0], 0.0));
+        assert!(!is_semidefinite([1e-20, 1e20], 1.0 + 1e-9));
+        assert!(!is_semidefinite([0.0, 1.0], 1e-100));
+        assert!(!is_semidefinite([-1e-100, 1.0], 0.0));
     }
 }

@@ -10,7 +10,7 @@
 use super::energy_bound::Answer;
 use super::{ContactProblem, EnergyNorm};
 use crate::error::Error;
-use crate::qp::linear::{dot, ldexp};
+use crate::qp::linear::{Dependence, SparseMatrix, dot, inverse_lengths, ldexp};
 use crate::solution::{ContactSet, ProvenSet};
 
 /// Multiplications that the compliance of the rows in question may cost; beyond, one dof of each row is moved alone.
@@ -18,13 +18,6 @@ const MOST_WORK: f64 = 2e9;
 
 /// The bound can be the error itself; by this much it and all that is computed from it may be rounded.
 const ROUNDED: f64 = 1.0 + 1e-6;
-
-/// Pivots below this share of their row's own compliance belong to rows that follow from others, or nearly so.
-const DEPENDENT: f64 = 1e-8;
-
-/// A row takes part in a dependence where its share of the motion is above this share of the dependent row: more than what
-/// rounding leaves. The share of a row on a stiff part is small beside one on a soft part.
-const TAKES_PART: f64 = 1e-12;
 
 impl ContactProblem {
     /// The rows of which an answer proves, by its distance and force, that the exact answer has them open or closed;
@@ -74,7 +67,7 @@ impl ContactProblem {
             doubtful |= multiplier[row] < 0.0 && !closed.contains(row);
         }
         if doubtful && halves.work(in_question.len()) <= MOST_WORK {
-            for (&row, length) in in_question.iter().zip(halves.moved_together(&in_question)) {
+            for (&row, length) in in_question.iter().zip(halves.moved_together(&self.contact, &in_question)) {
                 closed.set(row, closed.contains(row) || proven(row, length));
             }
         }
@@ -140,69 +133,25 @@ impl<'a> Halves<'a> {
         (rows * rows) as f64 * (length + rows) as f64
     }
 
-    /// `sqrt((G_CC^-1)_ii)` of the rows C; infinite for those that follow from others.
-    fn moved_together(&self, rows: &[usize]) -> Vec<f64> {
-        let size = rows.len();
-        let in_time = |&row: &usize| if self.norm.is_over() { None } else { Some(self.half(row)) };
-        let Some(halves) = rows.iter().map(in_time).collect::<Option<Vec<_>>>() else {
-            return vec![f64::INFINITY; size];
+    /// `sqrt((G_CC^-1)_ii)` of the rows C of `contact`; infinite for those with a share in a dependence.
+    fn moved_together(&self, contact: &SparseMatrix, rows: &[usize]) -> Vec<f64> {
+        let none = || vec![f64::INFINITY; rows.len()];
+        let Some(Dependence { independent, takes_part }) = Dependence::of(contact, rows, || self.norm.is_over()) else {
+            return none();
         };
-        // L of G_CC row by row; a row that follows from those before it has none.
-        let mut factor = vec![0.0; size * size];
-        let mut kept = vec![true; size];
-        let mut dependent = vec![false; size];
-        let owns: Vec<f64> = halves.iter().map(|half| dot(half, half)).collect();
-        for i in 0..size {
-            if self.norm.is_over() {
-                return vec![f64::INFINITY; size];
-            }
-            let own = owns[i];
-            let (before, row) = factor.split_at_mut(i * size);
-            for j in (0..i).filter(|&j| kept[j]) {
-                let known = dot(&before[j * size..j * size + j], &row[..j]);
-                row[j] = (dot(&halves[i], &halves[j]) - known) / before[j * size + j];
-            }
-            let pivot = own - dot(&row[..i], &row[..i]);
-            kept[i] = pivot > DEPENDENT * own;
-            if kept[i] {
-                row[i] = pivot.sqrt();
-                continue;
-            }
-            dependent[i] = true;
-            let mut share = row[..i].to_vec();
-            backward(before, size, &kept, &mut share);
-            let takes_part = |share: f64, other: f64| share.abs() * other.sqrt() > TAKES_PART * own.sqrt();
-            let others = share.iter().zip(&owns);
-            others.zip(&mut dependent).for_each(|((&share, &other), flag)| *flag |= takes_part(share, other));
-            row[..i].fill(0.0);
+        let basis: Vec<usize> = (0..rows.len()).filter(|&index| independent[index]).collect();
+        let in_time = |&index: &usize| if self.norm.is_over() { None } else { Some(self.half(rows[index])) };
+        let Some(halves) = basis.iter().map(in_time).collect::<Option<Vec<_>>>() else { return none() };
+        let Some(reciprocals) = inverse_lengths(halves, || self.norm.is_over()) else { return none() };
+        let mut lengths = none();
+        for (&index, reciprocal) in basis.iter().zip(reciprocals).filter(|entry| !takes_part[*entry.0]) {
+            lengths[index] = ldexp_root(reciprocal, -self.norm.factor());
         }
-        (0..size)
-            .map(|i| {
-                if dependent[i] {
-                    return f64::INFINITY;
-                }
-                // (G^-1)_ii is the squared length of L^-1 e_i.
-                let mut x = vec![0.0; size];
-                for j in (i..size).filter(|&j| kept[j]) {
-                    let row = &factor[j * size..(j + 1) * size];
-                    let load = if j == i { 1.0 } else { 0.0 };
-                    x[j] = (load - dot(&row[i..j], &x[i..j])) / row[j];
-                }
-                ldexp(dot(&x, &x), -self.norm.factor()).sqrt()
-            })
-            .collect()
+        lengths
     }
 }
 
-/// Solves `L' x = b` for the rows of L so far, which `factor` holds row by row.
-fn backward(factor: &[f64], size: usize, kept: &[bool], b: &mut [f64]) {
-    for j in (0..b.len()).rev() {
-        if !kept[j] {
-            b[j] = 0.0;
-            continue;
-        }
-        b[j] /= factor[j * size + j];
-        let value = b[j];
-        (0..j).for_each(|k| b[k] -= factor[j * size + k] * value);
-    }
+/// `sqrt(2^e) x`
+fn ldexp_root(x: f64, e: i32) -> f64 {
+    ldexp(if e.rem_euclid(2) == 1 { x * std::f64::consts::SQRT_2 } else { x }, e.div_euclid(2))
 }

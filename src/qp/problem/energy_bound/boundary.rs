@@ -16,7 +16,7 @@ use crate::qp::linear::{dot, exponent, ldexp};
 /// Times that the rows which look closed are corrected; from then on rows are only added.
 const EXCHANGES: usize = 10;
 
-/// Pivots below this share of their row's own compliance are what rounding of products leaves of nearly parallel rows.
+/// Pivots below this share of the products that cancel in them are what rounding leaves of nearly dependent rows.
 const PARALLEL: f64 = 1e-12;
 
 /// What is left of a row across all others follows from them where it is below this share of the terms.
@@ -430,6 +430,7 @@ impl Triangle {
 
     fn of_products(columns: &[&[f64]], is_over: &impl Fn() -> bool) -> Option<Self> {
         let mut found = Triangle { columns: Vec::new(), independent: Vec::new() };
+        let lengths: Vec<f64> = columns.iter().map(|column| dot(column, column).sqrt()).collect();
         for (i, column) in columns.iter().enumerate() {
             if is_over() {
                 return None;
@@ -439,9 +440,9 @@ impl Triangle {
                 let before = &found.columns[j];
                 entries[j] = (dot(column, columns[j]) - dot(&before[..j], &entries[..j])) / before[j];
             }
-            let own = dot(column, column);
-            let pivot = own - dot(&entries, &entries);
-            found.close(entries, pivot.max(0.0).sqrt(), pivot > PARALLEL * own);
+            let pivot = dot(column, column) - dot(&entries, &entries);
+            let terms = found.terms(&entries, &lengths);
+            found.close(entries, pivot.max(0.0).sqrt(), pivot > PARALLEL * terms * terms);
         }
         Some(found)
     }
@@ -463,15 +464,20 @@ impl Triangle {
                 }
             }
             let left = dot(&across, &across).sqrt();
-            let mut weights = entries.clone();
-            found.solve_upper(&mut weights[..i]);
-            let terms =
-                weights.iter().zip(&lengths).fold(lengths[i], |sum, (weight, length)| sum + weight.abs() * length);
+            let terms = found.terms(&entries, &lengths);
             found.close(entries, left, left > DEPENDENT * terms);
             across.iter_mut().for_each(|entry| *entry /= left);
             directions.push(across);
         }
         Some(found)
+    }
+
+    /// The lengths of the columns, added up as they cancel in the part of the next one across them, which is last in `entries`.
+    fn terms(&self, entries: &[f64], lengths: &[f64]) -> f64 {
+        let before = self.columns.len();
+        let mut weights = entries[..before].to_vec();
+        self.solve_upper(&mut weights);
+        weights.iter().zip(lengths).fold(lengths[before], |sum, (weight, length)| sum + weight.abs() * length)
     }
 
     /// Appends a column of R with this diagonal entry.

@@ -80,6 +80,9 @@ impl ErrorBound {
 /// Squares of what is below this share of another number underflow beside it.
 const LOST: f64 = 1e-140;
 
+/// Squares of what is below this underflow, or lose digits.
+const LEAST: f64 = 1e-145;
+
 impl ContactProblem {
     /// An upper bound on `|u - u*|_K`.
     pub(super) fn energy_error_bound(&self, norm: &EnergyNorm, answer: &Answer) -> ErrorBound {
@@ -99,16 +102,18 @@ impl ContactProblem {
         }
     }
 
-    /// What displacements are worth in energy whose squares are lost in double precision beside the forces; 0 where there
+    /// What displacements are worth in energy whose squares are lost in double precision, or beside the forces; 0 where there
     /// are none.
     fn underflow(&self, answer: &Answer) -> f64 {
         let roots = &self.diagonal().roots;
         let contact = self.contact.mul_transposed(answer.multiplier);
         let force = |dof: usize| self.load[dof].abs() + contact[dof].abs();
         let loaded = (0..self.dofs()).filter(|&dof| force(dof) > 0.0 && roots[dof] > 0.0);
-        let least = LOST * loaded.map(|dof| force(dof) / roots[dof]).fold(0.0, f64::max);
-        let is_lost =
-            |dof: usize| answer.displacement[dof] != 0.0 && answer.displacement[dof].abs() * roots[dof] < least;
+        let least = loaded.map(|dof| LOST * force(dof) / roots[dof]).fold(LEAST, f64::max);
+        let is_lost = |dof: usize| {
+            let size = answer.displacement[dof].abs();
+            size > 0.0 && roots[dof] > 0.0 && size * roots[dof] < least
+        };
         (0..self.dofs()).filter(|&dof| is_lost(dof)).count() as f64 * 2.0 * least
     }
 
@@ -173,8 +178,8 @@ pub(super) struct Springs {
 const PRESSING: f64 = 1e-8;
 
 impl ContactProblem {
-    /// The energy norm of K or, where K is not definite, of K with springs on the rows that press; `None` where these do not
-    /// hold the body.
+    /// The energy norm of K or, where K is semidefinite, of K with springs on the rows that press; `None` where these do not
+    /// hold the body, or K has a negative eigenvalue: springs would hide it.
     ///
     /// # Errors
     /// As [`EnergyNorm::of`].
@@ -184,7 +189,8 @@ impl ContactProblem {
         }
         let springs = self.springs(displacement, multiplier);
         let Some(held) = springs.added_to(self)? else { return Ok(None) };
-        Ok(EnergyNorm::of(&held, &self.contact)?.map(|norm| norm.with_springs(springs)))
+        let Some(norm) = EnergyNorm::of(&held, &self.contact)? else { return Ok(None) };
+        Ok(self.stiffness.is_semidefinite()?.then(|| norm.with_springs(springs)))
     }
 
     /// Springs on the rows that press, each as stiff as the row itself is when all but its own dofs stand still.
