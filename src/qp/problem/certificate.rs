@@ -221,7 +221,7 @@ impl ContactProblem {
 
     /// The parts, found when they are first asked for.
     pub(super) fn parts(&self) -> &Parts {
-        self.parts.get_or_find(|| Parts::of(self))
+        self.parts.get_or_find(|| Parts::of(&self.stiffness, self.diagonal(), &self.contact, &self.gap))
     }
 }
 

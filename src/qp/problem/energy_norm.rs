@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::energy_bound::Springs;
+use super::springs::Springs;
 use crate::error::Error;
 use crate::qp::linear::{Analysis, Cholesky, Equilibration, FactorError, SparseMatrix, SymmetricMatrix, dot, ldexp};
 use crate::watch::Watch;

@@ -3,12 +3,14 @@
 mod certificate;
 mod claims;
 mod contradiction;
+mod diagonal;
 mod energy_bound;
 mod energy_norm;
 mod multigrid_bound;
 mod parts;
 mod proof;
 mod scales;
+mod springs;
 mod units;
 
 pub(crate) use claims::Motion;
@@ -16,8 +18,8 @@ pub use energy_norm::EnergyNorm;
 
 use std::sync::{Arc, OnceLock};
 
+use diagonal::Diagonal;
 use parts::Parts;
-use scales::Diagonal;
 
 use crate::error::Error;
 use crate::qp::linear::multigrid::NearNullSpace;

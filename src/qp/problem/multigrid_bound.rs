@@ -31,7 +31,7 @@ impl ContactProblem {
         let dual = match &springs {
             None => dual_norm_within(&self.stiffness, multigrid, &residual, watch),
             Some(springs) => springs
-                .added_to(self)
+                .added_to(&self.stiffness, &self.contact)
                 .ok()
                 .flatten()
                 .and_then(|stiffness| dual_norm_within(&stiffness, multigrid, &residual, watch)),

@@ -3,7 +3,8 @@
 //! An answer may be right for a stiff part and wrong for a soft one beside it, whose energy is too small to show in that of
 //! the whole. Therefore a certificate measures every part in its own scale.
 
-use super::ContactProblem;
+use super::diagonal::Diagonal;
+use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
 
 /// A coupling below this share of `sqrt(K_ii K_jj)` does not make two dofs one part.
 const WEAK: f64 = 1e-6;
@@ -17,21 +18,21 @@ pub(super) struct Parts {
 }
 
 impl Parts {
-    /// The parts of a problem; rows with an infinite gap join nothing.
-    pub fn of(problem: &ContactProblem) -> Self {
-        let roots = &problem.diagonal().roots;
+    /// The parts of a stiffness with this `diagonal`, under contact rows with these gaps; rows with an infinite gap join nothing.
+    pub fn of(stiffness: &SymmetricMatrix, diagonal: &Diagonal, contact: &SparseMatrix, gap: &[f64]) -> Self {
+        let roots = &diagonal.roots;
         let mut forest = Forest::new(roots.len());
         for (column, &own) in roots.iter().enumerate() {
-            for (row, value) in problem.stiffness.lower().column(column) {
+            for (row, value) in stiffness.lower().column(column) {
                 if row != column && value.abs() > WEAK * own * roots[row] {
                     forest.join(column, row);
                 }
             }
         }
-        let mut first: Vec<Option<usize>> = vec![None; problem.rows()];
+        let mut first: Vec<Option<usize>> = vec![None; contact.rows()];
         for dof in 0..roots.len() {
-            let bounded = |entry: &(usize, f64)| entry.1 != 0.0 && problem.gap[entry.0].is_finite();
-            for (row, _) in problem.contact.column(dof).filter(bounded) {
+            let bounded = |entry: &(usize, f64)| entry.1 != 0.0 && gap[entry.0].is_finite();
+            for (row, _) in contact.column(dof).filter(bounded) {
                 forest.join(*first[row].get_or_insert(dof), dof);
             }
         }

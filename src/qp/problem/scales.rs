@@ -2,27 +2,9 @@
 
 use super::ContactProblem;
 use super::parts::Parts;
-use crate::qp::linear::SymmetricMatrix;
 
 /// A part whose energy norm is below this share of what its forces could do to a single dof is at rest but for rounding.
 const AT_REST: f64 = 1e-6;
-
-/// The diagonal of K.
-#[derive(Clone, Debug)]
-pub(super) struct Diagonal {
-    /// K_ii of each dof.
-    pub values: Vec<f64>,
-    /// `sqrt(K_ii)` of each dof.
-    pub roots: Vec<f64>,
-}
-
-impl Diagonal {
-    /// The diagonal of a stiffness.
-    pub fn of(stiffness: &SymmetricMatrix) -> Self {
-        let values = stiffness.diagonal();
-        Diagonal { roots: values.iter().map(|value| value.sqrt()).collect(), values }
-    }
-}
 
 /// What the errors of an answer are measured against.
 pub(super) struct Scales {

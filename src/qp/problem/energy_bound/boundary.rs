@@ -47,7 +47,7 @@ impl ContactProblem {
         closed: &[bool],
     ) -> Option<ErrorBound> {
         let residual = |answer: &Answer| match norm.springs() {
-            Some(springs) => springs.residual(self, answer),
+            Some(springs) => springs.residual(&self.contact, &answer.residual, answer.violation),
             None => answer.residual.clone(),
         };
         let first = Answer { residual: residual(answer), ..*answer };

@@ -22,9 +22,9 @@ mod boundary;
 mod row_by_row;
 
 use super::parts::Parts;
+use super::springs::Springs;
 use super::{ContactProblem, EnergyNorm};
 use crate::error::Error;
-use crate::qp::linear::{SymmetricMatrix, ldexp};
 
 /// An answer (u, lambda) and what its certificate has computed of it.
 pub(super) struct Answer<'a> {
@@ -167,13 +167,6 @@ impl ContactProblem {
     }
 }
 
-/// Springs D on rows C that press: with them a singular K becomes `K_D = K + B_C' D B_C`.
-#[derive(Clone, Debug)]
-pub(super) struct Springs {
-    /// D of each row, zero on rows without a spring.
-    stiffness: Vec<f64>,
-}
-
 /// A row presses where its force could do more than this share of the energy norm of its part.
 const PRESSING: f64 = 1e-8;
 
@@ -188,7 +181,7 @@ impl ContactProblem {
             return Ok(Some(norm));
         }
         let springs = self.springs(displacement, multiplier);
-        let Some(held) = springs.added_to(self)? else { return Ok(None) };
+        let Some(held) = springs.added_to(&self.stiffness, &self.contact)? else { return Ok(None) };
         let Some(norm) = EnergyNorm::of(&held, &self.contact)? else { return Ok(None) };
         Ok(self.stiffness.is_semidefinite()?.then(|| norm.with_springs(springs)))
     }
@@ -218,42 +211,5 @@ impl ContactProblem {
         Springs {
             stiffness: (0..self.rows()).map(|row| if multiplier[row] < 0.0 { spring(row) } else { 0.0 }).collect(),
         }
-    }
-}
-
-impl Springs {
-    /// `K + B_C' D B_C`; `None` where no row presses.
-    ///
-    /// # Errors
-    /// As [`SymmetricMatrix::plus_squares`](crate::qp::linear::SymmetricMatrix::plus_squares).
-    pub fn added_to(&self, problem: &ContactProblem) -> Result<Option<SymmetricMatrix>, Error> {
-        let closed: Vec<usize> = (0..problem.rows()).filter(|&row| self.stiffness[row] > 0.0).collect();
-        if closed.is_empty() {
-            return Ok(None);
-        }
-        let weights: Vec<f64> = closed.iter().map(|&row| self.stiffness[row]).collect();
-        problem.stiffness.plus_squares(&problem.contact.select_rows(&closed), &weights).map(Some)
-    }
-
-    /// `f + B' lambda - K_D u + B_C' D g_C`: the residual of the same answer with springs.
-    fn residual(&self, problem: &ContactProblem, answer: &Answer) -> Vec<f64> {
-        let pull: Vec<f64> = (self.stiffness.iter().zip(answer.violation))
-            .map(|(&stiffness, &violation)| if stiffness > 0.0 { -stiffness * violation } else { 0.0 })
-            .collect();
-        answer.residual.iter().zip(problem.contact.mul_transposed(&pull)).map(|(r, spring)| r + spring).collect()
-    }
-
-    /// Does every spring stand on a row that is at its gap, with a force mu that exceeds what `left`, the dual norm of the
-    /// forces left over, could take off it?
-    pub fn hold(&self, multiplier: &[f64], at_gap: &[bool], left: f64) -> bool {
-        self.stiffness
-            .iter()
-            .zip(multiplier.iter().zip(at_gap))
-            .all(|(&stiffness, (&mu, &at_gap))| stiffness == 0.0 || (at_gap && -mu >= 2.0 * stiffness.sqrt() * left))
-    }
-
-    /// The same springs in other units of stiffness, `2^unit`.
-    pub fn in_unit(&self, unit: i32) -> Self {
-        Springs { stiffness: self.stiffness.iter().map(|&value| ldexp(value, -unit)).collect() }
     }
 }
