@@ -345,6 +345,11 @@ impl Looked<'_> {
             prove: false,
             ..settings.clone()
         };
+        // The pivot of K itself, not of the steps.
+        let lost_pivot = match &before {
+            Error::NotCertified { solution, .. } => solution.lost_pivot,
+            _ => None,
+        };
         let mut best: Option<Solution> = None;
         let (mut centre, mut before_last) = (vec![0.0; dofs], f64::INFINITY);
         for step in 1..=MOST_STEPS {
@@ -367,7 +372,9 @@ impl Looked<'_> {
                 if best.as_ref().is_none_or(|best| certificate.worst().1 < 0.5 * best.certificate.worst().1) {
                     let reason =
                         Some(format!("by {step} steps with K + rho E, since the stiffness is singular: {before}"));
-                    best = Some(Solution { displacement, multiplier, certificate, reason, ..found.clone() });
+                    let answer =
+                        Solution { displacement, multiplier, certificate, reason, lost_pivot, ..found.clone() };
+                    best = Some(answer);
                     is_better = true;
                 }
             }
