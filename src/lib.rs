@@ -56,17 +56,17 @@
 
 #[cfg(feature = "cli")]
 pub mod cli;
-pub mod error;
+mod error;
 pub mod fem;
-pub mod file;
+mod file;
 pub mod motion;
 #[cfg(feature = "pictures")]
 pub mod output;
 pub mod qp;
 pub mod scene;
-pub mod solution;
+mod solution;
 pub mod study;
-pub mod watch;
+mod watch;
 
 pub use error::Error;
 pub use qp::linear::{SparseMatrix, SymmetricMatrix};
@@ -75,5 +75,16 @@ pub use qp::{
     BoundarySolution, Condense, Iterative, Method, Path, Precision, Prepared, Settings, Start, solve, solve_qp,
 };
 pub use scene::{Model, Scene};
-pub use solution::{Certificate, ContactSet, Goal, ProvenSet, Solution};
+pub use solution::{Attempt, Certificate, ContactSet, Goal, Iteration, ProvenSet, Seconds, Solution};
 pub use watch::Watch;
+
+/// What the tests of this crate look at beside its interface; it may change at any time.
+#[doc(hidden)]
+pub mod internals {
+    #[cfg(feature = "pictures")]
+    pub use crate::output::ticks::{Ticks, brief, decimal, power_of_ten};
+    pub use crate::qp::barrier::guarded;
+    pub use crate::qp::cost::bytes;
+    pub use crate::qp::linear::{AugmentedMatrix, dot};
+    pub use crate::qp::method::{Outcome, ScaledProblem, dual_active_set};
+}

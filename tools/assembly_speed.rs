@@ -8,11 +8,11 @@ use std::process::{Command, ExitCode};
 use std::time::Instant;
 
 use signorini::Error;
-use signorini::fem::assembly::{DofMap, stiffness};
-use signorini::fem::body::ElasticBody;
-use signorini::fem::formulation::Formulation;
-use signorini::fem::material::Material;
-use signorini::fem::mesh::{ElementKind, Mesh, cuboid, rectangle};
+use signorini::fem::ElasticBody;
+use signorini::fem::Formulation;
+use signorini::fem::Material;
+use signorini::fem::{DofMap, stiffness};
+use signorini::fem::{ElementKind, Mesh, cuboid, rectangle};
 
 /// What assembly must not exceed: name, seconds.
 const CASES: [(&str, f64); 2] = [("Q4", 2.0), ("Hex8", 3.0)];

@@ -1,13 +1,26 @@
 //! Linear elastic bodies by finite elements: meshes, elements, materials, assembly of K and f, recovery of stresses, error
 //! norms, closed forms. It knows no contact problem and no solver.
 
-pub mod assembly;
-pub mod body;
+pub(crate) mod assembly;
+pub(crate) mod body;
 pub mod closed_forms;
-pub mod element;
-pub mod formulation;
+pub(crate) mod element;
+pub(crate) mod formulation;
 pub(crate) mod geometry;
-pub mod material;
-pub mod mesh;
-pub mod norms;
-pub mod recovery;
+pub(crate) mod material;
+pub(crate) mod mesh;
+pub(crate) mod norms;
+pub(crate) mod recovery;
+
+pub use assembly::{
+    DofMap, Frame, MassForm, add_body_force, add_body_force_field, add_pressure, add_traction, add_traction_field,
+    free_load, internal_force, mass, rigid_motions, stiffness, tributary_areas,
+};
+pub use body::{ElasticBody, Integration, Region};
+pub use element::{Cell, ElementKind, FacetKind, MAX_NODES, QuadraturePoint, Tabulated};
+pub use formulation::Formulation;
+pub use material::Material;
+pub use mesh::gmsh::GmshFile;
+pub use mesh::{Axis, Boundary, Mesh, Zone, bar, cuboid, disc, half_ball, half_disc, rectangle, ring};
+pub use norms::{ErrorNorms, ExactState, error_norms};
+pub use recovery::{Stress, StressField, discretisation_error, stress};

@@ -42,11 +42,11 @@ const HALVINGS: usize = 12;
 /// [`Error::Length`] where the displacement does not have `dim` entries per node.
 ///
 /// ```
-/// use signorini::fem::body::ElasticBody;
-/// use signorini::fem::formulation::Formulation;
-/// use signorini::fem::material::Material;
-/// use signorini::fem::mesh::{ElementKind, rectangle};
-/// use signorini::fem::norms::{ExactState, error_norms};
+/// use signorini::fem::ElasticBody;
+/// use signorini::fem::Formulation;
+/// use signorini::fem::Material;
+/// use signorini::fem::{ElementKind, rectangle};
+/// use signorini::fem::{ExactState, error_norms};
 ///
 /// // u_x = x on one cell; the answer is nine tenths of it at every node.
 /// let mesh = rectangle(&[0.0, 1.0], &[0.0, 1.0], ElementKind::Q4)?;

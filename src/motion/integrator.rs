@@ -37,7 +37,7 @@ impl Integrator {
     /// # Errors
     /// [`Error::Setting`] for a step that is not positive and finite, a parameter of the scheme or a setting out of its
     /// range, an initial penetration, a mass that does not suit the scheme; [`Error::Numerical`] for a step beyond the
-    /// stable one of an explicit scheme; those of [`Prepared::new`].
+    /// stable one of an explicit scheme; those of [`Prepared::new`](crate::Prepared::new).
     pub fn new(problem: DynamicProblem, scheme: Scheme, step: f64, settings: &Settings) -> Result<Self, Error> {
         if !(step.is_finite() && step > 0.0) {
             return Err(Error::Setting { name: "step", value: step, allowed: "positive and finite" });

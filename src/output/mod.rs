@@ -1,18 +1,18 @@
 //! Answers shown: reports as text and JSON, pictures (SVG and PNG), `.vtu` files for ParaView, problem files.
 //!
 //! Pictures and `.vtu` files take plain data (nodes, elements, values, labels) and know nothing of scenes, meshes or
-//! methods; [`gallery`] alone fills them from a model and its answer. A picture is a [`Drawing`]: the
+//! methods; `gallery` alone fills them from a model and its answer. A picture is a [`Drawing`]: the
 //! same shapes are written as SVG and painted as PNG with an embedded typeface, so that both show the same on every machine.
 
 mod animation;
 mod axes;
-pub mod body;
+pub(crate) mod body;
 mod colour;
 mod colour_bar;
 mod contour;
-pub mod drawing;
-pub mod file;
-pub mod gallery;
+pub(crate) mod drawing;
+pub(crate) mod file;
+pub(crate) mod gallery;
 mod legend;
 mod mark;
 mod motion;
@@ -21,16 +21,16 @@ mod motion_tradeoff;
 mod obstacle;
 mod paint;
 mod panels;
-pub mod plot;
+pub(crate) mod plot;
 mod raster;
 mod report;
 mod shape;
 mod style;
 mod svg;
-pub mod ticks;
+pub(crate) mod ticks;
 mod tradeoff;
 mod typeface;
-pub mod vtu;
+pub(crate) mod vtu;
 
 pub use animation::animate;
 pub use body::{ContactPicture, ObstacleLine, common_limits, common_window};

@@ -9,7 +9,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 /// Runs `work`, a call of a library that touches nothing which outlives it; a panic comes back as its message.
 ///
 /// ```
-/// use signorini::qp::guarded;
+/// use signorini::internals::guarded;
 ///
 /// assert_eq!(guarded(|| 2 + 2), Ok(4));
 /// assert_eq!(guarded(|| -> i32 { panic!("no more") }), Err("it panicked: no more".to_string()));

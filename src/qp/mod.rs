@@ -10,30 +10,29 @@
 //! and gaps; `judged` alone says whether an answer falls short.
 
 mod attempts;
-mod barrier;
+pub(crate) mod barrier;
 mod claims;
-pub mod cost;
+pub(crate) mod cost;
 mod engine;
 mod judged;
 pub mod linear;
 pub mod matrix_market;
-pub mod method;
+pub(crate) mod method;
 mod plan;
-pub mod problem;
+pub(crate) mod problem;
 mod run;
 mod settings;
-pub mod transform;
+pub(crate) mod transform;
 
-pub use barrier::guarded;
 pub use cost::Estimate;
 pub use engine::{BoundarySolution, Iterative, Path, Prepared};
 pub use method::mprgp::Start;
 pub use method::parametric::{Event, Piece};
+pub use problem::{ContactProblem, EnergyNorm};
 pub use settings::{Condense, Method, Precision, Settings};
 
 use crate::error::Error;
 use crate::solution::{ContactSet, Solution};
-use problem::ContactProblem;
 
 /// Solves a contact problem; `Ok` means that the answer is certified to `settings.tolerance`.
 ///

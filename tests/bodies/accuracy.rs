@@ -1,9 +1,9 @@
 //! What is known of an answer's accuracy: the estimated error of the mesh.
 
 use serde_json::json;
-use signorini::fem::body::Integration;
+use signorini::fem::ElementKind::{Q4, Q8, T3, T6};
+use signorini::fem::Integration;
 use signorini::fem::closed_forms::manufactured::{ContactSolution, GenericEdge, HertzBlock, PlaneElasticity, Smooth};
-use signorini::fem::element::ElementKind::{Q4, Q8, T3, T6};
 use signorini::study::{discretisation_error, solve_block};
 use signorini::{Scene, solve_qp};
 

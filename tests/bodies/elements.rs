@@ -5,12 +5,12 @@
 //! up to a fifth of a cell; E = 7, nu = 0.3.
 
 use crate::bodies::{difference, distort, distorted, largest, nodal_of, solve_held};
-use signorini::fem::assembly::{self, DofMap};
-use signorini::fem::body::{ElasticBody, Integration};
-use signorini::fem::formulation::Formulation;
-use signorini::fem::material::Material;
-use signorini::fem::mesh::{ElementKind, Mesh, bar, cuboid, rectangle};
-use signorini::fem::recovery::{self, Stress};
+use signorini::fem::Formulation;
+use signorini::fem::Material;
+use signorini::fem::Stress;
+use signorini::fem::{self, DofMap};
+use signorini::fem::{ElasticBody, Integration};
+use signorini::fem::{ElementKind, Mesh, bar, cuboid, rectangle};
 
 /// A few thousand operations on numbers of order one.
 const ROUNDING: f64 = 1e-12;
@@ -103,7 +103,7 @@ fn inner_nodes_follow_a_field_of_constant_strain_that_is_prescribed_on_the_surfa
 fn stress_of_constant_strain_is_exact_in_elements_and_at_nodes() {
     for (name, body) in all() {
         let displacement = nodal_of(body.mesh(), linear(body.formulation()));
-        let field = recovery::stress(&body, &displacement).unwrap();
+        let field = fem::stress(&body, &displacement).unwrap();
         let expected = hooke(body.formulation());
         for stress in field.elements.iter().chain(&field.nodes) {
             let error = difference(&components(stress), &expected);
@@ -121,7 +121,7 @@ fn stress_that_is_linear_is_exact_at_the_nodes_of_quadratic_elements() {
         let body = ElasticBody::new(mesh, Material::new(8.0, 0.25).unwrap(), formulation).unwrap();
         let displacement = nodal_of(body.mesh(), |[x, ..]| [x * x / 2.0, 0.0, 0.0]);
         let along = 8.0 / (1.0 - 0.0625);
-        for (stress, [x, ..]) in recovery::stress(&body, &displacement).unwrap().nodes.iter().zip(body.mesh().nodes()) {
+        for (stress, [x, ..]) in fem::stress(&body, &displacement).unwrap().nodes.iter().zip(body.mesh().nodes()) {
             let expected = [along * x, 0.25 * along * x, 0.0, 0.0, 0.0, 0.0];
             assert!(difference(&components(stress), &expected) < ROUNDING, "{kind:?} {stress:?}");
         }
@@ -145,11 +145,11 @@ fn rigid_motions_cause_no_force_but_a_radial_one_does() {
             _ => &[(|_| [3.0, -2.0, 0.0], 0.0), (|[x, y, _]| [-y, x, 0.0], ROUNDING)],
         };
         for (motion, allowed) in motions {
-            let force = assembly::internal_force(&body, &nodal_of(body.mesh(), motion)).unwrap();
+            let force = fem::internal_force(&body, &nodal_of(body.mesh(), motion)).unwrap();
             assert!(largest(&force) <= *allowed, "{name}: {:e}", largest(&force));
         }
         if body.formulation().is_axisymmetric() {
-            let force = assembly::internal_force(&body, &nodal_of(body.mesh(), |_| [1.0, 0.0, 0.0])).unwrap();
+            let force = fem::internal_force(&body, &nodal_of(body.mesh(), |_| [1.0, 0.0, 0.0])).unwrap();
             assert!(largest(&force) > 1.0, "{name}");
         }
     }
@@ -161,8 +161,8 @@ fn assembled_stiffness_and_internal_force_agree() {
         let field = |[x, y, z]: [f64; 3]| [(3.0 * x + y).sin(), (x - 2.0 * y + z).cos(), (x + y * z).sin()];
         let displacement = nodal_of(body.mesh(), field);
         let dofs = DofMap::new(vec![None; displacement.len()]).unwrap();
-        let product = assembly::stiffness(&body, &dofs).unwrap().mul(&displacement);
-        let force = assembly::internal_force(&body, &displacement).unwrap();
+        let product = fem::stiffness(&body, &dofs).unwrap().mul(&displacement);
+        let force = fem::internal_force(&body, &displacement).unwrap();
         let error = difference(&product, &force);
         assert!(error < ROUNDING * largest(&force), "{name}: {error:e}");
     }
@@ -172,10 +172,10 @@ fn assembled_stiffness_and_internal_force_agree() {
 fn stiffness_with_supports_is_the_part_of_the_free_dofs() {
     for (name, body) in all() {
         let count = body.nodal_dofs();
-        let full = assembly::stiffness(&body, &DofMap::new(vec![None; count]).unwrap()).unwrap();
+        let full = fem::stiffness(&body, &DofMap::new(vec![None; count]).unwrap()).unwrap();
         let held = |dof: usize| dof % 7 == 3 || dof.is_multiple_of(5);
         let dofs = DofMap::new((0..count).map(|dof| held(dof).then_some(0.1)).collect()).unwrap();
-        let part = assembly::stiffness(&body, &dofs).unwrap();
+        let part = fem::stiffness(&body, &dofs).unwrap();
         let of_free = |(row, column, value)| Some((dofs.number(row)?, dofs.number(column)?, value));
         let expected: Vec<_> = full.lower().triplets().filter_map(of_free).collect();
         assert_eq!(part.lower().triplets().collect::<Vec<_>>(), expected, "{name}");
@@ -186,7 +186,7 @@ fn stiffness_with_supports_is_the_part_of_the_free_dofs() {
 fn stiffness_has_no_other_zero_energy_than_rigid_motions() {
     for (name, body) in all() {
         let dofs = DofMap::new(vec![None; body.nodal_dofs()]).unwrap();
-        let stiffness = assembly::stiffness(&body, &dofs).unwrap();
+        let stiffness = fem::stiffness(&body, &dofs).unwrap();
         let mut dense = nalgebra::DMatrix::zeros(body.nodal_dofs(), body.nodal_dofs());
         for (row, column, value) in stiffness.lower().triplets() {
             (dense[(row, column)], dense[(column, row)]) = (value, value);
@@ -229,7 +229,7 @@ fn sinking(mesh: Mesh, formulation: Formulation, integration: Integration) -> f6
     let top = if dimension == 2 { "top" } else { "back" };
     let mut load = vec![0.0; body.nodal_dofs()];
     let half = |[x, ..]: [f64; 3], normal: [f64; 3]| normal.map(|n| if x < 0.5 { -n } else { 0.0 });
-    assembly::add_traction_field(&body, body.mesh().boundary(top).unwrap(), half, &mut load);
+    fem::add_traction_field(&body, body.mesh().boundary(top).unwrap(), half, &mut load);
     let displacement = solve_held(&body, &vec![0.0; load.len()], held, &load);
     let corner = body.mesh().nearest_node([0.0, 1.0, 0.0]).unwrap().0;
     -displacement[dimension * corner + 1]
@@ -257,7 +257,7 @@ fn revolved_bodies_have_the_volume_of_the_full_circle_and_no_negative_radius() {
     for kind in [ElementKind::T3, ElementKind::T6, ElementKind::Q4, ElementKind::Q8] {
         let body = ElasticBody::new(mesh(kind), Material::new(1.0, 0.3).unwrap(), Formulation::Axisymmetric).unwrap();
         let mut load = vec![0.0; body.nodal_dofs()];
-        assembly::add_body_force(&body, [0.0, 1.0, 0.0], &mut load);
+        fem::add_body_force(&body, [0.0, 1.0, 0.0], &mut load);
         let volume: f64 = load.iter().sum();
         assert!((volume - std::f64::consts::PI * 4.0).abs() < ROUNDING, "{kind:?}: {volume}");
     }

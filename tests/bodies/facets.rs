@@ -3,11 +3,11 @@
 //!
 //! REFERENCE: line2 1/2; line3 1/6, 4/6, 1/6; Q4 1/4; T3 1/3; a frustum of a circle weighted by its radius.
 
-use signorini::fem::assembly::{add_pressure, add_traction, tributary_areas};
-use signorini::fem::body::ElasticBody;
-use signorini::fem::formulation::Formulation;
-use signorini::fem::material::Material;
-use signorini::fem::mesh::{Boundary, ElementKind, FacetKind, Mesh, bar, cuboid, rectangle};
+use signorini::fem::ElasticBody;
+use signorini::fem::Formulation;
+use signorini::fem::Material;
+use signorini::fem::{Boundary, ElementKind, FacetKind, Mesh, bar, cuboid, rectangle};
+use signorini::fem::{add_pressure, add_traction, tributary_areas};
 
 const ROUNDING: f64 = 1e-14;
 
@@ -135,7 +135,7 @@ fn structured_meshes_have_the_volume_and_the_sides_of_their_body() {
         let body = body(mesh);
         let thickness = if dimension == 2 { 0.25 } else { 1.0 };
         let mut load = vec![0.0; body.nodal_dofs()];
-        signorini::fem::assembly::add_body_force(&body, [1.0, 0.0, 0.0], &mut load);
+        signorini::fem::add_body_force(&body, [1.0, 0.0, 0.0], &mut load);
         let found: f64 = load.iter().sum();
         assert!((found - volume * thickness).abs() < 10.0 * ROUNDING, "{kind:?}: {found}");
         for boundary in body.mesh().boundaries() {

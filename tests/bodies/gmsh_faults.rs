@@ -1,7 +1,7 @@
 //! Malformed mesh files: one sentence each, with file and line.
 
 use signorini::Error;
-use signorini::fem::mesh::gmsh::GmshFile;
+use signorini::fem::GmshFile;
 
 /// A unit square of two triangles in version 2.2; every line of it can be replaced.
 const V2: [&str; 24] = [
@@ -82,7 +82,7 @@ fn with(lines: &[&str], line: usize, replacement: &str) -> String {
     text(&lines)
 }
 
-fn read(text: &str) -> Result<signorini::fem::mesh::Mesh, Error> {
+fn read(text: &str) -> Result<signorini::fem::Mesh, Error> {
     GmshFile::parse(text, "folder/body.msh").and_then(|file| file.mesh(None, 1.0))
 }
 

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use signorini::fem::mesh::gmsh::GmshFile;
-use signorini::fem::mesh::{ElementKind, Mesh};
+use signorini::fem::GmshFile;
+use signorini::fem::{ElementKind, Mesh};
 
 fn path(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes").join(name)

@@ -1,17 +1,17 @@
 //! Consistent loads: shares, totals, tributary areas.
 
 use crate::bodies::{VARIANTS, distorted_body};
-use signorini::fem::assembly::{add_body_force, add_traction, tributary_areas};
-use signorini::fem::formulation::Formulation;
-use signorini::fem::material::Material;
-use signorini::fem::mesh::{ElementKind, rectangle};
+use signorini::fem::Formulation;
+use signorini::fem::Material;
+use signorini::fem::{ElementKind, rectangle};
+use signorini::fem::{add_body_force, add_traction, tributary_areas};
 
 const ROUNDING: f64 = 1e-14;
 
-fn one_edge_body(kind: ElementKind) -> signorini::fem::body::ElasticBody {
+fn one_edge_body(kind: ElementKind) -> signorini::fem::ElasticBody {
     let mesh = rectangle(&[0.0, 2.0], &[0.0, 1.0], kind).unwrap();
     let formulation = Formulation::PlaneStress { thickness: 0.25 };
-    signorini::fem::body::ElasticBody::new(mesh, Material::new(1.0, 0.0).unwrap(), formulation).unwrap()
+    signorini::fem::ElasticBody::new(mesh, Material::new(1.0, 0.0).unwrap(), formulation).unwrap()
 }
 
 #[test]
@@ -60,7 +60,7 @@ fn total_forces_do_not_depend_on_the_mesh() {
 fn tributary_areas_follow_the_neighbouring_edges_and_add_up_to_the_boundary() {
     let mesh = rectangle(&[0.0, 1.0, 4.0, 6.0], &[0.0, 1.0], ElementKind::Q4).unwrap();
     let formulation = Formulation::PlaneStress { thickness: 2.0 };
-    let body = signorini::fem::body::ElasticBody::new(mesh, Material::new(1.0, 0.0).unwrap(), formulation).unwrap();
+    let body = signorini::fem::ElasticBody::new(mesh, Material::new(1.0, 0.0).unwrap(), formulation).unwrap();
     let areas = tributary_areas(&body, body.mesh().boundary("top").unwrap());
     assert_eq!(areas, [(4, 1.0), (5, 4.0), (6, 5.0), (7, 2.0)]);
     assert_eq!(areas.iter().map(|area| area.1).sum::<f64>(), 12.0);

@@ -4,13 +4,14 @@
 //! functions contain exactly.
 
 use crate::bodies::{distort, distorted, nodal_of};
-use signorini::error::Error;
-use signorini::fem::assembly::{DofMap, Frame, MassForm, add_body_force_field, mass};
-use signorini::fem::body::ElasticBody;
-use signorini::fem::formulation::Formulation;
-use signorini::fem::material::Material;
-use signorini::fem::mesh::{ElementKind, bar, cuboid};
-use signorini::qp::linear::{Cholesky, dot};
+use signorini::Error;
+use signorini::fem::ElasticBody;
+use signorini::fem::Formulation;
+use signorini::fem::Material;
+use signorini::fem::{DofMap, Frame, MassForm, add_body_force_field, mass};
+use signorini::fem::{ElementKind, bar, cuboid};
+use signorini::internals::dot;
+use signorini::qp::linear::Cholesky;
 
 /// Sums over a mesh, by two quadratures.
 const SAME: f64 = 1e-12;

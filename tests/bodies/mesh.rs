@@ -1,10 +1,10 @@
 //! Structured meshes: geometry, boundaries, and what is refused.
 
 use signorini::Error;
-use signorini::fem::body::ElasticBody;
-use signorini::fem::formulation::Formulation;
-use signorini::fem::material::Material;
-use signorini::fem::mesh::{Axis, Boundary, ElementKind, FacetKind, Mesh, rectangle};
+use signorini::fem::ElasticBody;
+use signorini::fem::Formulation;
+use signorini::fem::Material;
+use signorini::fem::{Axis, Boundary, ElementKind, FacetKind, Mesh, rectangle};
 
 fn axis(points: &[f64], divisions: &[usize], ratios: &[f64]) -> Axis {
     Axis { points: points.into(), divisions: divisions.into(), ratios: ratios.into() }

@@ -1,11 +1,11 @@
 //! Parts that do not fit together are refused by the library, each in a sentence that names both.
 
-use signorini::fem::assembly::{DofMap, MassForm, mass};
-use signorini::fem::body::ElasticBody;
-use signorini::fem::formulation::Formulation;
-use signorini::fem::material::Material;
-use signorini::fem::mesh::{ElementKind, Mesh, bar, cuboid, rectangle, ring};
-use signorini::fem::recovery::{discretisation_error, stress};
+use signorini::fem::ElasticBody;
+use signorini::fem::Formulation;
+use signorini::fem::Material;
+use signorini::fem::{DofMap, MassForm, mass};
+use signorini::fem::{ElementKind, Mesh, bar, cuboid, rectangle, ring};
+use signorini::fem::{discretisation_error, stress};
 use signorini::motion::DynamicProblem;
 use signorini::{ContactProblem, Error, Settings, SparseMatrix, SymmetricMatrix, solve};
 

@@ -6,11 +6,11 @@
 //! REFERENCE   integral of (eps - c)^2 = 9/8 (1-x0)^2 - 2 c (1-x0)^1.5 + c^2, of eps^2 = 9/8 (1-x0)^2;
 //!             of (u - c x)^2 = (1-x0)^4/4 - 2 c ((1-x0)^3.5/3.5 + x0 (1-x0)^2.5/2.5) + c^2/3, of u^2 = (1-x0)^4/4
 
-use signorini::fem::body::ElasticBody;
-use signorini::fem::formulation::Formulation;
-use signorini::fem::material::Material;
-use signorini::fem::mesh::{ElementKind, cuboid, rectangle};
-use signorini::fem::norms::{ExactState, error_norms};
+use signorini::fem::ElasticBody;
+use signorini::fem::Formulation;
+use signorini::fem::Material;
+use signorini::fem::{ElementKind, cuboid, rectangle};
+use signorini::fem::{ExactState, error_norms};
 
 /// The norms promise four digits.
 const FOUR_DIGITS: f64 = 1e-4;

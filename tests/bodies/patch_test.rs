@@ -3,9 +3,8 @@
 //! MESH: 2 x 1 rectangle, 4 x 3 cells, inner nodes moved by up to a fifth of a cell; E = 7, nu = 0.3, thickness 0.5.
 
 use crate::bodies::{VARIANTS, difference, distorted_body, largest, nodal, solve_held};
-use signorini::fem::assembly;
-use signorini::fem::formulation::Formulation;
-use signorini::fem::recovery::{self, Stress};
+use signorini::fem::Formulation;
+use signorini::fem::{self, Stress};
 
 /// A few hundred operations on numbers of order one.
 const ROUNDING: f64 = 1e-13;
@@ -45,7 +44,7 @@ fn inner_nodes_follow_a_linear_field_that_is_prescribed_on_the_outline() {
 fn stress_of_a_linear_field_is_exact_in_elements_and_at_nodes() {
     for (kind, state) in VARIANTS {
         let body = distorted_body(kind, state);
-        let field = recovery::stress(&body, &nodal(body.mesh(), linear)).unwrap();
+        let field = fem::stress(&body, &nodal(body.mesh(), linear)).unwrap();
         let (xx, yy, xy, zz) = hooke(state);
         assert_eq!(field.elements.len(), body.mesh().element_count());
         assert_eq!(field.nodes.len(), body.mesh().nodes().len());
@@ -59,12 +58,12 @@ fn stress_of_a_linear_field_is_exact_in_elements_and_at_nodes() {
 #[test]
 fn stress_that_is_linear_in_a_rectangle_is_exact_at_its_nodes() {
     // u_x = x y is bilinear: eps_xx = y, gamma_xy = x, everywhere in Q4 rectangles of any size.
-    use signorini::fem::mesh::{ElementKind, rectangle};
+    use signorini::fem::{ElementKind, rectangle};
     let mesh = rectangle(&[0.0, 0.2, 1.0], &[0.0, 0.7, 1.0], ElementKind::Q4).unwrap();
-    let material = signorini::fem::material::Material::new(8.0, 0.25).unwrap();
+    let material = signorini::fem::Material::new(8.0, 0.25).unwrap();
     let formulation = Formulation::PlaneStress { thickness: 1.0 };
-    let body = signorini::fem::body::ElasticBody::new(mesh, material, formulation).unwrap();
-    let field = recovery::stress(&body, &nodal(body.mesh(), |[x, y]| [x * y, 0.0])).unwrap();
+    let body = signorini::fem::ElasticBody::new(mesh, material, formulation).unwrap();
+    let field = fem::stress(&body, &nodal(body.mesh(), |[x, y]| [x * y, 0.0])).unwrap();
     let (along, shear) = (8.0 / (1.0 - 0.0625), 8.0 / 2.5);
     for (stress, [x, y]) in field.nodes.iter().zip(body.mesh().nodes().iter().map(|&[x, y, _]| [x, y])) {
         let found = [stress.sigma_xx, stress.sigma_yy, stress.sigma_xy];
@@ -95,7 +94,7 @@ fn rigid_motions_cause_no_force() {
             [((|_| [3.0, 0.0]) as fn([f64; 2]) -> [f64; 2], 0.0), (|_| [0.0, -2.0], 0.0), (|[x, y]| [-y, x], ROUNDING)]
         {
             let displacement = nodal(body.mesh(), motion);
-            let force = assembly::internal_force(&body, &displacement).unwrap();
+            let force = fem::internal_force(&body, &displacement).unwrap();
             assert!(largest(&force) <= allowed, "{kind:?} {state:?}: {:e}", largest(&force));
         }
     }
@@ -106,9 +105,9 @@ fn assembled_stiffness_and_internal_force_agree() {
     for (kind, state) in VARIANTS {
         let body = distorted_body(kind, state);
         let displacement = nodal(body.mesh(), |[x, y]| [(3.0 * x + y).sin(), (x - 2.0 * y).cos()]);
-        let dofs = assembly::DofMap::new(vec![None; displacement.len()]).unwrap();
-        let product = assembly::stiffness(&body, &dofs).unwrap().mul(&displacement);
-        let force = assembly::internal_force(&body, &displacement).unwrap();
+        let dofs = fem::DofMap::new(vec![None; displacement.len()]).unwrap();
+        let product = fem::stiffness(&body, &dofs).unwrap().mul(&displacement);
+        let force = fem::internal_force(&body, &displacement).unwrap();
         assert!(difference(&product, &force) < ROUNDING * largest(&force) * 10.0, "{kind:?} {state:?}");
     }
 }
@@ -116,13 +115,12 @@ fn assembled_stiffness_and_internal_force_agree() {
 #[test]
 fn stiffness_of_a_square_element_has_its_known_entries() {
     // Q4, plane stress, nu = 0, E = t = 1, unit square: K_xx = 1/3 + 1/6, K_xy = 1/8 by hand.
-    let mesh =
-        signorini::fem::mesh::rectangle(&[0.0, 1.0], &[0.0, 1.0], signorini::fem::mesh::ElementKind::Q4).unwrap();
-    let material = signorini::fem::material::Material::new(1.0, 0.0).unwrap();
+    let mesh = signorini::fem::rectangle(&[0.0, 1.0], &[0.0, 1.0], signorini::fem::ElementKind::Q4).unwrap();
+    let material = signorini::fem::Material::new(1.0, 0.0).unwrap();
     let formulation = Formulation::PlaneStress { thickness: 1.0 };
-    let body = signorini::fem::body::ElasticBody::new(mesh, material, formulation).unwrap();
-    let dofs = assembly::DofMap::new(vec![None; 8]).unwrap();
-    let stiffness = assembly::stiffness(&body, &dofs).unwrap();
+    let body = signorini::fem::ElasticBody::new(mesh, material, formulation).unwrap();
+    let dofs = fem::DofMap::new(vec![None; 8]).unwrap();
+    let stiffness = fem::stiffness(&body, &dofs).unwrap();
     let first: Vec<f64> = stiffness.lower().column(0).map(|entry| entry.1).collect();
     assert!((first[0] - 0.5).abs() < 1e-15 && (first[1] - 0.125).abs() < 1e-15, "{first:?}");
 }
@@ -133,11 +131,11 @@ fn stiffness_does_not_change_with_the_unit_of_length() {
         let of = |scale: f64| {
             let lines = |lines: &[f64]| lines.iter().map(|x| x * scale).collect::<Vec<f64>>();
             let (x, y) = (lines(&[0.0, 0.4, 1.0]), lines(&[0.0, 0.7]));
-            let mesh = signorini::fem::mesh::rectangle(&x, &y, signorini::fem::mesh::ElementKind::Q4).unwrap();
-            let material = signorini::fem::material::Material::new(7.0, 0.3).unwrap();
+            let mesh = signorini::fem::rectangle(&x, &y, signorini::fem::ElementKind::Q4).unwrap();
+            let material = signorini::fem::Material::new(7.0, 0.3).unwrap();
             let formulation = Formulation::PlaneStrain { thickness: 1.0 };
-            let body = signorini::fem::body::ElasticBody::new(mesh, material, formulation).unwrap();
-            assembly::stiffness(&body, &assembly::DofMap::new(vec![None; 12]).unwrap()).unwrap()
+            let body = signorini::fem::ElasticBody::new(mesh, material, formulation).unwrap();
+            fem::stiffness(&body, &fem::DofMap::new(vec![None; 12]).unwrap()).unwrap()
         };
         assert_eq!(of(scale), of(1.0), "scale {scale:e}");
     }
@@ -145,7 +143,7 @@ fn stiffness_does_not_change_with_the_unit_of_length() {
 
 #[test]
 fn material_refuses_what_is_no_material() {
-    use signorini::fem::material::Material;
+    use signorini::fem::Material;
     let strain = Formulation::PlaneStrain { thickness: 1.0 };
     let stress = Formulation::PlaneStress { thickness: 1.0 };
     for (young, poisson, formulation, fits) in [

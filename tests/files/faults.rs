@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
-use signorini::fem::mesh::gmsh::GmshFile;
+use signorini::fem::GmshFile;
 use signorini::qp::matrix_market::read_problem;
 use signorini::{Error, Scene, solve_qp};
 

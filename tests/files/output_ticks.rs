@@ -1,9 +1,7 @@
 //! Ticks at round numbers, and numbers as a reader wants them.
 
-use signorini::output::{
-    Quantity, Scale,
-    ticks::{Ticks, brief, decimal, power_of_ten},
-};
+use signorini::internals::{Ticks, brief, decimal, power_of_ten};
+use signorini::output::{Quantity, Scale};
 
 const RANGES: [[f64; 2]; 12] = [
     [0.0, 1.0],

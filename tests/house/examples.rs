@@ -1,7 +1,7 @@
 //! Every scene in `examples/` reads, builds, and is the scene that it is described as.
 
 use signorini::Scene;
-use signorini::fem::mesh::ElementKind;
+use signorini::fem::ElementKind;
 
 fn scene(name: &str) -> Scene {
     Scene::read(format!("{}/examples/{name}.json", env!("CARGO_MANIFEST_DIR"))).unwrap()

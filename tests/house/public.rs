@@ -3,8 +3,8 @@
 
 use std::fmt::Debug;
 
-use signorini::fem::body::ElasticBody;
-use signorini::fem::mesh::Mesh;
+use signorini::fem::ElasticBody;
+use signorini::fem::Mesh;
 use signorini::motion::{DynamicProblem, Integrator, Scheme, State};
 use signorini::scene::Dynamics;
 use signorini::{

@@ -184,8 +184,8 @@ fn other_units_by_powers_of_two_give_the_same_iterations() {
 fn unsupported(cells: usize, load: [f64; 3]) -> ContactProblem {
     let model = built(&clamped_block(cells, 0.0));
     let body = model.body();
-    let dofs = signorini::fem::assembly::DofMap::new(vec![None; body.nodal_dofs()]).unwrap();
-    let stiffness = signorini::fem::assembly::stiffness(body, &dofs).unwrap();
+    let dofs = signorini::fem::DofMap::new(vec![None; body.nodal_dofs()]).unwrap();
+    let stiffness = signorini::fem::stiffness(body, &dofs).unwrap();
     let entries: Vec<_> = model.rows().iter().enumerate().map(|(row, at)| (row, 3 * at.node + 2, 1.0)).collect();
     let contact = signorini::SparseMatrix::from_triplets(entries.len(), body.nodal_dofs(), &entries).unwrap();
     let load: Vec<f64> = (0..body.nodal_dofs()).map(|dof| load[dof % 3]).collect();

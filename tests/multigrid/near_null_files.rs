@@ -44,8 +44,8 @@ fn unsupported() -> (ContactProblem, Vec<[f64; 3]>) {
     let model = built(&clamped_square(30, json!([{"boundary": "top", "approach": "+y", "shape": plane}]), 0.0));
     let body = model.body();
     let free = vec![None; body.nodal_dofs()];
-    let dofs = signorini::fem::assembly::DofMap::new(free).unwrap();
-    let stiffness = signorini::fem::assembly::stiffness(body, &dofs).unwrap();
+    let dofs = signorini::fem::DofMap::new(free).unwrap();
+    let stiffness = signorini::fem::stiffness(body, &dofs).unwrap();
     let mut entries: Vec<_> = model.rows().iter().enumerate().map(|(row, at)| (row, 2 * at.node + 1, 1.0)).collect();
     let rows = model.rows().len() + 2;
     entries.extend([(rows - 2, 0, 1.0), (rows - 1, 0, -1.0)]);

@@ -3,8 +3,8 @@
 
 use crate::oracles::{Dense, Draws, random};
 use nalgebra::{DMatrix, DVector};
-use signorini::qp::linear::AugmentedMatrix;
-use signorini::qp::method::{Outcome, ScaledProblem, dual_active_set};
+use signorini::internals::AugmentedMatrix;
+use signorini::internals::{Outcome, ScaledProblem, dual_active_set};
 use signorini::{ContactProblem, Error, Method, Settings, SparseMatrix, SymmetricMatrix, solve};
 
 /// Runs the method on a problem as it stands; `definite` is what is known of its stiffness.

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use crate::program::{Desk, Problem, scene};
 use serde_json::{Value, json};
-use signorini::qp::cost::bytes::{START, of_problem};
+use signorini::internals::bytes::{START, of_problem};
 use signorini::qp::{Condense, Prepared};
 use signorini::{Error, Method, Scene, Settings, Watch, solve};
 

@@ -6,7 +6,7 @@ use std::process::Command;
 
 use crate::program::{Desk, Problem, Run, matrix, vector};
 use serde_json::{Value, json};
-use signorini::qp::guarded;
+use signorini::internals::guarded;
 use signorini::qp::linear::Cholesky;
 use signorini::{Scene, SparseMatrix, SymmetricMatrix};
 

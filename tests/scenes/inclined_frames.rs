@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use crate::bodies::{built, difference};
 use crate::rollers::{ROUNDING, check, cube, dot, lines, square};
 use serde_json::{Value, json};
-use signorini::fem::assembly::{DofMap, Frame};
+use signorini::fem::{DofMap, Frame};
 use signorini::{Error, Scene, solve_qp};
 
 #[test]

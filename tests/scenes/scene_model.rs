@@ -244,7 +244,7 @@ fn a_motion_found_free_costs_no_elastic_energy() {
     // Nodes in order; the pinned one, number 4, has no entry in the direction.
     let mut nodal = direction.clone();
     nodal.splice(8..8, [0.0, 0.0]);
-    let force = signorini::fem::assembly::internal_force(held.body(), &nodal).unwrap();
+    let force = signorini::fem::internal_force(held.body(), &nodal).unwrap();
     assert!(largest(&force) < 1e-11, "{:e}", largest(&force));
 }
 

@@ -6,7 +6,7 @@ use std::fmt::Write;
 use crate::program::Desk;
 use serde_json::{Value, json};
 use signorini::fem::closed_forms::{Bar, ContactPatch, Sides};
-use signorini::fem::mesh::{ElementKind, Mesh, cuboid, rectangle};
+use signorini::fem::{ElementKind, Mesh, cuboid, rectangle};
 use signorini::qp::matrix_market::read_vector;
 use signorini::{Model, Scene, Solution, solve_qp};
 

@@ -3,10 +3,10 @@
 
 use nalgebra::{DMatrix, DVector};
 use serde_json::{Value, json};
-use signorini::fem::formulation::Formulation;
-use signorini::fem::material::Material;
-use signorini::fem::mesh::{ElementKind, Mesh, rectangle};
-use signorini::fem::{assembly, body::ElasticBody};
+use signorini::fem::Formulation;
+use signorini::fem::Material;
+use signorini::fem::{self, ElasticBody};
+use signorini::fem::{ElementKind, Mesh, rectangle};
 use signorini::qp::linear::Cholesky;
 use signorini::{ContactProblem, Model, Scene};
 
@@ -73,11 +73,11 @@ pub fn nodal_of(mesh: &Mesh, field: impl Fn([f64; 3]) -> [f64; 3]) -> Vec<f64> {
 /// Solves the body with the displacement prescribed where `held` says so, under a nodal load.
 pub fn solve_held(body: &ElasticBody, field: &[f64], held: impl Fn(usize) -> bool, load: &[f64]) -> Vec<f64> {
     let prescribed: Vec<Option<f64>> = (0..field.len()).map(|dof| held(dof).then_some(field[dof])).collect();
-    let dofs = assembly::DofMap::new(prescribed).unwrap();
+    let dofs = fem::DofMap::new(prescribed).unwrap();
     let lifted = dofs.expand(&vec![0.0; dofs.free().len()]).unwrap();
-    let lifted_force = assembly::internal_force(body, &lifted).unwrap();
+    let lifted_force = fem::internal_force(body, &lifted).unwrap();
     let right: Vec<f64> = load.iter().zip(&lifted_force).map(|(a, b)| a - b).collect();
-    let stiffness = assembly::stiffness(body, &dofs).unwrap();
+    let stiffness = fem::stiffness(body, &dofs).unwrap();
     let free = Cholesky::of(&stiffness).unwrap().solve(&dofs.restrict(&right).unwrap());
     dofs.expand(&free).unwrap()
 }

@@ -4,7 +4,7 @@
 
 use nalgebra::{DMatrix, DVector};
 use serde_json::{Value, json};
-use signorini::fem::assembly::{DofMap, stiffness};
+use signorini::fem::{DofMap, stiffness};
 use signorini::{Model, solve_qp};
 
 use super::bodies::{built, difference, largest};

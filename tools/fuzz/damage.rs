@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use signorini::fem::mesh::gmsh::GmshFile;
+use signorini::fem::GmshFile;
 use signorini::qp::matrix_market::read_problem;
 use signorini::{Error, Scene};
 

@@ -1,10 +1,10 @@
 //! Blocks whose displacement is known at every point: errors in norms, their rates, plots over the cell size.
 
 use signorini::Error;
-use signorini::fem::body::Integration;
+use signorini::fem::ElementKind;
+use signorini::fem::ErrorNorms;
+use signorini::fem::Integration;
 use signorini::fem::closed_forms::manufactured::{ContactSolution, GenericEdge, HertzBlock, PlaneElasticity, Smooth};
-use signorini::fem::element::ElementKind;
-use signorini::fem::norms::ErrorNorms;
 use signorini::output::{Drawing, Plot, Quantity, Scale, Series, line_plots};
 use signorini::study::solve_block;
 

@@ -1,12 +1,12 @@
 //! The contact patch test on distorted meshes: a block pressed onto a frictionless plane is compressed uniformly.
 
-use signorini::fem::assembly::{DofMap, add_pressure, free_load, stiffness, tributary_areas};
-use signorini::fem::body::{ElasticBody, Integration};
-use signorini::fem::element::ElementKind::{self, Hex8, Q4, Q8, T3, T6, Tet4};
-use signorini::fem::formulation::Formulation;
-use signorini::fem::material::Material;
-use signorini::fem::mesh::{cuboid, rectangle};
-use signorini::fem::recovery;
+use signorini::fem;
+use signorini::fem::ElementKind::{self, Hex8, Q4, Q8, T3, T6, Tet4};
+use signorini::fem::Formulation;
+use signorini::fem::Material;
+use signorini::fem::{DofMap, add_pressure, free_load, stiffness, tributary_areas};
+use signorini::fem::{ElasticBody, Integration};
+use signorini::fem::{cuboid, rectangle};
 use signorini::{ContactProblem, Error, SparseMatrix, solve_qp};
 
 use crate::bodies::distort;
@@ -105,7 +105,7 @@ pub fn contact_patch(
     let forces = areas.iter().zip(&solution.multiplier);
     // The ends of quadratic edges on an axis have no area: forces are compared, relative to the mean one.
     let off = forces.map(|((_, area), lambda)| (lambda + pressure * area).abs()).fold(0.0, f64::max);
-    let stresses = recovery::stress(&body, &nodal)?;
+    let stresses = fem::stress(&body, &nodal)?;
     let mut stress: f64 = 0.0;
     for found in stresses.elements.iter().chain(&stresses.nodes) {
         let normal = [found.sigma_xx, found.sigma_yy, found.sigma_zz];

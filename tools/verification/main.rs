@@ -21,7 +21,7 @@ use answer::{Answer, csv, markdown};
 use blocks::{AGAINST_REFERENCE, BLOCKS, ERRORS, error_plots, error_rows, families, reference_rows};
 use contact_patch::{VARIANTS, contact_patch};
 use signorini::Error;
-use signorini::fem::body::Integration;
+use signorini::fem::Integration;
 use signorini::output::{write_files, write_picture};
 
 /// Cells along the sides of the manufactured blocks.

@@ -3,8 +3,8 @@
 //! Its rules miss part of the square root that the strain has at the edge of the contact: up to 0.9 % of the energy
 //! error of quadratic elements. Whoever uses its rules finds its numbers.
 
-use signorini::fem::element::ElementKind::{self, Q4, Q8, T3, T6};
-use signorini::fem::element::QuadraturePoint;
+use signorini::fem::ElementKind::{self, Q4, Q8, T3, T6};
+use signorini::fem::QuadraturePoint;
 
 /// Relative errors in energy and in L2 of one element on one block.
 pub struct ReferenceErrors {

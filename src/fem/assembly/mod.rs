@@ -17,8 +17,8 @@ mod rigid_motions;
 mod stiffness;
 mod surface;
 
-pub use dofs::{Along, DofMap};
-pub use element_stiffness::{ElementStiffness, element_stiffness};
+pub use dofs::DofMap;
+pub use element_stiffness::element_stiffness;
 pub use frame::Frame;
 pub(crate) use frame::perpendicular;
 pub use internal_force::internal_force;

@@ -3,8 +3,8 @@
 mod point;
 mod region;
 
+pub use point::Symmetric;
 pub(crate) use point::trace;
-pub use point::{LocalPoint, Symmetric};
 pub use region::Region;
 
 use crate::error::Error;

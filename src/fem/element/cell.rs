@@ -79,7 +79,7 @@ impl Cell {
     /// Checks that the determinant of the Jacobian is positive at the nodes and the quadrature points of `table`.
     ///
     /// # Errors
-    /// [`NonPositiveJacobian`] with the worst place.
+    /// `NonPositiveJacobian` with the worst place.
     pub fn check(&self, table: &Tabulated) -> Result<(), NonPositiveJacobian> {
         let mut worst = NonPositiveJacobian { value: f64::INFINITY, point: 0 };
         for (point, tabulated) in table.nodes.iter().chain(&table.points).enumerate() {

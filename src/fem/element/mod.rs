@@ -17,7 +17,7 @@ mod t6;
 mod tabulated;
 mod tet4;
 
-pub use cell::{Cell, Mapping, NonPositiveJacobian};
+pub use cell::Cell;
 pub use kind::{ElementKind, FacetKind};
 pub use quadrature::{Part, QuadraturePoint};
 pub use tabulated::{Tabulated, TabulatedPoint};

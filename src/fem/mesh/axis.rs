@@ -27,8 +27,8 @@ impl Axis {
     /// The coordinates of the mesh lines, strictly increasing; breakpoints are met exactly.
     ///
     /// # Errors
-    /// [`AxisError`] for fewer than two points, points that do not increase, lengths that do not fit, zero
-    /// divisions, a ratio that is not positive, more than [`MAX_NODES`] lines, cells so small that two lines fall
+    /// `AxisError` for fewer than two points, points that do not increase, lengths that do not fit, zero
+    /// divisions, a ratio that is not positive, more than `MAX_NODES` lines, cells so small that two lines fall
     /// together.
     pub fn coordinates(&self) -> Result<Vec<f64>, AxisError> {
         let lines = self.check()?;

@@ -7,7 +7,7 @@ use crate::error::Error;
 ///
 /// # Errors
 /// [`Error::Mesh`] for fewer than two nodes, coordinates that do not increase, or more than
-/// [`MAX_NODES`](super::MAX_NODES).
+/// `MAX_NODES`.
 pub fn bar(x: &[f64]) -> Result<Mesh, Error> {
     check_lines(&[("x", x)], 1)?;
     let cells = x.len() - 1;

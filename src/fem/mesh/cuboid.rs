@@ -31,7 +31,7 @@ const SIDES: [(&str, usize, bool, [usize; 4]); 6] = [
 ///
 /// # Errors
 /// [`Error::Mesh`] for an element that is not in space, fewer than two lines, lines that do not increase, or more than
-/// [`MAX_NODES`](super::MAX_NODES) nodes.
+/// `MAX_NODES` nodes.
 pub fn cuboid(x: &[f64], y: &[f64], z: &[f64], kind: ElementKind) -> Result<Mesh, Error> {
     if kind.dimension() != 3 {
         return fail(format!("a box is no mesh of {}", kind.name()));

@@ -9,7 +9,7 @@ use crate::error::Error;
 /// The boundaries are `lower` and `upper`, the halves of the circle, and, where `symmetric`, `symmetry-x` (x = centre).
 ///
 /// ```
-/// use signorini::fem::mesh::{ElementKind, Zone, disc};
+/// use signorini::fem::{ElementKind, Zone, disc};
 ///
 /// let zone = Zone { width: 0.2, divisions: 3, growth: 1.5 };
 /// let mesh = disc([0.0, 1.0], 1.0, &zone, false, ElementKind::Q4)?;

@@ -16,7 +16,7 @@ const AROUND: [[usize; 2]; 4] = [[0, 0], [1, 0], [1, 1], [0, 1]];
 /// `symmetry-y` (y = centre).
 ///
 /// # Errors
-/// [`Error::Mesh`] for a centre that is not finite, more than [`MAX_NODES`] nodes; [`Error::Setting`] for a radius or a
+/// [`Error::Mesh`] for a centre that is not finite, more than `MAX_NODES` nodes; [`Error::Setting`] for a radius or a
 /// zone out of its range.
 pub fn half_ball(centre: [f64; 3], radius: f64, zone: &Zone, symmetric: [bool; 2]) -> Result<Mesh, Error> {
     zone.check(radius)?;

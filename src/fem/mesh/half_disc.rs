@@ -15,7 +15,7 @@ pub(super) const CORE: f64 = 0.4;
 /// mid-sides of quadratic elements stand on the arc.
 ///
 /// ```
-/// use signorini::fem::mesh::{ElementKind, Zone, half_disc};
+/// use signorini::fem::{ElementKind, Zone, half_disc};
 ///
 /// let zone = Zone { width: 0.1, divisions: 4, growth: 1.5 };
 /// let mesh = half_disc([0.0, 1.0], 1.0, &zone, false, ElementKind::Q8)?;
@@ -25,7 +25,7 @@ pub(super) const CORE: f64 = 0.4;
 /// ```
 ///
 /// # Errors
-/// [`Error::Mesh`] for an element that is not plane, a centre that is not finite, more than [`MAX_NODES`] nodes;
+/// [`Error::Mesh`] for an element that is not plane, a centre that is not finite, more than `MAX_NODES` nodes;
 /// [`Error::Setting`] for a radius or a zone out of its range.
 pub fn half_disc(
     centre: [f64; 2],

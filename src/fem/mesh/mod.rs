@@ -16,7 +16,7 @@ mod ring;
 mod zone;
 
 pub use crate::fem::element::{ElementKind, FacetKind};
-pub use axis::{Axis, AxisError};
+pub use axis::Axis;
 pub use bar::bar;
 pub use boundary::Boundary;
 pub use cuboid::cuboid;

@@ -14,7 +14,7 @@ const NO_NODE: usize = usize::MAX;
 ///
 /// # Errors
 /// [`Error::Mesh`] for an element that is not plane, fewer than two lines, lines that do not increase, or more than
-/// [`MAX_NODES`](super::MAX_NODES) nodes.
+/// `MAX_NODES` nodes.
 pub fn rectangle(x: &[f64], y: &[f64], kind: ElementKind) -> Result<Mesh, Error> {
     if kind.dimension() != 2 {
         return fail(format!("a rectangle is no mesh of {}", kind.name()));

@@ -13,7 +13,7 @@ use crate::error::Error;
 /// # Errors
 /// [`Error::Mesh`] for an element that is not plane, fewer than two radii or angles, values that do not increase, an
 /// inner radius that is not positive, angles of more than 360 degrees or steps of 180 or more, more than
-/// [`MAX_NODES`](super::MAX_NODES) nodes.
+/// `MAX_NODES` nodes.
 pub fn ring(centre: [f64; 2], radii: &[f64], angles: &[f64], kind: ElementKind) -> Result<Mesh, Error> {
     if kind.dimension() != 2 {
         return fail(format!("a ring is no mesh of {}", kind.name()));

@@ -39,7 +39,7 @@ impl BoundarySolution<'_> {
     /// The whole answer, with the certificate of the problem itself.
     ///
     /// # Errors
-    /// [`Error::NotCertified`] and [`Error::Infeasible`], as [`solve`](super::solve).
+    /// [`Error::NotCertified`] and [`Error::Infeasible`], as [`solve`](crate::solve).
     pub fn solution(self, settings: &Settings) -> Result<Solution, Error> {
         self.prepared.complete(self.found, settings)
     }

@@ -101,7 +101,7 @@ impl Prepared {
     /// Solves with the load and the gaps of the problem that was prepared.
     ///
     /// # Errors
-    /// As [`solve`](super::solve).
+    /// As [`solve`](crate::solve).
     pub fn solve(&self, settings: &Settings) -> Result<Solution, Error> {
         self.solve_gap(self.problem.gap().to_vec(), None, settings)
     }
@@ -109,7 +109,7 @@ impl Prepared {
     /// Solves with other gaps, the active-set steps starting from `start` where it is given.
     ///
     /// # Errors
-    /// As [`solve`](super::solve); [`Error::Length`] and [`Error::NotFinite`] for gaps that do not fit, or that are
+    /// As [`solve`](crate::solve); [`Error::Length`] and [`Error::NotFinite`] for gaps that do not fit, or that are
     /// infinite in other rows than those of the problem that was prepared.
     pub fn solve_gap(&self, gap: Vec<f64>, start: Option<&ContactSet>, settings: &Settings) -> Result<Solution, Error> {
         let settings = &settings.started()?;

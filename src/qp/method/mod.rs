@@ -14,8 +14,8 @@ pub mod penalty;
 use std::cell::Cell;
 use std::time::Instant;
 
+pub use holding::Holding;
 pub(crate) use holding::WORK_TOLERANCE;
-pub use holding::{FreeMotion, Holding};
 
 use crate::error::Error;
 use crate::qp::linear::{AugmentedMatrix, Cholesky, FactorError, SymmetricMatrix, largest};

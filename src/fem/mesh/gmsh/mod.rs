@@ -4,7 +4,7 @@
 //! below becomes a boundary. A group without a name is called by its number.
 //!
 //! ```
-//! use signorini::fem::mesh::gmsh::GmshFile;
+//! use signorini::fem::GmshFile;
 //!
 //! let text = r#"$MeshFormat
 //! 2.2 0 8
