@@ -1,6 +1,5 @@
 //! What is done once for all loads and gaps: rows selected, data scaled, the stiffness ordered and factorised.
 
-use std::cell::Cell;
 use std::sync::OnceLock;
 use std::time::Instant;
 
@@ -9,7 +8,7 @@ use super::reduction::Reduction;
 use crate::error::Error;
 use crate::qp::cost::seconds::factor_seconds;
 use crate::qp::cost::{Kept, check_memory, check_time, seconds};
-use crate::qp::linear::{AugmentedMatrix, Cholesky, FactorError, largest};
+use crate::qp::linear::{Analysis, AugmentedMatrix, Cholesky, FactorError, largest};
 use crate::qp::plan::{Layout, Way};
 use crate::qp::problem::{ContactProblem, EnergyNorm};
 use crate::qp::settings::Settings;
@@ -50,61 +49,25 @@ impl Prepared {
             boundary => seconds::sweeps(problem.rows(), boundary * boundary),
         };
         let norm_seconds = seconds::ordering(problem) + seconds::factorisation(&analysis);
-        let least_pivot = Cell::new(has_empty_diagonal.then_some(0.0));
-        let factor = |single| {
-            let estimate = factor_seconds(multiplications, analysis.factor_entries())[usize::from(single)];
-            let scaled = scaling.equilibration();
-            let factor = || analysis.factor_equilibrated(problem.stiffness(), scaled, single);
-            match watch.timed(estimate, factor).inspect(|cholesky| least_pivot.set(Some(cholesky.smallest_pivot()))) {
-                Ok(cholesky) if single && cholesky.smallest_pivot() <= SINGLE_PIVOT => Ok(None),
-                Ok(cholesky) if cholesky.is_safely_definite() || cholesky.is_definite(scaling.stiffness()) => {
-                    Ok(Some(cholesky))
-                }
-                Ok(_) => Ok(None),
-                Err(FactorError::NotPositiveDefinite) => {
-                    least_pivot.set(Some(0.0));
-                    Ok(None)
-                }
-                Err(error) => Err(Error::from(error)),
+        let mut factoring = Factoring { problem, scaling: &scaling, analysis: &analysis, settings, least_pivot: None };
+        let cholesky = match has_empty_diagonal {
+            true => {
+                factoring.least_pivot = Some(0.0);
+                None
             }
+            false => factoring.definite(single, last.len())?,
         };
-        let definite = || match single.then(|| factor(true)).transpose()?.flatten() {
-            Some(cholesky) => Ok(Some(cholesky)),
-            None => {
-                if single {
-                    let values = analysis.factor_entries();
-                    let kept = Kept::Condensed {
-                        values,
-                        is_single: false,
-                        contact_dofs: last.len(),
-                        by_interior_point: false,
-                    };
-                    check_memory(problem, kept, settings)?;
-                    check_time(watch, factor_seconds(multiplications, values)[0])?;
-                }
-                factor(false)
-            }
-        };
-        let cholesky = if has_empty_diagonal { None } else { definite()? };
+        let least_pivot = factoring.least_pivot;
         drop(analysis);
         if cholesky.is_none() {
             // Without a bound no accuracy can be held: what is exact is left.
             let exact = Settings { accuracy: None, ..settings.clone() };
             way = Way::chosen(&exact, is_condensed, multiplications, problem.rows());
         }
-        let mut condensation = None;
-        if is_condensed {
-            let shifted = cholesky.is_none();
-            let factor = match &cholesky {
-                Some(cholesky) => Some(cholesky.clone()),
-                None => factor_with_rows(&scaling, &last, settings)?,
-            };
-            // Where even all rows together do not hold the body, the full problem tells why.
-            if let Some(factor) = factor {
-                check_time(watch, seconds::dense(last.len()))?;
-                condensation = Some(Condensation::new(factor, last.clone(), scaling.contact(), shifted)?);
-            }
-        }
+        let condensation = match is_condensed {
+            true => condensed(cholesky.as_ref(), &scaling, &last, settings)?,
+            false => None,
+        };
         let augmented = match &condensation {
             Some(condensed) => {
                 // Dense: the order is of no matter to the factor, and its last block is all of it.
@@ -118,7 +81,7 @@ impl Prepared {
         Ok(Prepared {
             problem: problem.clone(),
             reduction: Reduction { selection, scaling, stiffest, norm, condensation },
-            lost_pivot: least_pivot.get().filter(|&pivot| pivot < LOST_PIVOT),
+            lost_pivot: least_pivot.filter(|&pivot| pivot < LOST_PIVOT),
             augmented,
             way,
             multiplications,
@@ -129,6 +92,75 @@ impl Prepared {
             seconds: Seconds { factor, solve: clock.elapsed().as_secs_f64() },
         })
     }
+}
+
+/// The factorisation of a stiffness that has been analysed.
+struct Factoring<'a> {
+    problem: &'a ContactProblem,
+    scaling: &'a Scaling,
+    analysis: &'a Analysis,
+    settings: &'a Settings,
+    /// The smallest pivot of the last factor; zero where there is none.
+    least_pivot: Option<f64>,
+}
+
+impl Factoring<'_> {
+    /// The factor in single precision if that is asked for and loses nothing, else in double; `None` for a stiffness that is not
+    /// definite to working precision.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`] and [`Error::OutOfTime`] for a second factor, [`Error::Numerical`].
+    fn definite(&mut self, is_single: bool, contact_dofs: usize) -> Result<Option<Cholesky>, Error> {
+        if is_single {
+            if let Some(cholesky) = self.factor(true)? {
+                return Ok(Some(cholesky));
+            }
+            let values = self.analysis.factor_entries();
+            let kept = Kept::Condensed { values, is_single: false, contact_dofs, by_interior_point: false };
+            check_memory(self.problem, kept, self.settings)?;
+            check_time(&self.settings.watch, self.seconds(false))?;
+        }
+        self.factor(false)
+    }
+
+    fn seconds(&self, is_single: bool) -> f64 {
+        factor_seconds(self.analysis.multiplications(), self.analysis.factor_entries())[usize::from(is_single)]
+    }
+
+    fn factor(&mut self, is_single: bool) -> Result<Option<Cholesky>, Error> {
+        let scaled = self.scaling.equilibration();
+        let factor = || self.analysis.factor_equilibrated(self.problem.stiffness(), scaled, is_single);
+        match self.settings.watch.timed(self.seconds(is_single), factor) {
+            Ok(cholesky) => {
+                self.least_pivot = Some(cholesky.smallest_pivot());
+                let is_uncertain = is_single && cholesky.smallest_pivot() <= SINGLE_PIVOT;
+                let is_definite = || cholesky.is_safely_definite() || cholesky.is_definite(self.scaling.stiffness());
+                Ok((!is_uncertain && is_definite()).then_some(cholesky))
+            }
+            Err(FactorError::NotPositiveDefinite) => {
+                self.least_pivot = Some(0.0);
+                Ok(None)
+            }
+            Err(error) => Err(error.into()),
+        }
+    }
+}
+
+/// The condensation onto the contact dofs `last`, from the factor of the stiffness or, without one, from that of the stiffness with
+/// its rows; `None` where even all rows together do not hold the body: the full problem tells why.
+fn condensed(
+    cholesky: Option<&Cholesky>,
+    scaling: &Scaling,
+    last: &[usize],
+    settings: &Settings,
+) -> Result<Option<Condensation>, Error> {
+    let factor = match cholesky {
+        Some(cholesky) => Some(cholesky.clone()),
+        None => factor_with_rows(scaling, last, settings)?,
+    };
+    let Some(factor) = factor else { return Ok(None) };
+    check_time(&settings.watch, seconds::dense(last.len()))?;
+    Condensation::new(factor, last.to_vec(), scaling.contact(), cholesky.is_none()).map(Some)
 }
 
 /// The factor of `K + B'B` with the contact dofs last, or `None` where it is not safely definite.
