@@ -181,17 +181,23 @@ impl EnergyNorm {
         self.equilibration.factor
     }
 
-    /// The entries of each row of `contact` on the boundary: place among its dofs, coefficient times D; `None` where a
-    /// row reaches beyond it.
-    pub(super) fn rows_on(&self, boundary: &Boundary, contact: &SparseMatrix) -> Option<Vec<Vec<(usize, f64)>>> {
+    /// The entries of each row of `contact` that `counts`, on the boundary: place among its dofs, coefficient times D; `None`
+    /// where such a row reaches beyond it.
+    pub(super) fn rows_on(
+        &self,
+        boundary: &Boundary,
+        contact: &SparseMatrix,
+        counts: impl Fn(usize) -> bool,
+    ) -> Option<Vec<Vec<(usize, f64)>>> {
         let mut rows = vec![Vec::new(); contact.rows()];
+        let is_entry = |entry: &(usize, f64)| entry.1 != 0.0 && counts(entry.0);
         for (place, &dof) in boundary.dofs.iter().enumerate() {
-            for (row, value) in contact.column(dof).filter(|entry| entry.1 != 0.0) {
+            for (row, value) in contact.column(dof).filter(is_entry) {
                 rows[row].push((place, ldexp(value, self.equilibration.diagonal[dof])));
             }
         }
         let count: usize = rows.iter().map(Vec::len).sum();
-        let whole = (0..contact.columns()).flat_map(|dof| contact.column(dof)).filter(|entry| entry.1 != 0.0).count();
+        let whole = (0..contact.columns()).flat_map(|dof| contact.column(dof)).filter(is_entry).count();
         (count == whole).then_some(rows)
     }
 

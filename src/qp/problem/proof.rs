@@ -100,7 +100,7 @@ struct Halves<'a> {
 
 impl<'a> Halves<'a> {
     fn of(problem: &ContactProblem, norm: &'a EnergyNorm) -> Self {
-        let on_boundary = norm.boundary().and_then(|boundary| norm.rows_on(boundary, &problem.contact));
+        let on_boundary = norm.boundary().and_then(|boundary| norm.rows_on(boundary, &problem.contact, |_| true));
         match on_boundary {
             Some(rows) => Halves { norm, rows, on_boundary: true },
             None => Halves { norm, rows: norm.rows_in_body(&problem.contact), on_boundary: false },

@@ -72,6 +72,7 @@ pub fn solve(scaled: &ScaledProblem) -> Result<Option<Outcome>, Error> {
         basis: Basis::default(),
         displacement: vec![0.0; dofs],
         pressures: vec![0.0; rows],
+        rests: vec![0.0; rows],
         point: vec![0.0; dofs],
         history: Vec::new(),
     };
@@ -99,6 +100,9 @@ struct Search<'a> {
     displacement: Vec<f64>,
     /// `-lambda` of all rows.
     pressures: Vec<f64>,
+    /// What the pressures of closed rows have beyond double precision: large pressures that cancel on a soft dof would leave
+    /// more than all other forces there.
+    rests: Vec<f64>,
     /// L' u.
     point: Vec<f64>,
     history: Vec<Iteration>,
@@ -113,13 +117,13 @@ impl Search<'_> {
 
     /// What is out of balance, `L^-1 (f - B'y - K u)`, and the distances of the rows, both from accurate sums.
     fn residuals(&self) -> (Vec<f64>, Vec<f64>) {
-        let multiplier: Vec<f64> = self.pressures.iter().map(|pressure| -pressure).collect();
-        let imbalance = self.polyhedron.problem.accurate_residual(&self.displacement, &multiplier);
+        let imbalance = self.polyhedron.imbalance(&self.displacement, &self.pressures, &self.rests);
         (self.polyhedron.of_force(&imbalance), self.polyhedron.distances(&self.displacement))
     }
 
     /// One pass from the answer so far. The basis comes from the data again, free of what its updates have lost.
     fn pass(&mut self, scaled: &ScaledProblem) -> Result<Ending, Error> {
+        self.rests.fill(0.0);
         let residuals = self.residuals();
         let base = norm(&self.point);
         let parts = (&mut self.basis, &mut self.pressures[..], &mut self.history);
@@ -154,7 +158,11 @@ impl Search<'_> {
                 break;
             }
             self.advance(&change);
-            self.basis.rows().iter().zip(&pressures).for_each(|(&row, change)| self.pressures[row] += change);
+            for (&row, change) in self.basis.rows().iter().zip(&pressures) {
+                let (before, change) = (self.pressures[row], self.rests[row] + change);
+                self.pressures[row] = before + change;
+                self.rests[row] = change - (self.pressures[row] - before);
+            }
             last = step;
             if step <= NOTHING * self.polyhedron.reach {
                 break;

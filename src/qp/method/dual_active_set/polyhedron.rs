@@ -117,6 +117,17 @@ impl Polyhedron {
         self.factor.backward(point.to_vec())
     }
 
+    /// `f - B'y - K u` of the pressures `y = pressures + rests`, rounded once.
+    pub fn imbalance(&self, displacement: &[f64], pressures: &[f64], rests: &[f64]) -> Vec<f64> {
+        let mut sums = Accumulator::new(self.problem.load());
+        sums.subtract_product(self.problem.stiffness(), displacement);
+        for (row, dof, b) in self.problem.contact().triplets() {
+            sums.add_product(dof, -b, pressures[row]);
+            sums.add_product(dof, -b, rests[row]);
+        }
+        sums.into_sums()
+    }
+
     /// g - B u of each row, rounded once.
     pub fn distances(&self, displacement: &[f64]) -> Vec<f64> {
         let mut sums = Accumulator::new(self.problem.gap());

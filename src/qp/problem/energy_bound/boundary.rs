@@ -145,7 +145,9 @@ impl<'a> Repair<'a> {
         boundary: &'a Boundary,
         answer: &'a Answer<'a>,
     ) -> Option<Self> {
-        let mut rows = norm.rows_on(boundary, &problem.contact)?;
+        // A row without obstacle and without force may reach wherever it likes.
+        let counts = |row: usize| problem.gap[row].is_finite() || answer.multiplier[row] != 0.0;
+        let mut rows = norm.rows_on(boundary, &problem.contact, counts)?;
         let largest = |row: &Vec<(usize, f64)>| row.iter().fold(0.0, |largest: f64, entry| largest.max(entry.1.abs()));
         let shift: Vec<i32> = rows.iter().map(|row| -exponent(largest(row))).collect();
         for (row, &shift) in rows.iter_mut().zip(&shift) {
@@ -333,7 +335,8 @@ impl<'a> Repair<'a> {
             deeper.iter().for_each(|&row| first[row] = true);
             violated.iter().for_each(|&row| closed[row] = true);
             looser.iter().filter(|_| deeper.is_empty()).for_each(|&row| closed[row] = false);
-            if exchange < EXCHANGES {
+            // The force of a looser row goes to others, which may pull no more then.
+            if exchange < EXCHANGES && looser.is_empty() {
                 pulling.iter().for_each(|&row| closed[row] = false);
             }
         }

@@ -12,6 +12,28 @@ const REPAIR_SWEEPS: usize = 50;
 /// Steps in which the rest of the body follows rows that were put at their gaps; each costs a product with K.
 const RELAXATIONS: usize = 20;
 
+/// Motions of a sweep below this share of those of all sweeps are followed by no more than all of them together.
+const LAST: f64 = 0.01;
+
+/// Where a row must be for a bound.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Aim {
+    /// At its gap: its force does no work then.
+    AtGap,
+    /// At its gap or open, without a force.
+    WithinGap,
+    /// Open, where it is: its force and the way that is left have been counted.
+    Stays,
+}
+
+/// A repaired answer, whose rows are put where they aim.
+struct Start<'a> {
+    answer: &'a Answer<'a>,
+    /// `B d` of the repair d.
+    moved_by: &'a [f64],
+    aims: &'a [Aim],
+}
+
 impl ContactProblem {
     /// What B u - g may be off by rounding u, row by row.
     pub(in super::super) fn negligible(&self, displacement: &[f64]) -> Vec<f64> {
@@ -58,34 +80,42 @@ impl ContactProblem {
                 multiplier[row] = pushed;
             }
         }
-        self.with_slack(norm, answer, &repair, &residual, &multiplier)
+        self.with_slack(norm, &by_row, answer, &repair, &residual, &multiplier)
     }
 
-    /// The bound of a repaired answer: u moved by `repair`, with `residual` and `multiplier` there. A row that is still off
-    /// its gap by rounding is put there along itself, at the cost of that motion.
+    /// The bound of a repaired answer: u moved by `repair`, with `residual` and `multiplier` there. Rows that are still off
+    /// their gaps by rounding are put there along themselves, at the cost of those motions.
     fn with_slack(
         &self,
         norm: &EnergyNorm,
+        by_row: &SparseMatrix,
         answer: &Answer,
         repair: &[f64],
         residual: &[f64],
         multiplier: &[f64],
     ) -> ErrorBound {
         let parts = self.parts();
-        let (moved_by, negligible, lengths) =
-            (self.contact.mul(repair), self.negligible(answer.displacement), self.lengths_along_rows());
+        let (moved_by, negligible) = (self.contact.mul(repair), self.negligible(answer.displacement));
         let mut at_gap = vec![false; self.rows()];
-        let (mut slack_work, mut put) = (vec![0.0; parts.count()], vec![0.0; parts.count()]);
-        for (row, part) in self.parts_of_rows(parts).into_iter().enumerate() {
+        let (mut slack_work, mut aims) = (vec![0.0; parts.count()], vec![Aim::Stays; self.rows()]);
+        let part_of_row = self.parts_of_rows(parts);
+        for (row, &part) in part_of_row.iter().enumerate() {
             let distance = answer.violation[row] + moved_by[row];
             at_gap[row] = distance.abs() <= negligible[row];
-            let is_off = distance > 0.0 || (multiplier[row] != 0.0 && distance >= -negligible[row]);
-            if is_off && distance != 0.0 {
-                put[part] += distance.abs() * lengths[row];
-            } else if multiplier[row] != 0.0 && distance.is_finite() {
-                slack_work[part] += distance * multiplier[row];
-            }
+            aims[row] = match multiplier[row] != 0.0 {
+                true if distance >= -negligible[row] => Aim::AtGap,
+                true if distance.is_finite() => {
+                    slack_work[part] += distance * multiplier[row];
+                    Aim::Stays
+                }
+                _ => Aim::WithinGap,
+            };
         }
+        let start = Start { answer, moved_by: &moved_by, aims: &aims };
+        let Some(put) = self.put_along_rows(by_row, &start) else { return ErrorBound::none() };
+        let mut put_in_parts = vec![0.0; parts.count()];
+        part_of_row.iter().zip(&put).for_each(|(&part, cost)| put_in_parts[part] += cost);
+        let put = put_in_parts;
         let length = |square: f64, slack: f64| (square + 2.0 * slack).max(0.0).sqrt();
         let total = |values: &[f64]| values.iter().sum::<f64>();
         // What moves the answer moves its residual too, by K times that.
@@ -105,6 +135,37 @@ impl ContactProblem {
             sizes
         });
         ErrorBound { whole, of_parts }
+    }
+
+    /// An upper bound on the energy norm of the motions that put rows where they aim, row by row: each moves the others,
+    /// so that they follow each other until what is left of them is small beside the sum; `None` where it stays large.
+    fn put_along_rows(&self, by_row: &SparseMatrix, start: &Start) -> Option<Vec<f64>> {
+        let lengths = self.lengths_along_rows();
+        let (mut put, mut total, mut change) = (vec![0.0; self.rows()], 0.0, vec![0.0; self.dofs()]);
+        for _ in 0..REPAIR_SWEEPS {
+            let mut last = 0.0;
+            for (row, &aim) in start.aims.iter().enumerate() {
+                let moved: f64 = by_row.column(row).map(|(dof, b)| b * change[dof]).sum();
+                let distance = start.answer.violation[row] + start.moved_by[row] + moved;
+                if distance == 0.0 || !(aim == Aim::AtGap || distance > 0.0) {
+                    continue;
+                }
+                let square: f64 = by_row.column(row).map(|(_, b)| b * b).sum();
+                if square == 0.0 {
+                    return None;
+                }
+                by_row.column(row).for_each(|(dof, b)| change[dof] -= distance / square * b);
+                put[row] += distance.abs() * lengths[row];
+                last += distance.abs() * lengths[row];
+            }
+            total += last;
+            if last <= LAST * total {
+                // As much again may follow.
+                let follow = if last > 0.0 { 2.0 } else { 1.0 };
+                return Some(put.iter().map(|cost| follow * cost).collect());
+            }
+        }
+        None
     }
 
     /// A displacement d that follows the force `residual` where nothing is `held`, by a few steps of conjugate gradients,
