@@ -3,8 +3,13 @@
 use nalgebra::DMatrix;
 use signorini::{ContactProblem, Error, SparseMatrix, SymmetricMatrix};
 
-/// From here on a gap is the usual infinity of a QP solver: the row has no bound.
-const UNBOUNDED: f64 = 1e20;
+/// Gaps that QP solvers take for infinite; any other finite gap is a length, however long.
+const UNBOUNDED: [f64; 2] = [1e20, 1e30];
+
+/// Is a gap a length?
+pub fn is_length(gap: f64) -> bool {
+    gap.is_finite() && !UNBOUNDED.contains(&gap)
+}
 
 /// K (n x n, symmetric), f (n), B (m x n), g (m).
 #[derive(Clone, Debug, PartialEq)]
@@ -25,7 +30,7 @@ impl Case {
     }
 
     pub fn is_bounded(&self, row: usize) -> bool {
-        self.gap[row] < UNBOUNDED
+        is_length(self.gap[row])
     }
 
     pub fn problem(&self) -> Result<ContactProblem, Error> {

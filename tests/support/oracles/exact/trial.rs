@@ -6,7 +6,7 @@ use std::time::Instant;
 use signorini::{Condense, ContactProblem, Method, Precision, Settings, solve};
 
 use super::Draws;
-use super::case::Case;
+use super::case::{Case, is_length};
 use super::judge::{Fault, Judge, Sort};
 use super::loads::load;
 use super::rows::{ROWS, Rows};
@@ -104,8 +104,10 @@ fn scale_dofs(draws: &mut Draws, case: &mut Case) {
 
 fn scale_row(row: &mut [f64], gap: &mut f64, unit: f64) {
     row.iter_mut().for_each(|b| *b *= unit);
-    if *gap < 1e20 {
-        *gap *= unit;
+    // A gap that has no bound keeps none, and one that has keeps its own.
+    let scaled = *gap * unit;
+    if is_length(*gap) && is_length(scaled) {
+        *gap = scaled;
     }
 }
 
@@ -121,7 +123,7 @@ fn change_units(draws: &mut Draws, case: &mut Case) {
     case.stiffness.iter_mut().flatten().for_each(|value| *value *= 2.0_f64.powi(force - length));
     case.load.iter_mut().for_each(|value| *value *= 2.0_f64.powi(force));
     // A gap that has no bound keeps none, and one that has keeps its own.
-    case.gap.iter_mut().filter(|gap| **gap < 1e20).for_each(|gap| *gap *= 2.0_f64.powi(length));
+    case.gap.iter_mut().filter(|gap| is_length(**gap)).for_each(|gap| *gap *= 2.0_f64.powi(length));
 }
 
 impl Trial {
