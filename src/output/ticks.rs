@@ -218,7 +218,7 @@ pub fn decimal(value: f64, places: usize) -> String {
 /// `value` to four significant digits: `0.012`, `−350`, `1.25×10⁶`.
 ///
 /// ```
-/// use signorini::output::ticks::brief;
+/// use signorini::internals::brief;
 /// assert_eq!(brief(-0.01), "−0.01");
 /// assert_eq!(brief(1.25e6), "1.25×10⁶");
 /// ```

@@ -51,6 +51,9 @@ const BENDS: f64 = 1e3;
 /// Where a dof comes that a force moves and no stiffness holds.
 const FAR: f64 = 1e300;
 
+/// An answer shows which rows press only if its conditions hold to this, however little is asked for.
+const SURE: f64 = 1e-9;
+
 /// Exponent of rho: on a diagonal of order one, far above rounding and far below what resists.
 const STEP: i32 = -20;
 
@@ -106,13 +109,14 @@ pub(super) fn rechecked(
     if let Some(motion) = looked.escape() {
         return Err(Error::Unbounded { motion: motion.in_words(), direction: looked.expanded(&motion) });
     }
-    let holds = |solution: &Solution| solution.certificate.conditions_hold(settings.tolerance);
+    let tolerance = settings.tolerance.min(SURE);
+    let holds = |solution: &Solution| solution.certificate.conditions_hold(tolerance);
     let solution = match before {
         Error::NotCertified { solution, .. } if holds(&solution) => *solution,
         before => looked.answer(problem, settings, before)?,
     };
     // A problem that has a place within its rows, and no motion that the load drives, has an answer.
-    let motion = match solution.certificate.penetration <= settings.tolerance {
+    let motion = match solution.certificate.penetration <= tolerance {
         true => looked.drift(),
         false => None,
     };
@@ -217,7 +221,7 @@ impl Looked<'_> {
                 let closed = TOUCHING * (sizes[row] + problem.gap()[row].abs()) + strained[row] + without[row];
                 violation[row] >= -closed || shares[row] > PRESSED
             };
-            self.freedom_with(problem, solution, &presses, &touches)
+            self.freedom_with(problem, solution, &presses, &touches, &|row| shares[row] > PRESSED)
         })
     }
 
@@ -247,6 +251,7 @@ impl Looked<'_> {
         solution: &Solution,
         presses: &dyn Fn(usize) -> bool,
         touches: &dyn Fn(usize) -> bool,
+        may_press: &dyn Fn(usize) -> bool,
     ) -> Option<Motion> {
         let mut left = Complement::of(self.null.len());
         self.bounded_rows().filter(|&row| presses(row)).for_each(|row| left.remove(&self.coordinates_of_row(row)));
@@ -259,7 +264,7 @@ impl Looked<'_> {
             self.is_in_balance(problem, solution, motion)
                 && self.bounded_rows().all(|row| match motion.approach[row] {
                     speed if speed > 0.0 => !presses(row) && !touches(row),
-                    speed if speed < 0.0 => !presses(row),
+                    speed if speed < 0.0 => !may_press(row),
                     _ => true,
                 })
         };

@@ -93,7 +93,7 @@ fn in_space([x, y]: [f64; 2]) -> [f64; 3] {
 ///
 /// ```
 /// use signorini::fem::closed_forms::manufactured::{HertzBlock, PlaneElasticity};
-/// use signorini::fem::{body::Integration, element::ElementKind};
+/// use signorini::fem::{ElementKind, Integration};
 /// use signorini::study::solve_block;
 ///
 /// let elasticity = PlaneElasticity::plane_strain(1.0, 0.3);
