@@ -255,6 +255,9 @@ impl Looked<'_> {
     ) -> Option<Motion> {
         let mut left = Complement::of(self.null.len());
         self.bounded_rows().filter(|&row| presses(row)).for_each(|row| left.remove(&self.coordinates_of_row(row)));
+        if !self.is_carried(problem, solution, presses, &left) {
+            return None;
+        }
         let mut rows: Vec<Vec<f64>> = (self.bounded_rows())
             .filter(|&row| !presses(row) && touches(row))
             .map(|row| left.coordinates(&self.coordinates_of_row(row)))
@@ -292,17 +295,36 @@ impl Looked<'_> {
         (shares, forces)
     }
 
+    /// Is the load in balance on all motions without energy that no pressing row stops? Where it is not, even by the last bit of the
+    /// load, rows that seem to carry no force must press.
+    fn is_carried(
+        &self,
+        problem: &ContactProblem,
+        solution: &Solution,
+        presses: &dyn Fn(usize) -> bool,
+        left: &Complement,
+    ) -> bool {
+        let pressing = (solution.multiplier.iter().enumerate())
+            .map(|(row, &force)| if presses(row) { force } else { 0.0 })
+            .collect();
+        let of_answer = Left::of(problem, solution, pressing);
+        left.basis.iter().all(|coordinates| {
+            let mut direction = vec![0.0; self.scaled.dofs()];
+            for (a, vector) in coordinates.iter().zip(&self.null) {
+                direction.iter_mut().zip(vector).for_each(|(d, value)| *d += a * value);
+            }
+            of_answer.does_no_work_on(&self.scaling.expand_displacement(&direction, 0))
+        })
+    }
+
     /// Does the load do no work on a motion d? With `K d = 0`, and `B d = 0` where a row presses, `f'd` is `r'd` for the residual
     /// r of any u and lambda. That of an answer is rounding, and the rounding of d takes from it what is rounding of rounding.
     fn is_in_balance(&self, problem: &ContactProblem, solution: &Solution, motion: &Motion) -> bool {
         let pressing: Vec<f64> = (solution.multiplier.iter().zip(&motion.approach))
             .map(|(&force, &speed)| if speed == 0.0 { force } else { 0.0 })
             .collect();
-        let (residual, direction) =
-            (problem.accurate_residual(&solution.displacement, &pressing), self.expanded(motion));
-        let most = TWICE * dot(&forces_at(problem, &solution.displacement, &pressing), &absolute(&direction));
-        let terms = dot(&absolute(&residual), &absolute(&direction));
-        dot(&residual, &direction).abs() <= ROUNDING * terms + most
+        let left = Left::of(problem, solution, pressing);
+        left.does_no_work_on(&self.expanded(motion))
     }
 
     fn bounded_rows(&self) -> impl Iterator<Item = usize> + '_ {
@@ -465,6 +487,28 @@ fn nearest_of_cone(rows: &[Vec<f64>], c: &[f64]) -> Option<Vec<f64>> {
     let distance = largest(&nearest);
     let kept = |value: &f64| if value.abs() > ROUNDING * distance { *value } else { 0.0 };
     (distance > TIP).then(|| nearest.iter().map(kept).collect())
+}
+
+/// What an answer leaves of the forces, and what rounding of it is measured by.
+struct Left {
+    residual: Vec<f64>,
+    terms: Vec<f64>,
+}
+
+impl Left {
+    /// Of an answer whose rows carry the forces `pressing`.
+    fn of(problem: &ContactProblem, solution: &Solution, pressing: Vec<f64>) -> Self {
+        Left {
+            residual: problem.accurate_residual(&solution.displacement, &pressing),
+            terms: forces_at(problem, &solution.displacement, &pressing),
+        }
+    }
+
+    fn does_no_work_on(&self, direction: &[f64]) -> bool {
+        let size = absolute(direction);
+        let most = ROUNDING * dot(&absolute(&self.residual), &size) + TWICE * dot(&self.terms, &size);
+        dot(&self.residual, direction).abs() <= most
+    }
 }
 
 /// What is at right angles to some vectors of coordinates: an orthonormal basis.
