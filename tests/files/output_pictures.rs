@@ -2,9 +2,9 @@
 
 use crate::output_fixture::{
     Indented,
-    page::{assert_readable, texts_of},
+    page::{assert_readable, texts_of, tree_of},
 };
-use resvg::tiny_skia::Pixmap;
+use resvg::tiny_skia::{Pixmap, Transform};
 use signorini::{
     Error,
     output::{ContactPicture, Drawing, ObstacleLine, common_limits, common_window},
@@ -51,6 +51,23 @@ fn picture_of_an_indented_body_is_readable_and_names_what_it_shows() {
         assert!(texts.iter().any(|text| text == expected), "`{expected}` is not among {texts:?}");
     }
     assert!((1200.0..=1600.0).contains(&drawing.width()), "{}", drawing.width());
+}
+
+/// Shapes become SVG and PNG by separate code; an independent renderer of the SVG must paint the same picture. Renderers smooth
+/// edges differently: a channel counts as different beyond a sixth of its range, and 1 in 10,000 channels may be.
+#[test]
+fn png_shows_what_the_svg_says() {
+    const DIFFERENT: u8 = 42;
+    const FEW: usize = 1;
+    let body = Indented::new([1.0, 0.5], [40, 20]);
+    let obstacle = body.obstacle();
+    let drawing = body.picture("Gap −0.01 m, iteration 3, 15 closed nodes", &obstacle).draw().unwrap();
+    let ours = Pixmap::decode_png(&drawing.png(1.0).unwrap()).expect("a PNG");
+    let mut theirs = Pixmap::new(ours.width(), ours.height()).unwrap();
+    resvg::render(&tree_of(&drawing), Transform::default(), &mut theirs.as_mut());
+    let differs = |pair: &(&u8, &u8)| pair.0.abs_diff(*pair.1) > DIFFERENT;
+    let count = ours.data().iter().zip(theirs.data()).filter(differs).count();
+    assert!(10_000 * count <= FEW * ours.data().len(), "{count} of {} channels differ", ours.data().len());
 }
 
 #[test]

@@ -16,6 +16,14 @@ fn texts(group: &Group, found: &mut Vec<(String, Rect)>) {
     }
 }
 
+/// The SVG of a drawing, read with its own fonts.
+pub fn tree_of(drawing: &Drawing) -> Tree {
+    let mut options = Options::default();
+    options.fontdb_mut().load_font_data(include_bytes!("../../../src/output/font/signorini-sans.ttf").to_vec());
+    options.fontdb_mut().load_font_data(include_bytes!("../../../src/output/font/signorini-sans-bold.ttf").to_vec());
+    Tree::from_str(&drawing.svg(), &options).expect("well-formed SVG")
+}
+
 /// Every text with its box in pixels; panics where the SVG is not well formed or carries a number that is none.
 pub fn texts_of(drawing: &Drawing) -> Vec<(String, Rect)> {
     let svg = drawing.svg();
@@ -23,10 +31,7 @@ pub fn texts_of(drawing: &Drawing) -> Vec<(String, Rect)> {
         let path = attribute.split('"').next().unwrap_or_default();
         assert!(!path.contains("NaN") && !path.contains("inf"), "{path}");
     }
-    let mut options = Options::default();
-    options.fontdb_mut().load_font_data(include_bytes!("../../../src/output/font/signorini-sans.ttf").to_vec());
-    options.fontdb_mut().load_font_data(include_bytes!("../../../src/output/font/signorini-sans-bold.ttf").to_vec());
-    let tree = Tree::from_str(&svg, &options).expect("well-formed SVG");
+    let tree = tree_of(drawing);
     let mut found = Vec::new();
     texts(tree.root(), &mut found);
     found
