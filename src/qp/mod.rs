@@ -11,6 +11,7 @@
 
 mod attempts;
 pub(crate) mod barrier;
+mod certificate;
 mod claims;
 pub(crate) mod cost;
 mod engine;
@@ -24,11 +25,12 @@ mod run;
 mod settings;
 pub(crate) mod transform;
 
+pub use certificate::EnergyNorm;
 pub use cost::Estimate;
 pub use engine::{BoundarySolution, Iterative, Path, Prepared};
 pub use method::mprgp::Start;
 pub use method::parametric::{Event, Piece};
-pub use problem::{ContactProblem, EnergyNorm};
+pub use problem::ContactProblem;
 pub use settings::{Condense, Method, Precision, Settings};
 
 use crate::error::Error;

@@ -15,9 +15,10 @@ use std::sync::LazyLock;
 
 use serde::Deserialize;
 
+use super::certificate::EnergyNorm;
 use super::cost::{Estimate, FACTORS, Kept, bytes, check_memory, check_time, seconds};
 use super::linear::Analysis;
-use super::problem::{ContactProblem, EnergyNorm};
+use super::problem::ContactProblem;
 use super::settings::{Condense, Method, Precision, Settings};
 use super::transform::{Condensation, Scaling};
 use crate::error::{Error, memory as written};
