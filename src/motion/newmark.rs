@@ -13,6 +13,7 @@ use super::projection::MassProjection;
 use super::step::{Advance, Stepping, plus};
 use super::{DynamicProblem, State};
 use crate::error::Error;
+use crate::qp::Penalty;
 use crate::qp::problem::ContactProblem;
 use crate::qp::{Method, Settings};
 
@@ -42,8 +43,8 @@ impl Newmark {
     /// The trapezoidal rule with springs of `penalty` times the local stiffness in place of closed rows.
     pub fn with_penalty(problem: &DynamicProblem, step: f64, penalty: f64, settings: &Settings) -> Result<Self, Error> {
         let mut springs = settings.clone();
-        springs.method = Method::Penalty;
-        (springs.first_penalty, springs.last_penalty, springs.penetration_threshold) = (penalty, penalty, 0.0);
+        let one = Penalty { first: penalty, last: penalty, penetration_threshold: 0.0, ..Penalty::default() };
+        springs.method = Method::Penalty(one);
         // Springs give; no certificate of rigid contact can be asked of them.
         springs.tolerance = f64::MAX;
         let newmark = Self::new(problem, step, 0.0, &springs)?;
