@@ -221,7 +221,7 @@ impl<'a> Repair<'a> {
         let Witness { error, left, multiplier, closed, off, rest, .. } = witness;
         let of_left = self.length(left);
         let springs = self.norm.springs();
-        if springs.is_some_and(|springs| !springs.hold(&self.expanded(multiplier), closed, of_left)) {
+        if springs.is_some_and(|springs| !springs.hold(&self.expanded(multiplier), closed, |_| of_left)) {
             return ErrorBound::none();
         }
         // Closed rows that are off their gaps are put there, all together or along themselves, which moves the answer and its

@@ -25,8 +25,8 @@ mod prolongator;
 mod real;
 mod threads;
 
-pub use conjugate_gradients::{ConjugateGradients, conjugate_gradients};
-pub use dual_norm::{DualNorm, dual_norm, dual_norm_within};
+pub use conjugate_gradients::{ConjugateGradients, conjugate_gradients, negative_direction};
+pub use dual_norm::{Blocks, DualNorm, dual_norm, dual_norms_within};
 pub use face::Direction;
 pub use near_null::NearNullSpace;
 
