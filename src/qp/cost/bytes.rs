@@ -17,7 +17,7 @@ const OF_DOF: f64 = 120.0;
 
 /// Bytes of an entry of the stiffness, both triangles: its file or mesh, itself, scaled, ordered, in the graph of the
 /// ordering.
-const OF_ENTRY: f64 = 32.0;
+const OF_ENTRY: f64 = 30.0;
 
 /// Bytes of an unknown, and of an entry of the stiffness, with a hierarchy instead of a factor.
 const OF_HIERARCHY: [f64; 2] = [190.0, 30.0];
@@ -28,9 +28,9 @@ const WORKSPACE: f64 = 1.15;
 /// Bytes of a value of a dense matrix on the contact dofs, of which a method keeps several.
 const OF_DENSE: f64 = 64.0;
 
-/// Bytes of an entry of the stiffness in the matrices of the contact sets: their pattern, where the stiffness stands in it,
-/// their values, ordered.
-const OF_SETS: f64 = 32.0;
+/// Bytes of an entry of the stiffness in the matrices of the contact sets: their pattern, if that of the stiffness does not
+/// hold them, their values, the structure of their factors.
+const OF_SETS: f64 = 20.0;
 
 /// Bytes of a value of a dense triangle on the contact dofs that come last.
 const OF_BOUNDARY: f64 = 24.0;

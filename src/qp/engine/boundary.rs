@@ -107,7 +107,7 @@ impl Prepared {
             let Found { problem, outcome, .. } = found;
             match if bounded { self.condensed_norm(problem)? } else { None } {
                 None if bounded => problem.certify(&outcome.displacement, &outcome.multiplier),
-                norm => problem.certify_in(norm, &outcome.displacement, &outcome.multiplier),
+                norm => problem.certify_in(norm.as_ref(), &outcome.displacement, &outcome.multiplier),
             }
         };
         let is_met = |certificate: &Certificate| match bounded {

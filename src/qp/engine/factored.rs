@@ -31,7 +31,7 @@ pub struct Prepared {
     /// The smallest pivot of the scaled stiffness, where it is below [`LOST_PIVOT`](super::preparation::LOST_PIVOT).
     pub(super) lost_pivot: Option<f64>,
     pub(super) augmented: AugmentedMatrix,
-    /// Energy norm of the condensed stiffness, made when it is first asked for.
+    /// Energy norm of the condensed stiffness, where it is definite, made when it is first asked for.
     pub(super) condensed_norm: OnceLock<Option<EnergyNorm>>,
     /// The load of the problem, swept when it is first solved with.
     pub(super) loading: OnceLock<Arc<Loading>>,
@@ -173,7 +173,7 @@ impl Prepared {
         let clock = Instant::now();
         let watch = self.watch_of_loop(settings)?;
         let (problem, unit) = self.scaled(&loading, &gap)?;
-        let task = ScaledProblem::new(&problem, &self.augmented, self.reduction.norm.is_some()).watched(&watch);
+        let task = ScaledProblem::new(&problem, &self.augmented, self.reduction.is_definite).watched(&watch);
         let start = start.map(|set| self.reduction.selection.restrict_set(set));
         let bound = |displacement: &[f64], multiplier: &[f64]| {
             let certificate = match self.condensed_norm(&problem).ok().flatten() {
@@ -202,7 +202,7 @@ impl Prepared {
         }
         let analysis = self.augmented.analysis();
         // Where K is not definite, the start and the test of uniqueness factorise too.
-        let factors = if self.reduction.norm.is_some() { 1.0 } else { SINGULAR };
+        let factors = if self.reduction.is_definite { 1.0 } else { SINGULAR };
         let of_loop = factors * seconds::factorisation(analysis);
         let (first, each) = match settings.method {
             Method::Qp(_) => (2.0 * seconds::interior_point(analysis), seconds::interior_point(analysis).max(of_loop)),
@@ -212,22 +212,30 @@ impl Prepared {
         Ok(settings.watch.keeping(each + seconds::certificate(&self.problem)))
     }
 
-    /// The energy norm of the problem that the methods work on.
-    pub(super) fn condensed_norm(&self, problem: &ContactProblem) -> Result<Option<&EnergyNorm>, Error> {
-        let Some(norm) = &self.reduction.norm else { return Ok(None) };
-        if self.condensed_norm.get().is_none() {
-            let of_problem = match &self.reduction.condensation {
-                None => Some(norm.equilibrated()),
-                Some(_) => {
-                    let unscaled = Equilibration::none(problem.dofs());
-                    let factor = self.augmented.factor(&self.augmented.matrix(|_| 0.0, 0.0)).ok();
-                    factor.map(|factor| EnergyNorm::new(factor, unscaled, (0..problem.dofs()).collect()))
-                }
-            };
-            // Another thread may have been faster, with the same result.
-            let _ = self.condensed_norm.set(of_problem);
+    /// The energy norm of the stiffness if it is definite by itself: the one that is kept, or a new one.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] if there is no memory for a new one.
+    pub(super) fn norm(&self) -> Result<Option<EnergyNorm>, Error> {
+        let Reduction { is_definite, norm, scaling, .. } = &self.reduction;
+        if norm.is_some() || !is_definite {
+            return Ok(norm.clone());
         }
-        Ok(self.condensed_norm.get().and_then(Option::as_ref))
+        let factor = self.augmented.factor(self.augmented.matrix(|_| 0.0, 0.0))?;
+        Ok(Some(EnergyNorm::new(factor, scaling.equilibration().clone(), Vec::new())))
+    }
+
+    /// The energy norm of the problem that the methods work on.
+    pub(super) fn condensed_norm(&self, problem: &ContactProblem) -> Result<Option<EnergyNorm>, Error> {
+        if !self.is_condensed() || !self.reduction.is_definite {
+            return Ok(self.norm()?.map(|norm| norm.equilibrated()));
+        }
+        let of_boundary = self.condensed_norm.get_or_init(|| {
+            let unscaled = Equilibration::none(problem.dofs());
+            let factor = self.augmented.factor(self.augmented.matrix(|_| 0.0, 0.0)).ok();
+            factor.map(|factor| EnergyNorm::new(factor, unscaled, (0..problem.dofs()).collect()))
+        });
+        Ok(of_boundary.clone())
     }
 
     /// The energy norm of a displacement of the condensed problem over that of the whole body.
@@ -277,7 +285,7 @@ impl Prepared {
             return Ok(None);
         }
         let task =
-            ScaledProblem::new(&found.problem, &self.augmented, self.reduction.norm.is_some()).watched(&settings.watch);
+            ScaledProblem::new(&found.problem, &self.augmented, self.reduction.is_definite).watched(&settings.watch);
         let outcome = last_resort(&task, found.outcome.clone())
             .map_err(|error| self.expand_error(error, &found.loading.load, &found.gap))?;
         let seconds = Seconds { solve: found.seconds.solve + clock.elapsed().as_secs_f64(), ..found.seconds };
@@ -292,7 +300,7 @@ impl Prepared {
         let method = self.resolved(settings).method;
         let Found { loading, gap, unit, outcome, seconds, refined, .. } = found;
         let finishing = settings.watch.finishing();
-        let norm = self.reduction.norm.as_ref().map(|norm| norm.watched(&finishing));
+        let norm = self.norm_within(&finishing)?;
         let norm = match refined {
             Some(refined) => norm.map(|norm| norm.off_by(refined.contraction)),
             None => norm,
@@ -340,18 +348,26 @@ impl Prepared {
         multiplier: &[f64],
         watch: &Watch,
     ) -> Result<Certificate, Error> {
-        match &self.reduction.norm {
-            Some(norm) => problem.certify_in(Some(&norm.watched(&watch.finishing())), displacement, multiplier),
-            None if !watch.finishing().allows(self.norm_seconds) => problem.certify_in(None, displacement, multiplier),
-            None => problem.certify(displacement, multiplier),
+        let finishing = watch.finishing();
+        match self.norm_within(&finishing)? {
+            None if !self.reduction.is_definite && finishing.allows(self.norm_seconds) => {
+                problem.certify(displacement, multiplier)
+            }
+            norm => problem.certify_in(norm.as_ref(), displacement, multiplier),
         }
+    }
+
+    /// The energy norm of a definite stiffness, whose bounds end when `watch` says so; none without the time to make it.
+    fn norm_within(&self, watch: &Watch) -> Result<Option<EnergyNorm>, Error> {
+        let in_time = self.reduction.norm.is_some() || watch.allows(self.norm_seconds);
+        Ok(if in_time { self.norm()?.map(|norm| norm.watched(watch)) } else { None })
     }
 
     /// Displacement and multiplier with the rows of `closed` held at their gaps.
     pub(in crate::qp) fn with_contact_set(&self, closed: &ContactSet) -> Result<(Vec<f64>, Vec<f64>), Error> {
         let loading = self.own_load();
         let (problem, unit) = self.scaled(&loading, self.problem.gap())?;
-        let task = ScaledProblem::new(&problem, &self.augmented, self.reduction.norm.is_some());
+        let task = ScaledProblem::new(&problem, &self.augmented, self.reduction.is_definite);
         let held = active_set::with_contact_set(&task, &self.reduction.selection.restrict_set(closed))
             .map_err(|error| self.expand_error(error, self.problem.load(), self.problem.gap()))?;
         Ok((self.expand(&loading, unit, &held.displacement), self.expand_multiplier(&held.multiplier, unit)))
@@ -368,7 +384,7 @@ impl Prepared {
 
     /// Is the factor in single precision?
     pub fn is_single(&self) -> bool {
-        self.reduction.norm.is_some() && self.reduction.condensation.as_ref().is_some_and(Condensation::is_single)
+        self.reduction.is_definite && self.reduction.condensation.as_ref().is_some_and(Condensation::is_single)
     }
 
     /// Rows that were left out when the problem was prepared must still be no constraints, and no others.

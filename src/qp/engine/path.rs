@@ -85,7 +85,7 @@ impl Prepared {
     /// stiffness is not definite by itself.
     pub fn path(&self, from: &[f64], to: &[f64], settings: &Settings) -> Result<Path<'_>, Error> {
         let Some(condensed) =
-            self.reduction.condensation.as_ref().filter(|_| self.reduction.norm.is_some() && !self.is_single())
+            self.reduction.condensation.as_ref().filter(|_| self.reduction.is_definite && !self.is_single())
         else {
             return Err(Error::NotCondensed { step: "the exact path" });
         };

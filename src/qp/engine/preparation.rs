@@ -40,7 +40,7 @@ impl Prepared {
         let (has_empty_diagonal, stiffest) = (diagonal.contains(&0.0), largest(&diagonal));
         let factor_clock = Instant::now();
         let layout = Layout::within(problem, &scaling, settings)?;
-        let Layout { analysis, last, is_condensed, multiplications, mut way, is_single: single } = layout;
+        let Layout { analysis, last, is_condensed, multiplications, mut way, is_single: single, keeps_norm } = layout;
         if watch.is_stopped() {
             return Err(Error::Interrupted);
         }
@@ -59,7 +59,8 @@ impl Prepared {
             false => factoring.definite(single, last.len())?,
         };
         let least_pivot = factoring.least_pivot;
-        drop(analysis);
+        // Without columns that come last the contact sets have the order of the stiffness.
+        let analysis = last.is_empty().then_some(analysis);
         if cholesky.is_none() {
             // Without a bound no accuracy can be held: what is exact is left.
             let exact = Settings { accuracy: None, ..settings.clone() };
@@ -69,19 +70,13 @@ impl Prepared {
             true => condensed(cholesky.as_ref(), &scaling, &last, settings)?,
             false => None,
         };
-        let augmented = match &condensation {
-            Some(condensed) => {
-                // Dense: the order is of no matter to the factor, and its last block is all of it.
-                let all: Vec<usize> = (0..condensed.stiffness().dim()).collect();
-                AugmentedMatrix::with_last(condensed.stiffness(), condensed.contact(), &all)?
-            }
-            None => AugmentedMatrix::new(scaling.stiffness(), scaling.contact())?.with_threads(*threads),
-        };
+        let augmented = augmented(condensation.as_ref(), &scaling, analysis)?.with_threads(*threads);
+        let is_definite = cholesky.is_some();
         let norm = cholesky.map(|cholesky| EnergyNorm::new(cholesky, scaling.equilibration().clone(), last));
         let factor = factor_clock.elapsed().as_secs_f64();
-        Ok(Prepared {
+        let mut prepared = Prepared {
             problem: problem.clone(),
-            reduction: Reduction { selection, scaling, stiffest, norm, condensation },
+            reduction: Reduction { selection, scaling, stiffest, is_definite, norm, condensation },
             lost_pivot: least_pivot.filter(|&pivot| pivot < LOST_PIVOT),
             augmented,
             way,
@@ -91,7 +86,13 @@ impl Prepared {
             condensed_norm: OnceLock::new(),
             loading: OnceLock::new(),
             seconds: Seconds { factor, solve: clock.elapsed().as_secs_f64() },
-        })
+        };
+        if !keeps_norm {
+            // What the load does alone is found before.
+            prepared.own_load();
+            prepared.reduction.norm = None;
+        }
+        Ok(prepared)
     }
 }
 
@@ -164,6 +165,26 @@ fn condensed(
     Condensation::new(factor, last.to_vec(), scaling.contact(), cholesky.is_none()).map(Some)
 }
 
+/// The matrices of the contact sets on what the methods work on; an `analysis` of the stiffness serves them too.
+///
+/// # Errors
+/// As [`AugmentedMatrix::new`].
+fn augmented(
+    condensation: Option<&Condensation>,
+    scaling: &Scaling,
+    analysis: Option<Analysis>,
+) -> Result<AugmentedMatrix, FactorError> {
+    match (condensation, analysis) {
+        (Some(condensed), _) => {
+            // Dense: the order is of no matter to the factor, and its last block is all of it.
+            let all: Vec<usize> = (0..condensed.stiffness().dim()).collect();
+            AugmentedMatrix::with_last(condensed.stiffness(), condensed.contact(), &all)
+        }
+        (None, Some(analysis)) => AugmentedMatrix::with_analysis(scaling.stiffness(), scaling.contact(), analysis),
+        (None, None) => AugmentedMatrix::new(scaling.stiffness(), scaling.contact()),
+    }
+}
+
 /// The factor of `K + B'B` with the contact dofs last, or `None` where it is not safely definite.
 ///
 /// # Errors
@@ -173,7 +194,7 @@ fn factor_with_rows(scaling: &Scaling, contact_dofs: &[usize], settings: &Settin
     let augmented = augmented.with_threads(settings.threads);
     check_time(&settings.watch, seconds::factorisation(augmented.analysis()))?;
     let matrix = augmented.matrix(|_| 1.0, 0.0);
-    match augmented.factor(&matrix) {
+    match augmented.factor(matrix.clone()) {
         Ok(cholesky) if cholesky.is_definite(&matrix) => Ok(Some(cholesky)),
         Ok(_) | Err(FactorError::NotPositiveDefinite) => Ok(None),
         Err(error) => Err(error.into()),

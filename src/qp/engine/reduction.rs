@@ -10,7 +10,9 @@ pub(super) struct Reduction {
     pub scaling: Scaling,
     /// The largest diagonal entry of the stiffness.
     pub stiffest: f64,
-    /// The energy norm, where the stiffness is definite by itself.
+    /// Is the stiffness definite by itself?
+    pub is_definite: bool,
+    /// The energy norm of a definite stiffness; none if memory is too short to keep it.
     pub norm: Option<EnergyNorm>,
     pub condensation: Option<Condensation>,
 }

@@ -47,7 +47,7 @@ impl Prepared {
     /// # Errors
     /// [`Error::Length`] and [`Error::NotFinite`] for a force that does not fit.
     pub(crate) fn response(&self, force: Vec<f64>) -> Result<Option<Vec<f64>>, Error> {
-        let Some(norm) = &self.reduction.norm else { return Ok(None) };
+        let Some(norm) = self.norm()? else { return Ok(None) };
         let loading = self.other_load(force, &vec![0.0; self.problem.rows()])?;
         let moved = match &self.reduction.condensation {
             Some(condensed) => condensed.free_displacement(&loading.sweep),

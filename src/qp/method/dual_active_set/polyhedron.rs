@@ -54,7 +54,7 @@ impl Polyhedron {
         let stiffness = equilibration.apply(of.stiffness());
         let no_rows = SparseMatrix::from_triplets(0, of.dofs(), &[])?;
         let body = AugmentedMatrix::new(&stiffness, &no_rows)?;
-        let factor_with = |weight: f64| match body.factor(&body.matrix(|_| 0.0, weight)) {
+        let factor_with = |weight: f64| match body.factor(body.matrix(|_| 0.0, weight)) {
             Ok(factor) => Ok(Some(factor)),
             Err(FactorError::NotPositiveDefinite) => Ok(None),
             Err(error) => Err(Error::from(error)),
