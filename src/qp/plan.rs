@@ -195,29 +195,33 @@ impl Layout {
     pub fn within(problem: &ContactProblem, scaling: &Scaling, settings: &Settings) -> Result<Self, Error> {
         check_room_to_order(problem, settings)?;
         let contact_dofs = Condensation::contact_dofs(scaling.contact());
-        // What is dense on the boundary alone may be too large to be analysed.
-        let fits = |kept: Kept| check_memory(problem, kept, settings).is_ok();
         let mut refused: Option<Error> = None;
         for number in 0.. {
             check_time(&settings.watch, seconds::ordering(problem))?;
             if settings.watch.is_stopped() {
                 return Err(Error::Interrupted);
             }
-            let analysed = match number {
-                0 if settings.condense == Condense::Never || !fits(Kept::dense(contact_dofs.len())) => None,
-                0 => Condensation::analyse(problem.stiffness(), &contact_dofs)?
-                    .map(|found| (found, contact_dofs.clone())),
+            let (last, dense) = match number {
+                0 if settings.condense == Condense::Never => continue,
+                0 => (contact_dofs.clone(), Kept::dense(contact_dofs.len())),
                 1 => {
                     let last = EnergyNorm::last_dofs(scaling.contact());
-                    match last.is_empty() || !fits(Kept::boundary(last.len())) {
-                        true => None,
-                        false => Some((Analysis::with_last(problem.stiffness(), &last)?, last)),
-                    }
+                    let boundary = Kept::boundary(last.len());
+                    if last.is_empty() { continue } else { (last, boundary) }
                 }
-                2 => Some((Analysis::of(problem.stiffness())?, Vec::new())),
+                2 => (Vec::new(), Kept::Nothing),
                 _ => break,
             };
-            let Some((analysis, last)) = analysed else { continue };
+            // What is dense on the boundary may be too large by itself: the analysis would take memory for nothing.
+            if let Err(error) = check_memory(problem, dense, settings) {
+                refused = Some(least(refused, error));
+                continue;
+            }
+            let analysis = match number {
+                0 => Condensation::analyse(problem.stiffness(), &last)?,
+                _ => Some(Analysis::with_last(problem.stiffness(), &last)?),
+            };
+            let Some(analysis) = analysis else { continue };
             match Self::of(problem, settings, (analysis, last), number == 0) {
                 Err(error @ Error::TooLarge { .. }) => refused = Some(least(refused, error)),
                 decided => return decided,

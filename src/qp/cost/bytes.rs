@@ -17,7 +17,7 @@ const OF_DOF: f64 = 120.0;
 
 /// Bytes of an entry of the stiffness, both triangles: its file or mesh, itself, scaled, ordered, in the graph of the
 /// ordering.
-const OF_ENTRY: f64 = 30.0;
+const OF_ENTRY: f64 = 32.0;
 
 /// Bytes of an unknown, and of an entry of the stiffness, with a hierarchy instead of a factor.
 const OF_HIERARCHY: [f64; 2] = [190.0, 30.0];
