@@ -68,7 +68,7 @@ mod solution;
 pub mod study;
 mod watch;
 
-pub use error::Error;
+pub use error::{Error, Failure};
 pub use qp::linear::{SparseMatrix, SymmetricMatrix};
 pub use qp::problem::ContactProblem;
 pub use qp::{

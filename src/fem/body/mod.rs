@@ -4,7 +4,7 @@ mod point;
 mod region;
 
 pub use point::Symmetric;
-pub(crate) use point::trace;
+pub(crate) use point::{LocalPoint, trace};
 pub use region::Region;
 
 use crate::error::Error;
