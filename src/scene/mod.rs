@@ -44,10 +44,10 @@ pub use model::Model;
 pub use obstacle::*;
 pub use rows::ContactRow;
 pub use schema::{
-    AnalysisSpec, Approach, AxisSpec, DampingSpec, DynamicSpec, ElementSpec, FactorSpec, FactorTableSpec, FieldSpec,
-    ForceSpec, FurtherBodySpec, HalfSpec, InitialSpec, IntegrationSpec, IntervalSpec, LoadInTimeSpec, LoadSpec,
-    MassSpec, MaterialSpec, ModelSpec, ObstacleSpec, PenetrationSpec, Place, PressureSpec, Rule, Scene, SineSpec,
-    SolidElementSpec, SupportSpec, TractionSpec, Units, ZoneSpec,
+    AnalysisSpec, Approach, DampingSpec, DynamicSpec, ElementSpec, FactorSpec, FactorTableSpec, FieldSpec, ForceSpec,
+    FurtherBodySpec, HalfSpec, InitialSpec, IntervalSpec, LoadInTimeSpec, LoadSpec, MassSpec, MaterialSpec, ModelSpec,
+    ObstacleSpec, PenetrationSpec, Place, PressureSpec, Rule, Scene, SineSpec, SolidElementSpec, SupportSpec,
+    TractionSpec, Units,
 };
 pub use size::Size;
 pub use warning::Warning;

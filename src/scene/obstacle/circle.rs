@@ -25,13 +25,11 @@ pub struct CircleSpec {
     pub radius: f64,
 }
 
-impl CircleSpec {
-    pub(super) const ABOUT: About = About { name: "circle", dimensions: &[2] };
-}
+pub(super) const ABOUT: About = About { name: "circle", dimensions: &[2] };
 
 impl ObstacleShape for CircleSpec {
     fn about(&self) -> About {
-        Self::ABOUT
+        ABOUT
     }
 
     fn place(&self, site: &Site) -> Result<Geometry, Error> {

@@ -20,13 +20,11 @@ pub struct ConeSpec {
     pub slope: f64,
 }
 
-impl ConeSpec {
-    pub(super) const ABOUT: About = About { name: "cone", dimensions: &[3] };
-}
+pub(super) const ABOUT: About = About { name: "cone", dimensions: &[3] };
 
 impl ObstacleShape for ConeSpec {
     fn about(&self) -> About {
-        Self::ABOUT
+        ABOUT
     }
 
     fn place(&self, site: &Site) -> Result<Geometry, Error> {

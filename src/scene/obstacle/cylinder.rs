@@ -31,13 +31,11 @@ pub struct CylinderSpec {
     pub radius: f64,
 }
 
-impl CylinderSpec {
-    pub(super) const ABOUT: About = About { name: "cylinder", dimensions: &[3] };
-}
+pub(super) const ABOUT: About = About { name: "cylinder", dimensions: &[3] };
 
 impl ObstacleShape for CylinderSpec {
     fn about(&self) -> About {
-        Self::ABOUT
+        ABOUT
     }
 
     fn place(&self, site: &Site) -> Result<Geometry, Error> {

@@ -25,13 +25,11 @@ pub struct FacingSpec {
     pub boundary: String,
 }
 
-impl FacingSpec {
-    pub(super) const ABOUT: About = About { name: "body", dimensions: &[1, 2, 3] };
-}
+pub(super) const ABOUT: About = About { name: "body", dimensions: &[1, 2, 3] };
 
 impl ObstacleShape for FacingSpec {
     fn about(&self) -> About {
-        Self::ABOUT
+        ABOUT
     }
 
     /// Finds the node of the other body across each candidate.

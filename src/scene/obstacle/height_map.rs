@@ -32,13 +32,11 @@ pub struct HeightMapSpec {
     pub heights: Vec<Vec<f64>>,
 }
 
-impl HeightMapSpec {
-    pub(super) const ABOUT: About = About { name: "height-map", dimensions: &[3] };
-}
+pub(super) const ABOUT: About = About { name: "height-map", dimensions: &[3] };
 
 impl ObstacleShape for HeightMapSpec {
     fn about(&self) -> About {
-        Self::ABOUT
+        ABOUT
     }
 
     fn place(&self, site: &Site) -> Result<Geometry, Error> {

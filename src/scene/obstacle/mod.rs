@@ -68,16 +68,16 @@ pub enum ShapeSpec {
 
 /// What all shapes are called, in the order in which messages name them.
 const ALL: [About; 10] = [
-    PlaneSpec::ABOUT,
-    ParabolaSpec::ABOUT,
-    CircleSpec::ABOUT,
-    WedgeSpec::ABOUT,
-    TableSpec::ABOUT,
-    SphereSpec::ABOUT,
-    CylinderSpec::ABOUT,
-    ConeSpec::ABOUT,
-    HeightMapSpec::ABOUT,
-    FacingSpec::ABOUT,
+    plane::ABOUT,
+    parabola::ABOUT,
+    circle::ABOUT,
+    wedge::ABOUT,
+    table::ABOUT,
+    sphere::ABOUT,
+    cylinder::ABOUT,
+    cone::ABOUT,
+    height_map::ABOUT,
+    facing::ABOUT,
 ];
 
 impl ShapeSpec {

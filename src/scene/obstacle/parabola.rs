@@ -24,13 +24,11 @@ pub struct ParabolaSpec {
     pub radius: f64,
 }
 
-impl ParabolaSpec {
-    pub(super) const ABOUT: About = About { name: "parabola", dimensions: &[2] };
-}
+pub(super) const ABOUT: About = About { name: "parabola", dimensions: &[2] };
 
 impl ObstacleShape for ParabolaSpec {
     fn about(&self) -> About {
-        Self::ABOUT
+        ABOUT
     }
 
     fn place(&self, site: &Site) -> Result<Geometry, Error> {

@@ -25,9 +25,9 @@ pub struct PlaneSpec {
     pub normal: Vec<f64>,
 }
 
-impl PlaneSpec {
-    pub(super) const ABOUT: About = About { name: "plane", dimensions: &[1, 2, 3] };
+pub(super) const ABOUT: About = About { name: "plane", dimensions: &[1, 2, 3] };
 
+impl PlaneSpec {
     /// Its point and its unit normal.
     fn checked(&self, site: &Site) -> Result<([f64; 3], [f64; 3]), Error> {
         let (dimension, approach) = (site.body.dimension(), site.direction());
@@ -54,7 +54,7 @@ impl PlaneSpec {
 
 impl ObstacleShape for PlaneSpec {
     fn about(&self) -> About {
-        Self::ABOUT
+        ABOUT
     }
 
     fn place(&self, site: &Site) -> Result<Geometry, Error> {

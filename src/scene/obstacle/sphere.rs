@@ -24,13 +24,11 @@ pub struct SphereSpec {
     pub radius: f64,
 }
 
-impl SphereSpec {
-    pub(super) const ABOUT: About = About { name: "sphere", dimensions: &[3] };
-}
+pub(super) const ABOUT: About = About { name: "sphere", dimensions: &[3] };
 
 impl ObstacleShape for SphereSpec {
     fn about(&self) -> About {
-        Self::ABOUT
+        ABOUT
     }
 
     fn place(&self, site: &Site) -> Result<Geometry, Error> {

@@ -22,9 +22,9 @@ pub struct TableSpec {
     pub points: Vec<[f64; 2]>,
 }
 
-impl TableSpec {
-    pub(super) const ABOUT: About = About { name: "table", dimensions: &[2] };
+pub(super) const ABOUT: About = About { name: "table", dimensions: &[2] };
 
+impl TableSpec {
     fn polyline(&self, site: &Site) -> Result<Polyline, Error> {
         let (frame, path) = (Frame::of(site.approach), site.field("points"));
         let axis = ["x", "y"][frame.along_axis()];
@@ -48,7 +48,7 @@ impl TableSpec {
 
 impl ObstacleShape for TableSpec {
     fn about(&self) -> About {
-        Self::ABOUT
+        ABOUT
     }
 
     fn place(&self, site: &Site) -> Result<Geometry, Error> {

@@ -20,13 +20,11 @@ pub struct WedgeSpec {
     pub slope: f64,
 }
 
-impl WedgeSpec {
-    pub(super) const ABOUT: About = About { name: "wedge", dimensions: &[2] };
-}
+pub(super) const ABOUT: About = About { name: "wedge", dimensions: &[2] };
 
 impl ObstacleShape for WedgeSpec {
     fn about(&self) -> About {
-        Self::ABOUT
+        ABOUT
     }
 
     fn place(&self, site: &Site) -> Result<Geometry, Error> {

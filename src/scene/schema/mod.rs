@@ -17,7 +17,7 @@ pub use analysis::{
 };
 pub use approach::{Approach, Rule};
 pub use body::{FurtherBodySpec, MaterialSpec};
-pub use cells::{AxisSpec, ElementSpec, HalfSpec, IntegrationSpec, SolidElementSpec, ZoneSpec};
+pub use cells::{ElementSpec, HalfSpec, SolidElementSpec};
 pub use condition::{ForceSpec, LoadSpec, Place, PressureSpec, SupportSpec, TractionSpec};
 pub use model::ModelSpec;
 pub use obstacle::ObstacleSpec;
