@@ -42,9 +42,12 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
     let mut settings = settings(options.method.method(), &options.common, &watch.keeping(report_seconds));
     settings.prove = true;
     settings.accuracy = options.accuracy;
-    (settings.precision, settings.extrapolate) = (options.precision.precision(), options.extrapolate);
+    settings.precision = options.precision.precision();
+    if let Method::Penalty(ladder) = &mut settings.method {
+        ladder.extrapolate = options.extrapolate;
+    }
     let solution = best_of(&input, &settings)?;
-    if options.extrapolate && !solution.method.starts_with("penalty") {
+    if options.extrapolate && !matches!(settings.method, Method::Penalty(_)) {
         let method = &solution.method;
         warn(&format!(
             "warning: --extrapolate changes nothing: the method is {method}; it goes with --method penalty\n"

@@ -56,7 +56,7 @@ impl Integrator {
         if settings.method == Method::Auto {
             settings.method = Method::ActiveSet;
         }
-        if settings.method == Method::Penalty {
+        if matches!(settings.method, Method::Penalty(_)) {
             // Its answers are never exact; whoever chooses it takes them as they are.
             settings.tolerance = f64::MAX;
         }

@@ -22,7 +22,7 @@ pub struct MotionSeconds {
 /// motion was cut short.
 pub fn motion_is_certified(dynamics: &Dynamics, method: Method, summary: &MotionSummary) -> bool {
     let is_whole = summary.steps >= dynamics.steps;
-    is_whole && !dynamics.scheme.penetrates() && method != Method::Penalty
+    is_whole && !dynamics.scheme.penetrates() && !matches!(method, Method::Penalty(_))
 }
 
 /// The report of a run, in lines of at most 100 characters.

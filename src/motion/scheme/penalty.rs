@@ -2,7 +2,7 @@
 
 use super::newmark::{MASSES, Newmark};
 use crate::motion::step::{About, Parameter};
-use crate::qp::Method;
+use crate::qp::{Method, Penalty};
 
 pub(super) static ABOUT: About = About {
     name: "penalty",
@@ -18,8 +18,8 @@ pub(super) static ABOUT: About = About {
     is_explicit: false,
     prepare: |problem, step, penalty, settings| {
         let mut springs = settings.clone();
-        springs.method = Method::Penalty;
-        (springs.first_penalty, springs.last_penalty, springs.penetration_threshold) = (penalty, penalty, 0.0);
+        let one = Penalty { first: penalty, last: penalty, penetration_threshold: 0.0, ..Penalty::default() };
+        springs.method = Method::Penalty(one);
         // Springs give; no certificate of rigid contact can be asked of them.
         springs.tolerance = f64::MAX;
         Ok(Box::new(Newmark::new(problem, step, 0.0, &springs, settings)?))

@@ -10,8 +10,9 @@
 use std::cell::OnceCell;
 
 use super::super::energy_norm::Boundary;
-use super::{Answer, ContactProblem, EnergyNorm, ErrorBound};
+use super::{Answer, EnergyNorm, ErrorBound};
 use crate::qp::linear::{dot, exponent, ldexp};
+use crate::qp::problem::ContactProblem;
 
 /// Times that the rows which look closed are corrected; from then on rows are only added.
 const EXCHANGES: usize = 10;

@@ -1,7 +1,8 @@
 //! The bound where the contact boundary is not known: rows are repaired one by one, each by its own dofs.
 
-use super::{Answer, ContactProblem, EnergyNorm, ErrorBound};
+use super::{Answer, EnergyNorm, ErrorBound};
 use crate::qp::linear::{SparseMatrix, dot};
+use crate::qp::problem::ContactProblem;
 
 /// Rounding a sum leaves about this much of its terms.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;

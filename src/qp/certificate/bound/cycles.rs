@@ -1,6 +1,6 @@
 //! The bound on the energy norm of an answer's error where K has a hierarchy and no factor.
 //!
-//! As in `energy_bound`, for a feasible v and multipliers mu <= 0 that push only where v touches,
+//! As in the bound with a factor, for a feasible v and multipliers mu <= 0 that push only where v touches,
 //!
 //! ```text
 //! |u - u*|_K <= |u - v|_K + |f + B' mu - K v|_{K^-1}
@@ -9,9 +9,9 @@
 //! v is the answer with each row that touches or penetrates moved to its gap along itself; for an answer of MPRGP, whose rows
 //! are bounds that it keeps, that is rounding. The dual norm comes from the cycles of the hierarchy.
 
-use super::ContactProblem;
-use super::energy_bound::{Answer, ErrorBound};
+use super::{Answer, ErrorBound};
 use crate::qp::linear::multigrid::{Multigrid, dual_norm_within};
+use crate::qp::problem::ContactProblem;
 use crate::watch::Watch;
 
 /// All that is computed of a bound may be rounded by this much.
@@ -21,7 +21,12 @@ impl ContactProblem {
     /// An upper bound on `|u - u*|_K`, as far as [`dual_norm_within`] finds the least eigenvalue; infinite where it finds none. A
     /// stiffness that the hierarchy has found singular gets springs on the rows that press. Infinite too where `watch` is over
     /// before that.
-    pub(super) fn energy_error_bound_by(&self, multigrid: &Multigrid, answer: &Answer, watch: &Watch) -> ErrorBound {
+    pub(in super::super) fn energy_error_bound_by(
+        &self,
+        multigrid: &Multigrid,
+        answer: &Answer,
+        watch: &Watch,
+    ) -> ErrorBound {
         let mut residual = answer.residual.clone();
         if answer.multiplier.iter().any(|&lambda| lambda > 0.0) {
             let pulled: Vec<f64> = answer.multiplier.iter().map(|lambda| lambda.max(0.0)).collect();

@@ -1,7 +1,6 @@
 //! The scales of an answer: what is large and what is small for each part, each dof and each row by itself.
 
-use super::ContactProblem;
-use super::parts::Parts;
+use crate::qp::problem::{ContactProblem, Parts};
 
 /// A part whose energy norm is below this share of what its forces could do to a single dof is at rest but for rounding.
 const AT_REST: f64 = 1e-6;

@@ -19,12 +19,13 @@
 //! which gives `|v - u*|_K <= a` as long as a is below every `|mu_i| / sqrt(D_i)`; [`Springs::hold`] asks for half of that.
 
 mod boundary;
+mod cycles;
 mod row_by_row;
 
-use super::parts::Parts;
+use super::EnergyNorm;
 use super::springs::Springs;
-use super::{ContactProblem, EnergyNorm};
 use crate::error::Error;
+use crate::qp::problem::{ContactProblem, Parts};
 
 /// An answer (u, lambda) and what its certificate has computed of it.
 pub(super) struct Answer<'a> {

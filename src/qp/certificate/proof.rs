@@ -7,10 +7,11 @@
 //!   From `B_C' (lambda - lambda*)_C = r + K (u - u*)`: `|lambda_i - lambda*_i| <= |w|_K (|r|_{K^-1} + E)`. A row whose
 //!   force is larger is closed in the exact answer too. The cheapest such motion has `|w|_K^2 = (G_CC^-1)_ii`.
 
-use super::energy_bound::Answer;
-use super::{ContactProblem, EnergyNorm};
+use super::EnergyNorm;
+use super::bound::Answer;
 use crate::error::Error;
 use crate::qp::linear::{Dependence, SparseMatrix, dot, inverse_lengths, ldexp};
+use crate::qp::problem::ContactProblem;
 use crate::solution::{ContactSet, ProvenSet};
 
 /// Multiplications that the compliance of the rows in question may cost; beyond, one dof of each row is moved alone.

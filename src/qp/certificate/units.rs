@@ -1,8 +1,9 @@
 //! Data at the ends of double precision in other units: powers of two, so that nothing but the range changes.
 
-use super::{ContactProblem, EnergyNorm};
+use super::EnergyNorm;
 use crate::error::Error;
 use crate::qp::linear::{SymmetricMatrix, exponent, largest, ldexp};
+use crate::qp::problem::ContactProblem;
 
 /// Forces and energies beyond 2 to plus or minus this power are near the ends of double precision.
 const FAR: i32 = 800;

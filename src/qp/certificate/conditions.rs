@@ -1,12 +1,12 @@
 //! The certificate: every condition of the solution recomputed from the original problem.
 
-use super::energy_bound::{Answer, ErrorBound};
-use super::parts::Parts;
+use super::EnergyNorm;
+use super::bound::{Answer, ErrorBound};
 use super::scales::{Forces, Scales, larger, relative};
-use super::{ContactProblem, EnergyNorm};
 use crate::error::Error;
 use crate::qp::linear::Accumulator;
 use crate::qp::linear::multigrid::Multigrid;
+use crate::qp::problem::ContactProblem;
 use crate::solution::Certificate;
 use crate::watch::Watch;
 
@@ -217,11 +217,6 @@ impl ContactProblem {
             }
         }
         sums
-    }
-
-    /// The parts, found when they are first asked for.
-    pub(super) fn parts(&self) -> &Parts {
-        self.parts.get_or_find(|| Parts::of(&self.stiffness, self.diagonal(), &self.contact, &self.gap))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Rows that contradict each other: the certificate of an infeasible problem, recomputed from the problem itself.
 
-use super::ContactProblem;
 use crate::qp::linear::{Accumulator, largest};
+use crate::qp::problem::ContactProblem;
 
 /// Rows must overlap by this share of their weighted gaps, beyond the rounding of the gaps themselves.
 const OVERLAP: f64 = 4.0 * f64::EPSILON;

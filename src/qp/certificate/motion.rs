@@ -1,8 +1,8 @@
 //! What is said of a problem that has no unique answer, rechecked in the problem itself with twice the working precision.
 
-use super::ContactProblem;
 use crate::error::Error;
 use crate::qp::linear::{Accumulator, largest};
+use crate::qp::problem::ContactProblem;
 
 /// A sum vanishes where its terms cancel to this share of their sizes: the direction is given in doubles, which leave 1e-16 of
 /// each term, and was found by a factorisation, which leaves some digits more.
