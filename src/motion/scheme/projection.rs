@@ -1,10 +1,9 @@
 //! Contact problems with the mass for a matrix: initial accelerations, projected predictions, impulses.
 
-use super::DynamicProblem;
-use super::step::{Found, Stepping};
 use crate::error::Error;
+use crate::motion::DynamicProblem;
+use crate::motion::step::{Found, Stepping};
 use crate::qp::Settings;
-use crate::qp::problem::ContactProblem;
 use crate::solution::ContactSet;
 
 /// The mass of a motion, prepared with its contact rows.
@@ -15,11 +14,7 @@ pub(super) struct MassProjection {
 
 impl MassProjection {
     pub fn new(problem: &DynamicProblem, settings: &Settings) -> Result<Self, Error> {
-        let contact = problem.contact();
-        let mass = problem.mass().clone();
-        let of_mass =
-            ContactProblem::new(mass, vec![0.0; contact.dofs()], contact.contact().clone(), contact.gap().to_vec())?;
-        Ok(MassProjection { stepping: Stepping::new(&of_mass, settings)? })
+        Ok(MassProjection { stepping: Stepping::of(problem, problem.mass().clone(), settings)? })
     }
 
     /// The x with `M x = force + B' lambda` and `B x <= bound`.

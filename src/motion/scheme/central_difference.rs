@@ -14,26 +14,40 @@
 
 use super::projection::MassProjection;
 use super::stable_step::check_step;
-use super::step::{Advance, plus};
-use super::{DynamicProblem, State};
 use crate::error::Error;
-use crate::qp::Settings;
+use crate::fem::assembly::MassForm;
+use crate::motion::step::{About, Advance, Parameter, plus};
+use crate::motion::{DynamicProblem, State};
 use crate::solution::ContactSet;
 
+pub(super) static ABOUT: About = About {
+    name: "central-difference",
+    parameter: Some(Parameter {
+        name: "restitution",
+        default: 0.0,
+        allows: |restitution| (0.0..=1.0).contains(&restitution),
+        range: "from 0 to 1",
+    }),
+    // It divides by the mass.
+    masses: &[MassForm::Lumped],
+    gains_energy: false,
+    penetrates: false,
+    is_explicit: true,
+    prepare: |problem, step, restitution, settings| {
+        check_step(problem, step)?;
+        let mass = MassProjection::new(problem, settings)?;
+        Ok(Box::new(CentralDifference { restitution, mass, diagonal: problem.mass().diagonal() }))
+    },
+};
+
 #[derive(Debug)]
-pub(super) struct CentralDifference {
+struct CentralDifference {
     restitution: f64,
     mass: MassProjection,
     diagonal: Vec<f64>,
 }
 
 impl CentralDifference {
-    pub fn new(problem: &DynamicProblem, step: f64, restitution: f64, settings: &Settings) -> Result<Self, Error> {
-        check_step(problem, step)?;
-        let mass = MassProjection::new(problem, settings)?;
-        Ok(CentralDifference { restitution, mass, diagonal: problem.mass().diagonal() })
-    }
-
     /// The acceleration without contact.
     fn acceleration(&self, problem: &DynamicProblem, t: f64, elastic: &[f64], velocity: &[f64]) -> Vec<f64> {
         let mut force = plus(&problem.load_at(t), -1.0, elastic);
@@ -49,23 +63,23 @@ impl Advance for CentralDifference {
     }
 
     fn advance(&self, problem: &DynamicProblem, step: f64, state: &State) -> Result<State, Error> {
-        let contact = problem.contact();
+        let statics = problem.statics();
         let mut velocity = plus(&state.velocity, step / 2.0, &state.acceleration);
-        let approach = contact.contact().mul(&velocity);
+        let approach = statics.contact().mul(&velocity);
         let room = problem.remaining_gap(&state.displacement);
         let bound = room.iter().zip(&approach).map(|(room, &approach)| {
             let crosses = step * approach > *room && approach > 0.0;
             let allowed = if crosses && self.restitution > 0.0 { -self.restitution * approach } else { room / step };
             allowed - approach
         });
-        let (mut multiplier, mut contact_set) = (vec![0.0; contact.rows()], ContactSet::open(contact.rows()));
+        let (mut multiplier, mut contact_set) = (vec![0.0; statics.rows()], ContactSet::open(statics.rows()));
         if let Some(blow) = self.mass.smallest(bound.collect(), &state.contact_set)? {
             velocity = plus(&velocity, 1.0, &blow.change);
             multiplier = blow.multiplier.iter().map(|impulse| impulse / step).collect();
             contact_set = blow.contact_set;
         }
         let displacement = plus(&state.displacement, step, &velocity);
-        let elastic = contact.stiffness().mul(&displacement);
+        let elastic = statics.stiffness().mul(&displacement);
         let steps = state.steps + 1;
         let acceleration = self.acceleration(problem, steps as f64 * step, &elastic, &velocity);
         let velocity = plus(&velocity, step / 2.0, &acceleration);

@@ -1,20 +1,22 @@
 //! The bodies of a scene: mesh, material, formulation.
 
 use super::Warning;
+use super::body::{BodySpec, Site};
 use super::entry::{located, wrong};
-use super::schema::{BodySpec, IntegrationSpec, MaterialSpec, ModelSpec, Scene};
+use super::schema::{IntegrationSpec, MaterialSpec, ModelSpec, Scene};
 use crate::error::Error;
 use crate::fem::body::{ElasticBody, Integration};
 use crate::fem::formulation::Formulation;
 use crate::fem::material::Material;
+use crate::fem::mesh::Mesh;
 
 /// Above this ratio linear elements are known to lock noticeably; measured, quadratic ones do above the second.
 const LOCKING_POISSON: [f64; 2] = [0.49, 0.499];
 
 /// A body as a scene describes it, and where.
-pub(super) struct DescribedBody<'a> {
-    pub scene: &'a Scene,
-    pub spec: &'a BodySpec,
+struct DescribedBody<'a> {
+    scene: &'a Scene,
+    spec: &'a BodySpec,
     material: &'a MaterialSpec,
     /// What stands before its JSON paths.
     place: String,
@@ -46,27 +48,43 @@ impl Scene {
 
 impl DescribedBody<'_> {
     /// The JSON path of a field of the body.
-    pub(super) fn path(&self, field: &str) -> String {
-        format!("{}body.{}{field}", self.place, self.spec.name())
+    fn path(&self, field: &str) -> String {
+        format!("{}body.{}{field}", self.place, self.spec.shape().about().name)
+    }
+
+    /// The mesh of the shape.
+    fn mesh(&self) -> Result<Mesh, Error> {
+        let site = Site {
+            path: self.path(""),
+            model: self.scene.model,
+            folder: self.scene.folder.as_deref(),
+            reads_outside: self.scene.reads_outside,
+        };
+        self.spec.shape().mesh(&site).map_err(|error| self.at_body(error))
+    }
+
+    /// An error of the mesh at its place in the scene; what has a file and a line of its own stays there.
+    fn at_body(&self, error: Error) -> Error {
+        match error {
+            Error::Mesh { message } => wrong(self.path(""), message),
+            other => located(other, &self.path(".")),
+        }
     }
 
     fn formulation(&self) -> Result<Formulation, Error> {
         let (thickness, model) = (self.scene.thickness, self.scene.model);
-        if self.spec.dimension().is_some_and(|dimension| dimension != model.dimension()) {
-            let fitting =
-                ["bar", "rectangle, disc, half-disc, ring or gmsh", "box, half-ball or gmsh"][model.dimension() - 1];
-            let (body, model) = (self.spec.name(), model.name());
+        let about = self.spec.shape().about();
+        if about.dimension.is_some_and(|dimension| dimension != model.dimension()) {
+            let (body, fitting, model) = (about.name, BodySpec::fitting(model.dimension()), model.name());
             let message = format!("a {body} is no body of the model `{model}`; there it is a {fitting}");
             return Err(wrong(self.path(""), message));
         }
-        let formulation = match (model, self.spec) {
-            (ModelSpec::Bar, BodySpec::Bar(spec)) => Formulation::Bar { area: spec.area },
-            // A mesh file says nothing of the cross-section.
-            (ModelSpec::Bar, _) => Formulation::Bar { area: 1.0 },
-            (ModelSpec::PlaneStrain, _) => Formulation::PlaneStrain { thickness },
-            (ModelSpec::PlaneStress, _) => Formulation::PlaneStress { thickness },
-            (ModelSpec::Axisymmetric, _) => Formulation::Axisymmetric,
-            (ModelSpec::Space, _) => Formulation::Space,
+        let formulation = match model {
+            ModelSpec::Bar => Formulation::Bar { area: self.spec.shape().area() },
+            ModelSpec::PlaneStrain => Formulation::PlaneStrain { thickness },
+            ModelSpec::PlaneStress => Formulation::PlaneStress { thickness },
+            ModelSpec::Axisymmetric => Formulation::Axisymmetric,
+            ModelSpec::Space => Formulation::Space,
         };
         let plane = matches!(formulation, Formulation::PlaneStrain { .. } | Formulation::PlaneStress { .. });
         if !plane && thickness != 1.0 {
@@ -96,7 +114,7 @@ impl DescribedBody<'_> {
             other => self.at_body(other),
         };
         let body = ElasticBody::new(self.mesh()?, material, formulation).map_err(at_body)?;
-        match self.spec.integration() {
+        match self.spec.shape().integration() {
             IntegrationSpec::Standard => Ok(body),
             IntegrationSpec::MeanDilatation => {
                 body.with_integration(Integration::MeanDilatation).map_err(|error| match error {

@@ -1,12 +1,67 @@
 //! The structured rectangle: the product of two graded axes.
 
-use super::{Boundary, ElementKind, Mesh, check_lines, fail};
-use crate::error::Error;
+use std::path::Path;
 
-/// No node stands here: the middle of a Q8 cell.
+use serde::{Deserialize, Serialize};
+
+use super::shape::{About, Block, BodyShape, Site};
+use crate::error::Error;
+use crate::fem::mesh::lattice::half_steps;
+use crate::fem::mesh::{Boundary, ElementKind, Mesh, check_lines, fail};
+use crate::scene::schema::json::{object, word};
+use crate::scene::schema::{AxisSpec, ElementSpec, IntegrationSpec};
+
+/// No node stands here: the middle of a quadratic quadrilateral.
 const NO_NODE: usize = usize::MAX;
 
-/// The mesh of the lines `x` and `y` (coordinates, strictly increasing, at least two each), of T3, T6, Q4 or Q8.
+/// A rectangle: the product of two divided axes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct RectangleSpec {
+    /// The axis along x.
+    #[serde(deserialize_with = "object")]
+    pub x: AxisSpec,
+    /// The axis along y.
+    #[serde(deserialize_with = "object")]
+    pub y: AxisSpec,
+    /// The element.
+    #[serde(default, deserialize_with = "word")]
+    pub element: ElementSpec,
+    /// How its stiffness is integrated.
+    #[serde(default, deserialize_with = "word")]
+    pub integration: IntegrationSpec,
+}
+
+impl RectangleSpec {
+    pub(super) const ABOUT: About = About { name: "rectangle", dimension: Some(2) };
+}
+
+impl BodyShape for RectangleSpec {
+    fn about(&self) -> About {
+        Self::ABOUT
+    }
+
+    fn integration(&self) -> IntegrationSpec {
+        self.integration
+    }
+
+    fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
+        site.check_product(&[&self.x, &self.y])?;
+        rectangle(&site.lines(&self.x, "x")?, &site.lines(&self.y, "y")?, self.element.kind())
+    }
+
+    fn block(&self, _: Option<&Path>) -> Block {
+        Block::product(&[&self.x, &self.y], self.element.kind())
+    }
+
+    fn refine(&mut self, times: usize) -> Result<(), Error> {
+        [&mut self.x, &mut self.y].into_iter().for_each(|axis| axis.refine(times));
+        Ok(())
+    }
+}
+
+/// The mesh of the lines `x` and `y` (coordinates, strictly increasing, at least two each), of a plane element.
 ///
 /// Nodes are numbered along x first; those of quadratic elements stand at mid-sides. Triangles come from cutting each
 /// cell from its lower left to its upper right corner. The boundaries are `left`, `right`, `bottom` and `top`, their
@@ -22,13 +77,15 @@ pub fn rectangle(x: &[f64], y: &[f64], kind: ElementKind) -> Result<Mesh, Error>
     let step = if kind.is_quadratic() { 2 } else { 1 };
     check_lines(&[("x", x), ("y", y)], step)?;
     let (columns, rows) = (x.len() - 1, y.len() - 1);
-    let (fine_x, fine_y) = (with_midpoints(x, step), with_midpoints(y, step));
-    // The grid of lines and mid-lines; the middles of Q8 cells are left out.
+    let fine = |lines: &[f64]| if step == 2 { half_steps(lines) } else { lines.to_vec() };
+    let (fine_x, fine_y) = (fine(x), fine(y));
+    // The grid of lines and mid-lines; a quadratic quadrilateral has no node in its middle.
+    let hollow = step == 2 && kind.corners() == 4;
     let mut number = vec![NO_NODE; fine_x.len() * fine_y.len()];
     let mut nodes = Vec::with_capacity(number.len());
     for (j, &y) in fine_y.iter().enumerate() {
         for (i, &x) in fine_x.iter().enumerate() {
-            if kind != ElementKind::Q8 || i % 2 == 0 || j % 2 == 0 {
+            if !hollow || i % 2 == 0 || j % 2 == 0 {
                 number[j * fine_x.len() + i] = nodes.len();
                 nodes.push([x, y, 0.0]);
             }
@@ -70,17 +127,4 @@ pub fn rectangle(x: &[f64], y: &[f64], kind: ElementKind) -> Result<Mesh, Error>
         side("top", columns, &|i| node(i, last_y)),
     ];
     Mesh::new(nodes, kind, connectivity, boundaries)
-}
-
-/// The lines, and half way between each two of them where `step` is 2.
-fn with_midpoints(lines: &[f64], step: usize) -> Vec<f64> {
-    let mut fine = Vec::with_capacity(lines.len() * step);
-    for (index, &line) in lines.iter().enumerate() {
-        if step == 2 && index > 0 {
-            let before = lines[index - 1];
-            fine.push(before + (line - before) / 2.0);
-        }
-        fine.push(line);
-    }
-    fine
 }

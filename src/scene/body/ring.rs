@@ -1,11 +1,69 @@
 //! The structured ring, or a sector of it: the product of a radial axis and an angle.
 
-use super::lattice::{Lattice, half_steps};
-use super::{ElementKind, Mesh, check_lines, fail};
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::shape::{About, Block, BodyShape, Site};
 use crate::error::Error;
+use crate::fem::mesh::lattice::{Lattice, half_steps};
+use crate::fem::mesh::{ElementKind, Mesh, check_lines, fail};
+use crate::scene::schema::json::{object, word};
+use crate::scene::schema::{AxisSpec, ElementSpec, IntegrationSpec};
+
+/// A ring or a sector of it: the product of a radial axis and an angle.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct RingSpec {
+    /// The centre [x, y].
+    #[serde(default)]
+    pub centre: [f64; 2],
+    /// The radial axis, from the inner to the outer radius.
+    #[serde(deserialize_with = "object")]
+    pub radius: AxisSpec,
+    /// The angle in degrees, counterclockwise from x; the ring closes where it spans 360.
+    #[serde(deserialize_with = "object")]
+    pub angle: AxisSpec,
+    /// The element.
+    #[serde(default, deserialize_with = "word")]
+    pub element: ElementSpec,
+    /// How its stiffness is integrated.
+    #[serde(default, deserialize_with = "word")]
+    pub integration: IntegrationSpec,
+}
+
+impl RingSpec {
+    pub(super) const ABOUT: About = About { name: "ring", dimension: Some(2) };
+}
+
+impl BodyShape for RingSpec {
+    fn about(&self) -> About {
+        Self::ABOUT
+    }
+
+    fn integration(&self) -> IntegrationSpec {
+        self.integration
+    }
+
+    fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
+        site.check_product(&[&self.radius, &self.angle])?;
+        ring(self.centre, &site.lines(&self.radius, "radius")?, &site.lines(&self.angle, "angle")?, self.element.kind())
+    }
+
+    fn block(&self, _: Option<&Path>) -> Block {
+        // An angle is no length.
+        Block { lengths: Vec::new(), ..Block::product(&[&self.radius, &self.angle], self.element.kind()) }
+    }
+
+    fn refine(&mut self, times: usize) -> Result<(), Error> {
+        [&mut self.radius, &mut self.angle].into_iter().for_each(|axis| axis.refine(times));
+        Ok(())
+    }
+}
 
 /// The mesh of the circles of radius `radii` and the rays at `angles` (degrees, counterclockwise from x) about
-/// `centre`: T3, T6, Q4 or Q8, the mid-sides on the circles.
+/// `centre`, of a plane element, the mid-sides on the circles.
 ///
 /// The boundaries are `inner` and `outer`, and where the ring does not close `start` (first angle) and `end` (last
 /// angle). It closes where the angles span 360 degrees.
@@ -47,18 +105,13 @@ pub fn ring(centre: [f64; 2], radii: &[f64], angles: &[f64], kind: ElementKind) 
         let (sine, cosine) = sine_cosine(angles[angle]);
         [centre[0] + radii[layer] * cosine, centre[1] + radii[layer] * sine, 0.0]
     };
-    let mut mesh = Mesh::new(lattice.keys().iter().map(place).collect(), kind, connectivity, Vec::new())?;
+    let mesh = Mesh::new(lattice.keys().iter().map(place).collect(), kind, connectivity, Vec::new())?;
     let keys = lattice.keys();
-    let mut boundaries = vec![
-        mesh.boundary_where("inner", |node| keys[node][0] == 0),
-        mesh.boundary_where("outer", |node| keys[node][0] == 2 * layers),
-    ];
-    if !is_closed {
-        boundaries.push(mesh.boundary_where("start", |node| keys[node][1] == 0));
-        boundaries.push(mesh.boundary_where("end", |node| keys[node][1] == 2 * sectors));
-    }
-    mesh.boundaries = boundaries.into_iter().flatten().collect();
-    Ok(mesh)
+    let (inner, outer) = (|node: usize| keys[node][0] == 0, |node: usize| keys[node][0] == 2 * layers);
+    let (start, end) = (|node: usize| keys[node][1] == 0, |node: usize| keys[node][1] == 2 * sectors);
+    let sides: [(&str, &dyn Fn(usize) -> bool); 4] =
+        [("inner", &inner), ("outer", &outer), ("start", &start), ("end", &end)];
+    Ok(mesh.with_sides(if is_closed { &sides[..2] } else { &sides }))
 }
 
 /// Sine and cosine of an angle in degrees, exact at multiples of 90.

@@ -1,4 +1,4 @@
-//! Newmark's family with the constraint at the end of the step: trapezoidal rule, HHT-alpha, penalty springs.
+//! Newmark's family with the constraint at the end of the step.
 //!
 //! ```text
 //! u^ = u + dt v + dt^2 (1/2 - beta) a,   v^ = v + dt (1 - gamma) a,   u+ = u^ + w,   a+ = w/(beta dt^2),   v+ = v^ + dt gamma a+
@@ -10,12 +10,14 @@
 //! structural dynamics*, Earthq. Eng. Struct. Dyn. 5 (1977) 283-292.
 
 use super::projection::MassProjection;
-use super::step::{Advance, Stepping, plus};
-use super::{DynamicProblem, State};
 use crate::error::Error;
-use crate::qp::Penalty;
-use crate::qp::problem::ContactProblem;
-use crate::qp::{Method, Settings};
+use crate::fem::assembly::MassForm;
+use crate::motion::step::{Advance, Stepping, plus};
+use crate::motion::{DynamicProblem, State};
+use crate::qp::Settings;
+
+/// The forms of the mass that the family can use.
+pub(super) const MASSES: &[MassForm] = &[MassForm::Consistent, MassForm::Lumped];
 
 #[derive(Debug)]
 pub(super) struct Newmark {
@@ -27,28 +29,21 @@ pub(super) struct Newmark {
 }
 
 impl Newmark {
-    /// HHT-alpha; the trapezoidal rule where `alpha` is 0.
-    pub fn new(problem: &DynamicProblem, step: f64, alpha: f64, settings: &Settings) -> Result<Self, Error> {
+    /// The rule of the parameter alpha; the contact problems with the mass are solved with `rigid`, those of the steps
+    /// with `settings`.
+    pub fn new(
+        problem: &DynamicProblem,
+        step: f64,
+        alpha: f64,
+        settings: &Settings,
+        rigid: &Settings,
+    ) -> Result<Self, Error> {
         let (beta, gamma) = ((1.0 - alpha).powi(2) / 4.0, 0.5 - alpha);
         let inertia = 1.0 / (beta * step * step);
         let weight = 1.0 + alpha;
         let matrix = problem.combination(inertia, weight * gamma / (beta * step), weight)?;
-        let contact = problem.contact();
-        let effective =
-            ContactProblem::new(matrix, vec![0.0; contact.dofs()], contact.contact().clone(), contact.gap().to_vec())?;
-        let stepping = Stepping::new(&effective, settings)?;
-        Ok(Newmark { alpha, beta, gamma, stepping, mass: MassProjection::new(problem, settings)? })
-    }
-
-    /// The trapezoidal rule with springs of `penalty` times the local stiffness in place of closed rows.
-    pub fn with_penalty(problem: &DynamicProblem, step: f64, penalty: f64, settings: &Settings) -> Result<Self, Error> {
-        let mut springs = settings.clone();
-        let one = Penalty { first: penalty, last: penalty, penetration_threshold: 0.0, ..Penalty::default() };
-        springs.method = Method::Penalty(one);
-        // Springs give; no certificate of rigid contact can be asked of them.
-        springs.tolerance = f64::MAX;
-        let newmark = Self::new(problem, step, 0.0, &springs)?;
-        Ok(Newmark { mass: MassProjection::new(problem, settings)?, ..newmark })
+        let stepping = Stepping::of(problem, matrix, settings)?;
+        Ok(Newmark { alpha, beta, gamma, stepping, mass: MassProjection::new(problem, rigid)? })
     }
 }
 
@@ -70,7 +65,7 @@ impl Advance for Newmark {
         let coasting = plus(&state.displacement, step, &state.velocity);
         let predicted = plus(&coasting, step * step * (0.5 - beta), &state.acceleration);
         let predicted_velocity = plus(&state.velocity, step * (1.0 - gamma), &state.acceleration);
-        let stiffness = problem.contact().stiffness();
+        let stiffness = problem.statics().stiffness();
         let mut force = plus(&problem.load_at(time(state.steps + 1)), -1.0, &stiffness.mul(&predicted));
         problem.damp(1.0, &predicted_velocity, &mut force);
         if alpha != 0.0 {

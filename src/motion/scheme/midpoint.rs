@@ -17,9 +17,10 @@
 //! O. Gonzalez, *Exact energy and momentum conserving algorithms for general models in nonlinear elasticity*, Comput.
 //! Methods Appl. Mech. Eng. 190 (2000) 1763-1783: midpoint forces corrected so that their work is the change of energy.
 
-use super::step::{Advance, Found, Stepping, plus};
-use super::{DynamicProblem, State};
 use crate::error::Error;
+use crate::fem::assembly::MassForm;
+use crate::motion::step::{About, Advance, Found, Stepping, plus};
+use crate::motion::{DynamicProblem, State};
 use crate::qp::Settings;
 use crate::qp::linear::{SparseMatrix, SymmetricMatrix, dot, largest};
 use crate::qp::problem::ContactProblem;
@@ -37,8 +38,24 @@ const ROUNDING: f64 = 1e-9;
 /// Shares of the correction that are tried.
 const TRIALS: usize = 8;
 
+pub(super) static ABOUT: About = About {
+    name: "midpoint",
+    parameter: None,
+    masses: &[MassForm::Redistributed, MassForm::Consistent, MassForm::Lumped],
+    gains_energy: false,
+    penetrates: false,
+    is_explicit: false,
+    prepare: |problem, step, _, settings| {
+        let matrix = problem.combination(4.0 / (step * step), 2.0 / step, 1.0)?;
+        let stepping = Stepping::of(problem, matrix, settings)?;
+        let dofs = problem.massless();
+        let massless = if dofs.is_empty() { None } else { Some(Massless::new(problem, dofs, step, settings)?) };
+        Ok(Box::new(Midpoint { stepping, massless }))
+    },
+};
+
 #[derive(Debug)]
-pub(super) struct Midpoint {
+struct Midpoint {
     stepping: Stepping,
     massless: Option<Massless>,
 }
@@ -54,27 +71,15 @@ struct Massless {
     stepping: Stepping,
 }
 
-impl Midpoint {
-    pub fn new(problem: &DynamicProblem, step: f64, settings: &Settings) -> Result<Self, Error> {
-        let matrix = problem.combination(4.0 / (step * step), 2.0 / step, 1.0)?;
-        let contact = problem.contact();
-        let effective =
-            ContactProblem::new(matrix, vec![0.0; contact.dofs()], contact.contact().clone(), contact.gap().to_vec())?;
-        let dofs = problem.massless();
-        let massless = if dofs.is_empty() { None } else { Some(Massless::new(problem, dofs, step, settings)?) };
-        Ok(Midpoint { stepping: Stepping::new(&effective, settings)?, massless })
-    }
-}
-
 impl Massless {
     fn new(problem: &DynamicProblem, dofs: Vec<usize>, step: f64, settings: &Settings) -> Result<Self, Error> {
-        let contact = problem.contact();
-        let mut place = vec![usize::MAX; contact.dofs()];
+        let statics = problem.statics();
+        let mut place = vec![usize::MAX; statics.dofs()];
         dofs.iter().enumerate().for_each(|(number, &dof)| place[dof] = number);
         // Viscous forces of these dofs by their mean velocity over a step.
         let [_, viscous] = problem.damping();
         let (mut inside, mut columns) = (Vec::new(), Vec::new());
-        for (row, column, value) in contact.stiffness().lower().triplets() {
+        for (row, column, value) in statics.stiffness().lower().triplets() {
             let (i, j) = (place[row], place[column]);
             if i != usize::MAX && j != usize::MAX {
                 inside.push((i.max(j), i.min(j), value * (1.0 + viscous / step)));
@@ -86,19 +91,19 @@ impl Massless {
                 columns.push((column, i, value));
             }
         }
-        let mut rows = vec![false; contact.rows()];
+        let mut rows = vec![false; statics.rows()];
         let mut entries = Vec::new();
-        for (row, dof, value) in contact.contact().triplets().filter(|entry| place[entry.1] != usize::MAX) {
+        for (row, dof, value) in statics.contact().triplets().filter(|entry| place[entry.1] != usize::MAX) {
             rows[row] = true;
             entries.push((row, place[dof], value));
         }
-        let rows: Vec<usize> = (0..contact.rows()).filter(|&row| rows[row]).collect();
+        let rows: Vec<usize> = (0..statics.rows()).filter(|&row| rows[row]).collect();
         let count = dofs.len();
         let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(count, count, &inside)?)?;
-        let of_rows = SparseMatrix::from_triplets(contact.rows(), count, &entries)?.select_rows(&rows);
-        let gap = rows.iter().map(|&row| contact.gap()[row]).collect();
+        let of_rows = SparseMatrix::from_triplets(statics.rows(), count, &entries)?.select_rows(&rows);
+        let gap = rows.iter().map(|&row| statics.gap()[row]).collect();
         let stepping = Stepping::new(&ContactProblem::new(stiffness, vec![0.0; count], of_rows, gap)?, settings)?;
-        let columns = SparseMatrix::from_triplets(contact.dofs(), count, &columns)?;
+        let columns = SparseMatrix::from_triplets(statics.dofs(), count, &columns)?;
         Ok(Massless { dofs, rows, columns, stepping })
     }
 
@@ -168,7 +173,7 @@ impl Midpoint {
             momentum: problem.mass().mul(&velocity),
             velocity,
             acceleration: state.acceleration.clone(),
-            elastic: problem.contact().stiffness().mul(&displacement),
+            elastic: problem.statics().stiffness().mul(&displacement),
             displacement,
             multiplier: found.multiplier.clone(),
             contact_set: found.contact_set.clone(),
@@ -201,7 +206,7 @@ impl Midpoint {
         if first.abs() <= TOLERATED * scale {
             return Ok(None);
         }
-        let contact = problem.contact().contact();
+        let contact = problem.statics().contact();
         let middle = contact.mul_transposed(&found.multiplier);
         let mut correction = vec![0.0; middle.len()];
         for &dof in &massless.dofs {

@@ -1,9 +1,16 @@
 //! The structured box: the product of three graded axes.
 
-use super::{Boundary, ElementKind, Mesh, check_lines, fail};
-use crate::error::Error;
+use std::path::Path;
 
-/// The corners of a cell, in steps along x, y and z, in the order of Hex8.
+use serde::{Deserialize, Serialize};
+
+use super::shape::{About, Block, BodyShape, Site};
+use crate::error::Error;
+use crate::fem::mesh::{Boundary, ElementKind, Mesh, check_lines, fail};
+use crate::scene::schema::json::{object, word};
+use crate::scene::schema::{AxisSpec, IntegrationSpec, SolidElementSpec};
+
+/// The corners of a cell, in steps along x, y and z, in the order of a brick.
 const CORNERS: [[usize; 3]; 8] =
     [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
 
@@ -23,9 +30,60 @@ const SIDES: [(&str, usize, bool, [usize; 4]); 6] = [
     ("top", 2, true, [4, 5, 6, 7]),
 ];
 
-/// The mesh of the lines `x`, `y`, `z` (coordinates, strictly increasing, at least two each), of Hex8 or Tet4.
+/// A box: the product of three divided axes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct BoxSpec {
+    /// The axis along x.
+    #[serde(deserialize_with = "object")]
+    pub x: AxisSpec,
+    /// The axis along y.
+    #[serde(deserialize_with = "object")]
+    pub y: AxisSpec,
+    /// The axis along z.
+    #[serde(deserialize_with = "object")]
+    pub z: AxisSpec,
+    /// The element.
+    #[serde(default, deserialize_with = "word")]
+    pub element: SolidElementSpec,
+    /// How its stiffness is integrated.
+    #[serde(default, deserialize_with = "word")]
+    pub integration: IntegrationSpec,
+}
+
+impl BoxSpec {
+    pub(super) const ABOUT: About = About { name: "box", dimension: Some(3) };
+}
+
+impl BodyShape for BoxSpec {
+    fn about(&self) -> About {
+        Self::ABOUT
+    }
+
+    fn integration(&self) -> IntegrationSpec {
+        self.integration
+    }
+
+    fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
+        site.check_product(&[&self.x, &self.y, &self.z])?;
+        cuboid(&site.lines(&self.x, "x")?, &site.lines(&self.y, "y")?, &site.lines(&self.z, "z")?, self.element.kind())
+    }
+
+    fn block(&self, _: Option<&Path>) -> Block {
+        Block::product(&[&self.x, &self.y, &self.z], self.element.kind())
+    }
+
+    fn refine(&mut self, times: usize) -> Result<(), Error> {
+        [&mut self.x, &mut self.y, &mut self.z].into_iter().for_each(|axis| axis.refine(times));
+        Ok(())
+    }
+}
+
+/// The mesh of the lines `x`, `y`, `z` (coordinates, strictly increasing, at least two each),
+/// of an element in space.
 ///
-/// Nodes are numbered along x first, then along y. Each cell is one Hex8 or six Tet4. The boundaries are `left`,
+/// Nodes are numbered along x first, then along y. Each cell is one brick or six tetrahedra. The boundaries are `left`,
 /// `right` (along x), `front`, `back` (along y), `bottom` and `top` (along z), their facets counterclockwise seen from
 /// outside.
 ///
@@ -47,10 +105,10 @@ pub fn cuboid(x: &[f64], y: &[f64], z: &[f64], kind: ElementKind) -> Result<Mesh
         (low[2]..high[2])
             .flat_map(move |k| (low[1]..high[1]).flat_map(move |j| (low[0]..high[0]).map(move |i| [i, j, k])))
     };
-    let of_hex = kind == ElementKind::Hex8;
-    let mut connectivity = Vec::with_capacity(count.iter().product::<usize>() * if of_hex { 8 } else { 24 });
+    let of_bricks = kind.is_product();
+    let mut connectivity = Vec::with_capacity(count.iter().product::<usize>() * if of_bricks { 8 } else { 24 });
     for cell in cells([0; 3], count) {
-        if of_hex {
+        if of_bricks {
             connectivity.extend((0..8).map(|local| corner(cell, local)));
         } else {
             connectivity.extend(TETRAHEDRA.as_flattened().iter().map(|&local| corner(cell, local)));
@@ -66,7 +124,7 @@ pub fn cuboid(x: &[f64], y: &[f64], z: &[f64], kind: ElementKind) -> Result<Mesh
         let mut facets = Vec::new();
         for cell in cells(low, high) {
             let nodes = face.map(|local| corner(cell, local));
-            if of_hex {
+            if of_bricks {
                 facets.extend(nodes);
             } else {
                 // Along the diagonal from the lowest to the highest node of the face.

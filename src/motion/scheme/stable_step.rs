@@ -1,7 +1,7 @@
 //! The largest stable step of central differences.
 
-use super::DynamicProblem;
 use crate::error::Error;
+use crate::motion::DynamicProblem;
 use crate::qp::linear::largest;
 
 /// Steps of the iteration for the largest frequency; each bound is one, later ones are sharper.
@@ -36,7 +36,7 @@ pub fn stable_step(problem: &DynamicProblem) -> Result<f64, Error> {
     let mut x = vec![1.0; diagonal.len()];
     let mut bound = f64::INFINITY;
     for _ in 0..STEPS {
-        let mut product = problem.contact().stiffness().mul_abs(&x);
+        let mut product = problem.statics().stiffness().mul_abs(&x);
         product.iter_mut().zip(&diagonal).for_each(|(p, m)| *p /= m);
         bound = product.iter().zip(&x).fold(0.0, |most: f64, (p, x)| most.max(p / x)).min(bound);
         let size = largest(&product);

@@ -10,28 +10,30 @@
 //! Numer. Methods Eng. 73 (2008) 1274-1290.
 
 use super::projection::MassProjection;
-use super::step::{Advance, Stepping, plus};
-use super::{DynamicProblem, State};
 use crate::error::Error;
-use crate::qp::Settings;
-use crate::qp::problem::ContactProblem;
+use crate::fem::assembly::MassForm;
+use crate::motion::step::{About, Advance, Stepping, plus};
+use crate::motion::{DynamicProblem, State};
 
-#[derive(Debug)]
-pub(super) struct ContactStabilised {
-    stepping: Stepping,
-    mass: MassProjection,
-}
-
-impl ContactStabilised {
-    pub fn new(problem: &DynamicProblem, step: f64, settings: &Settings) -> Result<Self, Error> {
+pub(super) static ABOUT: About = About {
+    name: "contact-stabilised",
+    parameter: None,
+    masses: &[MassForm::Consistent, MassForm::Lumped],
+    gains_energy: false,
+    penetrates: false,
+    is_explicit: false,
+    prepare: |problem, step, _, settings| {
         // Twice the equation above.
         let matrix = problem.combination(4.0 / (step * step), 2.0 / step, 1.0)?;
-        let contact = problem.contact();
-        let effective =
-            ContactProblem::new(matrix, vec![0.0; contact.dofs()], contact.contact().clone(), contact.gap().to_vec())?;
-        let stepping = Stepping::new(&effective, settings)?;
-        Ok(ContactStabilised { stepping, mass: MassProjection::new(problem, settings)? })
-    }
+        let stepping = Stepping::of(problem, matrix, settings)?;
+        Ok(Box::new(ContactStabilised { stepping, mass: MassProjection::new(problem, settings)? }))
+    },
+};
+
+#[derive(Debug)]
+struct ContactStabilised {
+    stepping: Stepping,
+    mass: MassProjection,
 }
 
 impl Advance for ContactStabilised {
@@ -45,7 +47,7 @@ impl Advance for ContactStabilised {
         if let Some(correction) = self.mass.smallest(bound, &state.contact_set)? {
             predicted = plus(&predicted, 1.0, &correction.change);
         }
-        let stiffness = problem.contact().stiffness();
+        let stiffness = problem.statics().stiffness();
         let elastic = plus(&state.elastic, 1.0, &stiffness.mul(&predicted));
         let load = problem.load_at((state.steps as f64 + 0.5) * step);
         let mut force: Vec<f64> = load.iter().zip(&elastic).map(|(f, k)| 2.0 * f - k).collect();

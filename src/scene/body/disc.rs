@@ -1,15 +1,78 @@
 //! The disc: a half disc and its mirror image, joined along the cut.
 
-use super::{Boundary, ElementKind, Mesh, Zone, fail, half_disc};
-use crate::error::Error;
+use std::path::Path;
 
-/// The disc of `radius` about `centre`, of T3, T6, Q4 or Q8, graded towards its lowest and its highest point; only the
+use serde::{Deserialize, Serialize};
+
+use super::half_disc::{half_disc, half_disc_block};
+use super::shape::{About, Block, BodyShape, Site};
+use crate::error::Error;
+use crate::fem::mesh::{Boundary, ElementKind, Mesh, Zone, fail};
+use crate::scene::schema::json::{object, word};
+use crate::scene::schema::{ElementSpec, IntegrationSpec, ZoneSpec};
+
+/// A disc, graded towards its lowest and its highest point.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct DiscSpec {
+    /// The centre [x, y].
+    #[serde(default)]
+    pub centre: [f64; 2],
+    /// Radius, positive.
+    pub radius: f64,
+    /// The finely meshed zone around the lowest and the highest point.
+    #[serde(deserialize_with = "object")]
+    pub zone: ZoneSpec,
+    /// Only the part right of the centre; the plane x = centre becomes the boundary `symmetry-x`.
+    #[serde(default)]
+    pub symmetric: bool,
+    /// The element.
+    #[serde(default, deserialize_with = "word")]
+    pub element: ElementSpec,
+    /// How its stiffness is integrated.
+    #[serde(default, deserialize_with = "word")]
+    pub integration: IntegrationSpec,
+}
+
+impl DiscSpec {
+    pub(super) const ABOUT: About = About { name: "disc", dimension: Some(2) };
+}
+
+impl BodyShape for DiscSpec {
+    fn about(&self) -> About {
+        Self::ABOUT
+    }
+
+    fn integration(&self) -> IntegrationSpec {
+        self.integration
+    }
+
+    fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
+        site.check_estimate(&self.block(None))?;
+        disc(self.centre, self.radius, &self.zone.zone(), self.symmetric, self.element.kind())
+    }
+
+    fn block(&self, _: Option<&Path>) -> Block {
+        let mut halves = half_disc_block(&self.zone.zone(), self.radius, self.symmetric, self.element.kind());
+        halves.cells[0] *= 2.0;
+        halves
+    }
+
+    fn refine(&mut self, times: usize) -> Result<(), Error> {
+        self.zone.refine(times);
+        Ok(())
+    }
+}
+
+/// The disc of `radius` about `centre`, of a plane element, graded towards its lowest and its highest point; only the
 /// part right of the centre where `symmetric`, which about the axis is a ball.
 ///
 /// The boundaries are `lower` and `upper`, the halves of the circle, and, where `symmetric`, `symmetry-x` (x = centre).
 ///
 /// ```
-/// use signorini::fem::{ElementKind, Zone, disc};
+/// use signorini::fem::{ElementKind, Zone};
+/// use signorini::scene::disc;
 ///
 /// let zone = Zone { width: 0.2, divisions: 3, growth: 1.5 };
 /// let mesh = disc([0.0, 1.0], 1.0, &zone, false, ElementKind::Q4)?;
