@@ -14,6 +14,7 @@ mod orthogonal;
 mod power_of_two;
 mod quotient;
 mod symmetric;
+pub mod twice;
 mod vector;
 
 pub use accumulator::Accumulator;
@@ -21,10 +22,11 @@ pub use augmented::AugmentedMatrix;
 pub use cholesky::{Analysis, Cholesky};
 pub use dependence::Dependence;
 pub use factor::FactorError;
-pub use null_space::generic;
+pub use null_space::{NullSpace, generic, without_noise};
 pub use orthogonal::inverse_lengths;
 pub use power_of_two::{Equilibration, exponent, ldexp};
 pub use symmetric::SymmetricMatrix;
+pub use twice::Twice;
 pub use vector::{dot, largest};
 
 use std::sync::Arc;

@@ -13,7 +13,7 @@ mod scales;
 mod springs;
 mod units;
 
-pub(crate) use claims::Motion;
+pub(crate) use claims::{Motion, Rounding};
 pub use energy_norm::EnergyNorm;
 
 use std::sync::{Arc, OnceLock};
