@@ -24,6 +24,17 @@ const NO_AREA: f64 = 1e-12;
 ///
 /// Nodal vectors have length `dim * n_nodes` and the order `[x_0, y_0, x_1, ...]` (with z in space). `displacement`
 /// arguments are those of a solution: one entry per free dof.
+///
+/// ```
+/// use signorini::{Scene, solve_qp};
+///
+/// // A bar of 2 m and 0.1 m x 0.1 m with Young's modulus 1e6 Pa is a spring of 1e6 x 0.01 / 2 = 5000 N/m. Pulled with
+/// // 2000 Pa x 0.01 m2 = 20 N towards a wall at 0.001 m, it presses against the wall with 20 - 5000 x 0.001 = 15 N.
+/// let model = Scene::read("examples/bar.json")?.build()?;
+/// let solution = solve_qp(model.problem())?;
+/// assert!((solution.contact_force() - 15.0).abs() < 1e-9);
+/// # Ok::<(), signorini::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Model {
     parts: Arc<Parts>,
