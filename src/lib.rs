@@ -68,7 +68,7 @@ mod solution;
 pub mod study;
 mod watch;
 
-pub use error::Error;
+pub use error::{Error, Failure};
 pub use qp::{
     BoundarySolution, Condense, ContactProblem, InteriorPoint, Method, Path, Penalty, Precision, Prepared, Settings,
     SparseMatrix, Start, SymmetricMatrix, solve, solve_qp,
