@@ -14,4 +14,4 @@ mod springs;
 mod units;
 
 pub(crate) use energy_norm::EnergyNorm;
-pub(crate) use motion::Motion;
+pub(crate) use motion::{Motion, Rounding};

@@ -151,6 +151,21 @@ impl UpperTriangle {
         }
     }
 
+    /// The length of each column of `R'^-1`: that of `Z x` for the shortest motion that moves one of the columns of Z by one and
+    /// leaves the others; zero on columns that follow from others.
+    pub fn lengths_of_inverse(&self) -> Vec<f64> {
+        let length = |place: usize| {
+            let mut motion = vec![0.0; self.size()];
+            motion[place] = 1.0;
+            for (i, column) in self.columns.iter().enumerate().skip(place) {
+                let known = dot(&column[place..i], &motion[place..i]);
+                motion[i] = if self.independent[i] { (motion[i] - known) / column[i] } else { 0.0 };
+            }
+            norm(&motion)
+        };
+        (0..self.size()).map(length).collect()
+    }
+
     /// `(R'R)^-1 b`; zero on columns that follow from others.
     pub fn solve_normal(&self, b: Vec<f64>) -> Vec<f64> {
         self.solve_upper(self.solve_lower(b))

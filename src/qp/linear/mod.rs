@@ -15,6 +15,7 @@ mod orthogonal;
 mod power_of_two;
 mod quotient;
 mod symmetric;
+pub mod twice;
 
 pub use accumulator::Accumulator;
 pub use augmented::AugmentedMatrix;
@@ -22,10 +23,11 @@ pub use cholesky::{Analysis, Cholesky};
 pub use dense::{LowerTriangle, UpperTriangle, dot, largest, norm, subtract, take_out, turned};
 pub use dependence::Dependence;
 pub use factor::FactorError;
-pub use null_space::generic;
+pub use null_space::{NullSpace, generic};
 pub use orthogonal::inverse_lengths;
 pub use power_of_two::{Equilibration, exponent, ldexp};
 pub use symmetric::SymmetricMatrix;
+pub use twice::Twice;
 
 use std::sync::Arc;
 
