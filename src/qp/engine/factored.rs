@@ -10,15 +10,14 @@ use super::reduction::Reduction;
 use crate::error::Error;
 use crate::qp::certificate::EnergyNorm;
 use crate::qp::cost::{check_time, seconds};
-use crate::qp::judged::{answer, judged};
-use crate::qp::linear::{AugmentedMatrix, Equilibration, dot, largest, ldexp};
-use crate::qp::method::{Outcome, ScaledProblem, WORK_TOLERANCE, active_set};
+use crate::qp::linear::{AugmentedMatrix, Equilibration, dot, ldexp};
+use crate::qp::method::{ScaledProblem, active_set};
 use crate::qp::plan::{Tried, Way};
 use crate::qp::problem::{ContactProblem, check_gap};
-use crate::qp::run::{last_resort, run};
+use crate::qp::run::run;
 use crate::qp::settings::{Method, Settings};
 use crate::qp::transform::Condensation;
-use crate::solution::{Certificate, ContactSet, Iteration, Seconds, Solution};
+use crate::solution::{ContactSet, Seconds, Solution};
 use crate::watch::Watch;
 
 /// Factorisations for one step of a loop where K is not definite by itself.
@@ -193,110 +192,6 @@ impl Factored {
         if interior > 0.0 { (on_boundary / (on_boundary + interior)).max(0.0).sqrt() } else { 1.0 }
     }
 
-    /// The whole answer, certified, and what was found for it: by a second attempt where `found` falls short.
-    pub(super) fn best(&self, found: Found, settings: &Settings) -> Result<(Found, Solution), Error> {
-        let goal = settings.goal();
-        let solution = self.whole(&found, settings)?;
-        let mut best = (found, solution);
-        if goal.is_met_by(&best.1.certificate) {
-            return Ok(best);
-        }
-        let miss = |solution: &Solution| {
-            let (_, value, _) = goal.decisive(&solution.certificate);
-            if value.is_nan() { f64::INFINITY } else { value }
-        };
-        let other = self.second_attempt(&best.0, settings)?;
-        if let Some(other) = other.filter(|_| self.resolved(settings).allows_last_resort(miss(&best.1))) {
-            let solution = self.whole(&other, settings)?;
-            if miss(&solution) < miss(&best.1) {
-                best = (other, solution);
-            }
-        }
-        let (found, solution) = best;
-        Ok((found, judged(solution, goal)?))
-    }
-
-    /// What the last resort finds, where `found` is not its answer already.
-    ///
-    /// # Errors
-    /// [`Error::Infeasible`] for contact rows that contradict each other.
-    fn second_attempt(&self, found: &Found, settings: &Settings) -> Result<Option<Found>, Error> {
-        let clock = Instant::now();
-        // Of an answer that was cut short it is known why it falls short.
-        if found.outcome.is_last_resort() || settings.watch.is_over() {
-            return Ok(None);
-        }
-        let task =
-            ScaledProblem::new(&found.problem, &self.augmented, self.reduction.norm.is_some()).watched(&settings.watch);
-        let outcome = last_resort(&task, found.outcome.clone())
-            .map_err(|error| self.expand_error(error, &found.loading.load, &found.gap))?;
-        let seconds = Seconds { solve: found.seconds.solve + clock.elapsed().as_secs_f64(), ..found.seconds };
-        Ok(outcome.is_last_resort().then(|| Found { outcome, seconds, ..found.clone() }))
-    }
-
-    /// The whole answer with its certificate.
-    fn whole(&self, found: &Found, settings: &Settings) -> Result<Solution, Error> {
-        let clock = Instant::now();
-        settings.watch.step("certificate", 0);
-        let displacement = self.displacement(found);
-        let method = self.resolved(settings).method;
-        let Found { loading, gap, unit, outcome, seconds, refined, .. } = found;
-        let finishing = settings.watch.finishing();
-        let norm = self.reduction.norm.as_ref().map(|norm| norm.watched(&finishing));
-        let norm = match refined {
-            Some(refined) => norm.map(|norm| norm.off_by(refined.contraction)),
-            None => norm,
-        };
-        let multiplier = self.expand_multiplier(&outcome.multiplier, *unit);
-        let problem = self.problem.with(loading.load.clone(), gap.clone())?;
-        let certificate = match &norm {
-            Some(norm) => problem.certify_in(Some(norm), &displacement, &multiplier)?,
-            None => self.certificate(&problem, &displacement, &multiplier, &settings.watch)?,
-        };
-        let expand_iteration = |step: &Iteration| Iteration {
-            contact_set: self.reduction.selection.expand_set(&step.contact_set),
-            penalty: step.penalty,
-        };
-        let whole = Outcome {
-            displacement,
-            multiplier,
-            contact_set: self.reduction.selection.expand_set(&outcome.contact_set),
-            history: outcome.history.iter().map(expand_iteration).collect(),
-            ..*outcome
-        };
-        let mut solution = Solution {
-            refinements: refined.as_ref().map(|refined| refined.steps),
-            lost_pivot: self.lost_pivot,
-            condensed_dofs: self.condensed_dofs(),
-            seconds: Seconds { solve: seconds.solve + clock.elapsed().as_secs_f64(), ..*seconds },
-            ..answer(whole, method.name(), certificate)
-        };
-        if !self.is_single() && self.resolved(settings).wants_best() {
-            solution = self.corrected(solution, &problem, settings)?;
-        }
-        let clock = Instant::now();
-        let may_prove = settings.prove && !settings.watch.is_stopped() && settings.watch.allows(self.proof_seconds);
-        let proven = norm.as_ref().filter(|_| may_prove);
-        solution.proven = proven.and_then(|norm| problem.prove_in(norm, &solution.displacement, &solution.multiplier));
-        solution.seconds.solve += clock.elapsed().as_secs_f64();
-        Ok(solution)
-    }
-
-    /// The certificate of an answer to `problem`, this one under some load and gaps: with what bound there is time for.
-    pub(super) fn certificate(
-        &self,
-        problem: &ContactProblem,
-        displacement: &[f64],
-        multiplier: &[f64],
-        watch: &Watch,
-    ) -> Result<Certificate, Error> {
-        match &self.reduction.norm {
-            Some(norm) => problem.certify_in(Some(&norm.watched(&watch.finishing())), displacement, multiplier),
-            None if !watch.finishing().allows(self.norm_seconds) => problem.certify_in(None, displacement, multiplier),
-            None => problem.certify(displacement, multiplier),
-        }
-    }
-
     /// Displacement and multiplier with the rows of `closed` held at their gaps.
     pub(in crate::qp) fn with_contact_set(&self, closed: &ContactSet) -> Result<(Vec<f64>, Vec<f64>), Error> {
         let gap = self.reduction.selection.gap(self.problem.gap());
@@ -368,48 +263,6 @@ impl Factored {
                 self.reduction.scaling.expand_displacement(&condensed.expand(&loading.sweep, &moved), loading.unit)
             }
             None => self.reduction.scaling.expand_displacement(displacement, unit),
-        }
-    }
-
-    /// Rows and directions of an error in the terms of the original problem.
-    fn expand_error(&self, error: Error, load: &[f64], gap: &[f64]) -> Error {
-        let Ok(problem) = self.problem.with(load.to_vec(), gap.to_vec()) else { return error };
-        let normalised = |direction: Vec<f64>| {
-            let whole = match &self.reduction.condensation {
-                // A free motion moves the interior along without force.
-                Some(condensed) => condensed.expand(&vec![0.0; self.problem.dofs()], &direction),
-                None => direction,
-            };
-            let mut direction = self.reduction.scaling.expand_displacement(&whole, 0);
-            let size = largest(&direction);
-            direction.iter_mut().for_each(|value| *value /= size);
-            direction
-        };
-        match error {
-            Error::Unbounded { motion, direction } => {
-                let direction = normalised(direction);
-                // Condensing leaves the rounding of a load in balance, which is all that drives the boundary then.
-                match problem.share_of_work(&direction) > WORK_TOLERANCE {
-                    true => Error::Unbounded { motion, direction },
-                    false => Error::UnderHeld { motion, direction },
-                }
-            }
-            Error::UnderHeld { motion, direction } => Error::UnderHeld { motion, direction: normalised(direction) },
-            Error::Infeasible { rows, weights, .. } => {
-                let mut scaled = vec![0.0; self.reduction.selection.kept().len()];
-                rows.iter().zip(&weights).for_each(|(&row, &weight)| scaled[row] = weight);
-                let rows: Vec<usize> = rows.into_iter().map(|row| self.reduction.selection.kept()[row]).collect();
-                // Rows are scaled as multipliers are; the unit of weights is free.
-                let all = self.expand_multiplier(&scaled, self.reduction.scaling.equilibration().factor);
-                let weights: Vec<f64> =
-                    if weights.is_empty() { weights } else { rows.iter().map(|&row| all[row]).collect() };
-                let overlap = problem.overlap(&rows, &weights).unwrap_or(0.0);
-                let by = if overlap > 0.0 { format!(": they overlap by {overlap:.3e}") } else { String::new() };
-                let reason =
-                    format!("no displacement satisfies the contact rows {rows:?} together{by} (indices from 0)");
-                Error::Infeasible { reason, rows, weights, overlap }
-            }
-            other => other,
         }
     }
 }

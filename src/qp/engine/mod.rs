@@ -1,8 +1,10 @@
 //! Engines: a problem prepared once, and solved for many gaps, loads and starts. One has a factor of the stiffness, the other a
 //! multigrid hierarchy; [`Prepared`] is the door to both.
 
+mod answer;
 mod boundary;
 mod case;
+mod evidence;
 mod factored;
 mod found;
 mod loading;

@@ -108,7 +108,7 @@ impl LowerTriangle {
 pub struct UpperTriangle {
     /// The columns, each down to its diagonal entry.
     columns: Vec<Vec<f64>>,
-    is_independent: Vec<bool>,
+    independent: Vec<bool>,
 }
 
 impl UpperTriangle {
@@ -122,23 +122,23 @@ impl UpperTriangle {
         &self.columns[place]
     }
 
-    /// Returns `true` if the column does not follow from those before it.
-    pub fn is_independent(&self, place: usize) -> bool {
-        self.is_independent[place]
+    /// `true` for each column that does not follow from those before it.
+    pub fn independent(&self) -> &[bool] {
+        &self.independent
     }
 
     /// Appends the column with these entries above its diagonal entry.
     pub fn push(&mut self, mut above: Vec<f64>, diagonal: f64, is_independent: bool) {
         above.push(diagonal);
         self.columns.push(above);
-        self.is_independent.push(is_independent);
+        self.independent.push(is_independent);
     }
 
     /// Takes out the column at `place`. What the columns after it then have below their diagonal is rotated away, and
     /// `turn(i, c, s)` is told that the rows i and i + 1 of R were turned by a plane rotation with this cosine and sine.
     pub fn remove(&mut self, place: usize, mut turn: impl FnMut(usize, f64, f64)) {
         self.columns.remove(place);
-        self.is_independent.remove(place);
+        self.independent.remove(place);
         for first in place..self.columns.len() {
             let (a, b) = (self.columns[first][first], self.columns[first][first + 1]);
             let length = a.hypot(b);
@@ -151,10 +151,30 @@ impl UpperTriangle {
         }
     }
 
+    /// The length of each column of `R'^-1`: that of `Z x` for the shortest motion that moves one of the columns of Z by one and
+    /// leaves the others; zero on columns that follow from others.
+    pub fn lengths_of_inverse(&self) -> Vec<f64> {
+        let length = |place: usize| {
+            let mut motion = vec![0.0; self.size()];
+            motion[place] = 1.0;
+            for (i, column) in self.columns.iter().enumerate().skip(place) {
+                let known = dot(&column[place..i], &motion[place..i]);
+                motion[i] = if self.independent[i] { (motion[i] - known) / column[i] } else { 0.0 };
+            }
+            norm(&motion)
+        };
+        (0..self.size()).map(length).collect()
+    }
+
+    /// `(R'R)^-1 b`; zero on columns that follow from others.
+    pub fn solve_normal(&self, b: Vec<f64>) -> Vec<f64> {
+        self.solve_upper(self.solve_lower(b))
+    }
+
     /// `R^-1 b` for the first columns, as many as b has entries; zero on columns that follow from others.
     pub fn solve_upper(&self, mut b: Vec<f64>) -> Vec<f64> {
         for (place, column) in self.columns.iter().enumerate().take(b.len()).rev() {
-            b[place] = if self.is_independent[place] { b[place] / column[place] } else { 0.0 };
+            b[place] = if self.independent[place] { b[place] / column[place] } else { 0.0 };
             let value = b[place];
             subtract(&mut b[..place], value, column);
         }
@@ -165,7 +185,7 @@ impl UpperTriangle {
     pub fn solve_lower(&self, mut b: Vec<f64>) -> Vec<f64> {
         for (place, column) in self.columns.iter().enumerate() {
             let known = dot(&column[..place], &b[..place]);
-            b[place] = if self.is_independent[place] { (b[place] - known) / column[place] } else { 0.0 };
+            b[place] = if self.independent[place] { (b[place] - known) / column[place] } else { 0.0 };
         }
         b
     }

@@ -80,7 +80,7 @@ impl Ordered {
     /// The length of `R'^-1 e_i`.
     fn inverse_length(&self, place: usize) -> f64 {
         let triangle = &self.triangle;
-        if !triangle.is_independent(place) {
+        if !triangle.independent()[place] {
             return f64::INFINITY;
         }
         let mut x = vec![1.0 / triangle.column(place)[place]];
@@ -88,7 +88,7 @@ impl Ordered {
             let column = triangle.column(next);
             let above = &column[place..next];
             let share = dot(above, &x);
-            if triangle.is_independent(next) {
+            if triangle.independent()[next] {
                 x.push(-share / column[next]);
                 continue;
             }

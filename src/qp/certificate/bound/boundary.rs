@@ -10,21 +10,13 @@
 use std::cell::OnceCell;
 
 use super::super::energy_norm::Boundary;
+use super::triangle::triangle_of;
 use super::{Answer, EnergyNorm, ErrorBound};
-use crate::qp::linear::{dot, exponent, ldexp};
+use crate::qp::linear::{UpperTriangle, dot, exponent, ldexp};
 use crate::qp::problem::ContactProblem;
 
 /// Times that the rows which look closed are corrected; from then on rows are only added.
 const EXCHANGES: usize = 10;
-
-/// Pivots below this share of the products that cancel in them are what rounding leaves of nearly dependent rows.
-const PARALLEL: f64 = 1e-12;
-
-/// What is left of a row across all others follows from them where it is below this share of the terms.
-const DEPENDENT: f64 = 64.0 * f64::EPSILON;
-
-/// Turns in which a row is made orthogonal to others: the second takes out what rounding of the first has left.
-const TURNS: usize = 2;
 
 /// Corrections of the multipliers that put rows at their gaps; each gains the digits that the dependence of rows leaves.
 const CORRECTIONS: usize = 4;
@@ -295,7 +287,7 @@ impl<'a> Repair<'a> {
             };
             let fitted = self.fit(&set, &base)?;
             let Fitted { change, steps, distance, tolerance, triangle } = &fitted;
-            let independent = &triangle.independent;
+            let independent = triangle.independent();
             let violated: Vec<usize> =
                 (0..rows).filter(|&row| !closed[row] && distance[row] > tolerance[row]).collect();
             let missed = |row: usize| closed[row] && distance[row].abs() > tolerance[row];
@@ -358,7 +350,7 @@ impl<'a> Repair<'a> {
     /// across those before it: rounding of its column changes the lengths by a small share.
     fn rest(&self, set: &[usize], fitted: &Fitted) -> Vec<f64> {
         let mut rest = vec![0.0; self.rows.len()];
-        for (&row, length) in set.iter().zip(fitted.triangle.lengths_of_motions()) {
+        for (&row, length) in set.iter().zip(fitted.triangle.lengths_of_inverse()) {
             let motion = (fitted.distance[row].abs() + fitted.tolerance[row]) * length;
             rest[row] = ldexp(motion * motion, self.norm.factor()).sqrt();
         }
@@ -369,7 +361,7 @@ impl<'a> Repair<'a> {
     fn fit(&self, set: &[usize], base: &Force) -> Option<Fitted> {
         let half = |&row: &usize| if self.norm.is_over() { None } else { Some(self.half(row)) };
         let columns: Vec<&[f64]> = set.iter().map(half).collect::<Option<_>>()?;
-        let triangle = Triangle::of(&columns, || self.norm.is_over())?;
+        let triangle = triangle_of(&columns, || self.norm.is_over())?;
         let (mut change, mut steps) = (vec![0.0; self.rows.len()], vec![0.0; self.rows.len()]);
         let mut moved = self.boundary.backward(self.sweep(base));
         let mut correction = 0;
@@ -382,11 +374,11 @@ impl<'a> Repair<'a> {
             };
             let tolerance: Vec<f64> = (0..self.rows.len()).map(rounding).collect();
             let is_met = |(&row, &kept): (&usize, &bool)| !kept || distance[row].abs() <= tolerance[row];
-            if set.iter().zip(&triangle.independent).all(is_met) || correction == CORRECTIONS {
+            if set.iter().zip(triangle.independent()).all(is_met) || correction == CORRECTIONS {
                 return Some(Fitted { change, steps, distance, tolerance, triangle });
             }
             correction += 1;
-            let step = triangle.solve(set.iter().map(|&row| -distance[row]).collect());
+            let step = triangle.solve_normal(set.iter().map(|&row| -distance[row]).collect());
             let mut added = vec![0.0; self.rows.len()];
             set.iter().zip(step).for_each(|(&row, step)| added[row] = step);
             change.iter_mut().zip(&added).for_each(|(sum, step)| *sum += step);
@@ -405,127 +397,5 @@ struct Fitted {
     steps: Vec<f64>,
     distance: Vec<f64>,
     tolerance: Vec<f64>,
-    triangle: Triangle,
-}
-
-/// The triangle R of `Z'Z = R'R`, without the columns of Z that follow from those before them.
-struct Triangle {
-    /// The columns of R, each down to its diagonal entry.
-    columns: Vec<Vec<f64>>,
-    independent: Vec<bool>,
-}
-
-impl Triangle {
-    /// From the products of the columns. Where some are nearly parallel, as rows that reach a part much softer than the others,
-    /// the products have lost what tells them apart, and the columns themselves are made orthogonal.
-    ///
-    /// `None` where it `is_over` before it is done.
-    fn of(columns: &[&[f64]], is_over: impl Fn() -> bool) -> Option<Self> {
-        let of_products = Self::of_products(columns, &is_over)?;
-        if of_products.independent.contains(&false) { Self::of_columns(columns, &is_over) } else { Some(of_products) }
-    }
-
-    fn of_products(columns: &[&[f64]], is_over: &impl Fn() -> bool) -> Option<Self> {
-        let mut found = Triangle { columns: Vec::new(), independent: Vec::new() };
-        let lengths: Vec<f64> = columns.iter().map(|column| dot(column, column).sqrt()).collect();
-        for (i, column) in columns.iter().enumerate() {
-            if is_over() {
-                return None;
-            }
-            let mut entries = vec![0.0; i + 1];
-            for j in (0..i).filter(|&j| found.independent[j]) {
-                let before = &found.columns[j];
-                entries[j] = (dot(column, columns[j]) - dot(&before[..j], &entries[..j])) / before[j];
-            }
-            let pivot = dot(column, column) - dot(&entries, &entries);
-            let terms = found.terms(&entries, &lengths);
-            found.close(entries, pivot.max(0.0).sqrt(), pivot > PARALLEL * terms * terms);
-        }
-        Some(found)
-    }
-
-    fn of_columns(columns: &[&[f64]], is_over: &impl Fn() -> bool) -> Option<Self> {
-        let mut found = Triangle { columns: Vec::new(), independent: Vec::new() };
-        let mut directions: Vec<Vec<f64>> = Vec::new();
-        let lengths: Vec<f64> = columns.iter().map(|column| dot(column, column).sqrt()).collect();
-        for (i, column) in columns.iter().enumerate() {
-            if is_over() {
-                return None;
-            }
-            let (mut entries, mut across) = (vec![0.0; i + 1], column.to_vec());
-            for _ in 0..TURNS {
-                for (j, direction) in directions.iter().enumerate().filter(|entry| found.independent[entry.0]) {
-                    let share = dot(direction, &across);
-                    entries[j] += share;
-                    across.iter_mut().zip(direction).for_each(|(entry, d)| *entry -= share * d);
-                }
-            }
-            let left = dot(&across, &across).sqrt();
-            let terms = found.terms(&entries, &lengths);
-            found.close(entries, left, left > DEPENDENT * terms);
-            across.iter_mut().for_each(|entry| *entry /= left);
-            directions.push(across);
-        }
-        Some(found)
-    }
-
-    /// The lengths of the columns, added up as they cancel in the part of the next one across them, which is last in `entries`.
-    fn terms(&self, entries: &[f64], lengths: &[f64]) -> f64 {
-        let before = self.columns.len();
-        let mut weights = entries[..before].to_vec();
-        self.solve_upper(&mut weights);
-        weights.iter().zip(lengths).fold(lengths[before], |sum, (weight, length)| sum + weight.abs() * length)
-    }
-
-    /// Appends a column of R with this diagonal entry.
-    fn close(&mut self, mut entries: Vec<f64>, diagonal: f64, is_independent: bool) {
-        if is_independent {
-            let last = entries.len() - 1;
-            entries[last] = diagonal;
-        } else {
-            entries.fill(0.0);
-        }
-        self.columns.push(entries);
-        self.independent.push(is_independent);
-    }
-
-    /// Solves `Z'Z x = b` for the independent columns; x is zero on the others.
-    fn solve(&self, b: Vec<f64>) -> Vec<f64> {
-        let mut x = self.solve_lower(b);
-        self.solve_upper(&mut x);
-        x
-    }
-
-    /// `R'^-1 b`; zero on columns that follow from others.
-    fn solve_lower(&self, mut b: Vec<f64>) -> Vec<f64> {
-        for (i, column) in self.columns.iter().enumerate() {
-            let known = dot(&column[..i], &b[..i]);
-            b[i] = if self.independent[i] { (b[i] - known) / column[i] } else { 0.0 };
-        }
-        b
-    }
-
-    /// The length of `Z x` for the shortest motion `Z x` that moves one row by one and leaves the others, for each row: that of
-    /// column i of `R'^-1`; zero on columns that follow from others.
-    fn lengths_of_motions(&self) -> Vec<f64> {
-        let length = |row: usize| {
-            let mut motion = vec![0.0; self.columns.len()];
-            motion[row] = 1.0;
-            for (i, column) in self.columns.iter().enumerate().skip(row) {
-                let known = dot(&column[row..i], &motion[row..i]);
-                motion[i] = if self.independent[i] { (motion[i] - known) / column[i] } else { 0.0 };
-            }
-            dot(&motion, &motion).sqrt()
-        };
-        (0..self.columns.len()).map(length).collect()
-    }
-
-    /// `R^-1 b`; zero on columns that follow from others.
-    fn solve_upper(&self, b: &mut [f64]) {
-        for (i, column) in self.columns.iter().enumerate().take(b.len()).rev() {
-            b[i] = if self.independent[i] { b[i] / column[i] } else { 0.0 };
-            let value = b[i];
-            b[..i].iter_mut().zip(column).for_each(|(entry, r)| *entry -= r * value);
-        }
-    }
+    triangle: UpperTriangle,
 }
