@@ -41,6 +41,9 @@ const LOST_WITH_SPRINGS: f64 = 1e4;
 /// its length.
 const COUNTS: f64 = 3.0;
 
+/// Rows that others follow from are off by their own rounding after a fit, and by that of their distances.
+const FOLLOWS: f64 = 2.0;
+
 /// Rounding of a row's distance after a motion, in units of its terms.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
@@ -378,7 +381,12 @@ impl<'a> Repair<'a> {
                 (0..self.rows.len()).map(|row| self.violation[row] + terms(row).sum::<f64>()).collect();
             let rounding =
                 |row: usize| ROUNDING * terms(row).fold(self.violation[row].abs(), |sum, term| sum + term.abs());
-            let tolerance: Vec<f64> = (0..self.rows.len()).map(rounding).collect();
+            let mut tolerance: Vec<f64> = (0..self.rows.len()).map(rounding).collect();
+            // A row that follows from others is at its gap as far as they are.
+            for (&row, weights) in set.iter().zip(&triangle.weights) {
+                let of_others = weights.iter().zip(set).map(|(weight, &other)| weight.abs() * tolerance[other]);
+                tolerance[row] += FOLLOWS * of_others.sum::<f64>();
+            }
             let is_met = |(&row, &kept): (&usize, &bool)| !kept || distance[row].abs() <= tolerance[row];
             if set.iter().zip(&triangle.independent).all(is_met) || correction == CORRECTIONS {
                 return Some(Fitted { change, steps, distance, tolerance, triangle });
@@ -407,10 +415,13 @@ struct Fitted {
 }
 
 /// The triangle R of `Z'Z = R'R`, without the columns of Z that follow from those before them.
+#[derive(Default)]
 struct Triangle {
     /// The columns of R, each down to its diagonal entry.
     columns: Vec<Vec<f64>>,
     independent: Vec<bool>,
+    /// The columns before it that a column follows from, each with its weight; none for one that follows from no others.
+    weights: Vec<Vec<f64>>,
 }
 
 impl Triangle {
@@ -424,7 +435,7 @@ impl Triangle {
     }
 
     fn of_products(columns: &[&[f64]], is_over: &impl Fn() -> bool) -> Option<Self> {
-        let mut found = Triangle { columns: Vec::new(), independent: Vec::new() };
+        let mut found = Triangle::default();
         let lengths: Vec<f64> = columns.iter().map(|column| dot(column, column).sqrt()).collect();
         for (i, column) in columns.iter().enumerate() {
             if is_over() {
@@ -436,14 +447,15 @@ impl Triangle {
                 entries[j] = (dot(column, columns[j]) - dot(&before[..j], &entries[..j])) / before[j];
             }
             let pivot = dot(column, column) - dot(&entries, &entries);
-            let terms = found.terms(&entries, &lengths);
-            found.close(entries, pivot.max(0.0).sqrt(), pivot > PARALLEL * terms * terms);
+            let (weights, terms) = found.combined(&entries, &lengths);
+            let is_independent = pivot > PARALLEL * terms * terms;
+            found.close(entries, pivot.max(0.0).sqrt(), (!is_independent).then_some(weights));
         }
         Some(found)
     }
 
     fn of_columns(columns: &[&[f64]], is_over: &impl Fn() -> bool) -> Option<Self> {
-        let mut found = Triangle { columns: Vec::new(), independent: Vec::new() };
+        let mut found = Triangle::default();
         let mut directions: Vec<Vec<f64>> = Vec::new();
         let lengths: Vec<f64> = columns.iter().map(|column| dot(column, column).sqrt()).collect();
         for (i, column) in columns.iter().enumerate() {
@@ -459,32 +471,35 @@ impl Triangle {
                 }
             }
             let left = dot(&across, &across).sqrt();
-            let terms = found.terms(&entries, &lengths);
-            found.close(entries, left, left > DEPENDENT * terms);
+            let (weights, terms) = found.combined(&entries, &lengths);
+            let is_independent = left > DEPENDENT * terms;
+            found.close(entries, left, (!is_independent).then_some(weights));
             across.iter_mut().for_each(|entry| *entry /= left);
             directions.push(across);
         }
         Some(found)
     }
 
-    /// The lengths of the columns, added up as they cancel in the part of the next one across them, which is last in `entries`.
-    fn terms(&self, entries: &[f64], lengths: &[f64]) -> f64 {
+    /// The weights of the columns in the part of the next one along them, which stands in `entries`, and the lengths of all, added up
+    /// as they cancel in what is left of it.
+    fn combined(&self, entries: &[f64], lengths: &[f64]) -> (Vec<f64>, f64) {
         let before = self.columns.len();
         let mut weights = entries[..before].to_vec();
         self.solve_upper(&mut weights);
-        weights.iter().zip(lengths).fold(lengths[before], |sum, (weight, length)| sum + weight.abs() * length)
+        let terms = weights.iter().zip(lengths).fold(lengths[before], |sum, (w, length)| sum + w.abs() * length);
+        (weights, terms)
     }
 
-    /// Appends a column of R with this diagonal entry.
-    fn close(&mut self, mut entries: Vec<f64>, diagonal: f64, is_independent: bool) {
-        if is_independent {
-            let last = entries.len() - 1;
-            entries[last] = diagonal;
-        } else {
+    /// Appends a column of R with this diagonal entry, or one that follows from those before with some weights.
+    fn close(&mut self, mut entries: Vec<f64>, diagonal: f64, follows: Option<Vec<f64>>) {
+        self.independent.push(follows.is_none());
+        if follows.is_some() {
             entries.fill(0.0);
+        } else if let Some(last) = entries.last_mut() {
+            *last = diagonal;
         }
+        self.weights.push(follows.unwrap_or_default());
         self.columns.push(entries);
-        self.independent.push(is_independent);
     }
 
     /// Solves `Z'Z x = b` for the independent columns; x is zero on the others.
