@@ -58,7 +58,7 @@ impl Motion {
         self.work > DRIVES && self.approach.iter().all(|&speed| speed <= 0.0)
     }
 
-    /// Does the load do exactly no work on the motion?
+    /// Returns `true` if the load does exactly no work on the motion.
     pub fn is_idle(&self) -> bool {
         self.work == 0.0
     }

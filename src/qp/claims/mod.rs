@@ -214,8 +214,8 @@ impl<'a> Looked<'a> {
             .filter(|motion| self.rows.iter().all(|&(row, _)| !presses(row) || motion.approach[row] == 0.0))
     }
 
-    /// Do these forces of the rows hold the load on all motions without energy? They have the digits of doubles, in their own terms,
-    /// and the rows that carry them must be able to do so exactly: the last bit of the load may need another.
+    /// Returns `true` if these forces of the rows hold the load on all motions without energy: they do so to the digits of doubles, in
+    /// their own terms, and the rows that carry them can do so exactly. The last bit of the load may need another row.
     fn is_carried_by(&self, forces: &[f64]) -> bool {
         let (mut left, mut terms) = (self.against_load.values.clone(), Vec::new());
         terms.extend(left.iter().map(|value| value.rounded().abs()));

@@ -37,8 +37,8 @@ const OF_ENTRIES: f64 = 4.0 * f64::EPSILON;
 pub struct NullSpace {
     /// Vectors of length about one, independent of each other.
     pub vectors: Vec<Vec<Twice>>,
-    /// Does the matrix resist them exactly nothing, as its doubles stand? Otherwise it does with entries rounded differently, and the
-    /// vectors have no more digits than it.
+    /// `true` if the matrix resists them exactly nothing, as its doubles stand. Otherwise it would with its entries rounded in
+    /// another way, and the vectors have no more digits than the entries.
     pub is_exact: bool,
 }
 

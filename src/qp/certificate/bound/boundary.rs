@@ -10,7 +10,7 @@
 use std::cell::OnceCell;
 
 use super::super::energy_norm::Boundary;
-use super::triangle::triangle_of;
+use super::triangle::{Triangle, triangle_of};
 use super::{Answer, EnergyNorm, ErrorBound};
 use crate::qp::linear::{UpperTriangle, dot, exponent, ldexp};
 use crate::qp::problem::ContactProblem;
@@ -33,6 +33,9 @@ const LOST_WITH_SPRINGS: f64 = 1e4;
 /// The way of rows to their gaps counts as motion of the answer, as the residual that this makes, and once for the rounding of
 /// its length.
 const COUNTS: f64 = 3.0;
+
+/// Rows that others follow from are off by their own rounding after a fit, and by that of their distances.
+const FOLLOWS: f64 = 2.0;
 
 /// Rounding of a row's distance after a motion, in units of its terms.
 const DISTANCE_ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -361,7 +364,7 @@ impl<'a> Repair<'a> {
     fn fit(&self, set: &[usize], base: &Force) -> Option<Fitted> {
         let half = |&row: &usize| if self.norm.is_over() { None } else { Some(self.half(row)) };
         let columns: Vec<&[f64]> = set.iter().map(half).collect::<Option<_>>()?;
-        let triangle = triangle_of(&columns, || self.norm.is_over())?;
+        let Triangle { r: triangle, weights } = triangle_of(&columns, || self.norm.is_over())?;
         let (mut change, mut steps) = (vec![0.0; self.rows.len()], vec![0.0; self.rows.len()]);
         let mut moved = self.boundary.backward(self.sweep(base));
         let mut correction = 0;
@@ -372,7 +375,12 @@ impl<'a> Repair<'a> {
             let rounding = |row: usize| {
                 DISTANCE_ROUNDING * terms(row).fold(self.violation[row].abs(), |sum, term| sum + term.abs())
             };
-            let tolerance: Vec<f64> = (0..self.rows.len()).map(rounding).collect();
+            let mut tolerance: Vec<f64> = (0..self.rows.len()).map(rounding).collect();
+            // A row that follows from others is at its gap as far as they are.
+            for (&row, weights) in set.iter().zip(&weights) {
+                let of_others = weights.iter().zip(set).map(|(weight, &other)| weight.abs() * tolerance[other]);
+                tolerance[row] += FOLLOWS * of_others.sum::<f64>();
+            }
             let is_met = |(&row, &kept): (&usize, &bool)| !kept || distance[row].abs() <= tolerance[row];
             if set.iter().zip(triangle.independent()).all(is_met) || correction == CORRECTIONS {
                 return Some(Fitted { change, steps, distance, tolerance, triangle });

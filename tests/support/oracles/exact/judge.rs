@@ -170,8 +170,8 @@ impl<'a> Judge<'a> {
         matches!(self.outcome, Outcome::Solved(answer) if answer.is_unique) && self.condition < CONDITIONED
     }
 
-    /// Does a displacement u meet every row of an infeasible problem, exactly, once each gap is changed by at most 1e-15 of
-    /// `|g| + |B| |u|`? Then data that agree with these to their rounding have an answer there, however much the rows overlap beside
+    /// Returns `true` if a displacement u meets every row of an infeasible problem, exactly, once each gap is changed by at most
+    /// 1e-15 of `|g| + |B| |u|`. Then data that agree with these to their rounding have an answer there, however much the rows overlap beside
     /// gaps that are small: a displacement in doubles meets no row better.
     fn meets_rounded_rows(&self, displacement: &[f64]) -> bool {
         let (u, rounding) = (displacement.iter().map(|&value| Dyadic::from(value)), Dyadic::from(OF_DATA));
