@@ -62,7 +62,8 @@ impl Coarsest {
     }
 }
 
-fn lower_part<T: Real>(blocks: &BlockMatrix<T>) -> SymmetricMatrix {
+/// The matrix of the blocks, one unknown after another.
+pub(super) fn lower_part<T: Real>(blocks: &BlockMatrix<T>) -> SymmetricMatrix {
     let size = blocks.height;
     let dim = blocks.rows() * size;
     let (mut starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());

@@ -44,7 +44,7 @@ impl<T: Real> FaceLevels<T> {
         let threads = hierarchy.threads;
         let (mut changes, mut smoothers): (Vec<BlockMatrix<T>>, Vec<Chebyshev<T>>) = (Vec::new(), Vec::new());
         let mut coarser =
-            hierarchy.levels.iter().skip(1).map(|level| &level.matrix).chain([&hierarchy.coarsest_matrix]);
+            hierarchy.levels.iter().skip(1).map(|level| &level.matrix).chain([&*hierarchy.coarsest_matrix]);
         for (depth, level) in hierarchy.levels.iter().enumerate() {
             let through =
                 |inner: &BlockMatrix<T>| level.restriction.product(&inner.product(&level.prolongator, 1), threads);

@@ -12,6 +12,7 @@
 mod aggregation;
 mod blocks;
 mod chebyshev;
+mod coarser;
 mod coarsest;
 mod conjugate_gradients;
 mod cycle;
@@ -25,6 +26,7 @@ mod prolongator;
 mod real;
 mod threads;
 
+pub use coarser::Interval;
 pub use conjugate_gradients::{ConjugateGradients, conjugate_gradients};
 pub use dual_norm::{DualNorm, dual_norm, dual_norm_within};
 pub use face::Direction;

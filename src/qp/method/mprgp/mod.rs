@@ -16,6 +16,7 @@
 //! Z. Dostál, *Optimal Quadratic Programming Algorithms*, Springer (2009), algorithm 5.8 and section 5.10.
 
 mod iterate;
+mod nested;
 mod start;
 mod uniqueness;
 
@@ -28,6 +29,7 @@ use crate::qp::linear::multigrid::Multigrid;
 use crate::qp::problem::ContactProblem;
 use crate::watch::Watch;
 use iterate::{Conjugate, Iterate};
+use nested::nested_start;
 
 /// Iterations without a residual half as large as the best before, after which the loop has stagnated; those in which the
 /// face changes count only beyond one for each row.
@@ -58,6 +60,8 @@ pub struct Limits<'a> {
 /// that the rows under pressure leave free.
 pub fn solve(problem: &ContactProblem, multigrid: &Multigrid, start: Start, limits: Limits) -> Result<Outcome, Error> {
     let bounds = Bounds::of(problem.contact(), problem.gap())?;
+    let nested = if start.is_unknown() { nested_start(problem, &bounds, multigrid, limits) } else { None };
+    let start = Start { displacement: start.displacement.or(nested.as_deref()), ..start };
     let mut iterate = Iterate::new(problem, &bounds, start, multigrid.threads());
     let mut history = vec![iterate.step()];
     let mut face = None;
@@ -109,8 +113,7 @@ pub fn solve(problem: &ContactProblem, multigrid: &Multigrid, start: Start, limi
             if direction.energy < 0.0 {
                 return Err(iterate.negative_energy(direction));
             }
-            iterate.advance(&direction);
-            last = Some(direction);
+            last = iterate.advance(direction);
         }
         if iterate.at != before {
             (face, last) = (None, None);

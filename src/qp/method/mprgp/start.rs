@@ -10,3 +10,10 @@ pub struct Start<'a> {
     /// A contact set near that of the answer.
     pub contact_set: Option<&'a ContactSet>,
 }
+
+impl Start<'_> {
+    /// Returns `true` if nothing is known.
+    pub(super) fn is_unknown(&self) -> bool {
+        self.displacement.is_none() && self.contact_set.is_none()
+    }
+}
