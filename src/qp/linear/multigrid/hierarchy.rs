@@ -111,6 +111,11 @@ impl<T: Real> Hierarchy<T> {
         })
     }
 
+    /// The matrix of each level, the finest first.
+    pub fn matrices(&self) -> impl Iterator<Item = &BlockMatrix<T>> {
+        self.levels.iter().map(|level| &level.matrix).chain([&*self.coarsest_matrix])
+    }
+
     /// Unknowns of each level, the finest first.
     pub fn unknowns(&self) -> Vec<usize> {
         let of_level = |level: &Arc<Level<T>>| level.matrix.rows() * level.matrix.height;

@@ -25,7 +25,7 @@ pub use start::Start;
 use super::Outcome;
 use super::bounds::Bounds;
 use crate::error::Error;
-use crate::qp::linear::multigrid::Multigrid;
+use crate::qp::linear::multigrid::{Face, Multigrid};
 use crate::qp::problem::ContactProblem;
 use crate::watch::Watch;
 use iterate::{Conjugate, Iterate};
@@ -64,7 +64,8 @@ pub fn solve(problem: &ContactProblem, multigrid: &Multigrid, start: Start, limi
     let start = Start { displacement: start.displacement.or(nested.as_deref()), ..start };
     let mut iterate = Iterate::new(problem, &bounds, start, multigrid.threads());
     let mut history = vec![iterate.step()];
-    let mut face = None;
+    let mut face: Option<Face> = None;
+    let mut face_is_old = false;
     let mut last: Option<Conjugate> = None;
     let (mut cycles, mut settled) = (0, false);
     let (mut best, mut since_best, mut changes, mut is_fresh) = (f64::INFINITY, 0, 0, true);
@@ -99,9 +100,10 @@ pub fn solve(problem: &ContactProblem, multigrid: &Multigrid, start: Start, limi
         } else {
             let gradient = iterate.free_gradient();
             let free_face = match face.take() {
-                Some(free_face) => free_face,
-                None => multigrid.face(&iterate.held())?,
+                Some(free_face) if !face_is_old => free_face,
+                old => multigrid.face(&iterate.held(), old.as_ref())?,
             };
+            face_is_old = false;
             let step = iterate.preconditioned(&free_face, &gradient);
             face = Some(free_face);
             cycles += 1;
@@ -116,7 +118,7 @@ pub fn solve(problem: &ContactProblem, multigrid: &Multigrid, start: Start, limi
             last = iterate.advance(direction);
         }
         if iterate.at != before {
-            (face, last) = (None, None);
+            (face_is_old, last) = (true, None);
             changes += 1;
             history.push(iterate.step());
         }
