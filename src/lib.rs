@@ -72,7 +72,8 @@ pub use error::Error;
 pub use qp::linear::{SparseMatrix, SymmetricMatrix};
 pub use qp::problem::ContactProblem;
 pub use qp::{
-    BoundarySolution, Condense, Iterative, Method, Path, Precision, Prepared, Settings, Start, solve, solve_qp,
+    BoundarySolution, Condense, InteriorPoint, Iterative, Method, Path, Penalty, Precision, Prepared, Settings, Start,
+    solve, solve_qp,
 };
 pub use scene::{Model, Scene};
 pub use solution::{Attempt, Certificate, ContactSet, Goal, Iteration, ProvenSet, Seconds, Solution};
@@ -86,5 +87,6 @@ pub mod internals {
     pub use crate::qp::barrier::guarded;
     pub use crate::qp::cost::bytes;
     pub use crate::qp::linear::{AugmentedMatrix, dot};
-    pub use crate::qp::method::{Outcome, ScaledProblem, dual_active_set};
+    pub use crate::qp::method::dual_active_set::DualActiveSet;
+    pub use crate::qp::method::{Outcome, ScaledProblem, Solver};
 }

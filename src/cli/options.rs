@@ -285,9 +285,9 @@ impl MethodName {
     pub fn method(self) -> qp::Method {
         match self {
             MethodName::Auto => qp::Method::Auto,
-            MethodName::Qp => qp::Method::Qp,
+            MethodName::Qp => qp::Method::qp(),
             MethodName::ActiveSet => qp::Method::ActiveSet,
-            MethodName::Penalty => qp::Method::Penalty,
+            MethodName::Penalty => qp::Method::penalty(),
             MethodName::Mprgp => qp::Method::Mprgp,
         }
     }

@@ -51,7 +51,10 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
     let mut settings = settings(options.method.method(), common, &watch.keeping(report_seconds));
     settings.prove = true;
     settings.accuracy = options.accuracy;
-    (settings.precision, settings.extrapolate) = (options.precision.precision(), options.extrapolate);
+    settings.precision = options.precision.precision();
+    if let Method::Penalty(ladder) = &mut settings.method {
+        ladder.extrapolate = options.extrapolate;
+    }
     let solution = match solve(input.problem(), &settings) {
         Ok(solution) => solution,
         Err(error @ Error::NotCertified { .. }) => {
@@ -61,7 +64,7 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
         }
         Err(error) => return Err(input.explain(error)),
     };
-    if options.extrapolate && !solution.method.starts_with("penalty") {
+    if options.extrapolate && !matches!(settings.method, Method::Penalty(_)) {
         let method = &solution.method;
         warn(&format!(
             "warning: --extrapolate changes nothing: the method is {method}; it goes with --method penalty\n"

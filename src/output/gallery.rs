@@ -3,11 +3,10 @@
 use std::path::Path;
 
 use super::{
-    Array, CellType, ContactPicture, ObstacleLine, Plot, Quantity, Series, Unstructured, common_limits, common_window,
+    Array, ContactPicture, ObstacleLine, Plot, Quantity, Series, Unstructured, common_limits, common_window,
     line_plots, ticks::brief, write_atomically, write_files, write_picture,
 };
 use crate::error::Error;
-use crate::fem::mesh::ElementKind;
 use crate::fem::recovery::Stress;
 use crate::qp::matrix_market::solution_files;
 use crate::qp::with_contact_set;
@@ -297,7 +296,7 @@ pub(super) fn fields(
 ) -> Result<String, Error> {
     let nodes = model.mesh().nodes();
     let elements: Vec<Vec<usize>> = model.mesh().elements().map(<[usize]>::to_vec).collect();
-    let cell_types = vec![cell_type(model.mesh().kind()); elements.len()];
+    let cell_types = vec![model.mesh().kind(); elements.len()];
     let displacement = in_space(&model.nodal_displacement(free_displacement)?, model.mesh().dimension());
     let stress = model.stress(free_displacement)?;
     // A node between two obstacles shows the sum of its pressures and the smaller of its gaps.
@@ -337,18 +336,6 @@ pub(super) fn fields(
         ],
     }
     .to_vtu()
-}
-
-fn cell_type(kind: ElementKind) -> CellType {
-    match kind {
-        ElementKind::Line2 => CellType::Line,
-        ElementKind::T3 => CellType::Triangle,
-        ElementKind::T6 => CellType::QuadraticTriangle,
-        ElementKind::Q4 => CellType::Quadrilateral,
-        ElementKind::Q8 => CellType::QuadraticQuadrilateral,
-        ElementKind::Tet4 => CellType::Tetrahedron,
-        ElementKind::Hex8 => CellType::Hexahedron,
-    }
 }
 
 /// Nodal vectors of `dimension` components with three.

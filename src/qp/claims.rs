@@ -16,8 +16,9 @@ use super::cost::{Kept, check_memory, check_time, seconds};
 use super::judged::{judged, not_rechecked};
 use super::settings::{Method, Precision, Settings};
 use crate::error::Error;
+use crate::qp::certificate::Motion;
 use crate::qp::linear::{Analysis, FactorError, SparseMatrix, SymmetricMatrix, dot, exponent, generic, largest, ldexp};
-use crate::qp::problem::{ContactProblem, Motion};
+use crate::qp::problem::ContactProblem;
 use crate::qp::transform::Scaling;
 use crate::solution::Solution;
 

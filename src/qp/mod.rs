@@ -11,6 +11,7 @@
 
 mod attempts;
 pub(crate) mod barrier;
+mod certificate;
 mod claims;
 pub(crate) mod cost;
 mod engine;
@@ -24,11 +25,14 @@ mod run;
 mod settings;
 pub(crate) mod transform;
 
+pub use certificate::EnergyNorm;
 pub use cost::Estimate;
 pub use engine::{BoundarySolution, Iterative, Path, Prepared};
-pub use method::mprgp::Start;
+pub use method::Start;
+pub use method::interior_point::InteriorPoint;
 pub use method::parametric::{Event, Piece};
-pub use problem::{ContactProblem, EnergyNorm};
+pub use method::penalty::Penalty;
+pub use problem::ContactProblem;
 pub use settings::{Condense, Method, Precision, Settings};
 
 use crate::error::Error;
@@ -57,7 +61,7 @@ pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, 
 /// # Errors
 /// As [`solve`].
 pub fn solve_qp(problem: &ContactProblem) -> Result<Solution, Error> {
-    solve(problem, &Settings::with_method(Method::Qp))
+    solve(problem, &Settings::with_method(Method::qp()))
 }
 
 /// Displacement and multiplier of the body with the rows of `closed` held at their gaps and all others free: one

@@ -15,9 +15,12 @@ use std::sync::LazyLock;
 
 use serde::Deserialize;
 
+use super::certificate::EnergyNorm;
 use super::cost::{Estimate, FACTORS, Kept, bytes, check_memory, check_time, seconds};
 use super::linear::Analysis;
-use super::problem::{ContactProblem, EnergyNorm};
+use super::method::interior_point::InteriorPoint;
+use super::method::penalty::Penalty;
+use super::problem::ContactProblem;
 use super::settings::{Condense, Method, Precision, Settings};
 use super::transform::{Condensation, Scaling};
 use crate::error::{Error, memory as written};
@@ -149,22 +152,22 @@ impl Way {
 
     /// `settings` with this way.
     pub fn settings(self, settings: &Settings) -> Settings {
-        let (method, precision) = match self {
-            Way::ActiveSet => (Method::ActiveSet, Precision::Double),
-            Way::ActiveSetMixed => (Method::ActiveSet, Precision::Mixed),
-            Way::Qp | Way::QpUnpolished => (Method::Qp, settings.precision),
-            Way::Penalty | Way::PenaltyRung => (Method::Penalty, settings.precision),
+        let (method, precision) = match (self, settings.accuracy) {
+            (Way::ActiveSet, _) => (Method::ActiveSet, Precision::Double),
+            (Way::ActiveSetMixed, _) => (Method::ActiveSet, Precision::Mixed),
+            (Way::QpUnpolished, Some(accuracy)) => {
+                let loose = InteriorPoint { polish: false, tolerance: INTERIOR_POINT_SHARE * accuracy };
+                (Method::Qp(loose), settings.precision)
+            }
+            (Way::Qp | Way::QpUnpolished, _) => (Method::qp(), settings.precision),
+            (Way::PenaltyRung, Some(accuracy)) => {
+                let rung = PENALTY_OVER_ACCURACY / accuracy;
+                let one = Penalty { first: rung, last: rung, ..Penalty::default() };
+                (Method::Penalty(one), settings.precision)
+            }
+            (Way::Penalty | Way::PenaltyRung, _) => (Method::penalty(), settings.precision),
         };
-        let mut settings = Settings { method, precision, ..settings.clone() };
-        if let (Way::QpUnpolished, Some(accuracy)) = (self, settings.accuracy) {
-            settings.polish = false;
-            settings.interior_point_tolerance = INTERIOR_POINT_SHARE * accuracy;
-        }
-        if let (Way::PenaltyRung, Some(accuracy)) = (self, settings.accuracy) {
-            settings.first_penalty = PENALTY_OVER_ACCURACY / accuracy;
-            settings.last_penalty = settings.first_penalty;
-        }
-        settings
+        Settings { method, precision, ..settings.clone() }
     }
 }
 
@@ -272,7 +275,7 @@ impl Layout {
     }
 
     fn by_interior_point(&self, settings: &Settings) -> bool {
-        self.way.map_or(settings.method, |way| way.settings(settings).method) == Method::Qp
+        matches!(self.way.map_or(settings.method, |way| way.settings(settings).method), Method::Qp(_))
     }
 
     /// Seconds until the first set of contact rows is settled, or the first step of the interior point is done.

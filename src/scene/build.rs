@@ -1,8 +1,8 @@
 //! From a scene to a model: every value is checked where it is used, and named by its JSON path.
 
 use super::Obstacle;
-use super::body::locking;
 use super::condition::boundary;
+use super::elastic::locking;
 use super::model::Model;
 use super::parts::Parts;
 use super::schema::Scene;

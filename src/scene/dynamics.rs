@@ -2,13 +2,13 @@
 
 use super::entry::{ROUNDING, finite, located, number, point, vector, wrong};
 use super::schema::{
-    AnalysisSpec, DynamicSpec, FactorSpec, FieldSpec, LoadInTimeSpec, MassSpec, PenetrationSpec, Scene, SchemeSpec,
+    AnalysisSpec, DynamicSpec, FactorSpec, FieldSpec, LoadInTimeSpec, MassSpec, PenetrationSpec, Scene,
 };
 use super::{Model, Warning};
 use crate::error::Error;
 use crate::fem::assembly::{MassForm, free_load, internal_force, mass};
 use crate::fem::body::ElasticBody;
-use crate::motion::{DynamicProblem, Scheme, TimeFunction, stable_step};
+use crate::motion::{DynamicProblem, Scheme, SchemeSpec, TimeFunction, stable_step};
 use crate::qp::linear::dot;
 use crate::qp::problem::ContactProblem;
 use crate::qp::{Method, Settings, solve};
@@ -133,33 +133,40 @@ impl Scene {
 }
 
 impl DynamicSpec {
-    /// The scheme with its parameters.
+    /// The scheme with its parameter.
     pub fn scheme(&self) -> Scheme {
-        match self.scheme {
-            SchemeSpec::Midpoint => Scheme::Midpoint,
-            SchemeSpec::Trapezoidal => Scheme::Trapezoidal,
-            SchemeSpec::ContactStabilised => Scheme::ContactStabilised,
-            SchemeSpec::Hht => Scheme::Hht { alpha: self.alpha.unwrap_or(-0.1) },
-            SchemeSpec::Penalty => Scheme::Penalty { penalty: self.penalty.unwrap_or(10.0) },
-            SchemeSpec::CentralDifference => Scheme::CentralDifference { restitution: self.restitution.unwrap_or(0.0) },
-        }
+        let own = self.scheme.parameter().map(|parameter| parameter.name);
+        let given = self.parameters().into_iter().find(|(name, _)| Some(*name) == own);
+        self.scheme.with(given.and_then(|(_, value)| value))
     }
 
-    /// Is every parameter that is given one of the scheme?
+    /// The same with another scheme, and without the parameters that it has not.
+    pub fn with_scheme(mut self, scheme: SchemeSpec) -> Self {
+        self.scheme = scheme;
+        let own = scheme.parameter().map(|parameter| parameter.name);
+        let [alpha, penalty, restitution] = self.parameters().map(|(name, value)| value.filter(|_| Some(name) == own));
+        (self.alpha, self.penalty, self.restitution) = (alpha, penalty, restitution);
+        self
+    }
+
+    /// The parameters of all schemes, as they are given.
+    fn parameters(&self) -> [(&'static str, Option<f64>); 3] {
+        [("alpha", self.alpha), ("penalty", self.penalty), ("restitution", self.restitution)]
+    }
+
+    /// Refuses a parameter that is given but belongs to another scheme.
     fn check_parameters(&self) -> Result<(), Error> {
-        let parameters = [
-            ("alpha", self.alpha, "hht"),
-            ("penalty", self.penalty, "penalty"),
-            ("restitution", self.restitution, "central-difference"),
-        ];
-        let chosen = self.scheme().name();
-        match parameters.into_iter().find(|&(_, value, scheme)| value.is_some() && scheme != chosen) {
-            Some((name, _, scheme)) => {
-                let message = format!("only the scheme `{scheme}` has it; this is `{chosen}`");
-                Err(wrong(format!("{PATH}.{name}"), message))
+        let named = |scheme: SchemeSpec, name| scheme.parameter().is_some_and(|parameter| parameter.name == name);
+        for (name, value) in self.parameters() {
+            if value.is_none() || named(self.scheme, name) {
+                continue;
             }
-            None => Ok(()),
+            let others = SchemeSpec::ALL.into_iter().filter(|&scheme| named(scheme, name));
+            let others: Vec<String> = others.map(|scheme| format!("`{}`", scheme.name())).collect();
+            let message = format!("only the scheme {} has it; this is `{}`", others.join(" or "), self.scheme.name());
+            return Err(wrong(format!("{PATH}.{name}"), message));
         }
+        Ok(())
     }
 
     fn changes(&self, load: usize) -> bool {

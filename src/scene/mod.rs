@@ -18,11 +18,11 @@ mod body;
 mod build;
 mod condition;
 mod dynamics;
+mod elastic;
 mod entry;
 mod explain;
 mod held;
 mod locate;
-mod mesh;
 mod model;
 mod obstacle;
 mod parse;
@@ -34,17 +34,18 @@ mod schema;
 mod size;
 mod warning;
 
+pub use crate::motion::SchemeSpec;
+pub use body::*;
 pub use dynamics::Dynamics;
 pub use model::Model;
 pub use obstacle::Obstacle;
 pub use rows::ContactRow;
 pub use schema::{
-    AnalysisSpec, Approach, AxisSpec, BarSpec, BodySpec, BoxSpec, CircleSpec, ConeSpec, CylinderSpec, DampingSpec,
-    DiscSpec, DynamicSpec, ElementSpec, FacingSpec, FactorSpec, FactorTableSpec, FieldSpec, ForceSpec, FurtherBodySpec,
-    GmshSpec, HalfBallSpec, HalfDiscSpec, HalfSpec, HeightMapSpec, InitialSpec, IntegrationSpec, IntervalSpec,
-    LoadInTimeSpec, LoadSpec, MassSpec, MaterialSpec, ModelSpec, ObstacleSpec, ParabolaSpec, PenetrationSpec, Place,
-    PlaneSpec, PressureSpec, RectangleSpec, RingSpec, Rule, Scene, SchemeSpec, ShapeSpec, SineSpec, SolidElementSpec,
-    SphereSpec, SupportSpec, SymmetrySpec, TableSpec, TractionSpec, Units, WedgeSpec, ZoneSpec,
+    AnalysisSpec, Approach, AxisSpec, CircleSpec, ConeSpec, CylinderSpec, DampingSpec, DynamicSpec, ElementSpec,
+    FacingSpec, FactorSpec, FactorTableSpec, FieldSpec, ForceSpec, FurtherBodySpec, HalfSpec, HeightMapSpec,
+    InitialSpec, IntegrationSpec, IntervalSpec, LoadInTimeSpec, LoadSpec, MassSpec, MaterialSpec, ModelSpec,
+    ObstacleSpec, ParabolaSpec, PenetrationSpec, Place, PlaneSpec, PressureSpec, Rule, Scene, ShapeSpec, SineSpec,
+    SolidElementSpec, SphereSpec, SupportSpec, TableSpec, TractionSpec, Units, WedgeSpec, ZoneSpec,
 };
 pub use size::Size;
 pub use warning::Warning;

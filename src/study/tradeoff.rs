@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::discretisation_error;
 use crate::error::Error;
 use crate::qp::linear::dot;
-use crate::qp::{Condense, Method, Precision, Prepared, Settings, solve};
+use crate::qp::{Condense, InteriorPoint, Method, Penalty, Precision, Prepared, Settings, solve};
 use crate::scene::{Model, Scene};
 use crate::solution::Solution;
 use crate::watch::Watch;
@@ -193,8 +193,7 @@ fn ways(condense: Condense, precision: Precision) -> Vec<Way> {
     // What an interior point leaves undone is more than single precision does.
     for (method, polish) in [("qp", false), (POLISHED, true)].into_iter().filter(|way| way.1 || !mixed) {
         for tolerance in TOLERANCES {
-            let mut settings = base(Method::Qp);
-            (settings.polish, settings.interior_point_tolerance) = (polish, tolerance);
+            let settings = base(Method::Qp(InteriorPoint { polish, tolerance }));
             ways.push(Way { method, knob: Some(tolerance), settings });
         }
     }
@@ -204,8 +203,8 @@ fn ways(condense: Condense, precision: Precision) -> Vec<Way> {
         ways.push(Way { method: "active-set", knob: Some(accuracy), settings });
     }
     for last in PENALTIES {
-        let mut settings = base(Method::Penalty);
-        (settings.last_penalty, settings.penetration_threshold) = (last, 0.0);
+        let ladder = Penalty { last, penetration_threshold: 0.0, ..Penalty::default() };
+        let settings = base(Method::Penalty(ladder));
         ways.push(Way { method: "penalty", knob: Some(last), settings });
     }
     ways

@@ -14,7 +14,7 @@ const FLOORS: [&[&str]; 18] = [
     &["file", "qp/barrier", "fem/formulation", "fem/geometry", "fem/closed_forms"],
     &["qp/linear", "fem/element", "fem/material"],
     &["qp/problem", "fem/mesh"],
-    &["qp/transform", "qp/method", "fem/body"],
+    &["qp/certificate", "qp/transform", "qp/method", "fem/body"],
     &["qp/settings", "qp/matrix_market", "fem/assembly", "fem/recovery", "fem/norms"],
     &["qp/cost", "qp/judged", "qp/run"],
     &["qp/plan"],

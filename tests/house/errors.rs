@@ -1,8 +1,10 @@
 //! Every variant of the one error is provoked, with its code and one sentence.
 
+use signorini::Penalty;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
+use std::time::Duration;
 
 use crate::oracles::Dense;
 use signorini::fem::GmshFile;
@@ -37,10 +39,10 @@ fn provoked() -> Result<BTreeMap<&'static str, (&'static str, Error)>, Error> {
     let nowhere = Path::new("nowhere");
     let unprepared = Prepared::new(&spring_and_wall, Condense::Never)?;
     let still = unprepared.path(&[0.5], &[0.4], &Settings::default());
-    let hasty = Prepared::with_settings(&spring_and_wall, &settings(|settings| settings.time = Some(0.0)));
+    let hasty = Prepared::with_settings(&spring_and_wall, &settings(|settings| settings.time = Some(Duration::ZERO)));
     let stopped = Settings::default();
     stopped.watch.stop();
-    let never = settings(|settings| (settings.method, settings.last_penalty) = (Method::Penalty, 1.0));
+    let never = Settings::with_method(Method::Penalty(Penalty { last: 1.0, ..Penalty::default() }));
     Ok(BTreeMap::from([
         ("Length", ("length", spring_and_wall.with_load(vec![1.0, 2.0]).unwrap_err())),
         ("Shape", ("shape", SymmetricMatrix::from_full(&not_square?).unwrap_err())),

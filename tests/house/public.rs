@@ -1,6 +1,7 @@
 //! What every user may rely on: types that cross threads and print themselves, sets that are collections, matrices from
 //! compressed columns, the best answer inside an error.
 
+use signorini::Penalty;
 use std::fmt::Debug;
 
 use signorini::fem::ElasticBody;
@@ -68,8 +69,7 @@ fn an_error_that_carries_an_answer_gives_it_away() {
     let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(1, 1, &[(0, 0, 1.0)]).unwrap()).unwrap();
     let contact = SparseMatrix::from_triplets(1, 1, &[(0, 0, 1.0)]).unwrap();
     let problem = ContactProblem::new(stiffness, vec![2.0], contact, vec![0.5]).unwrap();
-    let mut settings = Settings::with_method(Method::Penalty);
-    settings.last_penalty = 1.0;
+    let settings = Settings::with_method(Method::Penalty(Penalty { last: 1.0, ..Penalty::default() }));
     // One spring of the stiffness 1 beside the body's own: u = (2 + 0.5)/2.
     let best = solve(&problem, &settings).unwrap_err().into_best().unwrap();
     assert!((best.displacement[0] - 1.25).abs() < 1e-15, "{:?}", best.displacement);

@@ -144,14 +144,14 @@ fn the_last_answer_is_a_start_that_saves_cycles() {
     let problem = built(&clamped_block(12, -0.01)).problem().clone();
     let iterative = Iterative::new(&problem, 1).unwrap();
     let first = iterative.solve(Start::default(), &mprgp()).unwrap();
-    let again = Start { displacement: Some(&first.displacement), contact_set: Some(&first.contact_set) };
+    let again = Start::from(&first);
     let gap: Vec<f64> = problem.gap().iter().map(|gap| gap - 1e-4).collect();
     let next = iterative.solve_gap(gap.clone(), again, &mprgp()).unwrap();
     let cold = iterative.solve_gap(gap, Start::default(), &mprgp()).unwrap();
     assert_eq!(next.contact_set, cold.contact_set);
     assert!(next.iterations < cold.iterations, "{} against {}", next.iterations, cold.iterations);
     let wrong = vec![0.0; 3];
-    let start = Start { displacement: Some(&wrong), contact_set: None };
+    let start = Start::near(wrong);
     assert!(matches!(iterative.solve(start, &mprgp()), Err(Error::Length { .. })));
 }
 
@@ -161,7 +161,7 @@ fn a_start_far_off_changes_nothing_but_the_cycles() {
     let iterative = Iterative::new(&problem, 1).unwrap();
     let cold = iterative.solve(Start::default(), &mprgp()).unwrap();
     let closed = ContactSet::closed(problem.rows());
-    let start = Start { displacement: None, contact_set: Some(&closed) };
+    let start = Start::from(&closed);
     assert_eq!(iterative.solve(start, &mprgp()).unwrap().contact_set, cold.contact_set);
 }
 
@@ -258,7 +258,7 @@ fn too_few_cycles_end_with_the_best_answer_not_certified() {
         Err(error) => panic!("{error}"),
     };
     assert!(solution.iterations < 60 && solution.certificate.meets(1e-12), "{:?}", solution.certificate);
-    settings.time = Some(0.0);
+    settings.time = Some(std::time::Duration::ZERO);
     let Err(Error::NotCertified { solution, .. }) = solve(&problem, &settings) else { panic!("in no time?") };
     assert_eq!((solution.iterations, solution.method.as_str()), (0, "none"), "no time to begin");
 }

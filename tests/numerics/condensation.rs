@@ -3,6 +3,7 @@
 //! CONDITIONS: every example scene, the reference gaps, a body in space, inclined and two-sided rows, bodies that only their
 //! rows hold, redundant rows; one thread and two.
 
+use signorini::Penalty;
 use std::path::Path;
 
 use crate::oracles::{Draws, random};
@@ -15,7 +16,7 @@ use signorini::{
 /// Condensed and full answers differ by rounding, enlarged by the condition number of the stiffness.
 const SAME: f64 = 1e-11;
 
-const EXACT: [Method; 2] = [Method::Qp, Method::ActiveSet];
+const EXACT: [Method; 2] = [Method::qp(), Method::ActiveSet];
 
 fn settings(method: Method, condense: Condense) -> Settings {
     let mut settings = Settings::with_method(method);
@@ -163,8 +164,8 @@ fn boundary_alone_agrees_with_the_whole_answer() {
 fn boundary_of_a_poor_answer_is_not_certified() {
     let problem = example("indentation");
     let prepared = Prepared::new(&problem, Condense::Auto).unwrap();
-    let mut settings = settings(Method::Penalty, Condense::Auto);
-    settings.last_penalty = 1e3;
+    let ladder = Penalty { last: 1e3, ..Penalty::default() };
+    let settings = settings(Method::Penalty(ladder), Condense::Auto);
     let refused = prepared.boundary_at_gap(problem.gap().to_vec(), None, &settings);
     assert!(matches!(refused, Err(Error::NotCertified { .. })), "{refused:?}");
 }
@@ -246,7 +247,7 @@ fn inclined_two_sided_and_redundant_rows_condense() {
 fn next_gap_and_next_load_agree_with_independent_solves() {
     let problem = example("indentation");
     let prepared = Prepared::new(&problem, Condense::Auto).unwrap();
-    let default = Settings::with_method(Method::Qp);
+    let default = Settings::with_method(Method::qp());
     let mut last = prepared.solve(&default).unwrap();
     for step in 1..8 {
         let gap: Vec<f64> = problem.gap().iter().map(|gap| gap - 0.006 * f64::from(step)).collect();
@@ -343,15 +344,15 @@ fn pressed_block(width: f64, height: f64) -> ContactProblem {
 fn where_condensation_loses_the_digits_all_dofs_give_them() {
     let force = |width: f64| 0.7 / (1.3 * 0.4) * 0.01 * width;
     let wide = pressed_block(1e6, 1.0);
-    for method in [Method::Auto, Method::Qp, Method::ActiveSet, Method::Penalty] {
+    for method in [Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty()] {
         let mut settings = settings(method, Condense::Auto);
-        if method == Method::Penalty {
+        if method == Method::penalty() {
             settings.tolerance = 1e-6;
         }
         let solution = answer(&wide, &settings);
         assert_eq!(solution.condensed_dofs, wide.dofs(), "{method:?}");
         let error = (solution.contact_force() / force(1e6) - 1.0).abs();
-        assert!(error <= 1e-12 || method == Method::Penalty && error <= 1e-6, "{method:?}: {error:e}");
+        assert!(error <= 1e-12 || method == Method::penalty() && error <= 1e-6, "{method:?}: {error:e}");
         // Both attempts are told, and their time counts.
         let [attempt] = &solution.attempts[..] else { panic!("{method:?}: {:?}", solution.attempts) };
         assert!(attempt.reason.contains("condensed dofs") && attempt.reason.contains("above"), "{attempt:?}");

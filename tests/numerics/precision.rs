@@ -29,7 +29,7 @@ fn refined_answers_are_those_of_double_precision() {
         let path = format!("{}/examples/{name}.json", env!("CARGO_MANIFEST_DIR"));
         let model = Scene::read(path).unwrap().build().unwrap();
         let problem = model.problem();
-        for method in [Method::Qp, Method::ActiveSet] {
+        for method in [Method::qp(), Method::ActiveSet] {
             let exact = solve(problem, &with(method, Precision::Double, None)).unwrap();
             assert_eq!(exact.refinements, None);
             let found = solve(problem, &with(method, Precision::Mixed, None)).unwrap();

@@ -2,6 +2,7 @@
 
 use crate::program::scene;
 use serde_json::{Value, json};
+use signorini::InteriorPoint;
 use signorini::motion::Integrator;
 use signorini::study::{TradeoffGrid, compare, even_gaps, motion_tradeoff, sweep, tradeoff};
 use signorini::{Condense, Error, Iterative, Method, Prepared, Scene, Settings, Solution, Start, Watch, solve};
@@ -60,7 +61,7 @@ fn clones_share_the_request_and_the_activity_but_not_the_deadline() {
 #[test]
 fn what_is_stopped_before_it_begins_is_interrupted_whatever_the_method() {
     let model = build(&block(8));
-    for method in [Method::Auto, Method::Qp, Method::ActiveSet, Method::Penalty, Method::Mprgp] {
+    for method in [Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty(), Method::Mprgp] {
         let settings = Settings::with_method(method);
         settings.watch.stop();
         assert!(matches!(solve(model.problem(), &settings), Err(Error::Interrupted)), "{method:?}");
@@ -80,7 +81,7 @@ fn a_loop_that_is_stopped_ends_with_a_certified_part_of_its_way() {
     let model = build(&block(60));
     // All dofs: every iteration is a factorisation.
     let prepared = Prepared::new(model.problem(), Condense::Never).unwrap();
-    let mut settings = Settings::with_method(Method::Penalty);
+    let mut settings = Settings::with_method(Method::penalty());
     let whole = found(prepared.solve(&settings));
     settings.watch = stopping_at("penalty loop", 3);
     let Err(Error::NotCertified { solution, .. }) = prepared.solve(&settings) else { panic!("it was not cut short") };
@@ -91,7 +92,7 @@ fn a_loop_that_is_stopped_ends_with_a_certified_part_of_its_way() {
     let bound = solution.certificate.energy_error_bound;
     assert!(bound.is_finite() && bound > whole.certificate.energy_error_bound, "{bound}");
 
-    for method in [Method::ActiveSet, Method::Penalty] {
+    for method in [Method::ActiveSet, Method::penalty()] {
         let settings = Settings::with_method(method);
         settings.watch.stop();
         let Err(Error::NotCertified { solution, .. }) = prepared.solve(&settings) else { panic!("{method:?}") };
@@ -103,8 +104,8 @@ fn a_loop_that_is_stopped_ends_with_a_certified_part_of_its_way() {
 fn interior_point_and_multigrid_notice_that_they_should_end() {
     let model = build(&block(40));
     let prepared = Prepared::new(model.problem(), Condense::Never).unwrap();
-    let mut settings = Settings::with_method(Method::Qp);
-    settings.polish = false;
+    let unpolished = InteriorPoint { polish: false, ..InteriorPoint::default() };
+    let mut settings = Settings::with_method(Method::Qp(unpolished));
     let whole = found(prepared.solve(&settings));
     settings.watch = stopping_at("interior point", 2);
     let Err(Error::NotCertified { solution, .. }) = prepared.solve(&settings) else { panic!("it was not cut short") };
@@ -208,7 +209,7 @@ fn memory_that_does_not_suffice_is_refused_before_a_factorisation() {
     for (method, condense) in [
         (Method::ActiveSet, Condense::Auto),
         (Method::ActiveSet, Condense::Never),
-        (Method::Penalty, Condense::Auto),
+        (Method::penalty(), Condense::Auto),
         (Method::Mprgp, Condense::Auto),
     ] {
         let mut settings = Settings::with_method(method);

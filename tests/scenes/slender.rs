@@ -38,7 +38,7 @@ fn ways() -> [Settings; 4] {
     let with = Settings::with_method;
     let mut never = Settings::default();
     never.condense = Condense::Never;
-    [Settings::default(), never, with(Method::Qp), with(Method::ActiveSet)]
+    [Settings::default(), never, with(Method::qp()), with(Method::ActiveSet)]
 }
 
 fn answer(scene: &Value, settings: &Settings) -> Result<Solution, Error> {

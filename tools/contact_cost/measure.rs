@@ -58,8 +58,8 @@ pub const TASKS: [Task; 15] = [
     task("linear solve", Work::Linear(Ordering::Amd), ALL),
     task("linear solve, dissected", Work::Linear(Ordering::NestedDissection(3)), [0, usize::MAX]),
     contact("active set", Method::ActiveSet),
-    contact("QP", Method::Qp),
-    contact("penalty", Method::Penalty),
+    contact("QP", Method::qp()),
+    contact("penalty", Method::penalty()),
     task("active set, uncertified", Work::Uncertified, ALL),
     task("active set, wall clock", Work::Threads(1), ALL),
     task("active set, two threads", Work::Threads(2), ALL),
@@ -67,8 +67,8 @@ pub const TASKS: [Task; 15] = [
     task("next gap, displacement", Work::NextDisplacement, ALL),
     task("sweep of ten gaps", Work::Sweep, ALL),
     full("active set, full", Method::ActiveSet, [40_000, 10_000]),
-    full("QP, full", Method::Qp, [140_000, 10_000]),
-    full("penalty, full", Method::Penalty, [40_000, 10_000]),
+    full("QP, full", Method::qp(), [140_000, 10_000]),
+    full("penalty, full", Method::penalty(), [40_000, 10_000]),
 ];
 
 impl Task {

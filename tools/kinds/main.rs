@@ -4,7 +4,7 @@
 mod problems;
 
 use std::process::ExitCode;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use problems::KINDS;
 use signorini::{ContactSet, Error, Method, Settings, solve};
@@ -18,7 +18,7 @@ fn main() -> ExitCode {
     let only = option("--only", "");
     let most: f64 = option("--seconds", "60").parse().unwrap_or(60.0);
     let names = option("--methods", "auto,mprgp,active-set");
-    let methods = [Method::Auto, Method::Mprgp, Method::ActiveSet, Method::Qp, Method::Penalty];
+    let methods = [Method::Auto, Method::Mprgp, Method::ActiveSet, Method::qp(), Method::penalty()];
     println!("{:16} {:10} {:>8} {:>8}  {:22} {:>9} {:>9} {:>7} {:>7} {:>9}", "kind", "method", "unknowns", "rows", "by", "s", "factor s", "its", "closed", "undecided");
     for kind in KINDS.iter().filter(|kind| only.is_empty() || only.split(',').any(|name| name == kind.name)) {
         let problem = match (kind.make)() {
@@ -31,7 +31,7 @@ fn main() -> ExitCode {
         let mut reference: Option<ContactSet> = None;
         for method in methods.into_iter().filter(|method| names.split(',').any(|name| name == method.name())) {
             for proof in [false, true] {
-                let mut settings = Settings::within(most);
+                let mut settings = Settings::within(Duration::from_secs_f64(most));
                 settings.method = method;
                 settings.prove = proof;
                 let clock = Instant::now();

@@ -83,13 +83,14 @@ impl ElasticBody {
     /// The same body with another integration of its stiffness.
     ///
     /// # Errors
-    /// [`Error::Mesh`] for mean dilatation with other elements than Q4 and Hex8, or in plane stress.
+    /// [`Error::Mesh`] for mean dilatation with an element that does not [take it](ElementKind::takes_mean_dilatation), or in
+    /// plane stress.
     pub fn with_integration(mut self, integration: Integration) -> Result<Self, Error> {
         if integration == Integration::MeanDilatation {
             let element = self.mesh.kind();
-            if !matches!(element, ElementKind::Q4 | ElementKind::Hex8) {
-                let name = element.name();
-                let message = format!("mean dilatation is for Q4 and Hex8 elements, not for {name}");
+            if !element.takes_mean_dilatation() {
+                let (those, name) = (ElementKind::of_mean_dilatation("and"), element.name());
+                let message = format!("mean dilatation is for {those} elements, not for {name}");
                 return Err(Error::Mesh { message });
             }
             if !self.formulation.can_lock() {

@@ -18,7 +18,7 @@ pub struct Zone {
 const SMALLEST: f64 = 1e-8;
 
 impl Zone {
-    pub(super) fn check(&self, radius: f64) -> Result<(), Error> {
+    pub(crate) fn check(&self, radius: f64) -> Result<(), Error> {
         let fail = |name, value, allowed| Err(Error::Setting { name, value, allowed });
         if !(radius.is_normal() && radius > 0.0) {
             return fail("radius", radius, "positive and finite");

@@ -7,12 +7,13 @@ use super::found::Found;
 use super::loading::Loading;
 use super::reduction::Reduction;
 use crate::error::Error;
+use crate::qp::certificate::EnergyNorm;
 use crate::qp::cost::{check_time, seconds};
-use crate::qp::judged::judged;
+use crate::qp::judged::{answer, judged};
 use crate::qp::linear::{AugmentedMatrix, Equilibration, dot, largest, ldexp};
-use crate::qp::method::{ScaledProblem, WORK_TOLERANCE, active_set};
+use crate::qp::method::{Outcome, ScaledProblem, WORK_TOLERANCE, active_set};
 use crate::qp::plan::{Tried, Way};
-use crate::qp::problem::{ContactProblem, EnergyNorm, check_gap, check_load};
+use crate::qp::problem::{ContactProblem, check_gap, check_load};
 use crate::qp::run::{last_resort, run};
 use crate::qp::settings::{Condense, Method, Settings};
 use crate::qp::transform::Condensation;
@@ -204,7 +205,7 @@ impl Prepared {
         let factors = if self.reduction.norm.is_some() { 1.0 } else { SINGULAR };
         let of_loop = factors * seconds::factorisation(analysis);
         let (first, each) = match settings.method {
-            Method::Qp => (2.0 * seconds::interior_point(analysis), seconds::interior_point(analysis).max(of_loop)),
+            Method::Qp(_) => (2.0 * seconds::interior_point(analysis), seconds::interior_point(analysis).max(of_loop)),
             _ => (of_loop, of_loop),
         };
         check_time(&settings.watch, first)?;
@@ -306,21 +307,19 @@ impl Prepared {
             contact_set: self.reduction.selection.expand_set(&step.contact_set),
             penalty: step.penalty,
         };
-        let mut solution = Solution {
+        let whole = Outcome {
             displacement,
             multiplier,
             contact_set: self.reduction.selection.expand_set(&outcome.contact_set),
-            method: format!("{}{}", method.name(), outcome.variant),
-            iterations: outcome.iterations,
             history: outcome.history.iter().map(expand_iteration).collect(),
-            certificate,
-            proven: None,
+            ..*outcome
+        };
+        let mut solution = Solution {
             refinements: refined.as_ref().map(|refined| refined.steps),
-            reason: None,
-            attempts: Vec::new(),
             lost_pivot: self.lost_pivot,
             condensed_dofs: self.condensed_dofs(),
             seconds: Seconds { solve: seconds.solve + clock.elapsed().as_secs_f64(), ..*seconds },
+            ..answer(whole, method.name(), certificate)
         };
         if !self.is_single() && self.resolved(settings).wants_best() {
             solution = self.corrected(solution, &problem, settings)?;

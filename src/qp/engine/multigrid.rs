@@ -4,10 +4,10 @@ use std::time::Instant;
 
 use crate::error::Error;
 use crate::qp::cost::{Estimate, Kept, check_memory, check_time, seconds};
-use crate::qp::judged::{judged, with_solution};
+use crate::qp::judged::{answer, judged, with_solution};
 use crate::qp::linear::multigrid::{Multigrid, NearNullSpace};
-use crate::qp::method::Outcome;
-use crate::qp::method::mprgp::{self, Limits, Start};
+use crate::qp::method::mprgp::{Limits, Mprgp};
+use crate::qp::method::{Outcome, Solver, Start};
 use crate::qp::problem::{ContactProblem, check_gap};
 use crate::qp::settings::{Method, Settings};
 use crate::qp::transform::RowSelection;
@@ -88,15 +88,18 @@ impl Iterative {
         let clock = Instant::now();
         check_gap(&gap, self.problem.rows())?;
         RowSelection::of(self.problem.contact(), &gap)?;
-        if let Some(found) = start.displacement.map(<[f64]>::len).filter(|&found| found != self.problem.dofs()) {
+        if let Some(found) = start.displacement.as_ref().map(Vec::len).filter(|&found| found != self.problem.dofs()) {
             return Err(Error::Length { name: "start displacement", found, expected: self.problem.dofs(), of: "dofs" });
         }
         let problem = self.problem.with_gap(gap)?;
         let goal = settings.goal();
         let mut tolerance = settings.accuracy.map_or(MARGIN * settings.tolerance, |accuracy| FIRST * accuracy);
         let mut most_cycles = settings.max_iterations;
-        let limits = |tolerance, most_cycles| Limits { tolerance, most_cycles, watch };
-        let mut found = mprgp::solve(&problem, &self.multigrid, start, limits(tolerance, most_cycles))?;
+        let multigrid = &self.multigrid;
+        let solve = |tolerance, most_cycles, start| {
+            Mprgp { problem: &problem, multigrid, limits: Limits { tolerance, most_cycles, watch } }.solve(start)
+        };
+        let mut found = solve(tolerance, most_cycles, start)?;
         let certificate = loop {
             let certificate = self.certificate(&problem, &found, &settings.watch)?;
             most_cycles = settings.max_iterations.saturating_sub(found.iterations);
@@ -109,29 +112,14 @@ impl Iterative {
             if met || !found.settled || tolerance < ROUNDING || most_cycles == 0 || watch.is_over() {
                 break certificate;
             }
-            let start = Start { displacement: Some(&found.displacement), contact_set: None };
-            let mut next = mprgp::solve(&problem, &self.multigrid, start, limits(tolerance, most_cycles))?;
+            let mut next = solve(tolerance, most_cycles, Start::near(found.displacement))?;
             next.iterations += found.iterations;
             found.history.append(&mut next.history);
             next.history = found.history;
             found = next;
         };
-        let solution = Solution {
-            displacement: found.displacement,
-            multiplier: found.multiplier,
-            contact_set: found.contact_set,
-            method: format!("{}{}", Method::Mprgp.name(), found.variant),
-            iterations: found.iterations,
-            history: found.history,
-            certificate,
-            proven: None,
-            refinements: None,
-            lost_pivot: None,
-            reason: None,
-            attempts: Vec::new(),
-            condensed_dofs: problem.dofs(),
-            seconds: Seconds { factor: 0.0, solve: clock.elapsed().as_secs_f64() },
-        };
+        let seconds = Seconds { factor: 0.0, solve: clock.elapsed().as_secs_f64() };
+        let solution = Solution { seconds, ..answer(found, Method::Mprgp.name(), certificate) };
         judged(solution, goal)
     }
 

@@ -144,14 +144,10 @@ fn kind(file: &GmshFile, elements: &[Element]) -> Result<ElementKind, Error> {
 /// The element here that an element type is; their nodes have the same order.
 fn accepted(cell: &CellType) -> Result<ElementKind, String> {
     let refused = |reason: &str| Err(format!("{} are refused: {reason}", cell.plural));
+    if let Some(kind) = ElementKind::ALL.into_iter().find(|kind| kind.reference().gmsh == cell.number) {
+        return Ok(kind);
+    }
     match cell.number {
-        1 => Ok(ElementKind::Line2),
-        2 => Ok(ElementKind::T3),
-        3 => Ok(ElementKind::Q4),
-        4 => Ok(ElementKind::Tet4),
-        5 => Ok(ElementKind::Hex8),
-        9 => Ok(ElementKind::T6),
-        16 => Ok(ElementKind::Q8),
         10 => refused("quadratic quadrilaterals have eight nodes here (in Gmsh, `Mesh.SecondOrderIncomplete = 1`)"),
         11 | 12 | 17 => refused(WRONG_SIGN),
         8 => refused("a bar has two nodes here (in Gmsh, `Mesh.ElementOrder = 1`)"),

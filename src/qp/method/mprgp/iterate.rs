@@ -1,9 +1,9 @@
 //! What MPRGP has in hand, and the steps that it takes.
 
-use super::start::Start;
 use crate::error::Error;
 use crate::qp::linear::multigrid::{Direction, Face};
 use crate::qp::linear::{dot, largest};
+use crate::qp::method::Start;
 use crate::qp::method::bounds::{Bound, Bounds};
 use crate::qp::method::holding::where_largest;
 use crate::qp::problem::ContactProblem;
@@ -78,13 +78,13 @@ impl<'a> Iterate<'a> {
     pub fn new(problem: &'a ContactProblem, bounds: &'a Bounds, start: Start, threads: usize) -> Self {
         let mut load = problem.load().to_vec();
         bounds.turn(&mut load);
-        let mut x = start.displacement.map_or_else(|| vec![0.0; problem.dofs()], <[f64]>::to_vec);
+        let mut x = start.displacement.unwrap_or_else(|| vec![0.0; problem.dofs()]);
         bounds.turn(&mut x);
         let diagonal = problem.stiffness().diagonal();
         let at = vec![At::Free; bounds.bounds().len()];
         let mut iterate = Iterate { problem, bounds, load, diagonal, x, gradient: Vec::new(), at, threads };
         for (index, bound) in bounds.bounds().iter().enumerate() {
-            if let Some(closed) = start.contact_set {
+            if let Some(closed) = &start.contact_set {
                 let value = &mut iterate.x[bound.unknown];
                 if bounds.is_closed(index, true, closed) {
                     *value = bound.upper;

@@ -17,13 +17,10 @@
 
 mod iterate;
 mod nested;
-mod start;
 mod uniqueness;
 
-pub use start::Start;
-
-use super::Outcome;
 use super::bounds::Bounds;
+use super::{Outcome, Solver, Start};
 use crate::error::Error;
 use crate::qp::linear::multigrid::{Face, Multigrid};
 use crate::qp::problem::ContactProblem;
@@ -49,6 +46,22 @@ pub struct Limits<'a> {
     pub watch: &'a Watch,
 }
 
+/// MPRGP on a problem as it came, with the hierarchy of its stiffness.
+pub struct Mprgp<'a> {
+    /// The problem.
+    pub problem: &'a ContactProblem,
+    /// The hierarchy.
+    pub multigrid: &'a Multigrid,
+    /// When the loop ends.
+    pub limits: Limits<'a>,
+}
+
+impl Solver for Mprgp<'_> {
+    fn solve(&self, start: Start) -> Result<Outcome, Error> {
+        solve(self.problem, self.multigrid, start, self.limits)
+    }
+}
+
 /// Finds displacement, multipliers and contact set; `iterations` counts the cycles of the hierarchy.
 ///
 /// The loop is finite: it ends at the limits, where only rounding is left, or, as `-stagnated`, where 60 iterations together
@@ -58,10 +71,10 @@ pub struct Limits<'a> {
 /// [`Error::Numerical`] for rows that no turning makes bounds of, [`Error::NotConvex`] for a direction of negative energy
 /// in a face, [`Error::Unbounded`] for a load that drives a motion which no row stops, [`Error::UnderHeld`] for a motion
 /// that the rows under pressure leave free.
-pub fn solve(problem: &ContactProblem, multigrid: &Multigrid, start: Start, limits: Limits) -> Result<Outcome, Error> {
+fn solve(problem: &ContactProblem, multigrid: &Multigrid, start: Start, limits: Limits) -> Result<Outcome, Error> {
     let bounds = Bounds::of(problem.contact(), problem.gap())?;
     let nested = if start.is_unknown() { nested_start(problem, &bounds, multigrid, limits) } else { None };
-    let start = Start { displacement: start.displacement.or(nested.as_deref()), ..start };
+    let start = nested.map_or(start, Start::near);
     let mut iterate = Iterate::new(problem, &bounds, start, multigrid.threads());
     let mut history = vec![iterate.step()];
     let mut face: Option<Face> = None;
