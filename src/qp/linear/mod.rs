@@ -13,6 +13,7 @@ mod ordering;
 mod orthogonal;
 mod power_of_two;
 mod quotient;
+mod selected_inverse;
 mod symmetric;
 mod vector;
 
@@ -24,6 +25,7 @@ pub use factor::FactorError;
 pub use null_space::generic;
 pub use orthogonal::inverse_lengths;
 pub use power_of_two::{Equilibration, exponent, ldexp};
+pub use selected_inverse::SelectedInverse;
 pub use symmetric::SymmetricMatrix;
 pub use vector::{dot, largest};
 
