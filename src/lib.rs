@@ -72,8 +72,8 @@ pub use error::Error;
 pub use qp::linear::{SparseMatrix, SymmetricMatrix};
 pub use qp::problem::ContactProblem;
 pub use qp::{
-    BoundarySolution, Condense, InteriorPoint, Iterative, Method, Path, Penalty, Precision, Prepared, Settings, Start,
-    solve, solve_qp,
+    BoundarySolution, Condense, InteriorPoint, Method, Path, Penalty, Precision, Prepared, Settings, Start, solve,
+    solve_qp,
 };
 pub use scene::{Model, Scene};
 pub use solution::{Attempt, Certificate, ContactSet, Goal, Iteration, ProvenSet, Seconds, Solution};

@@ -56,7 +56,6 @@ pub(super) trait Advance: fmt::Debug + Send + Sync {
 #[derive(Debug)]
 pub(super) struct Stepping {
     prepared: Prepared,
-    settings: Settings,
 }
 
 /// What a step found: change of the displacement, multipliers, closed rows.
@@ -76,9 +75,10 @@ impl Stepping {
 
     /// Factorises the matrix of `problem`; its load and gaps say nothing but which rows there are.
     pub fn new(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
-        let prepared = Prepared::with_settings(problem, settings)?;
+        let prepared = Prepared::new(problem, settings)?;
         // A step is done whole or not at all: there is no half of it to return.
-        Ok(Stepping { prepared, settings: Settings { watch: settings.watch.unhurried(), ..settings.clone() } })
+        let unhurried = Settings { watch: settings.watch.unhurried(), time: None, ..settings.clone() };
+        Ok(Stepping { prepared: prepared.with_settings(&unhurried)? })
     }
 
     /// Number of dofs.
@@ -88,21 +88,22 @@ impl Stepping {
 
     /// Solves with a force and gaps, from the set of the last step.
     pub fn solve(&self, force: Vec<f64>, gap: Vec<f64>, start: &ContactSet) -> Result<Found, Error> {
-        let boundary = self.prepared.step_at(force, gap, start, &self.settings)?;
+        let boundary = self.prepared.with_load(force)?.starting_from(start).step(&gap)?;
         let change = boundary.displacement();
         Ok(Found { change, multiplier: boundary.multiplier, contact_set: boundary.contact_set })
     }
 
     /// The change that a force alone causes, as if no row were closed; `None` without a factor of the matrix.
     pub fn response(&self, force: Vec<f64>) -> Result<Option<Vec<f64>>, Error> {
-        self.prepared.response(force)
+        Ok(self.prepared.with_load(force)?.response())
     }
 
     /// The change of the displacement alone; certified only where the method did not settle on a set.
     pub fn change(&self, force: Vec<f64>, gap: Vec<f64>, start: &ContactSet) -> Result<Vec<f64>, Error> {
-        match self.prepared.settled_at(force.clone(), gap.clone(), start, &self.settings)? {
+        let at_step = self.prepared.with_load(force)?.starting_from(start);
+        match at_step.settled(&gap)? {
             Some(change) => Ok(change),
-            None => Ok(self.solve(force, gap, start)?.change),
+            None => Ok(at_step.step(&gap)?.displacement()),
         }
     }
 }

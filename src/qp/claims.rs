@@ -23,7 +23,7 @@ use crate::qp::transform::Scaling;
 use crate::solution::Solution;
 
 /// Coordinates below this share of their terms are what the null space leaves of zero.
-const ROUNDING: f64 = 1e-10;
+const NULL_SPACE_ROUNDING: f64 = 1e-10;
 
 /// Rounding of sums in twice the working precision, as a share of their terms.
 const TWICE: f64 = 1e-30;
@@ -459,7 +459,7 @@ fn product(entries: impl Iterator<Item = (usize, f64)>, vector: &[f64]) -> f64 {
         let term = b * vector[dof];
         (sum + term, terms + term.abs())
     });
-    if f64::abs(sum) > ROUNDING * terms { sum } else { 0.0 }
+    if f64::abs(sum) > NULL_SPACE_ROUNDING * terms { sum } else { 0.0 }
 }
 
 /// The point of the cone `{a: rows a <= 0}` that is nearest to c, as the answer to a contact problem with K = I; `None` where
@@ -486,7 +486,7 @@ fn nearest_of_cone(rows: &[Vec<f64>], c: &[f64]) -> Option<Vec<f64>> {
         Err(_) => return None,
     };
     let distance = largest(&nearest);
-    let kept = |value: &f64| if value.abs() > ROUNDING * distance { *value } else { 0.0 };
+    let kept = |value: &f64| if value.abs() > NULL_SPACE_ROUNDING * distance { *value } else { 0.0 };
     (distance > TIP).then(|| nearest.iter().map(kept).collect())
 }
 
@@ -507,7 +507,7 @@ impl Left {
 
     fn does_no_work_on(&self, direction: &[f64]) -> bool {
         let size = absolute(direction);
-        let most = ROUNDING * dot(&absolute(&self.residual), &size) + TWICE * dot(&self.terms, &size);
+        let most = NULL_SPACE_ROUNDING * dot(&absolute(&self.residual), &size) + TWICE * dot(&self.terms, &size);
         dot(&self.residual, direction).abs() <= most
     }
 }

@@ -27,7 +27,7 @@ pub(crate) mod transform;
 
 pub use certificate::EnergyNorm;
 pub use cost::Estimate;
-pub use engine::{BoundarySolution, Iterative, Path, Prepared};
+pub use engine::{BoundarySolution, Path, Prepared};
 pub use method::Start;
 pub use method::interior_point::InteriorPoint;
 pub use method::parametric::{Event, Piece};
@@ -70,5 +70,5 @@ pub fn solve_qp(problem: &ContactProblem) -> Result<Solution, Error> {
 /// # Errors
 /// As [`solve`], without [`Error::NotCertified`]; [`Error::Infeasible`] where the rows of the set contradict each other.
 pub fn with_contact_set(problem: &ContactProblem, closed: &ContactSet) -> Result<(Vec<f64>, Vec<f64>), Error> {
-    Prepared::new(problem, Condense::Auto)?.with_contact_set(closed)
+    engine::with_contact_set(problem, closed)
 }

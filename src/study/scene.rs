@@ -8,7 +8,7 @@ use super::{ModelSize, Summary};
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
 use crate::fem::recovery;
-use crate::qp::{Event, Prepared, Settings, solve};
+use crate::qp::{Event, Prepared, Settings, Start, solve};
 use crate::scene::Model;
 use crate::solution::{ContactSet, Goal, Solution};
 
@@ -137,7 +137,7 @@ pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, 
         return Ok(Sweep { points: Vec::new(), events: Vec::new(), corners: Vec::new() });
     };
     let at_first = model.with_gap(first)?;
-    let prepared = Prepared::with_settings(at_first.problem(), settings).map_err(|error| at_first.explain(error))?;
+    let prepared = Prepared::new(at_first.problem(), settings).map_err(|error| at_first.explain(error))?;
     let mut points: Vec<SweepPoint> = Vec::new();
     for (index, &gap) in gaps.iter().enumerate() {
         settings.watch.part("gap", index + 1, gaps.len());
@@ -145,9 +145,9 @@ pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, 
         let model = model.with_gap(gap)?;
         let assemble_seconds = clock.elapsed().as_secs_f64();
         let same_rows = model.problem().contact() == at_first.problem().contact();
-        let start = points.last().map(|point| &point.solution.contact_set);
+        let known = points.last().map_or_else(Start::default, |point| Start::from(&point.solution));
         let solved = match same_rows {
-            true => prepared.solve_gap(model.problem().gap().to_vec(), start, settings),
+            true => prepared.starting_from(known).solve(model.problem().gap()),
             false => solve(model.problem(), settings),
         };
         let solution = match solved {
@@ -169,7 +169,7 @@ pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, 
     if settings.watch.is_stopped() {
         return Ok(Sweep { points, events: Vec::new(), corners: Vec::new() });
     }
-    let (events, corners) = between(&prepared, &at_first, first, last, settings)?;
+    let (events, corners) = between(&prepared, &at_first, first, last)?;
     Ok(Sweep { points, events, corners })
 }
 
@@ -179,7 +179,6 @@ fn between(
     at_first: &Model,
     first: f64,
     last: f64,
-    settings: &Settings,
 ) -> Result<(Vec<SweepEvent>, Vec<SweepCorner>), Error> {
     let (at_last, at_middle) = (at_first.with_gap(last)?, at_first.with_gap((first + last) / 2.0)?);
     let rows = at_first.problem().contact();
@@ -194,7 +193,7 @@ fn between(
     if first == last || !is_straight {
         return Ok((Vec::new(), Vec::new()));
     }
-    let Ok(path) = prepared.path(from, to, settings) else { return Ok((Vec::new(), Vec::new())) };
+    let Ok(path) = prepared.path(from, to) else { return Ok((Vec::new(), Vec::new())) };
     let gap_at = |t: f64| (1.0 - t) * first + t * last;
     let event = |event: &Event| {
         let node = at_first.rows()[event.row].node;

@@ -222,7 +222,7 @@ fn timed(model: &Model, ways: &[Way], runs: usize, watch: &Watch) -> Result<Vec<
         watch.part("run", number + 1, runs * ways.len());
         let clock = Instant::now();
         let solved =
-            Prepared::with_settings(model.problem(), &way.settings).and_then(|prepared| prepared.solve(&way.settings));
+            Prepared::new(model.problem(), &way.settings).and_then(|prepared| prepared.solve(model.problem().gap()));
         let seconds = clock.elapsed().as_secs_f64();
         if watch.is_stopped() {
             // What was cut short measures nothing.

@@ -9,6 +9,7 @@
 
 use super::EnergyNorm;
 use super::bound::Answer;
+use super::energy_norm::ROUNDED_BOUND;
 use crate::error::Error;
 use crate::qp::linear::{Dependence, SparseMatrix, dot, inverse_lengths, ldexp};
 use crate::qp::problem::ContactProblem;
@@ -16,9 +17,6 @@ use crate::solution::{ContactSet, ProvenSet};
 
 /// Multiplications that the compliance of the rows in question may cost; beyond, one dof of each row is moved alone.
 const MOST_WORK: f64 = 2e9;
-
-/// The bound can be the error itself; by this much it and all that is computed from it may be rounded.
-const ROUNDED: f64 = 1.0 + 1e-6;
 
 impl ContactProblem {
     /// The rows of which an answer proves, by its distance and force, that the exact answer has them open or closed;
@@ -42,7 +40,7 @@ impl ContactProblem {
         let violation = self.accurate_violation(displacement);
         let residual = self.accurate_residual(displacement, multiplier);
         let answer = Answer { displacement, multiplier, residual, violation: &violation };
-        let error = ROUNDED * self.energy_error_bound(norm, &answer).whole;
+        let error = ROUNDED_BOUND * self.energy_error_bound(norm, &answer).whole;
         if !error.is_finite() {
             return None;
         }
@@ -58,7 +56,7 @@ impl ContactProblem {
         let dropped: Vec<f64> = (0..rows).map(|row| if open.contains(row) { -multiplier[row] } else { 0.0 }).collect();
         let force: Vec<f64> =
             answer.residual.iter().zip(self.contact.mul_transposed(&dropped)).map(|(r, part)| r + part).collect();
-        let imbalance = ROUNDED * norm.widening() * norm.of_force(&force) + error;
+        let imbalance = ROUNDED_BOUND * norm.widening() * norm.of_force(&force) + error;
         let mut closed = ContactSet::open(rows);
         let alone = self.moved_alone(&in_question);
         let proven = |row: usize, length: f64| -multiplier[row] > norm.widening() * length * imbalance;

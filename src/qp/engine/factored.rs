@@ -1,10 +1,11 @@
-//! A problem with everything done that does not depend on load and gap: factor once, contact many.
+//! The engine with a factor: everything is done once that does not depend on load and gap.
 
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
+use super::case::Case;
 use super::found::Found;
-use super::loading::Loading;
+use super::loading::{Load, Loading};
 use super::reduction::Reduction;
 use crate::error::Error;
 use crate::qp::certificate::EnergyNorm;
@@ -13,9 +14,9 @@ use crate::qp::judged::{answer, judged};
 use crate::qp::linear::{AugmentedMatrix, Equilibration, dot, largest, ldexp};
 use crate::qp::method::{Outcome, ScaledProblem, WORK_TOLERANCE, active_set};
 use crate::qp::plan::{Tried, Way};
-use crate::qp::problem::{ContactProblem, check_gap, check_load};
+use crate::qp::problem::{ContactProblem, check_gap};
 use crate::qp::run::{last_resort, run};
-use crate::qp::settings::{Condense, Method, Settings};
+use crate::qp::settings::{Method, Settings};
 use crate::qp::transform::Condensation;
 use crate::solution::{Certificate, ContactSet, Iteration, Seconds, Solution};
 use crate::watch::Watch;
@@ -23,9 +24,9 @@ use crate::watch::Watch;
 /// Factorisations for one step of a loop where K is not definite by itself.
 const SINGULAR: f64 = 3.0;
 
-/// A contact problem, scaled, condensed where that pays, factorised, its load swept through the factor.
-#[derive(Clone, Debug)]
-pub struct Prepared {
+/// A contact problem, scaled, condensed where that pays, factorised.
+#[derive(Debug)]
+pub(super) struct Factored {
     pub(super) problem: ContactProblem,
     pub(super) reduction: Reduction,
     /// The smallest pivot of the scaled stiffness, where it is below [`LOST_PIVOT`](super::preparation::LOST_PIVOT).
@@ -33,8 +34,6 @@ pub struct Prepared {
     pub(super) augmented: AugmentedMatrix,
     /// Energy norm of the condensed stiffness, made when it is first asked for.
     pub(super) condensed_norm: OnceLock<Option<EnergyNorm>>,
-    /// The load of the problem, swept when it is first solved with.
-    pub(super) loading: OnceLock<Arc<Loading>>,
     /// What was chosen, where the choice was left to the program.
     pub(super) way: Option<Way>,
     pub(super) multiplications: f64,
@@ -45,19 +44,10 @@ pub struct Prepared {
     pub(super) seconds: Seconds,
 }
 
-impl Prepared {
-    /// Scales, condenses and factorises `problem`.
-    ///
-    /// # Errors
-    /// [`Error::Infeasible`] for rows that contradict each other at the gaps of `problem`, [`Error::NotConvex`],
-    /// [`Error::Numerical`] where memory does not suffice.
-    pub fn new(problem: &ContactProblem, condense: Condense) -> Result<Self, Error> {
-        Self::with_settings(problem, &Settings { condense, ..Settings::default() })
-    }
-
-    /// Number of dofs of the problem.
-    pub fn dofs(&self) -> usize {
-        self.problem.dofs()
+impl Factored {
+    /// The problem as it came.
+    pub fn problem(&self) -> &ContactProblem {
+        &self.problem
     }
 
     /// Number of unknowns that the methods work on.
@@ -68,11 +58,6 @@ impl Prepared {
     /// Number of values of the factor of the stiffness; zero where the methods factorise by themselves.
     pub fn factor_entries(&self) -> usize {
         self.reduction.condensation.as_ref().map_or(0, Condensation::factor_entries)
-    }
-
-    /// Bytes of these values.
-    pub fn factor_bytes(&self) -> usize {
-        self.factor_entries() * if self.is_single() { size_of::<f32>() } else { size_of::<f64>() }
     }
 
     /// Multiplications of the factorisation of the stiffness.
@@ -86,7 +71,7 @@ impl Prepared {
     }
 
     /// What a solve with `settings` tries here.
-    pub(in crate::qp) fn tried(&self, settings: &Settings) -> Tried {
+    pub fn tried(&self, settings: &Settings) -> Tried {
         Tried {
             method: self.resolved(settings).method,
             condensed_dofs: self.is_condensed().then(|| self.condensed_dofs()),
@@ -99,37 +84,12 @@ impl Prepared {
         self.seconds
     }
 
-    /// Solves with the load and the gaps of the problem that was prepared.
+    /// The whole answer, certified.
     ///
     /// # Errors
-    /// As [`solve`](crate::solve).
-    pub fn solve(&self, settings: &Settings) -> Result<Solution, Error> {
-        self.solve_gap(self.problem.gap().to_vec(), None, settings)
-    }
-
-    /// Solves with other gaps, the active-set steps starting from `start` where it is given.
-    ///
-    /// # Errors
-    /// As [`solve`](crate::solve); [`Error::Length`] and [`Error::NotFinite`] for gaps that do not fit, or that are
-    /// infinite in other rows than those of the problem that was prepared.
-    pub fn solve_gap(&self, gap: Vec<f64>, start: Option<&ContactSet>, settings: &Settings) -> Result<Solution, Error> {
-        let settings = &settings.started()?;
-        self.complete(self.find(self.own_load(), gap, start, settings)?, settings)
-    }
-
-    /// Solves with another load, the active-set steps starting from `start` where it is given.
-    ///
-    /// # Errors
-    /// As [`Prepared::solve_gap`], for the load.
-    pub fn solve_load(
-        &self,
-        load: Vec<f64>,
-        start: Option<&ContactSet>,
-        settings: &Settings,
-    ) -> Result<Solution, Error> {
-        let settings = &settings.started()?;
-        let loading = self.other_load(load, self.problem.gap())?;
-        self.complete(self.find(loading, self.problem.gap().to_vec(), start, settings)?, settings)
+    /// As [`Prepared::solve`](super::Prepared::solve).
+    pub fn solve(&self, case: &Case) -> Result<Solution, Error> {
+        self.best(self.find(case)?, case.settings).map(|best| best.1)
     }
 
     pub(super) fn expand_multiplier(&self, multiplier: &[f64], unit: i32) -> Vec<f64> {
@@ -140,17 +100,12 @@ impl Prepared {
         self.reduction.selection.expand_set(set)
     }
 
-    /// Runs the method of `settings`, on the contact boundary where the problem is condensed.
-    pub(super) fn find(
-        &self,
-        loading: Arc<Loading>,
-        gap: Vec<f64>,
-        start: Option<&ContactSet>,
-        settings: &Settings,
-    ) -> Result<Found, Error> {
-        let settings = &self.resolved(&settings.started()?);
-        self.check_gap(&gap)?;
-        let found = self.find_step(loading, gap, start, settings)?;
+    /// Runs the method, on the contact boundary where the problem is condensed.
+    pub fn find(&self, case: &Case) -> Result<Found, Error> {
+        let settings = &self.resolved(case.settings);
+        self.check_gap(case.gap)?;
+        let loading = case.load.swept(&self.reduction, &self.reduction.selection.gap(case.gap));
+        let found = self.find_step(loading, case.gap.to_vec(), case.start.contact_set.as_ref(), settings)?;
         if self.is_single() { self.refined(found, settings) } else { Ok(found) }
     }
 
@@ -236,11 +191,6 @@ impl Prepared {
         let on_boundary = dot(displacement, &problem.stiffness().mul(displacement));
         let interior = ldexp(condensed.interior_energy(&loading.sweep), 2 * (loading.unit - unit));
         if interior > 0.0 { (on_boundary / (on_boundary + interior)).max(0.0).sqrt() } else { 1.0 }
-    }
-
-    /// The whole answer, certified.
-    pub(super) fn complete(&self, found: Found, settings: &Settings) -> Result<Solution, Error> {
-        self.best(found, settings).map(|best| best.1)
     }
 
     /// The whole answer, certified, and what was found for it: by a second attempt where `found` falls short.
@@ -349,7 +299,8 @@ impl Prepared {
 
     /// Displacement and multiplier with the rows of `closed` held at their gaps.
     pub(in crate::qp) fn with_contact_set(&self, closed: &ContactSet) -> Result<(Vec<f64>, Vec<f64>), Error> {
-        let loading = self.own_load();
+        let gap = self.reduction.selection.gap(self.problem.gap());
+        let loading = Loading::of(&self.reduction, self.problem.load().to_vec(), &gap);
         let (problem, unit) = self.scaled(&loading, self.problem.gap())?;
         let task = ScaledProblem::new(&problem, &self.augmented, self.reduction.norm.is_some());
         let held = active_set::with_contact_set(&task, &self.reduction.selection.restrict_set(closed))
@@ -366,7 +317,7 @@ impl Prepared {
         displacement
     }
 
-    /// Is the factor in single precision?
+    /// Returns `true` if the factor is in single precision.
     pub fn is_single(&self) -> bool {
         self.reduction.norm.is_some() && self.reduction.condensation.as_ref().is_some_and(Condensation::is_single)
     }
@@ -384,18 +335,16 @@ impl Prepared {
         Err(Error::NotFinite { name: "gap vector", at: format!("entry {row}"), value, allowed })
     }
 
-    fn load(&self, load: Vec<f64>, gap: &[f64]) -> Arc<Loading> {
-        Arc::new(Loading::of(&self.reduction, load, &self.reduction.selection.gap(gap)))
-    }
-
-    pub(super) fn own_load(&self) -> Arc<Loading> {
-        self.loading.get_or_init(|| self.load(self.problem.load().to_vec(), self.problem.gap())).clone()
-    }
-
-    pub(super) fn other_load(&self, load: Vec<f64>, gap: &[f64]) -> Result<Arc<Loading>, Error> {
-        check_load(&load, self.dofs())?;
-        check_gap(gap, self.problem.rows())?;
-        Ok(self.load(load, gap))
+    /// The displacement that a load causes if no row is closed, in the precision of the factor; `None` if K is not definite.
+    pub fn response(&self, load: &Load) -> Option<Vec<f64>> {
+        let norm = self.reduction.norm.as_ref()?;
+        let no_gap = vec![0.0; self.reduction.selection.kept().len()];
+        let loading = load.swept(&self.reduction, &no_gap);
+        let moved = match &self.reduction.condensation {
+            Some(condensed) => condensed.free_displacement(&loading.sweep),
+            None => norm.scaled_displacement(&loading.scaled(loading.unit)),
+        };
+        Some(self.expand(&loading, loading.unit, &moved))
     }
 
     /// The problem that the methods work on, and the exponent of its reference displacement.

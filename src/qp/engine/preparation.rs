@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 use std::time::Instant;
 
-use super::factored::Prepared;
+use super::factored::Factored;
 use super::reduction::Reduction;
 use crate::error::Error;
 use crate::qp::certificate::EnergyNorm;
@@ -22,22 +22,19 @@ const SINGLE_PIVOT: f64 = 1e-4;
 /// A pivot below this share of a diagonal of order one leaves fewer than four digits of a double.
 pub(super) const LOST_PIVOT: f64 = 1e-10;
 
-impl Prepared {
-    /// As [`Prepared::new`], with the threads and the precision of `settings`.
+impl Factored {
+    /// Scales, condenses and factorises `problem`.
     ///
     /// # Errors
-    /// As [`Prepared::new`], [`Error::Setting`], and instead of a factorisation [`Error::OutOfTime`],
-    /// [`Error::Interrupted`] or [`Error::TooLarge`], where time or memory is not left for it.
-    pub fn with_settings(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
-        let settings = &settings.started()?;
+    /// As [`Prepared::new`](super::Prepared::new).
+    pub fn new(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
         let Settings { threads, watch, .. } = settings;
         let clock = Instant::now();
         watch.step("ordering", 0);
         seconds::learn(watch);
         let selection = RowSelection::of(problem.contact(), problem.gap())?;
         let scaling = Scaling::of(problem.stiffness(), &selection.contact(problem.contact()))?;
-        let diagonal = problem.stiffness().diagonal();
-        let (has_empty_diagonal, stiffest) = (diagonal.contains(&0.0), largest(&diagonal));
+        let stiffest = largest(&problem.stiffness().diagonal());
         let factor_clock = Instant::now();
         let layout = Layout::within(problem, &scaling, settings)?;
         let Layout { analysis, last, is_condensed, multiplications, mut way, is_single: single } = layout;
@@ -51,13 +48,7 @@ impl Prepared {
         };
         let norm_seconds = seconds::ordering(problem) + seconds::factorisation(&analysis);
         let mut factoring = Factoring { problem, scaling: &scaling, analysis: &analysis, settings, least_pivot: None };
-        let cholesky = match has_empty_diagonal {
-            true => {
-                factoring.least_pivot = Some(0.0);
-                None
-            }
-            false => factoring.definite(single, last.len())?,
-        };
+        let cholesky = factoring.definite(single, last.len())?;
         let least_pivot = factoring.least_pivot;
         drop(analysis);
         if cholesky.is_none() {
@@ -69,17 +60,10 @@ impl Prepared {
             true => condensed(cholesky.as_ref(), &scaling, &last, settings)?,
             false => None,
         };
-        let augmented = match &condensation {
-            Some(condensed) => {
-                // Dense: the order is of no matter to the factor, and its last block is all of it.
-                let all: Vec<usize> = (0..condensed.stiffness().dim()).collect();
-                AugmentedMatrix::with_last(condensed.stiffness(), condensed.contact(), &all)?
-            }
-            None => AugmentedMatrix::new(scaling.stiffness(), scaling.contact())?.with_threads(*threads),
-        };
+        let augmented = augmented(condensation.as_ref(), &scaling, *threads)?;
         let norm = cholesky.map(|cholesky| EnergyNorm::new(cholesky, scaling.equilibration().clone(), last));
         let factor = factor_clock.elapsed().as_secs_f64();
-        Ok(Prepared {
+        Ok(Factored {
             problem: problem.clone(),
             reduction: Reduction { selection, scaling, stiffest, norm, condensation },
             lost_pivot: least_pivot.filter(|&pivot| pivot < LOST_PIVOT),
@@ -89,7 +73,6 @@ impl Prepared {
             proof_seconds,
             norm_seconds,
             condensed_norm: OnceLock::new(),
-            loading: OnceLock::new(),
             seconds: Seconds { factor, solve: clock.elapsed().as_secs_f64() },
         })
     }
@@ -112,6 +95,10 @@ impl Factoring<'_> {
     /// # Errors
     /// [`Error::TooLarge`] and [`Error::OutOfTime`] for a second factor, [`Error::Numerical`].
     fn definite(&mut self, is_single: bool, contact_dofs: usize) -> Result<Option<Cholesky>, Error> {
+        if self.problem.stiffness().diagonal().contains(&0.0) {
+            self.least_pivot = Some(0.0);
+            return Ok(None);
+        }
         if is_single {
             if let Some(cholesky) = self.factor(true)? {
                 return Ok(Some(cholesky));
@@ -162,6 +149,18 @@ fn condensed(
     let Some(factor) = factor else { return Ok(None) };
     check_time(&settings.watch, seconds::dense(last.len()))?;
     Condensation::new(factor, last.to_vec(), scaling.contact(), cholesky.is_none()).map(Some)
+}
+
+/// The pattern of the matrices that the methods factorise, analysed.
+fn augmented(condensation: Option<&Condensation>, scaling: &Scaling, threads: usize) -> Result<AugmentedMatrix, Error> {
+    Ok(match condensation {
+        Some(condensed) => {
+            // Dense: the order is of no matter to the factor, and its last block is all of it.
+            let all: Vec<usize> = (0..condensed.stiffness().dim()).collect();
+            AugmentedMatrix::with_last(condensed.stiffness(), condensed.contact(), &all)?
+        }
+        None => AugmentedMatrix::new(scaling.stiffness(), scaling.contact())?.with_threads(threads),
+    })
 }
 
 /// The factor of `K + B'B` with the contact dofs last, or `None` where it is not safely definite.

@@ -4,6 +4,7 @@ mod accumulator;
 mod augmented;
 mod cholesky;
 mod definite;
+mod dense;
 mod dependence;
 mod elimination;
 mod factor;
@@ -15,11 +16,11 @@ mod power_of_two;
 mod quotient;
 mod selected_inverse;
 mod symmetric;
-mod vector;
 
 pub use accumulator::Accumulator;
 pub use augmented::AugmentedMatrix;
 pub use cholesky::{Analysis, Cholesky};
+pub use dense::{LowerTriangle, UpperTriangle, dot, largest, norm, subtract, take_out, turned};
 pub use dependence::Dependence;
 pub use factor::FactorError;
 pub use null_space::generic;
@@ -27,7 +28,6 @@ pub use orthogonal::inverse_lengths;
 pub use power_of_two::{Equilibration, exponent, ldexp};
 pub use selected_inverse::SelectedInverse;
 pub use symmetric::SymmetricMatrix;
-pub use vector::{dot, largest};
 
 use std::sync::Arc;
 

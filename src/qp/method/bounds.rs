@@ -8,7 +8,7 @@ use crate::qp::linear::multigrid::Direction;
 use crate::solution::ContactSet;
 
 /// Parts of a unit vector below this are rounding of the turning.
-const ROUNDING: f64 = 1e-12;
+const TURNING_ROUNDING: f64 = 1e-12;
 
 /// A row on one side of its unknown: `coefficient * v <= gap`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,7 +110,7 @@ impl Bounds {
                 waiting.extend(of_place(&place).filter(|&other| if back { other < next } else { other > next }));
             }
         }
-        let mut reflected: Direction = entries.into_iter().filter(|entry| entry.1.abs() > ROUNDING).collect();
+        let mut reflected: Direction = entries.into_iter().filter(|entry| entry.1.abs() > TURNING_ROUNDING).collect();
         reflected.sort_unstable_by_key(|entry| entry.0);
         reflected
     }

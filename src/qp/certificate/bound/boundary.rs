@@ -36,7 +36,7 @@ const CANCELLED: f64 = 4.0 * f64::EPSILON;
 const SMALL: f64 = 1e-3;
 
 /// Rounding of a row's distance after a motion, in units of its terms.
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
+const DISTANCE_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 impl ContactProblem {
     /// The bound from the repair on the boundary; `None` where the rows that look closed cannot be met together.
@@ -382,8 +382,9 @@ impl<'a> Repair<'a> {
             let terms = |row: usize| self.rows[row].iter().map(|&(place, b)| b * moved[place]);
             let distance: Vec<f64> =
                 (0..self.rows.len()).map(|row| self.violation[row] + terms(row).sum::<f64>()).collect();
-            let rounding =
-                |row: usize| ROUNDING * terms(row).fold(self.violation[row].abs(), |sum, term| sum + term.abs());
+            let rounding = |row: usize| {
+                DISTANCE_ROUNDING * terms(row).fold(self.violation[row].abs(), |sum, term| sum + term.abs())
+            };
             let tolerance: Vec<f64> = (0..self.rows.len()).map(rounding).collect();
             let is_met = |(&row, &kept): (&usize, &bool)| !kept || distance[row].abs() <= tolerance[row];
             if set.iter().zip(&triangle.independent).all(is_met) || correction == CORRECTIONS {

@@ -10,12 +10,10 @@
 //! are bounds that it keeps, that is rounding. The dual norm comes from the cycles of the hierarchy.
 
 use super::{Answer, ErrorBound};
+use crate::qp::certificate::energy_norm::ROUNDED_BOUND;
 use crate::qp::linear::multigrid::{Multigrid, dual_norm_within};
 use crate::qp::problem::ContactProblem;
 use crate::watch::Watch;
-
-/// All that is computed of a bound may be rounded by this much.
-const ROUNDED: f64 = 1.0 + 1e-6;
 
 impl ContactProblem {
     /// An upper bound on `|u - u*|_K`, as far as [`dual_norm_within`] finds the least eigenvalue; infinite where it finds none. A
@@ -44,7 +42,7 @@ impl ContactProblem {
         let Some(dual) = dual else { return ErrorBound::none() };
         // Every row that presses is put at its gap below.
         let at_gap = vec![true; self.rows()];
-        if springs.is_some_and(|springs| !springs.hold(answer.multiplier, &at_gap, ROUNDED * dual.most)) {
+        if springs.is_some_and(|springs| !springs.hold(answer.multiplier, &at_gap, ROUNDED_BOUND * dual.most)) {
             return ErrorBound::none();
         }
         let moved: f64 = (self.lengths_along_rows().iter().zip(answer.violation).zip(answer.multiplier))
@@ -52,6 +50,6 @@ impl ContactProblem {
             .map(|((length, violation), _)| if *violation == 0.0 { 0.0 } else { length * violation.abs() })
             .sum();
         // What moves the answer moves its residual too, by K times that.
-        ErrorBound { whole: ROUNDED * (2.0 * moved + dual.most), of_parts: None }
+        ErrorBound { whole: ROUNDED_BOUND * (2.0 * moved + dual.most), of_parts: None }
     }
 }
