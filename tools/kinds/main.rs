@@ -19,7 +19,10 @@ fn main() -> ExitCode {
     let most: f64 = option("--seconds", "60").parse().unwrap_or(60.0);
     let names = option("--methods", "auto,mprgp,active-set");
     let methods = [Method::Auto, Method::Mprgp, Method::ActiveSet, Method::qp(), Method::penalty()];
-    println!("{:16} {:10} {:>8} {:>8}  {:22} {:>9} {:>9} {:>7} {:>7} {:>9}", "kind", "method", "unknowns", "rows", "by", "s", "factor s", "its", "closed", "undecided");
+    println!(
+        "{:16} {:10} {:>8} {:>8}  {:22} {:>9} {:>9} {:>7} {:>7} {:>9}",
+        "kind", "method", "unknowns", "rows", "by", "s", "factor s", "its", "closed", "undecided"
+    );
     for kind in KINDS.iter().filter(|kind| only.is_empty() || only.split(',').any(|name| name == kind.name)) {
         let problem = match (kind.make)() {
             Ok(problem) => problem,
@@ -53,15 +56,19 @@ fn main() -> ExitCode {
                             remark.push_str(" OTHER SET");
                         }
                         solution.attempts.iter().for_each(|attempt| {
-                            remark.push_str(&format!(" [{} {:.2} s: {}]", attempt.method, attempt.seconds, attempt.reason));
+                            remark.push_str(&format!(
+                                " [{} {:.2} s: {}]",
+                                attempt.method, attempt.seconds, attempt.reason
+                            ));
                         });
                         println!(
-                            "{:16} {name:10} {:>8} {:>8}  {:22} {seconds:>9.3} {:>9.3} {:>7} {:>7} {undecided:>9}  bound {:.1e} {remark}",
+                            "{:16} {name:10} {:>8} {:>8}  {:22} {seconds:>9.3} {:>9.3} {:>9.3} {:>7} {:>7} {undecided:>9}  bound {:.1e} {remark}",
                             kind.name,
                             problem.dofs(),
                             problem.rows(),
                             solution.method,
                             solution.seconds.factor,
+                            solution.seconds.proof,
                             solution.iterations,
                             solution.contact_set.count(),
                             solution.certificate.energy_error_bound,

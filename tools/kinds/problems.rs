@@ -54,7 +54,15 @@ fn membrane(n: usize) -> Result<ContactProblem, Error> {
     for j in 0..n {
         for i in 0..n {
             let x = -1.0 + (i + 1) as f64 * h;
-            let stair = if x < -0.5 { -0.2 } else if x < 0.0 { -0.4 } else if x < 0.5 { -0.6 } else { -0.8 };
+            let stair = if x < -0.5 {
+                -0.2
+            } else if x < 0.0 {
+                -0.4
+            } else if x < 0.5 {
+                -0.6
+            } else {
+                -0.8
+            };
             lower.push((at(i, j), stair));
             for dj in -1_isize..=1 {
                 for di in -1_isize..=1 {
@@ -200,7 +208,8 @@ fn frame(n: usize) -> Result<ContactProblem, Error> {
             }
         }
     };
-    let beam: [&[f64]; 4] = [&[12.0, 6.0, -12.0, 6.0], &[6.0, 4.0, -6.0, 2.0], &[-12.0, -6.0, 12.0, -6.0], &[6.0, 2.0, -6.0, 4.0]];
+    let beam: [&[f64]; 4] =
+        [&[12.0, 6.0, -12.0, 6.0], &[6.0, 4.0, -6.0, 2.0], &[-12.0, -6.0, 12.0, -6.0], &[6.0, 2.0, -6.0, 4.0]];
     for line in 0..n {
         for node in 0..n {
             let own = 2 * (line * n + node);

@@ -143,7 +143,7 @@ impl Factored {
         };
         let outcome =
             run(&task, start, settings, &bound).map_err(|error| self.expand_error(error, &loading.load, &gap))?;
-        let seconds = Seconds { factor: task.factor_seconds(), solve: clock.elapsed().as_secs_f64() };
+        let seconds = Seconds { factor: task.factor_seconds(), proof: 0.0, solve: clock.elapsed().as_secs_f64() };
         Ok(Found { loading, gap, problem, unit, outcome, seconds, refined: None })
     }
 
@@ -278,6 +278,7 @@ impl Factored {
         let may_prove = settings.prove && !settings.watch.is_stopped() && settings.watch.allows(self.proof_seconds);
         let proven = norm.as_ref().filter(|_| may_prove);
         solution.proven = proven.and_then(|norm| problem.prove_in(norm, &solution.displacement, &solution.multiplier));
+        solution.seconds.proof += clock.elapsed().as_secs_f64();
         solution.seconds.solve += clock.elapsed().as_secs_f64();
         Ok(solution)
     }

@@ -18,8 +18,8 @@ use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_uppe
 use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use faer::{Accum, Mat, MatMut, Par};
 
-use super::factor::{FactorError, call};
 use super::Cholesky;
+use super::factor::{FactorError, call};
 
 /// Entries of the inverse of a factorised matrix.
 #[derive(Debug)]

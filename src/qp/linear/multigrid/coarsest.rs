@@ -60,8 +60,11 @@ impl Coarsest {
             };
             (0..blocks.rows()).flat_map(|node| (0..size).map(move |i| at(node, i))).collect()
         };
-        let is_gone: Vec<bool> =
-            diagonal_of(&rest).iter().zip(diagonal_of(matrix)).map(|(rest, whole)| *rest <= GONE * T::EPSILON * whole).collect();
+        let is_gone: Vec<bool> = diagonal_of(&rest)
+            .iter()
+            .zip(diagonal_of(matrix))
+            .map(|(rest, whole)| *rest <= GONE * T::EPSILON * whole)
+            .collect();
         if is_gone.contains(&true) {
             for node in 0..rest.rows() {
                 for place in rest.starts[node]..rest.starts[node + 1] {

@@ -113,11 +113,13 @@ impl Multigrid {
     pub fn face(&self, directions: &[Direction], last: Option<&Face>) -> Result<Face<'_>, Error> {
         let levels = match &self.levels {
             Levels::Single(hierarchy) => {
-                let last = last.and_then(|face| if let LevelsInFace::Single(_, last) = &face.levels { Some(last) } else { None });
+                let last = last
+                    .and_then(|face| if let LevelsInFace::Single(_, last) = &face.levels { Some(last) } else { None });
                 FaceLevels::new(hierarchy, directions, last).map(|face| LevelsInFace::Single(hierarchy, face))
             }
             Levels::Double(hierarchy) => {
-                let last = last.and_then(|face| if let LevelsInFace::Double(_, last) = &face.levels { Some(last) } else { None });
+                let last = last
+                    .and_then(|face| if let LevelsInFace::Double(_, last) = &face.levels { Some(last) } else { None });
                 FaceLevels::new(hierarchy, directions, last).map(|face| LevelsInFace::Double(hierarchy, face))
             }
         };
