@@ -17,7 +17,7 @@ pub use assembly::{
     free_load, internal_force, mass, rigid_motions, stiffness, tributary_areas,
 };
 pub use body::{ElasticBody, Integration, Region};
-pub use element::{Cell, ElementKind, FacetKind, MAX_NODES, QuadraturePoint, Tabulated};
+pub use element::{Cell, ElementKind, FacetKind, MAX_NODES, QuadraturePoint, Rule, Tabulated};
 pub use formulation::Formulation;
 pub use material::Material;
 pub use mesh::gmsh::GmshFile;

@@ -3,7 +3,7 @@
 use super::Warning;
 use super::body::{BodySpec, Site};
 use super::entry::{located, wrong};
-use super::schema::{IntegrationSpec, MaterialSpec, ModelSpec, Scene};
+use super::schema::{MaterialSpec, ModelSpec, Scene};
 use crate::error::Error;
 use crate::fem::body::{ElasticBody, Integration};
 use crate::fem::formulation::Formulation;
@@ -114,15 +114,10 @@ impl DescribedBody<'_> {
             other => self.at_body(other),
         };
         let body = ElasticBody::new(self.mesh()?, material, formulation).map_err(at_body)?;
-        match self.spec.shape().integration() {
-            IntegrationSpec::Standard => Ok(body),
-            IntegrationSpec::MeanDilatation => {
-                body.with_integration(Integration::MeanDilatation).map_err(|error| match error {
-                    Error::Mesh { message } => wrong(self.path(".integration"), message),
-                    other => other,
-                })
-            }
-        }
+        body.with_integration(self.spec.shape().integration()).map_err(|error| match error {
+            Error::Mesh { message } => wrong(self.path(".integration"), message),
+            other => other,
+        })
     }
 
     /// An error of the material at its place; the allowed range is that of the model.

@@ -14,6 +14,7 @@
 //! # Ok::<(), signorini::Error>(())
 //! ```
 
+mod answer;
 mod body;
 mod build;
 mod condition;
@@ -22,6 +23,7 @@ mod elastic;
 mod entry;
 mod explain;
 mod held;
+mod loads_in_time;
 mod locate;
 mod model;
 mod obstacle;
@@ -35,17 +37,17 @@ mod size;
 mod warning;
 
 pub use crate::motion::SchemeSpec;
+pub use answer::{Answer, Forces};
 pub use body::*;
 pub use dynamics::Dynamics;
 pub use model::Model;
-pub use obstacle::Obstacle;
+pub use obstacle::*;
 pub use rows::ContactRow;
 pub use schema::{
-    AnalysisSpec, Approach, AxisSpec, CircleSpec, ConeSpec, CylinderSpec, DampingSpec, DynamicSpec, ElementSpec,
-    FacingSpec, FactorSpec, FactorTableSpec, FieldSpec, ForceSpec, FurtherBodySpec, HalfSpec, HeightMapSpec,
-    InitialSpec, IntegrationSpec, IntervalSpec, LoadInTimeSpec, LoadSpec, MassSpec, MaterialSpec, ModelSpec,
-    ObstacleSpec, ParabolaSpec, PenetrationSpec, Place, PlaneSpec, PressureSpec, Rule, Scene, ShapeSpec, SineSpec,
-    SolidElementSpec, SphereSpec, SupportSpec, TableSpec, TractionSpec, Units, WedgeSpec, ZoneSpec,
+    AnalysisSpec, Approach, DampingSpec, DynamicSpec, ElementSpec, FactorSpec, FactorTableSpec, FieldSpec, ForceSpec,
+    FurtherBodySpec, HalfSpec, InitialSpec, IntervalSpec, LoadInTimeSpec, LoadSpec, MassSpec, MaterialSpec, ModelSpec,
+    ObstacleSpec, PenetrationSpec, Place, PressureSpec, Rule, Scene, SineSpec, SolidElementSpec, SupportSpec,
+    TractionSpec, Units,
 };
 pub use size::Size;
 pub use warning::Warning;

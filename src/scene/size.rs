@@ -1,6 +1,6 @@
 //! How large a scene will be, before anything of it is built: dofs, entries, factor, bytes.
 
-use super::schema::{Scene, ShapeSpec};
+use super::schema::Scene;
 use crate::error::Error;
 use crate::fem::mesh::MAX_NODES;
 use crate::qp::cost::bytes;
@@ -50,11 +50,7 @@ impl Scene {
             multigrid_bytes: bytes::START,
         };
         let bodies = std::iter::once(&self.body).chain(self.further_bodies.iter().map(|further| &further.body));
-        let radius = self.obstacles.iter().map(|obstacle| match &obstacle.shape {
-            ShapeSpec::Circle(circle) => circle.radius,
-            ShapeSpec::Sphere(sphere) => sphere.radius,
-            _ => f64::INFINITY,
-        });
+        let radius = self.obstacles.iter().map(|obstacle| obstacle.shape.shape().radius());
         let reach = 2.0 * radius.fold(0.0, f64::max);
         for body in bodies {
             let block = body.shape().block(self.folder.as_deref());

@@ -1,5 +1,6 @@
 //! Answers to a scene: its summary, and a sweep over the scene-wide gap.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use serde::Serialize;
@@ -7,24 +8,24 @@ use serde::Serialize;
 use super::{ModelSize, Summary};
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
-use crate::fem::recovery;
 use crate::qp::{Event, Prepared, Settings, Start, solve};
-use crate::scene::Model;
+use crate::scene::{Answer, Model};
 use crate::solution::{ContactSet, Goal, Solution};
 
 /// Gaps half way that differ by this from the mean of the ends, relative, are not on a straight line.
 const STRAIGHT: f64 = 1e-12;
 
-/// The numbers of an answer to a scene: with pressures, the width of the contact, and the balance of all forces.
+/// The numbers of `solution`, whose `answer` to a scene this is: with pressures, the width of the contact, and the balance of all forces.
 ///
 /// # Errors
-/// [`Error::Length`] where the answer is not one to this model.
+/// As [`Model::reactions`].
 pub fn scene_summary(
-    model: &Model,
+    answer: &Answer,
     solution: &Solution,
     goal: impl Into<Goal>,
     assemble_seconds: f64,
 ) -> Result<Summary, Error> {
+    let (model, closed) = (answer.model(), answer.contact_set());
     let mesh = model.mesh();
     let size = ModelSize {
         nodes: Some(mesh.nodes().len()),
@@ -32,24 +33,11 @@ pub fn scene_summary(
         ..ModelSize::of(model.problem())
     };
     let mut summary = Summary::new(solution, size, goal, assemble_seconds);
-    let pressure = model.pressure(&solution.multiplier)?;
-    summary.contact.pressure_max = Some(pressure.iter().copied().fold(0.0, f64::max));
-    summary.contact.width = contact_width(model, &solution.contact_set);
-    summary.contact.area = Some(contact_area(model, &solution.contact_set));
-    summary.contact.force_balance = Some(model.force_balance(&solution.displacement, &solution.multiplier)?);
+    summary.contact.pressure_max = Some(answer.pressure().iter().copied().fold(0.0, f64::max));
+    summary.contact.width = contact_width(model, closed);
+    summary.contact.area = Some(contact_area(model, closed));
+    summary.contact.force_balance = Some(answer.forces()?.balance);
     Ok(summary)
-}
-
-/// The error of the mesh, relative in energy, estimated from the stress of the answer.
-///
-/// # Errors
-/// [`Error::Length`] where the answer is not one to this model.
-///
-/// # Source
-/// [`recovery::discretisation_error`].
-pub fn discretisation_error(model: &Model, solution: &Solution) -> Result<f64, Error> {
-    let nodal = model.nodal_displacement(&solution.displacement)?;
-    recovery::discretisation_error(model.body(), &nodal, &model.stress(&solution.displacement)?)
 }
 
 /// Area of the boundary that the closed rows stand for; thickness, cross-section or circumference included.
@@ -75,10 +63,10 @@ pub struct SweepPoint {
     /// The numbers of the answer.
     #[serde(flatten)]
     pub summary: Summary,
-    /// The scene at this gap.
+    /// The answer, joined with the scene at this gap.
     #[serde(skip)]
-    pub model: Model,
-    /// The answer.
+    pub answer: Answer,
+    /// The answer as the solver gave it.
     #[serde(skip)]
     pub solution: Solution,
 }
@@ -157,8 +145,9 @@ pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, 
             Err(Error::NotCertified { solution, .. }) => *solution,
             Err(error) => return Err(model.explain(error)),
         };
-        let summary = scene_summary(&model, &solution, settings.goal(), assemble_seconds)?;
-        points.push(SweepPoint { gap, summary, model, solution });
+        let answer = Answer::of(Arc::new(model), &solution)?;
+        let summary = scene_summary(&answer, &solution, settings.goal(), assemble_seconds)?;
+        points.push(SweepPoint { gap, summary, answer, solution });
         if settings.watch.is_stopped() {
             break;
         }

@@ -10,8 +10,8 @@ use signorini::fem::ElementKind;
 use signorini::fem::Formulation;
 use signorini::fem::Material;
 use signorini::fem::{DofMap, Frame, MassForm, add_body_force_field, mass};
+use signorini::internals::Cholesky;
 use signorini::internals::dot;
-use signorini::qp::linear::Cholesky;
 use signorini::scene::{bar, cuboid};
 
 /// Sums over a mesh, by two quadratures.

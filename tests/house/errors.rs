@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use crate::oracles::Dense;
 use signorini::fem::GmshFile;
-use signorini::qp::matrix_market::read_problem;
+use signorini::qp::read_problem;
 use signorini::{
     Condense, ContactProblem, Error, Method, Prepared, Scene, Settings, SparseMatrix, SymmetricMatrix, solve, solve_qp,
 };
@@ -82,11 +82,15 @@ fn gmsh_of_another_body() -> Error {
     GmshFile::read(&file).and_then(|file| file.mesh(Some("another"), 1.0)).map(drop).unwrap_err()
 }
 
-/// The variants with their codes, as `Error::code` lists them.
+/// The variants with their codes, as the table of `Error::code` lists them.
 fn variants() -> BTreeMap<String, String> {
     let text = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("src/error.rs")).unwrap();
     let arms = text.lines().filter(|line| line.trim().starts_with("Error::"));
-    let arms = arms.filter_map(|line| line.trim().strip_suffix("\",")?.split_once(" => \""));
+    let arms = arms.filter_map(|line| {
+        let (patterns, class) = line.trim().split_once(" => ")?;
+        // The code is the first text in quotes.
+        Some((patterns, class.split('"').nth(1)?))
+    });
     arms.flat_map(|(patterns, code)| patterns.split(" | ").map(move |pattern| (pattern, code)))
         .map(|(pattern, code)| (pattern.trim_start_matches("Error::").trim_end_matches(" { .. }"), code))
         .map(|(variant, code)| (variant.to_string(), code.to_string()))

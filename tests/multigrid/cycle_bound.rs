@@ -6,8 +6,8 @@
 use crate::bodies::{built, clamped_block, clamped_square};
 use crate::oracles::{Draws, random};
 use serde_json::{Value, json};
-use signorini::qp::linear::Cholesky;
-use signorini::qp::linear::multigrid::{Multigrid, NearNullSpace, dual_norm};
+use signorini::internals::Cholesky;
+use signorini::internals::multigrid::{Multigrid, NearNullSpace, dual_norm};
 use signorini::{ContactProblem, Error, Method, Prepared, Settings, Solution, SymmetricMatrix, solve};
 
 /// The bound is of the exact answer; the reference has an error of its own, of rounding. Relative energy norm.

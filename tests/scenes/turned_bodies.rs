@@ -7,7 +7,7 @@ use crate::program::Desk;
 use serde_json::{Value, json};
 use signorini::fem::closed_forms::{Bar, ContactPatch, Sides};
 use signorini::fem::{ElementKind, Mesh};
-use signorini::qp::matrix_market::read_vector;
+use signorini::qp::read_vector;
 use signorini::scene::{cuboid, rectangle};
 use signorini::{Model, Scene, Solution, solve_qp};
 

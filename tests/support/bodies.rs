@@ -7,7 +7,7 @@ use signorini::fem::Formulation;
 use signorini::fem::Material;
 use signorini::fem::{self, ElasticBody};
 use signorini::fem::{ElementKind, Mesh};
-use signorini::qp::linear::Cholesky;
+use signorini::internals::Cholesky;
 use signorini::scene::rectangle;
 use signorini::{ContactProblem, Model, Scene};
 

@@ -20,7 +20,7 @@ mod tet4;
 pub use cell::Cell;
 pub use quadrature::Part;
 pub use reference::{FacetKind, LatticeCounts, MAX_NODES, PerNode, QuadraturePoint, ReferenceElement, Shape};
-pub use tabulated::{Tabulated, TabulatedPoint};
+pub use tabulated::{Rule, Tabulated, TabulatedPoint};
 
 use hex8::HEX8;
 use line2::LINE2;

@@ -212,10 +212,7 @@ impl Midpoint {
         for &dof in &massless.dofs {
             correction[dof] = (state.elastic[dof] + next.elastic[dof]) / 2.0 - load[dof] - middle[dof];
         }
-        let mut squares = vec![0.0; contact.rows()];
-        contact.triplets().for_each(|(row, _, b)| squares[row] += b * b);
-        let share_of_row = |(along, square): (f64, &f64)| if *square > 0.0 { along / square } else { 0.0 };
-        let of_rows: Vec<f64> = contact.mul(&correction).into_iter().zip(&squares).map(share_of_row).collect();
+        let of_rows = along_rows(contact, &correction);
         let Some(response) = self.stepping.response(correction)? else { return Ok(None) };
         let at = |share: f64| -> Result<(State, f64), Error> {
             let mut multiplier = plus(&found.multiplier, share, &of_rows);
@@ -228,27 +225,45 @@ impl Midpoint {
             let off = imbalance(state, &end, &load);
             Ok((end, off))
         };
-        // Regula falsi; an end that stays counts half.
-        let (mut low, mut high) = ((0.0, first), (1.0, at(1.0)?.1));
-        if (low.1 > 0.0) == (high.1 > 0.0) {
-            return Ok(None);
-        }
-        let mut best = None;
-        for _ in 0..TRIALS {
-            let share = low.0 - low.1 * (high.0 - low.0) / (high.1 - low.1);
-            let (end, off) = at(share)?;
-            best = Some(end);
-            if off.abs() <= KEPT * scale {
-                break;
-            }
-            if (off > 0.0) == (low.1 > 0.0) {
-                (low, high.1) = ((share, off), high.1 / 2.0);
-            } else {
-                (high, low.1) = ((share, off), low.1 / 2.0);
-            }
-        }
-        Ok(best)
+        regula_falsi(first, KEPT * scale, at)
     }
+}
+
+/// The multiplier of each row whose force is the part of `force` along the row.
+fn along_rows(contact: &SparseMatrix, force: &[f64]) -> Vec<f64> {
+    let mut squares = vec![0.0; contact.rows()];
+    contact.triplets().for_each(|(row, _, b)| squares[row] += b * b);
+    let share_of_row = |(along, square): (f64, &f64)| if *square > 0.0 { along / square } else { 0.0 };
+    contact.mul(force).into_iter().zip(&squares).map(share_of_row).collect()
+}
+
+/// The state at the share from 0 to 1 where what `at` is off by is zero, to within `kept`; `first` is that at 0. `None` if
+/// the signs at both ends are equal.
+fn regula_falsi(
+    first: f64,
+    kept: f64,
+    at: impl Fn(f64) -> Result<(State, f64), Error>,
+) -> Result<Option<State>, Error> {
+    let (mut low, mut high) = ((0.0, first), (1.0, at(1.0)?.1));
+    if (low.1 > 0.0) == (high.1 > 0.0) {
+        return Ok(None);
+    }
+    let mut best = None;
+    for _ in 0..TRIALS {
+        let share = low.0 - low.1 * (high.0 - low.0) / (high.1 - low.1);
+        let (end, off) = at(share)?;
+        best = Some(end);
+        if off.abs() <= kept {
+            break;
+        }
+        // An end that stays counts half.
+        if (off > 0.0) == (low.1 > 0.0) {
+            (low, high.1) = ((share, off), high.1 / 2.0);
+        } else {
+            (high, low.1) = ((share, off), low.1 / 2.0);
+        }
+    }
+    Ok(best)
 }
 
 /// Kinetic and strain energy.

@@ -14,6 +14,9 @@ use crate::watch::Watch;
 /// twice, once for the rounding and once for the arithmetic that made the entry.
 const ENTRY_ROUNDING: f64 = f64::EPSILON;
 
+/// Sums with twice the working precision leave out less than this share of their terms: no bound is smaller.
+const LEAST: f64 = 1e-28;
+
 /// What bounds the error in energy.
 #[derive(Clone, Copy)]
 enum Bounding<'a> {
@@ -55,7 +58,7 @@ impl ContactProblem {
     ///
     /// # Errors
     /// [`Error::Length`] for vectors that do not fit.
-    pub fn certify_in(
+    pub(crate) fn certify_in(
         &self,
         norm: Option<&EnergyNorm>,
         displacement: &[f64],
@@ -227,13 +230,14 @@ impl Certificate {
         let explained = |sum: f64| ENTRY_ROUNDING * sum.sqrt();
         let unexplained =
             |error: f64, size: f64, sum: f64| if error <= explained(sum) { 0.0 } else { relative(error, size) };
-        let whole = scales.size_of_whole(strain);
-        self.energy_error_bound = relative(bound.whole, whole);
+        let (whole, sum) = (scales.size_of_whole(strain), rounding.iter().sum::<f64>());
+        let of_whole = bound.whole + LEAST * sum.sqrt();
+        self.energy_error_bound = relative(of_whole, whole);
         (self.part_error_bound, self.energy_error_excess) =
-            (self.energy_error_bound, unexplained(bound.whole, whole, rounding.iter().sum()));
+            (self.energy_error_bound, unexplained(of_whole, whole, sum));
         if let Some(of_parts) = &bound.of_parts {
             for (part, &error) in of_parts.iter().enumerate().filter(|entry| scales.is_stiff[entry.0]) {
-                let size = scales.size(part);
+                let (size, error) = (scales.size(part), error + LEAST * rounding[part].sqrt());
                 self.part_error_bound = larger(relative(error, size), self.part_error_bound);
                 self.energy_error_excess = larger(unexplained(error, size, rounding[part]), self.energy_error_excess);
             }

@@ -33,7 +33,7 @@ const FEW_VALUES: usize = 1_000_000;
 
 /// The energy norm of a positive definite stiffness and its dual, from one factorisation of K with a diagonal near one.
 #[derive(Clone, Debug)]
-pub struct EnergyNorm {
+pub(crate) struct EnergyNorm {
     cholesky: Cholesky,
     equilibration: Equilibration,
     boundary: Option<Arc<Boundary>>,

@@ -14,5 +14,5 @@ mod scales;
 mod springs;
 mod units;
 
-pub use energy_norm::EnergyNorm;
-pub(crate) use motion::Motion;
+pub(crate) use energy_norm::EnergyNorm;
+pub(crate) use motion::{Motion, Rounding};

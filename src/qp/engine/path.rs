@@ -12,6 +12,23 @@ use crate::qp::method::parametric::{Compliance, Event, Piece};
 use crate::solution::{ContactSet, Solution};
 
 /// The answers for all gaps `(1 - t) from + t to`, t from 0 to 1, as polylines.
+///
+/// ```
+/// use signorini::{ContactProblem, Prepared, Settings, SparseMatrix, SymmetricMatrix};
+///
+/// // Four springs of stiffness 4 in a row, the end pushed with force 3: it goes to 3 by itself, and a wall at g takes 3 - g.
+/// let springs = [(0, 0, 8.0), (1, 0, -4.0), (1, 1, 8.0), (2, 1, -4.0), (2, 2, 8.0), (3, 2, -4.0), (3, 3, 4.0)];
+/// let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(4, 4, &springs)?)?;
+/// let contact = SparseMatrix::from_triplets(1, 4, &[(0, 3, 1.0)])?;
+/// let problem = ContactProblem::new(stiffness, vec![0.0, 0.0, 0.0, 3.0], contact, vec![4.0])?;
+///
+/// let path = Prepared::new(&problem, &Settings::default())?.path(&[4.0], &[2.0])?;
+/// // Half way the wall is at 3, where the end touches it; a quarter later it is at 2.5 and takes 0.5.
+/// assert!(path.events().len() == 1 && (path.events()[0].at - 0.5).abs() < 1e-12);
+/// assert!((path.multiplier(0.75)[0] + 0.5).abs() < 1e-12);
+/// assert_eq!((path.multiplier(0.25), path.contact_set(1.0).count()), (vec![0.0], 1));
+/// # Ok::<(), signorini::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Path {
     prepared: Prepared,
@@ -37,17 +54,17 @@ impl Path {
     }
 
     /// The stretches on which the contact set does not change.
-    pub fn pieces(&self) -> &[Piece] {
+    pub(crate) fn pieces(&self) -> &[Piece] {
         &self.pieces
     }
 
     /// The multipliers at `t` as they are on `piece`: at a corner the pieces on both sides agree but for rounding.
-    pub fn multiplier_on(&self, piece: &Piece, t: f64) -> Vec<f64> {
+    pub(crate) fn multiplier_on(&self, piece: &Piece, t: f64) -> Vec<f64> {
         self.engine.expand_multiplier(&piece.multiplier(t), self.unit)
     }
 
     /// The closed rows on `piece`.
-    pub fn contact_set_on(&self, piece: &Piece) -> ContactSet {
+    pub(crate) fn contact_set_on(&self, piece: &Piece) -> ContactSet {
         self.engine.expand_set(&piece.contact_set)
     }
 

@@ -200,6 +200,7 @@ impl Prepared {
     }
 
     /// The multigrid hierarchy; `None` if the stiffness was factorised.
+    #[doc(hidden)]
     pub fn hierarchy(&self) -> Option<&Multigrid> {
         match &self.engine {
             Engine::Factored(_) => None,

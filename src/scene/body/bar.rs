@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::shape::{About, Block, BodyShape, Site};
 use crate::error::Error;
 use crate::fem::mesh::{Boundary, ElementKind, FacetKind, Mesh, check_lines};
+use crate::fem::{Axis, Integration};
 use crate::scene::schema::json::object;
-use crate::scene::schema::{AxisSpec, IntegrationSpec};
 
 /// A bar along x.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -17,7 +17,7 @@ use crate::scene::schema::{AxisSpec, IntegrationSpec};
 pub struct BarSpec {
     /// The axis along x.
     #[serde(deserialize_with = "object")]
-    pub x: AxisSpec,
+    pub x: Axis,
     /// Cross-section, positive.
     #[serde(default = "unit_area")]
     pub area: f64,
@@ -27,17 +27,15 @@ fn unit_area() -> f64 {
     1.0
 }
 
-impl BarSpec {
-    pub(super) const ABOUT: About = About { name: "bar", dimension: Some(1) };
-}
+pub(super) const ABOUT: About = About { name: "bar", dimension: Some(1) };
 
 impl BodyShape for BarSpec {
     fn about(&self) -> About {
-        Self::ABOUT
+        ABOUT
     }
 
-    fn integration(&self) -> IntegrationSpec {
-        IntegrationSpec::Standard
+    fn integration(&self) -> Integration {
+        Integration::Standard
     }
 
     fn area(&self) -> f64 {

@@ -7,8 +7,9 @@ use serde::{Deserialize, Serialize};
 use super::shape::{About, Block, BodyShape, Site};
 use crate::error::Error;
 use crate::fem::mesh::{Boundary, ElementKind, Mesh, check_lines, fail};
+use crate::fem::{Axis, Integration};
+use crate::scene::schema::SolidElementSpec;
 use crate::scene::schema::json::{object, word};
-use crate::scene::schema::{AxisSpec, IntegrationSpec, SolidElementSpec};
 
 /// The corners of a cell, in steps along x, y and z, in the order of a brick.
 const CORNERS: [[usize; 3]; 8] =
@@ -37,31 +38,29 @@ const SIDES: [(&str, usize, bool, [usize; 4]); 6] = [
 pub struct BoxSpec {
     /// The axis along x.
     #[serde(deserialize_with = "object")]
-    pub x: AxisSpec,
+    pub x: Axis,
     /// The axis along y.
     #[serde(deserialize_with = "object")]
-    pub y: AxisSpec,
+    pub y: Axis,
     /// The axis along z.
     #[serde(deserialize_with = "object")]
-    pub z: AxisSpec,
+    pub z: Axis,
     /// The element.
     #[serde(default, deserialize_with = "word")]
     pub element: SolidElementSpec,
     /// How its stiffness is integrated.
     #[serde(default, deserialize_with = "word")]
-    pub integration: IntegrationSpec,
+    pub integration: Integration,
 }
 
-impl BoxSpec {
-    pub(super) const ABOUT: About = About { name: "box", dimension: Some(3) };
-}
+pub(super) const ABOUT: About = About { name: "box", dimension: Some(3) };
 
 impl BodyShape for BoxSpec {
     fn about(&self) -> About {
-        Self::ABOUT
+        ABOUT
     }
 
-    fn integration(&self) -> IntegrationSpec {
+    fn integration(&self) -> Integration {
         self.integration
     }
 

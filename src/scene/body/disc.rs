@@ -5,11 +5,12 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::half_disc::{half_disc, half_disc_block};
-use super::shape::{About, Block, BodyShape, Site};
+use super::shape::{About, Block, BodyShape, Sides, Site};
 use crate::error::Error;
+use crate::fem::Integration;
 use crate::fem::mesh::{Boundary, ElementKind, Mesh, Zone, fail};
+use crate::scene::schema::ElementSpec;
 use crate::scene::schema::json::{object, word};
-use crate::scene::schema::{ElementSpec, IntegrationSpec, ZoneSpec};
 
 /// A disc, graded towards its lowest and its highest point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -23,7 +24,7 @@ pub struct DiscSpec {
     pub radius: f64,
     /// The finely meshed zone around the lowest and the highest point.
     #[serde(deserialize_with = "object")]
-    pub zone: ZoneSpec,
+    pub zone: Zone,
     /// Only the part right of the centre; the plane x = centre becomes the boundary `symmetry-x`.
     #[serde(default)]
     pub symmetric: bool,
@@ -32,29 +33,33 @@ pub struct DiscSpec {
     pub element: ElementSpec,
     /// How its stiffness is integrated.
     #[serde(default, deserialize_with = "word")]
-    pub integration: IntegrationSpec,
+    pub integration: Integration,
 }
 
+pub(super) const ABOUT: About = About { name: "disc", dimension: Some(2) };
+
 impl DiscSpec {
-    pub(super) const ABOUT: About = About { name: "disc", dimension: Some(2) };
+    fn sides(&self) -> Sides {
+        if self.symmetric { Sides::Beyond } else { Sides::Both }
+    }
 }
 
 impl BodyShape for DiscSpec {
     fn about(&self) -> About {
-        Self::ABOUT
+        ABOUT
     }
 
-    fn integration(&self) -> IntegrationSpec {
+    fn integration(&self) -> Integration {
         self.integration
     }
 
     fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
         site.check_estimate(&self.block(None))?;
-        disc(self.centre, self.radius, &self.zone.zone(), self.symmetric, self.element.kind())
+        disc(self.centre, self.radius, &self.zone, self.sides(), self.element.kind())
     }
 
     fn block(&self, _: Option<&Path>) -> Block {
-        let mut halves = half_disc_block(&self.zone.zone(), self.radius, self.symmetric, self.element.kind());
+        let mut halves = half_disc_block(&self.zone, self.radius, self.sides(), self.element.kind());
         halves.cells[0] *= 2.0;
         halves
     }
@@ -65,17 +70,17 @@ impl BodyShape for DiscSpec {
     }
 }
 
-/// The disc of `radius` about `centre`, of a plane element, graded towards its lowest and its highest point; only the
-/// part right of the centre where `symmetric`, which about the axis is a ball.
+/// The disc of `radius` about `centre`, of a plane element, graded towards its lowest and its highest point; with
+/// [`Sides::Beyond`] only the part right of the centre, which about the axis is a ball.
 ///
-/// The boundaries are `lower` and `upper`, the halves of the circle, and, where `symmetric`, `symmetry-x` (x = centre).
+/// The boundaries are `lower` and `upper`, the halves of the circle, and, with [`Sides::Beyond`], `symmetry-x` (x = centre).
 ///
 /// ```
 /// use signorini::fem::{ElementKind, Zone};
-/// use signorini::scene::disc;
+/// use signorini::scene::{Sides, disc};
 ///
 /// let zone = Zone { width: 0.2, divisions: 3, growth: 1.5 };
-/// let mesh = disc([0.0, 1.0], 1.0, &zone, false, ElementKind::Q4)?;
+/// let mesh = disc([0.0, 1.0], 1.0, &zone, Sides::Both, ElementKind::Q4)?;
 /// let (low, high) = mesh.extent();
 /// assert!((high[1] - low[1] - 2.0).abs() < 1e-15 && mesh.boundary("lower").is_some());
 /// # Ok::<(), signorini::Error>(())
@@ -83,8 +88,8 @@ impl BodyShape for DiscSpec {
 ///
 /// # Errors
 /// As [`half_disc`].
-pub fn disc(centre: [f64; 2], radius: f64, zone: &Zone, symmetric: bool, kind: ElementKind) -> Result<Mesh, Error> {
-    let lower = half_disc(centre, radius, zone, symmetric, kind)?;
+pub fn disc(centre: [f64; 2], radius: f64, zone: &Zone, sides: Sides, kind: ElementKind) -> Result<Mesh, Error> {
+    let lower = half_disc(centre, radius, zone, sides, kind)?;
     let upper = lower.clone().mirrored(1, centre[1]);
     let Some(cut) = lower.boundary("cut").map(Boundary::nodes) else {
         return fail("a half disc without a cut cannot be joined".into());

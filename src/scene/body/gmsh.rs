@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 
 use super::shape::{About, Block, BodyShape, Site};
 use crate::error::Error;
+use crate::fem::Integration;
 use crate::fem::mesh::gmsh::GmshFile;
 use crate::fem::mesh::{ElementKind, Mesh};
 use crate::scene::entry::wrong;
-use crate::scene::schema::IntegrationSpec;
 use crate::scene::schema::json::word;
 
 /// Bytes of a mesh file for one node and the elements that belong to it, about.
@@ -30,16 +30,16 @@ pub struct GmshSpec {
     pub group: Option<String>,
     /// How the stiffness is integrated.
     #[serde(default, deserialize_with = "word")]
-    pub integration: IntegrationSpec,
+    pub integration: Integration,
 }
 
 fn unchanged() -> f64 {
     1.0
 }
 
-impl GmshSpec {
-    pub(super) const ABOUT: About = About { name: "gmsh", dimension: None };
+pub(super) const ABOUT: About = About { name: "gmsh", dimension: None };
 
+impl GmshSpec {
     /// The mesh file that is named, which lies below the folder of the scene once `..` and links are followed, unless the
     /// scene may read outside.
     fn mesh_file(&self, site: &Site) -> Result<PathBuf, Error> {
@@ -66,10 +66,10 @@ impl GmshSpec {
 
 impl BodyShape for GmshSpec {
     fn about(&self) -> About {
-        Self::ABOUT
+        ABOUT
     }
 
-    fn integration(&self) -> IntegrationSpec {
+    fn integration(&self) -> Integration {
         self.integration
     }
 

@@ -18,6 +18,7 @@ pub use half_ball::{HalfBallSpec, SymmetrySpec, half_ball};
 pub use half_disc::{HalfDiscSpec, half_disc};
 pub use rectangle::{RectangleSpec, rectangle};
 pub use ring::{RingSpec, ring};
+pub use shape::Sides;
 pub(super) use shape::{BodyShape, Site};
 
 use serde::{Deserialize, Serialize};
@@ -55,14 +56,14 @@ pub enum BodySpec {
 
 /// What all body shapes are called, in the order in which messages name them.
 const ALL: [About; 8] = [
-    RectangleSpec::ABOUT,
-    BarSpec::ABOUT,
-    BoxSpec::ABOUT,
-    DiscSpec::ABOUT,
-    HalfDiscSpec::ABOUT,
-    HalfBallSpec::ABOUT,
-    RingSpec::ABOUT,
-    GmshSpec::ABOUT,
+    rectangle::ABOUT,
+    bar::ABOUT,
+    cuboid::ABOUT,
+    disc::ABOUT,
+    half_disc::ABOUT,
+    half_ball::ABOUT,
+    ring::ABOUT,
+    gmsh::ABOUT,
 ];
 
 impl BodySpec {

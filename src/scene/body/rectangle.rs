@@ -8,8 +8,9 @@ use super::shape::{About, Block, BodyShape, Site};
 use crate::error::Error;
 use crate::fem::mesh::lattice::half_steps;
 use crate::fem::mesh::{Boundary, ElementKind, Mesh, check_lines, fail};
+use crate::fem::{Axis, Integration};
+use crate::scene::schema::ElementSpec;
 use crate::scene::schema::json::{object, word};
-use crate::scene::schema::{AxisSpec, ElementSpec, IntegrationSpec};
 
 /// No node stands here: the middle of a quadratic quadrilateral.
 const NO_NODE: usize = usize::MAX;
@@ -21,28 +22,26 @@ const NO_NODE: usize = usize::MAX;
 pub struct RectangleSpec {
     /// The axis along x.
     #[serde(deserialize_with = "object")]
-    pub x: AxisSpec,
+    pub x: Axis,
     /// The axis along y.
     #[serde(deserialize_with = "object")]
-    pub y: AxisSpec,
+    pub y: Axis,
     /// The element.
     #[serde(default, deserialize_with = "word")]
     pub element: ElementSpec,
     /// How its stiffness is integrated.
     #[serde(default, deserialize_with = "word")]
-    pub integration: IntegrationSpec,
+    pub integration: Integration,
 }
 
-impl RectangleSpec {
-    pub(super) const ABOUT: About = About { name: "rectangle", dimension: Some(2) };
-}
+pub(super) const ABOUT: About = About { name: "rectangle", dimension: Some(2) };
 
 impl BodyShape for RectangleSpec {
     fn about(&self) -> About {
-        Self::ABOUT
+        ABOUT
     }
 
-    fn integration(&self) -> IntegrationSpec {
+    fn integration(&self) -> Integration {
         self.integration
     }
 

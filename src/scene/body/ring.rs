@@ -8,8 +8,9 @@ use super::shape::{About, Block, BodyShape, Site};
 use crate::error::Error;
 use crate::fem::mesh::lattice::{Lattice, half_steps};
 use crate::fem::mesh::{ElementKind, Mesh, check_lines, fail};
+use crate::fem::{Axis, Integration};
+use crate::scene::schema::ElementSpec;
 use crate::scene::schema::json::{object, word};
-use crate::scene::schema::{AxisSpec, ElementSpec, IntegrationSpec};
 
 /// A ring or a sector of it: the product of a radial axis and an angle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -21,28 +22,26 @@ pub struct RingSpec {
     pub centre: [f64; 2],
     /// The radial axis, from the inner to the outer radius.
     #[serde(deserialize_with = "object")]
-    pub radius: AxisSpec,
+    pub radius: Axis,
     /// The angle in degrees, counterclockwise from x; the ring closes where it spans 360.
     #[serde(deserialize_with = "object")]
-    pub angle: AxisSpec,
+    pub angle: Axis,
     /// The element.
     #[serde(default, deserialize_with = "word")]
     pub element: ElementSpec,
     /// How its stiffness is integrated.
     #[serde(default, deserialize_with = "word")]
-    pub integration: IntegrationSpec,
+    pub integration: Integration,
 }
 
-impl RingSpec {
-    pub(super) const ABOUT: About = About { name: "ring", dimension: Some(2) };
-}
+pub(super) const ABOUT: About = About { name: "ring", dimension: Some(2) };
 
 impl BodyShape for RingSpec {
     fn about(&self) -> About {
-        Self::ABOUT
+        ABOUT
     }
 
-    fn integration(&self) -> IntegrationSpec {
+    fn integration(&self) -> Integration {
         self.integration
     }
 

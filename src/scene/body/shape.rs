@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use crate::error::Error;
+use crate::fem::Integration;
 use crate::fem::element::LatticeCounts;
 use crate::fem::mesh::{Axis, ElementKind, MAX_NODES, Mesh, Zone};
 use crate::scene::entry::wrong;
-use crate::scene::schema::{AxisSpec, IntegrationSpec, ModelSpec};
+use crate::scene::schema::ModelSpec;
 
 /// The corner to corner part of a round body's radius that is not core, about.
 const SHELLS: f64 = 0.6;
@@ -25,7 +26,7 @@ pub(in crate::scene) trait BodyShape {
     fn about(&self) -> About;
 
     /// How the stiffness is integrated.
-    fn integration(&self) -> IntegrationSpec;
+    fn integration(&self) -> Integration;
 
     /// The cross-section of a bar, in area.
     fn area(&self) -> f64 {
@@ -55,13 +56,12 @@ pub(in crate::scene) struct Site<'a> {
 
 impl Site<'_> {
     /// The mesh lines of an axis that is the field `name`.
-    pub fn lines(&self, spec: &AxisSpec, name: &str) -> Result<Vec<f64>, Error> {
-        let axis = Axis { points: spec.points.clone(), divisions: spec.divisions.clone(), ratios: spec.ratios.clone() };
+    pub fn lines(&self, axis: &Axis, name: &str) -> Result<Vec<f64>, Error> {
         axis.coordinates().map_err(|error| wrong(format!("{}.{name}.{}", self.path, error.field), error.message))
     }
 
     /// Refuses a product of divisions that makes more nodes than are allowed, before its lines are made.
-    pub fn check_product(&self, axes: &[&AxisSpec]) -> Result<(), Error> {
+    pub fn check_product(&self, axes: &[&Axis]) -> Result<(), Error> {
         let cells: Vec<usize> = axes.iter().map(|axis| axis.cells()).collect();
         // A single axis of too many is refused at its own path.
         let possible = cells.iter().all(|&cells| cells <= MAX_NODES);
@@ -85,6 +85,15 @@ impl Site<'_> {
     }
 }
 
+/// What of a round body is meshed along an axis across its lowest point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sides {
+    /// Both sides of the centre.
+    Both,
+    /// The part beyond the centre, which ends at a plane of symmetry.
+    Beyond,
+}
+
 /// A block of cells that stands for the mesh of a body.
 pub(in crate::scene) struct Block {
     /// Cells along each axis.
@@ -97,8 +106,8 @@ pub(in crate::scene) struct Block {
 
 impl Block {
     /// The product of divided axes.
-    pub fn product(axes: &[&AxisSpec], kind: ElementKind) -> Self {
-        let of = |axis: &AxisSpec| axis.divisions.iter().map(|&cells| cells as f64).sum::<f64>();
+    pub fn product(axes: &[&Axis], kind: ElementKind) -> Self {
+        let of = |axis: &Axis| axis.divisions.iter().map(|&cells| cells as f64).sum::<f64>();
         Block {
             cells: axes.iter().map(|axis| of(axis)).collect(),
             lengths: axes.iter().map(|axis| axis.length()).collect(),

@@ -3,26 +3,24 @@
 use serde::{Deserialize, Serialize};
 
 mod analysis;
+mod approach;
 mod body;
 mod cells;
 mod condition;
 pub(super) mod json;
 mod model;
 mod obstacle;
-mod solid;
 
 pub use analysis::{
     AnalysisSpec, DampingSpec, DynamicSpec, FactorSpec, FactorTableSpec, FieldSpec, InitialSpec, IntervalSpec,
     LoadInTimeSpec, MassSpec, PenetrationSpec, SineSpec,
 };
+pub use approach::{Approach, Rule};
 pub use body::{FurtherBodySpec, MaterialSpec};
-pub use cells::{AxisSpec, ElementSpec, HalfSpec, IntegrationSpec, SolidElementSpec, ZoneSpec};
+pub use cells::{ElementSpec, HalfSpec, SolidElementSpec};
 pub use condition::{ForceSpec, LoadSpec, Place, PressureSpec, SupportSpec, TractionSpec};
 pub use model::ModelSpec;
-pub use obstacle::{
-    Approach, CircleSpec, FacingSpec, ObstacleSpec, ParabolaSpec, PlaneSpec, Rule, ShapeSpec, TableSpec, WedgeSpec,
-};
-pub use solid::{ConeSpec, CylinderSpec, HeightMapSpec, SphereSpec};
+pub use obstacle::ObstacleSpec;
 
 use std::path::PathBuf;
 

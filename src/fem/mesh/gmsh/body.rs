@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use super::cells::CellType;
 use super::{Element, GmshFile};
 use crate::error::Error;
-use crate::fem::element::{Cell, ElementKind, MAX_NODES, Tabulated};
+use crate::fem::element::{Cell, ElementKind, MAX_NODES, Rule, Tabulated};
 use crate::fem::mesh::{Mesh, fail};
 
 /// A node farther from the plane than this times the size of the body lies outside it: far above the rounding of a mesh
@@ -108,7 +108,7 @@ impl<'a> Body<'a> {
 
     /// Checks that no element is turned inside out or without volume.
     fn check(&self, file: &GmshFile, nodes: &[[f64; 3]], connectivity: &[usize]) -> Result<(), Error> {
-        let table = Tabulated::new(self.kind.reference(), false);
+        let table = Tabulated::new(self.kind.reference(), Rule::Straight);
         for (element, places) in self.elements.iter().zip(connectivity.chunks_exact(self.kind.nodes())) {
             let mut coordinates = [[0.0; 3]; MAX_NODES];
             for (at, &place) in coordinates.iter_mut().zip(places) {
