@@ -12,6 +12,9 @@ use crate::error::Error;
 use crate::qp::method::Start;
 use crate::solution::{Attempt, Seconds, Solution};
 
+/// Cycles after which an iteration that was chosen for its speed is no longer fast: a factor comes next.
+const EXPECTED_CYCLES: usize = 80;
+
 /// How the ways that are tried end by themselves.
 ///
 /// # Errors
@@ -44,7 +47,7 @@ impl Attempts {
     fn choose(&mut self, problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
         let estimate = Estimate::of(problem);
         let (allowed, watch) = (settings.memory.unwrap_or(f64::INFINITY), &settings.watch);
-        let mut refused = None;
+        let (mut refused, mut most_cycles) = (None, settings.max_iterations);
         let reason = match estimate.choose(allowed)? {
             Choice::Factor => match self.with_factor(problem, settings) {
                 Err(Error::TooLarge { bytes, .. }) => {
@@ -59,11 +62,16 @@ impl Attempts {
                 }
                 decided => return decided,
             },
-            Choice::Speed { reason } | Choice::Room { reason } => reason,
+            Choice::Speed { reason } => {
+                most_cycles = EXPECTED_CYCLES.min(most_cycles);
+                reason
+            }
+            Choice::Room { reason } => reason,
         };
         let clock = Instant::now();
+        let expected = Settings { max_iterations: most_cycles, ..settings.clone() };
         let answered =
-            with_solution(by_multigrid(problem, settings), |solution| Solution { reason: Some(reason), ..solution });
+            with_solution(by_multigrid(problem, &expected), |solution| Solution { reason: Some(reason), ..solution });
         let fell_short = match answered {
             Err(error @ (Error::NotCertified { .. } | Error::Numerical { .. } | Error::NotConvex { .. }))
                 if !watch.is_over() =>
@@ -185,7 +193,7 @@ fn by_multigrid(problem: &ContactProblem, settings: &Settings) -> Result<Solutio
 
 /// The answer at the gaps of `problem`, whose time is that of its preparation too.
 fn solved_with(prepared: &Prepared, problem: &ContactProblem) -> Result<Solution, Error> {
-    let Seconds { factor, solve } = prepared.seconds();
+    let Seconds { factor, solve, .. } = prepared.seconds();
     with_solution(prepared.solve(problem.gap()), |mut solution| {
         solution.seconds.factor += factor;
         solution.seconds.solve += solve;

@@ -27,9 +27,9 @@ use super::transform::{Condensation, Scaling};
 use crate::error::{Error, memory as written};
 use crate::solution::Certificate;
 
-/// The direct path is exact and its bound proven: it is left only where it takes so many times as long. In space that is
-/// beyond some 160,000 dofs.
-const CLEARLY: f64 = 20.0;
+/// The direct path is exact and its bound proven: it is left only if it takes so many times as long. In space that is
+/// beyond some 20,000 dofs.
+const CLEARLY: f64 = 3.0;
 
 /// An estimate may be so many times too large.
 const UNSURE: f64 = 2.0;
@@ -58,7 +58,7 @@ impl Estimate {
     pub(super) fn choose(&self, most_bytes: f64) -> Result<Choice, Error> {
         let ratio = self.direct_seconds / self.multigrid_seconds;
         // Constants alone make a poor hierarchy of a body.
-        if ratio > CLEARLY && self.knows_motions && self.multigrid_bytes <= most_bytes {
+        if ratio > CLEARLY && self.suits_multigrid && self.multigrid_bytes <= most_bytes {
             let reason = format!("by multigrid: a factorisation would take about {ratio:.0} times as long");
             return Ok(Choice::Speed { reason });
         }

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use super::springs::Springs;
 use crate::error::Error;
 use crate::qp::linear::{
-    Analysis, Cholesky, Equilibration, FactorError, LowerTriangle, SparseMatrix, SymmetricMatrix, dot, ldexp,
+    Analysis, Cholesky, Equilibration, FactorError, LowerTriangle, SelectedInverse, SparseMatrix, SymmetricMatrix, dot,
+    ldexp,
 };
 use crate::watch::Watch;
 
@@ -213,6 +214,21 @@ impl EnergyNorm {
                 .for_each(|(row, b)| rows[row].push((dof, ldexp(b, scale))));
         }
         rows
+    }
+
+    /// Number of values of the factor.
+    pub(super) fn factor_entries(&self) -> usize {
+        self.cholesky.entries()
+    }
+
+    /// Number of multiplications of the factorisation.
+    pub(super) fn multiplications(&self) -> f64 {
+        self.cholesky.multiplications()
+    }
+
+    /// The entries of the inverse of the equilibrated stiffness in the pattern of its factor; `None` for want of memory.
+    pub(super) fn selected_inverse(&self) -> Option<SelectedInverse<'_>> {
+        self.cholesky.selected_inverse()
     }
 
     /// Number of dofs.

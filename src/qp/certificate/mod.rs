@@ -9,6 +9,7 @@ mod energy_norm;
 mod infeasible;
 mod motion;
 mod proof;
+mod reach;
 mod scales;
 mod springs;
 mod units;

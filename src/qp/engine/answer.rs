@@ -99,6 +99,7 @@ impl Factored {
         let may_prove = settings.prove && !settings.watch.is_stopped() && settings.watch.allows(self.proof_seconds);
         let proven = norm.as_ref().filter(|_| may_prove);
         solution.proven = proven.and_then(|norm| problem.prove_in(norm, &solution.displacement, &solution.multiplier));
+        solution.seconds.proof += clock.elapsed().as_secs_f64();
         solution.seconds.solve += clock.elapsed().as_secs_f64();
         Ok(solution)
     }

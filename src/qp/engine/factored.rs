@@ -142,7 +142,7 @@ impl Factored {
         };
         let outcome =
             run(&task, start, settings, &bound).map_err(|error| self.expand_error(error, &loading.load, &gap))?;
-        let seconds = Seconds { factor: task.factor_seconds(), solve: clock.elapsed().as_secs_f64() };
+        let seconds = Seconds { factor: task.factor_seconds(), proof: 0.0, solve: clock.elapsed().as_secs_f64() };
         Ok(Found { loading, gap, problem, unit, outcome, seconds, refined: None })
     }
 

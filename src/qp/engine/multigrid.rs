@@ -76,7 +76,7 @@ impl Hierarchical {
 
     /// What the hierarchy cost.
     pub fn seconds(&self) -> Seconds {
-        Seconds { factor: self.seconds, solve: self.seconds }
+        Seconds { factor: self.seconds, proof: 0.0, solve: self.seconds }
     }
 
     /// The whole answer, certified.
@@ -125,8 +125,13 @@ impl Hierarchical {
             next.history = found.history;
             found = next;
         };
-        let seconds = Seconds { factor: 0.0, solve: clock.elapsed().as_secs_f64() };
-        let solution = Solution { seconds, ..answer(found, Method::Mprgp.name(), certificate) };
+        let before_proof = Instant::now();
+        let may_prove = settings.prove && !settings.watch.is_over();
+        let prove = || problem.prove_by_cycles(multigrid, &settings.watch, &found.displacement, &found.multiplier);
+        let proven = if may_prove { prove() } else { None };
+        let proof = before_proof.elapsed().as_secs_f64();
+        let seconds = Seconds { factor: 0.0, proof, solve: clock.elapsed().as_secs_f64() };
+        let solution = Solution { seconds, proven, ..answer(found, Method::Mprgp.name(), certificate) };
         judged(solution, goal)
     }
 

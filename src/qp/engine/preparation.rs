@@ -42,10 +42,11 @@ impl Factored {
             return Err(Error::Interrupted);
         }
         watch.step("factorisation", 0);
-        let proof_seconds = match last.len() as f64 {
-            0.0 => seconds::sweeps(problem.rows(), analysis.factor_entries() as f64),
-            boundary => seconds::sweeps(problem.rows(), boundary * boundary),
+        let of_row = match last.len() as f64 {
+            0.0 => analysis.factor_entries() as f64,
+            boundary => boundary * boundary,
         };
+        let proof_seconds = seconds::sweeps(problem.rows(), of_row).min(seconds::selected_inverse(&analysis));
         let norm_seconds = seconds::ordering(problem) + seconds::factorisation(&analysis);
         let mut factoring = Factoring { problem, scaling: &scaling, analysis: &analysis, settings, least_pivot: None };
         let cholesky = factoring.definite(single, last.len())?;
@@ -73,7 +74,7 @@ impl Factored {
             proof_seconds,
             norm_seconds,
             condensed_norm: OnceLock::new(),
-            seconds: Seconds { factor, solve: clock.elapsed().as_secs_f64() },
+            seconds: Seconds { factor, proof: 0.0, solve: clock.elapsed().as_secs_f64() },
         })
     }
 }

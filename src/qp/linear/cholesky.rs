@@ -247,7 +247,26 @@ impl Cholesky {
         LowerTriangle::new(size, block)
     }
 
-    fn order(&self) -> &[usize] {
+    /// The structure of the factor, in block columns.
+    pub(super) fn supernodes(&self) -> Option<&supernodal::SymbolicSupernodalCholesky<usize>> {
+        self.analysis.supernodes()
+    }
+
+    /// The values of block column `node`: the rows of its own columns, then those below.
+    pub(super) fn block_column(&self, node: usize) -> faer::Mat<f64> {
+        match self.supernodes() {
+            Some(nodes) => by_precision!(self.values, values => factor::block_column(nodes, values, node)),
+            None => faer::Mat::new(),
+        }
+    }
+
+    /// Number of multiplications of its factorisation, as if each column went through its own.
+    pub fn multiplications(&self) -> f64 {
+        self.analysis.multiplications()
+    }
+
+    /// The columns of the matrix in the order of elimination.
+    pub(super) fn order(&self) -> &[usize] {
         self.analysis.symbolic.perm().map_or(&[], |perm| perm.arrays().0)
     }
 

@@ -14,6 +14,7 @@ mod ordering;
 mod orthogonal;
 mod power_of_two;
 mod quotient;
+mod selected_inverse;
 mod symmetric;
 pub mod twice;
 
@@ -26,6 +27,7 @@ pub use factor::FactorError;
 pub use null_space::{NullSpace, generic};
 pub use orthogonal::inverse_lengths;
 pub use power_of_two::{Equilibration, exponent, ldexp};
+pub use selected_inverse::SelectedInverse;
 pub use symmetric::SymmetricMatrix;
 pub use twice::Twice;
 
