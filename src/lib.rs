@@ -68,12 +68,10 @@ mod solution;
 pub mod study;
 mod watch;
 
-pub use error::Error;
-pub use qp::linear::{SparseMatrix, SymmetricMatrix};
-pub use qp::problem::ContactProblem;
+pub use error::{Error, Failure};
 pub use qp::{
-    BoundarySolution, Condense, InteriorPoint, Iterative, Method, Path, Penalty, Precision, Prepared, Settings, Start,
-    solve, solve_qp,
+    BoundarySolution, Condense, ContactProblem, InteriorPoint, Method, Path, Penalty, Precision, Prepared, Settings,
+    SparseMatrix, Start, SymmetricMatrix, solve, solve_qp,
 };
 pub use scene::{Model, Scene};
 pub use solution::{Attempt, Certificate, ContactSet, Goal, Iteration, ProvenSet, Seconds, Solution};
@@ -85,8 +83,10 @@ pub mod internals {
     #[cfg(feature = "pictures")]
     pub use crate::output::ticks::{Ticks, brief, decimal, power_of_ten};
     pub use crate::qp::barrier::guarded;
+    pub use crate::qp::cost::Estimate;
     pub use crate::qp::cost::bytes;
-    pub use crate::qp::linear::{AugmentedMatrix, dot};
+    pub use crate::qp::linear::{AugmentedMatrix, Cholesky, dot, multigrid};
+    pub use crate::qp::matrix_market::format_vector;
     pub use crate::qp::method::dual_active_set::DualActiveSet;
     pub use crate::qp::method::{Outcome, ScaledProblem, Solver};
 }

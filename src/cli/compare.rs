@@ -1,6 +1,6 @@
 //! `signorini compare`: three methods, one problem.
 
-use super::input::{Content, Input};
+use super::input::Input;
 use super::options::{Compare, Format};
 use super::outcome::{Outcome, warn};
 use super::settings::settings;
@@ -18,8 +18,10 @@ pub(super) fn run(options: &Compare, watch: &Watch) -> Result<Outcome, Error> {
     let comparison = compare(input.problem(), &settings).map_err(|error| input.explain(error))?;
     watch.step("report", 0);
     let [qp, active_set, penalty] = &comparison.answers;
-    let summary = |solution| input.summary(solution, common.tolerance);
-    let summaries: [Summary; 3] = [summary(&qp.solution)?, summary(&active_set.solution)?, summary(&penalty.solution)?];
+    let solutions = [&qp.solution, &active_set.solution, &penalty.solution];
+    let answers = [input.answer(solutions[0])?, input.answer(solutions[1])?, input.answer(solutions[2])?];
+    let summary = |index: usize| input.summary(solutions[index], answers[index].as_ref(), common.tolerance);
+    let summaries: [Summary; 3] = [summary(0)?, summary(1)?, summary(2)?];
     let json = format!("{:#}\n", compare_json(&summaries, &comparison.agreement));
     let text = match common.format {
         Format::Text => compare_text(&input.title, &summaries, &comparison.agreement, &input.units),
@@ -29,8 +31,7 @@ pub(super) fn run(options: &Compare, watch: &Watch) -> Result<Outcome, Error> {
     let Some(folder) = common.out.clone() else { return Ok(outcome) };
     gallery::write_answer(&folder, &qp.solution)?;
     write_files(&folder, &[("report.json", json)])?;
-    Ok(match input.content {
-        Content::Scene(model) => outcome.with_pictures(move || gallery::write_compare(&folder, &model, &comparison)),
-        Content::Directory(_) => outcome,
-    })
+    let [Some(qp), Some(active_set), Some(penalty)] = answers else { return Ok(outcome) };
+    let answers = [qp, active_set, penalty];
+    Ok(outcome.with_pictures(move || gallery::write_compare(&folder, &answers, &comparison)))
 }

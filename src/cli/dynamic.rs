@@ -1,5 +1,7 @@
 //! `signorini solve` of a scene that asks for its motion: step after step.
 
+use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
 use super::input::{scene_title, unit_names, warnings};
@@ -10,7 +12,7 @@ use crate::error::Error;
 use crate::motion::Integrator;
 use crate::output::{MotionFolder, MotionSeconds, motion_is_certified, motion_json, motion_text, write_files};
 use crate::qp::Method;
-use crate::scene::Scene;
+use crate::scene::{Dynamics, Model, Scene};
 use crate::study::MotionSummary;
 use crate::watch::Watch;
 
@@ -19,7 +21,7 @@ const GAIN: f64 = 0.01;
 
 pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outcome, Error> {
     let clock = Instant::now();
-    let model = scene.build()?;
+    let model = Arc::new(scene.build()?);
     let Some(dynamics) = scene.dynamics(&model)? else { return Ok(Outcome::certified(String::new())) };
     warn(&warnings(&model));
     warn(&dynamics.warnings.iter().map(|warning| format!("warning: {warning}\n")).collect::<String>());
@@ -31,55 +33,18 @@ pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outco
         settings.method = Method::ActiveSet;
     }
     let explained = |error| model.explain(error);
-    let mut integrator =
+    let integrator =
         Integrator::new(dynamics.problem.clone(), dynamics.scheme, dynamics.step, &settings).map_err(explained)?;
     let factor = clock.elapsed().as_secs_f64();
 
     let clock = Instant::now();
-    let first = integrator.observe();
-    let mut summary = MotionSummary::starting(&first);
-    let text = serde_json::to_string(scene)
-        .map_err(|error| Error::Numerical { step: "writing JSON", reason: error.to_string() })?;
-    let mut folder = match &options.common.out {
-        Some(folder) if options.resume => {
-            let (folder, state, so_far) = MotionFolder::resume(folder, text)?;
-            if state.steps > dynamics.steps {
-                let message = format!("the run in the folder has gone on to step {} already, beyond it", state.steps);
-                return Err(Error::Scene { path: "analysis.dynamic.duration".into(), message });
-            }
-            integrator.resume(state)?;
-            if integrator.time() != so_far.time {
-                let message = "the run in the folder has another step; its duration was less than one".to_string();
-                return Err(Error::Scene { path: "analysis.dynamic.step".into(), message });
-            }
-            summary = so_far;
-            Some(folder)
-        }
-        Some(folder) => {
-            let mut folder = MotionFolder::new(folder, text, &first)?;
-            folder.frame(&model, 0.0, integrator.state(), &summary)?;
-            Some(folder)
-        }
-        None => None,
+    let mut run = match &options.common.out {
+        None => Run::without_folder(&model, &dynamics, integrator),
+        Some(path) if options.resume => Run::resumed(&model, &dynamics, integrator, path, written(scene)?)?,
+        Some(path) => Run::in_folder(&model, &dynamics, integrator, path, written(scene)?)?,
     };
-    // A frame ends where the share of the steps reaches the next whole number of frames.
-    let frames_until = |step: usize| step as u128 * dynamics.frames as u128 / dynamics.steps as u128;
-    while integrator.state().steps < dynamics.steps {
-        watch.part("step", integrator.state().steps + 1, dynamics.steps);
-        match integrator.advance() {
-            Err(Error::Interrupted) => break,
-            advanced => advanced.map_err(explained)?,
-        };
-        let seen = integrator.observe();
-        summary.add(&seen, dynamics.step);
-        let steps = integrator.state().steps;
-        if let Some(folder) = &mut folder {
-            folder.observe(&seen)?;
-            if frames_until(steps) > frames_until(steps - 1) {
-                folder.frame(&model, seen.time, integrator.state(), &summary)?;
-            }
-        }
-    }
+    run.advance(watch)?;
+    let Run { summary, folder, .. } = run;
     if summary.steps < dynamics.steps && !watch.is_stopped() {
         warn(&format!("out of time after step {} of {}\n", summary.steps, dynamics.steps));
     }
@@ -99,4 +64,85 @@ pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outco
     let (Some(folder), Some(path)) = (folder, &options.common.out) else { return Ok(outcome) };
     write_files(path, &[("report.json", json)])?;
     Ok(outcome.with_pictures(move || folder.draw(&model)))
+}
+
+/// The scene as a checkpoint keeps it.
+fn written(scene: &Scene) -> Result<String, Error> {
+    let failed = |error: serde_json::Error| Error::Numerical { step: "writing JSON", reason: error.to_string() };
+    serde_json::to_string(scene).map_err(failed)
+}
+
+/// The steps of a motion, and what they leave.
+struct Run<'a> {
+    model: &'a Arc<Model>,
+    dynamics: &'a Dynamics,
+    integrator: Integrator,
+    summary: MotionSummary,
+    folder: Option<MotionFolder>,
+}
+
+impl<'a> Run<'a> {
+    fn without_folder(model: &'a Arc<Model>, dynamics: &'a Dynamics, integrator: Integrator) -> Self {
+        let summary = MotionSummary::starting(&integrator.observe());
+        Run { model, dynamics, integrator, summary, folder: None }
+    }
+
+    /// A new run, which leaves its frames in a folder.
+    fn in_folder(
+        model: &'a Arc<Model>,
+        dynamics: &'a Dynamics,
+        integrator: Integrator,
+        path: &Path,
+        scene: String,
+    ) -> Result<Self, Error> {
+        let run = Run::without_folder(model, dynamics, integrator);
+        let mut folder = MotionFolder::new(path, scene, &run.integrator.observe())?;
+        folder.frame(model, 0.0, run.integrator.state(), &run.summary)?;
+        Ok(Run { folder: Some(folder), ..run })
+    }
+
+    /// The run that a folder holds, to go on with.
+    fn resumed(
+        model: &'a Arc<Model>,
+        dynamics: &'a Dynamics,
+        mut integrator: Integrator,
+        path: &Path,
+        scene: String,
+    ) -> Result<Self, Error> {
+        let wrong = |field: &str, message: String| Error::Scene { path: format!("analysis.dynamic.{field}"), message };
+        let (folder, state, summary) = MotionFolder::resume(path, scene)?;
+        if state.steps > dynamics.steps {
+            let message = format!("the run in the folder has gone on to step {} already, beyond it", state.steps);
+            return Err(wrong("duration", message));
+        }
+        integrator.resume(state)?;
+        if integrator.time() != summary.time {
+            return Err(wrong("step", "the run in the folder has another step; its duration was less than one".into()));
+        }
+        Ok(Run { model, dynamics, integrator, summary, folder: Some(folder) })
+    }
+
+    /// All steps that are left, as long as the watch allows.
+    fn advance(&mut self, watch: &Watch) -> Result<(), Error> {
+        let Dynamics { steps: last, frames, step, .. } = *self.dynamics;
+        // A frame ends where the share of the steps reaches the next whole number of frames.
+        let frames_until = |step: usize| step as u128 * frames as u128 / last as u128;
+        while self.integrator.state().steps < last {
+            watch.part("step", self.integrator.state().steps + 1, last);
+            match self.integrator.advance() {
+                Err(Error::Interrupted) => break,
+                advanced => advanced.map_err(|error| self.model.explain(error))?,
+            };
+            let seen = self.integrator.observe();
+            self.summary.add(&seen, step);
+            let state = self.integrator.state();
+            if let Some(folder) = &mut self.folder {
+                folder.observe(&seen)?;
+                if frames_until(state.steps) > frames_until(state.steps - 1) {
+                    folder.frame(self.model, seen.time, state, &self.summary)?;
+                }
+            }
+        }
+        Ok(())
+    }
 }

@@ -21,7 +21,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use crate::error::Error;
+use crate::error::{Error, Failure};
 use crate::output::printable;
 use crate::scene::Scene;
 use crate::watch::Watch;
@@ -106,23 +106,13 @@ fn sentence(error: &Error) -> String {
 }
 
 fn ending_of(error: &Error) -> Ending {
-    match error {
-        Error::Infeasible { .. } | Error::Unbounded { .. } | Error::UnderHeld { .. } => Ending::NoSolution,
-        Error::NotCertified { .. } | Error::OutOfTime { .. } | Error::Interrupted => Ending::NotCertified,
-        _ => Ending::BadInput,
+    match error.failure() {
+        Failure::BadInput => Ending::BadInput,
+        Failure::NoSolution => Ending::NoSolution,
+        Failure::NotCertified => Ending::NotCertified,
     }
 }
 
 fn failure_json(error: &Error, message: &str) -> serde_json::Value {
-    let status = match error {
-        Error::Infeasible { .. } => "infeasible",
-        Error::Unbounded { .. } => "unbounded",
-        Error::UnderHeld { .. } => "under_held",
-        Error::NotConvex { .. } => "not_convex",
-        Error::Numerical { .. } => "failed",
-        Error::Interrupted => "interrupted",
-        Error::OutOfTime { .. } => "out_of_time",
-        _ => "bad_input",
-    };
-    serde_json::json!({ "status": status, "code": error.code(), "message": message })
+    serde_json::json!({ "status": error.status(), "code": error.code(), "message": message })
 }

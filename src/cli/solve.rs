@@ -1,14 +1,15 @@
 //! `signorini solve`: one answer.
 
 use super::dynamic;
-use super::input::{Content, Input, Source};
+use super::input::{Input, Source};
 use super::options::{Format, Solve};
 use super::outcome::{Outcome, warn};
 use super::settings::settings;
 use crate::error::Error;
 use crate::output::{gallery, solve_json, solve_text, write_files};
-use crate::qp::{Method, solve};
-use crate::study::discretisation_error;
+use crate::qp::{Method, Settings, solve};
+use crate::scene::Scene;
+use crate::solution::Solution;
 use crate::watch::Watch;
 
 /// Assembly that takes so many seconds at the most is done without time too: the report then says what the rest needs.
@@ -18,23 +19,13 @@ const AT_ONCE: f64 = 1e-3;
 const REPORT: f64 = 0.5;
 
 pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
-    let common = &options.common;
     // Reading and assembly count too.
     let watch = &options.time.map_or_else(|| watch.clone(), |time| watch.within(time));
-    let source = Source::read(&options.input, &common.limits)?;
+    let source = Source::read(&options.input, &options.common.limits)?;
     let mut report_seconds = 0.0;
     if let Source::Scene(scene, _) = &source {
-        let needs_factor = !matches!(options.method.method(), Method::Auto | Method::Mprgp);
-        if needs_factor || scene.analysis.is_some() {
-            scene.check_size(common.limits.most_memory())?;
-        } else {
-            scene.check_size_without_factor(common.limits.most_memory())?;
-        }
-        let needed = scene.size().assembly_seconds();
+        let needed = assembly_seconds(scene, options, watch)?;
         report_seconds = REPORT * needed;
-        if let Some(time) = watch.time_left().filter(|_| needed > AT_ONCE && !watch.allows(needed)) {
-            return Err(Error::OutOfTime { needed, time });
-        }
         if scene.analysis.is_some() {
             return dynamic::run(options, scene, watch);
         }
@@ -48,22 +39,14 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
         Source::Directory(input) => *input,
     };
     warn(&input.warnings());
-    let mut settings = settings(options.method.method(), common, &watch.keeping(report_seconds));
+    let mut settings = settings(options.method.method(), &options.common, &watch.keeping(report_seconds));
     settings.prove = true;
     settings.accuracy = options.accuracy;
     settings.precision = options.precision.precision();
     if let Method::Penalty(ladder) = &mut settings.method {
         ladder.extrapolate = options.extrapolate;
     }
-    let solution = match solve(input.problem(), &settings) {
-        Ok(solution) => solution,
-        Err(error @ Error::NotCertified { .. }) => {
-            warn(&format!("error: {error}\n"));
-            let Error::NotCertified { solution, .. } = error else { return Err(error) };
-            *solution
-        }
-        Err(error) => return Err(input.explain(error)),
-    };
+    let solution = best_of(&input, &settings)?;
     if options.extrapolate && !matches!(settings.method, Method::Penalty(_)) {
         let method = &solution.method;
         warn(&format!(
@@ -71,26 +54,65 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
         ));
     }
     watch.step("report", 0);
-    let mut summary = input.summary(&solution, settings.goal())?;
-    if let Content::Scene(model) = &input.content
+    report(options, &input, solution, &settings, watch)
+}
+
+/// Refuses a scene that does not fit into memory or time; the seconds that its assembly will take.
+fn assembly_seconds(scene: &Scene, options: &Solve, watch: &Watch) -> Result<f64, Error> {
+    let most_memory = options.common.limits.most_memory();
+    let needs_factor = !matches!(options.method.method(), Method::Auto | Method::Mprgp);
+    if needs_factor || scene.analysis.is_some() {
+        scene.check_size(most_memory)?;
+    } else {
+        scene.check_size_without_factor(most_memory)?;
+    }
+    let needed = scene.size().assembly_seconds();
+    match watch.time_left().filter(|_| needed > AT_ONCE && !watch.allows(needed)) {
+        Some(time) => Err(Error::OutOfTime { needed, time }),
+        None => Ok(needed),
+    }
+}
+
+/// The answer, certified or not.
+fn best_of(input: &Input, settings: &Settings) -> Result<Solution, Error> {
+    match solve(input.problem(), settings) {
+        Err(error @ Error::NotCertified { .. }) => {
+            warn(&format!("error: {error}\n"));
+            let Error::NotCertified { solution, .. } = error else { return Err(error) };
+            Ok(*solution)
+        }
+        solved => solved.map_err(|error| input.explain(error)),
+    }
+}
+
+/// What the answer leaves: numbers, files, pictures.
+fn report(
+    options: &Solve,
+    input: &Input,
+    solution: Solution,
+    settings: &Settings,
+    watch: &Watch,
+) -> Result<Outcome, Error> {
+    let answer = input.answer(&solution)?;
+    let mut summary = input.summary(&solution, answer.as_ref(), settings.goal())?;
+    if let Some(answer) = &answer
         && !watch.is_over()
     {
-        summary.discretisation_error = Some(discretisation_error(model, &solution)?);
+        summary.discretisation_error = Some(answer.discretisation_error()?);
     }
-    let text = match common.format {
+    let json = || format!("{:#}\n", solve_json(&summary));
+    let text = match options.common.format {
         Format::Text => solve_text(&input.title, &summary, &input.units),
-        Format::Json => format!("{:#}\n", solve_json(&summary)),
+        Format::Json => json(),
     };
     let outcome = Outcome::judged(text, summary.is_certified());
-    let Some(folder) = common.out.clone() else { return Ok(outcome) };
+    let Some(folder) = options.common.out.clone() else { return Ok(outcome) };
     gallery::write_answer(&folder, &solution)?;
-    write_files(&folder, &[("report.json", format!("{:#}\n", solve_json(&summary)))])?;
+    write_files(&folder, &[("report.json", json())])?;
     if watch.is_over() && !watch.is_stopped() {
         warn("warning: no fields and no pictures: the time is over\n");
         return Ok(outcome);
     }
-    Ok(match input.content {
-        Content::Scene(model) => outcome.with_pictures(move || gallery::write_solve(&folder, &model, &solution)),
-        Content::Directory(_) => outcome,
-    })
+    let Some(answer) = answer else { return Ok(outcome) };
+    Ok(outcome.with_pictures(move || gallery::write_solve(&folder, &answer, &solution.history)))
 }

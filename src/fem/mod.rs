@@ -17,10 +17,10 @@ pub use assembly::{
     free_load, internal_force, mass, rigid_motions, stiffness, tributary_areas,
 };
 pub use body::{ElasticBody, Integration, Region};
-pub use element::{Cell, ElementKind, FacetKind, MAX_NODES, QuadraturePoint, Tabulated};
+pub use element::{Cell, ElementKind, FacetKind, MAX_NODES, QuadraturePoint, Rule, Tabulated};
 pub use formulation::Formulation;
 pub use material::Material;
 pub use mesh::gmsh::GmshFile;
-pub use mesh::{Axis, Boundary, Mesh, Zone, bar, cuboid, disc, half_ball, half_disc, rectangle, ring};
+pub use mesh::{Axis, Boundary, Mesh, Zone};
 pub use norms::{ErrorNorms, ExactState, error_norms};
 pub use recovery::{Stress, StressField, discretisation_error, stress};

@@ -47,4 +47,4 @@ pub use report::{
 };
 pub use ticks::{Quantity, Scale};
 pub use tradeoff::{tradeoff_csv, tradeoff_json, tradeoff_plot, tradeoff_text};
-pub use vtu::{Array, CellType, Unstructured};
+pub use vtu::{Array, Unstructured};

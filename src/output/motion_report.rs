@@ -3,7 +3,6 @@
 use serde_json::{Value, json};
 
 use super::report::{UnitNames, entry, plural, printable, quantity};
-use crate::motion::Scheme;
 use crate::qp::Method;
 use crate::scene::{Dynamics, Model};
 use crate::study::MotionSummary;
@@ -23,7 +22,7 @@ pub struct MotionSeconds {
 /// motion was cut short.
 pub fn motion_is_certified(dynamics: &Dynamics, method: Method, summary: &MotionSummary) -> bool {
     let is_whole = summary.steps >= dynamics.steps;
-    is_whole && !matches!(dynamics.scheme, Scheme::Penalty { .. }) && !matches!(method, Method::Penalty(_))
+    is_whole && !dynamics.scheme.penetrates() && !matches!(method, Method::Penalty(_))
 }
 
 /// The report of a run, in lines of at most 100 characters.

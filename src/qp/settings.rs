@@ -93,6 +93,24 @@ pub enum Precision {
 /// let settings = Settings::with_method(Method::ActiveSet).with_tolerance(1e-12).with_proof();
 /// assert_eq!(settings.tolerance, 1e-12);
 /// ```
+///
+/// A setting changes what `Ok` promises, or how the answer is found:
+///
+/// ```
+/// use signorini::{ContactProblem, Error, Method, Penalty, Settings, SparseMatrix, SymmetricMatrix, solve};
+///
+/// // A spring of stiffness 1, pushed with force 2 against a wall at distance 0.5.
+/// let one = || SparseMatrix::from_triplets(1, 1, &[(0, 0, 1.0)]);
+/// let problem = ContactProblem::new(SymmetricMatrix::from_lower(one()?)?, vec![2.0], one()?, vec![0.5])?;
+/// // A penalty as stiff as the spring lets it go to (2 + 0.5) / 2, which is no answer to 1e-9.
+/// let soft = Method::Penalty(Penalty { last: 1.0, ..Penalty::default() });
+/// let Err(Error::NotCertified { solution, .. }) = solve(&problem, &Settings::with_method(soft)) else { panic!() };
+/// assert!((solution.displacement[0] - 1.25).abs() < 1e-15);
+/// // The exact displacement is 0.5. Certified to 1, which asks for nearly nothing, the soft answer passes.
+/// let loose = Settings::with_method(soft).with_tolerance(1.0);
+/// assert!((solve(&problem, &loose)?.displacement[0] - 1.25).abs() < 1e-15);
+/// # Ok::<(), Error>(())
+/// ```
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Settings {

@@ -14,15 +14,17 @@
 //! # Ok::<(), signorini::Error>(())
 //! ```
 
+mod answer;
 mod body;
 mod build;
 mod condition;
 mod dynamics;
+mod elastic;
 mod entry;
 mod explain;
 mod held;
+mod loads_in_time;
 mod locate;
-mod mesh;
 mod model;
 mod obstacle;
 mod parse;
@@ -34,17 +36,18 @@ mod schema;
 mod size;
 mod warning;
 
+pub use crate::motion::SchemeSpec;
+pub use answer::{Answer, Forces};
+pub use body::*;
 pub use dynamics::Dynamics;
 pub use model::Model;
-pub use obstacle::Obstacle;
+pub use obstacle::*;
 pub use rows::ContactRow;
 pub use schema::{
-    AnalysisSpec, Approach, AxisSpec, BarSpec, BodySpec, BoxSpec, CircleSpec, ConeSpec, CylinderSpec, DampingSpec,
-    DiscSpec, DynamicSpec, ElementSpec, FacingSpec, FactorSpec, FactorTableSpec, FieldSpec, ForceSpec, FurtherBodySpec,
-    GmshSpec, HalfBallSpec, HalfDiscSpec, HalfSpec, HeightMapSpec, InitialSpec, IntegrationSpec, IntervalSpec,
-    LoadInTimeSpec, LoadSpec, MassSpec, MaterialSpec, ModelSpec, ObstacleSpec, ParabolaSpec, PenetrationSpec, Place,
-    PlaneSpec, PressureSpec, RectangleSpec, RingSpec, Rule, Scene, SchemeSpec, ShapeSpec, SineSpec, SolidElementSpec,
-    SphereSpec, SupportSpec, SymmetrySpec, TableSpec, TractionSpec, Units, WedgeSpec, ZoneSpec,
+    AnalysisSpec, Approach, DampingSpec, DynamicSpec, ElementSpec, FactorSpec, FactorTableSpec, FieldSpec, ForceSpec,
+    FurtherBodySpec, HalfSpec, InitialSpec, IntervalSpec, LoadInTimeSpec, LoadSpec, MassSpec, MaterialSpec, ModelSpec,
+    ObstacleSpec, PenetrationSpec, Place, PressureSpec, Rule, Scene, SineSpec, SolidElementSpec, SupportSpec,
+    TractionSpec, Units,
 };
 pub use size::Size;
 pub use warning::Warning;

@@ -13,8 +13,7 @@ pub use manufactured::{NodalPressure, SolvedBlock, solve_block};
 pub use motion::MotionSummary;
 pub use motion_tradeoff::{MotionPoint, MotionTradeoff, motion_tradeoff};
 pub use scene::{
-    Sweep, SweepCorner, SweepEvent, SweepPoint, contact_area, contact_width, discretisation_error, even_gaps,
-    scene_summary, sweep,
+    Sweep, SweepCorner, SweepEvent, SweepPoint, contact_area, contact_width, even_gaps, scene_summary, sweep,
 };
 pub use summary::{
     AnswerWarning, CertificateSummary, ContactSummary, HistoryEntry, ModelSize, ProvenSummary, SecondsSummary, Summary,

@@ -1,5 +1,6 @@
 //! Answers to a scene: its summary, and a sweep over the scene-wide gap.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use serde::Serialize;
@@ -7,24 +8,24 @@ use serde::Serialize;
 use super::{ModelSize, Summary};
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
-use crate::fem::recovery;
-use crate::qp::{Event, Prepared, Settings, solve};
-use crate::scene::Model;
+use crate::qp::{Event, Prepared, Settings, Start, solve};
+use crate::scene::{Answer, Model};
 use crate::solution::{ContactSet, Goal, Solution};
 
 /// Gaps half way that differ by this from the mean of the ends, relative, are not on a straight line.
 const STRAIGHT: f64 = 1e-12;
 
-/// The numbers of an answer to a scene: with pressures, the width of the contact, and the balance of all forces.
+/// The numbers of `solution`, whose `answer` to a scene this is: with pressures, the width of the contact, and the balance of all forces.
 ///
 /// # Errors
-/// [`Error::Length`] where the answer is not one to this model.
+/// As [`Model::reactions`].
 pub fn scene_summary(
-    model: &Model,
+    answer: &Answer,
     solution: &Solution,
     goal: impl Into<Goal>,
     assemble_seconds: f64,
 ) -> Result<Summary, Error> {
+    let (model, closed) = (answer.model(), answer.contact_set());
     let mesh = model.mesh();
     let size = ModelSize {
         nodes: Some(mesh.nodes().len()),
@@ -32,24 +33,11 @@ pub fn scene_summary(
         ..ModelSize::of(model.problem())
     };
     let mut summary = Summary::new(solution, size, goal, assemble_seconds);
-    let pressure = model.pressure(&solution.multiplier)?;
-    summary.contact.pressure_max = Some(pressure.iter().copied().fold(0.0, f64::max));
-    summary.contact.width = contact_width(model, &solution.contact_set);
-    summary.contact.area = Some(contact_area(model, &solution.contact_set));
-    summary.contact.force_balance = Some(model.force_balance(&solution.displacement, &solution.multiplier)?);
+    summary.contact.pressure_max = Some(answer.pressure().iter().copied().fold(0.0, f64::max));
+    summary.contact.width = contact_width(model, closed);
+    summary.contact.area = Some(contact_area(model, closed));
+    summary.contact.force_balance = Some(answer.forces()?.balance);
     Ok(summary)
-}
-
-/// The error of the mesh, relative in energy, estimated from the stress of the answer.
-///
-/// # Errors
-/// [`Error::Length`] where the answer is not one to this model.
-///
-/// # Source
-/// [`recovery::discretisation_error`].
-pub fn discretisation_error(model: &Model, solution: &Solution) -> Result<f64, Error> {
-    let nodal = model.nodal_displacement(&solution.displacement)?;
-    recovery::discretisation_error(model.body(), &nodal, &model.stress(&solution.displacement)?)
 }
 
 /// Area of the boundary that the closed rows stand for; thickness, cross-section or circumference included.
@@ -75,10 +63,10 @@ pub struct SweepPoint {
     /// The numbers of the answer.
     #[serde(flatten)]
     pub summary: Summary,
-    /// The scene at this gap.
+    /// The answer, joined with the scene at this gap.
     #[serde(skip)]
-    pub model: Model,
-    /// The answer.
+    pub answer: Answer,
+    /// The answer as the solver gave it.
     #[serde(skip)]
     pub solution: Solution,
 }
@@ -137,7 +125,7 @@ pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, 
         return Ok(Sweep { points: Vec::new(), events: Vec::new(), corners: Vec::new() });
     };
     let at_first = model.with_gap(first)?;
-    let prepared = Prepared::with_settings(at_first.problem(), settings).map_err(|error| at_first.explain(error))?;
+    let prepared = Prepared::new(at_first.problem(), settings).map_err(|error| at_first.explain(error))?;
     let mut points: Vec<SweepPoint> = Vec::new();
     for (index, &gap) in gaps.iter().enumerate() {
         settings.watch.part("gap", index + 1, gaps.len());
@@ -145,9 +133,9 @@ pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, 
         let model = model.with_gap(gap)?;
         let assemble_seconds = clock.elapsed().as_secs_f64();
         let same_rows = model.problem().contact() == at_first.problem().contact();
-        let start = points.last().map(|point| &point.solution.contact_set);
+        let known = points.last().map_or_else(Start::default, |point| Start::from(&point.solution));
         let solved = match same_rows {
-            true => prepared.solve_gap(model.problem().gap().to_vec(), start, settings),
+            true => prepared.starting_from(known).solve(model.problem().gap()),
             false => solve(model.problem(), settings),
         };
         let solution = match solved {
@@ -157,8 +145,9 @@ pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, 
             Err(Error::NotCertified { solution, .. }) => *solution,
             Err(error) => return Err(model.explain(error)),
         };
-        let summary = scene_summary(&model, &solution, settings.goal(), assemble_seconds)?;
-        points.push(SweepPoint { gap, summary, model, solution });
+        let answer = Answer::of(Arc::new(model), &solution)?;
+        let summary = scene_summary(&answer, &solution, settings.goal(), assemble_seconds)?;
+        points.push(SweepPoint { gap, summary, answer, solution });
         if settings.watch.is_stopped() {
             break;
         }
@@ -169,7 +158,7 @@ pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, 
     if settings.watch.is_stopped() {
         return Ok(Sweep { points, events: Vec::new(), corners: Vec::new() });
     }
-    let (events, corners) = between(&prepared, &at_first, first, last, settings)?;
+    let (events, corners) = between(&prepared, &at_first, first, last)?;
     Ok(Sweep { points, events, corners })
 }
 
@@ -179,7 +168,6 @@ fn between(
     at_first: &Model,
     first: f64,
     last: f64,
-    settings: &Settings,
 ) -> Result<(Vec<SweepEvent>, Vec<SweepCorner>), Error> {
     let (at_last, at_middle) = (at_first.with_gap(last)?, at_first.with_gap((first + last) / 2.0)?);
     let rows = at_first.problem().contact();
@@ -194,7 +182,7 @@ fn between(
     if first == last || !is_straight {
         return Ok((Vec::new(), Vec::new()));
     }
-    let Ok(path) = prepared.path(from, to, settings) else { return Ok((Vec::new(), Vec::new())) };
+    let Ok(path) = prepared.path(from, to) else { return Ok((Vec::new(), Vec::new())) };
     let gap_at = |t: f64| (1.0 - t) * first + t * last;
     let event = |event: &Event| {
         let node = at_first.rows()[event.row].node;

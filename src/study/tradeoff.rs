@@ -1,14 +1,14 @@
 //! What a digit costs: every method at every accuracy that it can be told, timed, against the exact discrete answer.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use serde::Serialize;
 
-use super::discretisation_error;
 use crate::error::Error;
 use crate::qp::linear::dot;
 use crate::qp::{Condense, InteriorPoint, Method, Penalty, Precision, Prepared, Settings, solve};
-use crate::scene::{Model, Scene};
+use crate::scene::{Answer, Model, Scene};
 use crate::solution::Solution;
 use crate::watch::Watch;
 
@@ -131,7 +131,7 @@ pub fn tradeoff(scene: &Scene, grid: &TradeoffGrid, watch: &Watch) -> Result<Tra
     let mut result = Tradeoff { meshes: Vec::new(), points: Vec::new(), advice: Vec::new(), runs: grid.runs.max(1) };
     for refinement in 0..=grid.refinements {
         let divided_by = 1_usize << refinement.min(usize::BITS as usize - 1);
-        let model = scene.refined(divided_by)?.build()?;
+        let model = Arc::new(scene.refined(divided_by)?.build()?);
         let explained = |error| model.explain(error);
         let exact = match solve(model.problem(), &watched(Settings::with_method(Method::ActiveSet))) {
             Err(_) if watch.is_stopped() => break,
@@ -160,7 +160,7 @@ pub fn tradeoff(scene: &Scene, grid: &TradeoffGrid, watch: &Watch) -> Result<Tra
             divided_by,
             dofs: model.problem().dofs(),
             contact_rows: model.rows().len(),
-            discretisation_error: discretisation_error(&model, &exact)?,
+            discretisation_error: Answer::of(model.clone(), &exact)?.discretisation_error()?,
         });
         if watch.is_stopped() {
             break;
@@ -222,7 +222,7 @@ fn timed(model: &Model, ways: &[Way], runs: usize, watch: &Watch) -> Result<Vec<
         watch.part("run", number + 1, runs * ways.len());
         let clock = Instant::now();
         let solved =
-            Prepared::with_settings(model.problem(), &way.settings).and_then(|prepared| prepared.solve(&way.settings));
+            Prepared::new(model.problem(), &way.settings).and_then(|prepared| prepared.solve(model.problem().gap()));
         let seconds = clock.elapsed().as_secs_f64();
         if watch.is_stopped() {
             // What was cut short measures nothing.

@@ -4,7 +4,8 @@ use serde_json::json;
 use signorini::fem::ElementKind::{Q4, Q8, T3, T6};
 use signorini::fem::Integration;
 use signorini::fem::closed_forms::manufactured::{ContactSolution, GenericEdge, HertzBlock, PlaneElasticity, Smooth};
-use signorini::study::{discretisation_error, solve_block};
+use signorini::scene::Answer;
+use signorini::study::solve_block;
 use signorini::{Scene, solve_qp};
 
 /// Effectivity that an estimate is wanted to have: neither half nor twice the error.
@@ -45,7 +46,7 @@ fn the_estimate_vanishes_where_the_mesh_is_exact_and_halves_with_the_cells() {
         });
         let model = Scene::from_json(&value.to_string(), "scene").unwrap().build().unwrap();
         let solution = solve_qp(model.problem()).unwrap();
-        discretisation_error(&model, &solution).unwrap()
+        Answer::of(model.into(), &solution).unwrap().discretisation_error().unwrap()
     };
     let axis = |cells: usize| json!({"points": [0, 1], "divisions": [cells]});
     for (model, element) in

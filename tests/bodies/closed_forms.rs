@@ -3,7 +3,7 @@
 use crate::bodies::built;
 use serde_json::{Value, json};
 use signorini::fem::closed_forms::{Bar, ContactPatch, Sides};
-use signorini::qp::linear::Cholesky;
+use signorini::internals::Cholesky;
 
 /// Tolerance of the bar and of the patch test, relative to the largest value: elements are exact, rounding remains.
 const EXACT: f64 = 1e-11;

@@ -4,9 +4,10 @@ use signorini::fem::ElasticBody;
 use signorini::fem::Formulation;
 use signorini::fem::Material;
 use signorini::fem::{DofMap, MassForm, mass};
-use signorini::fem::{ElementKind, Mesh, bar, cuboid, rectangle, ring};
+use signorini::fem::{ElementKind, Mesh};
 use signorini::fem::{discretisation_error, stress};
 use signorini::motion::DynamicProblem;
+use signorini::scene::{bar, cuboid, rectangle, ring};
 use signorini::{ContactProblem, Error, Settings, SparseMatrix, SymmetricMatrix, solve};
 use signorini::{InteriorPoint, Method, Penalty};
 

@@ -127,7 +127,10 @@ fn libraries_stay_in_their_rooms() {
         ("signal_hook::", &["cli"]),
         ("catch_unwind", &["qp/barrier.rs"]),
         ("clarabel::", &["qp/method/interior_point.rs"]),
-        ("faer::", &["qp/linear/cholesky.rs", "qp/linear/factor.rs", "qp/linear/ordering.rs"]),
+        (
+            "faer::",
+            &["qp/linear/cholesky.rs", "qp/linear/factor.rs", "qp/linear/ordering.rs", "qp/linear/selected_inverse.rs"],
+        ),
         ("feral_metis::", &["qp/linear/ordering.rs"]),
         ("clap::", &["cli"]),
         ("tiny_skia::", &["output"]),

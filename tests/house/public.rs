@@ -9,8 +9,8 @@ use signorini::fem::Mesh;
 use signorini::motion::{DynamicProblem, Integrator, Scheme, State};
 use signorini::scene::Dynamics;
 use signorini::{
-    BoundarySolution, Certificate, ContactProblem, ContactSet, Error, Goal, Iterative, Method, Model, Path, Prepared,
-    ProvenSet, Scene, Settings, Solution, SparseMatrix, SymmetricMatrix, Watch, solve,
+    BoundarySolution, Certificate, ContactProblem, ContactSet, Error, Goal, Method, Model, Path, Prepared, ProvenSet,
+    Scene, Settings, Solution, SparseMatrix, SymmetricMatrix, Watch, solve,
 };
 
 fn crosses_threads<T: Send + Sync + Debug>() {}
@@ -19,7 +19,7 @@ fn crosses_threads<T: Send + Sync + Debug>() {}
 fn public_types_cross_threads_and_print_themselves() {
     crosses_threads::<(ContactProblem, Solution, Certificate, ContactSet, ProvenSet, Goal)>();
     crosses_threads::<(Settings, Method, Watch, Error)>();
-    crosses_threads::<(Prepared, Iterative, BoundarySolution, Path)>();
+    crosses_threads::<(Prepared, BoundarySolution, Path)>();
     crosses_threads::<(SparseMatrix, SymmetricMatrix)>();
     crosses_threads::<(Scene, Model, Dynamics, Mesh, ElasticBody)>();
     crosses_threads::<(DynamicProblem, Integrator, Scheme, State)>();

@@ -6,11 +6,10 @@
 use crate::bodies::{built, clamped_block, clamped_square};
 use crate::oracles::{Draws, random};
 use serde_json::{Value, json};
-use signorini::qp::linear::Cholesky;
-use signorini::qp::linear::multigrid::{Blocks, Multigrid, NearNullSpace, dual_norm, dual_norms_within};
+use signorini::internals::Cholesky;
+use signorini::internals::multigrid::{Blocks, Multigrid, NearNullSpace, dual_norm, dual_norms_within};
 use signorini::{
-    Condense, ContactProblem, Error, Iterative, Method, Prepared, Settings, Solution, SparseMatrix, Start,
-    SymmetricMatrix, Watch, solve,
+    ContactProblem, Error, Method, Prepared, Settings, Solution, SparseMatrix, Start, SymmetricMatrix, Watch, solve,
 };
 
 /// The bound is of the exact answer; the reference has an error of its own, of rounding. Relative energy norm.
@@ -117,19 +116,18 @@ fn on_springs() -> ContactProblem {
 
 /// Answers at several gaps and after several numbers of cycles, and their overestimates.
 fn of_body(problem: &ContactProblem, name: &str, reach: f64, draws: &mut Draws, ratios: &mut Vec<f64>) {
-    let prepared = Prepared::new(problem, Condense::Auto).unwrap();
-    let iterative = Iterative::new(problem, 1).unwrap();
-    let direct = Settings::with_method(Method::ActiveSet);
+    let direct = Prepared::new(problem, &Settings::with_method(Method::ActiveSet)).unwrap();
+    let iterative = Prepared::new(problem, &mprgp()).unwrap();
     let first = ratios.len();
     for _ in 0..GAPS {
         let shift = reach * draws.signed();
         let gap: Vec<f64> = problem.gap().iter().map(|gap| gap + shift * (1.0 + 0.2 * draws.signed())).collect();
         let at_gap = problem.with_gap(gap.clone()).unwrap();
-        let Ok(exact) = prepared.solve_gap(gap.clone(), None, &direct) else { continue };
+        let Ok(exact) = direct.solve(&gap) else { continue };
         for stop in [(1e-9, 2), (1e-9, 5), (1e-2, 500), (1e-3, 500), (1e-4, 500), (1e-6, 500), (1e-8, 500)] {
             let mut settings = mprgp();
             (settings.tolerance, settings.max_iterations) = stop;
-            let Some(found) = answer(iterative.solve_gap(gap.clone(), Start::default(), &settings)) else { continue };
+            let Some(found) = answer(iterative.with_settings(&settings).unwrap().solve(&gap)) else { continue };
             let what = format!("{name}, gaps moved by {shift:.1e}, {stop:?}");
             assert!(found.certificate.bound_is_measured, "{what}");
             ratios.extend(overestimate(&at_gap, &found, &exact.displacement, &what));
@@ -272,9 +270,9 @@ fn a_wrong_soft_part_beside_a_stiff_one_shows_in_the_bound_of_the_parts() {
     let exact = solve(&soft, &Settings::with_method(Method::ActiveSet)).unwrap();
     for softness in [1.0, 1e-6, 1e-10] {
         let problem = beside(&stiff, &soft, softness);
-        let iterative = Iterative::new(&problem, 1).unwrap();
-        assert!(iterative.multigrid().unknowns().len() > 1);
-        let right = answer(iterative.solve(Start::default(), &mprgp())).unwrap();
+        let iterative = Prepared::new(&problem, &mprgp()).unwrap();
+        assert!(iterative.hierarchy().unwrap().unknowns().len() > 1);
+        let right = answer(iterative.solve(problem.gap())).unwrap();
         let mut shown = 0;
         for wrong in [0.0, 1e-6, 1e-3, 0.1] {
             // What one cycle from a wrong start leaves.
@@ -284,7 +282,10 @@ fn a_wrong_soft_part_beside_a_stiff_one_shows_in_the_bound_of_the_parts() {
             let mut settings = mprgp();
             settings.max_iterations = 1;
 
-            let found = answer(iterative.solve(Start::near(start), &settings)).unwrap();
+            let found = answer(
+                iterative.with_settings(&settings).unwrap().starting_from(Start::near(start)).solve(problem.gap()),
+            )
+            .unwrap();
             let certificate = &found.certificate;
             assert!(certificate.parts == 2 && certificate.bound_is_measured, "{certificate:?}");
             let of_soft = &found.displacement[stiff.dofs()..];
@@ -341,8 +342,8 @@ fn springs_hide_no_direction_of_negative_energy() {
             .and_then(|wrong| wrong.with_near_null(problem.near_null().unwrap().clone()))
             .unwrap();
         // From the answer itself nothing moves, and no direction is tried on the way.
-        let iterative = Iterative::new(&wrong, 1).unwrap();
-        match iterative.solve(Start::near(sound.displacement.clone()), &mprgp()) {
+        let iterative = Prepared::new(&wrong, &mprgp()).unwrap();
+        match iterative.starting_from(Start::near(sound.displacement.clone())).solve(wrong.gap()) {
             Err(Error::NotCertified { solution, .. }) => {
                 assert!(solution.certificate.energy_error_bound.is_infinite(), "{:?}", solution.certificate);
             }

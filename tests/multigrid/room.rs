@@ -4,7 +4,7 @@
 //! to choose.
 
 use crate::bodies::{built, clamped_block};
-use signorini::qp::Estimate;
+use signorini::internals::Estimate;
 use signorini::study::{ModelSize, Summary};
 use signorini::{ContactProblem, Error, Method, Settings, solve};
 

@@ -70,22 +70,25 @@ fn a_time_that_suffices_changes_nothing_and_none_returns_what_there_is() {
         }
     }
     let none = Settings::within(Duration::ZERO);
-    assert!(matches!(Prepared::with_settings(&problem, &none), Err(Error::OutOfTime { .. })));
+    assert!(matches!(Prepared::new(&problem, &none), Err(Error::OutOfTime { .. })));
 }
 
 #[test]
 fn a_loop_that_is_out_of_time_ends_with_the_set_that_it_has() {
     // All dofs: every iteration is a factorisation.
     let problem = problem("indentation");
-    let prepared = Prepared::new(&problem, Condense::Never).unwrap();
+    let prepared = Prepared::new(&problem, &Settings::default().with_condensation(Condense::Never)).unwrap();
     for method in [Method::ActiveSet, Method::penalty()] {
         let mut settings = Settings::with_method(method);
         settings.time = Some(Duration::ZERO);
-        assert!(matches!(prepared.solve(&settings), Err(Error::OutOfTime { .. })), "{method:?}");
+        assert!(
+            matches!(prepared.with_settings(&settings).unwrap().solve(problem.gap()), Err(Error::OutOfTime { .. })),
+            "{method:?}"
+        );
         // Asked to stop, it ends after the iteration that it is in.
         settings.time = None;
         settings.watch.stop();
-        match prepared.solve(&settings) {
+        match prepared.with_settings(&settings).unwrap().solve(problem.gap()) {
             Err(Error::NotCertified { solution, .. }) => assert_eq!(solution.iterations, 1, "{method:?}"),
             other => panic!("{:?}", other.map(|found| found.iterations)),
         }

@@ -353,7 +353,7 @@ fn a_refusal_names_the_least_memory_that_suffices() {
             let prepared = |memory: f64| {
                 let mut settings = Settings::default();
                 (settings.condense, settings.memory) = (condense, Some(memory));
-                Prepared::with_settings(&problem, &settings)
+                Prepared::new(&problem, &settings)
             };
             let entries = 2 * problem.stiffness().lower().entries() - problem.dofs();
             let mut memory = START + 1.01 * of_problem(problem.dofs() as f64, entries as f64);

@@ -9,6 +9,7 @@ use std::f64::consts::PI;
 
 use serde_json::{Value, json};
 use signorini::output::{UnitNames, solve_json, solve_text};
+use signorini::scene::Answer;
 use signorini::study::scene_summary;
 use signorini::{Condense, Error, Method, Scene, Settings, Solution, solve};
 
@@ -209,7 +210,8 @@ fn a_certified_answer_whose_stiffness_has_few_digits_comes_with_a_warning() {
         let model = Scene::from_json(&scene.to_string(), "block").unwrap().build().unwrap();
         let solution = solve(model.problem(), &Settings::default()).unwrap_or_else(|e| panic!("{height:e}: {e}"));
         let error = (solution.contact_force() / (0.7 / (1.3 * 0.4) * 0.01) - 1.0).abs();
-        (error, scene_summary(&model, &solution, TOLERANCE, 0.0).unwrap(), solution.digits_of_stiffness())
+        let answer = Answer::of(model.into(), &solution).unwrap();
+        (error, scene_summary(&answer, &solution, TOLERANCE, 0.0).unwrap(), solution.digits_of_stiffness())
     };
     let (error, summary, digits) = block(1e6);
     let digits = digits.unwrap();

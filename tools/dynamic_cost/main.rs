@@ -8,9 +8,10 @@
 use std::time::Instant;
 
 use serde_json::json;
+use signorini::internals::Cholesky;
 use signorini::motion::{Integrator, Scheme};
-use signorini::qp::linear::{Cholesky, SparseMatrix, SymmetricMatrix};
 use signorini::{Scene, Settings};
+use signorini::{SparseMatrix, SymmetricMatrix};
 
 /// Cells along a side: 8,320, 33,024 and 131,584 dofs.
 const CELLS: [usize; 3] = [64, 128, 256];
@@ -28,7 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let model = scene.build()?;
         let Some(dynamics) = scene.dynamics(&model)? else { continue };
         let (problem, step) = (dynamics.problem, dynamics.step);
-        let matrix = effective(problem.mass(), problem.contact().stiffness(), 4.0 / (step * step))?;
+        let matrix = effective(problem.mass(), problem.statics().stiffness(), 4.0 / (step * step))?;
         let cholesky = factor(&matrix)?;
         let clock = Instant::now();
         let mut integrator = Integrator::new(problem, Scheme::Midpoint, step, &Settings::default())?;

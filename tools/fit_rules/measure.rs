@@ -87,7 +87,7 @@ fn came_as_told(solution: &Solution, settings: &Settings) -> bool {
 
 /// All ways of a problem, a line each.
 pub fn measured(name: &str, problem: &ContactProblem) -> Result<String, Error> {
-    let prepared = Prepared::with_settings(problem, &Settings::with_method(Method::ActiveSet))?;
+    let prepared = Prepared::new(problem, &Settings::with_method(Method::ActiveSet))?;
     let condensed = prepared.condensed_dofs() < problem.dofs();
     let (multiplications, values) = (prepared.multiplications(), prepared.factor_entries());
     drop(prepared);

@@ -62,7 +62,7 @@ pub fn run(case: &Case, scheme: SchemeSpec, courant: f64, cells: usize) -> Resul
     let after = end + (end - begin) / 2.0;
     let first = integrator.observe();
     let (mut history, mut squares, mut speed) = (vec![first], 0.0, 0.0);
-    let ones = vec![1.0; integrator.problem().contact().dofs()];
+    let ones = vec![1.0; integrator.problem().statics().dofs()];
     let inertia = integrator.problem().mass().mul(&ones);
     for _ in 0..dynamics.steps {
         integrator.advance()?;

@@ -12,7 +12,10 @@ use crate::watch::Watch;
 
 /// Rounding moves an entry of u or lambda by half a unit in the last place; what a sum of such errors may be is excused
 /// twice, once for the rounding and once for the arithmetic that made the entry.
-const ROUNDING: f64 = f64::EPSILON;
+const ENTRY_ROUNDING: f64 = f64::EPSILON;
+
+/// Sums with twice the working precision leave out less than this share of their terms: no bound is smaller.
+const LEAST: f64 = 1e-28;
 
 /// What bounds the error in energy.
 #[derive(Clone, Copy)]
@@ -55,7 +58,7 @@ impl ContactProblem {
     ///
     /// # Errors
     /// [`Error::Length`] for vectors that do not fit.
-    pub fn certify_in(
+    pub(crate) fn certify_in(
         &self,
         norm: Option<&EnergyNorm>,
         displacement: &[f64],
@@ -103,12 +106,12 @@ impl ContactProblem {
         let scales =
             Scales::of(self, parts, &Forces { displacement: u, multiplier: lambda, contact: &contact, strain });
 
-        let is_rounding = |dof: usize| residual[dof].abs() <= ROUNDING * (terms[dof] + contact_terms[dof]);
+        let is_rounding = |dof: usize| residual[dof].abs() <= ENTRY_ROUNDING * (terms[dof] + contact_terms[dof]);
         let excess = |dof: usize| if is_rounding(dof) { 0.0 } else { residual[dof] };
         let own = |dof: usize| larger(self.load[dof].abs(), contact[dof].abs());
         // A row without obstacle carries no multiplier; a violation that rounding of u explains does no work.
         let work = |row: usize| {
-            if lambda[row] == 0.0 || violation[row].abs() <= ROUNDING * lengths[row] {
+            if lambda[row] == 0.0 || violation[row].abs() <= ENTRY_ROUNDING * lengths[row] {
                 0.0
             } else {
                 lambda[row] * violation[row]
@@ -218,16 +221,17 @@ impl Certificate {
     /// Takes in a bound on the error: of the whole and of each part, relative to its own energy norm. An error that rounding
     /// explains, with `rounding` the sum of `|u_i| (|K| |u|)_i` of each part, is no excess.
     fn judge(&mut self, bound: &ErrorBound, scales: &Scales, strain: f64, rounding: &[f64]) {
-        let explained = |sum: f64| ROUNDING * sum.sqrt();
+        let explained = |sum: f64| ENTRY_ROUNDING * sum.sqrt();
         let unexplained =
             |error: f64, size: f64, sum: f64| if error <= explained(sum) { 0.0 } else { relative(error, size) };
-        let whole = scales.size_of_whole(strain);
-        self.energy_error_bound = relative(bound.whole, whole);
+        let (whole, sum) = (scales.size_of_whole(strain), rounding.iter().sum::<f64>());
+        let of_whole = bound.whole + LEAST * sum.sqrt();
+        self.energy_error_bound = relative(of_whole, whole);
         (self.part_error_bound, self.energy_error_excess) =
-            (self.energy_error_bound, unexplained(bound.whole, whole, rounding.iter().sum()));
+            (self.energy_error_bound, unexplained(of_whole, whole, sum));
         if let Some(of_parts) = &bound.of_parts {
             for (part, &error) in of_parts.iter().enumerate().filter(|entry| scales.is_stiff[entry.0]) {
-                let size = scales.size(part);
+                let (size, error) = (scales.size(part), error + LEAST * rounding[part].sqrt());
                 self.part_error_bound = larger(relative(error, size), self.part_error_bound);
                 self.energy_error_excess = larger(unexplained(error, size, rounding[part]), self.energy_error_excess);
             }

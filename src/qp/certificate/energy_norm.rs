@@ -4,7 +4,10 @@ use std::sync::Arc;
 
 use super::springs::Springs;
 use crate::error::Error;
-use crate::qp::linear::{Analysis, Cholesky, Equilibration, FactorError, SparseMatrix, SymmetricMatrix, dot, ldexp};
+use crate::qp::linear::{
+    Analysis, Cholesky, Equilibration, FactorError, LowerTriangle, SelectedInverse, SparseMatrix, SymmetricMatrix, dot,
+    ldexp,
+};
 use crate::watch::Watch;
 
 /// Contact dofs beyond this share of all are not ordered last: the boundary would be most of the body.
@@ -22,15 +25,15 @@ const SWEEP_ROUNDING: f64 = 1e5 * f64::EPSILON;
 /// Where rounding of a sweep may be so many times the sweep itself, the factor is that of another matrix.
 const LOST: f64 = 1e3;
 
-/// Rounding of what is computed of a bound after its sweeps, relative.
-const ROUNDING: f64 = 1e-6;
+/// A bound is multiplied with this, because its own sums are rounded too.
+pub(super) const ROUNDED_BOUND: f64 = 1.0 + 1e-6;
 
 /// Values of a dense matrix on the boundary that are not worth counting.
 const FEW_VALUES: usize = 1_000_000;
 
 /// The energy norm of a positive definite stiffness and its dual, from one factorisation of K with a diagonal near one.
 #[derive(Clone, Debug)]
-pub struct EnergyNorm {
+pub(crate) struct EnergyNorm {
     cholesky: Cholesky,
     equilibration: Equilibration,
     boundary: Option<Arc<Boundary>>,
@@ -46,8 +49,8 @@ pub struct EnergyNorm {
 #[derive(Clone, Debug)]
 pub(super) struct Boundary {
     dofs: Vec<usize>,
-    /// L_tt, t x t, column by column.
-    block: Vec<f64>,
+    /// L_tt, t x t.
+    block: LowerTriangle,
 }
 
 impl EnergyNorm {
@@ -118,7 +121,7 @@ impl EnergyNorm {
     /// smallest pivot, on a diagonal of order one.
     pub(super) fn rounding(&self) -> f64 {
         let share = SWEEP_ROUNDING * self.loss();
-        if share < LOST { 1.0 + ROUNDING + share } else { f64::INFINITY }
+        if share < LOST { ROUNDED_BOUND + share } else { f64::INFINITY }
     }
 
     /// What a sweep makes of rounding of a force, on a diagonal of order one: one over the smallest pivot, at least one.
@@ -213,6 +216,21 @@ impl EnergyNorm {
         rows
     }
 
+    /// Number of values of the factor.
+    pub(super) fn factor_entries(&self) -> usize {
+        self.cholesky.entries()
+    }
+
+    /// Number of multiplications of the factorisation.
+    pub(super) fn multiplications(&self) -> f64 {
+        self.cholesky.multiplications()
+    }
+
+    /// The entries of the inverse of the equilibrated stiffness in the pattern of its factor; `None` for want of memory.
+    pub(super) fn selected_inverse(&self) -> Option<SelectedInverse<'_>> {
+        self.cholesky.selected_inverse()
+    }
+
     /// Number of dofs.
     pub(super) fn dofs(&self) -> usize {
         self.cholesky.dim()
@@ -235,25 +253,12 @@ impl Boundary {
     }
 
     /// `L_tt^-1 b`.
-    pub fn forward(&self, mut b: Vec<f64>) -> Vec<f64> {
-        let size = self.len();
-        let first = b.iter().position(|&value| value != 0.0).unwrap_or(size);
-        for j in first..size {
-            let column = &self.block[j * size..(j + 1) * size];
-            b[j] /= column[j];
-            let value = b[j];
-            b[j + 1..].iter_mut().zip(&column[j + 1..]).for_each(|(entry, l)| *entry -= l * value);
-        }
-        b
+    pub fn forward(&self, b: Vec<f64>) -> Vec<f64> {
+        self.block.forward(b)
     }
 
     /// `L_tt'^-1 y`.
-    pub fn backward(&self, mut y: Vec<f64>) -> Vec<f64> {
-        let size = self.len();
-        for j in (0..size).rev() {
-            let column = &self.block[j * size..(j + 1) * size];
-            y[j] = (y[j] - dot(&column[j + 1..], &y[j + 1..])) / column[j];
-        }
-        y
+    pub fn backward(&self, y: Vec<f64>) -> Vec<f64> {
+        self.block.backward(y)
     }
 }

@@ -9,9 +9,10 @@ mod energy_norm;
 mod infeasible;
 mod motion;
 mod proof;
+mod reach;
 mod scales;
 mod springs;
 mod units;
 
-pub use energy_norm::EnergyNorm;
-pub(crate) use motion::Motion;
+pub(crate) use energy_norm::EnergyNorm;
+pub(crate) use motion::{Motion, Rounding};

@@ -1,35 +1,40 @@
 //! What is said of a problem that has no unique answer, rechecked in the problem itself with twice the working precision.
 
 use crate::error::Error;
-use crate::qp::linear::{Accumulator, largest};
+use crate::qp::linear::{NullSpace, Twice, largest, twice};
 use crate::qp::problem::ContactProblem;
-
-/// A sum vanishes where its terms cancel to this share of their sizes: the direction is given in doubles, which leave 1e-16 of
-/// each term, and was found by a factorisation, which leaves some digits more.
-const VANISHES: f64 = 1e-10;
-
-/// Entries below this share of the largest are what the factorisation has left of zero.
-const ZERO: f64 = 1e-9;
 
 /// A load drives a motion if its work is beyond this share of its terms.
 const DRIVES: f64 = 1e-9;
 
-/// A load does no work on a motion if that is within this share of its terms, as rounding of the sum leaves it: where rounding
-/// of the direction leaves more, the load may as well hold what it seems to leave free.
-const IDLE: f64 = 1e-30;
+/// The work of a load vanishes below this share of its terms, however the direction was found: a load that is out of balance by
+/// its last bit is held by some row.
+const IDLE: f64 = 1e-25;
 
-/// A speed beyond this share of its terms is more than rounding of a direction in doubles leaves; up to [`SURE`], it is less
-/// than a direction that is found by a factorisation can tell.
-const UNSURE: f64 = 1e-15;
+/// What rounding leaves of sums over a direction, as shares of their terms.
+#[derive(Clone, Copy)]
+pub(crate) struct Rounding {
+    /// Entries below this share of the largest are left of zero.
+    entry: f64,
+    /// Forces `K d` up to this are none, and so are the coordinates of a row.
+    pub vanishes: f64,
+    /// A sum up to this is zero.
+    pub zero: f64,
+    /// A sum beyond this has a sign; between both it is not known.
+    sure: f64,
+}
 
-/// See [`UNSURE`].
-const SURE: f64 = 1e-8;
+impl Rounding {
+    /// Of a direction in twice the working precision that the stiffness resists exactly nothing.
+    const OF_EXACT: Rounding = Rounding { entry: 1e-24, vanishes: 1e-24, zero: 1e-24, sure: 1e-24 };
 
-/// Entries of a motion are looked at in this unit of the largest: a translation becomes one without rounding.
-const GRID: f64 = 1073741824.0;
+    /// Of a direction that is known no better than rounded entries of the stiffness.
+    const OF_ROUNDED: Rounding = Rounding { entry: 1e-9, vanishes: 1e-10, zero: 1e-15, sure: 1e-8 };
 
-/// An entry lies on the grid if it is this close to it, as rounding of a factorisation leaves it.
-const ON_GRID: f64 = 1e-12;
+    pub fn of(null: &NullSpace) -> Self {
+        if null.is_exact { Self::OF_EXACT } else { Self::OF_ROUNDED }
+    }
+}
 
 /// Energy of a direction counts as negative beyond this share of its terms.
 const NEGATIVE: f64 = 1e-12;
@@ -41,8 +46,10 @@ pub(crate) struct Motion {
     pub direction: Vec<f64>,
     /// `B d` of each row, zero where it vanishes, positive where the motion closes the row.
     pub approach: Vec<f64>,
-    /// The share of its terms that is left of `f'd`.
+    /// The share of its terms that is left of `f'd`, zero where that vanishes.
     pub work: f64,
+    /// The share of their terms that `K d` stays below.
+    resistance: f64,
 }
 
 impl Motion {
@@ -51,9 +58,9 @@ impl Motion {
         self.work > DRIVES && self.approach.iter().all(|&speed| speed <= 0.0)
     }
 
-    /// Does the load do no work on the motion, and does no row stop it?
-    pub fn drifts(&self) -> bool {
-        self.work.abs() <= IDLE && self.approach.iter().all(|&speed| speed <= 0.0)
+    /// Returns `true` if the load does exactly no work on the motion.
+    pub fn is_idle(&self) -> bool {
+        self.work == 0.0
     }
 
     /// How the motion was rechecked, and most of it.
@@ -62,8 +69,9 @@ impl Motion {
         entries.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
         let named: Vec<String> = entries.iter().take(3).filter(|e| e.1 != 0.0).map(|e| e.0.to_string()).collect();
         format!(
-            "most of it at dof {} (indices from 0); its forces K d vanish to {VANISHES:.0e} of their terms",
-            named.join(", ")
+            "most of it at dof {} (indices from 0); its forces K d vanish to {:.0e} of their terms",
+            named.join(", "),
+            self.resistance
         )
     }
 }
@@ -71,45 +79,35 @@ impl Motion {
 impl ContactProblem {
     /// A direction of which the stiffness resists nothing, if it is one: `K d` vanishes in every dof. A direction is none if it
     /// cannot tell whether it closes, opens or slides along a row.
-    pub(crate) fn motion_along(&self, direction: &[f64]) -> Option<Motion> {
-        let size = largest(direction);
-        if !(size > 0.0 && size.is_finite()) {
+    pub(crate) fn motion_along(&self, direction: &[Twice], rounding: Rounding) -> Option<Motion> {
+        let by_size = |a: &&Twice, b: &&Twice| a.rounded().abs().total_cmp(&b.rounded().abs());
+        let size = direction.iter().max_by(by_size)?.abs();
+        if !(size.rounded() > 0.0 && size.rounded().is_finite()) {
             return None;
         }
-        let kept = |value: &f64| if value.abs() > ZERO * size { value / size } else { 0.0 };
-        let direction: Vec<f64> = direction.iter().map(kept).collect();
-        let on_grid: Vec<f64> = direction.iter().map(|value| (value * GRID).round()).collect();
-        let forces_of = |d: &[f64]| self.accurate_product(|column| self.stiffness.lower().column(column), d);
-        // A stiffness without entries resists nothing, and a direction off the grid would be turned for no reason.
-        let is_on_grid = on_grid.iter().zip(&direction).all(|(units, value)| (units / GRID - value).abs() <= ON_GRID);
-        let is_exact = is_on_grid && forces_of(&on_grid).iter().all(|&force| force == 0.0);
-        let direction = if is_exact { on_grid.iter().map(|value| value / GRID).collect() } else { direction };
-        let forces = forces_of(&direction);
-        let terms = self.stiffness.mul_abs(&direction);
-        if forces.iter().zip(&terms).any(|(force, terms)| force.abs() > VANISHES * terms) {
-            return None;
-        }
-        let mut approach = Accumulator::new(&vec![0.0; self.rows()]);
-        self.contact.triplets().for_each(|(row, dof, b)| approach.add_product(row, b, direction[dof]));
-        let sizes: Vec<f64> = direction.iter().map(|value| value.abs()).collect();
-        let terms = self.contact.mul_abs(&sizes);
-        let counts = |(row, speed): (usize, f64)| {
-            if self.gap[row].is_finite() && speed.abs() > VANISHES * terms[row] { speed } else { 0.0 }
+        let kept = |&value: &Twice| {
+            if value.rounded().abs() > rounding.entry * size.rounded() { value / size } else { Twice::ZERO }
         };
-        let sums = approach.into_sums();
-        let is_unsure = |(row, &speed): (usize, &f64)| {
-            let share = speed.abs() / terms[row];
-            self.gap[row].is_finite() && share > UNSURE && share < SURE
-        };
-        if sums.iter().enumerate().any(is_unsure) {
+        let direction: Vec<Twice> = direction.iter().map(kept).collect();
+        let resists = |&(force, terms): &(f64, f64)| force.abs() > rounding.vanishes * terms;
+        if self.stiffness.resistance(&direction).iter().any(resists) {
             return None;
         }
-        let approach = sums.into_iter().enumerate().map(counts).collect();
-        let mut work = Accumulator::new(&[0.0]);
-        self.load.iter().zip(&direction).for_each(|(&f, &d)| work.add_product(0, f, d));
-        let terms: f64 = self.load.iter().zip(&sizes).map(|(f, d)| f.abs() * d).sum();
-        let work = if terms > 0.0 { work.into_sums()[0] / terms } else { 0.0 };
-        Some(Motion { direction, approach, work })
+        let by_row = self.contact.transposed();
+        let mut approach = vec![0.0; self.rows()];
+        for row in (0..self.rows()).filter(|&row| self.gap[row].is_finite()) {
+            let terms = || by_row.column(row).map(|(dof, b)| Twice::from(b) * direction[dof]);
+            approach[row] = twice::sum(terms(), rounding.zero).rounded();
+            if approach[row] != 0.0 && twice::sum(terms(), rounding.sure) == Twice::ZERO {
+                return None;
+            }
+        }
+        let work = || self.load.iter().zip(&direction).map(|(&f, &d)| Twice::from(f) * d);
+        let terms: f64 = work().map(|term| term.rounded().abs()).sum();
+        let left = twice::sum(work(), IDLE).rounded();
+        let work = if left == 0.0 { 0.0 } else { left / terms };
+        let direction = direction.into_iter().map(Twice::rounded).collect();
+        Some(Motion { direction, approach, work, resistance: rounding.vanishes })
     }
 
     /// The error that a direction p of negative energy is, if `p'K p` is negative beyond rounding.

@@ -9,16 +9,25 @@
 
 use super::EnergyNorm;
 use super::bound::Answer;
+use super::energy_norm::ROUNDED_BOUND;
 use crate::error::Error;
+use crate::qp::linear::multigrid::{Multigrid, conjugate_gradients, dual_norm_within};
 use crate::qp::linear::{Dependence, SparseMatrix, dot, inverse_lengths, ldexp};
 use crate::qp::problem::ContactProblem;
 use crate::solution::{ContactSet, ProvenSet};
+use crate::watch::Watch;
+
+/// Sweeps of so few rows cost no more than a solve for all.
+const FEW_ROWS: usize = 8;
+
+/// Accuracy of the solve for an M-matrix without a factor; what it lacks widens the bounds.
+const ROUGH: f64 = 1e-2;
+
+/// Cycles of that solve.
+const MOST_CYCLES: usize = 20;
 
 /// Multiplications that the compliance of the rows in question may cost; beyond, one dof of each row is moved alone.
 const MOST_WORK: f64 = 2e9;
-
-/// The bound can be the error itself; by this much it and all that is computed from it may be rounded.
-const ROUNDED: f64 = 1.0 + 1e-6;
 
 impl ContactProblem {
     /// The rows of which an answer proves, by its distance and force, that the exact answer has them open or closed;
@@ -42,37 +51,106 @@ impl ContactProblem {
         let violation = self.accurate_violation(displacement);
         let residual = self.accurate_residual(displacement, multiplier);
         let answer = Answer { displacement, multiplier, residual, violation: &violation };
-        let error = ROUNDED * self.energy_error_bound(norm, &answer).whole;
+        let error = ROUNDED_BOUND * self.energy_error_bound(norm, &answer).whole;
         if !error.is_finite() {
             return None;
         }
         let halves = Halves::of(self, norm);
-        let negligible = self.negligible(displacement);
-        let is_open = |row: usize| {
-            let distance = -violation[row] - negligible[row];
-            distance > 0.0 && (distance.is_infinite() || distance > norm.widening() * halves.reach(row) * error)
-        };
-        let open = ContactSet::from_fn(rows, is_open);
-
+        let wide_error = norm.widening() * error;
+        // One solve is worth it if it saves sweeps.
+        let may_solve = rows > FEW_ROWS && !norm.is_over();
+        let reach = if may_solve { self.monotone_reach(|s| Some(norm.displacement(s))) } else { None };
+        let mut open = self.open_by(&answer, wide_error, reach);
+        let doubtful: Vec<(usize, f64)> = self
+            .distances(&answer)
+            .enumerate()
+            .filter(|&(row, distance)| distance > 0.0 && multiplier[row] == 0.0 && !open.contains(row))
+            .map(|(row, distance)| (row, distance / wide_error))
+            .collect();
+        self.within_reach(norm, &halves, &doubtful).into_iter().for_each(|row| open.set(row, true));
+        let of_force = |force: &[f64]| Some(ROUNDED_BOUND * norm.widening() * norm.of_force(force));
+        let mut closed = self.closed_by(&answer, &open, error, norm.widening(), of_force);
         let in_question: Vec<usize> = (0..rows).filter(|&row| !open.contains(row)).collect();
-        let dropped: Vec<f64> = (0..rows).map(|row| if open.contains(row) { -multiplier[row] } else { 0.0 }).collect();
-        let force: Vec<f64> =
-            answer.residual.iter().zip(self.contact.mul_transposed(&dropped)).map(|(r, part)| r + part).collect();
-        let imbalance = ROUNDED * norm.widening() * norm.of_force(&force) + error;
-        let mut closed = ContactSet::open(rows);
-        let alone = self.moved_alone(&in_question);
-        let proven = |row: usize, length: f64| -multiplier[row] > norm.widening() * length * imbalance;
-        let mut doubtful = false;
-        for (&row, &length) in in_question.iter().zip(&alone) {
-            closed.set(row, proven(row, length));
-            doubtful |= multiplier[row] < 0.0 && !closed.contains(row);
-        }
-        if doubtful && halves.work(in_question.len()) <= MOST_WORK {
+        let is_doubtful = |row: &usize| multiplier[*row] < 0.0 && !closed.set.contains(*row);
+        if in_question.iter().any(is_doubtful) && halves.work(in_question.len()) <= MOST_WORK {
             for (&row, length) in in_question.iter().zip(halves.moved_together(&self.contact, &in_question)) {
-                closed.set(row, closed.contains(row) || proven(row, length));
+                closed.prove(row, -multiplier[row], norm.widening() * length);
             }
         }
-        Some(ProvenSet { open, closed })
+        Some(ProvenSet { open, closed: closed.set })
+    }
+
+    /// As [`ContactProblem::prove`], without a factor: with the bound by the cycles of the hierarchy of K, and one solve by them
+    /// for an M-matrix. `None` if the cycles find no bound, or if K is singular to their precision.
+    pub(crate) fn prove_by_cycles(
+        &self,
+        multigrid: &Multigrid,
+        watch: &Watch,
+        displacement: &[f64],
+        multiplier: &[f64],
+    ) -> Option<ProvenSet> {
+        if multigrid.is_shifted() || self.far_units(displacement).is_some() {
+            return None;
+        }
+        let violation = self.accurate_violation(displacement);
+        let residual = self.accurate_residual(displacement, multiplier);
+        let answer = Answer { displacement, multiplier, residual, violation: &violation };
+        let error = ROUNDED_BOUND * self.energy_error_bound_by(multigrid, &answer, watch).whole;
+        if !error.is_finite() {
+            return None;
+        }
+        let reach = self.monotone_reach(|s| {
+            let found = conjugate_gradients(&self.stiffness, s, multigrid, ROUGH, MOST_CYCLES).ok();
+            found.map(|found| found.solution)
+        });
+        let reach = reach.or_else(|| self.measured_reach(multigrid, displacement, watch));
+        let open = self.open_by(&answer, error, reach);
+        let of_force = |force: &[f64]| {
+            dual_norm_within(&self.stiffness, multigrid, force, watch).map(|norm| ROUNDED_BOUND * norm.most)
+        };
+        let closed = self.closed_by(&answer, &open, error, 1.0, of_force);
+        Some(ProvenSet { open, closed: closed.set })
+    }
+
+    /// The distance `g - B u` of each row, less what it may be off by rounding u; infinite without obstacle.
+    fn distances(&self, answer: &Answer) -> impl Iterator<Item = f64> {
+        let distances = answer.violation.iter().zip(self.negligible(answer.displacement));
+        distances.map(|(violation, negligible)| -violation - negligible).collect::<Vec<_>>().into_iter()
+    }
+
+    /// The rows that are open beyond an error of `error` in the energy norm, with bounds on their reach if there are any.
+    fn open_by(&self, answer: &Answer, error: f64, reach: Option<Vec<f64>>) -> ContactSet {
+        let reach = reach.unwrap_or_else(|| vec![f64::INFINITY; self.rows()]);
+        let is_open: Vec<bool> = self
+            .distances(answer)
+            .zip(reach)
+            .map(|(distance, reach)| distance > 0.0 && (distance.is_infinite() || distance > reach * error))
+            .collect();
+        is_open.into_iter().collect()
+    }
+
+    /// The rows that are closed, by one dof each, where the error is `error` in the energy norm and `of_force` bounds the norm
+    /// of the displacement under a force.
+    fn closed_by(
+        &self,
+        answer: &Answer,
+        open: &ContactSet,
+        error: f64,
+        widening: f64,
+        of_force: impl FnOnce(&[f64]) -> Option<f64>,
+    ) -> Closed {
+        let rows = self.rows();
+        let dropped: Vec<f64> =
+            (0..rows).map(|row| if open.contains(row) { -answer.multiplier[row] } else { 0.0 }).collect();
+        let force: Vec<f64> =
+            answer.residual.iter().zip(self.contact.mul_transposed(&dropped)).map(|(r, part)| r + part).collect();
+        let imbalance = of_force(&force).map_or(f64::INFINITY, |force| force + error);
+        let mut closed = Closed { set: ContactSet::open(rows), imbalance };
+        let in_question: Vec<usize> = (0..rows).filter(|&row| !open.contains(row)).collect();
+        for (&row, length) in in_question.iter().zip(self.moved_alone(&in_question)) {
+            closed.prove(row, -answer.multiplier[row], widening * length);
+        }
+        closed
     }
 
     /// `|w|_K` of the motion of a single dof that only this one of `rows` feels; infinite where there is none.
@@ -91,8 +169,21 @@ impl ContactProblem {
     }
 }
 
+/// The rows that are proven closed, and the norm of what may be out of balance.
+struct Closed {
+    set: ContactSet,
+    imbalance: f64,
+}
+
+impl Closed {
+    /// Is a row with this force closed, if a motion that it alone feels has this length?
+    fn prove(&mut self, row: usize, force: f64, length: f64) {
+        self.set.set(row, self.set.contains(row) || force > length * self.imbalance);
+    }
+}
+
 /// The columns of `L^-1 B'`, whose products are the compliance of the rows.
-struct Halves<'a> {
+pub(super) struct Halves<'a> {
     norm: &'a EnergyNorm,
     /// The entries of each row, where they are swept: on the boundary, or in the whole body.
     rows: Vec<Vec<(usize, f64)>>,
@@ -119,12 +210,20 @@ impl<'a> Halves<'a> {
     }
 
     /// `sqrt(G_ii)`: how far a displacement of unit energy norm moves the row.
-    fn reach(&self, row: usize) -> f64 {
+    pub(super) fn reach(&self, row: usize) -> f64 {
         if self.norm.is_over() {
             return f64::INFINITY;
         }
         let half = self.half(row);
         ldexp(dot(&half, &half), self.norm.factor()).sqrt()
+    }
+
+    /// Multiplications of one sweep.
+    pub(super) fn sweep(&self) -> f64 {
+        match self.norm.boundary().filter(|_| self.on_boundary) {
+            Some(boundary) => boundary.len() as f64 * boundary.len() as f64 / 2.0,
+            None => self.norm.factor_entries() as f64,
+        }
     }
 
     /// Multiplications of the compliance of so many rows.

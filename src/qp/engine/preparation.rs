@@ -3,8 +3,8 @@
 use std::sync::OnceLock;
 use std::time::Instant;
 
-use super::factored::Prepared;
-use super::reduction::Reduction;
+use super::factored::Factored;
+use super::reduction::{Norm, Reduction};
 use crate::error::Error;
 use crate::qp::certificate::EnergyNorm;
 use crate::qp::cost::seconds::factor_seconds;
@@ -22,22 +22,19 @@ const SINGLE_PIVOT: f64 = 1e-4;
 /// A pivot below this share of a diagonal of order one leaves fewer than four digits of a double.
 pub(super) const LOST_PIVOT: f64 = 1e-10;
 
-impl Prepared {
-    /// As [`Prepared::new`], with the threads and the precision of `settings`.
+impl Factored {
+    /// Scales, condenses and factorises `problem`.
     ///
     /// # Errors
-    /// As [`Prepared::new`], [`Error::Setting`], and instead of a factorisation [`Error::OutOfTime`],
-    /// [`Error::Interrupted`] or [`Error::TooLarge`], where time or memory is not left for it.
-    pub fn with_settings(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
-        let settings = &settings.started()?;
+    /// As [`Prepared::new`](super::Prepared::new).
+    pub fn new(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
         let Settings { threads, watch, .. } = settings;
         let clock = Instant::now();
         watch.step("ordering", 0);
         seconds::learn(watch);
         let selection = RowSelection::of(problem.contact(), problem.gap())?;
         let scaling = Scaling::of(problem.stiffness(), &selection.contact(problem.contact()))?;
-        let diagonal = problem.stiffness().diagonal();
-        let (has_empty_diagonal, stiffest) = (diagonal.contains(&0.0), largest(&diagonal));
+        let stiffest = largest(&problem.stiffness().diagonal());
         let factor_clock = Instant::now();
         let layout = Layout::within(problem, &scaling, settings)?;
         let Layout { analysis, last, is_condensed, multiplications, mut way, is_single: single, keeps_norm } = layout;
@@ -45,19 +42,14 @@ impl Prepared {
             return Err(Error::Interrupted);
         }
         watch.step("factorisation", 0);
-        let proof_seconds = match last.len() as f64 {
-            0.0 => seconds::sweeps(problem.rows(), analysis.factor_entries() as f64),
-            boundary => seconds::sweeps(problem.rows(), boundary * boundary),
+        let of_row = match last.len() as f64 {
+            0.0 => analysis.factor_entries() as f64,
+            boundary => boundary * boundary,
         };
+        let proof_seconds = seconds::sweeps(problem.rows(), of_row).min(seconds::selected_inverse(&analysis));
         let norm_seconds = seconds::ordering(problem) + seconds::factorisation(&analysis);
         let mut factoring = Factoring { problem, scaling: &scaling, analysis: &analysis, settings, least_pivot: None };
-        let cholesky = match has_empty_diagonal {
-            true => {
-                factoring.least_pivot = Some(0.0);
-                None
-            }
-            false => factoring.definite(single, last.len())?,
-        };
+        let cholesky = factoring.definite(single, last.len())?;
         let least_pivot = factoring.least_pivot;
         // Without columns that come last the contact sets have the order of the stiffness.
         let analysis = last.is_empty().then_some(analysis);
@@ -70,13 +62,16 @@ impl Prepared {
             true => condensed(cholesky.as_ref(), &scaling, &last, settings)?,
             false => None,
         };
+        let norm = match (cholesky, &analysis) {
+            (None, _) => Norm::Missing,
+            (Some(_), Some(analysis)) if !keeps_norm => Norm::Again(analysis.clone()),
+            (Some(cholesky), _) => Norm::Kept(EnergyNorm::new(cholesky, scaling.equilibration().clone(), last)),
+        };
         let augmented = augmented(condensation.as_ref(), &scaling, analysis)?.with_threads(*threads);
-        let is_definite = cholesky.is_some();
-        let norm = cholesky.map(|cholesky| EnergyNorm::new(cholesky, scaling.equilibration().clone(), last));
         let factor = factor_clock.elapsed().as_secs_f64();
-        let mut prepared = Prepared {
+        Ok(Factored {
             problem: problem.clone(),
-            reduction: Reduction { selection, scaling, stiffest, is_definite, norm, condensation },
+            reduction: Reduction { selection, scaling, stiffest, norm, condensation },
             lost_pivot: least_pivot.filter(|&pivot| pivot < LOST_PIVOT),
             augmented,
             way,
@@ -84,15 +79,8 @@ impl Prepared {
             proof_seconds,
             norm_seconds,
             condensed_norm: OnceLock::new(),
-            loading: OnceLock::new(),
-            seconds: Seconds { factor, solve: clock.elapsed().as_secs_f64() },
-        };
-        if !keeps_norm {
-            // What the load does alone is found before.
-            prepared.own_load();
-            prepared.reduction.norm = None;
-        }
-        Ok(prepared)
+            seconds: Seconds { factor, proof: 0.0, solve: clock.elapsed().as_secs_f64() },
+        })
     }
 }
 
@@ -113,6 +101,10 @@ impl Factoring<'_> {
     /// # Errors
     /// [`Error::TooLarge`] and [`Error::OutOfTime`] for a second factor, [`Error::Numerical`].
     fn definite(&mut self, is_single: bool, contact_dofs: usize) -> Result<Option<Cholesky>, Error> {
+        if self.problem.stiffness().diagonal().contains(&0.0) {
+            self.least_pivot = Some(0.0);
+            return Ok(None);
+        }
         if is_single {
             if let Some(cholesky) = self.factor(true)? {
                 return Ok(Some(cholesky));
@@ -165,7 +157,7 @@ fn condensed(
     Condensation::new(factor, last.to_vec(), scaling.contact(), cholesky.is_none()).map(Some)
 }
 
-/// The matrices of the contact sets on what the methods work on; an `analysis` of the stiffness serves them too.
+/// The matrices that the methods factorise, analysed; an `analysis` of the stiffness serves them too.
 ///
 /// # Errors
 /// As [`AugmentedMatrix::new`].

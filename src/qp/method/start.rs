@@ -22,6 +22,11 @@ pub struct Start {
 }
 
 impl Start {
+    /// Returns `true` if nothing is known.
+    pub(super) fn is_unknown(&self) -> bool {
+        self.displacement.is_none() && self.contact_set.is_none()
+    }
+
     /// A displacement near the answer, one entry per dof.
     pub fn near(displacement: Vec<f64>) -> Self {
         Start { displacement: Some(displacement), contact_set: None }

@@ -1,6 +1,6 @@
 //! The frame of an obstacle: one axis across the approach direction, one along it.
 
-use crate::scene::Approach;
+use crate::scene::schema::Approach;
 
 /// Coordinates `[along, towards]`: along the surface, and towards the obstacle.
 pub(in crate::scene) type Local = [f64; 2];
@@ -15,10 +15,10 @@ pub(in crate::scene) struct Frame {
 }
 
 impl Frame {
-    /// The frame of an approach direction in the plane.
-    pub fn of(approach: Approach) -> Option<Self> {
+    /// The frame of an approach direction in the plane; a model in the plane has no other.
+    pub fn of(approach: Approach) -> Self {
         let (axis, sense) = approach.axis();
-        (axis < 2).then_some(Frame { axis, sense })
+        Frame { axis: axis.min(1), sense }
     }
 
     /// From [x, y] to [along, towards].

@@ -10,21 +10,13 @@
 use std::cell::OnceCell;
 
 use super::super::energy_norm::Boundary;
+use super::triangle::{Triangle, triangle_of};
 use super::{Answer, EnergyNorm, ErrorBound};
-use crate::qp::linear::{dot, exponent, ldexp};
+use crate::qp::linear::{UpperTriangle, dot, exponent, ldexp};
 use crate::qp::problem::ContactProblem;
 
 /// Times that the rows which look closed are corrected; from then on rows are only added.
 const EXCHANGES: usize = 10;
-
-/// Pivots below this share of the products that cancel in them are what rounding leaves of nearly dependent rows.
-const PARALLEL: f64 = 1e-12;
-
-/// What is left of a row across all others follows from them where it is below this share of the terms.
-const DEPENDENT: f64 = 64.0 * f64::EPSILON;
-
-/// Turns in which a row is made orthogonal to others: the second takes out what rounding of the first has left.
-const TURNS: usize = 2;
 
 /// Corrections of the multipliers that put rows at their gaps; each gains the digits that the dependence of rows leaves.
 const CORRECTIONS: usize = 4;
@@ -35,8 +27,18 @@ const CANCELLED: f64 = 4.0 * f64::EPSILON;
 /// Forces that cancel each other do no harm where their rounding is below this share of the bound.
 const SMALL: f64 = 1e-3;
 
+/// With springs, a factor that loses more than this is not enough for the energy of a motion.
+const LOST_WITH_SPRINGS: f64 = 1e4;
+
+/// The way of rows to their gaps counts as motion of the answer, as the residual that this makes, and once for the rounding of
+/// its length.
+const COUNTS: f64 = 3.0;
+
+/// Rows that others follow from are off by their own rounding after a fit, and by that of their distances.
+const FOLLOWS: f64 = 2.0;
+
 /// Rounding of a row's distance after a motion, in units of its terms.
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
+const DISTANCE_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 impl ContactProblem {
     /// The bound from the repair on the boundary; `None` where the rows that look closed cannot be met together.
@@ -55,7 +57,9 @@ impl ContactProblem {
         let repair = Repair::new(self, norm, boundary, &first)?;
         let witness = repair.best_witness(closed)?;
         let bound = repair.bound(&witness);
-        let is_exact = norm.widening() == 1.0 && !witness.has_dependent;
+        // With springs the motion is large and bends little, which a factor that loses digits leaves to rounding.
+        let is_precise = norm.springs().is_none() || norm.loss() <= LOST_WITH_SPRINGS;
+        let is_exact = norm.widening() == 1.0 && !witness.has_dependent && is_precise;
         if is_exact && repair.cancelled(&witness) <= SMALL * bound.whole {
             return Some(bound);
         }
@@ -94,10 +98,10 @@ impl Force {
         Force { alpha, rows, terms }
     }
 
-    /// The force with more of each row.
-    fn plus(&self, more: &[f64]) -> Self {
+    /// The force with more of each row, which was added up from steps of the magnitudes `steps`.
+    fn plus(&self, more: &[f64], steps: &[f64]) -> Self {
         let rows = self.rows.iter().zip(more).map(|(a, b)| a + b).collect();
-        let terms = self.terms.iter().zip(more).map(|(a, b)| a + b.abs()).collect();
+        let terms = self.terms.iter().zip(steps).map(|(a, b)| a + b).collect();
         Force { alpha: self.alpha, rows, terms }
     }
 
@@ -112,9 +116,8 @@ struct Witness {
     left: Force,
     multiplier: Vec<f64>,
     closed: Vec<bool>,
-    /// What the corrections have left of the distance of each closed row that follows from others.
-    off: Vec<f64>,
-    /// The motion that puts all other closed rows exactly at their gaps, by orthogonal directions of which each belongs to a row.
+    /// For each closed row an upper bound on the energy norm of the motion that puts it exactly at its gap, and leaves the others
+    /// there.
     rest: Vec<f64>,
     /// Does a closed row follow from others?
     has_dependent: bool,
@@ -201,14 +204,6 @@ impl<'a> Repair<'a> {
         ldexp(dot(half, half), self.norm.factor()).sqrt()
     }
 
-    /// An upper bound on the energy norm of the motion along a row that it feels as one; the diagonal of the equilibrated
-    /// stiffness is at most 4.
-    fn along(&self, row: usize) -> f64 {
-        let (sum, square) =
-            self.rows[row].iter().fold((0.0, 0.0), |(sum, square), &(_, b)| (sum + b.abs(), square + b * b));
-        ldexp((2.0 * sum / square).powi(2), self.norm.factor()).sqrt()
-    }
-
     /// The motion of the whole body that a force causes, length n.
     fn motion(&self, force: &Force) -> Vec<f64> {
         let rows: Vec<f64> = force.rows.iter().zip(&self.shift).map(|(&x, &shift)| ldexp(x, shift)).collect();
@@ -218,35 +213,25 @@ impl<'a> Repair<'a> {
     }
 
     fn bound(&self, witness: &Witness) -> ErrorBound {
-        let Witness { error, left, multiplier, closed, off, rest, .. } = witness;
+        let Witness { error, left, multiplier, closed, rest, .. } = witness;
         let of_left = self.length(left);
         let springs = self.norm.springs();
         if springs.is_some_and(|springs| !springs.hold(&self.expanded(multiplier), closed, |_| of_left)) {
             return ErrorBound::none();
         }
-        // Closed rows that are off their gaps are put there, all together or along themselves, which moves the answer and its
-        // residual; and forces that cancel each other leave their rounding.
-        let put = |row: usize| {
-            let moved = if off[row] > 0.0 { 2.0 * off[row] * self.along(row) } else { 0.0 };
-            moved + self.cancelled_on(witness, row)
-        };
-        let put: Vec<f64> = (0..off.len()).map(put).collect();
+        // Closed rows are put exactly at their gaps, which moves the answer and its residual; and forces that cancel each other
+        // leave their rounding.
+        let put: Vec<f64> = (0..rest.len()).map(|row| COUNTS * rest[row] + self.cancelled_on(witness, row)).collect();
         let of_error = match springs {
             // The springs' own energy is no error, but rounding knows them.
             Some(_) => self.problem.length(&self.motion(error)) + (self.norm.rounding() - 1.0) * self.length(error),
             None => self.length(error),
         };
-        let together = |square: f64| 2.0 * ldexp(square, self.norm.factor()).sqrt();
-        let whole = of_error + of_left + put.iter().sum::<f64>() + together(dot(rest, rest));
+        let whole = of_error + of_left + put.iter().sum::<f64>();
         let parts = self.problem.parts();
         let of_parts = (parts.count() > 1).then(|| {
             let mut sizes = vec![0.0; parts.count()];
-            let mut squares = vec![0.0; parts.count()];
-            for ((&part, put), rest) in self.problem.parts_of_rows(parts).iter().zip(&put).zip(rest) {
-                sizes[part] += put;
-                squares[part] += rest * rest;
-            }
-            sizes.iter_mut().zip(&squares).for_each(|(size, &square)| *size += together(square));
+            self.problem.parts_of_rows(parts).iter().zip(&put).for_each(|(&part, put)| sizes[part] += put);
             [error, left].iter().for_each(|force| self.problem.add_sizes(parts, &self.motion(force), &mut sizes));
             sizes
         });
@@ -303,13 +288,15 @@ impl<'a> Repair<'a> {
                 }
                 false => Force::new(0.0, vec![0.0; rows]),
             };
-            let Fitted { change, distance, tolerance, independent, rest } = self.fit(&set, &base)?;
+            let fitted = self.fit(&set, &base)?;
+            let Fitted { change, steps, distance, tolerance, triangle } = &fitted;
+            let independent = triangle.independent();
             let violated: Vec<usize> =
                 (0..rows).filter(|&row| !closed[row] && distance[row] > tolerance[row]).collect();
             let missed = |row: usize| closed[row] && distance[row].abs() > tolerance[row];
             let follows: Vec<usize> = set
                 .iter()
-                .zip(&independent)
+                .zip(independent)
                 .filter(|entry| !entry.1 && missed(*entry.0))
                 .map(|entry| *entry.0)
                 .collect();
@@ -320,14 +307,12 @@ impl<'a> Repair<'a> {
             };
             let is_met = violated.is_empty() && deeper.is_empty() && looser.is_empty();
             if is_met && (pulling.is_empty() || exchange >= EXCHANGES) {
-                let mut off = vec![0.0; rows];
-                follows.iter().for_each(|&row| off[row] = distance[row].abs());
                 let has_dependent = first.iter().any(|&first| first) || independent.contains(&false);
+                let error = base.plus(change, steps);
                 return Some(Witness {
-                    off,
-                    rest,
+                    rest: self.rest(&set, &fitted),
                     has_dependent,
-                    ..self.witness(base, change, &closed, in_equilibrium)
+                    ..self.witness(error, change, &closed, in_equilibrium)
                 });
             }
             if deeper.iter().any(|&row| first[row]) {
@@ -344,10 +329,8 @@ impl<'a> Repair<'a> {
         None
     }
 
-    /// The witness of rows that are at their gaps under `base` and `change`.
-    fn witness(&self, base: Force, change: Vec<f64>, closed: &[bool], in_equilibrium: bool) -> Witness {
-        let alpha = base.alpha;
-        let error = base.plus(&change);
+    /// The witness of rows that are at their gaps under the force `error`, a `change` of the multipliers included.
+    fn witness(&self, error: Force, change: &[f64], closed: &[bool], in_equilibrium: bool) -> Witness {
         let balanced = |row: usize| self.multiplier[row] + if in_equilibrium { change[row] } else { 0.0 };
         // What pulls is no multiplier.
         let multiplier: Vec<f64> =
@@ -358,166 +341,69 @@ impl<'a> Repair<'a> {
             false => multiplier[row] - self.multiplier[row] - change[row],
         };
         let rows = (0..change.len()).map(left).collect();
-        let (off, rest) = (vec![0.0; change.len()], vec![0.0; change.len()]);
-        Witness {
-            error,
-            left: Force::new(1.0 - alpha, rows),
-            multiplier,
-            closed: closed.to_vec(),
-            off,
-            rest,
-            has_dependent: false,
+        let (left, closed) = (Force::new(1.0 - error.alpha, rows), closed.to_vec());
+        Witness { error, left, multiplier, closed, rest: vec![0.0; change.len()], has_dependent: false }
+    }
+
+    /// For each row an upper bound on the energy norm of the motion that puts it exactly at its gap, from where a fit has left it, and
+    /// does not move the others of the set; zero for rows that follow from others.
+    ///
+    /// The motions of all rows together put every row at its gap, so that their lengths, added up, bound the way to such a point,
+    /// whatever the signs of what rounding left of the distances. A row that the triangle keeps stands 64 units in the last place
+    /// across those before it: rounding of its column changes the lengths by a small share.
+    fn rest(&self, set: &[usize], fitted: &Fitted) -> Vec<f64> {
+        let mut rest = vec![0.0; self.rows.len()];
+        for (&row, length) in set.iter().zip(fitted.triangle.lengths_of_inverse()) {
+            let motion = (fitted.distance[row].abs() + fitted.tolerance[row]) * length;
+            rest[row] = ldexp(motion * motion, self.norm.factor()).sqrt();
         }
+        rest
     }
 
     /// The multipliers that put the rows of `set` at their gaps beside the force `base`; `None` where there is no time.
     fn fit(&self, set: &[usize], base: &Force) -> Option<Fitted> {
         let half = |&row: &usize| if self.norm.is_over() { None } else { Some(self.half(row)) };
         let columns: Vec<&[f64]> = set.iter().map(half).collect::<Option<_>>()?;
-        let triangle = Triangle::of(&columns, || self.norm.is_over())?;
-        let mut change = vec![0.0; self.rows.len()];
+        let Triangle { r: triangle, weights } = triangle_of(&columns, || self.norm.is_over())?;
+        let (mut change, mut steps) = (vec![0.0; self.rows.len()], vec![0.0; self.rows.len()]);
         let mut moved = self.boundary.backward(self.sweep(base));
         let mut correction = 0;
         loop {
             let terms = |row: usize| self.rows[row].iter().map(|&(place, b)| b * moved[place]);
             let distance: Vec<f64> =
                 (0..self.rows.len()).map(|row| self.violation[row] + terms(row).sum::<f64>()).collect();
-            let rounding =
-                |row: usize| ROUNDING * terms(row).fold(self.violation[row].abs(), |sum, term| sum + term.abs());
-            let tolerance: Vec<f64> = (0..self.rows.len()).map(rounding).collect();
+            let rounding = |row: usize| {
+                DISTANCE_ROUNDING * terms(row).fold(self.violation[row].abs(), |sum, term| sum + term.abs())
+            };
+            let mut tolerance: Vec<f64> = (0..self.rows.len()).map(rounding).collect();
+            // A row that follows from others is at its gap as far as they are.
+            for (&row, weights) in set.iter().zip(&weights) {
+                let of_others = weights.iter().zip(set).map(|(weight, &other)| weight.abs() * tolerance[other]);
+                tolerance[row] += FOLLOWS * of_others.sum::<f64>();
+            }
             let is_met = |(&row, &kept): (&usize, &bool)| !kept || distance[row].abs() <= tolerance[row];
-            if set.iter().zip(&triangle.independent).all(is_met) || correction == CORRECTIONS {
-                let off = |&row: &usize| distance[row] + tolerance[row].copysign(distance[row]);
-                let mut rest = vec![0.0; self.rows.len()];
-                let across = triangle.solve_lower(set.iter().map(off).collect());
-                set.iter().zip(across).for_each(|(&row, across)| rest[row] = across);
-                return Some(Fitted { change, distance, tolerance, independent: triangle.independent, rest });
+            if set.iter().zip(triangle.independent()).all(is_met) || correction == CORRECTIONS {
+                return Some(Fitted { change, steps, distance, tolerance, triangle });
             }
             correction += 1;
-            let step = triangle.solve(set.iter().map(|&row| -distance[row]).collect());
+            let step = triangle.solve_normal(set.iter().map(|&row| -distance[row]).collect());
             let mut added = vec![0.0; self.rows.len()];
             set.iter().zip(step).for_each(|(&row, step)| added[row] = step);
             change.iter_mut().zip(&added).for_each(|(sum, step)| *sum += step);
-            // The motion of each step is added up, so that its rounding is that of the last and smallest one.
+            // The motions are those of the forces but for the rounding of each step, however much the steps take from each other.
+            steps.iter_mut().zip(&added).for_each(|(sum, step)| *sum += step.abs());
             moved.iter_mut().zip(self.boundary.backward(self.spread(&added))).for_each(|(sum, step)| *sum += step);
         }
     }
 }
 
-/// Rows after a fit: the change of each multiplier, distances and what is rounding of them, and which rows of the set do not
-/// follow from those before them.
+/// Rows after a fit: the change of each multiplier, distances and what is rounding of them, and the triangle of the rows of the
+/// set.
 struct Fitted {
     change: Vec<f64>,
+    /// The magnitudes of the steps that it was added up from.
+    steps: Vec<f64>,
     distance: Vec<f64>,
     tolerance: Vec<f64>,
-    independent: Vec<bool>,
-    /// What is left of the distances, and rounding of it, by orthogonal directions.
-    rest: Vec<f64>,
-}
-
-/// The triangle R of `Z'Z = R'R`, without the columns of Z that follow from those before them.
-struct Triangle {
-    /// The columns of R, each down to its diagonal entry.
-    columns: Vec<Vec<f64>>,
-    independent: Vec<bool>,
-}
-
-impl Triangle {
-    /// From the products of the columns. Where some are nearly parallel, as rows that reach a part much softer than the others,
-    /// the products have lost what tells them apart, and the columns themselves are made orthogonal.
-    ///
-    /// `None` where it `is_over` before it is done.
-    fn of(columns: &[&[f64]], is_over: impl Fn() -> bool) -> Option<Self> {
-        let of_products = Self::of_products(columns, &is_over)?;
-        if of_products.independent.contains(&false) { Self::of_columns(columns, &is_over) } else { Some(of_products) }
-    }
-
-    fn of_products(columns: &[&[f64]], is_over: &impl Fn() -> bool) -> Option<Self> {
-        let mut found = Triangle { columns: Vec::new(), independent: Vec::new() };
-        let lengths: Vec<f64> = columns.iter().map(|column| dot(column, column).sqrt()).collect();
-        for (i, column) in columns.iter().enumerate() {
-            if is_over() {
-                return None;
-            }
-            let mut entries = vec![0.0; i + 1];
-            for j in (0..i).filter(|&j| found.independent[j]) {
-                let before = &found.columns[j];
-                entries[j] = (dot(column, columns[j]) - dot(&before[..j], &entries[..j])) / before[j];
-            }
-            let pivot = dot(column, column) - dot(&entries, &entries);
-            let terms = found.terms(&entries, &lengths);
-            found.close(entries, pivot.max(0.0).sqrt(), pivot > PARALLEL * terms * terms);
-        }
-        Some(found)
-    }
-
-    fn of_columns(columns: &[&[f64]], is_over: &impl Fn() -> bool) -> Option<Self> {
-        let mut found = Triangle { columns: Vec::new(), independent: Vec::new() };
-        let mut directions: Vec<Vec<f64>> = Vec::new();
-        let lengths: Vec<f64> = columns.iter().map(|column| dot(column, column).sqrt()).collect();
-        for (i, column) in columns.iter().enumerate() {
-            if is_over() {
-                return None;
-            }
-            let (mut entries, mut across) = (vec![0.0; i + 1], column.to_vec());
-            for _ in 0..TURNS {
-                for (j, direction) in directions.iter().enumerate().filter(|entry| found.independent[entry.0]) {
-                    let share = dot(direction, &across);
-                    entries[j] += share;
-                    across.iter_mut().zip(direction).for_each(|(entry, d)| *entry -= share * d);
-                }
-            }
-            let left = dot(&across, &across).sqrt();
-            let terms = found.terms(&entries, &lengths);
-            found.close(entries, left, left > DEPENDENT * terms);
-            across.iter_mut().for_each(|entry| *entry /= left);
-            directions.push(across);
-        }
-        Some(found)
-    }
-
-    /// The lengths of the columns, added up as they cancel in the part of the next one across them, which is last in `entries`.
-    fn terms(&self, entries: &[f64], lengths: &[f64]) -> f64 {
-        let before = self.columns.len();
-        let mut weights = entries[..before].to_vec();
-        self.solve_upper(&mut weights);
-        weights.iter().zip(lengths).fold(lengths[before], |sum, (weight, length)| sum + weight.abs() * length)
-    }
-
-    /// Appends a column of R with this diagonal entry.
-    fn close(&mut self, mut entries: Vec<f64>, diagonal: f64, is_independent: bool) {
-        if is_independent {
-            let last = entries.len() - 1;
-            entries[last] = diagonal;
-        } else {
-            entries.fill(0.0);
-        }
-        self.columns.push(entries);
-        self.independent.push(is_independent);
-    }
-
-    /// Solves `Z'Z x = b` for the independent columns; x is zero on the others.
-    fn solve(&self, b: Vec<f64>) -> Vec<f64> {
-        let mut x = self.solve_lower(b);
-        self.solve_upper(&mut x);
-        x
-    }
-
-    /// `R'^-1 b`; zero on columns that follow from others.
-    fn solve_lower(&self, mut b: Vec<f64>) -> Vec<f64> {
-        for (i, column) in self.columns.iter().enumerate() {
-            let known = dot(&column[..i], &b[..i]);
-            b[i] = if self.independent[i] { (b[i] - known) / column[i] } else { 0.0 };
-        }
-        b
-    }
-
-    /// `R^-1 b`; zero on columns that follow from others.
-    fn solve_upper(&self, b: &mut [f64]) {
-        for (i, column) in self.columns.iter().enumerate().take(b.len()).rev() {
-            b[i] = if self.independent[i] { b[i] / column[i] } else { 0.0 };
-            let value = b[i];
-            b[..i].iter_mut().zip(column).for_each(|(entry, r)| *entry -= r * value);
-        }
-    }
+    triangle: UpperTriangle,
 }

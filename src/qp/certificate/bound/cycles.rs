@@ -13,13 +13,11 @@
 //! make one part of two, the parts have no bound of their own.
 
 use super::{Answer, ErrorBound};
+use crate::qp::certificate::energy_norm::ROUNDED_BOUND;
 use crate::qp::linear::SymmetricMatrix;
 use crate::qp::linear::multigrid::{Blocks, Multigrid, dual_norms_within, negative_direction};
 use crate::qp::problem::ContactProblem;
 use crate::watch::Watch;
-
-/// All that is computed of a bound may be rounded by this much.
-const ROUNDED: f64 = 1.0 + 1e-6;
 
 impl ContactProblem {
     /// An upper bound on `|u - u*|_K`, as far as [`dual_norms_within`] finds the least eigenvalues; infinite where it finds none.
@@ -53,7 +51,7 @@ impl ContactProblem {
             }
         };
         let Some(left) = left else { return ErrorBound::none() };
-        let left: Vec<f64> = left.iter().map(|dual| ROUNDED * dual.most).collect();
+        let left: Vec<f64> = left.iter().map(|dual| ROUNDED_BOUND * dual.most).collect();
         let of_rows = if are_apart { self.parts_of_rows(parts) } else { vec![0; self.rows()] };
         // Every row that presses is put at its gap below.
         let at_gap = vec![true; self.rows()];
@@ -68,7 +66,8 @@ impl ContactProblem {
             }
         }
         // What moves the answer moves its residual too, by K times that.
-        let bounds: Vec<f64> = moved.iter().zip(&left).map(|(moved, left)| 2.0 * ROUNDED * moved + left).collect();
+        let bounds: Vec<f64> =
+            moved.iter().zip(&left).map(|(moved, left)| 2.0 * ROUNDED_BOUND * moved + left).collect();
         let whole = bounds.iter().map(|bound| bound * bound).sum::<f64>().sqrt();
         let of_parts = match (parts.count(), are_apart) {
             (1, _) => None,

@@ -21,6 +21,7 @@
 mod boundary;
 mod cycles;
 mod row_by_row;
+mod triangle;
 
 use super::EnergyNorm;
 use super::springs::Springs;

@@ -5,7 +5,7 @@ use crate::qp::linear::{SparseMatrix, dot};
 use crate::qp::problem::ContactProblem;
 
 /// Rounding a sum leaves about this much of its terms.
-const ROUNDING: f64 = 8.0 * f64::EPSILON;
+const SUM_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// Sweeps over the rows when a displacement is repaired row by row.
 const REPAIR_SWEEPS: usize = 50;
@@ -38,7 +38,7 @@ struct Start<'a> {
 impl ContactProblem {
     /// What B u - g may be off by rounding u, row by row.
     pub(in super::super) fn negligible(&self, displacement: &[f64]) -> Vec<f64> {
-        let magnitude: Vec<f64> = displacement.iter().map(|value| ROUNDING * value).collect();
+        let magnitude: Vec<f64> = displacement.iter().map(|value| SUM_ROUNDING * value).collect();
         self.contact.mul_abs(&magnitude)
     }
 
@@ -215,7 +215,7 @@ impl ContactProblem {
                 let excess = answer.violation[row] + moved;
                 // Rows that contradict a closed one as an equality may still be met as what they are.
                 let open = excess < 0.0 && !(is_closed(row) && patient);
-                let rounding = ROUNDING * (answer.violation[row].abs() + terms);
+                let rounding = SUM_ROUNDING * (answer.violation[row].abs() + terms);
                 if excess == 0.0 || open || excess.abs() <= if patient { rounding } else { negligible.max(rounding) } {
                     continue;
                 }

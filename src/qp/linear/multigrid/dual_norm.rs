@@ -68,11 +68,21 @@ impl Blocks<'_> {
 /// Bounds `sqrt(r' A^-1 r)` by conjugate gradients with one cycle of `multigrid`, the hierarchy of `matrix` A or of A without
 /// terms of low rank; `None` where the cycles do not settle. A must be definite.
 pub fn dual_norm(matrix: &SymmetricMatrix, multigrid: &Multigrid, force: &[f64]) -> Option<DualNorm> {
-    let blocks = Blocks { of_unknown: &vec![0; force.len()], count: 1 };
-    dual_norms_within(matrix, multigrid, force, blocks, &Watch::default())?.pop()
+    dual_norm_within(matrix, multigrid, force, &Watch::default())
 }
 
-/// The same for the force on each of the blocks of A; `None` too where `watch` is over before the cycles settle.
+/// The same; `None` too where `watch` is over before the cycles settle.
+pub fn dual_norm_within(
+    matrix: &SymmetricMatrix,
+    multigrid: &Multigrid,
+    force: &[f64],
+    watch: &Watch,
+) -> Option<DualNorm> {
+    let blocks = Blocks { of_unknown: &vec![0; force.len()], count: 1 };
+    dual_norms_within(matrix, multigrid, force, blocks, watch)?.pop()
+}
+
+/// The same for the force on each of the blocks of A.
 ///
 /// One cycle serves all blocks, but each has conjugate gradients of its own: its own scale, step lengths and Ritz value. A soft
 /// block is not lost beside a stiff one.

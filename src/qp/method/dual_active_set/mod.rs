@@ -27,8 +27,9 @@ use std::collections::HashSet;
 
 use super::{Outcome, ScaledProblem, Solver, Start};
 use crate::error::Error;
+use crate::qp::linear::norm;
 use crate::solution::{ContactSet, Iteration};
-use basis::{Basis, norm};
+use basis::Basis;
 use pass::{Ending, Pass};
 use polyhedron::Polyhedron;
 

@@ -241,30 +241,38 @@ impl<'a> Iterate<'a> {
         self.project();
     }
 
-    /// The CG step, or where it would cross bounds, the expansion.
-    pub fn advance(&mut self, direction: &Conjugate) {
+    /// The CG step, or if it would cross bounds, the expansion: its projection; if that raises the energy, the least energy on
+    /// the way there, or the step to the first bound, and a projected gradient step. Returns the direction if the next one is
+    /// conjugate to it.
+    pub fn advance(&mut self, direction: Conjugate) -> Option<Conjugate> {
         let length = direction.slope / direction.energy;
         let room = self.longest_step(&direction.p);
         if length <= room {
             self.step_along(&direction.p, &direction.moved, length);
             self.project();
-            return;
+            return Some(direction);
         }
         let (x, gradient, at) = (self.x.clone(), self.gradient.clone(), self.at.clone());
+        let mut share = None;
         if length.is_finite() {
             self.x.iter_mut().zip(&direction.p).for_each(|(x, p)| *x -= length * p);
             self.project();
             self.refresh_gradient();
-            let change: f64 = (self.x.iter().zip(&x))
-                .zip(self.gradient.iter().zip(&gradient))
-                .map(|((new, old), (g, before))| (new - old) * (g + before))
-                .sum();
-            if change < 0.0 {
-                return;
+            share = self.least_energy_from(&x, &gradient);
+        }
+        match share {
+            Some(share) if share >= 1.0 => return None,
+            Some(share) => {
+                for (new, old) in self.x.iter_mut().zip(&x).chain(self.gradient.iter_mut().zip(&gradient)) {
+                    *new = old + share * (*new - old);
+                }
+                self.project();
+            }
+            None => {
+                (self.x, self.gradient, self.at) = (x, gradient, at);
+                self.step_to_bounds(&direction, room);
             }
         }
-        (self.x, self.gradient, self.at) = (x, gradient, at);
-        self.step_to_bounds(direction, room);
         let share = 1.0 / self.largest_eigenvalue();
         let free = self.free_gradient();
         for ((x, g), d) in self.x.iter_mut().zip(&free).zip(&self.diagonal) {
@@ -272,6 +280,19 @@ impl<'a> Iterate<'a> {
         }
         self.project();
         self.refresh_gradient();
+        None
+    }
+
+    /// The share of the way from `x`, with its `gradient`, to the unknowns as they are that is to be gone: all of it if the
+    /// energy at the end is lower, else that to the least energy; `None` if the energy rises at once.
+    fn least_energy_from(&self, x: &[f64], gradient: &[f64]) -> Option<f64> {
+        let (mut slope, mut curvature) = (0.0, 0.0);
+        for ((new, old), (after, before)) in self.x.iter().zip(x).zip(self.gradient.iter().zip(gradient)) {
+            slope += (new - old) * before;
+            curvature += (new - old) * (after - before);
+        }
+        let falls_to_the_end = 2.0 * slope + curvature < 0.0;
+        (slope < 0.0).then(|| if falls_to_the_end { 1.0 } else { -slope / curvature })
     }
 
     /// An upper bound on the eigenvalues of `D^-1 K`, by Gershgorin's circles.
