@@ -242,8 +242,8 @@ impl<'a> Iterate<'a> {
     }
 
     /// The CG step, or if it would cross bounds, the expansion: its projection; if that raises the energy, the least energy on
-    /// the way there, or the step to the first bound, and a projected gradient step. Returns the direction if the next one is
-    /// conjugate to it.
+    /// the way there or the step to the first bound, whichever is lower, and a projected gradient step. Returns the direction
+    /// if the next one is conjugate to it.
     pub fn advance(&mut self, direction: Conjugate) -> Option<Conjugate> {
         let length = direction.slope / direction.energy;
         let room = self.longest_step(&direction.p);
@@ -253,22 +253,23 @@ impl<'a> Iterate<'a> {
             return Some(direction);
         }
         let (x, gradient, at) = (self.x.clone(), self.gradient.clone(), self.at.clone());
-        let mut share = None;
+        let mut on_the_way = None;
         if length.is_finite() {
             self.x.iter_mut().zip(&direction.p).for_each(|(x, p)| *x -= length * p);
             self.project();
             self.refresh_gradient();
-            share = self.least_energy_from(&x, &gradient);
+            on_the_way = self.least_energy_from(&x, &gradient);
         }
-        match share {
-            Some(share) if share >= 1.0 => return None,
-            Some(share) => {
+        let to_bounds = room * direction.slope - 0.5 * room * room * direction.energy;
+        match on_the_way {
+            Some((share, _)) if share >= 1.0 => return None,
+            Some((share, fall)) if fall >= to_bounds => {
                 for (new, old) in self.x.iter_mut().zip(&x).chain(self.gradient.iter_mut().zip(&gradient)) {
                     *new = old + share * (*new - old);
                 }
                 self.project();
             }
-            None => {
+            _ => {
                 (self.x, self.gradient, self.at) = (x, gradient, at);
                 self.step_to_bounds(&direction, room);
             }
@@ -283,16 +284,20 @@ impl<'a> Iterate<'a> {
         None
     }
 
-    /// The share of the way from `x`, with its `gradient`, to the unknowns as they are that is to be gone: all of it if the
-    /// energy at the end is lower, else that to the least energy; `None` if the energy rises at once.
-    fn least_energy_from(&self, x: &[f64], gradient: &[f64]) -> Option<f64> {
+    /// The share of the way from `x`, with its `gradient`, to the unknowns as they are that is to be gone, and by how much the
+    /// energy falls: all of the way if the energy at its end is lower, else that to the least energy; `None` if the energy rises
+    /// at once.
+    fn least_energy_from(&self, x: &[f64], gradient: &[f64]) -> Option<(f64, f64)> {
         let (mut slope, mut curvature) = (0.0, 0.0);
         for ((new, old), (after, before)) in self.x.iter().zip(x).zip(self.gradient.iter().zip(gradient)) {
             slope += (new - old) * before;
             curvature += (new - old) * (after - before);
         }
-        let falls_to_the_end = 2.0 * slope + curvature < 0.0;
-        (slope < 0.0).then(|| if falls_to_the_end { 1.0 } else { -slope / curvature })
+        let at_end = slope + 0.5 * curvature;
+        (slope < 0.0).then(|| match at_end < 0.0 {
+            true => (1.0, -at_end),
+            false => (-slope / curvature, 0.5 * slope * slope / curvature),
+        })
     }
 
     /// An upper bound on the eigenvalues of `D^-1 K`, by Gershgorin's circles.

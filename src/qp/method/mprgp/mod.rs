@@ -7,7 +7,8 @@
 //! proportioning   where the chopped gradient outweighs the free one: a step along it, which opens rows
 //! CG step         along conjugate directions of the free face, one cycle of the hierarchy each
 //! expansion       where the CG step would cross bounds: its projection, which closes rows; should that raise the energy,
-//!                 the step to the first bound and a projected gradient step of fixed length
+//!                 the least energy on the way there or the step to the first bound, and a projected gradient step of
+//!                 fixed length
 //! ```
 //!
 //! The energy falls in every one of them. The hierarchy is built once, for K; a face is a small change of it.
