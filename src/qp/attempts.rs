@@ -83,12 +83,13 @@ impl Attempts {
         let seconds = clock.elapsed().as_secs_f64();
         let (multigrid, ended) = (estimate.multigrid_bytes, Some(ending(&fell_short)));
         let no_room = |factor| Err(Error::NoRoom { factor, multigrid, allowed, ended });
-        if let Some(bytes) = refused {
-            return no_room(bytes);
-        }
-        // What the iteration cannot take, the direct path may.
+        // What the iteration cannot take, the direct path may; if it was refused, with one factor at a time.
+        let direct = match refused {
+            Some(_) => Settings { method: Method::ActiveSet, ..settings.clone() },
+            None => settings.clone(),
+        };
         let clock = Instant::now();
-        match self.with_factor(problem, settings) {
+        match self.with_factor(problem, &direct) {
             Err(Error::TooLarge { bytes, .. }) => no_room(bytes),
             Err(error @ (Error::OutOfTime { .. } | Error::Interrupted)) => {
                 self.add(Tried::on_all_dofs(Method::ActiveSet), clock.elapsed().as_secs_f64(), &error);

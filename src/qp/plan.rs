@@ -252,8 +252,8 @@ impl Layout {
         if way.is_some() && is_condensed && settings.precision != Precision::Double {
             choices.push((Some(Way::ActiveSetMixed), true, true));
         }
-        if !is_condensed && is_last_free && matches!(settings.method, Method::Auto | Method::ActiveSet) {
-            choices.push((way.map(|_| Way::ActiveSet), false, false));
+        if !is_condensed && is_last_free && settings.method == Method::ActiveSet {
+            choices.push((way, false, false));
         }
         let mut refused: Option<Error> = None;
         for choice in choices {
