@@ -32,6 +32,10 @@ const OF_DENSE: f64 = 64.0;
 /// hold them, their values, the structure of their factors.
 const OF_SETS: f64 = 20.0;
 
+/// Bytes of an entry of the stiffness in the matrix of one contact set at a time: its values, and what the attempts before have
+/// not given back.
+const OF_SET: f64 = 6.0;
+
 /// Bytes of a value of a dense triangle on the contact dofs that come last.
 const OF_BOUNDARY: f64 = 24.0;
 
@@ -67,6 +71,11 @@ pub fn of_dense(contact_dofs: f64) -> f64 {
 /// Bytes of the matrices K + w B'B of the contact sets, without their factors, for so many entries of K.
 pub fn of_sets(entries: f64) -> f64 {
     OF_SETS * entries
+}
+
+/// Bytes of the matrix K + w B'B of one contact set, without its factor, for so many entries of K.
+pub fn of_set(entries: f64) -> f64 {
+    OF_SET * entries
 }
 
 /// Bytes of what is dense on so many contact dofs that come last in a factor of all.

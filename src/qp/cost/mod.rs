@@ -140,8 +140,9 @@ pub(in crate::qp) fn check_memory(problem: &ContactProblem, kept: Kept, settings
             let beside = bytes::of_sets(stiffness_entries) + bytes::of_boundary(last as f64);
             (values, factors + beside + of_interior_point(values as f64, by_interior_point))
         }
-        // The matrix of the set is ordered and freed before its factor is made.
-        Kept::OneFactor { values } => (values, bytes::of_factor(values as f64, size_of::<f64>())),
+        Kept::OneFactor { values } => {
+            (values, bytes::of_factor(values as f64, size_of::<f64>()) + bytes::of_set(stiffness_entries))
+        }
         Kept::Multigrid => (0, 0.0),
     };
     let bytes = match kept {
