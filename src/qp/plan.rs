@@ -184,6 +184,8 @@ pub(super) struct Layout {
     pub way: Option<Way>,
     /// Is the factor in single precision?
     pub is_single: bool,
+    /// Is the factor of the stiffness kept beside those of the contact sets? If not, it is made again for the certificate.
+    pub keeps_norm: bool,
 }
 
 impl Layout {
@@ -200,28 +202,29 @@ impl Layout {
             if settings.watch.is_stopped() {
                 return Err(Error::Interrupted);
             }
-            let analysed = match number {
-                0 if settings.condense == Condense::Never => None,
-                0 => Condensation::analyse(problem.stiffness(), &contact_dofs)?
-                    .map(|found| (found, contact_dofs.clone())),
+            let (last, dense) = match number {
+                0 if settings.condense == Condense::Never => continue,
+                0 => (contact_dofs.clone(), Kept::dense(contact_dofs.len())),
                 1 => {
                     let last = EnergyNorm::last_dofs(scaling.contact());
-                    match last.is_empty() {
-                        true => None,
-                        false => Some((Analysis::with_last(problem.stiffness(), &last)?, last)),
-                    }
+                    let boundary = Kept::boundary(last.len());
+                    if last.is_empty() { continue } else { (last, boundary) }
                 }
-                2 => Some((Analysis::of(problem.stiffness())?, Vec::new())),
+                2 => (Vec::new(), Kept::Nothing),
                 _ => break,
             };
-            let Some((analysis, last)) = analysed else { continue };
+            // What is dense on the boundary may be too large by itself: the analysis would take memory for nothing.
+            if let Err(error) = check_memory(problem, dense, settings) {
+                refused = Some(least(refused, error));
+                continue;
+            }
+            let analysis = match number {
+                0 => Condensation::analyse(problem.stiffness(), &last)?,
+                _ => Some(Analysis::with_last(problem.stiffness(), &last)?),
+            };
+            let Some(analysis) = analysis else { continue };
             match Self::of(problem, settings, (analysis, last), number == 0) {
-                Err(error @ Error::TooLarge { .. }) => {
-                    refused = Some(match refused {
-                        None => error,
-                        Some(before) => lesser(before, error),
-                    });
-                }
+                Err(error @ Error::TooLarge { .. }) => refused = Some(least(refused, error)),
                 decided => return decided,
             }
         }
@@ -239,31 +242,30 @@ impl Layout {
         let multiplications = analysis.multiplications();
         let way = Way::chosen(settings, is_condensed, multiplications, problem.rows());
         let is_single = is_condensed && precision(way, settings) == Precision::Mixed;
-        let mut layout = Layout { analysis, last, is_condensed, multiplications, way, is_single };
-        let fits = |layout: &Layout| {
-            check_memory(problem, layout.kept(settings), settings)?;
-            check_time(&settings.watch, layout.seconds(settings))
-        };
-        let Err(mut refused) = fits(&layout) else { return Ok(layout) };
-        if way.is_none() {
-            return Err(refused);
-        }
+        let is_last_free = last.is_empty();
+        let mut layout = Layout { analysis, last, is_condensed, multiplications, way, is_single, keeps_norm: true };
+        let mut choices = vec![(way, is_single, true)];
         // What the rules choose for its speed may take more memory, or time before its first step, than there is.
-        layout.way = Some(Way::ActiveSet);
-        layout.is_single = false;
-        match fits(&layout) {
-            Ok(()) => return Ok(layout),
-            Err(error) => refused = lesser(refused, error),
+        if way.is_some() {
+            choices.push((Some(Way::ActiveSet), false, true));
         }
-        if is_condensed && settings.precision != Precision::Double {
-            layout.way = Some(Way::ActiveSetMixed);
-            layout.is_single = true;
-            match fits(&layout) {
+        if way.is_some() && is_condensed && settings.precision != Precision::Double {
+            choices.push((Some(Way::ActiveSetMixed), true, true));
+        }
+        if !is_condensed && is_last_free && matches!(settings.method, Method::Auto | Method::ActiveSet) {
+            choices.push((way.map(|_| Way::ActiveSet), false, false));
+        }
+        let mut refused: Option<Error> = None;
+        for choice in choices {
+            (layout.way, layout.is_single, layout.keeps_norm) = choice;
+            let fits = check_memory(problem, layout.kept(settings), settings)
+                .and_then(|()| check_time(&settings.watch, layout.seconds(settings)));
+            match fits {
                 Ok(()) => return Ok(layout),
-                Err(error) => refused = lesser(refused, error),
+                Err(error) => refused = Some(least(refused, error)),
             }
         }
-        Err(refused)
+        Err(refused.unwrap_or(Error::Interrupted))
     }
 
     fn kept(&self, settings: &Settings) -> Kept {
@@ -271,7 +273,8 @@ impl Layout {
         let by_interior_point = self.by_interior_point(settings);
         match self.is_condensed {
             true => Kept::Condensed { values, is_single: self.is_single, contact_dofs: last, by_interior_point },
-            false => Kept::Factors { values, last, by_interior_point },
+            false if self.keeps_norm => Kept::Factors { values, last, by_interior_point },
+            false => Kept::OneFactor { values },
         }
     }
 
@@ -309,11 +312,11 @@ fn check_room_to_order(problem: &ContactProblem, settings: &Settings) -> Result<
     }
 }
 
-/// Of two refusals the one that asks for less memory.
-fn lesser(one: Error, other: Error) -> Error {
-    match (&one, &other) {
-        (Error::TooLarge { bytes: few, .. }, Error::TooLarge { bytes: many, .. }) if few > many => other,
-        _ => one,
+/// Of the refusals so far and another one the refusal that asks for the least memory.
+fn least(before: Option<Error>, other: Error) -> Error {
+    match (before, &other) {
+        (Some(Error::TooLarge { bytes: few, .. }), Error::TooLarge { bytes: many, .. }) if few > *many => other,
+        (before, _) => before.unwrap_or(other),
     }
 }
 

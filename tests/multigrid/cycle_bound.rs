@@ -7,8 +7,10 @@ use crate::bodies::{built, clamped_block, clamped_square};
 use crate::oracles::{Draws, random};
 use serde_json::{Value, json};
 use signorini::internals::Cholesky;
-use signorini::internals::multigrid::{Multigrid, NearNullSpace, dual_norm};
-use signorini::{ContactProblem, Error, Method, Prepared, Settings, Solution, SymmetricMatrix, solve};
+use signorini::internals::multigrid::{Blocks, Multigrid, NearNullSpace, dual_norm, dual_norms_within};
+use signorini::{
+    ContactProblem, Error, Method, Prepared, Settings, Solution, SparseMatrix, Start, SymmetricMatrix, Watch, solve,
+};
 
 /// The bound is of the exact answer; the reference has an error of its own, of rounding. Relative energy norm.
 const OF_REFERENCE: f64 = 1e-11;
@@ -104,7 +106,7 @@ fn on_springs() -> ContactProblem {
         .map(|(row, column, value)| (row, column, value + if row == column && row < 300 { spring } else { 0.0 }))
         .collect();
     let dofs = problem.dofs();
-    let lower = signorini::SparseMatrix::from_triplets(dofs, dofs, &entries).unwrap();
+    let lower = SparseMatrix::from_triplets(dofs, dofs, &entries).unwrap();
     let stiffness = SymmetricMatrix::from_lower(lower).unwrap();
     let near_null = problem.near_null().unwrap().clone();
     ContactProblem::new(stiffness, problem.load().to_vec(), problem.contact().clone(), problem.gap().to_vec())
@@ -230,5 +232,123 @@ fn a_body_that_only_contact_holds_has_a_bound_with_springs_on_its_rows() {
         let (error, bound) = (energy(&away) / energy(&found.displacement), found.certificate.energy_error_bound);
         // The reference is exact to twelve digits; half the least Ritz value and few cycles cost less than a factor of 100.
         assert!(error <= bound + 1e-12 && bound <= tolerance && bound <= 100.0 * error + 1e-12, "{error:e} {bound:e}");
+    }
+}
+
+/// Two problems that share nothing, the second so many times softer, its load and forces too.
+fn beside(first: &ContactProblem, second: &ContactProblem, softness: f64) -> ContactProblem {
+    let (dofs, rows) = (first.dofs(), first.rows());
+    let moved = |matrix: &SparseMatrix, by: (usize, usize), factor: f64| -> Vec<(usize, usize, f64)> {
+        matrix.triplets().map(|(row, column, value)| (row + by.0, column + by.1, factor * value)).collect()
+    };
+    let joined = |size: (usize, usize), entries: [Vec<(usize, usize, f64)>; 2]| {
+        SparseMatrix::from_triplets(size.0, size.1, &entries.concat()).unwrap()
+    };
+    let (all, all_rows) = (dofs + second.dofs(), rows + second.rows());
+    let of_second = moved(second.stiffness().lower(), (dofs, dofs), softness);
+    let lower = joined((all, all), [moved(first.stiffness().lower(), (0, 0), 1.0), of_second]);
+    let of_second = moved(second.contact(), (rows, dofs), 1.0);
+    let contact = joined((all_rows, all), [moved(first.contact(), (0, 0), 1.0), of_second]);
+    let load = first.load().iter().copied().chain(second.load().iter().map(|f| softness * f)).collect();
+    let motions = first.near_null().unwrap().vectors().iter().zip(second.near_null().unwrap().vectors());
+    let near_null = NearNullSpace::new(motions.map(|(a, b)| [&a[..], b].concat()).collect(), all).unwrap();
+    ContactProblem::new(
+        SymmetricMatrix::from_lower(lower).unwrap(),
+        load,
+        contact,
+        [first.gap(), second.gap()].concat(),
+    )
+    .and_then(|problem| problem.with_near_null(near_null))
+    .unwrap()
+}
+
+/// The energy norm of the error of a soft part drowns in that of a stiff one beside it; the bound of the parts does not.
+#[test]
+fn a_wrong_soft_part_beside_a_stiff_one_shows_in_the_bound_of_the_parts() {
+    let scene = clamped_block(7, -0.01);
+    let (stiff, soft) = (built(&scene).problem().clone(), built(&clamped_block(8, -0.012)).problem().clone());
+    let exact = solve(&soft, &Settings::with_method(Method::ActiveSet)).unwrap();
+    for softness in [1.0, 1e-6, 1e-10] {
+        let problem = beside(&stiff, &soft, softness);
+        let iterative = Prepared::new(&problem, &mprgp()).unwrap();
+        assert!(iterative.hierarchy().unwrap().unknowns().len() > 1);
+        let right = answer(iterative.solve(problem.gap())).unwrap();
+        let mut shown = 0;
+        for wrong in [0.0, 1e-6, 1e-3, 0.1] {
+            // What one cycle from a wrong start leaves.
+            let start: Vec<f64> = (right.displacement.iter().enumerate())
+                .map(|(dof, u)| if dof < stiff.dofs() { *u } else { u * (1.0 + wrong) })
+                .collect();
+            let mut settings = mprgp();
+            settings.max_iterations = 1;
+
+            let found = answer(
+                iterative.with_settings(&settings).unwrap().starting_from(Start::near(start)).solve(problem.gap()),
+            )
+            .unwrap();
+            let certificate = &found.certificate;
+            assert!(certificate.parts == 2 && certificate.bound_is_measured, "{certificate:?}");
+            let of_soft = &found.displacement[stiff.dofs()..];
+            let away: Vec<f64> = of_soft.iter().zip(&exact.displacement).map(|(u, v)| u - v).collect();
+            let error = energy(&soft, &away) / energy(&soft, of_soft);
+            let bound = certificate.part_error_bound;
+            assert!(error <= bound + OF_REFERENCE, "{softness:e} {wrong:e}: an error of {error:e} above {bound:e}");
+            assert!(bound <= 10.0 * error + 1e-6, "{softness:e} {wrong:e}: a bound of {bound:e} on {error:e}");
+            shown += usize::from(bound > 1e3 * certificate.energy_error_bound);
+        }
+        assert_eq!(shown > 0, softness < 1e-8, "{softness:e}: {shown}");
+    }
+}
+
+#[test]
+fn each_block_of_a_matrix_has_its_own_energy_between_its_bounds() {
+    let (stiff, soft) = (built(&clamped_block(8, -0.01)), built(&clamped_block(9, -0.01)));
+    let (stiff, soft) = (stiff.problem(), soft.problem());
+    let both = beside(stiff, soft, 1e-12);
+    let mut draws = Draws::new(9);
+    let force: Vec<f64> =
+        (0..both.dofs()).map(|dof| draws.signed() * if dof < stiff.dofs() { 1.0 } else { 1e-20 }).collect();
+    let of_unknown: Vec<usize> = (0..both.dofs()).map(|dof| usize::from(dof >= stiff.dofs())).collect();
+    let multigrid = Multigrid::new(both.stiffness(), both.near_null().unwrap(), 1).unwrap();
+    let blocks = Blocks { of_unknown: &of_unknown, count: 2 };
+    let found = dual_norms_within(both.stiffness(), &multigrid, &force, blocks, &Watch::default()).unwrap();
+    let parts = [(stiff, &force[..stiff.dofs()], 1.0), (soft, &force[stiff.dofs()..], 1e-12)];
+    for (found, (problem, force, softness)) in found.iter().zip(parts) {
+        let moved = Cholesky::of(problem.stiffness()).unwrap().solve(force);
+        let exact = (force.iter().zip(&moved).map(|(f, u)| f * u).sum::<f64>() / softness).sqrt();
+        assert!(found.least <= exact && exact <= found.most && found.most <= 1.05 * exact, "{found:?}, {exact:e}");
+    }
+}
+
+/// A spring of negative stiffness at a pressed row: the springs of the bound would hide it.
+#[test]
+fn springs_hide_no_direction_of_negative_energy() {
+    let mut scene = clamped_block(9, 0.0);
+    scene["supports"] = json!([{"on": {"boundary": "left"}, "x": 0}, {"on": {"boundary": "front"}, "y": 0}]);
+    scene["loads"] = json!([{"traction": {"boundary": "bottom", "value": [0, 0, 1e5]}}]);
+    let problem = built(&scene).problem().clone();
+    let sound = solve(&problem, &mprgp()).unwrap();
+    assert!(sound.certificate.bound_is_measured && sound.certificate.energy_error_bound < 1e-9);
+    let strongest = (0..problem.rows()).min_by(|&a, &b| sound.multiplier[a].total_cmp(&sound.multiplier[b])).unwrap();
+    let dof = (0..problem.dofs()).find(|&dof| problem.contact().column(dof).any(|entry| entry.0 == strongest)).unwrap();
+    for share in [1e-3, 0.05] {
+        let lower = problem.stiffness().lower();
+        let taken = |row: usize, column: usize| if row == dof && column == dof { 1.0 - share } else { 1.0 };
+        let entries: Vec<_> = lower.triplets().map(|(i, j, value)| (i, j, value * taken(i, j))).collect();
+        let lower = SparseMatrix::from_triplets(problem.dofs(), problem.dofs(), &entries).unwrap();
+        let stiffness = SymmetricMatrix::from_lower(lower).unwrap();
+        let (load, gap) = (problem.load().to_vec(), problem.gap().to_vec());
+        let wrong = ContactProblem::new(stiffness, load, problem.contact().clone(), gap)
+            .and_then(|wrong| wrong.with_near_null(problem.near_null().unwrap().clone()))
+            .unwrap();
+        // From the answer itself nothing moves, and no direction is tried on the way.
+        let iterative = Prepared::new(&wrong, &mprgp()).unwrap();
+        match iterative.starting_from(Start::near(sound.displacement.clone())).solve(wrong.gap()) {
+            Err(Error::NotCertified { solution, .. }) => {
+                assert!(solution.certificate.energy_error_bound.is_infinite(), "{:?}", solution.certificate);
+            }
+            Err(Error::NotConvex { .. }) => {}
+            other => panic!("{share}: {:?}", other.map(|found| found.certificate)),
+        }
     }
 }

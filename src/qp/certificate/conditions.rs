@@ -172,15 +172,16 @@ impl ContactProblem {
 
     /// The same, and what it consists of.
     fn accurate_balance(&self, u: &[f64], lambda: &[f64]) -> Balance {
+        // Of opposite sign, K u first: a body that moves far and bends little has so little energy that forces rounded before
+        // would leave none of it.
         let mut sums = Accumulator::new(&vec![0.0; self.dofs()]);
-        let terms = sums.subtract_product(&self.stiffness, u);
-        // A body that moves far and bends little has so little energy that forces rounded before would leave none of it.
-        let strain = -sums.products_by(u, |_| 0, 1)[0];
+        let terms = sums.add_matrix_product(|column| self.stiffness.lower().column(column), u);
+        let strain = sums.products_by(u, |_| 0, 1)[0];
         for (dof, &load) in self.load.iter().enumerate() {
-            sums.add_product(dof, load, 1.0);
-            self.contact.column(dof).for_each(|(row, b)| sums.add_product(dof, b, lambda[row]));
+            sums.add_product(dof, load, -1.0);
+            self.contact.column(dof).for_each(|(row, b)| sums.add_product(dof, b, -lambda[row]));
         }
-        Balance { residual: sums.into_sums(), strain, terms }
+        Balance { residual: sums.sums().map(|sum| -sum).collect(), strain, terms }
     }
 
     /// `B u - g` of the given doubles, with twice the working precision; `-inf` where there is no obstacle.
@@ -211,14 +212,7 @@ impl ContactProblem {
         u: &[f64],
     ) -> Accumulator {
         let mut sums = Accumulator::new(&vec![0.0; u.len()]);
-        for (column, &at_column) in u.iter().enumerate() {
-            for (row, value) in within(column) {
-                sums.add_product(row, value, at_column);
-                if row != column {
-                    sums.add_product(column, value, u[row]);
-                }
-            }
-        }
+        sums.add_matrix_product(within, u);
         sums
     }
 }

@@ -36,13 +36,13 @@ impl Springs {
         residual.iter().zip(contact.mul_transposed(&pull)).map(|(r, spring)| r + spring).collect()
     }
 
-    /// Does every spring stand on a row that is at its gap, with a force mu that exceeds what `left`, the dual norm of the
-    /// forces left over, could take off it?
-    pub fn hold(&self, multiplier: &[f64], at_gap: &[bool], left: f64) -> bool {
-        self.stiffness
-            .iter()
-            .zip(multiplier.iter().zip(at_gap))
-            .all(|(&stiffness, (&mu, &at_gap))| stiffness == 0.0 || (at_gap && -mu >= 2.0 * stiffness.sqrt() * left))
+    /// Does every spring stand on a row that is at its gap, with a force mu that exceeds what `left(row)`, the dual norm of the
+    /// forces left over on its part, could take off it?
+    pub fn hold(&self, multiplier: &[f64], at_gap: &[bool], left: impl Fn(usize) -> f64) -> bool {
+        let is_held = |(row, (&stiffness, (&mu, &at_gap))): (usize, (&f64, (&f64, &bool)))| {
+            stiffness == 0.0 || (at_gap && -mu >= 2.0 * stiffness.sqrt() * left(row))
+        };
+        self.stiffness.iter().zip(multiplier.iter().zip(at_gap)).enumerate().all(is_held)
     }
 
     /// The same springs in other units of stiffness, `2^unit`.

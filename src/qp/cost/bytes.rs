@@ -28,9 +28,9 @@ const WORKSPACE: f64 = 1.15;
 /// Bytes of a value of a dense matrix on the contact dofs, of which a method keeps several.
 const OF_DENSE: f64 = 64.0;
 
-/// Bytes of an entry of the stiffness in the matrices of the contact sets: their pattern, where the stiffness stands in it,
-/// their values, ordered.
-const OF_SETS: f64 = 32.0;
+/// Bytes of an entry of the stiffness in the matrices of the contact sets: their pattern, if that of the stiffness does not
+/// hold them, their values, the structure of their factors.
+const OF_SETS: f64 = 20.0;
 
 /// Bytes of a value of a dense triangle on the contact dofs that come last.
 const OF_BOUNDARY: f64 = 24.0;

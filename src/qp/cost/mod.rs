@@ -97,8 +97,22 @@ pub(in crate::qp) enum Kept {
     Condensed { values: usize, is_single: bool, contact_dofs: usize, by_interior_point: bool },
     /// The factor of the body and those of two contact sets, with so many values each; so many contact dofs come last.
     Factors { values: usize, last: usize, by_interior_point: bool },
+    /// The factor of one contact set, with so many values.
+    OneFactor { values: usize },
     /// A hierarchy instead of a factor.
     Multigrid,
+}
+
+impl Kept {
+    /// The least that a condensation onto so many contact dofs keeps.
+    pub fn dense(contact_dofs: usize) -> Self {
+        Kept::Condensed { values: 0, is_single: true, contact_dofs, by_interior_point: false }
+    }
+
+    /// The least that factors with so many contact dofs last keep.
+    pub fn boundary(last: usize) -> Self {
+        Kept::Factors { values: 0, last, by_interior_point: false }
+    }
 }
 
 /// Factors that exist at one time where every contact set has its own.
@@ -126,6 +140,8 @@ pub(in crate::qp) fn check_memory(problem: &ContactProblem, kept: Kept, settings
             let beside = bytes::of_sets(stiffness_entries) + bytes::of_boundary(last as f64);
             (values, factors + beside + of_interior_point(values as f64, by_interior_point))
         }
+        // The matrix of the set is ordered and freed before its factor is made.
+        Kept::OneFactor { values } => (values, bytes::of_factor(values as f64, size_of::<f64>())),
         Kept::Multigrid => (0, 0.0),
     };
     let bytes = match kept {

@@ -5,6 +5,7 @@ use std::time::Instant;
 use super::factored::Factored;
 use super::found::Found;
 use crate::error::Error;
+use crate::qp::certificate::EnergyNorm;
 use crate::qp::judged::{answer, judged};
 use crate::qp::method::{Outcome, ScaledProblem};
 use crate::qp::problem::ContactProblem;
@@ -48,7 +49,7 @@ impl Factored {
             return Ok(None);
         }
         let task =
-            ScaledProblem::new(&found.problem, &self.augmented, self.reduction.norm.is_some()).watched(&settings.watch);
+            ScaledProblem::new(&found.problem, &self.augmented, self.reduction.is_definite()).watched(&settings.watch);
         let outcome = last_resort(&task, found.outcome.clone())
             .map_err(|error| self.expand_error(error, &found.loading.load, &found.gap))?;
         let seconds = Seconds { solve: found.seconds.solve + clock.elapsed().as_secs_f64(), ..found.seconds };
@@ -63,7 +64,7 @@ impl Factored {
         let method = self.resolved(settings).method;
         let Found { loading, gap, unit, outcome, seconds, refined, .. } = found;
         let finishing = settings.watch.finishing();
-        let norm = self.reduction.norm.as_ref().map(|norm| norm.watched(&finishing));
+        let norm = self.norm_within(&finishing);
         let norm = match refined {
             Some(refined) => norm.map(|norm| norm.off_by(refined.contraction)),
             None => norm,
@@ -112,10 +113,17 @@ impl Factored {
         multiplier: &[f64],
         watch: &Watch,
     ) -> Result<Certificate, Error> {
-        match &self.reduction.norm {
-            Some(norm) => problem.certify_in(Some(&norm.watched(&watch.finishing())), displacement, multiplier),
-            None if !watch.finishing().allows(self.norm_seconds) => problem.certify_in(None, displacement, multiplier),
-            None => problem.certify(displacement, multiplier),
+        let finishing = watch.finishing();
+        match self.norm_within(&finishing) {
+            None if finishing.allows(self.norm_seconds) => problem.certify(displacement, multiplier),
+            norm => problem.certify_in(norm.as_ref(), displacement, multiplier),
         }
+    }
+
+    /// The energy norm of a stiffness that is definite by itself, whose bounds end when `watch` says so; `None` too if there is no
+    /// time to make it.
+    fn norm_within(&self, watch: &Watch) -> Option<EnergyNorm> {
+        let in_time = self.reduction.is_norm_at_hand() || watch.allows(self.norm_seconds);
+        if in_time { self.reduction.norm().map(|norm| norm.watched(watch)) } else { None }
     }
 }

@@ -92,9 +92,9 @@ impl Factored {
     pub fn on_boundary(&self, found: Found, settings: &Settings, bounded: bool) -> Result<(Found, Certificate), Error> {
         let on_boundary = |found: &Found| -> Result<Certificate, Error> {
             let Found { problem, outcome, .. } = found;
-            match if bounded { self.condensed_norm(problem)? } else { None } {
+            match if bounded { self.condensed_norm(problem) } else { None } {
                 None if bounded => problem.certify(&outcome.displacement, &outcome.multiplier),
-                norm => problem.certify_in(norm, &outcome.displacement, &outcome.multiplier),
+                norm => problem.certify_in(norm.as_ref(), &outcome.displacement, &outcome.multiplier),
             }
         };
         if self.is_single() {

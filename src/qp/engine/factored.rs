@@ -31,7 +31,7 @@ pub(super) struct Factored {
     /// The smallest pivot of the scaled stiffness, where it is below [`LOST_PIVOT`](super::preparation::LOST_PIVOT).
     pub(super) lost_pivot: Option<f64>,
     pub(super) augmented: AugmentedMatrix,
-    /// Energy norm of the condensed stiffness, made when it is first asked for.
+    /// Energy norm of the condensed stiffness, if it is definite, made when it is first asked for.
     pub(super) condensed_norm: OnceLock<Option<EnergyNorm>>,
     /// What was chosen, where the choice was left to the program.
     pub(super) way: Option<Way>,
@@ -127,10 +127,10 @@ impl Factored {
         let clock = Instant::now();
         let watch = self.watch_of_loop(settings)?;
         let (problem, unit) = self.scaled(&loading, &gap)?;
-        let task = ScaledProblem::new(&problem, &self.augmented, self.reduction.norm.is_some()).watched(&watch);
+        let task = ScaledProblem::new(&problem, &self.augmented, self.reduction.is_definite()).watched(&watch);
         let start = start.map(|set| self.reduction.selection.restrict_set(set));
         let bound = |displacement: &[f64], multiplier: &[f64]| {
-            let certificate = match self.condensed_norm(&problem).ok().flatten() {
+            let certificate = match self.condensed_norm(&problem) {
                 Some(norm) => {
                     let norm = norm.watched(&settings.watch.finishing());
                     problem.certify_in(Some(&norm), displacement, multiplier)
@@ -156,7 +156,7 @@ impl Factored {
         }
         let analysis = self.augmented.analysis();
         // Where K is not definite, the start and the test of uniqueness factorise too.
-        let factors = if self.reduction.norm.is_some() { 1.0 } else { SINGULAR };
+        let factors = if self.reduction.is_definite() { 1.0 } else { SINGULAR };
         let of_loop = factors * seconds::factorisation(analysis);
         let (first, each) = match settings.method {
             Method::Qp(_) => (2.0 * seconds::interior_point(analysis), seconds::interior_point(analysis).max(of_loop)),
@@ -167,21 +167,16 @@ impl Factored {
     }
 
     /// The energy norm of the problem that the methods work on.
-    pub(super) fn condensed_norm(&self, problem: &ContactProblem) -> Result<Option<&EnergyNorm>, Error> {
-        let Some(norm) = &self.reduction.norm else { return Ok(None) };
-        if self.condensed_norm.get().is_none() {
-            let of_problem = match &self.reduction.condensation {
-                None => Some(norm.equilibrated()),
-                Some(_) => {
-                    let unscaled = Equilibration::none(problem.dofs());
-                    let factor = self.augmented.factor(&self.augmented.matrix(|_| 0.0, 0.0)).ok();
-                    factor.map(|factor| EnergyNorm::new(factor, unscaled, (0..problem.dofs()).collect()))
-                }
-            };
-            // Another thread may have been faster, with the same result.
-            let _ = self.condensed_norm.set(of_problem);
+    pub(super) fn condensed_norm(&self, problem: &ContactProblem) -> Option<EnergyNorm> {
+        if !self.is_condensed() || !self.reduction.is_definite() {
+            return self.reduction.norm().map(|norm| norm.equilibrated());
         }
-        Ok(self.condensed_norm.get().and_then(Option::as_ref))
+        let of_boundary = || {
+            let unscaled = Equilibration::none(problem.dofs());
+            let factor = self.augmented.factor(self.augmented.matrix(|_| 0.0, 0.0)).ok()?;
+            Some(EnergyNorm::new(factor, unscaled, (0..problem.dofs()).collect()))
+        };
+        self.condensed_norm.get_or_init(of_boundary).clone()
     }
 
     /// The energy norm of a displacement of the condensed problem over that of the whole body.
@@ -197,7 +192,7 @@ impl Factored {
         let gap = self.reduction.selection.gap(self.problem.gap());
         let loading = Loading::of(&self.reduction, self.problem.load().to_vec(), &gap);
         let (problem, unit) = self.scaled(&loading, self.problem.gap())?;
-        let task = ScaledProblem::new(&problem, &self.augmented, self.reduction.norm.is_some());
+        let task = ScaledProblem::new(&problem, &self.augmented, self.reduction.is_definite());
         let held = active_set::with_contact_set(&task, &self.reduction.selection.restrict_set(closed))
             .map_err(|error| self.expand_error(error, self.problem.load(), self.problem.gap()))?;
         Ok((self.expand(&loading, unit, &held.displacement), self.expand_multiplier(&held.multiplier, unit)))
@@ -214,7 +209,7 @@ impl Factored {
 
     /// Returns `true` if the factor is in single precision.
     pub fn is_single(&self) -> bool {
-        self.reduction.norm.is_some() && self.reduction.condensation.as_ref().is_some_and(Condensation::is_single)
+        self.reduction.is_definite() && self.reduction.condensation.as_ref().is_some_and(Condensation::is_single)
     }
 
     /// Rows that were left out when the problem was prepared must still be no constraints, and no others.
@@ -232,7 +227,7 @@ impl Factored {
 
     /// The displacement that a load causes if no row is closed, in the precision of the factor; `None` if K is not definite.
     pub fn response(&self, load: &Load) -> Option<Vec<f64>> {
-        let norm = self.reduction.norm.as_ref()?;
+        let norm = self.reduction.norm()?;
         let no_gap = vec![0.0; self.reduction.selection.kept().len()];
         let loading = load.swept(&self.reduction, &no_gap);
         let moved = match &self.reduction.condensation {

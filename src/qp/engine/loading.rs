@@ -57,12 +57,12 @@ impl Loading {
         let (sweep, scaled, free) = match &reduction.condensation {
             Some(condensed) => {
                 let sweep = condensed.sweep(&scaled);
-                let free = reduction.norm.is_some().then(|| largest(&condensed.free_displacement(&sweep)));
+                let free = reduction.is_definite().then(|| largest(&condensed.free_displacement(&sweep)));
                 let condensed = condensed.load(&sweep);
                 (sweep, condensed, free)
             }
             None => {
-                let free = reduction.norm.as_ref().map(|norm| largest(&norm.scaled_displacement(&scaled)));
+                let free = reduction.norm().map(|norm| largest(&norm.scaled_displacement(&scaled)));
                 (Vec::new(), scaled, free)
             }
         };

@@ -100,7 +100,7 @@ impl Path {
     /// The path from the gaps of `from` to the gaps `to`, on the problem `prepared` with this `engine`.
     fn walked(prepared: &Prepared, engine: &Arc<Factored>, from: &Case, to: &[f64]) -> Result<Self, Error> {
         let reduction = &engine.reduction;
-        let is_walkable = reduction.norm.is_some() && !engine.is_single();
+        let is_walkable = reduction.is_definite() && !engine.is_single();
         let Some(condensed) = reduction.condensation.as_ref().filter(|_| is_walkable) else {
             return Err(Error::NotCondensed { step: "the exact path" });
         };

@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 use std::time::Instant;
 
 use super::factored::Factored;
-use super::reduction::Reduction;
+use super::reduction::{Norm, Reduction};
 use crate::error::Error;
 use crate::qp::certificate::EnergyNorm;
 use crate::qp::cost::seconds::factor_seconds;
@@ -37,7 +37,7 @@ impl Factored {
         let stiffest = largest(&problem.stiffness().diagonal());
         let factor_clock = Instant::now();
         let layout = Layout::within(problem, &scaling, settings)?;
-        let Layout { analysis, last, is_condensed, multiplications, mut way, is_single: single } = layout;
+        let Layout { analysis, last, is_condensed, multiplications, mut way, is_single: single, keeps_norm } = layout;
         if watch.is_stopped() {
             return Err(Error::Interrupted);
         }
@@ -51,7 +51,8 @@ impl Factored {
         let mut factoring = Factoring { problem, scaling: &scaling, analysis: &analysis, settings, least_pivot: None };
         let cholesky = factoring.definite(single, last.len())?;
         let least_pivot = factoring.least_pivot;
-        drop(analysis);
+        // Without columns that come last the contact sets have the order of the stiffness.
+        let analysis = last.is_empty().then_some(analysis);
         if cholesky.is_none() {
             // Without a bound no accuracy can be held: what is exact is left.
             let exact = Settings { accuracy: None, ..settings.clone() };
@@ -61,8 +62,12 @@ impl Factored {
             true => condensed(cholesky.as_ref(), &scaling, &last, settings)?,
             false => None,
         };
-        let augmented = augmented(condensation.as_ref(), &scaling, *threads)?;
-        let norm = cholesky.map(|cholesky| EnergyNorm::new(cholesky, scaling.equilibration().clone(), last));
+        let norm = match (cholesky, &analysis) {
+            (None, _) => Norm::Missing,
+            (Some(_), Some(analysis)) if !keeps_norm => Norm::Again(analysis.clone()),
+            (Some(cholesky), _) => Norm::Kept(EnergyNorm::new(cholesky, scaling.equilibration().clone(), last)),
+        };
+        let augmented = augmented(condensation.as_ref(), &scaling, analysis)?.with_threads(*threads);
         let factor = factor_clock.elapsed().as_secs_f64();
         Ok(Factored {
             problem: problem.clone(),
@@ -152,16 +157,24 @@ fn condensed(
     Condensation::new(factor, last.to_vec(), scaling.contact(), cholesky.is_none()).map(Some)
 }
 
-/// The pattern of the matrices that the methods factorise, analysed.
-fn augmented(condensation: Option<&Condensation>, scaling: &Scaling, threads: usize) -> Result<AugmentedMatrix, Error> {
-    Ok(match condensation {
-        Some(condensed) => {
+/// The matrices that the methods factorise, analysed; an `analysis` of the stiffness serves them too.
+///
+/// # Errors
+/// As [`AugmentedMatrix::new`].
+fn augmented(
+    condensation: Option<&Condensation>,
+    scaling: &Scaling,
+    analysis: Option<Analysis>,
+) -> Result<AugmentedMatrix, FactorError> {
+    match (condensation, analysis) {
+        (Some(condensed), _) => {
             // Dense: the order is of no matter to the factor, and its last block is all of it.
             let all: Vec<usize> = (0..condensed.stiffness().dim()).collect();
-            AugmentedMatrix::with_last(condensed.stiffness(), condensed.contact(), &all)?
+            AugmentedMatrix::with_last(condensed.stiffness(), condensed.contact(), &all)
         }
-        None => AugmentedMatrix::new(scaling.stiffness(), scaling.contact())?.with_threads(threads),
-    })
+        (None, Some(analysis)) => AugmentedMatrix::with_analysis(scaling.stiffness(), scaling.contact(), analysis),
+        (None, None) => AugmentedMatrix::new(scaling.stiffness(), scaling.contact()),
+    }
 }
 
 /// The factor of `K + B'B` with the contact dofs last, or `None` where it is not safely definite.
@@ -173,7 +186,7 @@ fn factor_with_rows(scaling: &Scaling, contact_dofs: &[usize], settings: &Settin
     let augmented = augmented.with_threads(settings.threads);
     check_time(&settings.watch, seconds::factorisation(augmented.analysis()))?;
     let matrix = augmented.matrix(|_| 1.0, 0.0);
-    match augmented.factor(&matrix) {
+    match augmented.factor(matrix.clone()) {
         Ok(cholesky) if cholesky.is_definite(&matrix) => Ok(Some(cholesky)),
         Ok(_) | Err(FactorError::NotPositiveDefinite) => Ok(None),
         Err(error) => Err(error.into()),

@@ -1,6 +1,7 @@
 //! A problem reduced to what the methods work on.
 
 use crate::qp::certificate::EnergyNorm;
+use crate::qp::linear::Analysis;
 use crate::qp::transform::{Condensation, RowSelection, Scaling};
 
 /// Rows selected, data scaled, the stiffness factorised and condensed where that pays; load and gaps play no part in it.
@@ -10,7 +11,40 @@ pub(super) struct Reduction {
     pub scaling: Scaling,
     /// The largest diagonal entry of the stiffness.
     pub stiffest: f64,
-    /// The energy norm, where the stiffness is definite by itself.
-    pub norm: Option<EnergyNorm>,
+    pub norm: Norm,
     pub condensation: Option<Condensation>,
+}
+
+/// The energy norm of the stiffness.
+#[derive(Clone, Debug)]
+pub(super) enum Norm {
+    /// The stiffness is not definite by itself.
+    Missing,
+    Kept(EnergyNorm),
+    /// Memory is too short to keep the factor: it is made again from this analysis each time.
+    Again(Analysis),
+}
+
+impl Reduction {
+    /// Returns `true` if the stiffness is definite by itself.
+    pub fn is_definite(&self) -> bool {
+        !matches!(self.norm, Norm::Missing)
+    }
+
+    /// Returns `true` if the energy norm costs no factorisation.
+    pub fn is_norm_at_hand(&self) -> bool {
+        !matches!(self.norm, Norm::Again(_))
+    }
+
+    /// The energy norm, where the stiffness is definite by itself; `None` too if there is no memory to make it again.
+    pub fn norm(&self) -> Option<EnergyNorm> {
+        match &self.norm {
+            Norm::Missing => None,
+            Norm::Kept(norm) => Some(norm.clone()),
+            Norm::Again(analysis) => {
+                let factor = analysis.factor(self.scaling.stiffness()).ok()?;
+                Some(EnergyNorm::new(factor, self.scaling.equilibration().clone(), Vec::new()))
+            }
+        }
+    }
 }

@@ -1,11 +1,11 @@
 //! Sums of products with about twice the working precision.
 
-use super::SymmetricMatrix;
-
-/// Splits a double into two halves of 26 bits: 2^27 + 1.
-const SPLITTER: f64 = 134_217_729.0;
+use pulp::{Arch, Simd, WithSimd};
 
 /// Sums that keep what rounding takes off them.
+///
+/// A fused multiply-add of two factors and their negative product gives what rounding takes off the product. The loop over a
+/// matrix is compiled for processors with that instruction and for those without; the sums are the same, bit by bit.
 ///
 /// # Source
 /// T. Ogita, S. M. Rump, S. Oishi, 2005, "Accurate sum and dot product", SIAM J. Sci. Comput. 26.
@@ -22,10 +22,10 @@ struct Sum {
 }
 
 impl Sum {
-    #[inline]
-    fn add_product(&mut self, a: Halves, b: Halves) {
-        let product = a.value * b.value;
-        let of_product = a.low * b.low - (((product - a.high * b.high) - a.low * b.high) - a.high * b.low);
+    #[inline(always)]
+    fn add_product(&mut self, a: f64, b: f64) {
+        let product = a * b;
+        let of_product = a.mul_add(b, -product);
         let sum = self.value + product;
         let part = sum - self.value;
         self.rest += ((self.value - (sum - part)) + (product - part)) + of_product;
@@ -33,25 +33,34 @@ impl Sum {
     }
 }
 
-/// A double and the two halves of 26 bits that it is the sum of.
-#[derive(Clone, Copy, Debug)]
-struct Halves {
-    value: f64,
-    high: f64,
-    low: f64,
+/// The product of a symmetric matrix with x, added to `sums`, and that of their magnitudes, added to `terms`.
+struct Product<'a, C> {
+    /// The entries `(row, value)` of a column of the lower triangle.
+    column: C,
+    x: &'a [f64],
+    sums: &'a mut [Sum],
+    terms: &'a mut [f64],
 }
 
-impl Halves {
-    #[inline]
-    fn of(value: f64) -> Self {
-        let scaled = SPLITTER * value;
-        let high = scaled - (scaled - value);
-        Halves { value, high, low: value - high }
-    }
+impl<I: Iterator<Item = (usize, f64)>, C: Fn(usize) -> I> WithSimd for Product<'_, C> {
+    type Output = ();
 
-    #[inline]
-    fn negative(self) -> Self {
-        Halves { value: -self.value, high: -self.high, low: -self.low }
+    // A plain closure would be a call, which is not compiled for the processor.
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Product { column, x, sums, terms } = self;
+        for (index, &at_column) in x.iter().enumerate() {
+            let (mut own, mut own_terms) = (sums[index], terms[index]);
+            for (row, value) in column(index) {
+                own.add_product(value, x[row]);
+                own_terms += (value * x[row]).abs();
+                if row != index {
+                    sums[row].add_product(value, at_column);
+                    terms[row] += (value * at_column).abs();
+                }
+            }
+            (sums[index], terms[index]) = (own, own_terms);
+        }
     }
 }
 
@@ -64,36 +73,22 @@ impl Accumulator {
     /// Adds `a * b` to sum `index`.
     #[inline]
     pub fn add_product(&mut self, index: usize, a: f64, b: f64) {
-        self.sums[index].add_product(Halves::of(a), Halves::of(b));
+        self.sums[index].add_product(a, b);
     }
 
-    /// Subtracts `A x`, for as many sums as A has rows; returns `|A| |x|`, the scale of rounding in it, which the same pass
-    /// over A gives.
-    pub fn subtract_product(&mut self, matrix: &SymmetricMatrix, x: &[f64]) -> Vec<f64> {
+    /// Adds `A x` of the symmetric matrix A whose lower triangle has the entries `(row, value)` that `column` gives, for as many
+    /// sums as A has rows; returns `|A| |x|`, the scale of rounding in it, which the same pass over A gives.
+    pub fn add_matrix_product<I: Iterator<Item = (usize, f64)>>(
+        &mut self,
+        column: impl Fn(usize) -> I,
+        x: &[f64],
+    ) -> Vec<f64> {
         let mut terms = vec![0.0; x.len()];
-        for (column, &at_column) in x.iter().enumerate() {
-            let negative = Halves::of(at_column).negative();
-            let (mut own, mut own_terms) = (self.sums[column], 0.0);
-            for (row, value) in matrix.lower().column(column) {
-                let value = Halves::of(value);
-                if row == column {
-                    own.add_product(value, negative);
-                    own_terms += value.value.abs() * at_column.abs();
-                    continue;
-                }
-                let at_row = x[row];
-                own.add_product(value, Halves::of(at_row).negative());
-                own_terms += value.value.abs() * at_row.abs();
-                self.sums[row].add_product(value, negative);
-                terms[row] += value.value.abs() * at_column.abs();
-            }
-            self.sums[column] = own;
-            terms[column] += own_terms;
-        }
+        Arch::new().dispatch(Product { column, x, sums: &mut self.sums, terms: &mut terms });
         terms
     }
 
-    /// The sums, each rounded once; not finite where a term is beyond 1e300.
+    /// The sums, each rounded once; not finite if a term overflows.
     pub fn into_sums(self) -> Vec<f64> {
         self.sums().collect()
     }
@@ -111,5 +106,21 @@ impl Accumulator {
     /// The sums so far, each rounded once.
     pub fn sums(&self) -> impl Iterator<Item = f64> {
         self.sums.iter().map(|sum| sum.value + sum.rest)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Accumulator;
+
+    /// (1 + e)(1 - e) - 1 = -e^2, which a sum of rounded products would lose.
+    #[test]
+    fn a_matrix_product_keeps_what_rounding_takes_off_its_terms() {
+        let e = 2.0_f64.powi(-30);
+        let columns = [vec![(0, 1.0 + e), (1, -1.0)], vec![(1, 0.0)]];
+        let mut sums = Accumulator::new(&[0.0, 1.0]);
+        let terms = sums.add_matrix_product(|column| columns[column].iter().copied(), &[1.0 - e, 1.0]);
+        assert_eq!(sums.into_sums(), [-e * e, e]);
+        assert_eq!(terms, [2.0, 1.0 - e]);
     }
 }

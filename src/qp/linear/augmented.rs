@@ -8,13 +8,11 @@ use super::{Analysis, Cholesky, FactorError, SparseMatrix, SymmetricMatrix};
 /// factorisation and nothing else.
 #[derive(Clone, Debug)]
 pub struct AugmentedMatrix {
-    pattern: SparseMatrix,
-    stiffness_slots: Vec<usize>,
-    diagonal_slots: Vec<usize>,
-    /// Row i of B adds `products[k].1 * w_i` to slot `products[k].0`, for k in `row_starts[i]..row_starts[i + 1]`.
+    /// K with a place for each entry of B'B and of the diagonal. Every column begins with its diagonal.
+    stiffness: SparseMatrix,
+    /// Row i of B adds `products[k].1 * w_i` to entry `products[k].0`, for k in `row_starts[i]..row_starts[i + 1]`.
     row_starts: Vec<usize>,
     products: Vec<(usize, f64)>,
-    stiffness: SparseMatrix,
     analysis: Analysis,
 }
 
@@ -24,7 +22,7 @@ impl AugmentedMatrix {
     /// # Errors
     /// As [`Analysis::of`].
     pub fn new(stiffness: &SymmetricMatrix, rows: &SparseMatrix) -> Result<Self, FactorError> {
-        Self::with_last(stiffness, rows, &[])
+        Self::analysed(stiffness, rows, Analysis::of)
     }
 
     /// As [`AugmentedMatrix::new`], with the columns of `last` eliminated last.
@@ -32,7 +30,30 @@ impl AugmentedMatrix {
     /// # Errors
     /// As [`Analysis::with_last`].
     pub fn with_last(stiffness: &SymmetricMatrix, rows: &SparseMatrix, last: &[usize]) -> Result<Self, FactorError> {
-        let dim = stiffness.dim();
+        Self::analysed(stiffness, rows, |joined| Analysis::with_last(joined, last))
+    }
+
+    /// As [`AugmentedMatrix::new`], with an `analysis` of K that is at hand, if K has a place for every entry.
+    ///
+    /// # Errors
+    /// As [`Analysis::of`].
+    pub fn with_analysis(
+        stiffness: &SymmetricMatrix,
+        rows: &SparseMatrix,
+        analysis: Analysis,
+    ) -> Result<Self, FactorError> {
+        let entries = stiffness.lower().entries();
+        let of_joined = |joined: &SymmetricMatrix| {
+            if joined.lower().entries() == entries { Ok(analysis) } else { Analysis::of(joined) }
+        };
+        Self::analysed(stiffness, rows, of_joined)
+    }
+
+    fn analysed(
+        stiffness: &SymmetricMatrix,
+        rows: &SparseMatrix,
+        analyse: impl FnOnce(&SymmetricMatrix) -> Result<Analysis, FactorError>,
+    ) -> Result<Self, FactorError> {
         let by_row = rows.transposed();
         let mut squares = Vec::new();
         let mut row_starts = vec![0];
@@ -44,39 +65,15 @@ impl AugmentedMatrix {
             }
             row_starts.push(squares.len());
         }
-        let mut added: Vec<(usize, usize)> = squares.iter().map(|&(first, second, _)| (first, second)).collect();
-        added.sort_unstable();
-        added.dedup();
-        let mut starts = Vec::with_capacity(dim + 1);
-        starts.push(0);
-        let mut indices = Vec::with_capacity(stiffness.lower().entries() + added.len());
-        let mut of_column = Vec::new();
-        let mut rest = added.as_slice();
-        for column in 0..dim {
-            let (here, later) = rest.split_at(rest.partition_point(|place| place.0 == column));
-            rest = later;
-            of_column.clear();
-            of_column.push(column);
-            of_column.extend(stiffness.lower().column(column).map(|entry| entry.0));
-            of_column.extend(here.iter().map(|place| place.1));
-            of_column.sort_unstable();
-            of_column.dedup();
-            indices.extend_from_slice(&of_column);
-            starts.push(indices.len());
-        }
-        drop(added);
-        let slot = |row: usize, column: usize| {
-            let range = starts[column]..starts[column + 1];
-            starts[column] + indices[range].partition_point(|&index| index < row)
-        };
-        let stiffness_slots = stiffness.lower().triplets().map(|(row, column, _)| slot(row, column)).collect();
-        let diagonal_slots = (0..dim).map(|column| slot(column, column)).collect();
-        let products = squares.iter().map(|&(first, second, product)| (slot(second, first), product)).collect();
-        let zeros = vec![0.0; indices.len()];
-        let pattern = SparseMatrix::from_parts(dim, starts, indices, zeros);
-        let analysis = Analysis::with_last(&SymmetricMatrix::from_sorted_lower(pattern.clone()), last)?;
-        let stiffness = stiffness.lower().clone();
-        Ok(Self { pattern, stiffness_slots, diagonal_slots, row_starts, products, stiffness, analysis })
+        let stiffness = with_places(stiffness.lower(), squares.iter().map(|&(first, second, _)| (first, second)));
+        let products = (squares.iter())
+            .map(|&(first, second, product)| {
+                let (start, rows) = (stiffness.column_starts()[first], stiffness.column_rows(first));
+                (start + rows.partition_point(|&row| row < second), product)
+            })
+            .collect();
+        let analysis = analyse(&SymmetricMatrix::from_sorted_lower(stiffness.clone()))?;
+        Ok(Self { stiffness, row_starts, products, analysis })
     }
 
     /// The same matrices, whose factorisations use so many threads.
@@ -91,31 +88,63 @@ impl AugmentedMatrix {
 
     /// The matrix K + shift I + B' diag(weight(i)) B.
     pub fn matrix(&self, weight: impl Fn(usize) -> f64, shift: f64) -> SymmetricMatrix {
-        let mut values = vec![0.0; self.pattern.entries()];
-        for (&slot, &value) in self.stiffness_slots.iter().zip(self.stiffness.values()) {
-            values[slot] += value;
-        }
+        let mut values = self.stiffness.values().to_vec();
         for row in 0..self.row_starts.len() - 1 {
             let factor = weight(row);
             if factor != 0.0 {
-                for &(slot, product) in &self.products[self.row_starts[row]..self.row_starts[row + 1]] {
-                    values[slot] += factor * product;
+                for &(entry, product) in &self.products[self.row_starts[row]..self.row_starts[row + 1]] {
+                    values[entry] += factor * product;
                 }
             }
         }
         if shift != 0.0 {
-            for &slot in &self.diagonal_slots {
-                values[slot] += shift;
+            for &start in &self.stiffness.column_starts()[..self.stiffness.columns()] {
+                values[start] += shift;
             }
         }
-        SymmetricMatrix::from_sorted_lower(self.pattern.with_values(values))
+        SymmetricMatrix::from_sorted_lower(self.stiffness.with_values(values))
     }
 
-    /// Factorises a matrix that [`AugmentedMatrix::matrix`] returned.
+    /// Factorises a matrix that [`AugmentedMatrix::matrix`] returned, and frees it.
     ///
     /// # Errors
     /// As [`Analysis::factor`].
-    pub fn factor(&self, matrix: &SymmetricMatrix) -> Result<Cholesky, FactorError> {
-        self.analysis.factor(matrix)
+    pub fn factor(&self, matrix: SymmetricMatrix) -> Result<Cholesky, FactorError> {
+        self.analysis.factor_last(matrix)
     }
+}
+
+/// A lower triangle with a place, zero if it had none, for every `(column, row)` of `added` and of the diagonal; the same memory
+/// if nothing was missing.
+fn with_places(lower: &SparseMatrix, added: impl Iterator<Item = (usize, usize)>) -> SparseMatrix {
+    let has = |(column, row): (usize, usize)| lower.column_rows(column).binary_search(&row).is_ok();
+    let diagonal = (0..lower.columns()).map(|column| (column, column));
+    let mut missing: Vec<(usize, usize)> = added.chain(diagonal).filter(|&place| !has(place)).collect();
+    if missing.is_empty() {
+        return lower.clone();
+    }
+    missing.sort_unstable();
+    missing.dedup();
+    let entries = lower.entries() + missing.len();
+    let (mut starts, mut rows, mut values) =
+        (Vec::with_capacity(lower.columns() + 1), Vec::with_capacity(entries), Vec::with_capacity(entries));
+    starts.push(0);
+    let mut missing = missing.into_iter().peekable();
+    for column in 0..lower.columns() {
+        let mut missing_before = |end: usize| missing.next_if(|&(at, row)| at == column && row < end);
+        for (row, value) in lower.column(column) {
+            while let Some((_, zero)) = missing_before(row) {
+                rows.push(zero);
+                values.push(0.0);
+            }
+            rows.push(row);
+            values.push(value);
+        }
+        while let Some((_, zero)) = missing_before(usize::MAX) {
+            rows.push(zero);
+            values.push(0.0);
+        }
+        starts.push(rows.len());
+    }
+    SparseMatrix::from_parts(lower.rows(), starts, rows, values)
 }

@@ -111,7 +111,17 @@ impl Analysis {
     /// # Errors
     /// [`FactorError::NotPositiveDefinite`] for a pivot that is not positive.
     pub fn factor(&self, matrix: &SymmetricMatrix) -> Result<Cholesky, FactorError> {
-        let (values, smallest_pivot) = self.factor_entries_of(matrix, |_, _, value| value)?;
+        self.factor_last(matrix.clone())
+    }
+
+    /// As [`Analysis::factor`], for a matrix that is not needed any more: its values are freed before those of the factor are made.
+    ///
+    /// # Errors
+    /// As [`Analysis::factor`].
+    pub fn factor_last(&self, matrix: SymmetricMatrix) -> Result<Cholesky, FactorError> {
+        let permuted = self.permuted(matrix.lower(), |_, _, value| value);
+        drop(matrix);
+        let (values, smallest_pivot) = self.factorised(permuted)?;
         Ok(Cholesky { analysis: self.clone(), values: Values::Double(Arc::new(values)), smallest_pivot })
     }
 
@@ -130,24 +140,19 @@ impl Analysis {
         let entry = |row: usize, column: usize, value| ldexp(value, equilibration.factor + scale[row] + scale[column]);
         let (values, smallest_pivot) = if single {
             let rounded = |row: usize, column: usize, value| entry(row, column, value) as f32;
-            let (values, pivot) = self.factor_entries_of(matrix, rounded)?;
+            let (values, pivot) = self.factorised(self.permuted(matrix.lower(), rounded))?;
             (Values::Single(Arc::new(values)), pivot)
         } else {
-            let (values, pivot) = self.factor_entries_of(matrix, entry)?;
+            let (values, pivot) = self.factorised(self.permuted(matrix.lower(), entry))?;
             (Values::Double(Arc::new(values)), pivot)
         };
         Ok(Cholesky { analysis: self.clone(), values, smallest_pivot })
     }
 
-    fn factor_entries_of<T: Real>(
-        &self,
-        matrix: &SymmetricMatrix,
-        entry: impl Fn(usize, usize, f64) -> T,
-    ) -> Result<(Vec<T>, f64), FactorError> {
+    fn factorised<T: Real>(&self, (permuted, entries): (SparseMatrix, Vec<T>)) -> Result<(Vec<T>, f64), FactorError> {
         // Only a matrix without columns has no supernodes.
         let Some(supernodes) = self.supernodes() else { return Ok((Vec::new(), f64::INFINITY)) };
         let par = if self.threads > 1 { Par::rayon(self.threads) } else { Par::Seq };
-        let (permuted, entries) = self.permuted(matrix.lower(), entry);
         call(|| factor::factorise(supernodes, &permuted, &entries, par))
     }
 

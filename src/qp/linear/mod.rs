@@ -212,6 +212,11 @@ impl SparseMatrix {
         rows.iter().copied().zip(values.iter().copied())
     }
 
+    /// Rows of the entries of one column.
+    fn column_rows(&self, column: usize) -> &[usize] {
+        self.column_slices(column).0
+    }
+
     /// Rows and values of one column.
     #[inline]
     fn column_slices(&self, column: usize) -> (&[usize], &[f64]) {

@@ -177,7 +177,7 @@ impl SymmetricMatrix {
     pub(super) fn shifted_factor(&self, shift: f64) -> Result<Cholesky, FactorError> {
         let no_rows = SparseMatrix::from_parts(0, vec![0; self.dim() + 1], Vec::new(), Vec::new());
         let augmented = AugmentedMatrix::new(self, &no_rows)?;
-        augmented.factor(&augmented.matrix(|_| 0.0, shift))
+        augmented.factor(augmented.matrix(|_| 0.0, shift))
     }
 }
 

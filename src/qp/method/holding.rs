@@ -71,7 +71,7 @@ impl ScaledProblem<'_> {
     /// [`Error::NotConvex`] if not, [`Error::Numerical`] for want of memory.
     pub(super) fn check_convex(&self) -> Result<(), Error> {
         let nothing_closed = ContactSet::open(self.problem.rows());
-        self.factor(&self.matrix(&nothing_closed, 0.0, SHIFTS[SHIFTS.len() - 1])).map(|_| ()).map_err(Error::from)
+        self.factor(self.matrix(&nothing_closed, 0.0, SHIFTS[SHIFTS.len() - 1])).map(|_| ()).map_err(Error::from)
     }
 
     /// Factorises K + weight B_C'B_C and finds out whether it is definite.
@@ -80,8 +80,10 @@ impl ScaledProblem<'_> {
     /// [`Error::NotConvex`] where K has a negative eigenvalue, [`Error::Numerical`] for want of memory.
     pub fn hold(&self, closed: &ContactSet, weight: f64) -> Result<Holding, Error> {
         let matrix = self.matrix(closed, weight, 0.0);
-        match self.factor(&matrix) {
-            Ok(cholesky) if self.definite || cholesky.is_definite(&matrix) => Ok(Holding::Held(cholesky)),
+        // Of a K that is definite by itself it is not looked at again.
+        let looked_at = (!self.definite).then(|| matrix.clone());
+        match self.factor(matrix) {
+            Ok(cholesky) if looked_at.is_none_or(|matrix| cholesky.is_definite(&matrix)) => Ok(Holding::Held(cholesky)),
             Ok(_) | Err(FactorError::NotPositiveDefinite) => self.free_motion(closed, weight).map(Holding::Free),
             Err(error) => Err(error.into()),
         }
@@ -92,7 +94,7 @@ impl ScaledProblem<'_> {
         // A weight changes nothing about null vectors, and a large one hides the shift in its rounding.
         let weight = weight.min(1.0);
         for shift in SHIFTS {
-            let cholesky = match self.factor(&self.matrix(closed, weight, shift)) {
+            let cholesky = match self.factor(self.matrix(closed, weight, shift)) {
                 Ok(cholesky) => cholesky,
                 Err(FactorError::NotPositiveDefinite) => continue,
                 Err(error) => return Err(error.into()),

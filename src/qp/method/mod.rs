@@ -79,7 +79,7 @@ impl<'a> ScaledProblem<'a> {
         self.augmented.matrix(|row| if closed.contains(row) { weight } else { 0.0 }, shift)
     }
 
-    fn factor(&self, matrix: &SymmetricMatrix) -> Result<Cholesky, FactorError> {
+    fn factor(&self, matrix: SymmetricMatrix) -> Result<Cholesky, FactorError> {
         let clock = Instant::now();
         let factor = self.augmented.factor(matrix);
         self.factor_seconds.set(self.factor_seconds.get() + clock.elapsed().as_secs_f64());

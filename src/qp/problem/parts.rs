@@ -49,6 +49,16 @@ impl Parts {
         self.of_dof[dof]
     }
 
+    /// The part of each dof, length n.
+    pub fn of_dofs(&self) -> &[usize] {
+        &self.of_dof
+    }
+
+    /// Returns `true` if the stiffness has no coupling of two parts, be it as weak as may be.
+    pub fn are_apart(&self, stiffness: &SymmetricMatrix) -> bool {
+        stiffness.lower().triplets().all(|(row, column, value)| value == 0.0 || self.of_dof[row] == self.of_dof[column])
+    }
+
     /// The sum of `term(dof)` over the dofs of each part.
     pub fn sums(&self, term: impl Fn(usize) -> f64) -> Vec<f64> {
         let mut sums = vec![0.0; self.count()];

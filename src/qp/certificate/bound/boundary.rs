@@ -216,7 +216,7 @@ impl<'a> Repair<'a> {
         let Witness { error, left, multiplier, closed, rest, .. } = witness;
         let of_left = self.length(left);
         let springs = self.norm.springs();
-        if springs.is_some_and(|springs| !springs.hold(&self.expanded(multiplier), closed, of_left)) {
+        if springs.is_some_and(|springs| !springs.hold(&self.expanded(multiplier), closed, |_| of_left)) {
             return ErrorBound::none();
         }
         // Closed rows are put exactly at their gaps, which moves the answer and its residual; and forces that cancel each other

@@ -8,17 +8,21 @@
 //!
 //! v is the answer with each row that touches or penetrates moved to its gap along itself; for an answer of MPRGP, whose rows
 //! are bounds that it keeps, that is rounding. The dual norm comes from the cycles of the hierarchy.
+//!
+//! Parts that no coupling joins are blocks of K, and the inequality holds for each by itself. Where a coupling is too weak to
+//! make one part of two, the parts have no bound of their own.
 
 use super::{Answer, ErrorBound};
 use crate::qp::certificate::energy_norm::ROUNDED_BOUND;
-use crate::qp::linear::multigrid::{Multigrid, dual_norm_within};
+use crate::qp::linear::SymmetricMatrix;
+use crate::qp::linear::multigrid::{Blocks, Multigrid, dual_norms_within, negative_direction};
 use crate::qp::problem::ContactProblem;
 use crate::watch::Watch;
 
 impl ContactProblem {
-    /// An upper bound on `|u - u*|_K`, as far as [`dual_norm_within`] finds the least eigenvalue; infinite where it finds none. A
-    /// stiffness that the hierarchy has found singular gets springs on the rows that press. Infinite too where `watch` is over
-    /// before that.
+    /// An upper bound on `|u - u*|_K`, as far as [`dual_norms_within`] finds the least eigenvalues; infinite where it finds none.
+    /// A stiffness that the hierarchy has found singular gets springs on the rows that press, if no direction of negative energy
+    /// is found, which they would hide. Infinite too where `watch` is over before that.
     pub(in super::super) fn energy_error_bound_by(
         &self,
         multigrid: &Multigrid,
@@ -30,26 +34,55 @@ impl ContactProblem {
             let pulled: Vec<f64> = answer.multiplier.iter().map(|lambda| lambda.max(0.0)).collect();
             residual.iter_mut().zip(self.contact.mul_transposed(&pulled)).for_each(|(r, force)| *r -= force);
         }
-        let springs = multigrid.is_shifted().then(|| self.springs(answer.displacement, answer.multiplier));
-        let dual = match &springs {
-            None => dual_norm_within(&self.stiffness, multigrid, &residual, watch),
-            Some(springs) => springs
-                .added_to(&self.stiffness, &self.contact)
-                .ok()
-                .flatten()
-                .and_then(|stiffness| dual_norm_within(&stiffness, multigrid, &residual, watch)),
+        let parts = self.parts();
+        let are_apart = parts.count() == 1 || parts.are_apart(&self.stiffness);
+        let one = vec![0; if are_apart { 0 } else { self.dofs() }];
+        let blocks = match are_apart {
+            true => Blocks { of_unknown: parts.of_dofs(), count: parts.count() },
+            false => Blocks { of_unknown: &one, count: 1 },
         };
-        let Some(dual) = dual else { return ErrorBound::none() };
+        let dual = |stiffness: &SymmetricMatrix| dual_norms_within(stiffness, multigrid, &residual, blocks, watch);
+        let springs = multigrid.is_shifted().then(|| self.springs(answer.displacement, answer.multiplier));
+        let left = match &springs {
+            None => dual(&self.stiffness),
+            Some(_) if !self.is_semidefinite_by(multigrid, watch) => None,
+            Some(springs) => {
+                springs.added_to(&self.stiffness, &self.contact).ok().flatten().and_then(|held| dual(&held))
+            }
+        };
+        let Some(left) = left else { return ErrorBound::none() };
+        let left: Vec<f64> = left.iter().map(|dual| ROUNDED_BOUND * dual.most).collect();
+        let of_rows = if are_apart { self.parts_of_rows(parts) } else { vec![0; self.rows()] };
         // Every row that presses is put at its gap below.
         let at_gap = vec![true; self.rows()];
-        if springs.is_some_and(|springs| !springs.hold(answer.multiplier, &at_gap, ROUNDED_BOUND * dual.most)) {
+        if springs.is_some_and(|springs| !springs.hold(answer.multiplier, &at_gap, |row| left[of_rows[row]])) {
             return ErrorBound::none();
         }
-        let moved: f64 = (self.lengths_along_rows().iter().zip(answer.violation).zip(answer.multiplier))
-            .filter(|((_, violation), lambda)| **violation > 0.0 || **lambda < 0.0)
-            .map(|((length, violation), _)| if *violation == 0.0 { 0.0 } else { length * violation.abs() })
-            .sum();
+        let mut moved = vec![0.0; left.len()];
+        for (row, length) in self.lengths_along_rows().into_iter().enumerate() {
+            let violation = answer.violation[row];
+            if violation > 0.0 || (answer.multiplier[row] < 0.0 && violation != 0.0) {
+                moved[of_rows[row]] += length * violation.abs();
+            }
+        }
         // What moves the answer moves its residual too, by K times that.
-        ErrorBound { whole: ROUNDED_BOUND * (2.0 * moved + dual.most), of_parts: None }
+        let bounds: Vec<f64> =
+            moved.iter().zip(&left).map(|(moved, left)| 2.0 * ROUNDED_BOUND * moved + left).collect();
+        let whole = bounds.iter().map(|bound| bound * bound).sum::<f64>().sqrt();
+        let of_parts = match (parts.count(), are_apart) {
+            (1, _) => None,
+            (_, true) => Some(bounds),
+            (count, false) => Some(vec![f64::INFINITY; count]),
+        };
+        ErrorBound { whole, of_parts }
+    }
+
+    /// Returns `true` if conjugate gradients with the cycles meet no direction of negative energy beyond rounding, and `watch` is
+    /// not over before.
+    fn is_semidefinite_by(&self, multigrid: &Multigrid, watch: &Watch) -> bool {
+        match negative_direction(&self.stiffness, multigrid, watch) {
+            Some(direction) => self.not_convex_along(&direction).is_none(),
+            None => !watch.is_over(),
+        }
     }
 }

@@ -121,7 +121,7 @@ impl ContactProblem {
         let total = |values: &[f64]| values.iter().sum::<f64>();
         // What moves the answer moves its residual too, by K times that.
         let left = length(norm.of_force(residual).powi(2), total(&slack_work));
-        if norm.springs().is_some_and(|springs| !springs.hold(multiplier, &at_gap, left)) {
+        if norm.springs().is_some_and(|springs| !springs.hold(multiplier, &at_gap, |_| left)) {
             return ErrorBound::none();
         }
         let whole = left + self.length(repair) + 2.0 * total(&put);

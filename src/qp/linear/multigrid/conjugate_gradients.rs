@@ -2,7 +2,8 @@
 
 use super::Multigrid;
 use crate::error::Error;
-use crate::qp::linear::{SymmetricMatrix, dot};
+use crate::qp::linear::{SymmetricMatrix, dot, generic};
+use crate::watch::Watch;
 
 /// The answer of a linear solve.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,4 +59,31 @@ pub fn conjugate_gradients(
         residual = dot(&rest, &rest).sqrt() / size;
     }
     Ok(ConjugateGradients { solution: x, cycles, residual })
+}
+
+/// Cycles in which conjugate gradients from a generic force meet a direction of negative energy, if there is one.
+const LOOKED: usize = 25;
+
+/// A direction whose energy is not positive, which conjugate gradients from a generic force meet if the matrix has a negative
+/// eigenvalue that its hierarchy does not hide; rounding may leave one of a semidefinite matrix. `None` if there is none, or
+/// `watch` is over.
+pub fn negative_direction(matrix: &SymmetricMatrix, multigrid: &Multigrid, watch: &Watch) -> Option<Vec<f64>> {
+    let mut rest = generic(matrix.dim(), 0);
+    let (mut direction, mut moved, mut energy) = (vec![0.0; rest.len()], vec![0.0; rest.len()], 1.0);
+    for _ in 0..LOOKED {
+        if watch.is_over() {
+            return None;
+        }
+        let step = multigrid.cycle(&rest);
+        let share = dot(&step, &moved) / energy;
+        direction.iter_mut().zip(&step).for_each(|(d, z)| *d = z - share * *d);
+        moved = matrix.mul_on(multigrid.threads(), &direction);
+        energy = dot(&direction, &moved);
+        if energy <= 0.0 {
+            return Some(direction);
+        }
+        let length = dot(&direction, &rest) / energy;
+        rest.iter_mut().zip(&moved).for_each(|(rest, moved)| *rest -= length * moved);
+    }
+    None
 }

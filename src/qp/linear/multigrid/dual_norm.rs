@@ -15,8 +15,8 @@
 //! G. Meurant, P. Tichý, *Approximating the extreme Ritz values and upper bounds for the A-norm of the error in CG*,
 //! Numer. Algorithms 82 (2019) 937-968.
 
-use super::{Multigrid, to_order_one};
-use crate::qp::linear::{SymmetricMatrix, dot, ldexp};
+use super::Multigrid;
+use crate::qp::linear::{SymmetricMatrix, exponent, ldexp};
 use crate::watch::Watch;
 
 /// What is taken of the least Ritz value: the least eigenvalue may be so much smaller.
@@ -47,6 +47,24 @@ pub struct DualNorm {
     pub cycles: usize,
 }
 
+/// Which unknowns share no energy: the blocks of a matrix that is diagonal by blocks.
+#[derive(Clone, Copy, Debug)]
+pub struct Blocks<'a> {
+    /// The block of each unknown.
+    pub of_unknown: &'a [usize],
+    /// Number of blocks.
+    pub count: usize,
+}
+
+impl Blocks<'_> {
+    /// The sum of `term(i)` over the unknowns i of each block.
+    fn sums(&self, term: impl Fn(usize) -> f64) -> Vec<f64> {
+        let mut sums = vec![0.0; self.count];
+        self.of_unknown.iter().enumerate().for_each(|(i, &block)| sums[block] += term(i));
+        sums
+    }
+}
+
 /// Bounds `sqrt(r' A^-1 r)` by conjugate gradients with one cycle of `multigrid`, the hierarchy of `matrix` A or of A without
 /// terms of low rank; `None` where the cycles do not settle. A must be definite.
 pub fn dual_norm(matrix: &SymmetricMatrix, multigrid: &Multigrid, force: &[f64]) -> Option<DualNorm> {
@@ -60,52 +78,125 @@ pub fn dual_norm_within(
     force: &[f64],
     watch: &Watch,
 ) -> Option<DualNorm> {
-    let unit = to_order_one(force);
-    let force: Vec<f64> = force.iter().map(|&value| ldexp(value, unit)).collect();
-    if dot(&force, &force) == 0.0 {
-        return Some(DualNorm { least: 0.0, most: 0.0, ritz: 1.0, cycles: 0 });
-    }
-    let mut rest = force.clone();
+    let blocks = Blocks { of_unknown: &vec![0; force.len()], count: 1 };
+    dual_norms_within(matrix, multigrid, force, blocks, watch)?.pop()
+}
+
+/// The same for the force on each of the blocks of A.
+///
+/// One cycle serves all blocks, but each has conjugate gradients of its own: its own scale, step lengths and Ritz value. A soft
+/// block is not lost beside a stiff one.
+pub fn dual_norms_within(
+    matrix: &SymmetricMatrix,
+    multigrid: &Multigrid,
+    force: &[f64],
+    blocks: Blocks,
+    watch: &Watch,
+) -> Option<Vec<DualNorm>> {
+    let block = |i: usize| blocks.of_unknown[i];
+    let mut largest = vec![0.0_f64; blocks.count];
+    force.iter().enumerate().for_each(|(i, value)| largest[block(i)] = largest[block(i)].max(value.abs()));
+    let units: Vec<i32> = largest.iter().map(|&largest| -exponent(largest)).collect();
+    let mut rest: Vec<f64> = force.iter().enumerate().map(|(i, &value)| ldexp(value, units[block(i)])).collect();
+    let force = rest.clone();
     let mut solution = vec![0.0; force.len()];
-    let mut last: Option<(Vec<f64>, Vec<f64>, f64)> = None;
-    let (mut lengths, mut shares): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
-    let mut ritz = f64::INFINITY;
+    let mut iterations = vec![Iteration::default(); blocks.count];
+    let (mut before, mut moved) = (vec![0.0; force.len()], vec![0.0; force.len()]);
     for cycles in 1..=MOST_CYCLES {
         if watch.is_over() {
             return None;
         }
+        let known = blocks.sums(|i| solution[i] * (force[i] + rest[i]));
+        let left = blocks.sums(|i| rest[i].abs());
+        for ((iteration, known), left) in iterations.iter_mut().zip(&known).zip(&left) {
+            iteration.end_without_rest(*known, *left, cycles - 1);
+        }
         let mut direction = multigrid.cycle(&rest);
-        let in_cycle = dot(&rest, &direction);
-        if let Some((before, moved, energy)) = &last {
-            let earlier = ritz;
-            ritz = least_eigenvalue(&lengths, &shares);
-            let known: f64 = solution.iter().zip(force.iter().zip(&rest)).map(|(z, (r, s))| z * (r + s)).sum();
-            let unknown = in_cycle / (SAFETY * ritz);
-            if unknown <= SHARE * known && ritz >= (1.0 - SETTLED) * earlier {
-                let norm = |square: f64| ldexp(square.max(0.0).sqrt(), -unit);
-                return Some(DualNorm { least: norm(known), most: norm(known + unknown), ritz, cycles });
+        let in_cycle = blocks.sums(|i| rest[i] * direction[i]);
+        let along = blocks.sums(|i| direction[i] * moved[i]);
+        for (index, iteration) in iterations.iter_mut().enumerate() {
+            iteration.turn(known[index], in_cycle[index], along[index], cycles);
+        }
+        if iterations.iter().all(|iteration| iteration.found.is_some()) {
+            let scaled = iterations.iter().zip(&units).map(|(iteration, &unit)| iteration.found_in_unit(unit));
+            return scaled.collect();
+        }
+        for (i, (entry, before)) in direction.iter_mut().zip(&before).enumerate() {
+            let iteration = &iterations[block(i)];
+            *entry = if iteration.found.is_some() { 0.0 } else { *entry + iteration.share * before };
+        }
+        moved = matrix.mul_on(multigrid.threads(), &direction);
+        let energies = blocks.sums(|i| direction[i] * moved[i]);
+        let works = blocks.sums(|i| direction[i] * rest[i]);
+        for ((iteration, energy), work) in iterations.iter_mut().zip(energies).zip(works) {
+            iteration.step(energy, work)?;
+        }
+        for (i, (z, d)) in solution.iter_mut().zip(&direction).enumerate() {
+            let iteration = &iterations[block(i)];
+            if iteration.found.is_none() {
+                *z += iteration.length * d;
+                rest[i] -= iteration.length * moved[i];
             }
-            let share = -dot(&direction, moved) / energy;
-            direction.iter_mut().zip(before).for_each(|(d, before)| *d += share * before);
-            shares.push(share);
         }
-        let moved = matrix.mul_on(multigrid.threads(), &direction);
-        let energy = dot(&direction, &moved);
-        let length = dot(&direction, &rest) / energy;
-        if energy.is_nan() || energy <= 0.0 || !length.is_finite() || length <= 0.0 {
-            return None;
-        }
-        solution.iter_mut().zip(&direction).for_each(|(z, d)| *z += length * d);
-        rest.iter_mut().zip(&moved).for_each(|(rest, moved)| *rest -= length * moved);
-        if rest.iter().all(|&value| value == 0.0) {
-            let known: f64 = solution.iter().zip(&force).map(|(z, r)| z * r).sum();
-            let norm = ldexp(known.max(0.0).sqrt(), -unit);
-            return Some(DualNorm { least: norm, most: norm, ritz: 1.0, cycles });
-        }
-        lengths.push(length);
-        last = Some((direction, moved, energy));
+        before = direction;
     }
     None
+}
+
+/// The conjugate gradients of one block.
+#[derive(Clone, Debug, Default)]
+struct Iteration {
+    lengths: Vec<f64>,
+    shares: Vec<f64>,
+    /// What the last direction takes of the one before, and the step along it.
+    share: f64,
+    length: f64,
+    energy: f64,
+    ritz: Option<f64>,
+    found: Option<DualNorm>,
+}
+
+impl Iteration {
+    /// Ends where nothing is left of the force.
+    fn end_without_rest(&mut self, known: f64, left: f64, cycles: usize) {
+        if self.found.is_none() && left == 0.0 {
+            let norm = known.max(0.0).sqrt();
+            self.found = Some(DualNorm { least: norm, most: norm, ritz: 1.0, cycles });
+        }
+    }
+
+    /// Takes in what a cycle makes of the rest: the end, or the share of the direction before in the next one.
+    fn turn(&mut self, known: f64, in_cycle: f64, along: f64, cycles: usize) {
+        if self.found.is_some() || self.lengths.is_empty() {
+            return;
+        }
+        let earlier = self.ritz.unwrap_or(f64::INFINITY);
+        let ritz = least_eigenvalue(&self.lengths, &self.shares);
+        self.ritz = Some(ritz);
+        let unknown = in_cycle / (SAFETY * ritz);
+        if unknown <= SHARE * known && ritz >= (1.0 - SETTLED) * earlier {
+            let norm = |square: f64| square.max(0.0).sqrt();
+            self.found = Some(DualNorm { least: norm(known), most: norm(known + unknown), ritz, cycles });
+        }
+        self.share = -along / self.energy;
+        self.shares.push(self.share);
+    }
+
+    /// The step along a direction of this energy, on which the rest does this work; `None` if it is none.
+    fn step(&mut self, energy: f64, work: f64) -> Option<()> {
+        if self.found.is_some() {
+            return Some(());
+        }
+        (self.energy, self.length) = (energy, work / energy);
+        let is_step = energy > 0.0 && self.length.is_finite() && self.length > 0.0;
+        self.lengths.push(self.length);
+        is_step.then_some(())
+    }
+
+    fn found_in_unit(&self, unit: i32) -> Option<DualNorm> {
+        let found = self.found?;
+        Some(DualNorm { least: ldexp(found.least, -unit), most: ldexp(found.most, -unit), ..found })
+    }
 }
 
 /// The least eigenvalue of the Lanczos matrix of conjugate gradients with these step lengths and shares of the direction

@@ -27,8 +27,8 @@ mod real;
 mod threads;
 
 pub use coarser::Interval;
-pub use conjugate_gradients::{ConjugateGradients, conjugate_gradients};
-pub use dual_norm::{DualNorm, dual_norm, dual_norm_within};
+pub use conjugate_gradients::{ConjugateGradients, conjugate_gradients, negative_direction};
+pub use dual_norm::{Blocks, DualNorm, dual_norm, dual_norm_within, dual_norms_within};
 pub use face::Direction;
 pub use near_null::NearNullSpace;
 

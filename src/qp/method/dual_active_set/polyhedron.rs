@@ -53,7 +53,7 @@ impl Polyhedron {
         let stiffness = equilibration.apply(of.stiffness());
         let no_rows = SparseMatrix::from_triplets(0, of.dofs(), &[])?;
         let body = AugmentedMatrix::new(&stiffness, &no_rows)?;
-        let factor_with = |weight: f64| match body.factor(&body.matrix(|_| 0.0, weight)) {
+        let factor_with = |weight: f64| match body.factor(body.matrix(|_| 0.0, weight)) {
             Ok(factor) => Ok(Some(factor)),
             Err(FactorError::NotPositiveDefinite) => Ok(None),
             Err(error) => Err(Error::from(error)),
@@ -119,7 +119,8 @@ impl Polyhedron {
     /// `f - B'y - K u` of the pressures `y = pressures + rests`, rounded once.
     pub fn imbalance(&self, displacement: &[f64], pressures: &[f64], rests: &[f64]) -> Vec<f64> {
         let mut sums = Accumulator::new(self.problem.load());
-        sums.subtract_product(self.problem.stiffness(), displacement);
+        let back: Vec<f64> = displacement.iter().map(|u| -u).collect();
+        sums.add_matrix_product(|column| self.problem.stiffness().lower().column(column), &back);
         for (row, dof, b) in self.problem.contact().triplets() {
             sums.add_product(dof, -b, pressures[row]);
             sums.add_product(dof, -b, rests[row]);
