@@ -69,10 +69,9 @@ pub mod study;
 mod watch;
 
 pub use error::Error;
-pub use qp::linear::{SparseMatrix, SymmetricMatrix};
-pub use qp::problem::ContactProblem;
 pub use qp::{
-    BoundarySolution, Condense, Iterative, Method, Path, Precision, Prepared, Settings, Start, solve, solve_qp,
+    BoundarySolution, Condense, ContactProblem, Iterative, Method, Path, Precision, Prepared, Settings, SparseMatrix,
+    Start, SymmetricMatrix, solve, solve_qp,
 };
 pub use scene::{Model, Scene};
 pub use solution::{Attempt, Certificate, ContactSet, Goal, Iteration, ProvenSet, Seconds, Solution};
@@ -81,10 +80,20 @@ pub use watch::Watch;
 /// What the tests of this crate look at beside its interface; it may change at any time.
 #[doc(hidden)]
 pub mod internals {
+    pub use crate::fem::element::{Cell, MAX_NODES, QuadraturePoint, Tabulated};
     #[cfg(feature = "pictures")]
     pub use crate::output::ticks::{Ticks, brief, decimal, power_of_ten};
     pub use crate::qp::barrier::guarded;
-    pub use crate::qp::cost::bytes;
-    pub use crate::qp::linear::{AugmentedMatrix, dot};
+    pub use crate::qp::cost::{Estimate, bytes};
+    pub use crate::qp::linear::{AugmentedMatrix, Cholesky, dot, multigrid};
+    pub use crate::qp::matrix_market::format_vector;
     pub use crate::qp::method::{Outcome, ScaledProblem, dual_active_set};
+    pub use crate::scene::schema::{AnalysisSpec, BodySpec, SchemeSpec};
+    pub use crate::study::manufactured::{NodalPressure, SolvedBlock, solve_block};
+    pub use crate::study::motion_tradeoff::SCHEMES;
+
+    /// Exact solutions that the tests hold answers against.
+    pub mod closed_forms {
+        pub use crate::fem::closed_forms::*;
+    }
 }

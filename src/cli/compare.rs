@@ -1,13 +1,15 @@
 //! `signorini compare`: three methods, one problem.
 
+use serde_json::json;
+
 use super::input::{Content, Input};
-use super::options::{Compare, Format};
-use super::outcome::{Outcome, warn};
+use super::options::Compare;
+use super::outcome::{Outcome, Report, warn};
 use super::settings::settings;
 use crate::error::Error;
-use crate::output::{compare_json, compare_text, gallery, write_files};
+use crate::output::{compare_text, gallery};
 use crate::qp::Method;
-use crate::study::{Summary, compare};
+use crate::study::{Comparison, compare};
 use crate::watch::Watch;
 
 pub(super) fn run(options: &Compare, watch: &Watch) -> Result<Outcome, Error> {
@@ -15,22 +17,19 @@ pub(super) fn run(options: &Compare, watch: &Watch) -> Result<Outcome, Error> {
     let input = Input::read(&options.input, &common.limits)?;
     warn(&input.warnings());
     let settings = settings(Method::Auto, common, watch);
-    let comparison = compare(input.problem(), &settings).map_err(|error| input.explain(error))?;
+    let Comparison { answers, agreement } =
+        compare(input.problem(), &settings).map_err(|error| input.explain(error))?;
     watch.step("report", 0);
-    let [qp, active_set, penalty] = &comparison.answers;
-    let summary = |solution| input.summary(solution, common.tolerance);
-    let summaries: [Summary; 3] = [summary(&qp.solution)?, summary(&active_set.solution)?, summary(&penalty.solution)?];
-    let json = format!("{:#}\n", compare_json(&summaries, &comparison.agreement));
-    let text = match common.format {
-        Format::Text => compare_text(&input.title, &summaries, &comparison.agreement, &input.units),
-        Format::Json => json.clone(),
-    };
-    let outcome = Outcome::judged(text, comparison.agreement.exact_methods);
-    let Some(folder) = common.out.clone() else { return Ok(outcome) };
-    gallery::write_answer(&folder, &qp.solution)?;
-    write_files(&folder, &[("report.json", json)])?;
+    let [qp, active_set, penalty] = answers.map(|answer| input.summary(answer.solution, common.tolerance));
+    let summaries = [qp?, active_set?, penalty?];
+    let text = compare_text(&input.title, &summaries, &agreement, &input.units);
+    let report = Report::new(&json!({ "methods": summaries, "agreement": agreement }), text)?;
+    let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, agreement.exact_methods)) };
+    gallery::write_answer(&folder, &summaries[0].solution)?;
+    report.write(&folder)?;
+    let outcome = report.outcome(common.format, agreement.exact_methods);
     Ok(match input.content {
-        Content::Scene(model) => outcome.with_pictures(move || gallery::write_compare(&folder, &model, &comparison)),
+        Content::Scene(model) => outcome.with_pictures(move || gallery::write_compare(&folder, &model, &summaries)),
         Content::Directory(_) => outcome,
     })
 }

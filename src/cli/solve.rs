@@ -2,12 +2,14 @@
 
 use super::dynamic;
 use super::input::{Content, Input, Source};
-use super::options::{Format, Solve};
-use super::outcome::{Outcome, warn};
+use super::options::{Common, Solve};
+use super::outcome::{Outcome, Report, warn};
 use super::settings::settings;
 use crate::error::Error;
-use crate::output::{gallery, solve_json, solve_text, write_files};
-use crate::qp::{Method, solve};
+use crate::output::{gallery, solve_text};
+use crate::qp::{Method, Settings, solve};
+use crate::scene::Scene;
+use crate::solution::Solution;
 use crate::study::discretisation_error;
 use crate::watch::Watch;
 
@@ -18,23 +20,12 @@ const AT_ONCE: f64 = 1e-3;
 const REPORT: f64 = 0.5;
 
 pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
-    let common = &options.common;
     // Reading and assembly count too.
     let watch = &options.time.map_or_else(|| watch.clone(), |time| watch.within(time));
-    let source = Source::read(&options.input, &common.limits)?;
+    let source = Source::read(&options.input, &options.common.limits)?;
     let mut report_seconds = 0.0;
     if let Source::Scene(scene, _) = &source {
-        let needs_factor = !matches!(options.method.method(), Method::Auto | Method::Mprgp);
-        if needs_factor || scene.analysis.is_some() {
-            scene.check_size(common.limits.most_memory())?;
-        } else {
-            scene.check_size_without_factor(common.limits.most_memory())?;
-        }
-        let needed = scene.size().assembly_seconds();
-        report_seconds = REPORT * needed;
-        if let Some(time) = watch.time_left().filter(|_| needed > AT_ONCE && !watch.allows(needed)) {
-            return Err(Error::OutOfTime { needed, time });
-        }
+        report_seconds = REPORT * admitted(scene, options, watch)?;
         if scene.analysis.is_some() {
             return dynamic::run(options, scene, watch);
         }
@@ -48,11 +39,36 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
         Source::Directory(input) => *input,
     };
     warn(&input.warnings());
-    let mut settings = settings(options.method.method(), common, &watch.keeping(report_seconds));
-    settings.prove = true;
-    settings.accuracy = options.accuracy;
-    (settings.precision, settings.extrapolate) = (options.precision.precision(), options.extrapolate);
-    let solution = match solve(input.problem(), &settings) {
+    let settings = Settings {
+        prove: true,
+        accuracy: options.accuracy,
+        precision: options.precision,
+        extrapolate: options.extrapolate,
+        ..settings(options.method, &options.common, &watch.keeping(report_seconds))
+    };
+    let solution = answer(&input, &settings)?;
+    reported(input, solution, &settings, &options.common, watch)
+}
+
+/// The seconds that the scene takes to assemble; an error if it does not fit into memory or time.
+fn admitted(scene: &Scene, options: &Solve, watch: &Watch) -> Result<f64, Error> {
+    let most_memory = options.common.limits.most_memory();
+    let needs_factor = !matches!(options.method, Method::Auto | Method::Mprgp);
+    if needs_factor || scene.analysis.is_some() {
+        scene.check_size(most_memory)?;
+    } else {
+        scene.check_size_without_factor(most_memory)?;
+    }
+    let needed = scene.size().assembly_seconds();
+    match watch.time_left().filter(|_| needed > AT_ONCE && !watch.allows(needed)) {
+        Some(time) => Err(Error::OutOfTime { needed, time }),
+        None => Ok(needed),
+    }
+}
+
+/// The answer, certified or not.
+fn answer(input: &Input, settings: &Settings) -> Result<Solution, Error> {
+    let solution = match solve(input.problem(), settings) {
         Ok(solution) => solution,
         Err(error @ Error::NotCertified { .. }) => {
             warn(&format!("error: {error}\n"));
@@ -61,33 +77,44 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
         }
         Err(error) => return Err(input.explain(error)),
     };
-    if options.extrapolate && !solution.method.starts_with("penalty") {
+    if settings.extrapolate && !solution.method.starts_with("penalty") {
         let method = &solution.method;
         warn(&format!(
             "warning: --extrapolate changes nothing: the method is {method}; it goes with --method penalty\n"
         ));
     }
+    Ok(solution)
+}
+
+/// Reports an answer, and leaves what `--out` asks for.
+fn reported(
+    input: Input,
+    solution: Solution,
+    settings: &Settings,
+    common: &Common,
+    watch: &Watch,
+) -> Result<Outcome, Error> {
     watch.step("report", 0);
-    let mut summary = input.summary(&solution, settings.goal())?;
+    let mut summary = input.summary(solution, settings.goal())?;
     if let Content::Scene(model) = &input.content
         && !watch.is_over()
     {
-        summary.discretisation_error = Some(discretisation_error(model, &solution)?);
+        summary.discretisation_error = Some(discretisation_error(model, &summary.solution)?);
     }
-    let text = match common.format {
-        Format::Text => solve_text(&input.title, &summary, &input.units),
-        Format::Json => format!("{:#}\n", solve_json(&summary)),
-    };
-    let outcome = Outcome::judged(text, summary.is_certified());
-    let Some(folder) = common.out.clone() else { return Ok(outcome) };
-    gallery::write_answer(&folder, &solution)?;
-    write_files(&folder, &[("report.json", format!("{:#}\n", solve_json(&summary)))])?;
+    let report = Report::new(&summary, solve_text(&input.title, &summary, &input.units))?;
+    let is_certified = summary.is_certified();
+    let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, is_certified)) };
+    gallery::write_answer(&folder, &summary.solution)?;
+    report.write(&folder)?;
+    let outcome = report.outcome(common.format, is_certified);
     if watch.is_over() && !watch.is_stopped() {
         warn("warning: no fields and no pictures: the time is over\n");
         return Ok(outcome);
     }
     Ok(match input.content {
-        Content::Scene(model) => outcome.with_pictures(move || gallery::write_solve(&folder, &model, &solution)),
+        Content::Scene(model) => {
+            outcome.with_pictures(move || gallery::write_solve(&folder, &model, &summary.solution))
+        }
         Content::Directory(_) => outcome,
     })
 }

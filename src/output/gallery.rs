@@ -13,7 +13,7 @@ use crate::qp::matrix_market::solution_files;
 use crate::qp::with_contact_set;
 use crate::scene::Model;
 use crate::solution::{ContactSet, Solution};
-use crate::study::{Comparison, Sweep, SweepCorner, SweepPoint};
+use crate::study::{Summary, Sweep, SweepCorner, SweepPoint};
 
 /// More iterations than this are not drawn one by one.
 const MOST_ITERATIONS: usize = 12;
@@ -83,8 +83,8 @@ fn write_iterations(folder: &Path, model: &Model, solution: &Solution) -> Result
 ///
 /// # Errors
 /// As [`write_solve`].
-pub fn write_compare(folder: &Path, model: &Model, comparison: &Comparison) -> Result<(), Error> {
-    let [qp, active_set, _] = &comparison.answers;
+pub fn write_compare(folder: &Path, model: &Model, summaries: &[Summary; 3]) -> Result<(), Error> {
+    let [qp, active_set, _] = summaries;
     let mut drawn = qp.solution.clone();
     drawn.history.clone_from(&active_set.solution.history);
     write_solve(folder, model, &drawn)?;
@@ -94,9 +94,9 @@ pub fn write_compare(folder: &Path, model: &Model, comparison: &Comparison) -> R
     let mut plots = Vec::new();
     for obstacle in 0..model.obstacles().len() {
         let mut series = Vec::new();
-        for answer in &comparison.answers {
-            let points = pressure_line(model, obstacle, &answer.solution)?;
-            series.push(Series::new(answer.solution.method.clone(), points));
+        for Summary { solution, .. } in summaries {
+            let points = pressure_line(model, obstacle, solution)?;
+            series.push(Series::new(solution.method.clone(), points));
         }
         if series[0].points.is_empty() {
             continue;
@@ -126,7 +126,7 @@ pub fn write_sweep(folder: &Path, sweep: &Sweep) -> Result<(), Error> {
     let points = &sweep.points;
     let mut series = Vec::new();
     for (index, point) in points.iter().enumerate().filter(|(_, point)| is_plane(&point.model)) {
-        let (model, solution) = (&point.model, &point.solution);
+        let (model, solution) = (&point.model, &point.summary.solution);
         let title = format!("{}, {}", headline(model, ""), closed_nodes(&solution.contact_set));
         let picture = Scene::new(model, &solution.displacement, &solution.contact_set, title)?;
         series.push((format!("gap-{:02}", index + 1), picture));

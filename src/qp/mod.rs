@@ -15,8 +15,8 @@ mod claims;
 pub(crate) mod cost;
 mod engine;
 mod judged;
-pub mod linear;
-pub mod matrix_market;
+pub(crate) mod linear;
+pub(crate) mod matrix_market;
 pub(crate) mod method;
 mod plan;
 pub(crate) mod problem;
@@ -24,11 +24,13 @@ mod run;
 mod settings;
 pub(crate) mod transform;
 
-pub use cost::Estimate;
 pub use engine::{BoundarySolution, Iterative, Path, Prepared};
+pub use linear::multigrid::NearNullSpace;
+pub use linear::{SparseMatrix, SymmetricMatrix};
+pub use matrix_market::{near_null_file, problem_files, read_problem, read_vector, solution_files};
 pub use method::mprgp::Start;
 pub use method::parametric::{Event, Piece};
-pub use problem::{ContactProblem, EnergyNorm};
+pub use problem::ContactProblem;
 pub use settings::{Condense, Method, Precision, Settings};
 
 use crate::error::Error;

@@ -30,7 +30,7 @@ mod parts;
 mod refine;
 mod rigid_modes;
 mod rows;
-mod schema;
+pub(crate) mod schema;
 mod size;
 mod warning;
 
@@ -38,13 +38,6 @@ pub use dynamics::Dynamics;
 pub use model::Model;
 pub use obstacle::Obstacle;
 pub use rows::ContactRow;
-pub use schema::{
-    AnalysisSpec, Approach, AxisSpec, BarSpec, BodySpec, BoxSpec, CircleSpec, ConeSpec, CylinderSpec, DampingSpec,
-    DiscSpec, DynamicSpec, ElementSpec, FacingSpec, FactorSpec, FactorTableSpec, FieldSpec, ForceSpec, FurtherBodySpec,
-    GmshSpec, HalfBallSpec, HalfDiscSpec, HalfSpec, HeightMapSpec, InitialSpec, IntegrationSpec, IntervalSpec,
-    LoadInTimeSpec, LoadSpec, MassSpec, MaterialSpec, ModelSpec, ObstacleSpec, ParabolaSpec, PenetrationSpec, Place,
-    PlaneSpec, PressureSpec, RectangleSpec, RingSpec, Rule, Scene, SchemeSpec, ShapeSpec, SineSpec, SolidElementSpec,
-    SphereSpec, SupportSpec, SymmetrySpec, TableSpec, TractionSpec, Units, WedgeSpec, ZoneSpec,
-};
+pub use schema::{Rule, Scene, Units};
 pub use size::Size;
 pub use warning::Warning;

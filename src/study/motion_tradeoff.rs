@@ -7,10 +7,11 @@ use serde::Serialize;
 use crate::error::Error;
 use crate::motion::Integrator;
 use crate::qp::Settings;
-use crate::scene::{AnalysisSpec, DynamicSpec, Dynamics, Model, Scene, SchemeSpec};
+use crate::scene::schema::{AnalysisSpec, DynamicSpec, SchemeSpec};
+use crate::scene::{Dynamics, Model, Scene};
 
 /// The schemes, the default first.
-const SCHEMES: [SchemeSpec; 6] = [
+pub const SCHEMES: [SchemeSpec; 6] = [
     SchemeSpec::Midpoint,
     SchemeSpec::ContactStabilised,
     SchemeSpec::Hht,

@@ -21,7 +21,7 @@ const STRAIGHT: f64 = 1e-12;
 /// [`Error::Length`] where the answer is not one to this model.
 pub fn scene_summary(
     model: &Model,
-    solution: &Solution,
+    solution: Solution,
     goal: impl Into<Goal>,
     assemble_seconds: f64,
 ) -> Result<Summary, Error> {
@@ -32,11 +32,12 @@ pub fn scene_summary(
         ..ModelSize::of(model.problem())
     };
     let mut summary = Summary::new(solution, size, goal, assemble_seconds);
+    let Summary { contact, solution, .. } = &mut summary;
     let pressure = model.pressure(&solution.multiplier)?;
-    summary.contact.pressure_max = Some(pressure.iter().copied().fold(0.0, f64::max));
-    summary.contact.width = contact_width(model, &solution.contact_set);
-    summary.contact.area = Some(contact_area(model, &solution.contact_set));
-    summary.contact.force_balance = Some(model.force_balance(&solution.displacement, &solution.multiplier)?);
+    contact.pressure_max = Some(pressure.iter().copied().fold(0.0, f64::max));
+    contact.width = contact_width(model, &solution.contact_set);
+    contact.area = Some(contact_area(model, &solution.contact_set));
+    contact.force_balance = Some(model.force_balance(&solution.displacement, &solution.multiplier)?);
     Ok(summary)
 }
 
@@ -53,12 +54,12 @@ pub fn discretisation_error(model: &Model, solution: &Solution) -> Result<f64, E
 }
 
 /// Area of the boundary that the closed rows stand for; thickness, cross-section or circumference included.
-pub fn contact_area(model: &Model, closed: &ContactSet) -> f64 {
+fn contact_area(model: &Model, closed: &ContactSet) -> f64 {
     closed.iter().filter_map(|row| model.rows().get(row)).fold(0.0, |area, row| area + row.tributary_area)
 }
 
 /// Length of the boundary that the closed rows stand for, in the unit of length, where the model has a thickness.
-pub fn contact_width(model: &Model, closed: &ContactSet) -> Option<f64> {
+fn contact_width(model: &Model, closed: &ContactSet) -> Option<f64> {
     match *model.body().formulation() {
         Formulation::PlaneStrain { thickness } | Formulation::PlaneStress { thickness } => {
             Some(contact_area(model, closed) / thickness)
@@ -72,15 +73,12 @@ pub fn contact_width(model: &Model, closed: &ContactSet) -> Option<f64> {
 pub struct SweepPoint {
     /// The scene-wide gap.
     pub gap: f64,
-    /// The numbers of the answer.
+    /// The answer.
     #[serde(flatten)]
     pub summary: Summary,
     /// The scene at this gap.
     #[serde(skip)]
     pub model: Model,
-    /// The answer.
-    #[serde(skip)]
-    pub solution: Solution,
 }
 
 /// A row that touches or releases on the way from the first to the last gap of a sweep.
@@ -138,14 +136,24 @@ pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, 
     };
     let at_first = model.with_gap(first)?;
     let prepared = Prepared::with_settings(at_first.problem(), settings).map_err(|error| at_first.explain(error))?;
+    let points = answers(&prepared, &at_first, gaps, settings)?;
+    if settings.watch.is_stopped() {
+        return Ok(Sweep { points, events: Vec::new(), corners: Vec::new() });
+    }
+    let (events, corners) = between(&prepared, &at_first, first, last, settings)?;
+    Ok(Sweep { points, events, corners })
+}
+
+/// The answers at the gaps until the watch is asked to stop; an error where not one gap was done.
+fn answers(prepared: &Prepared, at_first: &Model, gaps: &[f64], settings: &Settings) -> Result<Vec<SweepPoint>, Error> {
     let mut points: Vec<SweepPoint> = Vec::new();
     for (index, &gap) in gaps.iter().enumerate() {
         settings.watch.part("gap", index + 1, gaps.len());
         let clock = Instant::now();
-        let model = model.with_gap(gap)?;
+        let model = at_first.with_gap(gap)?;
         let assemble_seconds = clock.elapsed().as_secs_f64();
         let same_rows = model.problem().contact() == at_first.problem().contact();
-        let start = points.last().map(|point| &point.solution.contact_set);
+        let start = points.last().map(|point| &point.summary.solution.contact_set);
         let solved = match same_rows {
             true => prepared.solve_gap(model.problem().gap().to_vec(), start, settings),
             false => solve(model.problem(), settings),
@@ -157,20 +165,13 @@ pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, 
             Err(Error::NotCertified { solution, .. }) => *solution,
             Err(error) => return Err(model.explain(error)),
         };
-        let summary = scene_summary(&model, &solution, settings.goal(), assemble_seconds)?;
-        points.push(SweepPoint { gap, summary, model, solution });
+        let summary = scene_summary(&model, solution, settings.goal(), assemble_seconds)?;
+        points.push(SweepPoint { gap, summary, model });
         if settings.watch.is_stopped() {
             break;
         }
     }
-    if points.is_empty() {
-        return Err(Error::Interrupted);
-    }
-    if settings.watch.is_stopped() {
-        return Ok(Sweep { points, events: Vec::new(), corners: Vec::new() });
-    }
-    let (events, corners) = between(&prepared, &at_first, first, last, settings)?;
-    Ok(Sweep { points, events, corners })
+    if points.is_empty() { Err(Error::Interrupted) } else { Ok(points) }
 }
 
 /// Events and corners between two gaps; none where the rows turn on the way, or where the body is not condensed.

@@ -3,9 +3,11 @@
 use serde_json::json;
 use signorini::fem::ElementKind::{Q4, Q8, T3, T6};
 use signorini::fem::Integration;
-use signorini::fem::closed_forms::manufactured::{ContactSolution, GenericEdge, HertzBlock, PlaneElasticity, Smooth};
-use signorini::study::{discretisation_error, solve_block};
+use signorini::internals::closed_forms::manufactured::{
+    ContactSolution, GenericEdge, HertzBlock, PlaneElasticity, Smooth,
+};
 use signorini::{Scene, solve_qp};
+use signorini::{internals::solve_block, study::discretisation_error};
 
 /// Effectivity that an estimate is wanted to have: neither half nor twice the error.
 const EFFECTIVITY: std::ops::Range<f64> = 0.5..2.0;

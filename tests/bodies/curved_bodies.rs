@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use signorini::Error;
-use signorini::fem::{Cell, MAX_NODES, Tabulated};
 use signorini::fem::{ElementKind, Mesh, Zone, disc, half_ball, half_disc, ring};
+use signorini::internals::{Cell, MAX_NODES, Tabulated};
 
 const PLANE: [ElementKind; 4] = [ElementKind::T3, ElementKind::T6, ElementKind::Q4, ElementKind::Q8];
 

@@ -10,8 +10,8 @@ use signorini::fem::Formulation;
 use signorini::fem::Material;
 use signorini::fem::{DofMap, Frame, MassForm, add_body_force_field, mass};
 use signorini::fem::{ElementKind, bar, cuboid};
+use signorini::internals::Cholesky;
 use signorini::internals::dot;
-use signorini::qp::linear::Cholesky;
 
 /// Sums over a mesh, by two quadratures.
 const SAME: f64 = 1e-12;

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 use signorini::fem::GmshFile;
-use signorini::qp::matrix_market::read_problem;
+use signorini::qp::read_problem;
 use signorini::{Error, Scene, solve_qp};
 
 /// A sentence longer than this says too much.

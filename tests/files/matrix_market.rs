@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::oracles::{Draws, random};
-use signorini::qp::matrix_market;
+use signorini::qp;
 use signorini::{Error, solve_qp};
 
 fn write(folder: &Path, files: &[(&str, String)]) {
@@ -20,12 +20,12 @@ fn problems_and_answers_come_back_bit_by_bit() {
         dense.gap[2] = f64::INFINITY;
         dense.load[0] = 1e-310;
         let problem = dense.problem().unwrap();
-        write(folder.path(), &matrix_market::problem_files(&problem));
-        assert_eq!(matrix_market::read_problem(folder.path()).unwrap(), problem);
+        write(folder.path(), &qp::problem_files(&problem));
+        assert_eq!(qp::read_problem(folder.path()).unwrap(), problem);
         let solution = solve_qp(&problem).unwrap();
-        write(folder.path(), &matrix_market::solution_files(&solution));
-        assert_eq!(matrix_market::read_vector(&folder.path().join("u.mtx")).unwrap(), solution.displacement);
-        assert_eq!(matrix_market::read_vector(&folder.path().join("lambda.mtx")).unwrap(), solution.multiplier);
+        write(folder.path(), &qp::solution_files(&solution));
+        assert_eq!(qp::read_vector(&folder.path().join("u.mtx")).unwrap(), solution.displacement);
+        assert_eq!(qp::read_vector(&folder.path().join("lambda.mtx")).unwrap(), solution.multiplier);
     }
 }
 
@@ -43,7 +43,7 @@ fn files_of_other_programs_are_read() {
         ("g.mtx", "%%MatrixMarket matrix array real general\n1 1\nInfinity\n"),
     ];
     write(folder.path(), &files.map(|(name, text)| (name, text.to_string())));
-    let problem = matrix_market::read_problem(folder.path()).unwrap();
+    let problem = qp::read_problem(folder.path()).unwrap();
     assert_eq!((problem.load(), problem.gap()), (&[0.0, 3.0][..], &[f64::INFINITY][..]));
     assert_eq!(problem.stiffness().mul(&[1.0, 1.0]), [2.0, 0.0]);
 }
@@ -76,7 +76,7 @@ fn faults_have_their_line_and_say_what_is_allowed() {
     for (text, expected_line, phrase) in cases {
         let folder = tempfile::tempdir().unwrap();
         write(folder.path(), &[("K.mtx", text.to_string())]);
-        match matrix_market::read_problem(folder.path()) {
+        match qp::read_problem(folder.path()) {
             Err(Error::FileSyntax { line, message, .. }) => {
                 assert!(line == expected_line && message.contains(phrase), "{text:?}: line {line}: {message}");
             }
@@ -88,6 +88,6 @@ fn faults_have_their_line_and_say_what_is_allowed() {
 #[test]
 fn missing_file_is_named() {
     let folder = tempfile::tempdir().unwrap();
-    let message = matrix_market::read_problem(folder.path()).unwrap_err().to_string();
+    let message = qp::read_problem(folder.path()).unwrap_err().to_string();
     assert!(message.starts_with("cannot read ") && message.contains("K.mtx: "), "{message}");
 }

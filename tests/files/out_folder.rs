@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::program::{Desk, Problem, example, scene};
 use resvg::usvg::roxmltree::Document;
 use serde_json::{Value, json};
-use signorini::qp::matrix_market::{read_problem, read_vector};
+use signorini::qp::{read_problem, read_vector};
 
 /// The names in a folder, each file read once in the way of its kind.
 fn checked(folder: &Path) -> BTreeSet<String> {

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::oracles::Dense;
 use signorini::fem::GmshFile;
-use signorini::qp::matrix_market::read_problem;
+use signorini::qp::read_problem;
 use signorini::{
     Condense, ContactProblem, Error, Method, Prepared, Scene, Settings, SparseMatrix, SymmetricMatrix, solve, solve_qp,
 };

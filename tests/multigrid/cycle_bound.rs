@@ -6,8 +6,8 @@
 use crate::bodies::{built, clamped_block, clamped_square};
 use crate::oracles::{Draws, random};
 use serde_json::{Value, json};
-use signorini::qp::linear::Cholesky;
-use signorini::qp::linear::multigrid::{Multigrid, NearNullSpace, dual_norm};
+use signorini::internals::Cholesky;
+use signorini::internals::multigrid::{Multigrid, NearNullSpace, dual_norm};
 use signorini::{
     Condense, ContactProblem, Error, Iterative, Method, Prepared, Settings, Solution, Start, SymmetricMatrix, solve,
 };

@@ -9,7 +9,7 @@ use std::path::Path;
 use crate::bodies::{built, clamped_block, clamped_square, largest};
 use crate::oracles::{Dense, Draws, random};
 use serde_json::json;
-use signorini::qp::linear::multigrid::{NearNullSpace, conjugate_gradients};
+use signorini::internals::multigrid::{NearNullSpace, conjugate_gradients};
 use signorini::{ContactProblem, ContactSet, Error, Iterative, Method, Scene, Settings, Solution, Start, solve};
 
 /// Both answers are certified to 1e-9; the condition numbers of these bodies are 1e3 and less.

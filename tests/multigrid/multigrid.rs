@@ -6,8 +6,8 @@
 use crate::bodies::{built, clamped_block, clamped_square, largest};
 use crate::oracles::Draws;
 use serde_json::json;
-use signorini::qp::linear::Cholesky;
-use signorini::qp::linear::multigrid::{Multigrid, NearNullSpace, Precision, conjugate_gradients};
+use signorini::internals::Cholesky;
+use signorini::internals::multigrid::{Multigrid, NearNullSpace, Precision, conjugate_gradients};
 use signorini::{ContactProblem, Error, SparseMatrix, SymmetricMatrix};
 
 /// Relative residual at which the iteration ends.

@@ -8,11 +8,11 @@ use std::path::Path;
 use crate::bodies::{built, clamped_block, clamped_square};
 use crate::program::Desk;
 use serde_json::json;
-use signorini::qp::matrix_market;
+use signorini::qp;
 use signorini::{ContactProblem, Method, Settings, solve};
 
 fn write(folder: &Path, problem: &ContactProblem) {
-    for (name, text) in matrix_market::problem_files(problem) {
+    for (name, text) in qp::problem_files(problem) {
         fs::write(folder.join(name), text).unwrap();
     }
 }
@@ -61,12 +61,12 @@ fn coordinates_stand_for_the_rigid_motions() {
     let (problem, nodes) = unsupported();
     let folder = tempfile::tempdir().unwrap();
     write(folder.path(), &problem);
-    let without = matrix_market::read_problem(folder.path()).unwrap();
+    let without = qp::read_problem(folder.path()).unwrap();
     assert!(without.near_null().is_none());
     let columns = [0, 1].map(|axis| nodes.iter().map(|node| format!("{:e}\n", node[axis])).collect::<String>());
     let head = format!("%%MatrixMarket matrix array real general\n{} 2\n", nodes.len());
     fs::write(folder.path().join("coordinates.mtx"), format!("{head}{}{}", columns[0], columns[1])).unwrap();
-    let with = matrix_market::read_problem(folder.path()).unwrap();
+    let with = qp::read_problem(folder.path()).unwrap();
     assert_eq!(with.near_null().unwrap().count(), 3);
     // The rotation costs nothing either: K times it is rounding.
     let rotation = &with.near_null().unwrap().vectors()[2];
@@ -88,7 +88,7 @@ fn files_that_do_not_fit_are_named_with_what_is_allowed() {
         let values = format!("{value}\n").repeat(shape[0] * shape[1]);
         let text = format!("%%MatrixMarket matrix array real general\n{} {}\n{values}", shape[0], shape[1]);
         fs::write(folder.path().join(name), text).unwrap();
-        let error = matrix_market::read_problem(folder.path()).unwrap_err().to_string();
+        let error = qp::read_problem(folder.path()).unwrap_err().to_string();
         fs::remove_file(folder.path().join(name)).unwrap();
         for word in [name].iter().chain(words) {
             assert!(error.contains(word), "{error:?} lacks {word:?}");

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use crate::oracles::{Draws, random};
 use serde_json::json;
-use signorini::qp::linear::Cholesky;
+use signorini::internals::Cholesky;
 use signorini::{
     Condense, ContactProblem, Error, Method, Prepared, Scene, Settings, Solution, SparseMatrix, SymmetricMatrix, solve,
 };

@@ -13,7 +13,7 @@ use crate::exact::measure::Errors;
 use crate::exact::solve::{Exact, Outcome};
 use crate::program::{Desk, Run};
 use serde_json::Value;
-use signorini::qp::matrix_market::{read_problem, read_vector};
+use signorini::qp::{read_problem, read_vector};
 use signorini::{ContactProblem, Error, Method, Settings, Solution, solve};
 
 const ALL: [Method; 5] = [Method::Auto, Method::Qp, Method::ActiveSet, Method::Penalty, Method::Mprgp];

@@ -6,7 +6,7 @@ use std::process::Stdio;
 
 use crate::program::{Desk, Problem, Run, example, examples, scene, vector};
 use serde_json::{Value, json};
-use signorini::qp::matrix_market::read_vector;
+use signorini::qp::read_vector;
 
 const COMMANDS: [&str; 6] = ["solve", "compare", "sweep", "export", "verify", "schema"];
 

@@ -6,8 +6,8 @@ use std::process::Command;
 
 use crate::program::{Desk, Problem, Run, matrix, vector};
 use serde_json::{Value, json};
+use signorini::internals::Cholesky;
 use signorini::internals::guarded;
-use signorini::qp::linear::Cholesky;
 use signorini::{Scene, SparseMatrix, SymmetricMatrix};
 
 /// The estimate and the measured peak may differ by this factor.

@@ -2,7 +2,7 @@
 
 use crate::bodies::{built, clamped_square, difference, largest, solve_with_closed_rows};
 use serde_json::{Value, json};
-use signorini::qp::linear::Cholesky;
+use signorini::internals::Cholesky;
 use signorini::scene::Warning;
 use signorini::{Error, Model, Scene};
 

@@ -5,9 +5,9 @@ use std::fmt::Write;
 
 use crate::program::Desk;
 use serde_json::{Value, json};
-use signorini::fem::closed_forms::{Bar, ContactPatch, Sides};
 use signorini::fem::{ElementKind, Mesh, cuboid, rectangle};
-use signorini::qp::matrix_market::read_vector;
+use signorini::internals::closed_forms::{Bar, ContactPatch, Sides};
+use signorini::qp::read_vector;
 use signorini::{Model, Scene, Solution, solve_qp};
 
 /// Rounding enlarged by the condition of the stiffness, below 1e4 here.

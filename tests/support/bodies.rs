@@ -7,7 +7,7 @@ use signorini::fem::Formulation;
 use signorini::fem::Material;
 use signorini::fem::{self, ElasticBody};
 use signorini::fem::{ElementKind, Mesh, rectangle};
-use signorini::qp::linear::Cholesky;
+use signorini::internals::Cholesky;
 use signorini::{ContactProblem, Model, Scene};
 
 const STRAIN: Formulation = Formulation::PlaneStrain { thickness: 0.5 };

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use signorini::fem::GmshFile;
-use signorini::qp::matrix_market::read_problem;
+use signorini::qp::read_problem;
 use signorini::{Error, Scene};
 
 use super::draws::Draws;

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
-use signorini::qp::matrix_market::{format_vector, problem_files, read_problem};
+use signorini::internals::format_vector;
+use signorini::qp::{problem_files, read_problem};
 
 use super::oracle::case::Case;
 use super::oracle::judge::Fault;

@@ -12,8 +12,8 @@ use std::path::Path;
 use cases::cases;
 use measure::{Run, run};
 use signorini::Error;
+use signorini::internals::SchemeSpec;
 use signorini::output::{write_files, write_picture};
-use signorini::scene::SchemeSpec;
 
 /// The schemes, the default first.
 const SCHEMES: [SchemeSpec; 6] = [

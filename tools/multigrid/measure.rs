@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use serde_json::{Value, json};
-use signorini::qp::linear::multigrid::{Multigrid, conjugate_gradients};
+use signorini::internals::multigrid::{Multigrid, conjugate_gradients};
 use signorini::{Condense, Error, Iterative, Method, Model, Prepared, Settings, Start};
 
 /// Relative residual of the linear solve, and tolerance of the contact solve.

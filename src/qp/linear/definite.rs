@@ -50,7 +50,7 @@ impl SymmetricMatrix {
     ///
     /// # Errors
     /// Those of the factorisation but [`FactorError::NotPositiveDefinite`].
-    pub fn is_semidefinite(&self) -> Result<bool, FactorError> {
+    pub(crate) fn is_semidefinite(&self) -> Result<bool, FactorError> {
         let diagonal = self.diagonal();
         let has_none = |dof: usize| diagonal[dof] == 0.0;
         let is_free = |row: usize, column: usize| row != column && (has_none(row) || has_none(column));

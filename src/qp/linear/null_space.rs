@@ -23,7 +23,7 @@ impl SymmetricMatrix {
     ///
     /// # Errors
     /// [`FactorError::NotPositiveDefinite`] where an eigenvalue is clearly negative, and those of the factorisation.
-    pub fn null_space(&self) -> Result<Option<Vec<Vec<f64>>>, FactorError> {
+    pub(crate) fn null_space(&self) -> Result<Option<Vec<Vec<f64>>>, FactorError> {
         let factor = self.shifted_factor(SHIFT)?;
         let mut found: Vec<Vec<f64>> = Vec::new();
         while found.len() < self.dim() {
@@ -69,7 +69,7 @@ impl SymmetricMatrix {
     ///
     /// # Errors
     /// Those of the factorisation.
-    pub fn negative_direction(&self) -> Result<Option<Vec<f64>>, FactorError> {
+    pub(crate) fn negative_direction(&self) -> Result<Option<Vec<f64>>, FactorError> {
         // Gershgorin: with more than this on its diagonal, the matrix is definite.
         let most = 2.0 * largest(&self.mul_abs(&vec![1.0; self.dim()]));
         let mut shift = SHIFT;

@@ -55,7 +55,7 @@ impl ContactProblem {
     ///
     /// # Errors
     /// [`Error::Length`] for vectors that do not fit.
-    pub fn certify_in(
+    pub(crate) fn certify_in(
         &self,
         norm: Option<&EnergyNorm>,
         displacement: &[f64],

@@ -12,17 +12,14 @@ mod shape;
 mod solid;
 
 pub use analysis::{
-    AnalysisSpec, DampingSpec, DynamicSpec, FactorSpec, FactorTableSpec, FieldSpec, InitialSpec, IntervalSpec,
-    LoadInTimeSpec, MassSpec, PenetrationSpec, SchemeSpec, SineSpec,
+    AnalysisSpec, DynamicSpec, FactorSpec, FieldSpec, LoadInTimeSpec, MassSpec, PenetrationSpec, SchemeSpec,
 };
-pub use body::{BarSpec, BodySpec, BoxSpec, FurtherBodySpec, MaterialSpec, RectangleSpec};
+pub use body::{BodySpec, FurtherBodySpec, MaterialSpec};
 pub use cells::{AxisSpec, ElementSpec, IntegrationSpec, SolidElementSpec};
-pub use condition::{ForceSpec, LoadSpec, Place, PressureSpec, SupportSpec, TractionSpec};
-pub use obstacle::{
-    Approach, CircleSpec, FacingSpec, ObstacleSpec, ParabolaSpec, PlaneSpec, Rule, ShapeSpec, TableSpec, WedgeSpec,
-};
+pub use condition::{LoadSpec, Place, SupportSpec};
+pub use obstacle::{Approach, CircleSpec, FacingSpec, ObstacleSpec, PlaneSpec, Rule, ShapeSpec};
 pub use shape::{DiscSpec, GmshSpec, HalfBallSpec, HalfDiscSpec, HalfSpec, RingSpec, SymmetrySpec, ZoneSpec};
-pub use solid::{ConeSpec, CylinderSpec, HeightMapSpec, SphereSpec};
+pub use solid::HeightMapSpec;
 
 use std::path::PathBuf;
 
@@ -105,11 +102,17 @@ impl Default for Units {
 }
 
 impl Units {
+    /// The units of a problem that names none.
+    pub fn unnamed() -> Self {
+        Units { length: String::new(), force: String::new() }
+    }
+
     /// The unit of pressure and stress: `Pa`, `MPa`, or force over length squared.
     pub fn pressure(&self) -> String {
         match (self.force.as_str(), self.length.as_str()) {
             ("N", "m") => "Pa".into(),
             ("N", "mm") => "MPa".into(),
+            ("", "") => String::new(),
             (force, length) => format!("{force}/{length}²"),
         }
     }
