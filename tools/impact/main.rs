@@ -12,18 +12,8 @@ use std::path::Path;
 use cases::cases;
 use measure::{Run, run};
 use signorini::Error;
-use signorini::internals::SchemeSpec;
+use signorini::internals::{SCHEMES, SchemeSpec};
 use signorini::output::{write_files, write_picture};
-
-/// The schemes, the default first.
-const SCHEMES: [SchemeSpec; 6] = [
-    SchemeSpec::Midpoint,
-    SchemeSpec::ContactStabilised,
-    SchemeSpec::Hht,
-    SchemeSpec::Trapezoidal,
-    SchemeSpec::Penalty,
-    SchemeSpec::CentralDifference,
-];
 
 /// Time steps in the time of a wave through a cell.
 const COURANT: [f64; 3] = [0.5, 1.0, 1.5];

@@ -1,6 +1,6 @@
 //! One run of one scheme, held against a closed form.
 
-use signorini::internals::{AnalysisSpec, SchemeSpec};
+use signorini::internals::{AnalysisSpec, BodySpec, SchemeSpec};
 use signorini::motion::{Integrator, Observation, Scheme};
 use signorini::{Error, Scene, Settings};
 
@@ -47,7 +47,7 @@ pub struct Run {
 pub fn run(case: &Case, scheme: SchemeSpec, courant: f64, cells: usize) -> Result<Run, Error> {
     let path = format!("{}/tools/impact/{}.json", env!("CARGO_MANIFEST_DIR"), case.scene);
     let mut scene = Scene::read(path)?;
-    if let signorini::internals::BodySpec::Bar(bar) = &mut scene.body {
+    if let BodySpec::Bar(bar) = &mut scene.body {
         bar.x.divisions = vec![cells];
     }
     if let Some(AnalysisSpec::Dynamic(spec)) = &mut scene.analysis {
