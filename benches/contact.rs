@@ -4,7 +4,7 @@
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use signorini::internals::Cholesky;
-use signorini::{Condense, Method, Model, Prepared, Settings, solve};
+use signorini::{Method, Model, Prepared, Settings, solve};
 
 #[path = "../tools/contact_cost/case.rs"]
 mod case;
@@ -56,27 +56,23 @@ fn contact_qp(bencher: Bencher, name: &str) {
 #[divan::bench(args = CASES)]
 fn next_gap_forces(bencher: Bencher, name: &str) {
     let model = model(name);
-    let prepared = Prepared::new(model.problem(), Condense::Auto).unwrap();
-    let closed = prepared.solve(&active_set()).unwrap().contact_set;
-    bencher
-        .with_inputs(|| next_gap(&model))
-        .bench_values(|gap| prepared.boundary_at_gap(gap, Some(&closed), &active_set()).unwrap().contact_force());
+    let prepared = Prepared::new(model.problem(), &active_set()).unwrap();
+    let warm = prepared.starting_from(prepared.solve(model.problem().gap()).unwrap().contact_set);
+    bencher.with_inputs(|| next_gap(&model)).bench_values(|gap| warm.boundary(&gap).unwrap().contact_force());
 }
 
 #[divan::bench(args = CASES)]
 fn next_gap_displacement(bencher: Bencher, name: &str) {
     let model = model(name);
-    let prepared = Prepared::new(model.problem(), Condense::Auto).unwrap();
-    let closed = prepared.solve(&active_set()).unwrap().contact_set;
-    bencher
-        .with_inputs(|| next_gap(&model))
-        .bench_values(|gap| prepared.solve_gap(gap, Some(&closed), &active_set()).unwrap());
+    let prepared = Prepared::new(model.problem(), &active_set()).unwrap();
+    let warm = prepared.starting_from(prepared.solve(model.problem().gap()).unwrap().contact_set);
+    bencher.with_inputs(|| next_gap(&model)).bench_values(|gap| warm.solve(&gap).unwrap());
 }
 
 #[divan::bench(args = CASES)]
 fn exact_path(bencher: Bencher, name: &str) {
     let model = model(name);
-    let prepared = Prepared::new(model.problem(), Condense::Auto).unwrap();
+    let prepared = Prepared::new(model.problem(), &active_set()).unwrap();
     let to = next_gap(&model);
-    bencher.bench(|| prepared.path(model.problem().gap(), &to, &active_set()).unwrap().corners());
+    bencher.bench(|| prepared.path(model.problem().gap(), &to).unwrap().corners());
 }

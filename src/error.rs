@@ -251,31 +251,58 @@ impl Error {
 
     /// The name of the kind of error, the same in every version: for programs that tell errors apart.
     pub fn code(&self) -> &'static str {
+        self.class().0
+    }
+
+    /// The `status` of a report that ends with the error, as `under_held`.
+    pub fn status(&self) -> &'static str {
+        self.class().1
+    }
+
+    /// What the error says of the problem.
+    pub fn failure(&self) -> Failure {
+        self.class().2
+    }
+
+    /// Code, status and failure: all that distinguishes variants outside the places that raise them.
+    fn class(&self) -> (&'static str, &'static str, Failure) {
+        use Failure::{BadInput, NoSolution, NotCertified};
+        let bad_input = |code| (code, "bad_input", BadInput);
         match self {
-            Error::Length { .. } => "length",
-            Error::Pattern { .. } => "pattern",
-            Error::Shape { .. } => "shape",
-            Error::IndexOutOfRange { .. } => "index-out-of-range",
-            Error::NotFinite { .. } => "not-finite",
-            Error::NotSymmetric { .. } => "not-symmetric",
-            Error::NotConvex { .. } => "not-convex",
-            Error::Infeasible { .. } => "infeasible",
-            Error::Unbounded { .. } => "unbounded",
-            Error::UnderHeld { .. } => "under-held",
-            Error::OutOfTime { .. } => "out-of-time",
-            Error::Interrupted => "interrupted",
-            Error::NotCertified { .. } => "not-certified",
-            Error::Setting { .. } => "setting",
-            Error::NotCondensed { .. } => "not-condensed",
-            Error::TooLarge { .. } | Error::NoRoom { .. } => "too-large",
-            Error::Numerical { .. } => "numerical",
-            Error::Mesh { .. } => "mesh",
-            Error::SceneSyntax { .. } => "scene",
-            Error::Scene { .. } => "scene",
-            Error::FileSyntax { .. } => "file-syntax",
-            Error::File { .. } => "file",
+            Error::Length { .. } => bad_input("length"),
+            Error::Pattern { .. } => bad_input("pattern"),
+            Error::Shape { .. } => bad_input("shape"),
+            Error::IndexOutOfRange { .. } => bad_input("index-out-of-range"),
+            Error::NotFinite { .. } => bad_input("not-finite"),
+            Error::NotSymmetric { .. } => bad_input("not-symmetric"),
+            Error::NotConvex { .. } => ("not-convex", "not_convex", BadInput),
+            Error::Infeasible { .. } => ("infeasible", "infeasible", NoSolution),
+            Error::Unbounded { .. } => ("unbounded", "unbounded", NoSolution),
+            Error::UnderHeld { .. } => ("under-held", "under_held", NoSolution),
+            Error::OutOfTime { .. } => ("out-of-time", "out_of_time", NotCertified),
+            Error::Interrupted => ("interrupted", "interrupted", NotCertified),
+            Error::NotCertified { .. } => ("not-certified", "not_certified", NotCertified),
+            Error::Setting { .. } => bad_input("setting"),
+            Error::NotCondensed { .. } => bad_input("not-condensed"),
+            Error::TooLarge { .. } | Error::NoRoom { .. } => bad_input("too-large"),
+            Error::Numerical { .. } => ("numerical", "failed", BadInput),
+            Error::Mesh { .. } => bad_input("mesh"),
+            Error::SceneSyntax { .. } | Error::Scene { .. } => bad_input("scene"),
+            Error::FileSyntax { .. } => bad_input("file-syntax"),
+            Error::File { .. } => bad_input("file"),
         }
     }
+}
+
+/// What an error says of the problem; the program has an exit code for each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Failure {
+    /// The input, a file, or a number on the way is at fault.
+    BadInput,
+    /// The problem has no solution.
+    NoSolution,
+    /// There may be a solution; none was certified.
+    NotCertified,
 }
 
 fn no_room(factor: f64, multigrid: f64, allowed: f64, ended: Option<&str>) -> String {

@@ -12,7 +12,8 @@ use signorini::fem::ElasticBody;
 use signorini::fem::Formulation;
 use signorini::fem::Material;
 use signorini::fem::{DofMap, stiffness};
-use signorini::fem::{ElementKind, Mesh, cuboid, rectangle};
+use signorini::fem::{ElementKind, Mesh};
+use signorini::scene::{cuboid, rectangle};
 
 /// What assembly must not exceed: name, seconds.
 const CASES: [(&str, f64); 2] = [("Q4", 2.0), ("Hex8", 3.0)];

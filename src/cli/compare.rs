@@ -2,14 +2,15 @@
 
 use serde_json::json;
 
-use super::input::{Content, Input};
+use super::input::Input;
 use super::options::Compare;
 use super::outcome::{Outcome, Report, warn};
 use super::settings::settings;
 use crate::error::Error;
 use crate::output::{compare_text, gallery};
 use crate::qp::Method;
-use crate::study::{Comparison, compare};
+use crate::scene::Answer;
+use crate::study::{Comparison, Summary, compare};
 use crate::watch::Watch;
 
 pub(super) fn run(options: &Compare, watch: &Watch) -> Result<Outcome, Error> {
@@ -20,16 +21,20 @@ pub(super) fn run(options: &Compare, watch: &Watch) -> Result<Outcome, Error> {
     let Comparison { answers, agreement } =
         compare(input.problem(), &settings).map_err(|error| input.explain(error))?;
     watch.step("report", 0);
-    let [qp, active_set, penalty] = answers.map(|answer| input.summary(answer.solution, common.tolerance));
-    let summaries = [qp?, active_set?, penalty?];
+    let [qp, active_set, penalty] = answers.map(|by_method| -> Result<(Option<Answer>, Summary), Error> {
+        let answer = input.answer(&by_method.solution)?;
+        let summary = input.summary(by_method.solution, answer.as_ref(), common.tolerance)?;
+        Ok((answer, summary))
+    });
+    let ((qp, of_qp), (active_set, of_active_set), (penalty, of_penalty)) = (qp?, active_set?, penalty?);
+    let summaries = [of_qp, of_active_set, of_penalty];
     let text = compare_text(&input.title, &summaries, &agreement, &input.units);
     let report = Report::new(&json!({ "methods": summaries, "agreement": agreement }), text)?;
     let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, agreement.exact_methods)) };
     gallery::write_answer(&folder, &summaries[0].solution)?;
     report.write(&folder)?;
     let outcome = report.outcome(common.format, agreement.exact_methods);
-    Ok(match input.content {
-        Content::Scene(model) => outcome.with_pictures(move || gallery::write_compare(&folder, &model, &summaries)),
-        Content::Directory(_) => outcome,
-    })
+    let (Some(qp), Some(active_set), Some(penalty)) = (qp, active_set, penalty) else { return Ok(outcome) };
+    let answers = [qp, active_set, penalty];
+    Ok(outcome.with_pictures(move || gallery::write_compare(&folder, &answers, &summaries)))
 }

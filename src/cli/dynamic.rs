@@ -1,6 +1,7 @@
 //! `signorini solve` of a scene that asks for its motion: step after step.
 
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
 use super::input::{scene_title, warnings};
@@ -20,7 +21,7 @@ const GAIN: f64 = 0.01;
 
 pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outcome, Error> {
     let clock = Instant::now();
-    let model = scene.build()?;
+    let model = Arc::new(scene.build()?);
     let Some(dynamics) = scene.dynamics(&model)? else { return Ok(Outcome::done(String::new())) };
     warn(&warnings(&model));
     warn(&dynamics.warnings.iter().map(|warning| format!("warning: {warning}\n")).collect::<String>());
@@ -31,14 +32,22 @@ pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outco
     if settings.method == Method::Auto {
         settings.method = Method::ActiveSet;
     }
-    let integrator = Integrator::new(dynamics.problem.clone(), dynamics.scheme, dynamics.step, &settings)
-        .map_err(|error| model.explain(error))?;
+    let explained = |error| model.explain(error);
+    let integrator =
+        Integrator::new(dynamics.problem.clone(), dynamics.scheme, dynamics.step, &settings).map_err(explained)?;
     let factor = clock.elapsed().as_secs_f64();
 
     let clock = Instant::now();
-    let mut run = Run::begun(options, scene, &model, &dynamics, integrator)?;
-    run.go_on(&model, &dynamics, watch)?;
+    let mut run = match &options.common.out {
+        None => Run::without_folder(&model, &dynamics, integrator),
+        Some(path) if options.resume => Run::resumed(&model, &dynamics, integrator, path, compact_json(scene)?)?,
+        Some(path) => Run::in_folder(&model, &dynamics, integrator, path, compact_json(scene)?)?,
+    };
+    run.advance(watch)?;
     let Run { summary, folder, .. } = run;
+    if summary.steps < dynamics.steps && !watch.is_stopped() {
+        warn(&format!("out of time after step {} of {}\n", summary.steps, dynamics.steps));
+    }
     watch.step("report", 0);
     if summary.energy_gain() > GAIN {
         let percent = 100.0 * summary.energy_gain();
@@ -56,75 +65,76 @@ pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outco
     Ok(report.outcome(format, is_certified).with_pictures(move || folder.draw(&model)))
 }
 
-/// A motion that is under way.
-struct Run {
+/// The steps of a motion, and what they leave.
+struct Run<'a> {
+    model: &'a Arc<Model>,
+    dynamics: &'a Dynamics,
     integrator: Integrator,
     summary: MotionSummary,
     folder: Option<MotionFolder>,
 }
 
-impl Run {
-    /// A run from its first step, or from where the one in its folder stands.
-    fn begun(
-        options: &Solve,
-        scene: &Scene,
-        model: &Model,
-        dynamics: &Dynamics,
+impl<'a> Run<'a> {
+    fn without_folder(model: &'a Arc<Model>, dynamics: &'a Dynamics, integrator: Integrator) -> Self {
+        let summary = MotionSummary::starting(&integrator.observe());
+        Run { model, dynamics, integrator, summary, folder: None }
+    }
+
+    /// A new run, which leaves its frames in a folder.
+    fn in_folder(
+        model: &'a Arc<Model>,
+        dynamics: &'a Dynamics,
         integrator: Integrator,
+        path: &Path,
+        scene: String,
     ) -> Result<Self, Error> {
-        let first = integrator.observe();
-        let mut run = Run { integrator, summary: MotionSummary::starting(&first), folder: None };
-        let text = compact_json(scene)?;
-        match &options.common.out {
-            Some(folder) if options.resume => run.resume(folder, text, dynamics.steps)?,
-            Some(folder) => {
-                let mut folder = MotionFolder::new(folder, text, &first)?;
-                folder.frame(model, 0.0, run.integrator.state(), &run.summary)?;
-                run.folder = Some(folder);
-            }
-            None => {}
-        }
-        Ok(run)
+        let run = Run::without_folder(model, dynamics, integrator);
+        let mut folder = MotionFolder::new(path, scene, &run.integrator.observe())?;
+        folder.frame(model, 0.0, run.integrator.state(), &run.summary)?;
+        Ok(Run { folder: Some(folder), ..run })
     }
 
-    /// Takes up the run in `folder`, of which `steps` are wanted in all.
-    fn resume(&mut self, folder: &Path, scene: String, steps: usize) -> Result<(), Error> {
-        let (folder, state, so_far) = MotionFolder::resume(folder, scene)?;
-        if state.steps > steps {
+    /// The run that a folder holds, to go on with.
+    fn resumed(
+        model: &'a Arc<Model>,
+        dynamics: &'a Dynamics,
+        mut integrator: Integrator,
+        path: &Path,
+        scene: String,
+    ) -> Result<Self, Error> {
+        let wrong = |field: &str, message: String| Error::Scene { path: format!("analysis.dynamic.{field}"), message };
+        let (folder, state, summary) = MotionFolder::resume(path, scene)?;
+        if state.steps > dynamics.steps {
             let message = format!("the run in the folder has gone on to step {} already, beyond it", state.steps);
-            return Err(Error::Scene { path: "analysis.dynamic.duration".into(), message });
+            return Err(wrong("duration", message));
         }
-        self.integrator.resume(state)?;
-        if self.integrator.time() != so_far.time {
-            let message = "the run in the folder has another step; its duration was less than one".to_string();
-            return Err(Error::Scene { path: "analysis.dynamic.step".into(), message });
+        integrator.resume(state)?;
+        if integrator.time() != summary.time {
+            return Err(wrong("step", "the run in the folder has another step; its duration was less than one".into()));
         }
-        (self.summary, self.folder) = (so_far, Some(folder));
-        Ok(())
+        Ok(Run { model, dynamics, integrator, summary, folder: Some(folder) })
     }
 
-    /// Takes the steps that are left, until `watch` is asked to stop or its time is over.
-    fn go_on(&mut self, model: &Model, dynamics: &Dynamics, watch: &Watch) -> Result<(), Error> {
+    /// All steps that are left, as long as the watch allows.
+    fn advance(&mut self, watch: &Watch) -> Result<(), Error> {
+        let Dynamics { steps: last, frames, step, .. } = *self.dynamics;
         // A frame ends where the share of the steps reaches the next whole number of frames.
-        let frames_until = |step: usize| step as u128 * dynamics.frames as u128 / dynamics.steps as u128;
-        while self.integrator.state().steps < dynamics.steps {
-            watch.part("step", self.integrator.state().steps + 1, dynamics.steps);
+        let frames_until = |step: usize| step as u128 * frames as u128 / last as u128;
+        while self.integrator.state().steps < last {
+            watch.part("step", self.integrator.state().steps + 1, last);
             match self.integrator.advance() {
                 Err(Error::Interrupted) => break,
-                advanced => advanced.map_err(|error| model.explain(error))?,
+                advanced => advanced.map_err(|error| self.model.explain(error))?,
             };
             let seen = self.integrator.observe();
-            self.summary.add(&seen, dynamics.step);
-            let steps = self.integrator.state().steps;
+            self.summary.add(&seen, step);
+            let state = self.integrator.state();
             if let Some(folder) = &mut self.folder {
                 folder.observe(&seen)?;
-                if frames_until(steps) > frames_until(steps - 1) {
-                    folder.frame(model, seen.time, self.integrator.state(), &self.summary)?;
+                if frames_until(state.steps) > frames_until(state.steps - 1) {
+                    folder.frame(self.model, seen.time, state, &self.summary)?;
                 }
             }
-        }
-        if self.summary.steps < dynamics.steps && !watch.is_stopped() {
-            warn(&format!("out of time after step {} of {}\n", self.summary.steps, dynamics.steps));
         }
         Ok(())
     }

@@ -1,13 +1,14 @@
 //! A scene or a problem directory: what is the same of both for the commands.
 
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
 use super::options::Limits;
 use crate::error::Error;
 use crate::qp::matrix_market;
 use crate::qp::problem::ContactProblem;
-use crate::scene::{Model, Scene, Units};
+use crate::scene::{Answer, Model, Scene, Units};
 use crate::solution::{Goal, Solution};
 use crate::study::{ModelSize, Summary, scene_summary};
 
@@ -20,7 +21,7 @@ pub(super) struct Input {
 }
 
 pub(super) enum Content {
-    Scene(Box<Model>),
+    Scene(Arc<Model>),
     Directory(ContactProblem),
 }
 
@@ -65,7 +66,7 @@ impl Input {
         let model = build(scene, path)?;
         let assemble_seconds = read_seconds + clock.elapsed().as_secs_f64();
         let (title, units) = (scene_title(&model, path), model.units().clone());
-        Ok(Input { title, units, assemble_seconds, content: Content::Scene(Box::new(model)) })
+        Ok(Input { title, units, assemble_seconds, content: Content::Scene(Arc::new(model)) })
     }
 
     pub fn problem(&self) -> &ContactProblem {
@@ -75,13 +76,24 @@ impl Input {
         }
     }
 
-    /// An answer with what only a scene can tell of it.
-    pub fn summary(&self, solution: Solution, goal: impl Into<Goal>) -> Result<Summary, Error> {
+    /// An answer, joined with its scene; `None` for a problem directory.
+    pub fn answer(&self, solution: &Solution) -> Result<Option<Answer>, Error> {
         match &self.content {
-            Content::Scene(model) => scene_summary(model, solution, goal, self.assemble_seconds),
-            Content::Directory(problem) => {
-                Ok(Summary::new(solution, ModelSize::of(problem), goal, self.assemble_seconds))
-            }
+            Content::Scene(model) => Answer::of(model.clone(), solution).map(Some),
+            Content::Directory(_) => Ok(None),
+        }
+    }
+
+    /// The numbers of a solution, with what only its answer to a scene can tell.
+    pub fn summary(
+        &self,
+        solution: Solution,
+        answer: Option<&Answer>,
+        goal: impl Into<Goal>,
+    ) -> Result<Summary, Error> {
+        match answer {
+            Some(answer) => scene_summary(answer, solution, goal, self.assemble_seconds),
+            None => Ok(Summary::new(solution, ModelSize::of(self.problem()), goal, self.assemble_seconds)),
         }
     }
 

@@ -51,15 +51,16 @@ pub(super) enum Format {
 
 impl ValueEnum for Method {
     fn value_variants<'a>() -> &'a [Self] {
-        &[Method::Auto, Method::Qp, Method::ActiveSet, Method::Penalty, Method::Mprgp]
+        const ALL: [Method; 5] = [Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty(), Method::Mprgp];
+        &ALL
     }
 
     fn to_possible_value(&self) -> Option<PossibleValue> {
         Some(PossibleValue::new(self.name()).help(match self {
             Method::Auto => "The program chooses",
-            Method::Qp => "Convex QP by an interior-point method, its contact set settled by active-set steps",
+            Method::Qp(_) => "Convex QP by an interior-point method, its contact set settled by active-set steps",
             Method::ActiveSet => "Active-set loop with Lagrange multipliers",
-            Method::Penalty => "Penalty loop",
+            Method::Penalty(_) => "Penalty loop",
             Method::Mprgp => "Projected conjugate gradients with multigrid, for bodies too large to factorise",
         }))
     }

@@ -1,7 +1,7 @@
 //! `signorini solve`: one answer.
 
 use super::dynamic;
-use super::input::{Content, Input, Source};
+use super::input::{Input, Source};
 use super::options::{Common, Solve};
 use super::outcome::{Outcome, Report, warn};
 use super::settings::settings;
@@ -9,8 +9,7 @@ use crate::error::Error;
 use crate::output::{gallery, solve_text};
 use crate::qp::{Method, Settings, solve};
 use crate::scene::Scene;
-use crate::solution::Solution;
-use crate::study::discretisation_error;
+use crate::solution::{Goal, Solution};
 use crate::watch::Watch;
 
 /// Assembly that takes so many seconds at the most is done without time too: the report then says what the rest needs.
@@ -25,7 +24,7 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
     let source = Source::read(&options.input, &options.common.limits)?;
     let mut report_seconds = 0.0;
     if let Source::Scene(scene, _) = &source {
-        report_seconds = REPORT * admitted(scene, options, watch)?;
+        report_seconds = REPORT * assembly_seconds(scene, options, watch)?;
         if scene.analysis.is_some() {
             return dynamic::run(options, scene, watch);
         }
@@ -39,19 +38,25 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
         Source::Directory(input) => *input,
     };
     warn(&input.warnings());
-    let settings = Settings {
-        prove: true,
-        accuracy: options.accuracy,
-        precision: options.precision,
-        extrapolate: options.extrapolate,
-        ..settings(options.method, &options.common, &watch.keeping(report_seconds))
-    };
-    let solution = answer(&input, &settings)?;
-    reported(input, solution, &settings, &options.common, watch)
+    let mut settings = settings(options.method, &options.common, &watch.keeping(report_seconds));
+    settings.prove = true;
+    settings.accuracy = options.accuracy;
+    settings.precision = options.precision;
+    if let Method::Penalty(ladder) = &mut settings.method {
+        ladder.extrapolate = options.extrapolate;
+    }
+    let solution = best_of(&input, &settings)?;
+    if options.extrapolate && !matches!(settings.method, Method::Penalty(_)) {
+        let method = &solution.method;
+        warn(&format!(
+            "warning: --extrapolate changes nothing: the method is {method}; it goes with --method penalty\n"
+        ));
+    }
+    reported(&input, solution, settings.goal(), &options.common, watch)
 }
 
-/// The seconds that the scene takes to assemble; an error if it does not fit into memory or time.
-fn admitted(scene: &Scene, options: &Solve, watch: &Watch) -> Result<f64, Error> {
+/// Refuses a scene that does not fit into memory or time; the seconds that its assembly will take.
+fn assembly_seconds(scene: &Scene, options: &Solve, watch: &Watch) -> Result<f64, Error> {
     let most_memory = options.common.limits.most_memory();
     let needs_factor = !matches!(options.method, Method::Auto | Method::Mprgp);
     if needs_factor || scene.analysis.is_some() {
@@ -67,39 +72,26 @@ fn admitted(scene: &Scene, options: &Solve, watch: &Watch) -> Result<f64, Error>
 }
 
 /// The answer, certified or not.
-fn answer(input: &Input, settings: &Settings) -> Result<Solution, Error> {
-    let solution = match solve(input.problem(), settings) {
-        Ok(solution) => solution,
+fn best_of(input: &Input, settings: &Settings) -> Result<Solution, Error> {
+    match solve(input.problem(), settings) {
         Err(error @ Error::NotCertified { .. }) => {
             warn(&format!("error: {error}\n"));
             let Error::NotCertified { solution, .. } = error else { return Err(error) };
-            *solution
+            Ok(*solution)
         }
-        Err(error) => return Err(input.explain(error)),
-    };
-    if settings.extrapolate && !solution.method.starts_with("penalty") {
-        let method = &solution.method;
-        warn(&format!(
-            "warning: --extrapolate changes nothing: the method is {method}; it goes with --method penalty\n"
-        ));
+        solved => solved.map_err(|error| input.explain(error)),
     }
-    Ok(solution)
 }
 
 /// Reports an answer, and leaves what `--out` asks for.
-fn reported(
-    input: Input,
-    solution: Solution,
-    settings: &Settings,
-    common: &Common,
-    watch: &Watch,
-) -> Result<Outcome, Error> {
+fn reported(input: &Input, solution: Solution, goal: Goal, common: &Common, watch: &Watch) -> Result<Outcome, Error> {
     watch.step("report", 0);
-    let mut summary = input.summary(solution, settings.goal())?;
-    if let Content::Scene(model) = &input.content
+    let answer = input.answer(&solution)?;
+    let mut summary = input.summary(solution, answer.as_ref(), goal)?;
+    if let Some(answer) = &answer
         && !watch.is_over()
     {
-        summary.discretisation_error = Some(discretisation_error(model, &summary.solution)?);
+        summary.discretisation_error = Some(answer.discretisation_error()?);
     }
     let report = Report::new(&summary, solve_text(&input.title, &summary, &input.units))?;
     let is_certified = summary.is_certified();
@@ -111,10 +103,6 @@ fn reported(
         warn("warning: no fields and no pictures: the time is over\n");
         return Ok(outcome);
     }
-    Ok(match input.content {
-        Content::Scene(model) => {
-            outcome.with_pictures(move || gallery::write_solve(&folder, &model, &summary.solution))
-        }
-        Content::Directory(_) => outcome,
-    })
+    let Some(answer) = answer else { return Ok(outcome) };
+    Ok(outcome.with_pictures(move || gallery::write_solve(&folder, &answer, &summary.solution.history)))
 }

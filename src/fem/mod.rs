@@ -21,6 +21,6 @@ pub use element::{ElementKind, FacetKind};
 pub use formulation::Formulation;
 pub use material::Material;
 pub use mesh::gmsh::GmshFile;
-pub use mesh::{Axis, Boundary, Mesh, Zone, bar, cuboid, disc, half_ball, half_disc, rectangle, ring};
+pub use mesh::{Axis, Boundary, Mesh, Zone};
 pub use norms::{ErrorNorms, ExactState, error_norms};
 pub use recovery::{Stress, StressField, discretisation_error, stress};

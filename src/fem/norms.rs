@@ -45,7 +45,8 @@ const HALVINGS: usize = 12;
 /// use signorini::fem::ElasticBody;
 /// use signorini::fem::Formulation;
 /// use signorini::fem::Material;
-/// use signorini::fem::{ElementKind, rectangle};
+/// use signorini::fem::ElementKind;
+/// use signorini::scene::rectangle;
 /// use signorini::fem::{ExactState, error_norms};
 ///
 /// // u_x = x on one cell; the answer is nine tenths of it at every node.

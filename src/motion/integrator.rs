@@ -2,13 +2,10 @@
 
 use std::time::Instant;
 
-use super::central_difference::CentralDifference;
-use super::contact_stabilised::ContactStabilised;
-use super::midpoint::Midpoint;
-use super::newmark::Newmark;
 use super::step::Advance;
 use super::{DynamicProblem, Observation, Scheme, State};
 use crate::error::Error;
+use crate::fem::assembly::MassForm;
 use crate::qp::linear::{dot, largest};
 use crate::qp::{Method, Settings};
 use crate::solution::ContactSet;
@@ -44,13 +41,13 @@ impl Integrator {
         }
         scheme.check()?;
         let reach = largest(problem.displacement())
-            .max(problem.contact().gap().iter().filter(|gap| gap.is_finite()).fold(0.0, |max, gap| gap.abs().max(max)));
+            .max(problem.statics().gap().iter().filter(|gap| gap.is_finite()).fold(0.0, |max, gap| gap.abs().max(max)));
         let penetration = problem.penetration(problem.displacement());
         if penetration > ROUNDING * reach {
             let allowed = "zero: no contact row may be violated at the start";
             return Err(Error::Setting { name: "initial penetration", value: penetration, allowed });
         }
-        if scheme != Scheme::Midpoint && !problem.massless().is_empty() {
+        if !scheme.allows(MassForm::Redistributed) && !problem.massless().is_empty() {
             let allowed = "positive: dofs without mass are for the midpoint rule";
             return Err(Error::Setting { name: "mass of a dof", value: 0.0, allowed });
         }
@@ -59,29 +56,20 @@ impl Integrator {
         if settings.method == Method::Auto {
             settings.method = Method::ActiveSet;
         }
-        if settings.method == Method::Penalty {
+        if matches!(settings.method, Method::Penalty(_)) {
             // Its answers are never exact; whoever chooses it takes them as they are.
             settings.tolerance = f64::MAX;
         }
         let watch = settings.watch.clone();
-        let prepared: Box<dyn Advance> = match scheme {
-            Scheme::Midpoint => Box::new(Midpoint::new(&problem, step, &settings)?),
-            Scheme::Trapezoidal => Box::new(Newmark::new(&problem, step, 0.0, &settings)?),
-            Scheme::Hht { alpha } => Box::new(Newmark::new(&problem, step, alpha, &settings)?),
-            Scheme::Penalty { penalty } => Box::new(Newmark::with_penalty(&problem, step, penalty, &settings)?),
-            Scheme::ContactStabilised => Box::new(ContactStabilised::new(&problem, step, &settings)?),
-            Scheme::CentralDifference { restitution } => {
-                Box::new(CentralDifference::new(&problem, step, restitution, &settings)?)
-            }
-        };
-        let violation = problem.contact().violation(problem.displacement());
-        let rows = problem.contact().rows();
+        let prepared = (scheme.prepare())(&problem, step, scheme.value(), &settings)?;
+        let violation = problem.statics().violation(problem.displacement());
+        let rows = problem.statics().rows();
         let state = State {
             steps: 0,
             displacement: problem.displacement().to_vec(),
             velocity: problem.velocity().to_vec(),
-            acceleration: vec![0.0; problem.contact().dofs()],
-            elastic: problem.contact().stiffness().mul(problem.displacement()),
+            acceleration: vec![0.0; problem.statics().dofs()],
+            elastic: problem.statics().stiffness().mul(problem.displacement()),
             momentum: problem.mass().mul(problem.velocity()),
             multiplier: vec![0.0; rows],
             contact_set: ContactSet::from_fn(rows, |row| violation[row] >= -ROUNDING * reach),
@@ -128,7 +116,7 @@ impl Integrator {
     /// # Errors
     /// [`Error::Length`] for a state of another problem.
     pub fn resume(&mut self, state: State) -> Result<(), Error> {
-        let (dofs, rows) = (self.problem.contact().dofs(), self.problem.contact().rows());
+        let (dofs, rows) = (self.problem.statics().dofs(), self.problem.statics().rows());
         let lengths = [
             ("displacement", state.displacement.len(), dofs, "dofs"),
             ("velocity", state.velocity.len(), dofs, "dofs"),

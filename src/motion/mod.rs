@@ -24,22 +24,16 @@
 //! # Ok::<(), signorini::Error>(())
 //! ```
 
-mod central_difference;
-mod contact_stabilised;
 mod integrator;
-mod midpoint;
-mod newmark;
 mod problem;
-mod projection;
 mod scheme;
-mod stable_step;
 mod state;
 mod step;
 mod time_function;
 
 pub use integrator::Integrator;
 pub use problem::DynamicProblem;
-pub use scheme::Scheme;
-pub use stable_step::stable_step;
+pub use scheme::{Scheme, SchemeSpec, stable_step};
 pub use state::{Observation, State};
+pub use step::Parameter;
 pub use time_function::TimeFunction;

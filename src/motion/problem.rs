@@ -15,7 +15,7 @@ use crate::qp::problem::ContactProblem;
 /// mass.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DynamicProblem {
-    contact: ContactProblem,
+    statics: ContactProblem,
     /// Transposed contact rows: the entries of a row are a column.
     by_row: SparseMatrix,
     mass: SymmetricMatrix,
@@ -29,12 +29,12 @@ pub struct DynamicProblem {
 }
 
 impl DynamicProblem {
-    /// The motion from rest of the body of `contact`, whose load is constant, with the mass M (n x n).
+    /// The motion from rest of the body of `statics`, whose load is constant, with the mass M (n x n).
     ///
     /// # Errors
     /// [`Error::Shape`] for a mass that does not fit, [`Error::Setting`] for a negative diagonal entry.
-    pub fn new(contact: ContactProblem, mass: SymmetricMatrix) -> Result<Self, Error> {
-        let dofs = contact.dofs();
+    pub fn new(statics: ContactProblem, mass: SymmetricMatrix) -> Result<Self, Error> {
+        let dofs = statics.dofs();
         if mass.dim() != dofs {
             let (found, expected) = ((mass.dim(), mass.dim()), (dofs, dofs));
             return Err(Error::Shape { name: "mass", found, expected });
@@ -44,8 +44,8 @@ impl DynamicProblem {
         }
         let zeros = vec![0.0; dofs];
         Ok(DynamicProblem {
-            by_row: contact.contact().transposed(),
-            contact,
+            by_row: statics.contact().transposed(),
+            statics,
             mass,
             damping: [0.0; 2],
             loads: Vec::new(),
@@ -75,7 +75,7 @@ impl DynamicProblem {
     /// As [`TimeFunction::check`]; [`Error::Length`] and [`Error::NotFinite`] for a load that does not fit.
     pub fn with_load(mut self, factor: TimeFunction, load: Vec<f64>) -> Result<Self, Error> {
         factor.check()?;
-        let load = self.contact.with_load(load)?.load().to_vec();
+        let load = self.statics.with_load(load)?.load().to_vec();
         self.loads.push((factor, load));
         Ok(self)
     }
@@ -86,7 +86,7 @@ impl DynamicProblem {
     /// [`Error::Length`] and [`Error::NotFinite`] for vectors that do not fit.
     pub fn starting_from(mut self, displacement: Vec<f64>, velocity: Vec<f64>) -> Result<Self, Error> {
         for (name, values) in [("initial displacement", &displacement), ("initial velocity", &velocity)] {
-            let (found, expected) = (values.len(), self.contact.dofs());
+            let (found, expected) = (values.len(), self.statics.dofs());
             if found != expected {
                 return Err(Error::Length { name, found, expected, of: "dofs" });
             }
@@ -105,9 +105,9 @@ impl DynamicProblem {
         self
     }
 
-    /// Stiffness, constant load, contact rows and gaps.
-    pub fn contact(&self) -> &ContactProblem {
-        &self.contact
+    /// The problem without inertia: stiffness, constant load, contact rows and gaps.
+    pub fn statics(&self) -> &ContactProblem {
+        &self.statics
     }
 
     /// The mass M (n x n).
@@ -133,12 +133,12 @@ impl DynamicProblem {
     /// The kinetic energy at the start and the work of deformation, `(v'M v + u'K u)/2`.
     pub fn initial_energy(&self) -> f64 {
         let [u, v] = [&self.displacement, &self.velocity];
-        (dot(v, &self.mass.mul(v)) + dot(u, &self.contact.stiffness().mul(u))) / 2.0
+        (dot(v, &self.mass.mul(v)) + dot(u, &self.statics.stiffness().mul(u))) / 2.0
     }
 
     /// The load at time `t`, length n.
     pub fn load_at(&self, t: f64) -> Vec<f64> {
-        let mut load = self.contact.load().to_vec();
+        let mut load = self.statics.load().to_vec();
         for (factor, of_factor) in &self.loads {
             let factor = factor.at(t);
             load.iter_mut().zip(of_factor).for_each(|(sum, part)| *sum += factor * part);
@@ -159,26 +159,26 @@ impl DynamicProblem {
     /// What is left of the gaps after a displacement, `g - B u`, one entry per row.
     pub(super) fn remaining_gap(&self, displacement: &[f64]) -> Vec<f64> {
         let moved = |row: usize| self.by_row.column(row).map(|(dof, b)| b * displacement[dof]).sum::<f64>();
-        self.contact.gap().iter().enumerate().map(|(row, gap)| gap - moved(row)).collect()
+        self.statics.gap().iter().enumerate().map(|(row, gap)| gap - moved(row)).collect()
     }
 
     /// `mass M + damping C + stiffness K`.
     pub(super) fn combination(&self, mass: f64, damping: f64, stiffness: f64) -> Result<SymmetricMatrix, Error> {
         let [of_mass, of_stiffness] = self.damping;
         let (m, k) = (mass + damping * of_mass, stiffness + damping * of_stiffness);
-        let parts = [(m, &self.mass), (k, self.contact.stiffness())];
+        let parts = [(m, &self.mass), (k, self.statics.stiffness())];
         let entries: Vec<_> = parts
             .into_iter()
             .filter(|part| part.0 != 0.0)
             .flat_map(|(factor, matrix)| matrix.lower().triplets().map(move |(i, j, value)| (i, j, factor * value)))
             .collect();
-        let dofs = self.contact.dofs();
+        let dofs = self.statics.dofs();
         SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &entries)?)
     }
 
     /// Subtracts `factor C v` from a force.
     pub(super) fn damp(&self, factor: f64, velocity: &[f64], force: &mut [f64]) {
-        for (coefficient, matrix) in self.damping.into_iter().zip([&self.mass, self.contact.stiffness()]) {
+        for (coefficient, matrix) in self.damping.into_iter().zip([&self.mass, self.statics.stiffness()]) {
             if coefficient != 0.0 {
                 let product = matrix.mul(velocity);
                 force.iter_mut().zip(product).for_each(|(f, c)| *f -= factor * coefficient * c);

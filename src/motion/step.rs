@@ -1,12 +1,48 @@
-//! What every scheme needs for a step: the trait that it implements, the prepared contact problem of its steps, sums of vectors.
+//! What every scheme needs: what it says of itself, the trait of its steps, their prepared contact problem, sums of vectors.
 
 use std::fmt;
 
 use super::{DynamicProblem, State};
 use crate::error::Error;
+use crate::fem::assembly::MassForm;
+use crate::qp::linear::SymmetricMatrix;
 use crate::qp::problem::ContactProblem;
 use crate::qp::{Prepared, Settings};
 use crate::solution::ContactSet;
+
+/// What a scheme says of itself.
+pub(super) struct About {
+    /// Its name in scenes and reports.
+    pub name: &'static str,
+    /// Its parameter, if it has one.
+    pub parameter: Option<Parameter>,
+    /// The forms of the mass that it can use; the first one suits it.
+    pub masses: &'static [MassForm],
+    /// It can gain energy at a blow.
+    pub gains_energy: bool,
+    /// Closed rows give way like springs.
+    pub penetrates: bool,
+    /// Its step is limited.
+    pub is_explicit: bool,
+    /// Prepares a motion in steps of one length, with the value of the parameter.
+    pub prepare: Prepare,
+}
+
+/// Prepares the steps of a scheme: the motion, the step, the parameter, how the contact problem of a step is solved.
+pub(super) type Prepare = fn(&DynamicProblem, f64, f64, &Settings) -> Result<Box<dyn Advance>, Error>;
+
+/// The parameter of a scheme.
+#[derive(Clone, Copy, Debug)]
+pub struct Parameter {
+    /// Its name in scenes.
+    pub name: &'static str,
+    /// The value of a scene that leaves it out.
+    pub default: f64,
+    /// Returns `true` if a value is in its range.
+    pub allows: fn(f64) -> bool,
+    /// The range in words.
+    pub range: &'static str,
+}
 
 /// A scheme with everything prepared that does not change from step to step.
 pub(super) trait Advance: fmt::Debug + Send + Sync {
@@ -20,7 +56,6 @@ pub(super) trait Advance: fmt::Debug + Send + Sync {
 #[derive(Debug)]
 pub(super) struct Stepping {
     prepared: Prepared,
-    settings: Settings,
 }
 
 /// What a step found: change of the displacement, multipliers, closed rows.
@@ -31,11 +66,19 @@ pub(super) struct Found {
 }
 
 impl Stepping {
+    /// Factorises a matrix (n x n) for the contact rows of a motion.
+    pub fn of(problem: &DynamicProblem, matrix: SymmetricMatrix, settings: &Settings) -> Result<Self, Error> {
+        let statics = problem.statics();
+        let (contact, gap) = (statics.contact().clone(), statics.gap().to_vec());
+        Self::new(&ContactProblem::new(matrix, vec![0.0; statics.dofs()], contact, gap)?, settings)
+    }
+
     /// Factorises the matrix of `problem`; its load and gaps say nothing but which rows there are.
     pub fn new(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
-        let prepared = Prepared::with_settings(problem, settings)?;
+        let prepared = Prepared::new(problem, settings)?;
         // A step is done whole or not at all: there is no half of it to return.
-        Ok(Stepping { prepared, settings: Settings { watch: settings.watch.unhurried(), ..settings.clone() } })
+        let unhurried = Settings { watch: settings.watch.unhurried(), time: None, ..settings.clone() };
+        Ok(Stepping { prepared: prepared.with_settings(&unhurried)? })
     }
 
     /// Number of dofs.
@@ -45,21 +88,22 @@ impl Stepping {
 
     /// Solves with a force and gaps, from the set of the last step.
     pub fn solve(&self, force: Vec<f64>, gap: Vec<f64>, start: &ContactSet) -> Result<Found, Error> {
-        let boundary = self.prepared.step_at(force, gap, start, &self.settings)?;
+        let boundary = self.prepared.with_load(force)?.starting_from(start).step(&gap)?;
         let change = boundary.displacement();
         Ok(Found { change, multiplier: boundary.multiplier, contact_set: boundary.contact_set })
     }
 
     /// The change that a force alone causes, as if no row were closed; `None` without a factor of the matrix.
     pub fn response(&self, force: Vec<f64>) -> Result<Option<Vec<f64>>, Error> {
-        self.prepared.response(force)
+        Ok(self.prepared.with_load(force)?.response())
     }
 
     /// The change of the displacement alone; certified only where the method did not settle on a set.
     pub fn change(&self, force: Vec<f64>, gap: Vec<f64>, start: &ContactSet) -> Result<Vec<f64>, Error> {
-        match self.prepared.settled_at(force.clone(), gap.clone(), start, &self.settings)? {
+        let at_step = self.prepared.with_load(force)?.starting_from(start);
+        match at_step.settled(&gap)? {
             Some(change) => Ok(change),
-            None => Ok(self.solve(force, gap, start)?.change),
+            None => Ok(at_step.step(&gap)?.displacement()),
         }
     }
 }

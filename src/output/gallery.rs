@@ -1,18 +1,18 @@
 //! What `--out` leaves in a folder: answers, fields and pictures of a scene.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use super::{
-    Array, CellType, ContactPicture, ObstacleLine, Plot, Quantity, Series, Unstructured, common_limits, common_window,
+    Array, ContactPicture, ObstacleLine, Plot, Quantity, Series, Unstructured, common_limits, common_window,
     line_plots, ticks::brief, write_atomically, write_files, write_picture,
 };
 use crate::error::Error;
-use crate::fem::mesh::ElementKind;
 use crate::fem::recovery::Stress;
 use crate::qp::matrix_market::solution_files;
 use crate::qp::with_contact_set;
-use crate::scene::Model;
-use crate::solution::{ContactSet, Solution};
+use crate::scene::{Answer, Model};
+use crate::solution::{ContactSet, Iteration, Solution};
 use crate::study::{Summary, Sweep, SweepCorner, SweepPoint};
 
 /// More iterations than this are not drawn one by one.
@@ -37,22 +37,15 @@ pub fn write_answer(folder: &Path, solution: &Solution) -> Result<(), Error> {
 ///
 /// # Errors
 /// [`Error::File`], and those of the recovery of stresses.
-pub fn write_solve(folder: &Path, model: &Model, solution: &Solution) -> Result<(), Error> {
-    write_atomically(
-        &folder.join("solution.vtu"),
-        fields(model, &solution.displacement, &solution.multiplier, &solution.contact_set)?.as_bytes(),
-    )?;
+pub fn write_solve(folder: &Path, answer: &Answer, history: &[Iteration]) -> Result<(), Error> {
+    write_atomically(&folder.join("solution.vtu"), fields(answer)?.as_bytes())?;
+    let model = answer.model();
     if !is_plane(model) {
         return Ok(());
     }
-    let answer = Scene::new(
-        model,
-        &solution.displacement,
-        &solution.contact_set,
-        format!("{}, {}", headline(model, "the answer"), closed_nodes(&solution.contact_set)),
-    )?;
-    draw_series(folder, &[("contact".to_string(), answer)])?;
-    write_iterations(folder, model, solution)
+    let title = format!("{}, {}", headline(model, "the answer"), closed_nodes(answer.contact_set()));
+    draw_series(folder, &[("contact".to_string(), Scene::new(answer, title)?)])?;
+    write_iterations(folder, model, history)
 }
 
 /// Has the model a picture in the plane?
@@ -61,19 +54,20 @@ fn is_plane(model: &Model) -> bool {
 }
 
 /// One picture for each set of the history, the displacement being that with the rows of the set held at their gaps.
-fn write_iterations(folder: &Path, model: &Model, solution: &Solution) -> Result<(), Error> {
-    let with_penalty = solution.history.iter().any(|step| step.penalty > 0.0);
-    if with_penalty || solution.history.len() > MOST_ITERATIONS {
+fn write_iterations(folder: &Path, model: &Arc<Model>, history: &[Iteration]) -> Result<(), Error> {
+    let with_penalty = history.iter().any(|step| step.penalty > 0.0);
+    if with_penalty || history.len() > MOST_ITERATIONS {
         return Ok(());
     }
     let mut series = Vec::new();
-    for (index, step) in solution.history.iter().enumerate() {
+    for (index, step) in history.iter().enumerate() {
         // A set that does not hold the body by itself has no displacement to show.
-        let Ok((displacement, _)) = with_contact_set(model.problem(), &step.contact_set) else { continue };
+        let Ok((displacement, multiplier)) = with_contact_set(model.problem(), &step.contact_set) else { continue };
         let number = index + 1;
         let what = format!("search for contact segments, iteration {number}");
         let title = format!("{}, {}", headline(model, &what), closed_nodes(&step.contact_set));
-        series.push((format!("iteration-{number}"), Scene::new(model, &displacement, &step.contact_set, title)?));
+        let shown = Answer::new(model.clone(), &displacement, &multiplier, &step.contact_set)?;
+        series.push((format!("iteration-{number}"), Scene::new(&shown, title)?));
     }
     draw_series(folder, &series)
 }
@@ -83,20 +77,18 @@ fn write_iterations(folder: &Path, model: &Model, solution: &Solution) -> Result
 ///
 /// # Errors
 /// As [`write_solve`].
-pub fn write_compare(folder: &Path, model: &Model, summaries: &[Summary; 3]) -> Result<(), Error> {
-    let [qp, active_set, _] = summaries;
-    let mut drawn = qp.solution.clone();
-    drawn.history.clone_from(&active_set.solution.history);
-    write_solve(folder, model, &drawn)?;
+pub fn write_compare(folder: &Path, answers: &[Answer; 3], summaries: &[Summary; 3]) -> Result<(), Error> {
+    let [_, active_set, _] = summaries;
+    write_solve(folder, &answers[0], &active_set.solution.history)?;
+    let model = answers[0].model();
     if !is_plane(model) {
         return Ok(());
     }
     let mut plots = Vec::new();
     for obstacle in 0..model.obstacles().len() {
         let mut series = Vec::new();
-        for Summary { solution, .. } in summaries {
-            let points = pressure_line(model, obstacle, solution)?;
-            series.push(Series::new(solution.method.clone(), points));
+        for (answer, Summary { solution, .. }) in answers.iter().zip(summaries) {
+            series.push(Series::new(solution.method.clone(), pressure_line(answer, obstacle)));
         }
         if series[0].points.is_empty() {
             continue;
@@ -125,15 +117,15 @@ pub fn write_compare(folder: &Path, model: &Model, summaries: &[Summary; 3]) -> 
 pub fn write_sweep(folder: &Path, sweep: &Sweep) -> Result<(), Error> {
     let points = &sweep.points;
     let mut series = Vec::new();
-    for (index, point) in points.iter().enumerate().filter(|(_, point)| is_plane(&point.model)) {
-        let (model, solution) = (&point.model, &point.summary.solution);
-        let title = format!("{}, {}", headline(model, ""), closed_nodes(&solution.contact_set));
-        let picture = Scene::new(model, &solution.displacement, &solution.contact_set, title)?;
-        series.push((format!("gap-{:02}", index + 1), picture));
+    for (index, SweepPoint { answer, .. }) in
+        points.iter().enumerate().filter(|(_, point)| is_plane(point.answer.model()))
+    {
+        let title = format!("{}, {}", headline(answer.model(), ""), closed_nodes(answer.contact_set()));
+        series.push((format!("gap-{:02}", index + 1), Scene::new(answer, title)?));
     }
     draw_series(folder, &series)?;
     let Some(first) = points.first() else { return Ok(()) };
-    let units = first.model.units();
+    let units = first.answer.model().units();
     let over_gap = |name: &str, unit: &str, at_point: Value<SweepPoint>, at_corner: Value<SweepCorner>| {
         // Beside the exact path the gaps are marks, which no line may join.
         let join = if sweep.corners.is_empty() { None } else { Some([f64::NAN; 2]) };
@@ -160,7 +152,7 @@ pub fn write_sweep(folder: &Path, sweep: &Sweep) -> Result<(), Error> {
         extent,
         over_gap("peak pressure", &units.pressure(), &|p| contact(p).pressure_max.unwrap_or(0.0), &|c| c.pressure_max),
     ];
-    write_picture(folder, "force-width", &line_plots(first.model.title(), &plots))?;
+    write_picture(folder, "force-width", &line_plots(first.answer.model().title(), &plots))?;
     Ok(())
 }
 
@@ -186,14 +178,14 @@ fn along_axis(model: &Model, obstacle: usize) -> usize {
 }
 
 /// Points [position along the boundary, pressure] of one obstacle.
-fn pressure_line(model: &Model, obstacle: usize, solution: &Solution) -> Result<Vec<[f64; 2]>, Error> {
+fn pressure_line(answer: &Answer, obstacle: usize) -> Vec<[f64; 2]> {
+    let model = answer.model();
     let axis = along_axis(model, obstacle);
-    let pressure = model.pressure(&solution.multiplier)?;
-    let rows = model.rows().iter().zip(pressure).filter(|(row, _)| row.obstacle == obstacle);
+    let rows = model.rows().iter().zip(answer.pressure()).filter(|(row, _)| row.obstacle == obstacle);
     let mut line: Vec<[f64; 2]> =
-        rows.map(|(row, pressure)| [model.mesh().nodes()[row.node][axis], pressure]).collect();
+        rows.map(|(row, &pressure)| [model.mesh().nodes()[row.node][axis], pressure]).collect();
     line.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    Ok(line)
+    line
 }
 
 /// What one picture shows, as plain data that it owns.
@@ -211,7 +203,8 @@ pub(super) struct Scene {
 }
 
 impl Scene {
-    pub(super) fn new(model: &Model, displacement: &[f64], set: &ContactSet, title: String) -> Result<Self, Error> {
+    pub(super) fn new(answer: &Answer, title: String) -> Result<Self, Error> {
+        let (model, set) = (answer.model(), answer.contact_set());
         let candidates: Vec<usize> = {
             let mut nodes: Vec<usize> = model.rows().iter().map(|row| row.node).collect();
             nodes.sort_unstable();
@@ -230,9 +223,12 @@ impl Scene {
             stress_unit: model.units().pressure(),
             nodes: model.mesh().nodes().iter().map(|&[x, y, _]| [x, y]).collect(),
             elements: model.mesh().elements().map(|nodes| nodes[..corners].to_vec()).collect(),
-            displacement: model.nodal_displacement(displacement)?,
-            field: model.stress(displacement)?.nodes.iter().map(|stress| stress.sigma_2).collect(),
-            outlines: (0..model.obstacles().len()).filter(|&i| model.obstacles()[i].is_rigid()).map(outline).collect(),
+            displacement: answer.displacement().to_vec(),
+            field: answer.stress()?.nodes.iter().map(|stress| stress.sigma_2).collect(),
+            outlines: (0..model.obstacles().len())
+                .filter(|&i| model.obstacles()[i].rigid().is_some())
+                .map(outline)
+                .collect(),
             closed: candidates.iter().map(|node| closed_nodes.contains(node)).collect(),
             candidates,
         })
@@ -289,27 +285,22 @@ fn draw_series(folder: &Path, series: &[(String, Scene)]) -> Result<(), Error> {
 }
 
 /// The text of the `.vtu` file: displacement, stresses, and at the candidates gap, pressure and contact flag.
-pub(super) fn fields(
-    model: &Model,
-    free_displacement: &[f64],
-    multiplier: &[f64],
-    set: &ContactSet,
-) -> Result<String, Error> {
+pub(super) fn fields(answer: &Answer) -> Result<String, Error> {
+    let model = answer.model();
     let nodes = model.mesh().nodes();
     let elements: Vec<Vec<usize>> = model.mesh().elements().map(<[usize]>::to_vec).collect();
-    let cell_types = vec![cell_type(model.mesh().kind()); elements.len()];
-    let displacement = in_space(&model.nodal_displacement(free_displacement)?, model.mesh().dimension());
-    let stress = model.stress(free_displacement)?;
+    let cell_types = vec![model.mesh().kind(); elements.len()];
+    let displacement = in_space(answer.displacement(), model.mesh().dimension());
+    let stress = answer.stress()?;
     // A node between two obstacles shows the sum of its pressures and the smaller of its gaps.
     let (mut pressure, mut gap) = (vec![0.0; nodes.len()], vec![0.0; nodes.len()]);
     let mut flag = vec![NO_CANDIDATE; nodes.len()];
-    let row_pressure = model.pressure(multiplier)?;
     for (index, row) in model.rows().iter().enumerate() {
         for (node, _) in row.ends() {
             let is_first = flag[node] == NO_CANDIDATE;
             gap[node] = if is_first { row.gap } else { row.gap.min(gap[node]) };
-            pressure[node] += row_pressure[index];
-            flag[node] = f64::from(set.contains(index)).max(flag[node]);
+            pressure[node] += answer.pressure()[index];
+            flag[node] = f64::from(answer.contact_set().contains(index)).max(flag[node]);
         }
     }
     let components: [fn(&Stress) -> f64; 4] = [|s| s.sigma_1, |s| s.sigma_2, |s| s.von_mises, |s| s.sigma_3];
@@ -337,18 +328,6 @@ pub(super) fn fields(
         ],
     }
     .to_vtu()
-}
-
-fn cell_type(kind: ElementKind) -> CellType {
-    match kind {
-        ElementKind::Line2 => CellType::Line,
-        ElementKind::T3 => CellType::Triangle,
-        ElementKind::T6 => CellType::QuadraticTriangle,
-        ElementKind::Q4 => CellType::Quadrilateral,
-        ElementKind::Q8 => CellType::QuadraticQuadrilateral,
-        ElementKind::Tet4 => CellType::Tetrahedron,
-        ElementKind::Hex8 => CellType::Hexahedron,
-    }
 }
 
 /// Nodal vectors of `dimension` components with three.

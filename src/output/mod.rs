@@ -35,7 +35,7 @@ mod tradeoff;
 mod typeface;
 pub(crate) mod vtu;
 
-pub use body::{ContactPicture, ObstacleLine, common_limits, common_window};
+pub(crate) use body::{ContactPicture, ObstacleLine, common_limits, common_window};
 pub use drawing::Drawing;
 pub use file::{write_atomically, write_files, write_picture};
 #[cfg(feature = "cli")]
@@ -50,4 +50,4 @@ pub(crate) use report::printable;
 pub use report::{compare_text, solve_text, sweep_text, verify_text};
 pub use ticks::{Quantity, Scale};
 pub use tradeoff::{tradeoff_csv, tradeoff_plot, tradeoff_text};
-pub use vtu::{Array, CellType, Unstructured};
+pub use vtu::{Array, Unstructured};

@@ -8,6 +8,7 @@ use std::fmt::Write as _;
 use std::fs::OpenOptions;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
@@ -20,7 +21,7 @@ use super::{
 use crate::error::Error;
 use crate::file::{MOST_OF_TABLE, read_text_capped};
 use crate::motion::{Observation, State};
-use crate::scene::Model;
+use crate::scene::{Answer, Model};
 use crate::solution::ContactSet;
 use crate::study::MotionSummary;
 
@@ -160,10 +161,16 @@ impl MotionFolder {
     ///
     /// # Errors
     /// [`Error::File`], and those of the recovery of stresses.
-    pub fn frame(&mut self, model: &Model, time: f64, state: &State, summary: &MotionSummary) -> Result<(), Error> {
+    pub fn frame(
+        &mut self,
+        model: &Arc<Model>,
+        time: f64,
+        state: &State,
+        summary: &MotionSummary,
+    ) -> Result<(), Error> {
         self.write_lines()?;
         let (number, closed) = (self.times.len(), state.contact_set.iter().collect::<Vec<usize>>());
-        let vtu = fields(model, &state.displacement, &state.multiplier, &state.contact_set)?;
+        let vtu = fields(&Answer::new(model.clone(), &state.displacement, &state.multiplier, &state.contact_set)?)?;
         write_atomically(&self.folder.join(vtu_name(number)), vtu.as_bytes())?;
         let frame = Frame {
             time,
@@ -210,7 +217,7 @@ impl MotionFolder {
     ///
     /// # Errors
     /// [`Error::File`], and those of the recovery of stresses and of the rasteriser.
-    pub fn draw(&self, model: &Model) -> Result<(), Error> {
+    pub fn draw(&self, model: &Arc<Model>) -> Result<(), Error> {
         let history = self.read_history()?;
         let line =
             |name: &str, column: usize| Series::new(name, history.iter().map(|row| [row[0], row[column]]).collect());
@@ -230,7 +237,8 @@ impl MotionFolder {
             let frame = self.read_frame(number)?;
             let set = closed_of(model.rows().len(), &frame.closed);
             let title = format!("{}, t = {:.4}", model.title(), frame.time);
-            Ok(Scene::new(model, &frame.displacement, &set, title)?.in_place())
+            let shown = Answer::new(model.clone(), &frame.displacement, &frame.multiplier, &set)?;
+            Ok(Scene::new(&shown, title)?.in_place())
         };
         // First what all frames share, then one after another: no two are in memory together.
         let (mut limits, mut window) = ([f64::INFINITY, f64::NEG_INFINITY], None);

@@ -4,7 +4,6 @@ use serde::{Serialize, Serializer};
 use serde_json::json;
 
 use super::report::{entry, plural, printable, quantity};
-use crate::motion::Scheme;
 use crate::qp::Method;
 use crate::scene::{Dynamics, Model};
 use crate::study::{MotionSummary, RunSeconds, status};
@@ -29,7 +28,7 @@ impl MotionReport<'_> {
     /// where the motion was cut short.
     pub fn is_certified(&self) -> bool {
         let is_whole = self.summary.steps >= self.dynamics.steps;
-        is_whole && !matches!(self.dynamics.scheme, Scheme::Penalty { .. }) && self.method != Method::Penalty
+        is_whole && !self.dynamics.scheme.penetrates() && !matches!(self.method, Method::Penalty(_))
     }
 
     /// The report in lines of at most 100 characters.

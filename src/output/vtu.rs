@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::typeface::escape;
 use crate::error::Error;
+use crate::fem::ElementKind;
 
 /// Named values, one entry per point or per cell.
 #[derive(Clone, Copy, Debug)]
@@ -16,40 +17,6 @@ pub enum Array<'a> {
     Flags(&'a str, &'a [bool]),
 }
 
-/// The cells of a `.vtu` file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CellType {
-    /// Two nodes.
-    Line,
-    /// Three nodes in order around it.
-    Triangle,
-    /// Three corners, then the mid-sides between them.
-    QuadraticTriangle,
-    /// Four nodes in order around it.
-    Quadrilateral,
-    /// Four corners, then the mid-sides between them.
-    QuadraticQuadrilateral,
-    /// Four nodes, the first three counterclockwise seen from the fourth.
-    Tetrahedron,
-    /// Eight nodes: a face, counterclockwise seen from the opposite one, and the opposite one.
-    Hexahedron,
-}
-
-impl CellType {
-    /// The number by which the format knows it, and how many nodes it has.
-    fn number_and_nodes(self) -> (u8, usize) {
-        match self {
-            CellType::Line => (3, 2),
-            CellType::Triangle => (5, 3),
-            CellType::QuadraticTriangle => (22, 6),
-            CellType::Quadrilateral => (9, 4),
-            CellType::QuadraticQuadrilateral => (23, 8),
-            CellType::Tetrahedron => (10, 4),
-            CellType::Hexahedron => (12, 8),
-        }
-    }
-}
-
 /// A mesh with its data, as plain data.
 #[derive(Clone, Copy, Debug)]
 pub struct Unstructured<'a> {
@@ -58,7 +25,7 @@ pub struct Unstructured<'a> {
     /// The nodes of every cell in the order of its type, indices from 0.
     pub elements: &'a [Vec<usize>],
     /// What each cell is; as many as there are elements.
-    pub cell_types: &'a [CellType],
+    pub cell_types: &'a [ElementKind],
     /// Values at the nodes.
     pub point_data: &'a [Array<'a>],
     /// Values in the elements.
@@ -98,7 +65,7 @@ impl Unstructured<'_> {
             return Err(Error::Length { name: "the cell types of a .vtu file", found, expected, of: "elements" });
         }
         for (element, cell_type) in self.elements.iter().zip(self.cell_types) {
-            let (kind, nodes) = cell_type.number_and_nodes();
+            let (kind, nodes) = (cell_type.reference().vtk, cell_type.nodes());
             if element.len() != nodes {
                 let name = "number of nodes of an element in a .vtu file";
                 let value = element.len() as f64;

@@ -3,13 +3,17 @@
 use std::time::Instant;
 
 use super::cost::Estimate;
-use super::engine::{Prepared, multigrid};
+use super::engine::Prepared;
 use super::judged::{out_of_time, with_solution};
 use super::plan::{Choice, Tried, safer};
 use super::problem::ContactProblem;
 use super::settings::{Method, Settings};
 use crate::error::Error;
-use crate::solution::{Attempt, ContactSet, Solution};
+use crate::qp::method::Start;
+use crate::solution::{Attempt, Seconds, Solution};
+
+/// Cycles after which an iteration that was chosen for its speed is no longer fast: a factor comes next.
+const EXPECTED_CYCLES: usize = 80;
 
 /// How the ways that are tried end by themselves.
 ///
@@ -20,7 +24,7 @@ pub(super) fn solved(problem: &ContactProblem, settings: &Settings) -> Result<So
     let mut attempts = Attempts { clock: Instant::now(), made: Vec::new(), factor_seconds: 0.0 };
     let found = match settings.method {
         Method::Auto => attempts.choose(problem, settings),
-        Method::Mprgp => multigrid::solve(problem, settings),
+        Method::Mprgp => by_multigrid(problem, settings),
         _ => attempts.with_factor(problem, settings),
     };
     let found = match found {
@@ -43,7 +47,7 @@ impl Attempts {
     fn choose(&mut self, problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
         let estimate = Estimate::of(problem);
         let (allowed, watch) = (settings.memory.unwrap_or(f64::INFINITY), &settings.watch);
-        let mut refused = None;
+        let (mut refused, mut most_cycles) = (None, settings.max_iterations);
         let reason = match estimate.choose(allowed)? {
             Choice::Factor => match self.with_factor(problem, settings) {
                 Err(Error::TooLarge { bytes, .. }) => {
@@ -58,10 +62,17 @@ impl Attempts {
                 }
                 decided => return decided,
             },
-            Choice::Speed { reason } | Choice::Room { reason } => reason,
+            Choice::Speed { reason } => {
+                most_cycles = EXPECTED_CYCLES.min(most_cycles);
+                reason
+            }
+            Choice::Room { reason } => reason,
         };
         let clock = Instant::now();
-        let fell_short = match by_multigrid(problem, settings, reason) {
+        let expected = Settings { max_iterations: most_cycles, ..settings.clone() };
+        let answered =
+            with_solution(by_multigrid(problem, &expected), |solution| Solution { reason: Some(reason), ..solution });
+        let fell_short = match answered {
             Err(error @ (Error::NotCertified { .. } | Error::Numerical { .. } | Error::NotConvex { .. }))
                 if !watch.is_over() =>
             {
@@ -93,35 +104,28 @@ impl Attempts {
     /// The answer with a factor; where a shortcut falls short, by the active set in double precision, and where a condensed
     /// problem does, on all dofs.
     fn with_factor(&mut self, problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
-        self.with_factor_from(None, problem, settings)
+        self.with_factor_from(Start::default(), problem, settings)
     }
 
-    /// The same, the active-set steps starting from `start` where it is given.
+    /// The same, the active-set steps starting from `start`.
     fn with_factor_from(
         &mut self,
-        start: Option<&ContactSet>,
+        start: Start,
         problem: &ContactProblem,
         settings: &Settings,
     ) -> Result<Solution, Error> {
         let clock = Instant::now();
-        let prepared = Prepared::with_settings(problem, settings)?;
-        let preparation = prepared.seconds();
-        let with_preparation = |mut solution: Solution| {
-            solution.seconds.factor += preparation.factor;
-            solution.seconds.solve += preparation.solve;
-            solution
-        };
-        let ending = prepared.solve_gap(problem.gap().to_vec(), start, settings);
-        let fell_short = match with_solution(ending, with_preparation) {
+        let prepared = Prepared::new(problem, settings)?.starting_from(start);
+        let fell_short = match solved_with(&prepared, problem) {
             Err(error @ (Error::NotCertified { .. } | Error::Numerical { .. })) => error,
             decided => return decided,
         };
-        let tried = prepared.tried(settings);
+        let tried = prepared.tried();
         let Some((safer, start)) = safer(&tried, settings, &fell_short) else { return Err(fell_short) };
         drop(prepared);
         let seconds = clock.elapsed().as_secs_f64();
         let clock = Instant::now();
-        match self.with_factor_from(start.as_ref(), problem, &safer) {
+        match self.with_factor_from(start, problem, &safer) {
             // Where it is cut short, what was tried first may have come further.
             Err(error) if is_better(&fell_short, &error) => {
                 let tried = Tried::on_all_dofs(safer.method);
@@ -178,11 +182,21 @@ fn ending(error: &Error) -> String {
     }
 }
 
-/// The answer without a factor, and why there is none.
+/// The answer without a factor.
 ///
 /// # Errors
-/// As [`Iterative::solve_gap`](super::Iterative::solve_gap).
-fn by_multigrid(problem: &ContactProblem, settings: &Settings, reason: String) -> Result<Solution, Error> {
-    let reason = Some(reason);
-    with_solution(multigrid::solve(problem, settings), |solution| Solution { reason, ..solution })
+/// As [`Prepared::new`] and [`Prepared::solve`].
+fn by_multigrid(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
+    let settings = Settings { method: Method::Mprgp, ..settings.clone() };
+    solved_with(&Prepared::new(problem, &settings)?, problem)
+}
+
+/// The answer at the gaps of `problem`, whose time is that of its preparation too.
+fn solved_with(prepared: &Prepared, problem: &ContactProblem) -> Result<Solution, Error> {
+    let Seconds { factor, solve, .. } = prepared.seconds();
+    with_solution(prepared.solve(problem.gap()), |mut solution| {
+        solution.seconds.factor += factor;
+        solution.seconds.solve += solve;
+        solution
+    })
 }

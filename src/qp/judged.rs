@@ -2,7 +2,29 @@
 
 use super::problem::ContactProblem;
 use crate::error::Error;
-use crate::solution::{ContactSet, Goal, Seconds, Solution};
+use crate::qp::method::Outcome;
+use crate::solution::{Certificate, ContactSet, Goal, Seconds, Solution};
+
+/// An outcome of the method called `name` with its certificate, and nothing else known of it.
+pub(super) fn answer(outcome: Outcome, name: &str, certificate: Certificate) -> Solution {
+    let Outcome { displacement, multiplier, contact_set, iterations, history, variant, .. } = outcome;
+    Solution {
+        condensed_dofs: displacement.len(),
+        displacement,
+        multiplier,
+        contact_set,
+        method: format!("{name}{variant}"),
+        iterations,
+        history,
+        certificate,
+        proven: None,
+        refinements: None,
+        lost_pivot: None,
+        reason: None,
+        attempts: Vec::new(),
+        seconds: Seconds::default(),
+    }
+}
 
 /// The solution if its certificate meets the goal.
 ///
@@ -53,20 +75,8 @@ pub(super) fn not_rechecked(problem: &ContactProblem, claim: &Error) -> Result<E
 fn at_rest(problem: &ContactProblem) -> Result<Solution, Error> {
     let (displacement, multiplier) = (vec![0.0; problem.dofs()], vec![0.0; problem.rows()]);
     let certificate = problem.certify_in(None, &displacement, &multiplier)?;
-    Ok(Solution {
-        displacement,
-        multiplier,
-        contact_set: ContactSet::open(problem.rows()),
-        method: "none".to_string(),
-        iterations: 0,
-        history: Vec::new(),
-        certificate,
-        proven: None,
-        refinements: None,
-        lost_pivot: None,
-        reason: None,
-        attempts: Vec::new(),
-        condensed_dofs: problem.dofs(),
-        seconds: Seconds::default(),
-    })
+    let (contact_set, history) = (ContactSet::open(problem.rows()), Vec::new());
+    let nothing =
+        Outcome { displacement, multiplier, contact_set, iterations: 0, history, settled: false, variant: "" };
+    Ok(answer(nothing, "none", certificate))
 }

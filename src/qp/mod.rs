@@ -11,6 +11,7 @@
 
 mod attempts;
 pub(crate) mod barrier;
+mod certificate;
 mod claims;
 pub(crate) mod cost;
 mod engine;
@@ -24,12 +25,14 @@ mod run;
 mod settings;
 pub(crate) mod transform;
 
-pub use engine::{BoundarySolution, Iterative, Path, Prepared};
+pub use engine::{BoundarySolution, Path, Prepared};
 pub use linear::multigrid::NearNullSpace;
 pub use linear::{SparseMatrix, SymmetricMatrix};
 pub use matrix_market::{near_null_file, problem_files, read_problem, read_vector, solution_files};
-pub use method::mprgp::Start;
-pub use method::parametric::{Event, Piece};
+pub use method::Start;
+pub use method::interior_point::InteriorPoint;
+pub use method::parametric::Event;
+pub use method::penalty::Penalty;
 pub use problem::ContactProblem;
 pub use settings::{Condense, Method, Precision, Settings};
 
@@ -37,6 +40,20 @@ use crate::error::Error;
 use crate::solution::{ContactSet, Solution};
 
 /// Solves a contact problem; `Ok` means that the answer is certified to `settings.tolerance`.
+///
+/// ```
+/// use signorini::{ContactProblem, Method, Settings, SparseMatrix, SymmetricMatrix, solve};
+///
+/// // A spring of stiffness 2 at rest, a wall that starts 0.5 inside: g = -0.5.
+/// let one = |value| SparseMatrix::from_triplets(1, 1, &[(0, 0, value)]);
+/// let stiffness = SymmetricMatrix::from_lower(one(2.0)?)?;
+/// let problem = ContactProblem::new(stiffness, vec![0.0], one(1.0)?, vec![-0.5])?;
+///
+/// let solution = solve(&problem, &Settings::with_method(Method::ActiveSet))?;
+/// assert_eq!(solution.displacement, [-0.5]);
+/// assert_eq!(solution.multiplier, [2.0 * -0.5]);
+/// # Ok::<(), signorini::Error>(())
+/// ```
 ///
 /// # Errors
 /// * [`Error::Setting`] for a setting outside its range,
@@ -59,7 +76,7 @@ pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, 
 /// # Errors
 /// As [`solve`].
 pub fn solve_qp(problem: &ContactProblem) -> Result<Solution, Error> {
-    solve(problem, &Settings::with_method(Method::Qp))
+    solve(problem, &Settings::with_method(Method::qp()))
 }
 
 /// Displacement and multiplier of the body with the rows of `closed` held at their gaps and all others free: one
@@ -67,6 +84,7 @@ pub fn solve_qp(problem: &ContactProblem) -> Result<Solution, Error> {
 ///
 /// # Errors
 /// As [`solve`], without [`Error::NotCertified`]; [`Error::Infeasible`] where the rows of the set contradict each other.
-pub fn with_contact_set(problem: &ContactProblem, closed: &ContactSet) -> Result<(Vec<f64>, Vec<f64>), Error> {
-    Prepared::new(problem, Condense::Auto)?.with_contact_set(closed)
+#[cfg_attr(not(feature = "pictures"), allow(dead_code))]
+pub(crate) fn with_contact_set(problem: &ContactProblem, closed: &ContactSet) -> Result<(Vec<f64>, Vec<f64>), Error> {
+    engine::with_contact_set(problem, closed)
 }

@@ -15,17 +15,21 @@ use std::sync::LazyLock;
 
 use serde::Deserialize;
 
+use super::certificate::EnergyNorm;
 use super::cost::{Estimate, FACTORS, Kept, bytes, check_memory, check_time, seconds};
 use super::linear::Analysis;
-use super::problem::{ContactProblem, EnergyNorm};
+use super::method::Start;
+use super::method::interior_point::InteriorPoint;
+use super::method::penalty::Penalty;
+use super::problem::ContactProblem;
 use super::settings::{Condense, Method, Precision, Settings};
 use super::transform::{Condensation, Scaling};
 use crate::error::{Error, memory as written};
-use crate::solution::{Certificate, ContactSet};
+use crate::solution::Certificate;
 
-/// The direct path is exact and its bound proven: it is left only where it takes so many times as long. In space that is
-/// beyond some 160,000 dofs.
-const CLEARLY: f64 = 20.0;
+/// The direct path is exact and its bound proven: it is left only if it takes so many times as long. In space that is
+/// beyond some 20,000 dofs.
+const CLEARLY: f64 = 3.0;
 
 /// An estimate may be so many times too large.
 const UNSURE: f64 = 2.0;
@@ -54,7 +58,7 @@ impl Estimate {
     pub(super) fn choose(&self, most_bytes: f64) -> Result<Choice, Error> {
         let ratio = self.direct_seconds / self.multigrid_seconds;
         // Constants alone make a poor hierarchy of a body.
-        if ratio > CLEARLY && self.knows_motions && self.multigrid_bytes <= most_bytes {
+        if ratio > CLEARLY && self.suits_multigrid && self.multigrid_bytes <= most_bytes {
             let reason = format!("by multigrid: a factorisation would take about {ratio:.0} times as long");
             return Ok(Choice::Speed { reason });
         }
@@ -149,22 +153,22 @@ impl Way {
 
     /// `settings` with this way.
     pub fn settings(self, settings: &Settings) -> Settings {
-        let (method, precision) = match self {
-            Way::ActiveSet => (Method::ActiveSet, Precision::Double),
-            Way::ActiveSetMixed => (Method::ActiveSet, Precision::Mixed),
-            Way::Qp | Way::QpUnpolished => (Method::Qp, settings.precision),
-            Way::Penalty | Way::PenaltyRung => (Method::Penalty, settings.precision),
+        let (method, precision) = match (self, settings.accuracy) {
+            (Way::ActiveSet, _) => (Method::ActiveSet, Precision::Double),
+            (Way::ActiveSetMixed, _) => (Method::ActiveSet, Precision::Mixed),
+            (Way::QpUnpolished, Some(accuracy)) => {
+                let loose = InteriorPoint { polish: false, tolerance: INTERIOR_POINT_SHARE * accuracy };
+                (Method::Qp(loose), settings.precision)
+            }
+            (Way::Qp | Way::QpUnpolished, _) => (Method::qp(), settings.precision),
+            (Way::PenaltyRung, Some(accuracy)) => {
+                let rung = PENALTY_OVER_ACCURACY / accuracy;
+                let one = Penalty { first: rung, last: rung, ..Penalty::default() };
+                (Method::Penalty(one), settings.precision)
+            }
+            (Way::Penalty | Way::PenaltyRung, _) => (Method::penalty(), settings.precision),
         };
-        let mut settings = Settings { method, precision, ..settings.clone() };
-        if let (Way::QpUnpolished, Some(accuracy)) = (self, settings.accuracy) {
-            settings.polish = false;
-            settings.interior_point_tolerance = INTERIOR_POINT_SHARE * accuracy;
-        }
-        if let (Way::PenaltyRung, Some(accuracy)) = (self, settings.accuracy) {
-            settings.first_penalty = PENALTY_OVER_ACCURACY / accuracy;
-            settings.last_penalty = settings.first_penalty;
-        }
-        settings
+        Settings { method, precision, ..settings.clone() }
     }
 }
 
@@ -272,7 +276,7 @@ impl Layout {
     }
 
     fn by_interior_point(&self, settings: &Settings) -> bool {
-        self.way.map_or(settings.method, |way| way.settings(settings).method) == Method::Qp
+        matches!(self.way.map_or(settings.method, |way| way.settings(settings).method), Method::Qp(_))
     }
 
     /// Seconds until the first set of contact rows is settled, or the first step of the interior point is done.
@@ -329,22 +333,22 @@ impl Tried {
     }
 }
 
-/// Settings that may reach what was `tried` and fell short, and the set that they start from: a shortcut is left first, then the
+/// Settings that may reach what was `tried` and fell short, and where they start: a shortcut is left first, then the
 /// condensation, which loses digits where the contact boundary feels little of the stiffness of the body.
-pub(super) fn safer(tried: &Tried, settings: &Settings, fell_short: &Error) -> Option<(Settings, Option<ContactSet>)> {
+pub(super) fn safer(tried: &Tried, settings: &Settings, fell_short: &Error) -> Option<(Settings, Start)> {
     if settings.watch.is_over() {
         return None;
     }
     let method = if settings.method == Method::Auto { Method::ActiveSet } else { settings.method };
     let safe = Settings { method, precision: Precision::Double, ..settings.clone() };
     if tried.is_shortcut {
-        return Some((safe, None));
+        return Some((safe, Start::default()));
     }
     let (miss, start) = match fell_short {
         // What rounding of the displacement explains is no loss of the condensation.
         Error::NotCertified { solution, .. } if is_exact(&solution.certificate, settings) => return None,
-        Error::NotCertified { solution, value, .. } if !value.is_nan() => (*value, Some(solution.contact_set.clone())),
-        _ => (f64::INFINITY, None),
+        Error::NotCertified { solution, value, .. } if !value.is_nan() => (*value, Start::from(&solution.contact_set)),
+        _ => (f64::INFINITY, Start::default()),
     };
     // What is asked for as it is, as a small penalty, falls short on all dofs too.
     let may_gain = tried.condensed_dofs.is_some() && safe.condense == Condense::Auto && safe.allows_last_resort(miss);

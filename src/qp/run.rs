@@ -2,10 +2,12 @@
 
 use super::settings::{Method, Settings};
 use crate::error::Error;
-use crate::qp::method::interior_point::{self, InteriorPoint};
-use crate::qp::method::penalty::{self, BEST_PENALTY, Ladder};
-use crate::qp::method::{Outcome, ScaledProblem, active_set, dual_active_set};
-use crate::solution::{ContactSet, Iteration};
+use crate::qp::method::active_set::ActiveSet;
+use crate::qp::method::dual_active_set::DualActiveSet;
+use crate::qp::method::interior_point::{Barrier, InteriorPoint};
+use crate::qp::method::penalty::{self, Penalty, PenaltyLoop};
+use crate::qp::method::{Outcome, ScaledProblem, Solver, Start};
+use crate::solution::ContactSet;
 
 /// Iterations of the active-set loop after which its start is taken for a poor one.
 const PATIENCE: usize = 16;
@@ -28,7 +30,8 @@ pub(super) fn run(
     match found.and_then(unique) {
         Err(claim @ (Error::Unbounded { .. } | Error::UnderHeld { .. })) if !scaled.is_evident(&claim) => {
             // Only of rows that can be met together, and where there is no balance, which rounding may hide.
-            match dual_active_set::solve(scaled)? {
+            let balance = DualActiveSet::of(scaled)?.map(|method| method.solve(Start::default())).transpose()?;
+            match balance {
                 Some(balance) if balance.settled || !scaled.is_true(&claim) => unique(balance),
                 _ => Err(claim),
             }
@@ -45,46 +48,39 @@ fn run_method(
     bound: &dyn Fn(&[f64], &[f64]) -> f64,
 ) -> Result<Outcome, Error> {
     let cold = scaled.start()?;
-    Ok(match settings.method {
-        Method::Qp if settings.polish && start.is_some() => {
-            let outcome = settle(scaled, start.unwrap_or(cold), settings)?;
-            Outcome { variant: if outcome.settled { "-warm" } else { outcome.variant }, ..outcome }
+    match settings.method {
+        Method::Qp(InteriorPoint { polish: true, tolerance }) => match start {
+            Some(start) => {
+                let outcome = settle(scaled, start, settings)?;
+                Ok(Outcome { variant: if outcome.settled { "-warm" } else { outcome.variant }, ..outcome })
+            }
+            None => {
+                let found = Barrier { scaled, tolerance }.solve(Start::default())?;
+                // The multipliers become those of a linear solve.
+                let polished = settle(scaled, found.contact_set, settings)?;
+                Ok(Outcome { iterations: found.iterations, ..polished })
+            }
+        },
+        Method::Qp(InteriorPoint { polish: false, tolerance }) => Barrier { scaled, tolerance }.solve(Start::default()),
+        Method::Penalty(ladder) => {
+            let goal = settings.accuracy.map(|accuracy| penalty::Goal { accuracy, bound });
+            let climb = PenaltyLoop { scaled, ladder, goal, most_iterations: settings.max_iterations };
+            climb.solve(start.unwrap_or(cold).into())
         }
-        Method::Qp => {
-            let found = match scaled.problem.rows() {
-                0 => InteriorPoint::nothing_found(scaled.problem),
-                _ => interior_point::solve(scaled, settings.interior_point_tolerance)?,
-            };
-            if settings.polish { polish(scaled, found, settings)? } else { unpolished(found) }
-        }
-        Method::Auto | Method::ActiveSet => settle(scaled, start.unwrap_or(cold), settings)?,
-        Method::Penalty => {
-            let ladder = Ladder {
-                first: settings.first_penalty,
-                last: settings.last_penalty,
-                threshold: settings.penetration_threshold,
-                extrapolate: settings.extrapolate,
-                goal: settings.accuracy.map(|accuracy| penalty::Goal { accuracy, bound }),
-            };
-            penalty::solve(scaled, start.unwrap_or(cold), ladder, settings.max_iterations)?
-        }
-        Method::Mprgp => {
-            let reason = "its hierarchy stands in `Iterative`, which is prepared without a factorisation".to_string();
-            return Err(Error::Numerical { step: "MPRGP on a factorised problem", reason });
-        }
-    })
+        Method::Auto | Method::ActiveSet | Method::Mprgp => settle(scaled, start.unwrap_or(cold), settings),
+    }
 }
 
-/// What the dual active-set method finds where another fell short; what that left where it finds nothing.
+/// What the dual active-set method finds after another fell short; what that left if it finds nothing.
 ///
 /// # Errors
-/// Those of [`dual_active_set::solve`].
+/// Those of [`DualActiveSet`].
 pub(super) fn last_resort(scaled: &ScaledProblem, before: Outcome) -> Result<Outcome, Error> {
     if before.is_last_resort() || scaled.watch().is_over() {
         return Ok(before);
     }
-    Ok(match dual_active_set::solve(scaled)? {
-        Some(found) => found.after(before),
+    Ok(match DualActiveSet::of(scaled)? {
+        Some(method) => method.solve(Start::default())?.after(before),
         None => before,
     })
 }
@@ -98,38 +94,19 @@ pub(super) fn last_resort(scaled: &ScaledProblem, before: Outcome) -> Result<Out
 /// K. Ito and K. Kunisch, *Semi-smooth Newton methods for variational inequalities of the first kind*, ESAIM: M2AN 37
 /// (2003) 41-62.
 fn settle(scaled: &ScaledProblem, start: ContactSet, settings: &Settings) -> Result<Outcome, Error> {
-    let first = active_set::solve(scaled, start, settings.max_iterations.min(PATIENCE))?;
-    if first.settled || settings.max_iterations <= PATIENCE || scaled.watch().is_over() {
+    let most_iterations = settings.max_iterations;
+    let first = ActiveSet { scaled, most_iterations: most_iterations.min(PATIENCE) }.solve(start.into())?;
+    if first.settled || most_iterations <= PATIENCE || scaled.watch().is_over() {
         return Ok(first);
     }
-    let ladder = Ladder { first: 1.0, last: BEST_PENALTY, threshold: 0.0, extrapolate: false, goal: None };
-    let approach = penalty::solve(scaled, first.contact_set, ladder, settings.max_iterations)?;
+    let ladder = Penalty { penetration_threshold: 0.0, ..Penalty::default() };
+    let approach = PenaltyLoop { scaled, ladder, goal: None, most_iterations }.solve(first.contact_set.into())?;
     if scaled.watch().is_over() {
         return Ok(Outcome { settled: false, variant: "-unsettled", ..approach });
     }
-    let mut second = active_set::solve(scaled, approach.contact_set, settings.max_iterations)?;
+    let mut second = ActiveSet { scaled, most_iterations }.solve(approach.contact_set.into())?;
     second.history = [first.history, approach.history, second.history].concat();
     second.iterations = second.history.len();
     second.variant = if second.settled { "-continuation" } else { second.variant };
     Ok(second)
-}
-
-/// The active-set loop started from the set of the QP: the multipliers become those of a linear solve.
-fn polish(scaled: &ScaledProblem, found: InteriorPoint, settings: &Settings) -> Result<Outcome, Error> {
-    let iterations = found.iterations;
-    let polished = settle(scaled, found.contact_set, settings)?;
-    Ok(Outcome { iterations, ..polished })
-}
-
-fn unpolished(found: InteriorPoint) -> Outcome {
-    let step = Iteration { contact_set: found.contact_set.clone(), penalty: 0.0 };
-    Outcome {
-        displacement: found.displacement,
-        multiplier: found.multiplier,
-        contact_set: found.contact_set,
-        iterations: found.iterations,
-        history: vec![step],
-        settled: true,
-        variant: "-unpolished",
-    }
 }

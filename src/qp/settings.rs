@@ -3,7 +3,8 @@
 use std::time::Duration;
 
 use crate::error::Error;
-use crate::qp::method::penalty::BEST_PENALTY;
+use crate::qp::method::interior_point::InteriorPoint;
+use crate::qp::method::penalty::{BEST_PENALTY, Penalty};
 use crate::solution::Goal;
 use crate::watch::Watch;
 
@@ -11,32 +12,49 @@ use crate::watch::Watch;
 /// make it so many times larger.
 const PENETRATION: f64 = 100.0;
 
-/// The method that finds the contact set.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// The method that finds the contact set, with its own options.
+///
+/// ```
+/// use signorini::{Method, Penalty};
+///
+/// assert_eq!(Method::penalty(), Method::Penalty(Penalty::default()));
+/// assert_eq!(Method::qp().name(), "qp");
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum Method {
     /// The program chooses, by rules fitted to measured times; MPRGP where the factor of a body in space would cost much more,
     /// or does not fit into [`Settings::memory`].
     #[default]
     Auto,
-    /// Convex QP by Clarabel, its contact set settled by the active-set loop.
-    Qp,
+    /// Convex QP by Clarabel, its contact set settled by the active-set loop unless [`InteriorPoint::polish`] is `false`.
+    Qp(InteriorPoint),
     /// Active-set loop with Lagrange multipliers, from C = 0.
     ActiveSet,
     /// Penalty loop with a growing penalty.
-    Penalty,
+    Penalty(Penalty),
     /// Projected conjugate gradients with a multigrid hierarchy: no factorisation of the body.
     Mprgp,
 }
 
 impl Method {
+    /// [`Method::Qp`] with its default options: polished, to 1e-9.
+    pub const fn qp() -> Self {
+        Method::Qp(InteriorPoint::DEFAULT)
+    }
+
+    /// [`Method::Penalty`] with its default ladder, from 1 to 1e8.
+    pub const fn penalty() -> Self {
+        Method::Penalty(Penalty::DEFAULT)
+    }
+
     /// The name in reports: `qp`, `active-set`, `penalty` or `mprgp`; what chooses among them is `auto`.
     pub fn name(self) -> &'static str {
         match self {
             Method::Auto => "auto",
-            Method::Qp => "qp",
+            Method::Qp(_) => "qp",
             Method::ActiveSet => "active-set",
-            Method::Penalty => "penalty",
+            Method::Penalty(_) => "penalty",
             Method::Mprgp => "mprgp",
         }
     }
@@ -75,6 +93,24 @@ pub enum Precision {
 /// let settings = Settings::with_method(Method::ActiveSet).with_tolerance(1e-12).with_proof();
 /// assert_eq!(settings.tolerance, 1e-12);
 /// ```
+///
+/// A setting changes what `Ok` promises, or how the answer is found:
+///
+/// ```
+/// use signorini::{ContactProblem, Error, Method, Penalty, Settings, SparseMatrix, SymmetricMatrix, solve};
+///
+/// // A spring of stiffness 1, pushed with force 2 against a wall at distance 0.5.
+/// let one = || SparseMatrix::from_triplets(1, 1, &[(0, 0, 1.0)]);
+/// let problem = ContactProblem::new(SymmetricMatrix::from_lower(one()?)?, vec![2.0], one()?, vec![0.5])?;
+/// // A penalty as stiff as the spring lets it go to (2 + 0.5) / 2, which is no answer to 1e-9.
+/// let soft = Method::Penalty(Penalty { last: 1.0, ..Penalty::default() });
+/// let Err(Error::NotCertified { solution, .. }) = solve(&problem, &Settings::with_method(soft)) else { panic!() };
+/// assert!((solution.displacement[0] - 1.25).abs() < 1e-15);
+/// // The exact displacement is 0.5. Certified to 1, which asks for nearly nothing, the soft answer passes.
+/// let loose = Settings::with_method(soft).with_tolerance(1.0);
+/// assert!((solve(&problem, &loose)?.displacement[0] - 1.25).abs() < 1e-15);
+/// # Ok::<(), Error>(())
+/// ```
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Settings {
@@ -93,30 +129,18 @@ pub struct Settings {
     pub accuracy: Option<f64>,
     /// Are the rows named whose contact is beyond doubt?
     pub prove: bool,
-    /// Wall-clock seconds after which the best answer so far is returned, as [`Error::NotCertified`] if it falls short;
+    /// Wall-clock time after which the best answer so far is returned, as [`Error::NotCertified`] if it falls short;
     /// a factorisation that is under way is ended first, and the bound of the certificate may take a tenth of the time more:
     /// what it has not found then is a weaker bound, or none.
-    pub time: Option<f64>,
+    pub time: Option<Duration>,
     /// Bytes that a solve may take: [`Method::Auto`] takes no way whose estimate is above, and what would take more on the way
     /// that was named, by an estimate made before anything is factorised, is refused.
     pub memory: Option<f64>,
     /// Asked from any thread, the solve ends as if its time were over, or with [`Error::Interrupted`] where it has found
     /// nothing yet; it tells what is being done. Clones of the settings share it.
     pub watch: Watch,
-    /// Is the contact set of the QP settled by the active-set loop?
-    pub polish: bool,
-    /// Tolerance of the interior-point method, on data of order one.
-    pub interior_point_tolerance: f64,
     /// Most iterations of a loop; the cycles of MPRGP.
     pub max_iterations: usize,
-    /// First penalty, in multiples of the local stiffness.
-    pub first_penalty: f64,
-    /// Last penalty, in multiples of the local stiffness; 1e8 balances penetration and rounding.
-    pub last_penalty: f64,
-    /// Is the penalty answer extrapolated to an infinite penalty, from two rungs of the ladder?
-    pub extrapolate: bool,
-    /// Penetration at which the penalty loop stops, relative to the largest displacement of a contact row.
-    pub penetration_threshold: f64,
 }
 
 impl Default for Settings {
@@ -132,13 +156,7 @@ impl Default for Settings {
             time: None,
             memory: None,
             watch: Watch::default(),
-            polish: true,
-            interior_point_tolerance: 1e-9,
             max_iterations: 20_000,
-            first_penalty: 1.0,
-            last_penalty: 1e8,
-            extrapolate: false,
-            penetration_threshold: 1e-10,
         }
     }
 }
@@ -154,9 +172,9 @@ impl Settings {
         Settings { accuracy: Some(accuracy), ..Settings::default() }
     }
 
-    /// The program chooses how; the best answer that so many seconds allow.
-    pub fn within(seconds: f64) -> Self {
-        Settings { time: Some(seconds), ..Settings::default() }
+    /// The program chooses how; the best answer that this time allows.
+    pub fn within(time: Duration) -> Self {
+        Settings { time: Some(time), ..Settings::default() }
     }
 
     /// The same with a tolerance of the certificate, relative.
@@ -171,7 +189,7 @@ impl Settings {
 
     /// The same with a limit of wall-clock time.
     pub fn with_time(self, time: Duration) -> Self {
-        Settings { time: Some(time.as_secs_f64()), ..self }
+        Settings { time: Some(time), ..self }
     }
 
     /// The same with a limit of memory, in bytes.
@@ -204,13 +222,13 @@ impl Settings {
         Settings { watch: watch.clone(), ..self }
     }
 
-    /// The same with the seconds counted from now, as the deadline of the watch.
+    /// The same with the time counted from now, as the deadline of the watch.
     ///
     /// # Errors
     /// [`Error::Setting`] for the first setting that is not in its range.
     pub(crate) fn started(&self) -> Result<Self, Error> {
         self.check()?;
-        let watch = self.time.map_or_else(|| self.watch.clone(), |time| self.watch.within(time));
+        let watch = self.time.map_or_else(|| self.watch.clone(), |time| self.watch.within(time.as_secs_f64()));
         Ok(Settings { time: None, watch, ..self.clone() })
     }
 
@@ -222,8 +240,8 @@ impl Settings {
     /// Is the answer that is wanted as good as can be? An unpolished QP and a penalty are asked for as they are.
     pub(super) fn wants_best(&self) -> bool {
         match self.method {
-            Method::Qp => self.polish,
-            Method::Penalty => false,
+            Method::Qp(InteriorPoint { polish, .. }) => polish,
+            Method::Penalty(_) => false,
             Method::Auto | Method::ActiveSet | Method::Mprgp => true,
         }
     }
@@ -232,40 +250,23 @@ impl Settings {
     /// unpolished QP or of a penalty that ends below its best value, which are asked for as they are, nor the penetration
     /// that the best penalty leaves.
     pub(super) fn allows_last_resort(&self, value: f64) -> bool {
-        let is_best_penalty = self.method == Method::Penalty && self.last_penalty >= BEST_PENALTY;
+        let is_best_penalty = matches!(self.method, Method::Penalty(ladder) if ladder.last >= BEST_PENALTY);
         self.wants_best() || (is_best_penalty && value > PENETRATION / BEST_PENALTY)
     }
 
-    /// Are all settings in their ranges?
+    /// Checks the range of every setting.
     ///
     /// # Errors
-    /// [`Error::Setting`] for the first that is not.
+    /// [`Error::Setting`] for the first that is not in its range.
     fn check(&self) -> Result<(), Error> {
-        let positive = |name, value: f64| match value.is_finite() && value > 0.0 {
-            true => Ok(()),
-            false => Err(Error::Setting { name, value, allowed: "positive and finite" }),
-        };
         positive("tolerance", self.tolerance)?;
         if let Some(accuracy) = self.accuracy {
             positive("accuracy", accuracy)?;
         }
-        if let Some(time) = self.time.filter(|time| time.is_nan() || *time < 0.0) {
-            return Err(Error::Setting { name: "time", value: time, allowed: "zero or positive" });
-        }
         if let Some(memory) = self.memory.filter(|memory| memory.is_nan() || *memory <= 0.0) {
             return Err(Error::Setting { name: "memory", value: memory, allowed: "positive" });
         }
-        positive("interior_point_tolerance", self.interior_point_tolerance)?;
-        positive("first_penalty", self.first_penalty)?;
-        positive("last_penalty", self.last_penalty)?;
-        if self.first_penalty > self.last_penalty {
-            let value = self.first_penalty;
-            return Err(Error::Setting { name: "first_penalty", value, allowed: "at most last_penalty" });
-        }
-        if self.penetration_threshold.is_nan() || self.penetration_threshold < 0.0 {
-            let value = self.penetration_threshold;
-            return Err(Error::Setting { name: "penetration_threshold", value, allowed: "zero or positive" });
-        }
+        self.method.check()?;
         if self.threads == 0 {
             return Err(Error::Setting { name: "threads", value: 0.0, allowed: "at least 1" });
         }
@@ -273,5 +274,35 @@ impl Settings {
             return Err(Error::Setting { name: "max_iterations", value: 0.0, allowed: "at least 1" });
         }
         Ok(())
+    }
+}
+
+impl Method {
+    /// Checks the range of every option of the method.
+    fn check(self) -> Result<(), Error> {
+        match self {
+            Method::Qp(InteriorPoint { tolerance, .. }) => positive("tolerance of the interior point", tolerance),
+            Method::Penalty(Penalty { first, last, penetration_threshold, .. }) => {
+                positive("first penalty", first)?;
+                positive("last penalty", last)?;
+                if first > last {
+                    return Err(Error::Setting { name: "first penalty", value: first, allowed: "at most the last" });
+                }
+                if penetration_threshold.is_nan() || penetration_threshold < 0.0 {
+                    let (name, value) = ("penetration threshold", penetration_threshold);
+                    return Err(Error::Setting { name, value, allowed: "zero or positive" });
+                }
+                Ok(())
+            }
+            Method::Auto | Method::ActiveSet | Method::Mprgp => Ok(()),
+        }
+    }
+}
+
+/// Checks that a setting is positive and finite.
+fn positive(name: &'static str, value: f64) -> Result<(), Error> {
+    match value.is_finite() && value > 0.0 {
+        true => Ok(()),
+        false => Err(Error::Setting { name, value, allowed: "positive and finite" }),
     }
 }

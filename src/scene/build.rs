@@ -1,13 +1,13 @@
 //! From a scene to a model: every value is checked where it is used, and named by its JSON path.
 
-use super::Obstacle;
-use super::body::locking;
-use super::condition::boundary;
+use std::sync::Arc;
+
+use super::elastic::locking;
 use super::model::Model;
+use super::obstacle::{Obstacle, PlacedObstacle};
 use super::parts::Parts;
 use super::schema::Scene;
 use crate::error::Error;
-use crate::fem::assembly::tributary_areas;
 
 impl Scene {
     /// Discretises the scene and poses its contact problem.
@@ -16,14 +16,27 @@ impl Scene {
     /// [`Error::Scene`] for a value that describes no problem, [`Error::UnderHeld`] for a rigid motion that neither
     /// supports nor obstacles resist.
     pub fn build(&self) -> Result<Model, Error> {
+        self.build_with(&[])
+    }
+
+    /// The same with obstacles of a user's own behind those of the scene, each with the name of the boundary whose nodes
+    /// may touch it.
+    ///
+    /// # Errors
+    /// As [`Scene::build`]; [`Error::Scene`] for a boundary that does not exist, and for a direction or a normal that is
+    /// not of unit length or leads out of the model.
+    pub fn build_with(&self, further: &[(&str, Arc<dyn Obstacle>)]) -> Result<Model, Error> {
         let body = self.elastic_body()?;
         let dofs = self.dofs(&body)?;
         let load = self.load(&body)?;
-        let mut obstacles = Vec::with_capacity(self.obstacles.len());
+        let path = |index: usize| format!("obstacles[{index}]");
+        let mut obstacles = Vec::with_capacity(self.obstacles.len() + further.len());
         for (index, spec) in self.obstacles.iter().enumerate() {
-            let path = format!("obstacles[{index}]");
-            let boundary = boundary(body.mesh(), &spec.boundary, &format!("{path}.boundary"))?;
-            obstacles.push(Obstacle::new(spec, &path, &body, tributary_areas(&body, boundary))?);
+            obstacles.push(PlacedObstacle::of_scene(spec, &path(index), &body)?);
+        }
+        for (boundary, obstacle) in further {
+            let path = path(obstacles.len());
+            obstacles.push(PlacedObstacle::of_user(boundary, obstacle.clone(), &path, &body)?);
         }
         let warnings = locking(&body).into_iter().collect();
         let (title, units) = (self.title.clone(), self.units.clone());

@@ -1,13 +1,13 @@
 //! Supports and loads of a scene, at the nodes.
 
-use super::entry::{PLACE_TOLERANCE, finite, point, vector, wrong};
+use super::entry::{PLACE_TOLERANCE, boundary, finite, point, vector, wrong};
 use super::held::{COORDINATES, Component, Held, Holder, unit_normal};
 use super::schema::{LoadSpec, Place, Scene, SupportSpec};
 use crate::error::Error;
 use crate::fem::assembly::{DofMap, add_body_force, add_pressure, add_traction};
 use crate::fem::body::ElasticBody;
 use crate::fem::geometry::distance;
-use crate::fem::mesh::{Boundary, Mesh};
+use crate::fem::mesh::Mesh;
 
 /// Radii below this times the body's size lie on the axis of revolution.
 const ON_THE_AXIS: f64 = 1e-12;
@@ -115,13 +115,6 @@ impl Scene {
         }
         Ok(())
     }
-}
-
-pub(super) fn boundary<'a>(mesh: &'a Mesh, name: &str, path: &str) -> Result<&'a Boundary, Error> {
-    mesh.boundary(name).ok_or_else(|| {
-        let names: Vec<&str> = mesh.boundaries().iter().map(|boundary| boundary.name.as_str()).collect();
-        wrong(path, format!("there is no boundary `{name}`; there are {}", names.join(", ")))
-    })
 }
 
 fn node_at(mesh: &Mesh, at: &[f64], path: &str) -> Result<usize, Error> {

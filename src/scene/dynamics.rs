@@ -1,15 +1,13 @@
 //! The motion that a scene asks for: mass, scheme, step, initial state, loads in time.
 
-use super::entry::{ROUNDING, finite, located, number, point, vector, wrong};
-use super::schema::{
-    AnalysisSpec, DynamicSpec, FactorSpec, FieldSpec, LoadInTimeSpec, MassSpec, PenetrationSpec, Scene, SchemeSpec,
-};
+use super::entry::{ROUNDING, located, number, point, vector, wrong};
+use super::schema::{AnalysisSpec, DynamicSpec, FieldSpec, MassSpec, PenetrationSpec, Scene};
 use super::{Model, Warning};
 use crate::error::Error;
 use crate::fem::assembly::{MassForm, free_load, internal_force, mass};
 use crate::fem::body::ElasticBody;
-use crate::motion::{DynamicProblem, Scheme, TimeFunction, stable_step};
-use crate::qp::linear::dot;
+use crate::motion::{DynamicProblem, Scheme, SchemeSpec, stable_step};
+use crate::qp::linear::{SymmetricMatrix, dot};
 use crate::qp::problem::ContactProblem;
 use crate::qp::{Method, Settings, solve};
 
@@ -64,7 +62,6 @@ impl Scene {
             let message = format!("{} is not allowed: it must be from 1 to {MOST_FRAMES}", spec.frames);
             return Err(wrong(format!("{PATH}.frames"), message));
         }
-        let (body, dofs) = (model.body(), model.dofs());
         let form = spec.mass.map_or(scheme.mass_form(), MassSpec::form);
         if !scheme.allows(form) {
             let message = match scheme.is_explicit() {
@@ -73,25 +70,26 @@ impl Scene {
             };
             return Err(wrong(format!("{PATH}.mass"), message));
         }
-        let contact_nodes: Vec<usize> =
-            model.rows().iter().flat_map(|row| row.ends().collect::<Vec<_>>()).map(|(node, _)| node).collect();
-        let mass = |form| {
-            mass(body, dofs, form, &contact_nodes).map_err(|error| match error {
-                Error::Mesh { message } => wrong("body", message),
-                other => located(other, "material."),
-            })
-        };
+        let problem = Self::starting(model, spec, self.moving(model, spec, form)?)?;
+        let (step, steps) = spec.steps(model.body(), &problem, scheme)?;
+        let name = scheme.name();
+        let warnings = scheme.gains_energy().then_some(Warning::GainsEnergy { scheme: name }).into_iter().collect();
+        Ok(Some(Dynamics { problem, scheme, step, steps, frames: spec.frames, warnings }))
+    }
+
+    /// Mass, damping, loads in time: the motion from rest.
+    fn moving(&self, model: &Model, spec: &DynamicSpec, form: MassForm) -> Result<DynamicProblem, Error> {
+        let (body, dofs) = (model.body(), model.dofs());
         let mut constant = vec![0.0; body.nodal_dofs()];
         for index in (0..self.loads.len()).filter(|&index| !spec.changes(index)) {
             self.add_load(body, index, &mut constant)?;
         }
-        let contact = model.problem().with_load(free_load(body, dofs, &constant)?)?;
+        let statics = model.problem().with_load(free_load(body, dofs, &constant)?)?;
         let lifted = dofs.expand(&vec![0.0; dofs.free().len()])?;
         let energy = dot(&lifted, &internal_force(body, &lifted)?) / 2.0;
         let held = free_load(body, dofs, &vec![0.0; body.nodal_dofs()])?;
-        let damping = [spec.damping.mass, spec.damping.stiffness];
-        let mut problem = DynamicProblem::new(contact, mass(form)?)?
-            .with_damping(damping[0], damping[1])
+        let mut problem = DynamicProblem::new(statics, mass_of(model, form)?)?
+            .with_damping(spec.damping.mass, spec.damping.stiffness)
             .map_err(|error| match error {
                 Error::Setting { name, value, allowed } => {
                     let field = if name == "mass damping" { "mass" } else { "stiffness" };
@@ -111,55 +109,74 @@ impl Scene {
             self.add_load(body, changing.load, &mut load)?;
             problem = problem.with_load(factor, dofs.restrict(&load)?)?;
         }
-        let (displacement, velocity) = spec.initial(body)?;
-        let mut displacement = dofs.restrict(&displacement)?;
+        Ok(problem)
+    }
+
+    /// The same from the initial state, which is checked.
+    fn starting(model: &Model, spec: &DynamicSpec, problem: DynamicProblem) -> Result<DynamicProblem, Error> {
+        let (displacement, velocity) = spec.initial(model.body())?;
+        let mut displacement = model.dofs().restrict(&displacement)?;
         if let Some(deepest) = deepest(model, &displacement) {
             if spec.initial_penetration == PenetrationSpec::Refuse {
                 return Err(deepest);
             }
-            displacement = projected(model.problem(), mass(MassForm::Lumped)?, &displacement)?;
+            displacement = projected(model.problem(), mass_of(model, MassForm::Lumped)?, &displacement)?;
         }
-        let problem = problem.starting_from(displacement, dofs.restrict(&velocity)?)?;
+        let problem = problem.starting_from(displacement, model.dofs().restrict(&velocity)?)?;
         let energy = problem.initial_energy();
         if !energy.is_finite() {
             let message = format!("displacements and velocities are too large: their energy is {energy}");
             return Err(wrong(format!("{PATH}.initial"), message));
         }
-        let (step, steps) = spec.steps(body, &problem, scheme)?;
-        let name = scheme.name();
-        let warnings = scheme.gains_energy().then_some(Warning::GainsEnergy { scheme: name }).into_iter().collect();
-        Ok(Some(Dynamics { problem, scheme, step, steps, frames: spec.frames, warnings }))
+        Ok(problem)
     }
 }
 
+/// The mass of a model, in one of its forms.
+fn mass_of(model: &Model, form: MassForm) -> Result<SymmetricMatrix, Error> {
+    let contact_nodes: Vec<usize> =
+        model.rows().iter().flat_map(|row| row.ends().collect::<Vec<_>>()).map(|(node, _)| node).collect();
+    mass(model.body(), model.dofs(), form, &contact_nodes).map_err(|error| match error {
+        Error::Mesh { message } => wrong("body", message),
+        other => located(other, "material."),
+    })
+}
+
 impl DynamicSpec {
-    /// The scheme with its parameters.
+    /// The scheme with its parameter.
     pub fn scheme(&self) -> Scheme {
-        match self.scheme {
-            SchemeSpec::Midpoint => Scheme::Midpoint,
-            SchemeSpec::Trapezoidal => Scheme::Trapezoidal,
-            SchemeSpec::ContactStabilised => Scheme::ContactStabilised,
-            SchemeSpec::Hht => Scheme::Hht { alpha: self.alpha.unwrap_or(-0.1) },
-            SchemeSpec::Penalty => Scheme::Penalty { penalty: self.penalty.unwrap_or(10.0) },
-            SchemeSpec::CentralDifference => Scheme::CentralDifference { restitution: self.restitution.unwrap_or(0.0) },
-        }
+        let own = self.scheme.parameter().map(|parameter| parameter.name);
+        let given = self.parameters().into_iter().find(|(name, _)| Some(*name) == own);
+        self.scheme.with(given.and_then(|(_, value)| value))
     }
 
-    /// Is every parameter that is given one of the scheme?
+    /// The same with another scheme, and without the parameters that it has not.
+    pub fn with_scheme(mut self, scheme: SchemeSpec) -> Self {
+        self.scheme = scheme;
+        let own = scheme.parameter().map(|parameter| parameter.name);
+        let [alpha, penalty, restitution] = self.parameters().map(|(name, value)| value.filter(|_| Some(name) == own));
+        (self.alpha, self.penalty, self.restitution) = (alpha, penalty, restitution);
+        self
+    }
+
+    /// The parameters of all schemes, as they are given.
+    fn parameters(&self) -> [(&'static str, Option<f64>); 3] {
+        [("alpha", self.alpha), ("penalty", self.penalty), ("restitution", self.restitution)]
+    }
+
+    /// Refuses a parameter that is given but belongs to another scheme.
     fn check_parameters(&self) -> Result<(), Error> {
-        let parameters = [
-            ("alpha", self.alpha, "hht"),
-            ("penalty", self.penalty, "penalty"),
-            ("restitution", self.restitution, "central-difference"),
-        ];
-        let chosen = self.scheme().name();
-        match parameters.into_iter().find(|&(_, value, scheme)| value.is_some() && scheme != chosen) {
-            Some((name, _, scheme)) => {
-                let message = format!("only the scheme `{scheme}` has it; this is `{chosen}`");
-                Err(wrong(format!("{PATH}.{name}"), message))
+        let named = |scheme: SchemeSpec, name| scheme.parameter().is_some_and(|parameter| parameter.name == name);
+        for (name, value) in self.parameters() {
+            if value.is_none() || named(self.scheme, name) {
+                continue;
             }
-            None => Ok(()),
+            let others = SchemeSpec::ALL.into_iter().filter(|&scheme| named(scheme, name));
+            let others: Vec<String> = others.map(|scheme| format!("`{}`", scheme.name())).collect();
+            let message = format!("only the scheme {} has it; this is `{}`", others.join(" or "), self.scheme.name());
+            return Err(wrong(format!("{PATH}.{name}"), message));
         }
+        Ok(())
     }
 
     fn changes(&self, load: usize) -> bool {
@@ -259,41 +276,6 @@ impl FieldSpec {
     }
 }
 
-impl LoadInTimeSpec {
-    fn function(&self, path: &str, loads: usize) -> Result<TimeFunction, Error> {
-        if self.load >= loads {
-            let message = format!("there is no loads[{}]; the scene has {loads} loads, counted from 0", self.load);
-            return Err(wrong(format!("{path}.load"), message));
-        }
-        let (name, function) = match &self.factor {
-            FactorSpec::Table(table) => {
-                let path = format!("{path}.factor.table");
-                let (times, factors) = (&table.times, &table.factors);
-                if times.len() != factors.len() || times.is_empty() {
-                    let message =
-                        format!("{} times and {} factors; give as many, at least one", times.len(), factors.len());
-                    return Err(wrong(path, message));
-                }
-                for (index, &time) in times.iter().enumerate() {
-                    finite(format!("{path}.times[{index}]"), time)?;
-                    if index > 0 && time <= times[index - 1] {
-                        let message =
-                            format!("{time:?} does not lie beyond {:?}; times must increase", times[index - 1]);
-                        return Err(wrong(format!("{path}.times[{index}]"), message));
-                    }
-                    finite(format!("{path}.factors[{index}]"), factors[index])?;
-                }
-                ("table", TimeFunction::Table(times.iter().copied().zip(factors.iter().copied()).collect()))
-            }
-            FactorSpec::Sine(sine) => ("sine", TimeFunction::Sine { frequency: sine.frequency, phase: sine.phase }),
-            FactorSpec::Ramp(ramp) => ("ramp", TimeFunction::Ramp { start: ramp.start, end: ramp.end }),
-            FactorSpec::Pulse(pulse) => ("pulse", TimeFunction::Pulse { start: pulse.start, end: pulse.end }),
-        };
-        function.check().map_err(|error| located(error, &format!("{path}.factor.{name}.")))?;
-        Ok(function)
-    }
-}
-
 impl MassSpec {
     fn form(self) -> MassForm {
         match self {
@@ -349,11 +331,7 @@ fn deepest(model: &Model, displacement: &[f64]) -> Option<Error> {
 }
 
 /// The admissible displacement that is nearest to a given one in the norm of a mass.
-fn projected(
-    problem: &ContactProblem,
-    mass: crate::qp::linear::SymmetricMatrix,
-    displacement: &[f64],
-) -> Result<Vec<f64>, Error> {
+fn projected(problem: &ContactProblem, mass: SymmetricMatrix, displacement: &[f64]) -> Result<Vec<f64>, Error> {
     let load = mass.mul(displacement);
     let nearest = ContactProblem::new(mass, load, problem.contact().clone(), problem.gap().to_vec())?;
     Ok(solve(&nearest, &Settings::with_method(Method::ActiveSet))?.displacement)

@@ -1,6 +1,7 @@
 //! Entries of a scene: how they are checked, and named in messages.
 
 use crate::error::Error;
+use crate::fem::mesh::{Boundary, Mesh};
 
 /// A point named in a scene must lie on a node, and a table must reach a candidate, to within this times the body's
 /// size: above the rounding of written decimals, far below any cell.
@@ -56,4 +57,12 @@ pub(super) fn located(error: Error, prefix: &str) -> Error {
         }
         other => other,
     }
+}
+
+/// The boundary of this name.
+pub(super) fn boundary<'a>(mesh: &'a Mesh, name: &str, path: &str) -> Result<&'a Boundary, Error> {
+    mesh.boundary(name).ok_or_else(|| {
+        let names: Vec<&str> = mesh.boundaries().iter().map(|boundary| boundary.name.as_str()).collect();
+        wrong(path, format!("there is no boundary `{name}`; there are {}", names.join(", ")))
+    })
 }

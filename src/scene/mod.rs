@@ -14,15 +14,17 @@
 //! # Ok::<(), signorini::Error>(())
 //! ```
 
-mod body;
+mod answer;
+pub(crate) mod body;
 mod build;
 mod condition;
 mod dynamics;
+mod elastic;
 mod entry;
 mod explain;
 mod held;
+mod loads_in_time;
 mod locate;
-mod mesh;
 mod model;
 mod obstacle;
 mod parse;
@@ -34,9 +36,12 @@ pub(crate) mod schema;
 mod size;
 mod warning;
 
+pub use crate::motion::SchemeSpec;
+pub use answer::{Answer, Forces};
+pub use body::{Sides, bar, cuboid, disc, half_ball, half_disc, rectangle, ring};
 pub use dynamics::Dynamics;
 pub use model::Model;
-pub use obstacle::Obstacle;
+pub use obstacle::{Obstacle, ObstacleRow, PlacedObstacle};
 pub use rows::ContactRow;
 pub use schema::{Rule, Scene, Units};
 pub use size::Size;

@@ -1,18 +1,18 @@
-//! The model: a scene discretised, its contact problem, and the way back from an answer to the body.
+//! The model: a scene discretised, its contact problem, and what its rows and dofs mean.
 
 use std::sync::Arc;
 
 use super::entry::wrong;
+use super::obstacle::PlacedObstacle;
 use super::parts::Parts;
 use super::rigid_modes::RigidMotions;
 use super::rows::{self, ContactRow};
-use super::{Obstacle, Units, Warning};
+use super::{Units, Warning};
 use crate::error::Error;
-use crate::fem::assembly::{DofMap, free_load, internal_force, rigid_motions, stiffness};
+use crate::fem::assembly::{DofMap, free_load, rigid_motions, stiffness};
 use crate::fem::body::ElasticBody;
 use crate::fem::geometry::distance;
 use crate::fem::mesh::Mesh;
-use crate::fem::recovery::{self, StressField};
 use crate::qp::linear::SymmetricMatrix;
 use crate::qp::linear::multigrid::NearNullSpace;
 use crate::qp::problem::ContactProblem;
@@ -24,6 +24,17 @@ const NO_AREA: f64 = 1e-12;
 ///
 /// Nodal vectors have length `dim * n_nodes` and the order `[x_0, y_0, x_1, ...]` (with z in space). `displacement`
 /// arguments are those of a solution: one entry per free dof.
+///
+/// ```
+/// use signorini::{Scene, solve_qp};
+///
+/// // A bar of 2 m and 0.1 m x 0.1 m with Young's modulus 1e6 Pa is a spring of 1e6 x 0.01 / 2 = 5000 N/m. Pulled with
+/// // 2000 Pa x 0.01 m2 = 20 N towards a wall at 0.001 m, it presses against the wall with 20 - 5000 x 0.001 = 15 N.
+/// let model = Scene::read("examples/bar.json")?.build()?;
+/// let solution = solve_qp(model.problem())?;
+/// assert!((solution.contact_force() - 15.0).abs() < 1e-9);
+/// # Ok::<(), signorini::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Model {
     parts: Arc<Parts>,
@@ -115,12 +126,12 @@ impl Model {
         &self.parts.dofs
     }
 
-    /// The obstacles in the order of the scene.
-    pub fn obstacles(&self) -> &[Obstacle] {
+    /// The obstacles in the order of the scene, those of a user behind them.
+    pub fn obstacles(&self) -> &[PlacedObstacle] {
         &self.parts.obstacles
     }
 
-    /// The surface of obstacle `obstacle` at this model's gap, as [`Obstacle::outline`]; empty where there is no such
+    /// The surface of obstacle `obstacle` at this model's gap, as [`PlacedObstacle::outline`]; empty where there is no such
     /// obstacle.
     pub fn obstacle_outline(&self, obstacle: usize, segments: usize) -> Vec<[f64; 2]> {
         self.parts.obstacles.get(obstacle).map_or_else(Vec::new, |obstacle| obstacle.outline(self.gap, segments))
@@ -196,45 +207,9 @@ impl Model {
         Ok(forces)
     }
 
-    /// Nodal support reactions on the body, in force; zero along free dofs, so that a roller pushes along its normal.
-    ///
-    /// What the stress in the elements asks for at the supported dofs, less load and contact force there. The
-    /// multiplier enters because a contact row may press on a supported dof.
-    ///
-    /// # Errors
-    /// [`Error::Length`] where `displacement` or `multiplier` do not fit.
-    pub fn reactions(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Vec<f64>, Error> {
-        let contact = self.contact_forces(multiplier)?;
-        let mut forces = internal_force(self.body(), &self.nodal_displacement(displacement)?)?;
-        let acting = self.parts.load.iter().zip(&contact);
-        forces.iter_mut().zip(acting).for_each(|(force, (load, contact))| *force = *force - load - contact);
-        self.parts.dofs.supported_part(&forces)
-    }
-
     /// External loads at all nodes, in force, length `dim * n_nodes`.
     pub fn nodal_load(&self) -> &[f64] {
         &self.parts.load
-    }
-
-    /// The imbalance of loads, support reactions and contact forces on each body: the largest of the virtual works
-    /// on its unit rigid motions (the resultant forces, and the resultant moments over half its size), relative
-    /// to the sum of all force magnitudes. A body of revolution has one rigid motion, and its forces count along the
-    /// axis.
-    ///
-    /// # Errors
-    /// As [`Model::reactions`].
-    pub fn force_balance(&self, displacement: &[f64], multiplier: &[f64]) -> Result<f64, Error> {
-        let reactions = self.reactions(displacement, multiplier)?;
-        let contact = self.contact_forces(multiplier)?;
-        Ok(RigidMotions::of(self.body()).imbalance(self.mesh().nodes(), &[&self.parts.load, &reactions, &contact]))
-    }
-
-    /// The stress in the displaced body, per element and per node.
-    ///
-    /// # Errors
-    /// As [`Model::nodal_displacement`].
-    pub fn stress(&self, displacement: &[f64]) -> Result<StressField, Error> {
-        recovery::stress(self.body(), &self.nodal_displacement(displacement)?)
     }
 
     fn check_multiplier(&self, multiplier: &[f64]) -> Result<(), Error> {

@@ -1,6 +1,7 @@
 //! What a model consists of before its contact rows.
 
-use super::{Obstacle, Units, Warning};
+use super::obstacle::PlacedObstacle;
+use super::{Units, Warning};
 use crate::fem::assembly::DofMap;
 use crate::fem::body::ElasticBody;
 
@@ -13,7 +14,7 @@ pub(super) struct Parts {
     pub dofs: DofMap,
     /// External load at all nodes, length `dim * n_nodes`.
     pub load: Vec<f64>,
-    pub obstacles: Vec<Obstacle>,
+    pub obstacles: Vec<PlacedObstacle>,
     pub warnings: Vec<Warning>,
     /// Is its motion asked for? Inertia then resists what nothing holds.
     pub moves: bool,

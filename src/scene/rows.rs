@@ -55,19 +55,18 @@ pub(super) fn build(parts: &Parts, scene_gap: f64) -> Result<Rows, Error> {
         let mut reached = false;
         for (candidate, &(node, tributary_area)) in obstacle.candidates().iter().enumerate() {
             let at = mesh.nodes()[node];
-            let way = obstacle.row(candidate, at, scene_gap).map_err(|reason| {
-                let message =
-                    format!("node {node} at {} {reason}; move the obstacle away from it", point(&at[..dimension]));
+            let found = obstacle.row(candidate, at, scene_gap).map_err(|reason| {
+                let message = format!("node {node} at {} {reason}", point(&at[..dimension]));
                 wrong(format!("obstacles[{index}]"), message)
             })?;
-            let Some(way) = way else { continue };
+            let Some(found) = found else { continue };
             reached = true;
             let row = ContactRow {
                 node,
                 partner: obstacle.partner(candidate),
                 obstacle: index,
-                normal: way.normal,
-                gap: way.distance,
+                normal: found.normal,
+                gap: found.gap,
                 tributary_area,
             };
             let (mut remaining, mut free) = (row.gap, Vec::new());

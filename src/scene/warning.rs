@@ -1,5 +1,7 @@
 //! Warnings: what can be solved but may mislead, and what to do next.
 
+use crate::fem::ElementKind;
+
 /// Something about a scene that a reader of its answer should know.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -7,8 +9,9 @@ pub enum Warning {
     /// Elements lock when the material keeps its volume.
     #[error(
         "Poisson's ratio {poisson} locks {element} elements: pressures can come out several times too large; take \
-         `\"integration\": \"mean-dilatation\"` with q4 or hex8 elements, a smaller ratio, or compare with a finer mesh \
-         before using them"
+         `\"integration\": \"mean-dilatation\"` with {} elements, a smaller ratio, or compare with a finer mesh \
+         before using them",
+        ElementKind::of_mean_dilatation("or").to_lowercase()
     )]
     NearlyIncompressible {
         /// The ratio.

@@ -87,7 +87,7 @@ pub fn compare(problem: &ContactProblem, settings: &Settings) -> Result<Comparis
         settings.watch.part("method", number, 3);
         answer(method)
     };
-    let [qp, active_set, penalty] = [next(Method::Qp)?, next(Method::ActiveSet)?, next(Method::Penalty)?];
+    let [qp, active_set, penalty] = [next(Method::qp())?, next(Method::ActiveSet)?, next(Method::penalty())?];
     let to_active_set = difference(problem, &active_set.solution, &qp.solution);
     let to_penalty = difference(problem, &penalty.solution, &qp.solution);
     let agreement = Agreement {

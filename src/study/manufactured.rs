@@ -9,12 +9,12 @@ use crate::fem::closed_forms::manufactured::{ContactSolution, PlaneElasticity};
 use crate::fem::element::{ElementKind, QuadraturePoint};
 use crate::fem::formulation::Formulation;
 use crate::fem::material::Material;
-use crate::fem::mesh::rectangle;
 use crate::fem::norms::{ErrorNorms, ExactState, error_norms, error_norms_by};
 use crate::fem::recovery::{discretisation_error, stress};
 use crate::qp::linear::SparseMatrix;
 use crate::qp::problem::ContactProblem;
 use crate::qp::solve_qp;
+use crate::scene::rectangle;
 
 /// The contact pressure at one node.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 mod compare;
 pub(crate) mod manufactured;
 mod motion;
-pub(crate) mod motion_tradeoff;
+mod motion_tradeoff;
 mod scene;
 mod summary;
 mod tradeoff;
@@ -11,7 +11,7 @@ mod tradeoff;
 pub use compare::{Agreement, Comparison, Difference, MethodAnswer, compare};
 pub use motion::MotionSummary;
 pub use motion_tradeoff::{MotionPoint, MotionTradeoff, motion_tradeoff};
-pub use scene::{Sweep, SweepCorner, SweepEvent, SweepPoint, discretisation_error, even_gaps, scene_summary, sweep};
+pub use scene::{Sweep, SweepCorner, SweepEvent, SweepPoint, even_gaps, scene_summary, sweep};
 #[cfg(feature = "pictures")]
 pub(crate) use summary::status;
 pub use summary::{AnswerWarning, ContactSummary, ModelSize, RunSeconds, Summary, Verification};

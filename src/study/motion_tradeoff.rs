@@ -7,18 +7,8 @@ use serde::Serialize;
 use crate::error::Error;
 use crate::motion::Integrator;
 use crate::qp::Settings;
-use crate::scene::schema::{AnalysisSpec, DynamicSpec, SchemeSpec};
-use crate::scene::{Dynamics, Model, Scene};
-
-/// The schemes, the default first.
-pub const SCHEMES: [SchemeSpec; 6] = [
-    SchemeSpec::Midpoint,
-    SchemeSpec::ContactStabilised,
-    SchemeSpec::Hht,
-    SchemeSpec::Trapezoidal,
-    SchemeSpec::Penalty,
-    SchemeSpec::CentralDifference,
-];
+use crate::scene::schema::AnalysisSpec;
+use crate::scene::{Dynamics, Model, Scene, SchemeSpec};
 
 /// Times at which displacements are compared.
 const SAMPLES: usize = 20;
@@ -80,11 +70,11 @@ pub fn motion_tradeoff(scene: &Scene, settings: &Settings) -> Result<MotionTrade
     // The samples fall on steps.
     let quarter = own.steps.div_ceil(4 * SAMPLES).max(1);
     let of = |scheme, steps: usize| with(scene, &model, scheme, steps);
-    let reference = run(of(SchemeSpec::Midpoint, SAMPLES * quarter * REFERENCE)?, settings)?;
+    let reference = run(of(SchemeSpec::default(), SAMPLES * quarter * REFERENCE)?, settings)?;
     let mut runs = Vec::new();
-    for scheme in SCHEMES {
-        let counts: Vec<usize> = if scheme == SchemeSpec::CentralDifference {
-            let fewest = fewest_stable(scene, &model)?.div_ceil(SAMPLES);
+    for scheme in SchemeSpec::ALL {
+        let counts: Vec<usize> = if scheme.is_explicit() {
+            let fewest = fewest_stable(scene, &model, scheme)?.div_ceil(SAMPLES);
             EXPLICIT.iter().map(|times| SAMPLES * fewest * times).collect()
         } else {
             QUARTERS.iter().map(|quarters| SAMPLES * quarter * quarters).collect()
@@ -182,28 +172,19 @@ fn with(scene: &Scene, model: &Model, scheme: SchemeSpec, steps: usize) -> Resul
     let mut scene = scene.clone();
     if let Some(AnalysisSpec::Dynamic(spec)) = &mut scene.analysis {
         (spec.mass, spec.courant) = (None, None);
-        take(spec, scheme);
         spec.step = Some(spec.duration / steps as f64);
+        *spec = spec.clone().with_scheme(scheme);
     }
     let missing = || Error::Scene { path: "analysis".into(), message: "the scene does not move".into() };
     Ok(Dynamics { steps, ..scene.dynamics(model)?.ok_or_else(missing)? })
 }
 
-/// Another scheme, without the parameters of the others.
-fn take(spec: &mut DynamicSpec, scheme: SchemeSpec) {
-    spec.scheme = scheme;
-    let keep = |of: SchemeSpec, value: Option<f64>| value.filter(|_| of == scheme);
-    spec.alpha = keep(SchemeSpec::Hht, spec.alpha);
-    spec.penalty = keep(SchemeSpec::Penalty, spec.penalty);
-    spec.restitution = keep(SchemeSpec::CentralDifference, spec.restitution);
-}
-
-/// The fewest stable steps of the explicit scheme.
-fn fewest_stable(scene: &Scene, model: &Model) -> Result<usize, Error> {
+/// The fewest stable steps of an explicit scheme.
+fn fewest_stable(scene: &Scene, model: &Model, scheme: SchemeSpec) -> Result<usize, Error> {
     let mut scene = scene.clone();
     if let Some(AnalysisSpec::Dynamic(spec)) = &mut scene.analysis {
         (spec.mass, spec.courant, spec.step) = (None, None, None);
-        take(spec, SchemeSpec::CentralDifference);
+        *spec = spec.clone().with_scheme(scheme);
     }
     Ok(scene.dynamics(model)?.map_or(1, |dynamics| dynamics.steps))
 }

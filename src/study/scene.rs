@@ -1,5 +1,6 @@
 //! Answers to a scene: its summary, and a sweep over the scene-wide gap.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use serde::Serialize;
@@ -7,24 +8,24 @@ use serde::Serialize;
 use super::{ModelSize, Summary};
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
-use crate::fem::recovery;
-use crate::qp::{Event, Prepared, Settings, solve};
-use crate::scene::Model;
+use crate::qp::{Event, Prepared, Settings, Start, solve};
+use crate::scene::{Answer, Model};
 use crate::solution::{ContactSet, Goal, Solution};
 
 /// Gaps half way that differ by this from the mean of the ends, relative, are not on a straight line.
 const STRAIGHT: f64 = 1e-12;
 
-/// The numbers of an answer to a scene: with pressures, the width of the contact, and the balance of all forces.
+/// The numbers of `solution`, whose `answer` to a scene this is: with pressures, the width of the contact, and the balance of all forces.
 ///
 /// # Errors
-/// [`Error::Length`] where the answer is not one to this model.
+/// As [`Model::reactions`].
 pub fn scene_summary(
-    model: &Model,
+    answer: &Answer,
     solution: Solution,
     goal: impl Into<Goal>,
     assemble_seconds: f64,
 ) -> Result<Summary, Error> {
+    let (model, closed) = (answer.model(), answer.contact_set());
     let mesh = model.mesh();
     let size = ModelSize {
         nodes: Some(mesh.nodes().len()),
@@ -32,25 +33,12 @@ pub fn scene_summary(
         ..ModelSize::of(model.problem())
     };
     let mut summary = Summary::new(solution, size, goal, assemble_seconds);
-    let Summary { contact, solution, .. } = &mut summary;
-    let pressure = model.pressure(&solution.multiplier)?;
-    contact.pressure_max = Some(pressure.iter().copied().fold(0.0, f64::max));
-    contact.width = contact_width(model, &solution.contact_set);
-    contact.area = Some(contact_area(model, &solution.contact_set));
-    contact.force_balance = Some(model.force_balance(&solution.displacement, &solution.multiplier)?);
+    let contact = &mut summary.contact;
+    contact.pressure_max = Some(answer.pressure().iter().copied().fold(0.0, f64::max));
+    contact.width = contact_width(model, closed);
+    contact.area = Some(contact_area(model, closed));
+    contact.force_balance = Some(answer.forces()?.balance);
     Ok(summary)
-}
-
-/// The error of the mesh, relative in energy, estimated from the stress of the answer.
-///
-/// # Errors
-/// [`Error::Length`] where the answer is not one to this model.
-///
-/// # Source
-/// [`recovery::discretisation_error`].
-pub fn discretisation_error(model: &Model, solution: &Solution) -> Result<f64, Error> {
-    let nodal = model.nodal_displacement(&solution.displacement)?;
-    recovery::discretisation_error(model.body(), &nodal, &model.stress(&solution.displacement)?)
 }
 
 /// Area of the boundary that the closed rows stand for; thickness, cross-section or circumference included.
@@ -73,12 +61,12 @@ fn contact_width(model: &Model, closed: &ContactSet) -> Option<f64> {
 pub struct SweepPoint {
     /// The scene-wide gap.
     pub gap: f64,
-    /// The answer.
+    /// The solution with its numbers.
     #[serde(flatten)]
     pub summary: Summary,
-    /// The scene at this gap.
+    /// The answer, joined with the scene at this gap.
     #[serde(skip)]
-    pub model: Model,
+    pub answer: Answer,
 }
 
 /// A row that touches or releases on the way from the first to the last gap of a sweep.
@@ -135,27 +123,17 @@ pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, 
         return Ok(Sweep { points: Vec::new(), events: Vec::new(), corners: Vec::new() });
     };
     let at_first = model.with_gap(first)?;
-    let prepared = Prepared::with_settings(at_first.problem(), settings).map_err(|error| at_first.explain(error))?;
-    let points = answers(&prepared, &at_first, gaps, settings)?;
-    if settings.watch.is_stopped() {
-        return Ok(Sweep { points, events: Vec::new(), corners: Vec::new() });
-    }
-    let (events, corners) = between(&prepared, &at_first, first, last, settings)?;
-    Ok(Sweep { points, events, corners })
-}
-
-/// The answers at the gaps until the watch is asked to stop; an error where not one gap was done.
-fn answers(prepared: &Prepared, at_first: &Model, gaps: &[f64], settings: &Settings) -> Result<Vec<SweepPoint>, Error> {
+    let prepared = Prepared::new(at_first.problem(), settings).map_err(|error| at_first.explain(error))?;
     let mut points: Vec<SweepPoint> = Vec::new();
     for (index, &gap) in gaps.iter().enumerate() {
         settings.watch.part("gap", index + 1, gaps.len());
         let clock = Instant::now();
-        let model = at_first.with_gap(gap)?;
+        let model = model.with_gap(gap)?;
         let assemble_seconds = clock.elapsed().as_secs_f64();
         let same_rows = model.problem().contact() == at_first.problem().contact();
-        let start = points.last().map(|point| &point.summary.solution.contact_set);
+        let known = points.last().map_or_else(Start::default, |point| Start::from(&point.summary.solution));
         let solved = match same_rows {
-            true => prepared.solve_gap(model.problem().gap().to_vec(), start, settings),
+            true => prepared.starting_from(known).solve(model.problem().gap()),
             false => solve(model.problem(), settings),
         };
         let solution = match solved {
@@ -165,13 +143,21 @@ fn answers(prepared: &Prepared, at_first: &Model, gaps: &[f64], settings: &Setti
             Err(Error::NotCertified { solution, .. }) => *solution,
             Err(error) => return Err(model.explain(error)),
         };
-        let summary = scene_summary(&model, solution, settings.goal(), assemble_seconds)?;
-        points.push(SweepPoint { gap, summary, model });
+        let answer = Answer::of(Arc::new(model), &solution)?;
+        let summary = scene_summary(&answer, solution, settings.goal(), assemble_seconds)?;
+        points.push(SweepPoint { gap, summary, answer });
         if settings.watch.is_stopped() {
             break;
         }
     }
-    if points.is_empty() { Err(Error::Interrupted) } else { Ok(points) }
+    if points.is_empty() {
+        return Err(Error::Interrupted);
+    }
+    if settings.watch.is_stopped() {
+        return Ok(Sweep { points, events: Vec::new(), corners: Vec::new() });
+    }
+    let (events, corners) = between(&prepared, &at_first, first, last)?;
+    Ok(Sweep { points, events, corners })
 }
 
 /// Events and corners between two gaps; none where the rows turn on the way, or where the body is not condensed.
@@ -180,7 +166,6 @@ fn between(
     at_first: &Model,
     first: f64,
     last: f64,
-    settings: &Settings,
 ) -> Result<(Vec<SweepEvent>, Vec<SweepCorner>), Error> {
     let (at_last, at_middle) = (at_first.with_gap(last)?, at_first.with_gap((first + last) / 2.0)?);
     let rows = at_first.problem().contact();
@@ -195,7 +180,7 @@ fn between(
     if first == last || !is_straight {
         return Ok((Vec::new(), Vec::new()));
     }
-    let Ok(path) = prepared.path(from, to, settings) else { return Ok((Vec::new(), Vec::new())) };
+    let Ok(path) = prepared.path(from, to) else { return Ok((Vec::new(), Vec::new())) };
     let gap_at = |t: f64| (1.0 - t) * first + t * last;
     let event = |event: &Event| {
         let node = at_first.rows()[event.row].node;

@@ -1,14 +1,14 @@
 //! What a digit costs: every method at every accuracy that it can be told, timed, against the exact discrete answer.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use serde::Serialize;
 
-use super::discretisation_error;
 use crate::error::Error;
 use crate::qp::linear::dot;
-use crate::qp::{Condense, Method, Precision, Prepared, Settings, solve};
-use crate::scene::{Model, Scene};
+use crate::qp::{Condense, InteriorPoint, Method, Penalty, Precision, Prepared, Settings, solve};
+use crate::scene::{Answer, Model, Scene};
 use crate::solution::Solution;
 use crate::watch::Watch;
 
@@ -131,7 +131,7 @@ pub fn tradeoff(scene: &Scene, grid: &TradeoffGrid, watch: &Watch) -> Result<Tra
     let mut result = Tradeoff { meshes: Vec::new(), points: Vec::new(), advice: Vec::new(), runs: grid.runs.max(1) };
     for refinement in 0..=grid.refinements {
         let divided_by = 1_usize << refinement.min(usize::BITS as usize - 1);
-        let model = scene.refined(divided_by)?.build()?;
+        let model = Arc::new(scene.refined(divided_by)?.build()?);
         let explained = |error| model.explain(error);
         let exact = match solve(model.problem(), &watched(Settings::with_method(Method::ActiveSet))) {
             Err(_) if watch.is_stopped() => break,
@@ -160,7 +160,7 @@ pub fn tradeoff(scene: &Scene, grid: &TradeoffGrid, watch: &Watch) -> Result<Tra
             divided_by,
             dofs: model.problem().dofs(),
             contact_rows: model.rows().len(),
-            discretisation_error: discretisation_error(&model, &exact)?,
+            discretisation_error: Answer::of(model.clone(), &exact)?.discretisation_error()?,
         });
         if watch.is_stopped() {
             break;
@@ -193,8 +193,7 @@ fn ways(condense: Condense, precision: Precision) -> Vec<Way> {
     // What an interior point leaves undone is more than single precision does.
     for (method, polish) in [("qp", false), (POLISHED, true)].into_iter().filter(|way| way.1 || !mixed) {
         for tolerance in TOLERANCES {
-            let mut settings = base(Method::Qp);
-            (settings.polish, settings.interior_point_tolerance) = (polish, tolerance);
+            let settings = base(Method::Qp(InteriorPoint { polish, tolerance }));
             ways.push(Way { method, knob: Some(tolerance), settings });
         }
     }
@@ -204,8 +203,8 @@ fn ways(condense: Condense, precision: Precision) -> Vec<Way> {
         ways.push(Way { method: "active-set", knob: Some(accuracy), settings });
     }
     for last in PENALTIES {
-        let mut settings = base(Method::Penalty);
-        (settings.last_penalty, settings.penetration_threshold) = (last, 0.0);
+        let ladder = Penalty { last, penetration_threshold: 0.0, ..Penalty::default() };
+        let settings = base(Method::Penalty(ladder));
         ways.push(Way { method: "penalty", knob: Some(last), settings });
     }
     ways
@@ -223,7 +222,7 @@ fn timed(model: &Model, ways: &[Way], runs: usize, watch: &Watch) -> Result<Vec<
         watch.part("run", number + 1, runs * ways.len());
         let clock = Instant::now();
         let solved =
-            Prepared::with_settings(model.problem(), &way.settings).and_then(|prepared| prepared.solve(&way.settings));
+            Prepared::new(model.problem(), &way.settings).and_then(|prepared| prepared.solve(model.problem().gap()));
         let seconds = clock.elapsed().as_secs_f64();
         if watch.is_stopped() {
             // What was cut short measures nothing.

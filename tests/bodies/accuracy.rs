@@ -6,8 +6,9 @@ use signorini::fem::Integration;
 use signorini::internals::closed_forms::manufactured::{
     ContactSolution, GenericEdge, HertzBlock, PlaneElasticity, Smooth,
 };
+use signorini::internals::solve_block;
+use signorini::scene::Answer;
 use signorini::{Scene, solve_qp};
-use signorini::{internals::solve_block, study::discretisation_error};
 
 /// Effectivity that an estimate is wanted to have: neither half nor twice the error.
 const EFFECTIVITY: std::ops::Range<f64> = 0.5..2.0;
@@ -47,7 +48,7 @@ fn the_estimate_vanishes_where_the_mesh_is_exact_and_halves_with_the_cells() {
         });
         let model = Scene::from_json(&value.to_string(), "scene").unwrap().build().unwrap();
         let solution = solve_qp(model.problem()).unwrap();
-        discretisation_error(&model, &solution).unwrap()
+        Answer::of(model.into(), &solution).unwrap().discretisation_error().unwrap()
     };
     let axis = |cells: usize| json!({"points": [0, 1], "divisions": [cells]});
     for (model, element) in

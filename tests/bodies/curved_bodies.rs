@@ -3,8 +3,9 @@
 use std::f64::consts::PI;
 
 use signorini::Error;
-use signorini::fem::{ElementKind, Mesh, Zone, disc, half_ball, half_disc, ring};
-use signorini::internals::{Cell, MAX_NODES, Tabulated};
+use signorini::fem::{ElementKind, Mesh, Zone};
+use signorini::internals::{Cell, MAX_NODES, Rule, Tabulated};
+use signorini::scene::{Sides, disc, half_ball, half_disc, ring};
 
 const PLANE: [ElementKind; 4] = [ElementKind::T3, ElementKind::T6, ElementKind::Q4, ElementKind::Q8];
 
@@ -12,7 +13,7 @@ const PLANE: [ElementKind; 4] = [ElementKind::T3, ElementKind::T6, ElementKind::
 /// points.
 fn measure(mesh: &Mesh) -> (f64, f64) {
     let reference = mesh.kind().reference();
-    let table = Tabulated::new(reference, false);
+    let table = Tabulated::new(reference, Rule::Straight);
     let (mut total, mut worst) = (0.0, f64::INFINITY);
     for element in mesh.elements() {
         let mut coordinates = [[0.0; 3]; MAX_NODES];
@@ -43,9 +44,9 @@ fn rate(errors: &[f64]) -> f64 {
 fn a_disc_is_its_lower_half_twice_joined_along_the_cut() {
     let (centre, radius, zone) = ([3.0, -1.0], 2.0, Zone { width: 0.3, divisions: 3, growth: 1.5 });
     for kind in PLANE {
-        for symmetric in [false, true] {
-            let half = half_disc(centre, radius, &zone, symmetric, kind).unwrap();
-            let whole = disc(centre, radius, &zone, symmetric, kind).unwrap();
+        for sides in [Sides::Both, Sides::Beyond] {
+            let half = half_disc(centre, radius, &zone, sides, kind).unwrap();
+            let whole = disc(centre, radius, &zone, sides, kind).unwrap();
             let ((area, worst), (of_half, of_worst)) = (measure(&whole), measure(&half));
             assert!((area / of_half - 2.0).abs() < 1e-14 && (worst / of_worst - 1.0).abs() < 1e-12, "{kind:?}");
             let shared = half.boundary("cut").unwrap().nodes().len();
@@ -55,9 +56,9 @@ fn a_disc_is_its_lower_half_twice_joined_along_the_cut() {
                 assert!(farthest(&whole, name, on_circle) < 1e-14);
                 assert!(farthest(&whole, name, |at| (side * (at[1] - centre[1])).min(0.0)) < 1e-14, "{kind:?}: {name}");
             }
-            match symmetric {
-                true => assert!(farthest(&whole, "symmetry-x", |at| at[0] - centre[0]) < 1e-14),
-                false => assert!(whole.boundary("symmetry-x").is_none() && whole.boundary("cut").is_none()),
+            match sides {
+                Sides::Beyond => assert!(farthest(&whole, "symmetry-x", |at| at[0] - centre[0]) < 1e-14),
+                Sides::Both => assert!(whole.boundary("symmetry-x").is_none() && whole.boundary("cut").is_none()),
             }
         }
     }
@@ -66,12 +67,12 @@ fn a_disc_is_its_lower_half_twice_joined_along_the_cut() {
 #[test]
 fn half_discs_have_good_cells_and_their_area_converges() {
     for kind in PLANE {
-        for symmetric in [false, true] {
-            let exact = if symmetric { PI } else { 2.0 * PI };
+        for sides in [Sides::Both, Sides::Beyond] {
+            let exact = if sides == Sides::Beyond { PI } else { 2.0 * PI };
             let error = |refinement: usize| {
                 let growth = 1.6_f64.powf(1.0 / refinement as f64);
                 let zone = Zone { width: 0.3, divisions: 3 * refinement, growth };
-                let (area, worst) = measure(&half_disc([3.0, -1.0], 2.0, &zone, symmetric, kind).unwrap());
+                let (area, worst) = measure(&half_disc([3.0, -1.0], 2.0, &zone, sides, kind).unwrap());
                 assert!(worst > 0.2, "{kind:?}: Jacobian ratio {worst}");
                 (area - exact).abs()
             };
@@ -87,11 +88,11 @@ fn half_discs_have_good_cells_and_their_area_converges() {
 fn half_discs_have_their_boundaries_where_they_say() {
     let zone = Zone { width: 0.05, divisions: 5, growth: 1.3 };
     for kind in PLANE {
-        let mesh = half_disc([3.0, -1.0], 2.0, &zone, false, kind).unwrap();
+        let mesh = half_disc([3.0, -1.0], 2.0, &zone, Sides::Both, kind).unwrap();
         assert!(farthest(&mesh, "arc", |[x, y, _]| (x - 3.0).hypot(y + 1.0) - 2.0) < 1e-15 * 8.0);
         assert_eq!(farthest(&mesh, "cut", |[_, y, _]| y + 1.0), 0.0);
         assert_eq!(mesh.boundaries().len(), 2);
-        let half = half_disc([3.0, -1.0], 2.0, &zone, true, kind).unwrap();
+        let half = half_disc([3.0, -1.0], 2.0, &zone, Sides::Beyond, kind).unwrap();
         assert_eq!(farthest(&half, "symmetry-x", |[x, ..]| x - 3.0), 0.0);
         assert!(half.nodes().iter().all(|at| at[0] >= 3.0));
         assert_eq!(mesh.nearest_node([3.0, -3.0, 0.0]).map(|found| found.1), Some(0.0), "a node at the lowest point");
@@ -106,7 +107,7 @@ fn half_discs_have_their_boundaries_where_they_say() {
 #[test]
 fn cells_have_one_size_in_the_zone_and_grow_beyond() {
     let zone = Zone { width: 0.1, divisions: 10, growth: 1.2 };
-    let mesh = half_disc([0.0, 1.0], 1.0, &zone, true, ElementKind::Q4).unwrap();
+    let mesh = half_disc([0.0, 1.0], 1.0, &zone, Sides::Beyond, ElementKind::Q4).unwrap();
     let angle = |&node: &usize| {
         let [x, y, _] = mesh.nodes()[node];
         x.atan2(1.0 - y)
@@ -120,24 +121,25 @@ fn cells_have_one_size_in_the_zone_and_grow_beyond() {
 
 #[test]
 fn half_balls_have_good_cells_and_their_volume_converges() {
-    for (symmetric, part) in [([false; 2], 0.5), ([true, false], 0.25), ([false, true], 0.25), ([true; 2], 0.125)] {
+    let (both, beyond) = (Sides::Both, Sides::Beyond);
+    for (sides, part) in [([both; 2], 0.5), ([beyond, both], 0.25), ([both, beyond], 0.25), ([beyond; 2], 0.125)] {
         let exact = part * 4.0 / 3.0 * PI * 8.0;
         let error = |refinement: usize| {
             let growth = 1.6_f64.powf(1.0 / refinement as f64);
             let zone = Zone { width: 0.6, divisions: 2 * refinement, growth };
-            let (volume, worst) = measure(&half_ball([1.0, 2.0, 3.0], 2.0, &zone, symmetric).unwrap());
+            let (volume, worst) = measure(&half_ball([1.0, 2.0, 3.0], 2.0, &zone, sides).unwrap());
             assert!(worst > 0.1, "Jacobian ratio {worst}");
             (volume / exact - 1.0).abs()
         };
         let errors = [1, 2].map(error);
-        assert!(rate(&errors) > 1.7 && errors[1] < 0.01, "{symmetric:?}: {errors:?}");
+        assert!(rate(&errors) > 1.7 && errors[1] < 0.01, "{sides:?}: {errors:?}");
     }
 }
 
 #[test]
 fn half_balls_have_their_boundaries_where_they_say() {
     let zone = Zone { width: 0.2, divisions: 2, growth: 2.0 };
-    let mesh = half_ball([1.0, 2.0, 3.0], 2.0, &zone, [true, true]).unwrap();
+    let mesh = half_ball([1.0, 2.0, 3.0], 2.0, &zone, [Sides::Beyond; 2]).unwrap();
     let radius = |[x, y, z]: [f64; 3]| (x - 1.0).hypot(y - 2.0).hypot(z - 3.0) - 2.0;
     assert!(farthest(&mesh, "round", radius) < 1e-14);
     assert_eq!(farthest(&mesh, "cut", |[.., z]| z - 3.0), 0.0);
@@ -186,7 +188,7 @@ fn rings_close_and_their_area_converges() {
 #[test]
 fn values_out_of_their_range_are_refused_by_name() {
     let zone = Zone { width: 0.1, divisions: 4, growth: 1.2 };
-    let disc = |radius, zone: Zone| half_disc([0.0; 2], radius, &zone, false, ElementKind::Q4).unwrap_err();
+    let disc = |radius, zone: Zone| half_disc([0.0; 2], radius, &zone, Sides::Both, ElementKind::Q4).unwrap_err();
     let cases = [
         (disc(0.0, zone), "radius is 0"),
         (disc(f64::NAN, zone), "radius is NaN"),
@@ -199,11 +201,11 @@ fn values_out_of_their_range_are_refused_by_name() {
         (disc(1.0, Zone { growth: f64::INFINITY, ..zone }), "zone.growth is inf"),
         (disc(1.0, Zone { width: 1e-7, growth: 1.0, ..zone }), "zone.growth is 1"),
         (disc(1.0, Zone { width: 1e-3, divisions: 100, growth: 1.0 }), "nodes that are allowed"),
-        (half_disc([0.0; 2], 1.0, &zone, false, ElementKind::Hex8).unwrap_err(), "no mesh of Hex8"),
-        (half_disc([f64::NAN, 0.0], 1.0, &zone, false, ElementKind::T3).unwrap_err(), "must be finite"),
-        (half_ball([0.0; 3], -1.0, &zone, [false; 2]).unwrap_err(), "radius is -1"),
+        (half_disc([0.0; 2], 1.0, &zone, Sides::Both, ElementKind::Hex8).unwrap_err(), "no mesh of Hex8"),
+        (half_disc([f64::NAN, 0.0], 1.0, &zone, Sides::Both, ElementKind::T3).unwrap_err(), "must be finite"),
+        (half_ball([0.0; 3], -1.0, &zone, [Sides::Both; 2]).unwrap_err(), "radius is -1"),
         (
-            half_ball([0.0; 3], 1.0, &Zone { width: 0.5, divisions: 2000, growth: 1.0 }, [false; 2]).unwrap_err(),
+            half_ball([0.0; 3], 1.0, &Zone { width: 0.5, divisions: 2000, growth: 1.0 }, [Sides::Both; 2]).unwrap_err(),
             "nodes that are allowed",
         ),
         (ring([0.0; 2], &[0.0, 1.0], &[0.0, 90.0], ElementKind::Q4).unwrap_err(), "inner radius is 0"),

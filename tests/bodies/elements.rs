@@ -10,7 +10,8 @@ use signorini::fem::Material;
 use signorini::fem::Stress;
 use signorini::fem::{self, DofMap};
 use signorini::fem::{ElasticBody, Integration};
-use signorini::fem::{ElementKind, Mesh, bar, cuboid, rectangle};
+use signorini::fem::{ElementKind, Mesh};
+use signorini::scene::{bar, cuboid, rectangle};
 
 /// A few thousand operations on numbers of order one.
 const ROUNDING: f64 = 1e-12;

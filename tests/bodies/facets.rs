@@ -6,8 +6,9 @@
 use signorini::fem::ElasticBody;
 use signorini::fem::Formulation;
 use signorini::fem::Material;
-use signorini::fem::{Boundary, ElementKind, FacetKind, Mesh, bar, cuboid, rectangle};
+use signorini::fem::{Boundary, ElementKind, FacetKind, Mesh};
 use signorini::fem::{add_pressure, add_traction, tributary_areas};
+use signorini::scene::{bar, cuboid, rectangle};
 
 const ROUNDING: f64 = 1e-14;
 

@@ -1,10 +1,11 @@
 //! Consistent loads: shares, totals, tributary areas.
 
 use crate::bodies::{VARIANTS, distorted_body};
+use signorini::fem::ElementKind;
 use signorini::fem::Formulation;
 use signorini::fem::Material;
-use signorini::fem::{ElementKind, rectangle};
 use signorini::fem::{add_body_force, add_traction, tributary_areas};
+use signorini::scene::rectangle;
 
 const ROUNDING: f64 = 1e-14;
 

@@ -6,12 +6,13 @@
 use crate::bodies::{distort, distorted, nodal_of};
 use signorini::Error;
 use signorini::fem::ElasticBody;
+use signorini::fem::ElementKind;
 use signorini::fem::Formulation;
 use signorini::fem::Material;
 use signorini::fem::{DofMap, Frame, MassForm, add_body_force_field, mass};
-use signorini::fem::{ElementKind, bar, cuboid};
 use signorini::internals::Cholesky;
 use signorini::internals::dot;
+use signorini::scene::{bar, cuboid};
 
 /// Sums over a mesh, by two quadratures.
 const SAME: f64 = 1e-12;

@@ -4,7 +4,8 @@ use signorini::Error;
 use signorini::fem::ElasticBody;
 use signorini::fem::Formulation;
 use signorini::fem::Material;
-use signorini::fem::{Axis, Boundary, ElementKind, FacetKind, Mesh, rectangle};
+use signorini::fem::{Axis, Boundary, ElementKind, FacetKind, Mesh};
+use signorini::scene::rectangle;
 
 fn axis(points: &[f64], divisions: &[usize], ratios: &[f64]) -> Axis {
     Axis { points: points.into(), divisions: divisions.into(), ratios: ratios.into() }

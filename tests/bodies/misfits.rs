@@ -4,10 +4,12 @@ use signorini::fem::ElasticBody;
 use signorini::fem::Formulation;
 use signorini::fem::Material;
 use signorini::fem::{DofMap, MassForm, mass};
-use signorini::fem::{ElementKind, Mesh, bar, cuboid, rectangle, ring};
+use signorini::fem::{ElementKind, Mesh};
 use signorini::fem::{discretisation_error, stress};
 use signorini::motion::DynamicProblem;
+use signorini::scene::{bar, cuboid, rectangle, ring};
 use signorini::{ContactProblem, Error, Settings, SparseMatrix, SymmetricMatrix, solve};
+use signorini::{InteriorPoint, Method, Penalty};
 
 const LINES: [f64; 3] = [0.0, 1.0, 2.0];
 
@@ -64,6 +66,12 @@ fn vectors_of_another_body_are_refused() {
     refused(mass(&one, &dofs, MassForm::Lumped, &[]), "setting", &["density"]);
 }
 
+fn penalty(change: fn(&mut Penalty)) -> Method {
+    let mut ladder = Penalty::default();
+    change(&mut ladder);
+    Method::Penalty(ladder)
+}
+
 #[test]
 fn settings_out_of_their_ranges_are_refused_one_by_one() {
     let one = |value| SparseMatrix::from_triplets(1, 1, &[(0, 0, value)]);
@@ -73,18 +81,19 @@ fn settings_out_of_their_ranges_are_refused_one_by_one() {
     };
     assert!(solve(&problem(), &Settings::default()).is_ok());
     type Change = fn(&mut Settings);
-    let cases: [(Change, &str); 14] = [
+    let cases: [(Change, &str); 12] = [
         (|settings| settings.tolerance = 0.0, "tolerance is 0"),
         (|settings| settings.tolerance = f64::NAN, "tolerance is NaN"),
         (|settings| settings.accuracy = Some(-1.0), "accuracy is -1"),
-        (|settings| settings.time = Some(-1.0), "time is -1"),
-        (|settings| settings.time = Some(f64::NAN), "time is NaN"),
-        (|settings| settings.interior_point_tolerance = f64::INFINITY, "interior_point_tolerance is inf"),
-        (|settings| settings.first_penalty = 0.0, "first_penalty is 0"),
-        (|settings| settings.last_penalty = -1.0, "last_penalty is -1"),
-        (|settings| settings.first_penalty = 1e9, "it must be at most last_penalty"),
-        (|settings| settings.penetration_threshold = -1.0, "penetration_threshold is -1"),
-        (|settings| settings.penetration_threshold = f64::NAN, "penetration_threshold is NaN"),
+        (
+            |settings| settings.method = Method::Qp(InteriorPoint { polish: true, tolerance: f64::INFINITY }),
+            "tolerance of the interior point is inf",
+        ),
+        (|settings| settings.method = penalty(|ladder| ladder.first = 0.0), "first penalty is 0"),
+        (|settings| settings.method = penalty(|ladder| ladder.last = -1.0), "last penalty is -1"),
+        (|settings| settings.method = penalty(|ladder| ladder.first = 1e9), "it must be at most the last"),
+        (|settings| settings.method = penalty(|ladder| ladder.penetration_threshold = -1.0), "threshold is -1"),
+        (|settings| settings.method = penalty(|ladder| ladder.penetration_threshold = f64::NAN), "threshold is NaN"),
         (|settings| settings.threads = 0, "threads is 0"),
         (|settings| settings.max_iterations = 0, "max_iterations is 0"),
         (|settings| settings.accuracy = Some(f64::NAN), "accuracy is NaN"),

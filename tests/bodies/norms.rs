@@ -7,10 +7,11 @@
 //!             of (u - c x)^2 = (1-x0)^4/4 - 2 c ((1-x0)^3.5/3.5 + x0 (1-x0)^2.5/2.5) + c^2/3, of u^2 = (1-x0)^4/4
 
 use signorini::fem::ElasticBody;
+use signorini::fem::ElementKind;
 use signorini::fem::Formulation;
 use signorini::fem::Material;
-use signorini::fem::{ElementKind, cuboid, rectangle};
 use signorini::fem::{ExactState, error_norms};
+use signorini::scene::{cuboid, rectangle};
 
 /// The norms promise four digits.
 const FOUR_DIGITS: f64 = 1e-4;

@@ -58,7 +58,8 @@ fn stress_of_a_linear_field_is_exact_in_elements_and_at_nodes() {
 #[test]
 fn stress_that_is_linear_in_a_rectangle_is_exact_at_its_nodes() {
     // u_x = x y is bilinear: eps_xx = y, gamma_xy = x, everywhere in Q4 rectangles of any size.
-    use signorini::fem::{ElementKind, rectangle};
+    use signorini::fem::ElementKind;
+    use signorini::scene::rectangle;
     let mesh = rectangle(&[0.0, 0.2, 1.0], &[0.0, 0.7, 1.0], ElementKind::Q4).unwrap();
     let material = signorini::fem::Material::new(8.0, 0.25).unwrap();
     let formulation = Formulation::PlaneStress { thickness: 1.0 };
@@ -115,7 +116,7 @@ fn assembled_stiffness_and_internal_force_agree() {
 #[test]
 fn stiffness_of_a_square_element_has_its_known_entries() {
     // Q4, plane stress, nu = 0, E = t = 1, unit square: K_xx = 1/3 + 1/6, K_xy = 1/8 by hand.
-    let mesh = signorini::fem::rectangle(&[0.0, 1.0], &[0.0, 1.0], signorini::fem::ElementKind::Q4).unwrap();
+    let mesh = signorini::scene::rectangle(&[0.0, 1.0], &[0.0, 1.0], signorini::fem::ElementKind::Q4).unwrap();
     let material = signorini::fem::Material::new(1.0, 0.0).unwrap();
     let formulation = Formulation::PlaneStress { thickness: 1.0 };
     let body = signorini::fem::ElasticBody::new(mesh, material, formulation).unwrap();
@@ -131,7 +132,7 @@ fn stiffness_does_not_change_with_the_unit_of_length() {
         let of = |scale: f64| {
             let lines = |lines: &[f64]| lines.iter().map(|x| x * scale).collect::<Vec<f64>>();
             let (x, y) = (lines(&[0.0, 0.4, 1.0]), lines(&[0.0, 0.7]));
-            let mesh = signorini::fem::rectangle(&x, &y, signorini::fem::ElementKind::Q4).unwrap();
+            let mesh = signorini::scene::rectangle(&x, &y, signorini::fem::ElementKind::Q4).unwrap();
             let material = signorini::fem::Material::new(7.0, 0.3).unwrap();
             let formulation = Formulation::PlaneStrain { thickness: 1.0 };
             let body = signorini::fem::ElasticBody::new(mesh, material, formulation).unwrap();

@@ -6,7 +6,8 @@ use crate::output_fixture::Indented;
 use resvg::usvg::roxmltree::Document;
 use signorini::{
     Error,
-    output::{Array, CellType, Drawing, Unstructured, write_atomically, write_picture},
+    fem::ElementKind,
+    output::{Array, Drawing, Unstructured, write_atomically, write_picture},
 };
 
 fn numbers(document: &Document, name: &str) -> Vec<f64> {
@@ -27,7 +28,7 @@ fn vtu_carries_mesh_and_data_without_losing_a_bit() {
     let vtu = Unstructured {
         nodes: &space,
         elements: &elements,
-        cell_types: &[CellType::Quadrilateral, CellType::Triangle],
+        cell_types: &[ElementKind::Q4, ElementKind::T3],
         point_data: &[
             Array::Vectors("displacement", &moved),
             Array::Scalars("pressure <&>", &thirds),
@@ -55,7 +56,7 @@ fn vtu_carries_mesh_and_data_without_losing_a_bit() {
 fn vtu_refuses_what_readers_would_misread() {
     let body = Indented::new([1.0, 0.5], [1, 1]);
     let nodes: Vec<[f64; 3]> = body.nodes.iter().map(|&[x, y]| [x, y, 0.0]).collect();
-    let cell_types = &[CellType::Quadrilateral];
+    let cell_types = &[ElementKind::Q4];
     let good = Unstructured { nodes: &nodes, elements: &body.elements, cell_types, point_data: &[], cell_data: &[] };
     assert!(good.to_vtu().is_ok());
     let values = [1.0, f64::NAN, 0.0, 0.0];

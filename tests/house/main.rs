@@ -9,5 +9,6 @@ mod architecture;
 mod errors;
 mod examples;
 mod imports;
+mod kinds;
 mod public;
 mod readme;

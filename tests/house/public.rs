@@ -1,6 +1,7 @@
 //! What every user may rely on: types that cross threads and print themselves, sets that are collections, matrices from
 //! compressed columns, the best answer inside an error; and that the front stays small.
 
+use signorini::Penalty;
 use std::collections::BTreeSet;
 use std::fmt::Debug;
 
@@ -10,8 +11,8 @@ use signorini::fem::Mesh;
 use signorini::motion::{DynamicProblem, Integrator, Scheme, State};
 use signorini::scene::Dynamics;
 use signorini::{
-    BoundarySolution, Certificate, ContactProblem, ContactSet, Error, Goal, Iterative, Method, Model, Path, Prepared,
-    ProvenSet, Scene, Settings, Solution, SparseMatrix, SymmetricMatrix, Watch, solve,
+    BoundarySolution, Certificate, ContactProblem, ContactSet, Error, Goal, Method, Model, Path, Prepared, ProvenSet,
+    Scene, Settings, Solution, SparseMatrix, SymmetricMatrix, Watch, solve,
 };
 
 fn crosses_threads<T: Send + Sync + Debug>() {}
@@ -20,7 +21,7 @@ fn crosses_threads<T: Send + Sync + Debug>() {}
 fn public_types_cross_threads_and_print_themselves() {
     crosses_threads::<(ContactProblem, Solution, Certificate, ContactSet, ProvenSet, Goal)>();
     crosses_threads::<(Settings, Method, Watch, Error)>();
-    crosses_threads::<(Prepared, Iterative, BoundarySolution, Path)>();
+    crosses_threads::<(Prepared, BoundarySolution, Path)>();
     crosses_threads::<(SparseMatrix, SymmetricMatrix)>();
     crosses_threads::<(Scene, Model, Dynamics, Mesh, ElasticBody)>();
     crosses_threads::<(DynamicProblem, Integrator, Scheme, State)>();
@@ -70,8 +71,7 @@ fn an_error_that_carries_an_answer_gives_it_away() {
     let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(1, 1, &[(0, 0, 1.0)]).unwrap()).unwrap();
     let contact = SparseMatrix::from_triplets(1, 1, &[(0, 0, 1.0)]).unwrap();
     let problem = ContactProblem::new(stiffness, vec![2.0], contact, vec![0.5]).unwrap();
-    let mut settings = Settings::with_method(Method::Penalty);
-    settings.last_penalty = 1.0;
+    let settings = Settings::with_method(Method::Penalty(Penalty { last: 1.0, ..Penalty::default() }));
     // One spring of the stiffness 1 beside the body's own: u = (2 + 0.5)/2.
     let best = solve(&problem, &settings).unwrap_err().into_best().unwrap();
     assert!((best.displacement[0] - 1.25).abs() < 1e-15, "{:?}", best.displacement);

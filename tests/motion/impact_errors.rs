@@ -94,7 +94,7 @@ fn a_motion_that_leaves_double_precision_is_an_error_at_its_step() {
 #[test]
 fn the_state_of_another_problem_is_not_resumed() {
     let mut one = integrator(with_mass(&LUMPED), Scheme::Midpoint, 0.1).unwrap();
-    assert_eq!((one.step(), one.time(), one.problem().contact().dofs()), (0.1, 0.0, 2));
+    assert_eq!((one.step(), one.time(), one.problem().statics().dofs()), (0.1, 0.0, 2));
     let mut state = one.state().clone();
     state.velocity.pop();
     refused(one.resume(state), "length", &["velocity has length 1", "2 dofs"]);

@@ -8,9 +8,7 @@ use crate::oracles::{Draws, random};
 use serde_json::{Value, json};
 use signorini::internals::Cholesky;
 use signorini::internals::multigrid::{Multigrid, NearNullSpace, dual_norm};
-use signorini::{
-    Condense, ContactProblem, Error, Iterative, Method, Prepared, Settings, Solution, Start, SymmetricMatrix, solve,
-};
+use signorini::{ContactProblem, Error, Method, Prepared, Settings, Solution, SymmetricMatrix, solve};
 
 /// The bound is of the exact answer; the reference has an error of its own, of rounding. Relative energy norm.
 const OF_REFERENCE: f64 = 1e-11;
@@ -116,19 +114,18 @@ fn on_springs() -> ContactProblem {
 
 /// Answers at several gaps and after several numbers of cycles, and their overestimates.
 fn of_body(problem: &ContactProblem, name: &str, reach: f64, draws: &mut Draws, ratios: &mut Vec<f64>) {
-    let prepared = Prepared::new(problem, Condense::Auto).unwrap();
-    let iterative = Iterative::new(problem, 1).unwrap();
-    let direct = Settings::with_method(Method::ActiveSet);
+    let direct = Prepared::new(problem, &Settings::with_method(Method::ActiveSet)).unwrap();
+    let iterative = Prepared::new(problem, &mprgp()).unwrap();
     let first = ratios.len();
     for _ in 0..GAPS {
         let shift = reach * draws.signed();
         let gap: Vec<f64> = problem.gap().iter().map(|gap| gap + shift * (1.0 + 0.2 * draws.signed())).collect();
         let at_gap = problem.with_gap(gap.clone()).unwrap();
-        let Ok(exact) = prepared.solve_gap(gap.clone(), None, &direct) else { continue };
+        let Ok(exact) = direct.solve(&gap) else { continue };
         for stop in [(1e-9, 2), (1e-9, 5), (1e-2, 500), (1e-3, 500), (1e-4, 500), (1e-6, 500), (1e-8, 500)] {
             let mut settings = mprgp();
             (settings.tolerance, settings.max_iterations) = stop;
-            let Some(found) = answer(iterative.solve_gap(gap.clone(), Start::default(), &settings)) else { continue };
+            let Some(found) = answer(iterative.with_settings(&settings).unwrap().solve(&gap)) else { continue };
             let what = format!("{name}, gaps moved by {shift:.1e}, {stop:?}");
             assert!(found.certificate.bound_is_measured, "{what}");
             ratios.extend(overestimate(&at_gap, &found, &exact.displacement, &what));

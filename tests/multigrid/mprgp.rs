@@ -10,7 +10,7 @@ use crate::bodies::{built, clamped_block, clamped_square, largest};
 use crate::oracles::{Dense, Draws, random};
 use serde_json::json;
 use signorini::internals::multigrid::{NearNullSpace, conjugate_gradients};
-use signorini::{ContactProblem, ContactSet, Error, Iterative, Method, Scene, Settings, Solution, Start, solve};
+use signorini::{ContactProblem, ContactSet, Error, Method, Prepared, Scene, Settings, Solution, Start, solve};
 
 /// Both answers are certified to 1e-9; the condition numbers of these bodies are 1e3 and less.
 const SAME: f64 = 1e-6;
@@ -49,9 +49,9 @@ fn example(name: &str) -> ContactProblem {
 fn a_block_costs_little_more_cycles_than_its_linear_solve() {
     let problem = built(&clamped_block(16, -0.01)).problem().clone();
     let contact = agrees_with_the_direct_path(&problem, "block");
-    let iterative = Iterative::new(&problem, 1).unwrap();
+    let iterative = Prepared::new(&problem, &mprgp()).unwrap();
     let load = problem.contact().mul_transposed(&vec![-1.0; problem.rows()]);
-    let linear = conjugate_gradients(problem.stiffness(), &load, iterative.multigrid(), 1e-10, 100).unwrap();
+    let linear = conjugate_gradients(problem.stiffness(), &load, iterative.hierarchy().unwrap(), 1e-10, 100).unwrap();
     let ratio = contact.iterations as f64 / linear.cycles as f64;
     assert!(ratio <= RATIO, "{} cycles of contact, {} of the linear solve", contact.iterations, linear.cycles);
 }
@@ -63,9 +63,9 @@ fn closed_rows_are_known_on_every_level() {
     let problem = built(&clamped_square(80, circle, -0.01)).problem().clone();
     let contact = agrees_with_the_direct_path(&problem, "square");
     assert!(contact.contact_set.count() > 10);
-    let iterative = Iterative::new(&problem, 1).unwrap();
+    let iterative = Prepared::new(&problem, &mprgp()).unwrap();
     let load = problem.contact().mul_transposed(&vec![-1.0; problem.rows()]);
-    let linear = conjugate_gradients(problem.stiffness(), &load, iterative.multigrid(), 1e-10, 100).unwrap();
+    let linear = conjugate_gradients(problem.stiffness(), &load, iterative.hierarchy().unwrap(), 1e-10, 100).unwrap();
     println!("{} cycles of contact, {} of the linear solve", contact.iterations, linear.cycles);
     assert!(contact.iterations as f64 <= RATIO * linear.cycles as f64, "{} cycles", contact.iterations);
 }
@@ -97,7 +97,7 @@ fn a_body_that_only_contact_holds_is_included() {
     let problem = built(&scene).problem().clone();
     let found = agrees_with_the_direct_path(&problem, "free along z");
     assert!(found.contact_set.count() > 0);
-    assert!(Iterative::new(&problem, 1).unwrap().multigrid().is_shifted());
+    assert!(Prepared::new(&problem, &mprgp()).unwrap().hierarchy().unwrap().is_shifted());
 }
 
 #[test]
@@ -142,27 +142,24 @@ fn rows_on_both_sides_of_a_dof_and_rows_of_two_dofs_are_bounds() {
 #[test]
 fn the_last_answer_is_a_start_that_saves_cycles() {
     let problem = built(&clamped_block(12, -0.01)).problem().clone();
-    let iterative = Iterative::new(&problem, 1).unwrap();
-    let first = iterative.solve(Start::default(), &mprgp()).unwrap();
-    let again = Start { displacement: Some(&first.displacement), contact_set: Some(&first.contact_set) };
+    let iterative = Prepared::new(&problem, &mprgp()).unwrap();
+    let first = iterative.solve(problem.gap()).unwrap();
     let gap: Vec<f64> = problem.gap().iter().map(|gap| gap - 1e-4).collect();
-    let next = iterative.solve_gap(gap.clone(), again, &mprgp()).unwrap();
-    let cold = iterative.solve_gap(gap, Start::default(), &mprgp()).unwrap();
+    let next = iterative.starting_from(&first).solve(&gap).unwrap();
+    let cold = iterative.solve(&gap).unwrap();
     assert_eq!(next.contact_set, cold.contact_set);
     assert!(next.iterations < cold.iterations, "{} against {}", next.iterations, cold.iterations);
-    let wrong = vec![0.0; 3];
-    let start = Start { displacement: Some(&wrong), contact_set: None };
-    assert!(matches!(iterative.solve(start, &mprgp()), Err(Error::Length { .. })));
+    let short = iterative.starting_from(Start::near(vec![0.0; 3]));
+    assert!(matches!(short.solve(problem.gap()), Err(Error::Length { .. })));
 }
 
 #[test]
 fn a_start_far_off_changes_nothing_but_the_cycles() {
     let problem = built(&clamped_block(8, -0.02)).problem().clone();
-    let iterative = Iterative::new(&problem, 1).unwrap();
-    let cold = iterative.solve(Start::default(), &mprgp()).unwrap();
+    let iterative = Prepared::new(&problem, &mprgp()).unwrap();
+    let cold = iterative.solve(problem.gap()).unwrap();
     let closed = ContactSet::closed(problem.rows());
-    let start = Start { displacement: None, contact_set: Some(&closed) };
-    assert_eq!(iterative.solve(start, &mprgp()).unwrap().contact_set, cold.contact_set);
+    assert_eq!(iterative.starting_from(closed).solve(problem.gap()).unwrap().contact_set, cold.contact_set);
 }
 
 #[test]
@@ -258,7 +255,7 @@ fn too_few_cycles_end_with_the_best_answer_not_certified() {
         Err(error) => panic!("{error}"),
     };
     assert!(solution.iterations < 60 && solution.certificate.meets(1e-12), "{:?}", solution.certificate);
-    settings.time = Some(0.0);
+    settings.time = Some(std::time::Duration::ZERO);
     let Err(Error::NotCertified { solution, .. }) = solve(&problem, &settings) else { panic!("in no time?") };
     assert_eq!((solution.iterations, solution.method.as_str()), (0, "none"), "no time to begin");
 }

@@ -109,9 +109,8 @@ fn answer_moved_by_ten_tolerances_is_refused() {
 
 #[test]
 fn not_certified_answers_come_back_with_their_numbers() {
-    let mut settings = Settings::with_method(Method::Qp);
-    settings.polish = false;
-    settings.interior_point_tolerance = 1e-2;
+    let loose = signorini::InteriorPoint { polish: false, tolerance: 1e-2 };
+    let settings = Settings::with_method(Method::Qp(loose));
     match solve(&two_springs().0, &settings) {
         Err(signorini::Error::NotCertified { solution, value, tolerance, .. }) => {
             assert_eq!(solution.method, "qp-unpolished");

@@ -5,7 +5,7 @@
 
 use signorini::{ContactProblem, Error, Method, Settings, Solution, SparseMatrix, SymmetricMatrix, solve};
 
-const ALL: [Method; 5] = [Method::Auto, Method::Qp, Method::ActiveSet, Method::Penalty, Method::Mprgp];
+const ALL: [Method; 5] = [Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty(), Method::Mprgp];
 
 /// A problem from its entries: K by its lower triangle, f, B by rows, g.
 fn problem(stiffness: &[(usize, usize, f64)], load: &[f64], rows: &[&[f64]], gap: &[f64]) -> ContactProblem {

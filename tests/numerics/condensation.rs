@@ -3,6 +3,7 @@
 //! CONDITIONS: every example scene, the reference gaps, a body in space, inclined and two-sided rows, bodies that only their
 //! rows hold, redundant rows; one thread and two.
 
+use signorini::Penalty;
 use std::path::Path;
 
 use crate::oracles::{Draws, random};
@@ -15,7 +16,7 @@ use signorini::{
 /// Condensed and full answers differ by rounding, enlarged by the condition number of the stiffness.
 const SAME: f64 = 1e-11;
 
-const EXACT: [Method; 2] = [Method::Qp, Method::ActiveSet];
+const EXACT: [Method; 2] = [Method::qp(), Method::ActiveSet];
 
 fn settings(method: Method, condense: Condense) -> Settings {
     let mut settings = Settings::with_method(method);
@@ -133,28 +134,28 @@ fn two_threads_give_the_answer_of_one_bit_by_bit() {
 #[test]
 fn boundary_alone_agrees_with_the_whole_answer() {
     let problem = example("indentation");
-    let prepared = Prepared::new(&problem, Condense::Auto).unwrap();
+    let prepared = Prepared::new(&problem, &Settings::default()).unwrap();
     for method in EXACT {
-        let settings = settings(method, Condense::Auto);
-        let closed = prepared.solve(&settings).unwrap().contact_set;
+        let prepared = prepared.with_settings(&settings(method, Condense::Auto)).unwrap();
+        let warm = prepared.starting_from(prepared.solve(problem.gap()).unwrap().contact_set);
         let gap: Vec<f64> = problem.gap().iter().map(|gap| gap - 0.02).collect();
-        let whole = prepared.solve_gap(gap.clone(), Some(&closed), &settings).unwrap();
-        let boundary = prepared.boundary_at_gap(gap, Some(&closed), &settings).unwrap();
+        let whole = warm.solve(&gap).unwrap();
+        let boundary = warm.boundary(&gap).unwrap();
         assert_eq!(boundary.multiplier, whole.multiplier);
         assert_eq!(boundary.contact_set, whole.contact_set);
         assert_eq!(boundary.contact_force(), whole.contact_force());
         assert_eq!(boundary.displacement(), whole.displacement);
         assert!(boundary.condensed_certificate.meets(1e-12), "{:?}", boundary.condensed_certificate);
         assert!(boundary.condensed_certificate.energy_error_bound < 1e-12);
-        assert_eq!(boundary.solution(&settings).unwrap().certificate, whole.certificate);
+        assert_eq!(boundary.solution().unwrap().certificate, whole.certificate);
 
         let load: Vec<f64> = (0..problem.dofs()).map(|dof| if dof % 2 == 1 { 30.0 } else { 5.0 }).collect();
-        let whole = prepared.solve_load(load.clone(), None, &settings).unwrap();
-        let boundary = prepared.boundary_at_load(load, None, &settings).unwrap();
+        let whole = prepared.solve_load(load.clone()).unwrap();
+        let boundary = prepared.with_load(load).unwrap().boundary(problem.gap()).unwrap();
         assert_eq!(boundary.multiplier, whole.multiplier);
         assert_eq!(boundary.displacement(), whole.displacement);
     }
-    let message = prepared.boundary_at_gap(vec![f64::NAN; 41], None, &Settings::default()).unwrap_err().to_string();
+    let message = prepared.boundary(&[f64::NAN; 41]).unwrap_err().to_string();
     assert!(message.contains("gap vector has the value NaN at entry 0"), "{message}");
 }
 
@@ -162,10 +163,9 @@ fn boundary_alone_agrees_with_the_whole_answer() {
 #[test]
 fn boundary_of_a_poor_answer_is_not_certified() {
     let problem = example("indentation");
-    let prepared = Prepared::new(&problem, Condense::Auto).unwrap();
-    let mut settings = settings(Method::Penalty, Condense::Auto);
-    settings.last_penalty = 1e3;
-    let refused = prepared.boundary_at_gap(problem.gap().to_vec(), None, &settings);
+    let ladder = Penalty { last: 1e3, ..Penalty::default() };
+    let prepared = Prepared::new(&problem, &settings(Method::Penalty(ladder), Condense::Auto)).unwrap();
+    let refused = prepared.boundary(problem.gap());
     assert!(matches!(refused, Err(Error::NotCertified { .. })), "{refused:?}");
 }
 
@@ -245,13 +245,13 @@ fn inclined_two_sided_and_redundant_rows_condense() {
 #[test]
 fn next_gap_and_next_load_agree_with_independent_solves() {
     let problem = example("indentation");
-    let prepared = Prepared::new(&problem, Condense::Auto).unwrap();
-    let default = Settings::with_method(Method::Qp);
-    let mut last = prepared.solve(&default).unwrap();
+    let default = Settings::with_method(Method::qp());
+    let prepared = Prepared::new(&problem, &default).unwrap();
+    let mut last = prepared.solve(problem.gap()).unwrap();
     for step in 1..8 {
         let gap: Vec<f64> = problem.gap().iter().map(|gap| gap - 0.006 * f64::from(step)).collect();
         let cold = answer(&problem.with_gap(gap.clone()).unwrap(), &default);
-        let next = prepared.solve_gap(gap, Some(&last.contact_set), &default).unwrap();
+        let next = prepared.starting_from(&last.contact_set).solve(&gap).unwrap();
         assert_eq!(next.method, "qp-warm");
         same(&next.displacement, &cold.displacement, "u");
         same(&next.multiplier, &cold.multiplier, "lambda");
@@ -259,7 +259,7 @@ fn next_gap_and_next_load_agree_with_independent_solves() {
     }
     let load: Vec<f64> = (0..problem.dofs()).map(|dof| if dof % 2 == 1 { -40.0 } else { 15.0 }).collect();
     let cold = answer(&problem.with_load(load.clone()).unwrap(), &default);
-    let next = prepared.solve_load(load, None, &default).unwrap();
+    let next = prepared.solve_load(load).unwrap();
     same(&next.displacement, &cold.displacement, "u under load");
     same(&next.multiplier, &cold.multiplier, "lambda under load");
 }
@@ -267,13 +267,12 @@ fn next_gap_and_next_load_agree_with_independent_solves() {
 #[test]
 fn gaps_that_do_not_fit_a_prepared_problem_are_refused() {
     let problem = example("indentation");
-    let prepared = Prepared::new(&problem, Condense::Auto).unwrap();
-    let default = Settings::default();
-    let message = prepared.solve_gap(vec![0.0; 3], None, &default).unwrap_err().to_string();
+    let prepared = Prepared::new(&problem, &Settings::default()).unwrap();
+    let message = prepared.solve(&[0.0; 3]).unwrap_err().to_string();
     assert_eq!(message, "gap vector has length 3, but there are 41 contact rows");
     let mut gap = problem.gap().to_vec();
     gap[5] = f64::INFINITY;
-    let message = prepared.solve_gap(gap, None, &default).unwrap_err().to_string();
+    let message = prepared.solve(&gap).unwrap_err().to_string();
     assert!(message.contains("gap vector has the value inf at entry 5"), "{message}");
 }
 
@@ -343,15 +342,15 @@ fn pressed_block(width: f64, height: f64) -> ContactProblem {
 fn where_condensation_loses_the_digits_all_dofs_give_them() {
     let force = |width: f64| 0.7 / (1.3 * 0.4) * 0.01 * width;
     let wide = pressed_block(1e6, 1.0);
-    for method in [Method::Auto, Method::Qp, Method::ActiveSet, Method::Penalty] {
+    for method in [Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty()] {
         let mut settings = settings(method, Condense::Auto);
-        if method == Method::Penalty {
+        if method == Method::penalty() {
             settings.tolerance = 1e-6;
         }
         let solution = answer(&wide, &settings);
         assert_eq!(solution.condensed_dofs, wide.dofs(), "{method:?}");
         let error = (solution.contact_force() / force(1e6) - 1.0).abs();
-        assert!(error <= 1e-12 || method == Method::Penalty && error <= 1e-6, "{method:?}: {error:e}");
+        assert!(error <= 1e-12 || method == Method::penalty() && error <= 1e-6, "{method:?}: {error:e}");
         // Both attempts are told, and their time counts.
         let [attempt] = &solution.attempts[..] else { panic!("{method:?}: {:?}", solution.attempts) };
         assert!(attempt.reason.contains("condensed dofs") && attempt.reason.contains("above"), "{attempt:?}");

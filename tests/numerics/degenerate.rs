@@ -165,7 +165,7 @@ fn compare(rest: usize, parts: usize) {
         count.strict += 1;
         least = least.min(margin);
         let sparse = case.0.problem().unwrap();
-        for method in [Method::Qp, Method::ActiveSet, Method::Auto] {
+        for method in [Method::qp(), Method::ActiveSet, Method::Auto] {
             let mut settings = Settings::with_method(method);
             settings.prove = method == Method::Auto;
             let found =

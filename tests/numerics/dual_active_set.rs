@@ -3,15 +3,16 @@
 
 use crate::oracles::{Dense, Draws, random};
 use nalgebra::{DMatrix, DVector};
+use signorini::Start;
 use signorini::internals::AugmentedMatrix;
-use signorini::internals::{Outcome, ScaledProblem, dual_active_set};
+use signorini::internals::{DualActiveSet, Outcome, ScaledProblem, Solver};
 use signorini::{ContactProblem, Error, Method, Settings, SparseMatrix, SymmetricMatrix, solve};
 
 /// Runs the method on a problem as it stands; `definite` is what is known of its stiffness.
 fn run(problem: &ContactProblem, definite: bool) -> Result<Outcome, Error> {
     let augmented = AugmentedMatrix::new(problem.stiffness(), problem.contact()).unwrap();
-    let found = dual_active_set::solve(&ScaledProblem::new(problem, &augmented, definite))?;
-    Ok(found.expect("small enough"))
+    let scaled = ScaledProblem::new(problem, &augmented, definite);
+    DualActiveSet::of(&scaled)?.expect("small enough").solve(Start::default())
 }
 
 /// `|u - u*|_K / |u*|_K`.
@@ -225,7 +226,7 @@ fn rows_that_contradict_each_other_but_for_rounding_are_not_called_infeasible() 
 }
 
 /// The methods on a factor, which all end with the last resort.
-const METHODS: [Method; 4] = [Method::Auto, Method::Qp, Method::ActiveSet, Method::Penalty];
+const METHODS: [Method; 4] = [Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty()];
 
 #[track_caller]
 fn agrees(dense: &Dense, displacement: &[f64], multiplier: &[f64]) {
@@ -283,7 +284,7 @@ fn networks_are_certified_by_every_exact_method() {
     for case in 0..100 {
         let n = 6 + draws.below(20);
         let problem = network(&mut draws, n).problem().unwrap();
-        for method in [Method::Auto, Method::Qp, Method::ActiveSet] {
+        for method in [Method::Auto, Method::qp(), Method::ActiveSet] {
             if let Err(error) = solve(&problem, &Settings::with_method(method)) {
                 panic!("case {case}, {method:?}: {error}");
             }

@@ -4,6 +4,7 @@ use crate::program::examples;
 use crate::random::springs;
 use signorini::qp::{Condense, Method, Settings};
 use signorini::{ContactProblem, Error, Scene, Solution, SparseMatrix, SymmetricMatrix, solve};
+use signorini::{InteriorPoint, Penalty};
 
 /// Errors below this are those of the reference, a solve in double precision on matrices of condition 1e4.
 const OF_THE_REFERENCE: f64 = 1e-12;
@@ -40,13 +41,12 @@ fn ways() -> Vec<(String, Settings)> {
             settings
         };
         for tolerance in [1e-2, 1e-4, 1e-6, 1e-8] {
-            let mut settings = base(Method::Qp);
-            (settings.polish, settings.interior_point_tolerance) = (false, tolerance);
+            let settings = base(Method::Qp(InteriorPoint { polish: false, tolerance }));
             ways.push((format!("qp {tolerance:e} {condense:?}"), settings));
         }
         for last in [1e1, 1e3, 1e5, 1e8] {
-            let mut settings = base(Method::Penalty);
-            (settings.last_penalty, settings.penetration_threshold) = (last, 0.0);
+            let ladder = Penalty { last, penetration_threshold: 0.0, ..Penalty::default() };
+            let settings = base(Method::Penalty(ladder));
             ways.push((format!("penalty {last:e} {condense:?}"), settings));
         }
         ways.push((format!("active-set {condense:?}"), base(Method::ActiveSet)));

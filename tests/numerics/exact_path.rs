@@ -17,10 +17,9 @@ fn indentation() -> signorini::Model {
 fn path_agrees_with_independent_solves_at_random_gaps() {
     let model = indentation();
     let problem = model.problem();
-    let settings = Settings::default();
-    let prepared = Prepared::new(problem, Condense::Auto).unwrap();
+    let prepared = Prepared::new(problem, &Settings::default()).unwrap();
     let at = |gap: f64| model.with_gap(gap).unwrap().problem().gap().to_vec();
-    let path = prepared.path(&at(0.002), &at(-0.1), &settings).unwrap();
+    let path = prepared.path(&at(0.002), &at(-0.1)).unwrap();
     let mut draws = Draws::new(8);
     for _ in 0..30 {
         let t = draws.uniform();
@@ -30,7 +29,7 @@ fn path_agrees_with_independent_solves_at_random_gaps() {
             assert!((a - b).abs() <= SAME * largest, "t = {t}: {a} and {b}");
         }
         assert_eq!(path.contact_set(t), independent.contact_set, "t = {t}");
-        let whole = path.solution(t, &settings).unwrap();
+        let whole = path.solution(t).unwrap();
         assert!((whole.contact_force() - independent.contact_force()).abs() <= SAME * independent.contact_force());
     }
 }
@@ -38,9 +37,9 @@ fn path_agrees_with_independent_solves_at_random_gaps() {
 #[test]
 fn every_event_of_a_symmetric_indentation_is_a_pair_that_touches() {
     let model = indentation();
-    let prepared = Prepared::new(model.problem(), Condense::Auto).unwrap();
+    let prepared = Prepared::new(model.problem(), &Settings::default()).unwrap();
     let at = |gap: f64| model.with_gap(gap).unwrap().problem().gap().to_vec();
-    let path = prepared.path(&at(0.002), &at(-0.1), &Settings::default()).unwrap();
+    let path = prepared.path(&at(0.002), &at(-0.1)).unwrap();
     let events = path.events();
     // The node under the apex touches first, then the others in pairs, one on either side: 29 closed at the end.
     assert_eq!(events.len(), 29, "{events:?}");
@@ -82,8 +81,8 @@ fn rows_that_touch_release_and_touch_again_agree_with_independent_solves() {
         let from: Vec<f64> = dense.gap.as_slice().to_vec();
         let to: Vec<f64> = from.iter().map(|gap| gap + 2.0 * draws.signed()).collect();
         let problem = signorini::ContactProblem::new(stiffness, load, contact, from.clone()).unwrap();
-        let prepared = Prepared::new(&problem, Condense::Auto).unwrap();
-        let path = match prepared.path(&from, &to, &Settings::default()) {
+        let prepared = Prepared::new(&problem, &Settings::default()).unwrap();
+        let path = match prepared.path(&from, &to) {
             Ok(path) => path,
             // The gaps at the end may contradict each other, or the rows were too many to condense.
             Err(Error::Infeasible { .. } | Error::NotCondensed { .. } | Error::Numerical { .. }) => continue,
@@ -112,8 +111,8 @@ fn rows_that_touch_release_and_touch_again_agree_with_independent_solves() {
 #[test]
 fn a_problem_that_is_not_condensed_has_no_path() {
     let model = indentation();
-    let prepared = Prepared::new(model.problem(), Condense::Never).unwrap();
+    let prepared = Prepared::new(model.problem(), &Settings::default().with_condensation(Condense::Never)).unwrap();
     let gap = model.problem().gap();
-    let result = prepared.path(gap, gap, &Settings::default());
+    let result = prepared.path(gap, gap);
     assert!(matches!(result, Err(Error::NotCondensed { .. })));
 }

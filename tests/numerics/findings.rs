@@ -16,7 +16,7 @@ use serde_json::Value;
 use signorini::qp::{read_problem, read_vector};
 use signorini::{ContactProblem, Error, Method, Settings, Solution, solve};
 
-const ALL: [Method; 5] = [Method::Auto, Method::Qp, Method::ActiveSet, Method::Penalty, Method::Mprgp];
+const ALL: [Method; 5] = [Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty(), Method::Mprgp];
 
 /// An answer is exact to rounding where its relative error in energy is below this, or rounding of u explains it.
 const ROUNDING: f64 = 1e-13;
@@ -70,7 +70,7 @@ impl Finding {
         for &method in methods {
             let ending = self.solve(method);
             // A penalty leaves an error of its own, which is asked for with it, and says so.
-            if let (Method::Penalty, Err(Error::NotCertified { solution, .. })) = (method, &ending) {
+            if let (Method::Penalty(_), Err(Error::NotCertified { solution, .. })) = (method, &ending) {
                 assert!(
                     solution.certificate.energy_error_bound <= OF_A_PENALTY,
                     "{}: {:?}",
@@ -142,7 +142,7 @@ fn rows_that_contradict_each_other_by_order_one_are_infeasible() {
     // MPRGP cannot take rows that share unknowns at odd angles, and names them.
     let turned = finding.solve(Method::Mprgp);
     assert!(matches!(turned, Err(Error::Numerical { step: "turning contact rows into bounds", .. })), "{turned:?}");
-    for method in [Method::Auto, Method::Qp, Method::ActiveSet, Method::Penalty] {
+    for method in [Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty()] {
         let Err(Error::Infeasible { rows, weights, .. }) = finding.solve(method) else { panic!("{}", method.name()) };
         // Rows 1 + 2 + 2 * 3 cancel, and ask for 0 <= -4.
         assert_eq!(rows, [1, 2, 3], "{}", method.name());
@@ -187,7 +187,7 @@ fn a_limit_of_memory_leaves_a_stretched_strip_certified_or_refused() {
 #[test]
 fn rounding_of_a_large_displacement_is_excused_in_full() {
     let finding = Finding::read("unconstrained_stationarity");
-    finding.is_certified_by(&[Method::Auto, Method::Qp, Method::ActiveSet, Method::Penalty]);
+    finding.is_certified_by(&[Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty()]);
     finding.command(&[]).ends_with(0);
 }
 
@@ -235,6 +235,6 @@ fn a_soft_part_at_the_wrong_place_is_not_certified() {
 #[test]
 fn a_weakly_held_part_between_difference_rows_is_certified() {
     let finding = Finding::read("weakly_held_part_difference_rows");
-    finding.is_certified_by(&[Method::Auto, Method::Qp, Method::ActiveSet, Method::Penalty]);
+    finding.is_certified_by(&[Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty()]);
     finding.command(&[]).ends_with(0);
 }

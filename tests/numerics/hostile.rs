@@ -249,7 +249,7 @@ fn hostile_problems_end_with_a_certified_answer_or_a_typed_error() {
     assert!(cases.len() >= 60, "{}", cases.len());
     let mut wrong = Vec::new();
     for (name, dense, expected) in &cases {
-        for method in [Method::Qp, Method::ActiveSet] {
+        for method in [Method::qp(), Method::ActiveSet] {
             for condense in [Condense::Auto, Condense::Never] {
                 let mut settings = Settings::with_method(method);
                 settings.condense = condense;
@@ -277,7 +277,7 @@ fn hostile_problems_end_with_a_certified_answer_or_a_typed_error() {
 #[test]
 fn hostile_problems_by_the_penalty_method_end_too() {
     for (name, dense, _) in cases() {
-        match dense.problem().and_then(|problem| solve(&problem, &Settings::with_method(Method::Penalty))) {
+        match dense.problem().and_then(|problem| solve(&problem, &Settings::with_method(Method::penalty()))) {
             Ok(solution) => check(&name, &dense, &solution),
             Err(Error::NotCertified { value, tolerance, .. }) => assert!(value.is_nan() || value > tolerance, "{name}"),
             Err(_) => {}

@@ -2,13 +2,14 @@
 
 use crate::oracles::{Dense, Draws, random};
 use signorini::{ContactProblem, Error, Method, Settings, Solution, SparseMatrix, SymmetricMatrix, solve, solve_qp};
+use signorini::{InteriorPoint, Penalty};
 
-const EXACT: [Method; 2] = [Method::Qp, Method::ActiveSet];
+const EXACT: [Method; 2] = [Method::qp(), Method::ActiveSet];
 
 fn answer(dense: &Dense, method: Method) -> Solution {
     match solve(&dense.problem().unwrap(), &Settings::with_method(method)) {
         Ok(solution) => solution,
-        Err(Error::NotCertified { solution, .. }) if method == Method::Penalty => *solution,
+        Err(Error::NotCertified { solution, .. }) if method == Method::penalty() => *solution,
         Err(error) => panic!("{method:?}: {error}\n{dense:?}"),
     }
 }
@@ -36,8 +37,8 @@ fn two_springs_against_a_wall() {
 #[test]
 fn interior_point_alone_sees_the_coupling() {
     let dense = Dense::new(&[&[3.0, -1.0], &[-1.0, 1.0]], &[0.0, 3.0], &[&[0.0, 1.0]], &[1.0]);
-    let mut settings = Settings::with_method(Method::Qp);
-    (settings.polish, settings.tolerance) = (false, 1e-6);
+    let unpolished = Method::Qp(InteriorPoint { polish: false, ..InteriorPoint::default() });
+    let settings = Settings::with_method(unpolished).with_tolerance(1e-6);
     let solution = solve(&dense.problem().unwrap(), &settings).unwrap();
     assert_eq!(solution.method, "qp-unpolished");
     agree(&solution.displacement, &[1.0 / 3.0, 1.0], 1e-6, "u");
@@ -96,7 +97,7 @@ fn random_problems_agree_with_enumeration() {
             let solution = answer(&dense, method);
             agree(&solution.displacement, exact.displacement.as_slice(), 1e-10, &format!("case {case}, {method:?}"));
         }
-        let solution = answer(&dense, Method::Penalty);
+        let solution = answer(&dense, Method::penalty());
         let error = nalgebra::DVector::from_row_slice(&solution.displacement) - &exact.displacement;
         let energy_norm = |u: &nalgebra::DVector<f64>| u.dot(&(&dense.stiffness * u)).max(0.0).sqrt();
         let (distance, bound) =
@@ -203,7 +204,7 @@ fn floating_rod_pressed_onto_the_wall_is_solved() {
 
 #[test]
 fn floating_rod_pulled_away_is_unbounded_with_the_escape_direction() {
-    for method in [Method::Qp, Method::ActiveSet, Method::Penalty] {
+    for method in [Method::qp(), Method::ActiveSet, Method::penalty()] {
         match solve(&rod([-1.0, 0.0]).problem().unwrap(), &Settings::with_method(method)) {
             Err(Error::Unbounded { direction, .. }) => agree(&direction, &[-1.0, -1.0], 1e-9, "direction"),
             other => panic!("{method:?}: {other:?}"),
@@ -213,7 +214,7 @@ fn floating_rod_pulled_away_is_unbounded_with_the_escape_direction() {
 
 #[test]
 fn floating_rod_without_load_is_not_unique() {
-    for method in [Method::Qp, Method::ActiveSet] {
+    for method in [Method::qp(), Method::ActiveSet] {
         let result = solve(&rod([0.0, 0.0]).problem().unwrap(), &Settings::with_method(method));
         assert!(matches!(result, Err(Error::UnderHeld { .. })), "{method:?}: {result:?}");
     }
@@ -246,7 +247,7 @@ fn bounds_that_cross_are_infeasible_and_bounds_that_meet_are_an_equality() {
         let contact: [&[f64]; 2] = [&[0.0, 1.0], &[0.0, -1.0]];
         Dense::new(&[&[3.0, -1.0], &[-1.0, 1.0]], &[0.0, 3.0], &contact, &[upper, -lower])
     };
-    for method in [Method::Qp, Method::ActiveSet, Method::Penalty] {
+    for method in [Method::qp(), Method::ActiveSet, Method::penalty()] {
         match solve(&two_sided(1.0, 1.0 - 1e-9).problem().unwrap(), &Settings::with_method(method)) {
             Err(Error::Infeasible { rows, .. }) => assert_eq!(rows, [0, 1]),
             other => panic!("{method:?}: {other:?}"),
@@ -265,7 +266,7 @@ fn bounds_that_cross_are_infeasible_and_bounds_that_meet_are_an_equality() {
 fn rows_that_contradict_in_three_directions_are_infeasible() {
     let contact: [&[f64]; 3] = [&[0.0, 1.0], &[0.8, -0.6], &[-0.8, -0.6]];
     let dense = Dense::new(&[&[2.0, 0.0], &[0.0, 1.0]], &[0.3, 1.0], &contact, &[-0.5, 0.1, 0.1]);
-    for method in [Method::Qp, Method::ActiveSet, Method::Penalty] {
+    for method in [Method::qp(), Method::ActiveSet, Method::penalty()] {
         match solve(&dense.problem().unwrap(), &Settings::with_method(method)) {
             Err(Error::Infeasible { rows, .. }) => assert_eq!(rows, [0, 1, 2]),
             other => panic!("{method:?}: {other:?}"),
@@ -289,10 +290,10 @@ fn duplicate_rows_share_the_force() {
 #[test]
 fn penalty_error_falls_tenfold_from_rung_to_rung() {
     let dense = Dense::new(&[&[1.0]], &[2.0], &[&[1.0]], &[0.3]);
-    let mut settings = Settings::with_method(Method::Penalty);
     let mut errors = Vec::new();
     for rung in 0..9 {
-        settings.last_penalty = 10.0_f64.powi(rung);
+        let ladder = Penalty { last: 10.0_f64.powi(rung), ..Penalty::default() };
+        let settings = Settings::with_method(Method::Penalty(ladder));
         let lambda = match solve(&dense.problem().unwrap(), &settings) {
             Ok(solution) => solution.multiplier[0],
             Err(Error::NotCertified { solution, .. }) => solution.multiplier[0],
@@ -312,7 +313,7 @@ fn answers_scale_bit_for_bit_with_powers_of_two() {
     for case in 0..50 {
         let (n, m) = (1 + draws.below(5), 1 + draws.below(5));
         let dense = random(&mut draws, n, m);
-        for method in [Method::Qp, Method::ActiveSet, Method::Penalty] {
+        for method in [Method::qp(), Method::ActiveSet, Method::penalty()] {
             let reference = answer(&dense, method);
             for (a, b) in [(8.0, 0.5), (2.0_f64.powi(-301), 2.0_f64.powi(77)), (2.0_f64.powi(333), 2.0_f64.powi(-300))]
             {
@@ -337,7 +338,7 @@ fn rows_without_obstacle_or_without_dofs_are_no_constraints() {
     let contact: [&[f64]; 3] = [&[0.0, 1.0], &[0.0, 0.0], &[1.0, 0.0]];
     let mut dense =
         Dense::new(&[&[3.0, -1.0], &[-1.0, 1.0]], &[0.0, 3.0], &contact, &[f64::INFINITY, 0.2, f64::INFINITY]);
-    for method in [Method::Qp, Method::ActiveSet, Method::Penalty] {
+    for method in [Method::qp(), Method::ActiveSet, Method::penalty()] {
         let solution = answer(&dense, method);
         agree(&solution.displacement, &[1.5, 4.5], 1e-14, "u");
         assert_eq!(solution.multiplier, [0.0; 3]);
@@ -352,12 +353,12 @@ fn rows_without_obstacle_or_without_dofs_are_no_constraints() {
 #[test]
 fn nothing_to_solve_is_solved() {
     let empty = Dense::new(&[], &[], &[], &[]);
-    for method in [Method::Qp, Method::ActiveSet, Method::Penalty] {
+    for method in [Method::qp(), Method::ActiveSet, Method::penalty()] {
         let solution = answer(&empty, method);
         assert!(solution.displacement.is_empty() && solution.contact_force() == 0.0);
     }
     let still = Dense::new(&[&[3.0, -1.0], &[-1.0, 1.0]], &[0.0, 0.0], &[&[0.0, 1.0]], &[0.0]);
-    for method in [Method::Qp, Method::ActiveSet, Method::Penalty] {
+    for method in [Method::qp(), Method::ActiveSet, Method::penalty()] {
         let solution = answer(&still, method);
         assert_eq!((solution.displacement, solution.multiplier), (vec![0.0; 2], vec![0.0]));
     }

@@ -9,7 +9,7 @@ use crate::oracles::Draws;
 use signorini::internals::closed_forms::{DiscMembrane, ObstacleString};
 use signorini::{ContactProblem, Method, Settings, SparseMatrix, SymmetricMatrix, solve};
 
-const METHODS: [Method; 2] = [Method::Qp, Method::ActiveSet];
+const METHODS: [Method; 2] = [Method::qp(), Method::ActiveSet];
 
 fn problem(
     stiffness: &[(usize, usize, f64)],

@@ -1,5 +1,6 @@
 //! The penalty ladder told an accuracy, and Richardson's extrapolation over the penalty.
 
+use signorini::Penalty;
 use signorini::qp::{Condense, Method, Settings};
 use signorini::{ContactProblem, Error, Scene, Solution, solve};
 
@@ -21,7 +22,7 @@ fn exact(problem: &ContactProblem) -> Solution {
 }
 
 fn penalty(problem: &ContactProblem, change: impl Fn(&mut Settings)) -> Solution {
-    let mut settings = Settings::with_method(Method::Penalty);
+    let mut settings = Settings::with_method(Method::penalty());
     change(&mut settings);
     match solve(problem, &settings) {
         Ok(solution) => solution,
@@ -59,9 +60,9 @@ fn the_ladder_ends_on_the_first_rung_that_is_certified_to_be_good_enough() {
                 last = penalty;
                 if penalty > 1.0 {
                     // One rung less would not do.
+                    let ladder = Penalty { last: penalty / 10.0, penetration_threshold: 0.0, ..Penalty::default() };
                     let before = self::penalty(&problem, |settings| {
-                        (settings.last_penalty, settings.penetration_threshold) = (penalty / 10.0, 0.0);
-                        settings.condense = condense;
+                        (settings.method, settings.condense) = (Method::Penalty(ladder), condense);
                     });
                     let without = before.certificate.energy_error_bound;
                     assert!(without > accuracy, "{name}, {condense:?}, {accuracy:e}: {bound:e} instead of {without:e}");
@@ -74,8 +75,8 @@ fn the_ladder_ends_on_the_first_rung_that_is_certified_to_be_good_enough() {
 #[test]
 fn the_ladder_ends_at_its_floor_and_says_so() {
     for (name, problem) in problems() {
-        let mut settings = Settings::with_method(Method::Penalty);
-        (settings.accuracy, settings.last_penalty) = (Some(1e-15), 1e18);
+        let ladder = Penalty { last: 1e18, ..Penalty::default() };
+        let settings = Settings::with_method(Method::Penalty(ladder)).with_accuracy(1e-15);
         match solve(&problem, &settings) {
             Err(Error::NotCertified { solution, condition, value, tolerance }) => {
                 assert_eq!((condition, tolerance), ("reachable energy_error_bound", 1e-15), "{name}");
@@ -98,9 +99,9 @@ fn extrapolation_over_the_penalty_gains_two_digits() {
         for condense in [Condense::Auto, Condense::Never] {
             for last in [1e3, 1e4, 1e5] {
                 let of = |extrapolate| {
+                    let ladder = Penalty { last, extrapolate, penetration_threshold: 0.0, ..Penalty::default() };
                     penalty(&problem, |settings| {
-                        (settings.last_penalty, settings.penetration_threshold) = (last, 0.0);
-                        (settings.extrapolate, settings.condense) = (extrapolate, condense);
+                        (settings.method, settings.condense) = (Method::Penalty(ladder), condense);
                     })
                 };
                 let (plain, beyond) = (of(false), of(true));

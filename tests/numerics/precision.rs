@@ -29,7 +29,7 @@ fn refined_answers_are_those_of_double_precision() {
         let path = format!("{}/examples/{name}.json", env!("CARGO_MANIFEST_DIR"));
         let model = Scene::read(path).unwrap().build().unwrap();
         let problem = model.problem();
-        for method in [Method::Qp, Method::ActiveSet] {
+        for method in [Method::qp(), Method::ActiveSet] {
             let exact = solve(problem, &with(method, Precision::Double, None)).unwrap();
             assert_eq!(exact.refinements, None);
             let found = solve(problem, &with(method, Precision::Mixed, None)).unwrap();
@@ -90,7 +90,7 @@ fn the_factor_takes_half_the_memory() {
     let path = format!("{}/examples/two_cylinders.json", env!("CARGO_MANIFEST_DIR"));
     let model = Scene::read(path).unwrap().build().unwrap();
     let bytes = |precision| {
-        let prepared = Prepared::with_settings(model.problem(), &with(Method::ActiveSet, precision, None)).unwrap();
+        let prepared = Prepared::new(model.problem(), &with(Method::ActiveSet, precision, None)).unwrap();
         assert_eq!(prepared.is_single(), precision == Precision::Mixed);
         prepared.factor_bytes()
     };
@@ -131,9 +131,9 @@ fn too_ill_conditioned_a_stiffness_is_factorised_in_double_precision() {
     // What is prepared stays as it is, and says so.
     let settings = with(Method::ActiveSet, Precision::Mixed, None);
     let problem = chain(2_000, 1.0);
-    let prepared = Prepared::with_settings(&problem, &settings).unwrap();
+    let prepared = Prepared::new(&problem, &settings).unwrap();
     if prepared.is_single() {
-        match prepared.solve(&settings) {
+        match prepared.solve(problem.gap()) {
             Err(Error::Numerical { reason, .. }) => assert!(reason.contains("double precision"), "{reason}"),
             Ok(solution) => assert!(solution.certificate.meets(1e-9)),
             Err(error) => panic!("{error}"),
@@ -160,20 +160,20 @@ fn next_gaps_and_loads_are_refined_too() {
     let model = Scene::read(path).unwrap().build().unwrap();
     let problem = model.problem();
     let settings = with(Method::ActiveSet, Precision::Mixed, None);
-    let prepared = Prepared::with_settings(problem, &settings).unwrap();
+    let prepared = Prepared::new(problem, &settings).unwrap();
     let gap: Vec<f64> = problem.gap().iter().map(|gap| gap - 0.01).collect();
     let load: Vec<f64> = (0..problem.dofs()).map(|dof| (dof % 7) as f64 - 3.0).collect();
     let cases = [
-        (problem.with_gap(gap.clone()).unwrap(), prepared.solve_gap(gap.clone(), None, &settings).unwrap()),
-        (problem.with_load(load.clone()).unwrap(), prepared.solve_load(load, None, &settings).unwrap()),
+        (problem.with_gap(gap.clone()).unwrap(), prepared.solve(&gap).unwrap()),
+        (problem.with_load(load.clone()).unwrap(), prepared.solve_load(load).unwrap()),
     ];
     for (problem, found) in cases {
         let exact = solve(&problem, &with(Method::ActiveSet, Precision::Double, None)).unwrap();
         assert!(error(&problem, &found, &exact) <= AGREEMENT);
         assert_eq!(found.contact_set, exact.contact_set);
     }
-    let boundary = prepared.boundary_at_gap(gap, None, &settings).unwrap();
+    let boundary = prepared.boundary(&gap).unwrap();
     assert!(boundary.condensed_certificate.meets(1e-9));
     // The exact path is a matter of the exact compliance.
-    assert!(matches!(prepared.path(problem.gap(), problem.gap(), &settings), Err(Error::NotCondensed { .. })));
+    assert!(matches!(prepared.path(problem.gap(), problem.gap()), Err(Error::NotCondensed { .. })));
 }

@@ -3,6 +3,7 @@
 use crate::random::springs;
 use signorini::qp::{Condense, Method, Settings};
 use signorini::{ContactProblem, Error, Scene, Solution, SparseMatrix, SymmetricMatrix, solve};
+use signorini::{InteriorPoint, Penalty};
 
 /// Forces and distances below this share of the largest are not told apart from zero in the exact answer.
 const WEAK: f64 = 1e-9;
@@ -26,14 +27,11 @@ fn ways() -> Vec<Settings> {
             settings
         };
         for tolerance in [1e-1, 1e-2, 1e-4, 1e-8] {
-            let mut settings = base(Method::Qp);
-            (settings.polish, settings.interior_point_tolerance) = (false, tolerance);
-            ways.push(settings);
+            ways.push(base(Method::Qp(InteriorPoint { polish: false, tolerance })));
         }
         for last in [1e0, 1e2, 1e4, 1e8] {
-            let mut settings = base(Method::Penalty);
-            (settings.last_penalty, settings.penetration_threshold) = (last, 0.0);
-            ways.push(settings);
+            let ladder = Penalty { last, penetration_threshold: 0.0, ..Penalty::default() };
+            ways.push(base(Method::Penalty(ladder)));
         }
         ways.push(base(Method::ActiveSet));
     }

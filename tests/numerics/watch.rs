@@ -2,9 +2,10 @@
 
 use crate::program::scene;
 use serde_json::{Value, json};
+use signorini::InteriorPoint;
 use signorini::motion::Integrator;
 use signorini::study::{TradeoffGrid, compare, even_gaps, motion_tradeoff, sweep, tradeoff};
-use signorini::{Condense, Error, Iterative, Method, Prepared, Scene, Settings, Solution, Start, Watch, solve};
+use signorini::{Condense, Error, Method, Prepared, Scene, Settings, Solution, Watch, solve};
 
 /// A block of so many by so many cells under a parabola.
 fn block(cells: usize) -> Value {
@@ -60,11 +61,11 @@ fn clones_share_the_request_and_the_activity_but_not_the_deadline() {
 #[test]
 fn what_is_stopped_before_it_begins_is_interrupted_whatever_the_method() {
     let model = build(&block(8));
-    for method in [Method::Auto, Method::Qp, Method::ActiveSet, Method::Penalty, Method::Mprgp] {
+    for method in [Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty(), Method::Mprgp] {
         let settings = Settings::with_method(method);
         settings.watch.stop();
         assert!(matches!(solve(model.problem(), &settings), Err(Error::Interrupted)), "{method:?}");
-        assert!(matches!(Prepared::with_settings(model.problem(), &settings), Err(Error::Interrupted)));
+        assert!(matches!(Prepared::new(model.problem(), &settings), Err(Error::Interrupted)));
         assert!(settings.watch.is_noticed());
         assert!(matches!(compare(model.problem(), &settings), Err(Error::Interrupted)));
         assert!(matches!(sweep(&model, &even_gaps(0.0, -0.01, 3), &settings), Err(Error::Interrupted)));
@@ -79,11 +80,12 @@ fn what_is_stopped_before_it_begins_is_interrupted_whatever_the_method() {
 fn a_loop_that_is_stopped_ends_with_a_certified_part_of_its_way() {
     let model = build(&block(60));
     // All dofs: every iteration is a factorisation.
-    let prepared = Prepared::new(model.problem(), Condense::Never).unwrap();
-    let mut settings = Settings::with_method(Method::Penalty);
-    let whole = found(prepared.solve(&settings));
+    let prepared = Prepared::new(model.problem(), &Settings::default().with_condensation(Condense::Never)).unwrap();
+    let solved = |settings: &Settings| prepared.with_settings(settings).unwrap().solve(model.problem().gap());
+    let mut settings = Settings::with_method(Method::penalty());
+    let whole = found(solved(&settings));
     settings.watch = stopping_at("penalty loop", 3);
-    let Err(Error::NotCertified { solution, .. }) = prepared.solve(&settings) else { panic!("it was not cut short") };
+    let Err(Error::NotCertified { solution, .. }) = solved(&settings) else { panic!("it was not cut short") };
     let iterations = solution.iterations;
     assert!((3..whole.iterations).contains(&iterations), "{iterations} of {}", whole.iterations);
     assert_eq!(solution.history, whole.history[..iterations]);
@@ -91,10 +93,10 @@ fn a_loop_that_is_stopped_ends_with_a_certified_part_of_its_way() {
     let bound = solution.certificate.energy_error_bound;
     assert!(bound.is_finite() && bound > whole.certificate.energy_error_bound, "{bound}");
 
-    for method in [Method::ActiveSet, Method::Penalty] {
+    for method in [Method::ActiveSet, Method::penalty()] {
         let settings = Settings::with_method(method);
         settings.watch.stop();
-        let Err(Error::NotCertified { solution, .. }) = prepared.solve(&settings) else { panic!("{method:?}") };
+        let Err(Error::NotCertified { solution, .. }) = solved(&settings) else { panic!("{method:?}") };
         assert_eq!(solution.iterations, 1, "{method:?}");
     }
 }
@@ -102,18 +104,19 @@ fn a_loop_that_is_stopped_ends_with_a_certified_part_of_its_way() {
 #[test]
 fn interior_point_and_multigrid_notice_that_they_should_end() {
     let model = build(&block(40));
-    let prepared = Prepared::new(model.problem(), Condense::Never).unwrap();
-    let mut settings = Settings::with_method(Method::Qp);
-    settings.polish = false;
-    let whole = found(prepared.solve(&settings));
+    let prepared = Prepared::new(model.problem(), &Settings::default().with_condensation(Condense::Never)).unwrap();
+    let solved = |settings: &Settings| prepared.with_settings(settings).unwrap().solve(model.problem().gap());
+    let unpolished = InteriorPoint { polish: false, ..InteriorPoint::default() };
+    let mut settings = Settings::with_method(Method::Qp(unpolished));
+    let whole = found(solved(&settings));
     settings.watch = stopping_at("interior point", 2);
-    let Err(Error::NotCertified { solution, .. }) = prepared.solve(&settings) else { panic!("it was not cut short") };
+    let Err(Error::NotCertified { solution, .. }) = solved(&settings) else { panic!("it was not cut short") };
     assert!(solution.iterations < whole.iterations, "{} of {}", solution.iterations, whole.iterations);
 
-    let iterative = Iterative::new(model.problem(), 1).unwrap();
     let settings = Settings::with_method(Method::Mprgp);
+    let prepared = Prepared::new(model.problem(), &settings).unwrap();
     settings.watch.stop();
-    let Err(Error::NotCertified { solution, .. }) = iterative.solve(Start::default(), &settings) else { panic!() };
+    let Err(Error::NotCertified { solution, .. }) = prepared.solve(model.problem().gap()) else { panic!() };
     assert_eq!((solution.iterations, solution.displacement.len()), (0, model.problem().dofs()));
 }
 
@@ -208,7 +211,7 @@ fn memory_that_does_not_suffice_is_refused_before_a_factorisation() {
     for (method, condense) in [
         (Method::ActiveSet, Condense::Auto),
         (Method::ActiveSet, Condense::Never),
-        (Method::Penalty, Condense::Auto),
+        (Method::penalty(), Condense::Auto),
         (Method::Mprgp, Condense::Auto),
     ] {
         let mut settings = Settings::with_method(method);

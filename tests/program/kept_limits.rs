@@ -333,7 +333,7 @@ fn a_refusal_names_the_least_memory_that_suffices() {
             let prepared = |memory: f64| {
                 let mut settings = Settings::default();
                 (settings.condense, settings.memory) = (condense, Some(memory));
-                Prepared::with_settings(&problem, &settings)
+                Prepared::new(&problem, &settings)
             };
             let entries = 2 * problem.stiffness().lower().entries() - problem.dofs();
             let mut memory = START + 1.01 * of_problem(problem.dofs() as f64, entries as f64);
@@ -383,16 +383,16 @@ fn a_step_that_is_estimated_to_take_longer_than_there_is_time_does_not_begin() {
 #[test]
 fn no_way_begins_a_step_that_its_time_does_not_suffice_for() {
     let model = Scene::from_json(&block([60, 60], "q4").to_string(), "block").unwrap().build().unwrap();
-    for method in [Method::Auto, Method::Qp, Method::ActiveSet, Method::Penalty, Method::Mprgp] {
+    for method in [Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty(), Method::Mprgp] {
         for condense in [signorini::qp::Condense::Auto, signorini::qp::Condense::Never] {
             // On a machine where everything takes a million times as long, a minute is nothing.
-            let mut settings = Settings::within(60.0);
+            let mut settings = Settings::within(Duration::from_secs(60));
             (settings.method, settings.condense, settings.tolerance) = (method, condense, 1e-6);
             let fast = solve(model.problem(), &settings).unwrap();
             assert!(fast.iterations > 0);
             settings.watch = Watch::default();
             settings.watch.learn(1e6);
-            settings.time = Some(60.0);
+            settings.time = Some(Duration::from_secs(60));
             match solve(model.problem(), &settings) {
                 Err(Error::NotCertified { solution, value, tolerance, .. }) => {
                     assert_eq!((solution.method.as_str(), solution.iterations), ("none", 0));

@@ -10,7 +10,7 @@ use signorini::internals::closed_forms::{Bar, ContactPatch, Sides};
 use signorini::study::compare;
 use signorini::{Error, Method, Model, Scene, Settings, Solution, solve, solve_qp};
 
-const EXACT: [Method; 2] = [Method::Qp, Method::ActiveSet];
+const EXACT: [Method; 2] = [Method::qp(), Method::ActiveSet];
 
 /// Both closed forms are met to rounding enlarged by the condition number of the stiffness, below 1e4 here.
 const CLOSED_FORM: f64 = 1e-11;
@@ -160,7 +160,7 @@ fn block_pressed_by_a_prescribed_displacement_has_the_pressure_of_the_closed_for
 fn answer(model: &Model, method: Method) -> Solution {
     match solve(model.problem(), &Settings::with_method(method)) {
         Ok(solution) => solution,
-        Err(Error::NotCertified { solution, .. }) if method == Method::Penalty => *solution,
+        Err(Error::NotCertified { solution, .. }) if method == Method::penalty() => *solution,
         Err(error) => panic!("{error}"),
     }
 }
@@ -213,7 +213,7 @@ fn in_units(length: f64, young: f64) -> Model {
 
 #[test]
 fn the_same_scene_in_other_units_has_the_same_dimensionless_answer() {
-    for method in [Method::Qp, Method::ActiveSet, Method::Penalty] {
+    for method in [Method::qp(), Method::ActiveSet, Method::penalty()] {
         let reference = answer(&in_units(1.0, 1e7), method);
         // m and Pa; mm and MPa; micrometres and N per square micrometre; steel; a metre of jelly; kilometres of rock.
         for (length, young) in [(1e3, 10.0), (1e6, 1e-5), (1.0, 2.1e11), (1.0, 1e-2), (1e3, 5e10), (1e-9, 1e12)] {
@@ -281,7 +281,7 @@ fn obstacle_out_of_reach_leaves_the_free_body() {
     scene["gap"] = json!(0.5);
     scene["loads"] = json!([{"traction": {"boundary": "right", "value": [1e3, 0]}}]);
     let model = model(&scene);
-    for method in [Method::Qp, Method::ActiveSet, Method::Penalty] {
+    for method in [Method::qp(), Method::ActiveSet, Method::penalty()] {
         let solution = solve(model.problem(), &Settings::with_method(method)).unwrap();
         assert!(solution.contact_set.count() == 0 && solution.multiplier.iter().all(|&lambda| lambda == 0.0));
         assert!(solution.certificate.meets(1e-12) && solution.displacement.iter().any(|&u| u != 0.0));
@@ -345,7 +345,7 @@ fn pressure_on_the_axis_of_revolution_is_finite_and_the_largest() {
     };
     let peaks = ["q4", "q8", "t6"].map(|element| {
         let model = scene(element);
-        let solution = answer(&model, Method::Qp);
+        let solution = answer(&model, Method::qp());
         let pressure = model.pressure(&solution.multiplier).unwrap();
         let axis = model.rows().iter().position(|row| model.mesh().nodes()[row.node][0] == 0.0).unwrap();
         let peak = pressure.iter().copied().fold(0.0, f64::max);
@@ -368,7 +368,7 @@ fn half_cylinder_of_quadratic_elements_reaches_the_force_and_the_pressure_of_her
             "obstacles":
                 [{"boundary": "arc", "approach": "-y", "shape": {"plane": {"point": [0, -1], "normal": [0, -1]}}}],
         }));
-        let solution = answer(&model, Method::Qp);
+        let solution = answer(&model, Method::qp());
         let peak = model.pressure(&solution.multiplier).unwrap().into_iter().fold(0.0, f64::max);
         // The theory is that of a half space under a small contact: 0.1 % in the force, 1 % in the pressure.
         close(solution.contact_force(), 4.983922e-3, 4.983922e-3, 1e-3, &format!("{element}: F"));

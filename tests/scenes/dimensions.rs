@@ -220,7 +220,7 @@ fn what_does_not_fit_the_dimension_is_refused_at_its_path() {
             "a bar is no body of the model `space`; there it is a box",
         ),
         (with(space(), "/model", json!("plane-strain")), "body.box", "there it is a rectangle"),
-        (with(ring(), "/model", json!("bar")), "body.rectangle", "there it is a bar"),
+        (with(ring(), "/model", json!("bar")), "body.rectangle", "there it is a bar or gmsh"),
         (with(space(), "/thickness", json!(2)), "thickness", "has no thickness"),
         (with(line(), "/body/bar/area", json!(0)), "body.bar.area", "positive"),
         (with(line(), "/supports/0/y", json!(0)), "supports[0].y", "the model `bar` has no y"),

@@ -22,4 +22,5 @@ mod scene_model;
 mod slender;
 mod turned_bodies;
 mod two_bodies;
+mod user_obstacles;
 mod verification;

@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 
 use serde_json::{Value, json};
 use signorini::output::solve_text;
-use signorini::scene::Units;
+use signorini::scene::{Answer, Units};
 use signorini::study::scene_summary;
 use signorini::{Condense, Error, Method, Scene, Settings, Solution, solve};
 
@@ -39,7 +39,7 @@ fn ways() -> [Settings; 4] {
     let with = Settings::with_method;
     let mut never = Settings::default();
     never.condense = Condense::Never;
-    [Settings::default(), never, with(Method::Qp), with(Method::ActiveSet)]
+    [Settings::default(), never, with(Method::qp()), with(Method::ActiveSet)]
 }
 
 fn answer(scene: &Value, settings: &Settings) -> Result<Solution, Error> {
@@ -211,7 +211,8 @@ fn a_certified_answer_whose_stiffness_has_few_digits_comes_with_a_warning() {
         let solution = solve(model.problem(), &Settings::default()).unwrap_or_else(|e| panic!("{height:e}: {e}"));
         let error = (solution.contact_force() / (0.7 / (1.3 * 0.4) * 0.01) - 1.0).abs();
         let digits = solution.digits_of_stiffness();
-        (error, scene_summary(&model, solution, TOLERANCE, 0.0).unwrap(), digits)
+        let answer = Answer::of(model.into(), &solution).unwrap();
+        (error, scene_summary(&answer, solution, TOLERANCE, 0.0).unwrap(), digits)
     };
     let (error, summary, digits) = block(1e6);
     let digits = digits.unwrap();

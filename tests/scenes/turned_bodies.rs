@@ -5,9 +5,10 @@ use std::fmt::Write;
 
 use crate::program::Desk;
 use serde_json::{Value, json};
-use signorini::fem::{ElementKind, Mesh, cuboid, rectangle};
+use signorini::fem::{ElementKind, Mesh};
 use signorini::internals::closed_forms::{Bar, ContactPatch, Sides};
 use signorini::qp::read_vector;
+use signorini::scene::{cuboid, rectangle};
 use signorini::{Model, Scene, Solution, solve_qp};
 
 /// Rounding enlarged by the condition of the stiffness, below 1e4 here.

@@ -6,8 +6,9 @@ use serde_json::{Value, json};
 use signorini::fem::Formulation;
 use signorini::fem::Material;
 use signorini::fem::{self, ElasticBody};
-use signorini::fem::{ElementKind, Mesh, rectangle};
+use signorini::fem::{ElementKind, Mesh};
 use signorini::internals::Cholesky;
+use signorini::scene::rectangle;
 use signorini::{ContactProblem, Model, Scene};
 
 const STRAIN: Formulation = Formulation::PlaneStrain { thickness: 0.5 };

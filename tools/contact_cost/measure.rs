@@ -58,8 +58,8 @@ pub const TASKS: [Task; 15] = [
     task("linear solve", Work::Linear(Ordering::Amd), ALL),
     task("linear solve, dissected", Work::Linear(Ordering::NestedDissection(3)), [0, usize::MAX]),
     contact("active set", Method::ActiveSet),
-    contact("QP", Method::Qp),
-    contact("penalty", Method::Penalty),
+    contact("QP", Method::qp()),
+    contact("penalty", Method::penalty()),
     task("active set, uncertified", Work::Uncertified, ALL),
     task("active set, wall clock", Work::Threads(1), ALL),
     task("active set, two threads", Work::Threads(2), ALL),
@@ -67,8 +67,8 @@ pub const TASKS: [Task; 15] = [
     task("next gap, displacement", Work::NextDisplacement, ALL),
     task("sweep of ten gaps", Work::Sweep, ALL),
     full("active set, full", Method::ActiveSet, [40_000, 10_000]),
-    full("QP, full", Method::Qp, [140_000, 10_000]),
-    full("penalty, full", Method::Penalty, [40_000, 10_000]),
+    full("QP, full", Method::qp(), [140_000, 10_000]),
+    full("penalty, full", Method::penalty(), [40_000, 10_000]),
 ];
 
 impl Task {
@@ -100,7 +100,7 @@ impl Task {
             }
             Work::Uncertified => {
                 let prepared = bench.prepared()?;
-                let boundary = prepared.boundary_at_gap(problem.gap().to_vec(), None, &active_set())?;
+                let boundary = prepared.boundary(problem.gap())?;
                 black_box(boundary.displacement());
             }
             Work::Threads(threads) => {
@@ -111,18 +111,14 @@ impl Task {
                 return Ok(clock.elapsed().as_secs_f64());
             }
             Work::NextForces => {
-                return bench.walk(|prepared, gap, closed| {
-                    Ok(prepared.boundary_at_gap(gap, Some(closed), &active_set())?.contact_set)
-                });
+                return bench.walk(|prepared, gap| Ok(prepared.boundary(gap)?.contact_set));
             }
             Work::NextDisplacement => {
-                return bench.walk(|prepared, gap, closed| {
-                    Ok(prepared.solve_gap(gap, Some(closed), &active_set())?.contact_set)
-                });
+                return bench.walk(|prepared, gap| Ok(prepared.solve(gap)?.contact_set));
             }
             Work::Sweep => {
                 let prepared = bench.prepared()?;
-                let path = prepared.path(problem.gap(), bench.last_gap(), &active_set())?;
+                let path = prepared.path(problem.gap(), bench.last_gap())?;
                 for step in 0..=NEXT_GAPS {
                     black_box(path.multiplier(step as f64 / NEXT_GAPS as f64));
                 }
@@ -151,16 +147,16 @@ impl Bench {
     }
 
     fn prepared(&self) -> Result<Prepared, Error> {
-        Prepared::new(self.model.problem(), Condense::Auto)
+        Prepared::new(self.model.problem(), &active_set())
     }
 
     /// Mean seconds of `step` over the next gaps, each from the contact set of the one before.
-    fn walk(&self, step: impl Fn(&Prepared, Vec<f64>, &ContactSet) -> Result<ContactSet, Error>) -> Result<f64, Error> {
+    fn walk(&self, step: impl Fn(&Prepared, &[f64]) -> Result<ContactSet, Error>) -> Result<f64, Error> {
         let prepared = self.prepared()?;
-        let mut closed = prepared.solve(&active_set())?.contact_set;
+        let mut closed = prepared.solve(self.model.problem().gap())?.contact_set;
         let start = processor_seconds();
         for gap in &self.gaps {
-            closed = step(&prepared, gap.clone(), &closed)?;
+            closed = step(&prepared.starting_from(closed), gap)?;
         }
         Ok((processor_seconds() - start) / NEXT_GAPS as f64)
     }

@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let model = scene.build()?;
         let Some(dynamics) = scene.dynamics(&model)? else { continue };
         let (problem, step) = (dynamics.problem, dynamics.step);
-        let matrix = effective(problem.mass(), problem.contact().stiffness(), 4.0 / (step * step))?;
+        let matrix = effective(problem.mass(), problem.statics().stiffness(), 4.0 / (step * step))?;
         let cholesky = factor(&matrix)?;
         let clock = Instant::now();
         let mut integrator = Integrator::new(problem, Scheme::Midpoint, step, &Settings::default())?;

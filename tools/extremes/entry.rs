@@ -2,6 +2,7 @@
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
+use signorini::Penalty;
 use signorini::{Condense, ContactProblem, Error, Method, Settings, SparseMatrix, solve};
 
 /// Rounding of the entries of a stiffness, as a share of its diagonal.
@@ -77,10 +78,11 @@ impl Entry {
         let solved = |method, condense| {
             let mut settings = Settings::with_method(method);
             settings.condense = condense;
-            if method == Method::Penalty {
+            if method == Method::penalty() {
                 settings.tolerance = PENALTY_TOLERANCE;
                 if let Some(penalty) = self.penalty {
-                    (settings.first_penalty, settings.last_penalty) = (penalty, penalty);
+                    let one = Penalty { first: penalty, last: penalty, ..Penalty::default() };
+                    settings.method = Method::Penalty(one);
                 }
             }
             match solve(&self.problem, &settings) {
@@ -96,12 +98,12 @@ impl Entry {
             }
         };
         let is_large = self.problem.dofs() > LARGE;
-        let (mut cells, methods) = (Vec::new(), [Method::Qp, Method::ActiveSet, Method::Penalty]);
+        let (mut cells, methods) = (Vec::new(), [Method::qp(), Method::ActiveSet, Method::penalty()]);
         let only_penalty = self.penalty.is_some();
         cells.push(if only_penalty || is_large { Cell::Absent } else { self.raw() });
         for method in methods {
             for condense in [Condense::Auto, Condense::Never] {
-                let runs = (!only_penalty || method == Method::Penalty) && (!is_large || condense == Condense::Auto);
+                let runs = (!only_penalty || method == Method::penalty()) && (!is_large || condense == Condense::Auto);
                 cells.push(if runs { solved(method, condense) } else { Cell::Absent });
             }
         }

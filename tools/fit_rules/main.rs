@@ -1,7 +1,7 @@
 //! Fits the rules of `Method::Auto` to measured times, and checks them on scenes that they were not fitted to.
 //!
 //! `cargo run --release --example fit_rules` measures the training problems, writes `tools/fit_rules/measured.csv` and
-//! fits `src/solve/fitted.json` to it; `-- --fit` fits to the times that are there; `-- --check` measures the others.
+//! fits `src/qp/fitted.json` to it; `-- --fit` fits to the times that are there; `-- --check` measures the others.
 
 #[path = "../contact_cost/clock.rs"]
 mod clock;
@@ -13,7 +13,7 @@ use std::fs;
 use std::process::ExitCode;
 
 const MEASURED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tools/fit_rules/measured.csv");
-const FITTED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/src/solve/fitted.json");
+const FITTED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/src/qp/fitted.json");
 
 fn main() -> ExitCode {
     let argument = std::env::args().nth(1);

@@ -1,6 +1,7 @@
 //! Ways to an answer, timed.
 
 use super::clock::processor_seconds;
+use signorini::{InteriorPoint, Penalty};
 
 use signorini::qp::{Condense, Method, Precision, Prepared, Settings};
 use signorini::{ContactProblem, Error, Solution, solve};
@@ -35,17 +36,16 @@ pub fn ways(accuracy: f64) -> Vec<(&'static str, Settings)> {
         (settings.precision, settings.accuracy) = (precision, (accuracy > 0.0).then_some(accuracy));
         settings
     };
-    let mut unpolished = base(Method::Qp, Precision::Double);
-    (unpolished.polish, unpolished.interior_point_tolerance) = (false, 0.1 * accuracy);
+    let loose = InteriorPoint { polish: false, tolerance: 0.1 * accuracy };
+    let unpolished = base(Method::Qp(loose), Precision::Double);
     let mut ways = vec![
         ("active-set", base(Method::ActiveSet, Precision::Double)),
         ("active-set-mixed", base(Method::ActiveSet, Precision::Mixed)),
-        ("qp", base(Method::Qp, Precision::Double)),
+        ("qp", base(Method::qp(), Precision::Double)),
     ];
     if accuracy > 0.0 {
-        let penalty = base(Method::Penalty, Precision::Double);
-        let mut rung = penalty.clone();
-        (rung.first_penalty, rung.last_penalty) = (100.0 / accuracy, 100.0 / accuracy);
+        let penalty = base(Method::penalty(), Precision::Double);
+        let rung = base(one_rung(100.0 / accuracy), Precision::Double);
         ways.extend([("qp-unpolished", unpolished), ("penalty", penalty), ("penalty-rung", rung)]);
     }
     ways
@@ -87,7 +87,7 @@ fn came_as_told(solution: &Solution, settings: &Settings) -> bool {
 
 /// All ways of a problem, a line each.
 pub fn measured(name: &str, problem: &ContactProblem) -> Result<String, Error> {
-    let prepared = Prepared::with_settings(problem, &Settings::with_method(Method::ActiveSet))?;
+    let prepared = Prepared::new(problem, &Settings::with_method(Method::ActiveSet))?;
     let condensed = prepared.condensed_dofs() < problem.dofs();
     let (multiplications, values) = (prepared.multiplications(), prepared.factor_entries());
     drop(prepared);
@@ -146,13 +146,13 @@ pub fn best_and_auto(problem: &ContactProblem, accuracy: f64) -> [(String, f64);
             if name == "penalty" {
                 // The last rung alone, where the error of the penalty is likely below the accuracy.
                 for rung in [1.0, 10.0, 100.0] {
-                    (settings.first_penalty, settings.last_penalty) = (rung / accuracy, rung / accuracy);
+                    settings.method = one_rung(rung / accuracy);
                     grid.push((format!("penalty {:.0e}", rung / accuracy), settings.clone()));
                 }
             }
             if name == "qp-unpolished" {
                 for tolerance in [1.0, 1e-2] {
-                    settings.interior_point_tolerance = tolerance * accuracy;
+                    settings.method = Method::Qp(InteriorPoint { polish: false, tolerance: tolerance * accuracy });
                     grid.push((format!("qp to {:.0e}", tolerance * accuracy), settings.clone()));
                 }
             }
@@ -164,4 +164,9 @@ pub fn best_and_auto(problem: &ContactProblem, accuracy: f64) -> [(String, f64);
     let times = timed(problem, &settings);
     let fastest = (0..auto).min_by(|&a, &b| times[a].0.total_cmp(&times[b].0)).unwrap_or(0);
     [(names[fastest].clone(), times[fastest].0), (times[auto].1.clone(), times[auto].0)]
+}
+
+/// The penalty method on one rung of its ladder.
+fn one_rung(penalty: f64) -> Method {
+    Method::Penalty(Penalty { first: penalty, last: penalty, ..Penalty::default() })
 }

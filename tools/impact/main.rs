@@ -12,8 +12,8 @@ use std::path::Path;
 use cases::cases;
 use measure::{Run, run};
 use signorini::Error;
-use signorini::internals::{SCHEMES, SchemeSpec};
 use signorini::output::{write_files, write_picture};
+use signorini::scene::SchemeSpec;
 
 /// Time steps in the time of a wave through a cell.
 const COURANT: [f64; 3] = [0.5, 1.0, 1.5];
@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     for case in &cases() {
         let mut runs = Vec::new();
-        for scheme in SCHEMES {
+        for scheme in SchemeSpec::ALL {
             let steps = if scheme == SchemeSpec::CentralDifference { &EXPLICIT_COURANT[..] } else { &COURANT };
             for &courant in steps {
                 runs.push(run(case, scheme, courant, CELLS)?);

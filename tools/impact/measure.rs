@@ -1,7 +1,8 @@
 //! One run of one scheme, held against a closed form.
 
-use signorini::internals::{AnalysisSpec, BodySpec, SchemeSpec};
+use signorini::internals::{AnalysisSpec, BodySpec};
 use signorini::motion::{Integrator, Observation, Scheme};
+use signorini::scene::SchemeSpec;
 use signorini::{Error, Scene, Settings};
 
 /// A bar whose motion is known.
@@ -62,7 +63,7 @@ pub fn run(case: &Case, scheme: SchemeSpec, courant: f64, cells: usize) -> Resul
     let after = end + (end - begin) / 2.0;
     let first = integrator.observe();
     let (mut history, mut squares, mut speed) = (vec![first], 0.0, 0.0);
-    let ones = vec![1.0; integrator.problem().contact().dofs()];
+    let ones = vec![1.0; integrator.problem().statics().dofs()];
     let inertia = integrator.problem().mass().mul(&ones);
     for _ in 0..dynamics.steps {
         integrator.advance()?;

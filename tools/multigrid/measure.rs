@@ -5,7 +5,7 @@ use std::time::Instant;
 use crate::process::peak_bytes;
 use serde_json::{Value, json};
 use signorini::internals::multigrid::{Multigrid, conjugate_gradients};
-use signorini::{Condense, Error, Iterative, Method, Model, Prepared, Settings, Start};
+use signorini::{Error, Method, Model, Prepared, Settings};
 
 /// Relative residual of the linear solve, and tolerance of the contact solve.
 const TOLERANCE: f64 = 1e-8;
@@ -31,9 +31,10 @@ pub fn iterative(model: &Model, threads: usize) -> Result<Value, Error> {
     let (problem, clock) = (model.problem(), Instant::now());
     let start = processor_seconds(clock);
     let since = |from: f64| processor_seconds(clock) - from;
-    let iterative = Iterative::new(problem, threads)?;
+    let settings = Settings::with_method(Method::Mprgp).with_tolerance(TOLERANCE).with_threads(threads);
+    let prepared = Prepared::new(problem, &settings)?;
     let (set_up, set_up_clock) = (since(start), clock.elapsed().as_secs_f64());
-    let multigrid: &Multigrid = iterative.multigrid();
+    let multigrid: &Multigrid = prepared.hierarchy().ok_or(Error::Interrupted)?;
     let load = problem.contact().mul_transposed(&vec![-1.0; problem.rows()]);
     let (from, from_clock) = (processor_seconds(clock), clock.elapsed().as_secs_f64());
     // A body that only contact holds has no linear solve beside it.
@@ -42,10 +43,8 @@ pub fn iterative(model: &Model, threads: usize) -> Result<Value, Error> {
         false => Some(conjugate_gradients(problem.stiffness(), &load, multigrid, TOLERANCE, MOST_CYCLES)?.cycles),
     };
     let (linear_seconds, linear_clock) = (since(from), clock.elapsed().as_secs_f64() - from_clock);
-    let mut settings = Settings::with_method(Method::Mprgp);
-    settings.tolerance = TOLERANCE;
     let (from, from_clock) = (processor_seconds(clock), clock.elapsed().as_secs_f64());
-    let contact = iterative.solve(Start::default(), &settings)?;
+    let contact = prepared.solve(problem.gap())?;
     let (contact_seconds, contact_clock) = (since(from), clock.elapsed().as_secs_f64() - from_clock);
     let worst = contact.certificate.conditions().iter().fold(0.0, |worst: f64, entry| worst.max(entry.1));
     Ok(json!({
@@ -64,18 +63,17 @@ pub fn iterative(model: &Model, threads: usize) -> Result<Value, Error> {
 /// whether both give the same answer bit by bit.
 pub fn threads(model: &Model, runs: usize) -> Result<Value, Error> {
     let problem = model.problem();
-    let mut settings = Settings::with_method(Method::Mprgp);
-    settings.tolerance = TOLERANCE;
+    let settings = Settings::with_method(Method::Mprgp).with_tolerance(TOLERANCE);
     let mut least = [[f64::INFINITY; 2]; 2];
     let mut answers: [Vec<f64>; 2] = [Vec::new(), Vec::new()];
     for _ in 0..runs {
         for threads in [1, 2] {
             let [set_up, contact] = &mut least[threads - 1];
             let clock = Instant::now();
-            let iterative = Iterative::new(problem, threads)?;
+            let prepared = Prepared::new(problem, &settings.clone().with_threads(threads))?;
             *set_up = set_up.min(clock.elapsed().as_secs_f64());
             let clock = Instant::now();
-            answers[threads - 1] = iterative.solve(Start::default(), &settings)?.displacement;
+            answers[threads - 1] = prepared.solve(problem.gap())?.displacement;
             *contact = contact.min(clock.elapsed().as_secs_f64());
         }
     }
@@ -90,8 +88,8 @@ pub fn threads(model: &Model, runs: usize) -> Result<Value, Error> {
 pub fn direct(model: &Model) -> Result<Value, Error> {
     let clock = Instant::now();
     let start = processor_seconds(clock);
-    let prepared = Prepared::new(model.problem(), Condense::Auto)?;
-    let contact = prepared.solve(&Settings::with_method(Method::ActiveSet))?;
+    let prepared = Prepared::new(model.problem(), &Settings::with_method(Method::ActiveSet))?;
+    let contact = prepared.solve(model.problem().gap())?;
     Ok(json!({
         "dofs": model.problem().dofs(), "contact": processor_seconds(clock) - start,
         "closed_rows": contact.contact_set.iter().collect::<Vec<_>>(), "peak_bytes": peak_bytes(),

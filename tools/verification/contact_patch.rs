@@ -6,7 +6,7 @@ use signorini::fem::Formulation;
 use signorini::fem::Material;
 use signorini::fem::{DofMap, add_pressure, free_load, stiffness, tributary_areas};
 use signorini::fem::{ElasticBody, Integration};
-use signorini::fem::{cuboid, rectangle};
+use signorini::scene::{cuboid, rectangle};
 use signorini::{ContactProblem, Error, SparseMatrix, solve_qp};
 
 use crate::bodies::distort;

@@ -1,7 +1,7 @@
 //! The stiffness of one element by the isotropic block formula: `K_ab[i][j] = sum_q w (lambda d_a[i] d_b[j] + mu g_a[j]
 //! g_b[i] + mu delta_ij g_a . g_b)`, g = grad N, d the dilatation of a unit displacement.
 
-use crate::fem::body::{ElasticBody, Integration};
+use crate::fem::body::{ElasticBody, Integration, LocalPoint};
 use crate::fem::element::{Cell, MAX_NODES, Tabulated};
 use crate::fem::material::Lame;
 
@@ -37,9 +37,11 @@ fn pair(a: usize, b: usize) -> usize {
 /// dilatation d is its mean over the element.
 pub fn element_stiffness(body: &ElasticBody, lame: Lame, table: &Tabulated, cell: &Cell) -> ElementStiffness {
     let nodes = table.reference.nodes.len();
-    let mean = body.integration() == Integration::MeanDilatation;
-    let revolved = body.formulation().is_axisymmetric();
-    let Lame { lambda, mu } = lame;
+    let dilatation = match body.integration() {
+        Integration::MeanDilatation => Dilatation::Mean,
+        Integration::Standard if body.formulation().is_axisymmetric() => Dilatation::Revolved,
+        Integration::Standard => Dilatation::Trace,
+    };
     // Gradients are per unit of the cell and determinants in units: what is left of it.
     let scale = cell.unit().powi(table.reference.dimension as i32 - 2);
     let mut products = [[[0.0; 3]; 3]; PAIRS];
@@ -59,58 +61,45 @@ pub fn element_stiffness(body: &ElasticBody, lame: Lame, table: &Tabulated, cell
                 }
             }
         }
-        if revolved || mean {
-            radial.volume += weight;
-            for a in 0..nodes {
-                let (g, h) = (point.gradients[a], point.hoop[a] * weight);
-                for (sum, slope) in radial.dilatation[a].iter_mut().zip(g) {
-                    *sum += weight * slope;
-                }
-                radial.dilatation[a][0] += h;
-                for b in 0..=a {
-                    let (other, h_other) = (point.gradients[b], point.hoop[b]);
-                    let place = pair(a, b);
-                    radial.squares[place] += h * h_other;
-                    for axis in 0..2 {
-                        radial.rows[place][axis] += h * other[axis];
-                        radial.columns[place][axis] += weight * g[axis] * h_other;
-                    }
-                }
-            }
+        if dilatation != Dilatation::Trace {
+            radial.add(&point, nodes, weight);
         }
     }
     for a in 0..nodes {
         for b in 0..=a {
             let place = pair(a, b);
             let g = products[place];
-            let mut dilatation = g;
-            if mean {
-                for (i, row) in dilatation.iter_mut().enumerate() {
-                    for (j, entry) in row.iter_mut().enumerate() {
-                        *entry = radial.dilatation[a][i] * (radial.dilatation[b][j] / radial.volume);
-                    }
-                }
-            } else if revolved {
-                dilatation[0][0] += radial.squares[place];
-                for (axis, row) in dilatation.iter_mut().enumerate().take(2) {
-                    row[0] += radial.columns[place][axis];
-                }
-                for (entry, part) in dilatation[0].iter_mut().zip(radial.rows[place]) {
-                    *entry += part;
-                }
-            }
-            let shear = mu * (g[0][0] + g[1][1] + g[2][2]);
-            let block = &mut products[place];
-            for i in 0..3 {
-                for j in 0..3 {
-                    block[i][j] = lambda * dilatation[i][j] + mu * g[j][i];
-                }
-                block[i][i] += shear;
-            }
-            block[0][0] += 2.0 * mu * radial.squares[place];
+            let dilatation = radial.dilatation(dilatation, (a, b), g);
+            finish(&mut products[place], lame, &dilatation, radial.squares[place]);
         }
     }
     ElementStiffness { blocks: products }
+}
+
+/// Makes the stiffness of a pair of nodes out of the integral of grad N_a grad N_b, that of the dilatations, and that of
+/// h_a h_b.
+#[inline]
+fn finish(block: &mut Block, Lame { lambda, mu }: Lame, dilatation: &Block, squares: f64) {
+    let g = *block;
+    let shear = mu * (g[0][0] + g[1][1] + g[2][2]);
+    for i in 0..3 {
+        for j in 0..3 {
+            block[i][j] = lambda * dilatation[i][j] + mu * g[j][i];
+        }
+        block[i][i] += shear;
+    }
+    block[0][0] += 2.0 * mu * squares;
+}
+
+/// What the dilatation d_a of a unit displacement is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Dilatation {
+    /// grad N_a.
+    Trace,
+    /// With the hoop part N_a/r along r.
+    Revolved,
+    /// Its mean over the element, the hoop part included.
+    Mean,
 }
 
 /// Integrals that only revolved elements and mean dilatation need.
@@ -124,6 +113,57 @@ struct Radial {
     rows: [[f64; 2]; PAIRS],
     /// Of grad N_a h_b.
     columns: [[f64; 2]; PAIRS],
+}
+
+impl Radial {
+    /// Adds a quadrature point.
+    #[inline]
+    fn add(&mut self, point: &LocalPoint, nodes: usize, weight: f64) {
+        self.volume += weight;
+        for a in 0..nodes {
+            let (g, h) = (point.gradients[a], point.hoop[a] * weight);
+            for (sum, slope) in self.dilatation[a].iter_mut().zip(g) {
+                *sum += weight * slope;
+            }
+            self.dilatation[a][0] += h;
+            for b in 0..=a {
+                let (other, h_other) = (point.gradients[b], point.hoop[b]);
+                let place = pair(a, b);
+                self.squares[place] += h * h_other;
+                for axis in 0..2 {
+                    self.rows[place][axis] += h * other[axis];
+                    self.columns[place][axis] += weight * g[axis] * h_other;
+                }
+            }
+        }
+    }
+
+    /// The integral of d_a d_b, where `g` is that of grad N_a grad N_b.
+    #[inline]
+    fn dilatation(&self, of: Dilatation, (a, b): (usize, usize), g: Block) -> Block {
+        let place = pair(a, b);
+        let mut dilatation = g;
+        match of {
+            Dilatation::Trace => {}
+            Dilatation::Mean => {
+                for (i, row) in dilatation.iter_mut().enumerate() {
+                    for (j, entry) in row.iter_mut().enumerate() {
+                        *entry = self.dilatation[a][i] * (self.dilatation[b][j] / self.volume);
+                    }
+                }
+            }
+            Dilatation::Revolved => {
+                dilatation[0][0] += self.squares[place];
+                for (axis, row) in dilatation.iter_mut().enumerate().take(2) {
+                    row[0] += self.columns[place][axis];
+                }
+                for (entry, part) in dilatation[0].iter_mut().zip(self.rows[place]) {
+                    *entry += part;
+                }
+            }
+        }
+        dilatation
+    }
 }
 
 impl Default for Radial {

@@ -23,7 +23,7 @@ pub(super) struct FacetPoint<'a> {
 pub(super) fn for_each_point(body: &ElasticBody, boundary: &Boundary, visit: &mut dyn FnMut(&FacetPoint)) {
     let mesh = body.mesh();
     let reference = boundary.kind.reference();
-    let table = Tabulated::new(reference, body.formulation().is_axisymmetric());
+    let table = Tabulated::new(reference, body.rule());
     let owners = mesh.faces_of(boundary);
     let faces = mesh.kind().reference().faces;
     for (facet, owner) in boundary.facets().zip(owners) {

@@ -4,11 +4,13 @@ mod point;
 mod region;
 
 pub use point::Symmetric;
-pub(crate) use point::trace;
+pub(crate) use point::{LocalPoint, trace};
 pub use region::Region;
 
+use serde::{Deserialize, Serialize};
+
 use crate::error::Error;
-use crate::fem::element::{Cell, ElementKind, MAX_NODES, PerNode, Tabulated};
+use crate::fem::element::{Cell, ElementKind, MAX_NODES, PerNode, Rule, Tabulated};
 use crate::fem::formulation::Formulation;
 use crate::fem::material::{Lame, Material};
 use crate::fem::mesh::Mesh;
@@ -17,12 +19,15 @@ use crate::fem::mesh::Mesh;
 const ON_THE_AXIS: f64 = 1e-12;
 
 /// How the stiffness of an element is integrated.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema), schemars(rename = "IntegrationSpec"))]
+#[serde(rename_all = "kebab-case")]
 pub enum Integration {
     /// All of it at all quadrature points.
     #[default]
     Standard,
-    /// The dilatation is replaced by its mean over the element (B-bar): no locking as Poisson's ratio nears 0.5.
+    /// The dilatation is replaced by its mean over the element: for `q4` and `hex8`, which then do not lock as
+    /// Poisson's ratio nears 0.5.
     MeanDilatation,
 }
 
@@ -83,13 +88,14 @@ impl ElasticBody {
     /// The same body with another integration of its stiffness.
     ///
     /// # Errors
-    /// [`Error::Mesh`] for mean dilatation with other elements than Q4 and Hex8, or in plane stress.
+    /// [`Error::Mesh`] for mean dilatation with an element that does not [take it](ElementKind::takes_mean_dilatation), or in
+    /// plane stress.
     pub fn with_integration(mut self, integration: Integration) -> Result<Self, Error> {
         if integration == Integration::MeanDilatation {
             let element = self.mesh.kind();
-            if !matches!(element, ElementKind::Q4 | ElementKind::Hex8) {
-                let name = element.name();
-                let message = format!("mean dilatation is for Q4 and Hex8 elements, not for {name}");
+            if !element.takes_mean_dilatation() {
+                let (those, name) = (ElementKind::of_mean_dilatation("and"), element.name());
+                let message = format!("mean dilatation is for {those} elements, not for {name}");
                 return Err(Error::Mesh { message });
             }
             if !self.formulation.can_lock() {
@@ -159,7 +165,12 @@ impl ElasticBody {
 
     /// The shape functions of the element, tabulated at the quadrature points that the formulation asks for.
     pub fn tabulated(&self) -> Tabulated {
-        Tabulated::new(self.mesh.kind().reference(), self.formulation.is_axisymmetric())
+        Tabulated::new(self.mesh.kind().reference(), self.rule())
+    }
+
+    /// The quadrature that the formulation asks for.
+    pub(crate) fn rule(&self) -> Rule {
+        if self.formulation.is_axisymmetric() { Rule::Revolved } else { Rule::Straight }
     }
 
     /// Every element in place, region by region.

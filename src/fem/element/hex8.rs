@@ -1,7 +1,7 @@
 //! Hex8, the trilinear hexahedron: N_a = (1 + xi_a xi)(1 + eta_a eta)(1 + zeta_a zeta)/8, 2 x 2 x 2 Gauss points.
 
 use super::quadrature::CUBE_2X2X2;
-use super::{PerNode, ReferenceElement, Shape};
+use super::reference::{FacetKind, LatticeCounts, PerNode, ReferenceElement, Shape};
 
 const CORNERS: [[f64; 3]; 8] = [
     [-1.0, -1.0, -1.0],
@@ -28,6 +28,10 @@ pub(super) static HEX8: ReferenceElement = ReferenceElement {
     quadrature: &CUBE_2X2X2,
     quadrature_revolved: &CUBE_2X2X2,
     centroid: [0.0; 3],
+    facet: FacetKind::Q4,
+    gmsh: 5,
+    vtk: 12,
+    counts: LatticeCounts { nodes: 1.0, line: 1.0, connections: 8.0, neighbours: 27.0 },
 };
 
 fn shape([xi, eta, zeta]: [f64; 3]) -> PerNode<f64> {

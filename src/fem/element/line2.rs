@@ -1,7 +1,7 @@
 //! Line2, the bar or straight edge of two nodes: N = (1 - xi, 1 + xi)/2.
 
 use super::quadrature::{INTERVAL_1, INTERVAL_2};
-use super::{MAX_NODES, PerNode, ReferenceElement, Shape};
+use super::reference::{FacetKind, LatticeCounts, MAX_NODES, PerNode, ReferenceElement, Shape};
 
 /// The linear line.
 pub(super) static LINE2: ReferenceElement = ReferenceElement {
@@ -17,6 +17,10 @@ pub(super) static LINE2: ReferenceElement = ReferenceElement {
     quadrature: &INTERVAL_1,
     quadrature_revolved: &INTERVAL_2,
     centroid: [0.0; 3],
+    facet: FacetKind::Point1,
+    gmsh: 1,
+    vtk: 3,
+    counts: LatticeCounts { nodes: 1.0, line: 1.0, connections: 2.0, neighbours: 3.0 },
 };
 
 fn shape([xi, ..]: [f64; 3]) -> PerNode<f64> {

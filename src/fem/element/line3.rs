@@ -1,7 +1,7 @@
 //! Line3, the quadratic edge: N = (xi (xi - 1)/2, xi (xi + 1)/2, 1 - xi^2), ends first.
 
 use super::quadrature::INTERVAL_3;
-use super::{MAX_NODES, PerNode, ReferenceElement, Shape};
+use super::reference::{FacetKind, LatticeCounts, MAX_NODES, PerNode, ReferenceElement, Shape};
 
 /// The quadratic line.
 pub(super) static LINE3: ReferenceElement = ReferenceElement {
@@ -17,6 +17,10 @@ pub(super) static LINE3: ReferenceElement = ReferenceElement {
     quadrature: &INTERVAL_3,
     quadrature_revolved: &INTERVAL_3,
     centroid: [0.0; 3],
+    facet: FacetKind::Point1,
+    gmsh: 8,
+    vtk: 21,
+    counts: LatticeCounts::NONE,
 };
 
 fn shape([xi, ..]: [f64; 3]) -> PerNode<f64> {

@@ -1,80 +1,143 @@
 //! Reference cells, their quadrature, and their map into space.
 //!
-//! An element is a [`ReferenceElement`] in a file of its own and one line in [`ElementKind`]; everything else works on
-//! any of them. Reference coordinates are `[xi, eta, zeta]`; those beyond the dimension of the cell are zero.
+//! An element is a [`ReferenceElement`] in a file of its own and a line in [`ElementKind`], which stands here; everything
+//! else works on any of them. Reference coordinates are `[xi, eta, zeta]`; those beyond the dimension of the cell are zero.
 
 mod cell;
 mod hex8;
-mod kind;
 mod line2;
 mod line3;
 mod point1;
 mod q4;
 mod q8;
 mod quadrature;
+mod reference;
 mod t3;
 mod t6;
 mod tabulated;
 mod tet4;
 
 pub use cell::Cell;
-pub use kind::{ElementKind, FacetKind};
-pub use quadrature::{Part, QuadraturePoint};
-pub use tabulated::{Tabulated, TabulatedPoint};
+pub use quadrature::Part;
+pub use reference::{FacetKind, LatticeCounts, MAX_NODES, PerNode, QuadraturePoint, ReferenceElement, Shape};
+pub use tabulated::{Rule, Tabulated, TabulatedPoint};
 
-/// The largest number of nodes that an element here has.
-pub const MAX_NODES: usize = 8;
+use hex8::HEX8;
+use line2::LINE2;
+use line3::LINE3;
+use point1::POINT1;
+use q4::Q4;
+use q8::Q8;
+use t3::T3;
+use t6::T6;
+use tet4::TET4;
 
-/// One value per node of an element; entries beyond its nodes are zero.
-pub type PerNode<T> = [T; MAX_NODES];
-
-/// What a reference cell is the product or the hull of.
+/// The elements that a mesh can be made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shape {
-    /// A simplex: origin and unit vectors; linear functions have total degree one.
-    Simplex,
-    /// A product of intervals [-1, 1]; linear functions have degree one in each coordinate.
-    Product,
+pub enum ElementKind {
+    /// Bar of two nodes.
+    Line2,
+    /// Linear triangle, three nodes counterclockwise.
+    T3,
+    /// Quadratic triangle: three corners counterclockwise, then the mid-sides (0,1), (1,2), (2,0).
+    T6,
+    /// Bilinear quadrilateral, four nodes counterclockwise.
+    Q4,
+    /// Serendipity quadrilateral: four corners counterclockwise, then the mid-sides (0,1), (1,2), (2,3), (3,0).
+    Q8,
+    /// Linear tetrahedron: the first three nodes are counterclockwise seen from the fourth.
+    Tet4,
+    /// Trilinear hexahedron: the lower face counterclockwise seen from above, then the upper one (VTK order).
+    Hex8,
 }
 
-/// An element on its reference cell.
-#[derive(Debug)]
-pub struct ReferenceElement {
+impl ElementKind {
+    /// All elements.
+    pub const ALL: [ElementKind; 7] = [
+        ElementKind::Line2,
+        ElementKind::T3,
+        ElementKind::T6,
+        ElementKind::Q4,
+        ElementKind::Q8,
+        ElementKind::Tet4,
+        ElementKind::Hex8,
+    ];
+
+    /// The reference cell.
+    pub fn reference(self) -> &'static ReferenceElement {
+        match self {
+            ElementKind::Line2 => &LINE2,
+            ElementKind::T3 => &T3,
+            ElementKind::T6 => &T6,
+            ElementKind::Q4 => &Q4,
+            ElementKind::Q8 => &Q8,
+            ElementKind::Tet4 => &TET4,
+            ElementKind::Hex8 => &HEX8,
+        }
+    }
+
+    /// What a face of the element is.
+    pub fn facet(self) -> FacetKind {
+        self.reference().facet
+    }
+
     /// Short name, as `Q4`.
-    pub name: &'static str,
-    /// Simplex or product of intervals.
-    pub form: Shape,
-    /// Dimension of the cell, 0 to 3.
-    pub dimension: usize,
-    /// Reference coordinates of the nodes; the corners come first.
-    pub nodes: &'static [[f64; 3]],
-    /// Number of corners.
-    pub corners: usize,
-    /// Local nodes of every face, in the order of the facet's own reference cell, seen from outside counterclockwise.
-    pub faces: &'static [&'static [usize]],
-    /// Local nodes in the order along the cell; the own order where the cell is no line.
-    pub along: &'static [usize],
-    /// Values of the shape functions at a reference point.
-    pub shape: fn([f64; 3]) -> PerNode<f64>,
-    /// Derivatives of the shape functions with respect to the reference coordinates, at a reference point.
-    pub derivative: fn([f64; 3]) -> PerNode<[f64; 3]>,
-    /// Quadrature that integrates stiffness and constant loads of an undistorted cell exactly.
-    pub quadrature: &'static [QuadraturePoint],
-    /// The same for a cell that is revolved about an axis: the radius is one degree more.
-    pub quadrature_revolved: &'static [QuadraturePoint],
-    /// Reference coordinates of the centroid.
-    pub centroid: [f64; 3],
+    pub fn name(self) -> &'static str {
+        self.reference().name
+    }
+
+    /// Number of nodes of one element.
+    pub fn nodes(self) -> usize {
+        self.reference().nodes.len()
+    }
+
+    /// Number of corners of one element; they are its first nodes.
+    pub fn corners(self) -> usize {
+        self.reference().corners
+    }
+
+    /// Dimension of the element: 1, 2 or 3.
+    pub fn dimension(self) -> usize {
+        self.reference().dimension
+    }
+
+    /// Returns `true` if linear functions have degree one in each coordinate: a quadrilateral, a brick.
+    pub fn is_product(self) -> bool {
+        self.reference().form == Shape::Product
+    }
+
+    /// Returns `true` if the mean of the dilatation over the element can stand for the dilatation: the linear products in
+    /// the plane and in space.
+    pub fn takes_mean_dilatation(self) -> bool {
+        self.is_product() && !self.is_quadratic() && self.dimension() > 1
+    }
+
+    /// The names of the elements that take mean dilatation, as `Q4 and Hex8` with the word `and`.
+    pub fn of_mean_dilatation(join: &str) -> String {
+        let names = Self::ALL.into_iter().filter(|kind| kind.takes_mean_dilatation()).map(Self::name);
+        names.collect::<Vec<_>>().join(&format!(" {join} "))
+    }
+
+    /// Returns `true` if the shape functions have degree two.
+    pub fn is_quadratic(self) -> bool {
+        self.nodes() > self.corners()
+    }
 }
 
-impl ReferenceElement {
-    /// The local nodes in the order that a mirrored element has: that of the cell with xi and eta exchanged, or, on a
-    /// line, with xi reversed.
-    pub fn mirrored(&self) -> Vec<usize> {
-        let mirror = |[xi, eta, zeta]: [f64; 3]| match self.dimension {
-            1 => [-xi, eta, zeta],
-            _ => [eta, xi, zeta],
-        };
-        let place = |at: [f64; 3]| self.nodes.iter().position(|&node| node == at);
-        self.nodes.iter().enumerate().map(|(local, &at)| place(mirror(at)).unwrap_or(local)).collect()
+impl FacetKind {
+    /// The reference cell.
+    pub fn reference(self) -> &'static ReferenceElement {
+        match self {
+            FacetKind::Point1 => &POINT1,
+            FacetKind::Line2 => &LINE2,
+            FacetKind::Line3 => &LINE3,
+            FacetKind::T3 => &T3,
+            FacetKind::Q4 => &Q4,
+        }
+    }
+
+    /// Number of nodes of one facet.
+    pub fn nodes(self) -> usize {
+        self.reference().nodes.len()
     }
 }

@@ -1,7 +1,7 @@
 //! Point1, the end of a bar: N = 1.
 
 use super::quadrature::POINT;
-use super::{ReferenceElement, Shape};
+use super::reference::{FacetKind, LatticeCounts, ReferenceElement, Shape};
 
 /// A single node.
 pub(super) static POINT1: ReferenceElement = ReferenceElement {
@@ -17,4 +17,8 @@ pub(super) static POINT1: ReferenceElement = ReferenceElement {
     quadrature: &POINT,
     quadrature_revolved: &POINT,
     centroid: [0.0; 3],
+    facet: FacetKind::Point1,
+    gmsh: 15,
+    vtk: 1,
+    counts: LatticeCounts::NONE,
 };

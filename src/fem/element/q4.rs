@@ -1,7 +1,7 @@
 //! Q4, the bilinear quadrilateral: N_a = (1 + xi_a xi)(1 + eta_a eta)/4, integrated with 2 x 2 Gauss points.
 
 use super::quadrature::SQUARE_2X2;
-use super::{MAX_NODES, PerNode, ReferenceElement, Shape};
+use super::reference::{FacetKind, LatticeCounts, MAX_NODES, PerNode, ReferenceElement, Shape};
 
 const CORNERS: [[f64; 3]; 4] = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]];
 
@@ -19,6 +19,10 @@ pub(super) static Q4: ReferenceElement = ReferenceElement {
     quadrature: &SQUARE_2X2,
     quadrature_revolved: &SQUARE_2X2,
     centroid: [0.0; 3],
+    facet: FacetKind::Line2,
+    gmsh: 3,
+    vtk: 9,
+    counts: LatticeCounts { nodes: 1.0, line: 1.0, connections: 4.0, neighbours: 9.0 },
 };
 
 fn shape([xi, eta, _]: [f64; 3]) -> PerNode<f64> {

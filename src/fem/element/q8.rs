@@ -3,7 +3,7 @@
 //! (1 + xi_a xi)(1 - eta^2)/2 at the mid-sides.
 
 use super::quadrature::SQUARE_3X3;
-use super::{PerNode, ReferenceElement, Shape};
+use super::reference::{FacetKind, LatticeCounts, PerNode, ReferenceElement, Shape};
 
 const NODES: [[f64; 3]; 8] = [
     [-1.0, -1.0, 0.0],
@@ -30,6 +30,10 @@ pub(super) static Q8: ReferenceElement = ReferenceElement {
     quadrature: &SQUARE_3X3,
     quadrature_revolved: &SQUARE_3X3,
     centroid: [0.0; 3],
+    facet: FacetKind::Line3,
+    gmsh: 16,
+    vtk: 23,
+    counts: LatticeCounts { nodes: 3.0, line: 2.0, connections: 8.0, neighbours: 15.5 },
 };
 
 fn shape([xi, eta, _]: [f64; 3]) -> PerNode<f64> {

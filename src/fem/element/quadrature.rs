@@ -1,15 +1,6 @@
 //! Quadrature on the reference cells: point, interval [-1,1], square, cube, triangle and tetrahedron.
 
-use super::Shape;
-
-/// A point of a quadrature rule.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct QuadraturePoint {
-    /// Reference coordinates.
-    pub at: [f64; 3],
-    /// Weight; the weights add up to the size of the reference cell.
-    pub weight: f64,
-}
+use super::reference::{QuadraturePoint, Shape};
 
 const fn point(xi: f64, eta: f64, zeta: f64, weight: f64) -> QuadraturePoint {
     QuadraturePoint { at: [xi, eta, zeta], weight }

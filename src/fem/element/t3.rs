@@ -1,7 +1,7 @@
 //! T3, the linear triangle: N = (1 - xi - eta, xi, eta); strain and stress are constant in the plane.
 
 use super::quadrature::{TRIANGLE_1, TRIANGLE_3};
-use super::{MAX_NODES, PerNode, ReferenceElement, Shape};
+use super::reference::{FacetKind, LatticeCounts, MAX_NODES, PerNode, ReferenceElement, Shape};
 
 /// The linear triangle.
 ///
@@ -19,6 +19,10 @@ pub(super) static T3: ReferenceElement = ReferenceElement {
     quadrature: &TRIANGLE_1,
     quadrature_revolved: &TRIANGLE_3,
     centroid: [1.0 / 3.0, 1.0 / 3.0, 0.0],
+    facet: FacetKind::Line2,
+    gmsh: 2,
+    vtk: 5,
+    counts: LatticeCounts { nodes: 1.0, line: 1.0, connections: 6.0, neighbours: 7.0 },
 };
 
 fn shape([xi, eta, _]: [f64; 3]) -> PerNode<f64> {

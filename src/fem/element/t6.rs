@@ -1,7 +1,7 @@
 //! T6, the quadratic triangle: N = L_a (2 L_a - 1) at corners, 4 L_a L_b at the mid-sides, L = (1 - xi - eta, xi, eta).
 
 use super::quadrature::TRIANGLE_6;
-use super::{MAX_NODES, PerNode, ReferenceElement, Shape};
+use super::reference::{FacetKind, LatticeCounts, MAX_NODES, PerNode, ReferenceElement, Shape};
 
 /// The sides, each with the corners between which its mid-side node lies.
 const SIDES: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
@@ -24,6 +24,10 @@ pub(super) static T6: ReferenceElement = ReferenceElement {
     quadrature: &TRIANGLE_6,
     quadrature_revolved: &TRIANGLE_6,
     centroid: [1.0 / 3.0, 1.0 / 3.0, 0.0],
+    facet: FacetKind::Line3,
+    gmsh: 9,
+    vtk: 22,
+    counts: LatticeCounts { nodes: 4.0, line: 2.0, connections: 12.0, neighbours: 11.5 },
 };
 
 fn shape([xi, eta, _]: [f64; 3]) -> PerNode<f64> {

@@ -15,6 +15,15 @@ pub struct TabulatedPoint {
     pub derivative: PerNode<[f64; 3]>,
 }
 
+/// Which quadrature of an element.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rule {
+    /// That of a bar, in the plane and in space.
+    Straight,
+    /// That of a body of revolution: the radius is one degree more.
+    Revolved,
+}
+
 /// The shape functions of an element at the points of a quadrature rule, at its nodes and its centroid.
 #[derive(Clone, Debug)]
 pub struct Tabulated {
@@ -30,9 +39,12 @@ pub struct Tabulated {
 }
 
 impl Tabulated {
-    /// Tabulates `reference` at the points of its quadrature; of that for bodies of revolution where `revolved`.
-    pub fn new(reference: &'static ReferenceElement, revolved: bool) -> Self {
-        let rule = if revolved { reference.quadrature_revolved } else { reference.quadrature };
+    /// Tabulates `reference` at the points of its quadrature.
+    pub fn new(reference: &'static ReferenceElement, rule: Rule) -> Self {
+        let rule = match rule {
+            Rule::Straight => reference.quadrature,
+            Rule::Revolved => reference.quadrature_revolved,
+        };
         Self::with_rule(reference, rule.to_vec())
     }
 

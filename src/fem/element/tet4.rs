@@ -1,7 +1,7 @@
 //! Tet4, the linear tetrahedron: N = (1 - xi - eta - zeta, xi, eta, zeta); strain and stress are constant.
 
 use super::quadrature::TETRAHEDRON_1;
-use super::{MAX_NODES, PerNode, ReferenceElement, Shape};
+use super::reference::{FacetKind, LatticeCounts, MAX_NODES, PerNode, ReferenceElement, Shape};
 
 /// The linear tetrahedron.
 pub(super) static TET4: ReferenceElement = ReferenceElement {
@@ -17,6 +17,10 @@ pub(super) static TET4: ReferenceElement = ReferenceElement {
     quadrature: &TETRAHEDRON_1,
     quadrature_revolved: &TETRAHEDRON_1,
     centroid: [0.25; 3],
+    facet: FacetKind::T3,
+    gmsh: 4,
+    vtk: 10,
+    counts: LatticeCounts { nodes: 1.0, line: 1.0, connections: 24.0, neighbours: 15.0 },
 };
 
 fn shape([xi, eta, zeta]: [f64; 3]) -> PerNode<f64> {

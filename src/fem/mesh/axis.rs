@@ -1,15 +1,20 @@
 //! One axis of a structured mesh: breakpoints, divisions, gradings.
 
+use serde::{Deserialize, Serialize};
+
 use super::MAX_NODES;
 
-/// One axis of a structured mesh: intervals between breakpoints, each divided into cells of constant growth.
-#[derive(Clone, Debug, PartialEq)]
+/// One axis of a structured mesh.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema), schemars(rename = "AxisSpec"))]
+#[serde(deny_unknown_fields)]
 pub struct Axis {
-    /// Breakpoints, at least two, increasing, in the unit of length.
+    /// Breakpoints, at least two, increasing.
     pub points: Vec<f64>,
-    /// Cells of each interval, at least one; one entry fewer than `points`.
+    /// Cells of each interval between breakpoints, at least 1.
     pub divisions: Vec<usize>,
-    /// Last cell size over first cell size of each interval, positive; empty for cells of equal size.
+    /// Last cell size over first cell size of each interval, positive; all 1 where left out.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ratios: Vec<f64>,
 }
 
@@ -49,6 +54,31 @@ impl Axis {
         }
         coordinates.extend(self.points.last());
         Ok(coordinates)
+    }
+
+    /// Cells from end to end.
+    pub(crate) fn cells(&self) -> usize {
+        self.divisions.iter().fold(0, |sum: usize, &cells| sum.saturating_add(cells))
+    }
+
+    /// From the first point to the last; 0 if there are none.
+    pub(crate) fn length(&self) -> f64 {
+        match (self.points.first(), self.points.last()) {
+            (Some(first), Some(last)) => last - first,
+            _ => 0.0,
+        }
+    }
+
+    /// Cuts every cell into `times`; graded axes are nested.
+    pub(crate) fn refine(&mut self, times: usize) {
+        // The size of cell after cell grows by q = ratio^(1/(n - 1)); in the finer mesh by the times-th root of it.
+        for (ratio, &cells) in self.ratios.iter_mut().zip(&self.divisions) {
+            if cells > 1 {
+                let finer = cells.saturating_mul(times) - 1;
+                *ratio = ratio.powf(finer as f64 / (times as f64 * (cells - 1) as f64));
+            }
+        }
+        self.divisions.iter_mut().for_each(|cells| *cells = cells.saturating_mul(times));
     }
 
     /// Checks the fields and counts the mesh lines.

@@ -8,7 +8,7 @@ use std::hash::Hash;
 use super::ElementKind;
 
 /// The nodes made so far.
-pub(super) struct Lattice<K> {
+pub(crate) struct Lattice<K> {
     numbers: HashMap<K, usize>,
     keys: Vec<K>,
 }
@@ -49,7 +49,7 @@ impl<K: Copy + Eq + Hash> Lattice<K> {
 }
 
 /// The lines of an axis at half steps: between each two lines their mean.
-pub(super) fn half_steps(lines: &[f64]) -> Vec<f64> {
+pub(crate) fn half_steps(lines: &[f64]) -> Vec<f64> {
     let mut fine = Vec::with_capacity(2 * lines.len());
     for (index, &line) in lines.iter().enumerate() {
         if index > 0 {

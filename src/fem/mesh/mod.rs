@@ -1,30 +1,17 @@
 //! Meshes of one kind of element, in one, two or three dimensions: nodes, elements, named boundaries.
 
 mod axis;
-mod bar;
 mod boundary;
-mod cuboid;
-mod disc;
 mod faces;
 pub mod gmsh;
-mod half_ball;
-mod half_disc;
-mod lattice;
+pub(crate) mod lattice;
 mod outline;
-mod rectangle;
-mod ring;
+pub(crate) mod round;
 mod zone;
 
 pub use crate::fem::element::{ElementKind, FacetKind};
 pub use axis::Axis;
-pub use bar::bar;
 pub use boundary::Boundary;
-pub use cuboid::cuboid;
-pub use disc::disc;
-pub use half_ball::half_ball;
-pub use half_disc::half_disc;
-pub use rectangle::rectangle;
-pub use ring::ring;
 pub use zone::Zone;
 
 use crate::error::Error;
@@ -225,12 +212,13 @@ pub(crate) fn extent(nodes: &[[f64; 3]]) -> ([f64; 3], [f64; 3]) {
     (low, high)
 }
 
-fn fail<T>(message: String) -> Result<T, Error> {
+/// An [`Error::Mesh`].
+pub(crate) fn fail<T>(message: String) -> Result<T, Error> {
     Err(Error::Mesh { message })
 }
 
 /// Checks the lines of a structured mesh and counts the nodes of the grid that is `refined` times as fine.
-fn check_lines(axes: &[(&str, &[f64])], refined: usize) -> Result<(), Error> {
+pub(crate) fn check_lines(axes: &[(&str, &[f64])], refined: usize) -> Result<(), Error> {
     let mut nodes: usize = 1;
     for (name, lines) in axes {
         let increasing = |pair: &[f64]| pair[1].partial_cmp(&pair[0]) == Some(std::cmp::Ordering::Greater);

@@ -5,9 +5,16 @@ use std::collections::{HashMap, HashSet};
 use super::{Boundary, FacetKind, Mesh};
 
 impl Mesh {
+    /// The mesh with these boundaries alone, each of all faces whose nodes are all marked; a boundary without a face is left
+    /// out.
+    pub(crate) fn with_sides(mut self, sides: &[(&str, &dyn Fn(usize) -> bool)]) -> Self {
+        self.boundaries = sides.iter().filter_map(|(name, marked)| self.boundary_where(name, marked)).collect();
+        self
+    }
+
     /// The boundary of all faces whose nodes are all marked, seen from outside; edges in the order in which they follow
-    /// each other. `None` where there is no such face.
-    pub(super) fn boundary_where(&self, name: &str, marked: impl Fn(usize) -> bool) -> Option<Boundary> {
+    /// each other. `None` if there is no such face.
+    fn boundary_where(&self, name: &str, marked: impl Fn(usize) -> bool) -> Option<Boundary> {
         let faces = self.kind().reference().faces;
         let mut connectivity = Vec::new();
         for nodes in self.elements() {

@@ -1,24 +1,34 @@
 //! Grading towards a place of contact: fine cells of one size there, growing cells beyond.
 
+use serde::{Deserialize, Serialize};
+
 use super::MAX_NODES;
 use crate::error::Error;
 
-/// The fine zone of a mesh around the lowest point of a curved body.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The finely meshed zone around the lowest (highest) point of a round body.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema), schemars(rename = "ZoneSpec"))]
+#[serde(deny_unknown_fields)]
 pub struct Zone {
-    /// How far the cells of one size reach from the lowest point: to each side along the surface, and into the body.
+    /// How far the cells of one size reach from the lowest point, to each side and into the body: positive, at most the
+    /// radius. Twice the expected contact half-width is a good choice.
     pub width: f64,
-    /// Cells on this width, at least one.
+    /// Cells on this width, at least 1.
     pub divisions: usize,
-    /// Size of each further cell over that of its neighbour towards the zone, at least 1.
+    /// Size of each further cell over that of its neighbour towards the zone, from 1 to 10.
+    #[serde(default = "growth")]
     pub growth: f64,
+}
+
+fn growth() -> f64 {
+    1.2
 }
 
 /// A cell smaller than this times the radius is lost in the rounding of coordinates.
 const SMALLEST: f64 = 1e-8;
 
 impl Zone {
-    pub(super) fn check(&self, radius: f64) -> Result<(), Error> {
+    pub(crate) fn check(&self, radius: f64) -> Result<(), Error> {
         let fail = |name, value, allowed| Err(Error::Setting { name, value, allowed });
         if !(radius.is_normal() && radius > 0.0) {
             return fail("radius", radius, "positive and finite");
@@ -48,6 +58,12 @@ impl Zone {
             _ => rest / size,
         };
         (self.divisions as f64 + growing, size * self.growth.powf(growing))
+    }
+
+    /// Cuts every cell into `times`.
+    pub(crate) fn refine(&mut self, times: usize) {
+        self.divisions = self.divisions.saturating_mul(times);
+        self.growth = self.growth.powf(1.0 / times as f64);
     }
 
     /// Lines from 0 to `length`, fine at 0; the last one is met exactly.

@@ -3,7 +3,7 @@
 use super::{Stress, StressField};
 use crate::error::Error;
 use crate::fem::body::{BodyElement, ElasticBody, Symmetric, trace};
-use crate::fem::element::{MAX_NODES, PerNode, Tabulated};
+use crate::fem::element::{MAX_NODES, PerNode, Rule, Tabulated};
 use crate::fem::formulation::Formulation;
 use crate::fem::material::Lame;
 
@@ -25,7 +25,7 @@ pub fn discretisation_error(body: &ElasticBody, displacement: &[f64], field: &St
         return Err(Error::Length { name: "nodal stress", found, expected, of: "nodes" });
     }
     // The rule for bodies of revolution integrates the squares of linear differences too.
-    let table = Tabulated::new(body.mesh().kind().reference(), true);
+    let table = Tabulated::new(body.mesh().kind().reference(), Rule::Revolved);
     let standard = body.tabulated();
     let (mut difference, mut whole) = (0.0, 0.0);
     for BodyElement { nodes, cell, lame } in body.elements() {

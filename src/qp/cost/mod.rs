@@ -3,6 +3,7 @@
 pub mod bytes;
 pub(in crate::qp) mod seconds;
 
+use super::linear::SymmetricMatrix;
 use super::problem::ContactProblem;
 use super::settings::Settings;
 use crate::error::Error;
@@ -15,6 +16,29 @@ const MOTIONS_IN_SPACE: usize = 6;
 /// Values of the factor of a bar for an unknown, about.
 const ALONG_A_LINE: f64 = 4.0;
 
+/// Entries of the contact rows for a dof beyond which the contact boundary is most of the body.
+const MANY: f64 = 0.25;
+
+/// Sets of closed rows, each with a factor, until one is settled where contact is everywhere.
+const SETS: f64 = 10.0;
+
+/// Row sums of a stiffness may be negative by this share of the diagonal: rounding.
+const ROW_SUM_ROUNDING: f64 = 1e-9;
+
+/// Returns `true` for a stiffness like that of a scalar diffusion: no positive entry off the diagonal, no negative row sum. Its
+/// smooth displacements are the constants.
+fn is_diffusion(stiffness: &SymmetricMatrix) -> bool {
+    let mut sums = stiffness.diagonal();
+    for (row, column, value) in stiffness.lower().triplets().filter(|entry| entry.0 != entry.1) {
+        if value > 0.0 {
+            return false;
+        }
+        sums[row] += value;
+        sums[column] += value;
+    }
+    sums.iter().zip(stiffness.diagonal()).all(|(&sum, own)| sum >= -ROW_SUM_ROUNDING * own)
+}
+
 /// Estimated time and memory of the two paths.
 ///
 /// Calibrated on blocks of Q4 and Hex8 (`cargo run --release --example multigrid`); good to a factor of two or so, since
@@ -25,7 +49,7 @@ pub struct Estimate {
     pub direct_bytes: f64,
     /// Values of the factor.
     pub factor_entries: f64,
-    /// Seconds of the factorisation on one processor of 2024.
+    /// Seconds of the factorisations on one processor of 2024.
     pub direct_seconds: f64,
     /// Bytes of the iterative path at its peak, the problem itself included.
     pub multigrid_bytes: f64,
@@ -33,8 +57,8 @@ pub struct Estimate {
     pub multigrid_seconds: f64,
     /// Seconds of the hierarchy alone.
     pub hierarchy_seconds: f64,
-    /// Does the problem know its rigid-body modes?
-    pub(super) knows_motions: bool,
+    /// Does a hierarchy know what costs next to no energy: are the rigid-body modes given, or do constants suffice?
+    pub(super) suits_multigrid: bool,
 }
 
 impl Estimate {
@@ -49,14 +73,17 @@ impl Estimate {
             _ => (6.0 * dofs * dofs.max(2.0).log2(), 3.7e-9 * dofs.powf(1.5)),
         };
         let both = 2.0 * entries - dofs;
+        // Where contact is everywhere, every set of closed rows has a factor of its own.
+        let share = problem.contact().entries() as f64 / dofs;
+        let factors = if share > MANY { SETS } else { 1.0 };
         Estimate {
             direct_bytes: bytes::START + bytes::of_problem(dofs, both) + bytes::of_factor(factor, size_of::<f64>()),
             factor_entries: factor,
-            direct_seconds: seconds,
+            direct_seconds: factors * seconds,
             multigrid_bytes: bytes::START + bytes::of_hierarchy(dofs, both),
             multigrid_seconds: 1.3e-7 * entries,
             hierarchy_seconds: 4e-8 * entries,
-            knows_motions: problem.near_null().is_some(),
+            suits_multigrid: problem.near_null().is_some() || is_diffusion(problem.stiffness()),
         }
     }
 }

@@ -50,6 +50,9 @@ const ENTRY_BY_ENTRY: f64 = 1.5e-9;
 /// Its order needs so many times the multiplications of ours.
 const MORE_FILL: f64 = 3.0;
 
+/// Factorisations that the selected inverse costs.
+const SELECTED: f64 = 3.0;
+
 /// Cells along a side of the lattice whose matrix is factorised to learn the pace.
 const LATTICE: usize = 64;
 
@@ -88,6 +91,11 @@ pub(in crate::qp) fn dense(size: usize) -> f64 {
 /// Seconds of sweeps through so many values.
 pub(in crate::qp) fn sweeps(count: usize, values: f64) -> f64 {
     PLAIN * count as f64 * values
+}
+
+/// Seconds of the entries of the inverse in the pattern of the factor.
+pub(in crate::qp) fn selected_inverse(analysis: &Analysis) -> f64 {
+    SELECTED * factorisation(analysis)
 }
 
 /// Learns the pace from a small factorisation, if there is a deadline and nothing was timed before.

@@ -1,6 +1,8 @@
 //! The answer on the contact boundary alone: contact set, multipliers and forces, without the displacement of the body.
 
-use super::factored::Prepared;
+use std::sync::Arc;
+
+use super::factored::Factored;
 use super::found::Found;
 use crate::error::Error;
 use crate::qp::settings::Settings;
@@ -11,7 +13,7 @@ use crate::solution::{Certificate, ContactSet, Solution};
 /// The multipliers are those of the whole answer. Nothing in it costs a sweep through the factor of the body, unless it
 /// is asked for: [`displacement`](Self::displacement) takes one, [`solution`](Self::solution) two.
 #[derive(Clone, Debug)]
-pub struct BoundarySolution<'a> {
+pub struct BoundarySolution {
     /// Contact multiplier lambda, one entry per contact row, in the problem's unit of force, `<= 0` in compression.
     pub multiplier: Vec<f64>,
     /// The closed rows.
@@ -21,11 +23,31 @@ pub struct BoundarySolution<'a> {
     /// The certificate of the *condensed* problem, in its dimensionless units: its conditions are recomputed from the
     /// condensed stiffness, load and rows, not from the problem itself. That takes the displacement of the body.
     pub condensed_certificate: Certificate,
-    pub(super) prepared: &'a Prepared,
-    pub(super) found: Found,
+    body: Body,
 }
 
-impl BoundarySolution<'_> {
+/// What is known of the body inside.
+#[derive(Clone, Debug)]
+enum Body {
+    /// What the whole answer can be made of.
+    Reduced(Arc<Factored>, Box<Found>, Settings),
+    /// The whole answer.
+    Whole(Box<Solution>),
+}
+
+impl BoundarySolution {
+    /// What was found with a factor and certified there.
+    pub(super) fn on(engine: Arc<Factored>, on_boundary: (Found, Certificate), settings: &Settings) -> Self {
+        let (found, condensed_certificate) = on_boundary;
+        BoundarySolution {
+            multiplier: engine.expand_multiplier(&found.outcome.multiplier, found.unit),
+            contact_set: engine.expand_set(&found.outcome.contact_set),
+            iterations: found.outcome.iterations,
+            condensed_certificate,
+            body: Body::Reduced(engine, Box::new(found), settings.clone()),
+        }
+    }
+
     /// Total contact force `-sum(lambda)`, `>= 0`, in the problem's unit of force.
     pub fn contact_force(&self) -> f64 {
         -self.multiplier.iter().sum::<f64>()
@@ -33,76 +55,41 @@ impl BoundarySolution<'_> {
 
     /// The displacement u of the whole body, one entry per dof, in the problem's unit of length; not certified.
     pub fn displacement(&self) -> Vec<f64> {
-        self.prepared.displacement(&self.found)
+        match &self.body {
+            Body::Reduced(engine, found, _) => engine.displacement(found),
+            Body::Whole(solution) => solution.displacement.clone(),
+        }
     }
 
     /// The whole answer, with the certificate of the problem itself.
     ///
     /// # Errors
-    /// [`Error::NotCertified`] and [`Error::Infeasible`], as [`solve`](crate::solve).
-    pub fn solution(self, settings: &Settings) -> Result<Solution, Error> {
-        self.prepared.complete(self.found, settings)
+    /// [`Error::NotCertified`] and [`Error::Infeasible`], as [`solve`](crate::solve()).
+    pub fn solution(self) -> Result<Solution, Error> {
+        match self.body {
+            Body::Reduced(engine, found, settings) => engine.best(*found, &settings).map(|best| best.1),
+            Body::Whole(solution) => Ok(*solution),
+        }
     }
 }
 
-impl Prepared {
-    /// Contact set, multipliers and forces with other gaps, the active-set steps starting from `start` where it is given.
-    ///
-    /// The displacement of the body is not computed, so that a condensed problem costs what its contact boundary costs.
-    ///
-    /// # Errors
-    /// As [`Prepared::solve_gap`]; the tolerance is held against the certificate of the condensed problem.
-    pub fn boundary_at_gap(
-        &self,
-        gap: Vec<f64>,
-        start: Option<&ContactSet>,
-        settings: &Settings,
-    ) -> Result<BoundarySolution<'_>, Error> {
-        let settings = &settings.started()?;
-        self.on_boundary(self.find(self.own_load(), gap, start, settings)?, settings)
+impl From<Solution> for BoundarySolution {
+    /// The boundary of an answer that was not condensed.
+    fn from(solution: Solution) -> Self {
+        BoundarySolution {
+            multiplier: solution.multiplier.clone(),
+            contact_set: solution.contact_set.clone(),
+            iterations: solution.iterations,
+            condensed_certificate: solution.certificate,
+            body: Body::Whole(Box::new(solution)),
+        }
     }
+}
 
-    /// As [`Prepared::boundary_at_gap`], with another load, which costs one sweep through the factor of the body.
-    ///
-    /// # Errors
-    /// As [`Prepared::boundary_at_gap`], for the load.
-    pub fn boundary_at_load(
-        &self,
-        load: Vec<f64>,
-        start: Option<&ContactSet>,
-        settings: &Settings,
-    ) -> Result<BoundarySolution<'_>, Error> {
-        self.boundary_at(load, self.problem.gap().to_vec(), start, settings)
-    }
-
-    /// As [`Prepared::boundary_at_load`], with other gaps too.
-    ///
-    /// # Errors
-    /// As [`Prepared::boundary_at_gap`], for load and gaps.
-    pub fn boundary_at(
-        &self,
-        load: Vec<f64>,
-        gap: Vec<f64>,
-        start: Option<&ContactSet>,
-        settings: &Settings,
-    ) -> Result<BoundarySolution<'_>, Error> {
-        let settings = &settings.started()?;
-        let loading = self.other_load(load, &gap)?;
-        self.on_boundary(self.find(loading, gap, start, settings)?, settings)
-    }
-
-    /// The answer on the boundary, certified there.
-    pub(super) fn on_boundary(&self, found: Found, settings: &Settings) -> Result<BoundarySolution<'_>, Error> {
-        self.judged(found, settings, true)
-    }
-
-    /// The answer on the boundary, its conditions recomputed there, and its error bound where it is `bounded`.
-    pub(super) fn judged(
-        &self,
-        found: Found,
-        settings: &Settings,
-        bounded: bool,
-    ) -> Result<BoundarySolution<'_>, Error> {
+impl Factored {
+    /// What was found, with the certificate of the condensed problem: its conditions recomputed there, and its error bound where
+    /// it is `bounded`.
+    pub fn on_boundary(&self, found: Found, settings: &Settings, bounded: bool) -> Result<(Found, Certificate), Error> {
         let on_boundary = |found: &Found| -> Result<Certificate, Error> {
             let Found { problem, outcome, .. } = found;
             match if bounded { self.condensed_norm(problem)? } else { None } {
@@ -110,34 +97,22 @@ impl Prepared {
                 norm => problem.certify_in(norm, &outcome.displacement, &outcome.multiplier),
             }
         };
-        let is_met = |certificate: &Certificate| match bounded {
-            true => settings.goal().is_met_by(certificate),
-            false => certificate.conditions_hold(settings.tolerance),
-        };
-        let (found, condensed_certificate) = if self.is_single() {
+        if self.is_single() {
             // The condensed problem is that of the last step only.
             let (found, solution) = self.best(found, settings)?;
-            (found, solution.certificate)
-        } else {
-            let certificate = on_boundary(&found)?;
-            match is_met(&certificate) {
-                true => (found, certificate),
-                false => {
-                    // The certificate of the whole answer tells what is wrong, unless it knows better.
-                    let found = self.best(found, settings)?.0;
-                    let certificate = on_boundary(&found)?;
-                    (found, certificate)
-                }
-            }
+            return Ok((found, solution.certificate));
+        }
+        let certificate = on_boundary(&found)?;
+        let is_met = match bounded {
+            true => settings.goal().is_met_by(&certificate),
+            false => certificate.conditions_hold(settings.tolerance),
         };
-        let Found { unit, outcome, .. } = &found;
-        Ok(BoundarySolution {
-            multiplier: self.expand_multiplier(&outcome.multiplier, *unit),
-            contact_set: self.reduction.selection.expand_set(&outcome.contact_set),
-            iterations: outcome.iterations,
-            condensed_certificate,
-            prepared: self,
-            found,
-        })
+        if is_met {
+            return Ok((found, certificate));
+        }
+        // The certificate of the whole answer tells what is wrong, unless it knows better.
+        let found = self.best(found, settings)?.0;
+        let certificate = on_boundary(&found)?;
+        Ok((found, certificate))
     }
 }

@@ -1,30 +1,31 @@
-//! A problem with everything done that does not depend on load and gap: factor once, contact many.
+//! The engine with a factor: everything is done once that does not depend on load and gap.
 
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
+use super::case::Case;
 use super::found::Found;
-use super::loading::Loading;
+use super::loading::{Load, Loading};
 use super::reduction::Reduction;
 use crate::error::Error;
+use crate::qp::certificate::EnergyNorm;
 use crate::qp::cost::{check_time, seconds};
-use crate::qp::judged::judged;
-use crate::qp::linear::{AugmentedMatrix, Equilibration, dot, largest, ldexp};
-use crate::qp::method::{ScaledProblem, WORK_TOLERANCE, active_set};
+use crate::qp::linear::{AugmentedMatrix, Equilibration, dot, ldexp};
+use crate::qp::method::{ScaledProblem, active_set};
 use crate::qp::plan::{Tried, Way};
-use crate::qp::problem::{ContactProblem, EnergyNorm, check_gap, check_load};
-use crate::qp::run::{last_resort, run};
-use crate::qp::settings::{Condense, Method, Settings};
+use crate::qp::problem::{ContactProblem, check_gap};
+use crate::qp::run::run;
+use crate::qp::settings::{Method, Settings};
 use crate::qp::transform::Condensation;
-use crate::solution::{Certificate, ContactSet, Iteration, Seconds, Solution};
+use crate::solution::{ContactSet, Seconds, Solution};
 use crate::watch::Watch;
 
 /// Factorisations for one step of a loop where K is not definite by itself.
 const SINGULAR: f64 = 3.0;
 
-/// A contact problem, scaled, condensed where that pays, factorised, its load swept through the factor.
-#[derive(Clone, Debug)]
-pub struct Prepared {
+/// A contact problem, scaled, condensed where that pays, factorised.
+#[derive(Debug)]
+pub(super) struct Factored {
     pub(super) problem: ContactProblem,
     pub(super) reduction: Reduction,
     /// The smallest pivot of the scaled stiffness, where it is below [`LOST_PIVOT`](super::preparation::LOST_PIVOT).
@@ -32,8 +33,6 @@ pub struct Prepared {
     pub(super) augmented: AugmentedMatrix,
     /// Energy norm of the condensed stiffness, made when it is first asked for.
     pub(super) condensed_norm: OnceLock<Option<EnergyNorm>>,
-    /// The load of the problem, swept when it is first solved with.
-    pub(super) loading: OnceLock<Arc<Loading>>,
     /// What was chosen, where the choice was left to the program.
     pub(super) way: Option<Way>,
     pub(super) multiplications: f64,
@@ -44,19 +43,10 @@ pub struct Prepared {
     pub(super) seconds: Seconds,
 }
 
-impl Prepared {
-    /// Scales, condenses and factorises `problem`.
-    ///
-    /// # Errors
-    /// [`Error::Infeasible`] for rows that contradict each other at the gaps of `problem`, [`Error::NotConvex`],
-    /// [`Error::Numerical`] where memory does not suffice.
-    pub fn new(problem: &ContactProblem, condense: Condense) -> Result<Self, Error> {
-        Self::with_settings(problem, &Settings { condense, ..Settings::default() })
-    }
-
-    /// Number of dofs of the problem.
-    pub fn dofs(&self) -> usize {
-        self.problem.dofs()
+impl Factored {
+    /// The problem as it came.
+    pub fn problem(&self) -> &ContactProblem {
+        &self.problem
     }
 
     /// Number of unknowns that the methods work on.
@@ -67,11 +57,6 @@ impl Prepared {
     /// Number of values of the factor of the stiffness; zero where the methods factorise by themselves.
     pub fn factor_entries(&self) -> usize {
         self.reduction.condensation.as_ref().map_or(0, Condensation::factor_entries)
-    }
-
-    /// Bytes of these values.
-    pub fn factor_bytes(&self) -> usize {
-        self.factor_entries() * if self.is_single() { size_of::<f32>() } else { size_of::<f64>() }
     }
 
     /// Multiplications of the factorisation of the stiffness.
@@ -85,7 +70,7 @@ impl Prepared {
     }
 
     /// What a solve with `settings` tries here.
-    pub(in crate::qp) fn tried(&self, settings: &Settings) -> Tried {
+    pub fn tried(&self, settings: &Settings) -> Tried {
         Tried {
             method: self.resolved(settings).method,
             condensed_dofs: self.is_condensed().then(|| self.condensed_dofs()),
@@ -98,37 +83,12 @@ impl Prepared {
         self.seconds
     }
 
-    /// Solves with the load and the gaps of the problem that was prepared.
+    /// The whole answer, certified.
     ///
     /// # Errors
-    /// As [`solve`](crate::solve).
-    pub fn solve(&self, settings: &Settings) -> Result<Solution, Error> {
-        self.solve_gap(self.problem.gap().to_vec(), None, settings)
-    }
-
-    /// Solves with other gaps, the active-set steps starting from `start` where it is given.
-    ///
-    /// # Errors
-    /// As [`solve`](crate::solve); [`Error::Length`] and [`Error::NotFinite`] for gaps that do not fit, or that are
-    /// infinite in other rows than those of the problem that was prepared.
-    pub fn solve_gap(&self, gap: Vec<f64>, start: Option<&ContactSet>, settings: &Settings) -> Result<Solution, Error> {
-        let settings = &settings.started()?;
-        self.complete(self.find(self.own_load(), gap, start, settings)?, settings)
-    }
-
-    /// Solves with another load, the active-set steps starting from `start` where it is given.
-    ///
-    /// # Errors
-    /// As [`Prepared::solve_gap`], for the load.
-    pub fn solve_load(
-        &self,
-        load: Vec<f64>,
-        start: Option<&ContactSet>,
-        settings: &Settings,
-    ) -> Result<Solution, Error> {
-        let settings = &settings.started()?;
-        let loading = self.other_load(load, self.problem.gap())?;
-        self.complete(self.find(loading, self.problem.gap().to_vec(), start, settings)?, settings)
+    /// As [`Prepared::solve`](super::Prepared::solve).
+    pub fn solve(&self, case: &Case) -> Result<Solution, Error> {
+        self.best(self.find(case)?, case.settings).map(|best| best.1)
     }
 
     pub(super) fn expand_multiplier(&self, multiplier: &[f64], unit: i32) -> Vec<f64> {
@@ -139,17 +99,12 @@ impl Prepared {
         self.reduction.selection.expand_set(set)
     }
 
-    /// Runs the method of `settings`, on the contact boundary where the problem is condensed.
-    pub(super) fn find(
-        &self,
-        loading: Arc<Loading>,
-        gap: Vec<f64>,
-        start: Option<&ContactSet>,
-        settings: &Settings,
-    ) -> Result<Found, Error> {
-        let settings = &self.resolved(&settings.started()?);
-        self.check_gap(&gap)?;
-        let found = self.find_step(loading, gap, start, settings)?;
+    /// Runs the method, on the contact boundary where the problem is condensed.
+    pub fn find(&self, case: &Case) -> Result<Found, Error> {
+        let settings = &self.resolved(case.settings);
+        self.check_gap(case.gap)?;
+        let loading = case.load.swept(&self.reduction, &self.reduction.selection.gap(case.gap));
+        let found = self.find_step(loading, case.gap.to_vec(), case.start.contact_set.as_ref(), settings)?;
         if self.is_single() { self.refined(found, settings) } else { Ok(found) }
     }
 
@@ -187,7 +142,7 @@ impl Prepared {
         };
         let outcome =
             run(&task, start, settings, &bound).map_err(|error| self.expand_error(error, &loading.load, &gap))?;
-        let seconds = Seconds { factor: task.factor_seconds(), solve: clock.elapsed().as_secs_f64() };
+        let seconds = Seconds { factor: task.factor_seconds(), proof: 0.0, solve: clock.elapsed().as_secs_f64() };
         Ok(Found { loading, gap, problem, unit, outcome, seconds, refined: None })
     }
 
@@ -204,7 +159,7 @@ impl Prepared {
         let factors = if self.reduction.norm.is_some() { 1.0 } else { SINGULAR };
         let of_loop = factors * seconds::factorisation(analysis);
         let (first, each) = match settings.method {
-            Method::Qp => (2.0 * seconds::interior_point(analysis), seconds::interior_point(analysis).max(of_loop)),
+            Method::Qp(_) => (2.0 * seconds::interior_point(analysis), seconds::interior_point(analysis).max(of_loop)),
             _ => (of_loop, of_loop),
         };
         check_time(&settings.watch, first)?;
@@ -237,120 +192,10 @@ impl Prepared {
         if interior > 0.0 { (on_boundary / (on_boundary + interior)).max(0.0).sqrt() } else { 1.0 }
     }
 
-    /// The whole answer, certified.
-    pub(super) fn complete(&self, found: Found, settings: &Settings) -> Result<Solution, Error> {
-        self.best(found, settings).map(|best| best.1)
-    }
-
-    /// The whole answer, certified, and what was found for it: by a second attempt where `found` falls short.
-    pub(super) fn best(&self, found: Found, settings: &Settings) -> Result<(Found, Solution), Error> {
-        let goal = settings.goal();
-        let solution = self.whole(&found, settings)?;
-        let mut best = (found, solution);
-        if goal.is_met_by(&best.1.certificate) {
-            return Ok(best);
-        }
-        let miss = |solution: &Solution| {
-            let (_, value, _) = goal.decisive(&solution.certificate);
-            if value.is_nan() { f64::INFINITY } else { value }
-        };
-        let other = self.second_attempt(&best.0, settings)?;
-        if let Some(other) = other.filter(|_| self.resolved(settings).allows_last_resort(miss(&best.1))) {
-            let solution = self.whole(&other, settings)?;
-            if miss(&solution) < miss(&best.1) {
-                best = (other, solution);
-            }
-        }
-        let (found, solution) = best;
-        Ok((found, judged(solution, goal)?))
-    }
-
-    /// What the last resort finds, where `found` is not its answer already.
-    ///
-    /// # Errors
-    /// [`Error::Infeasible`] for contact rows that contradict each other.
-    fn second_attempt(&self, found: &Found, settings: &Settings) -> Result<Option<Found>, Error> {
-        let clock = Instant::now();
-        // Of an answer that was cut short it is known why it falls short.
-        if found.outcome.is_last_resort() || settings.watch.is_over() {
-            return Ok(None);
-        }
-        let task =
-            ScaledProblem::new(&found.problem, &self.augmented, self.reduction.norm.is_some()).watched(&settings.watch);
-        let outcome = last_resort(&task, found.outcome.clone())
-            .map_err(|error| self.expand_error(error, &found.loading.load, &found.gap))?;
-        let seconds = Seconds { solve: found.seconds.solve + clock.elapsed().as_secs_f64(), ..found.seconds };
-        Ok(outcome.is_last_resort().then(|| Found { outcome, seconds, ..found.clone() }))
-    }
-
-    /// The whole answer with its certificate.
-    fn whole(&self, found: &Found, settings: &Settings) -> Result<Solution, Error> {
-        let clock = Instant::now();
-        settings.watch.step("certificate", 0);
-        let displacement = self.displacement(found);
-        let method = self.resolved(settings).method;
-        let Found { loading, gap, unit, outcome, seconds, refined, .. } = found;
-        let finishing = settings.watch.finishing();
-        let norm = self.reduction.norm.as_ref().map(|norm| norm.watched(&finishing));
-        let norm = match refined {
-            Some(refined) => norm.map(|norm| norm.off_by(refined.contraction)),
-            None => norm,
-        };
-        let multiplier = self.expand_multiplier(&outcome.multiplier, *unit);
-        let problem = self.problem.with(loading.load.clone(), gap.clone())?;
-        let certificate = match &norm {
-            Some(norm) => problem.certify_in(Some(norm), &displacement, &multiplier)?,
-            None => self.certificate(&problem, &displacement, &multiplier, &settings.watch)?,
-        };
-        let expand_iteration = |step: &Iteration| Iteration {
-            contact_set: self.reduction.selection.expand_set(&step.contact_set),
-            penalty: step.penalty,
-        };
-        let mut solution = Solution {
-            displacement,
-            multiplier,
-            contact_set: self.reduction.selection.expand_set(&outcome.contact_set),
-            method: format!("{}{}", method.name(), outcome.variant),
-            iterations: outcome.iterations,
-            history: outcome.history.iter().map(expand_iteration).collect(),
-            certificate,
-            proven: None,
-            refinements: refined.as_ref().map(|refined| refined.steps),
-            reason: None,
-            attempts: Vec::new(),
-            lost_pivot: self.lost_pivot,
-            condensed_dofs: self.condensed_dofs(),
-            seconds: Seconds { solve: seconds.solve + clock.elapsed().as_secs_f64(), ..*seconds },
-        };
-        if !self.is_single() && self.resolved(settings).wants_best() {
-            solution = self.corrected(solution, &problem, settings)?;
-        }
-        let clock = Instant::now();
-        let may_prove = settings.prove && !settings.watch.is_stopped() && settings.watch.allows(self.proof_seconds);
-        let proven = norm.as_ref().filter(|_| may_prove);
-        solution.proven = proven.and_then(|norm| problem.prove_in(norm, &solution.displacement, &solution.multiplier));
-        solution.seconds.solve += clock.elapsed().as_secs_f64();
-        Ok(solution)
-    }
-
-    /// The certificate of an answer to `problem`, this one under some load and gaps: with what bound there is time for.
-    pub(super) fn certificate(
-        &self,
-        problem: &ContactProblem,
-        displacement: &[f64],
-        multiplier: &[f64],
-        watch: &Watch,
-    ) -> Result<Certificate, Error> {
-        match &self.reduction.norm {
-            Some(norm) => problem.certify_in(Some(&norm.watched(&watch.finishing())), displacement, multiplier),
-            None if !watch.finishing().allows(self.norm_seconds) => problem.certify_in(None, displacement, multiplier),
-            None => problem.certify(displacement, multiplier),
-        }
-    }
-
     /// Displacement and multiplier with the rows of `closed` held at their gaps.
     pub(in crate::qp) fn with_contact_set(&self, closed: &ContactSet) -> Result<(Vec<f64>, Vec<f64>), Error> {
-        let loading = self.own_load();
+        let gap = self.reduction.selection.gap(self.problem.gap());
+        let loading = Loading::of(&self.reduction, self.problem.load().to_vec(), &gap);
         let (problem, unit) = self.scaled(&loading, self.problem.gap())?;
         let task = ScaledProblem::new(&problem, &self.augmented, self.reduction.norm.is_some());
         let held = active_set::with_contact_set(&task, &self.reduction.selection.restrict_set(closed))
@@ -367,7 +212,7 @@ impl Prepared {
         displacement
     }
 
-    /// Is the factor in single precision?
+    /// Returns `true` if the factor is in single precision.
     pub fn is_single(&self) -> bool {
         self.reduction.norm.is_some() && self.reduction.condensation.as_ref().is_some_and(Condensation::is_single)
     }
@@ -385,18 +230,16 @@ impl Prepared {
         Err(Error::NotFinite { name: "gap vector", at: format!("entry {row}"), value, allowed })
     }
 
-    fn load(&self, load: Vec<f64>, gap: &[f64]) -> Arc<Loading> {
-        Arc::new(Loading::of(&self.reduction, load, &self.reduction.selection.gap(gap)))
-    }
-
-    pub(super) fn own_load(&self) -> Arc<Loading> {
-        self.loading.get_or_init(|| self.load(self.problem.load().to_vec(), self.problem.gap())).clone()
-    }
-
-    pub(super) fn other_load(&self, load: Vec<f64>, gap: &[f64]) -> Result<Arc<Loading>, Error> {
-        check_load(&load, self.dofs())?;
-        check_gap(gap, self.problem.rows())?;
-        Ok(self.load(load, gap))
+    /// The displacement that a load causes if no row is closed, in the precision of the factor; `None` if K is not definite.
+    pub fn response(&self, load: &Load) -> Option<Vec<f64>> {
+        let norm = self.reduction.norm.as_ref()?;
+        let no_gap = vec![0.0; self.reduction.selection.kept().len()];
+        let loading = load.swept(&self.reduction, &no_gap);
+        let moved = match &self.reduction.condensation {
+            Some(condensed) => condensed.free_displacement(&loading.sweep),
+            None => norm.scaled_displacement(&loading.scaled(loading.unit)),
+        };
+        Some(self.expand(&loading, loading.unit, &moved))
     }
 
     /// The problem that the methods work on, and the exponent of its reference displacement.
@@ -420,48 +263,6 @@ impl Prepared {
                 self.reduction.scaling.expand_displacement(&condensed.expand(&loading.sweep, &moved), loading.unit)
             }
             None => self.reduction.scaling.expand_displacement(displacement, unit),
-        }
-    }
-
-    /// Rows and directions of an error in the terms of the original problem.
-    fn expand_error(&self, error: Error, load: &[f64], gap: &[f64]) -> Error {
-        let Ok(problem) = self.problem.with(load.to_vec(), gap.to_vec()) else { return error };
-        let normalised = |direction: Vec<f64>| {
-            let whole = match &self.reduction.condensation {
-                // A free motion moves the interior along without force.
-                Some(condensed) => condensed.expand(&vec![0.0; self.problem.dofs()], &direction),
-                None => direction,
-            };
-            let mut direction = self.reduction.scaling.expand_displacement(&whole, 0);
-            let size = largest(&direction);
-            direction.iter_mut().for_each(|value| *value /= size);
-            direction
-        };
-        match error {
-            Error::Unbounded { motion, direction } => {
-                let direction = normalised(direction);
-                // Condensing leaves the rounding of a load in balance, which is all that drives the boundary then.
-                match problem.share_of_work(&direction) > WORK_TOLERANCE {
-                    true => Error::Unbounded { motion, direction },
-                    false => Error::UnderHeld { motion, direction },
-                }
-            }
-            Error::UnderHeld { motion, direction } => Error::UnderHeld { motion, direction: normalised(direction) },
-            Error::Infeasible { rows, weights, .. } => {
-                let mut scaled = vec![0.0; self.reduction.selection.kept().len()];
-                rows.iter().zip(&weights).for_each(|(&row, &weight)| scaled[row] = weight);
-                let rows: Vec<usize> = rows.into_iter().map(|row| self.reduction.selection.kept()[row]).collect();
-                // Rows are scaled as multipliers are; the unit of weights is free.
-                let all = self.expand_multiplier(&scaled, self.reduction.scaling.equilibration().factor);
-                let weights: Vec<f64> =
-                    if weights.is_empty() { weights } else { rows.iter().map(|&row| all[row]).collect() };
-                let overlap = problem.overlap(&rows, &weights).unwrap_or(0.0);
-                let by = if overlap > 0.0 { format!(": they overlap by {overlap:.3e}") } else { String::new() };
-                let reason =
-                    format!("no displacement satisfies the contact rows {rows:?} together{by} (indices from 0)");
-                Error::Infeasible { reason, rows, weights, overlap }
-            }
-            other => other,
         }
     }
 }

@@ -1,7 +1,34 @@
 //! A load on a factorised body, swept through its factor once for all gaps.
 
+use std::sync::{Arc, OnceLock};
+
 use super::reduction::Reduction;
 use crate::qp::linear::{exponent, largest, ldexp};
+
+/// A load, and its sweep through a factor once that was needed.
+#[derive(Debug)]
+pub(super) struct Load {
+    force: Vec<f64>,
+    swept: OnceLock<Arc<Loading>>,
+}
+
+impl Load {
+    /// The load f, length n.
+    pub fn new(force: Vec<f64>) -> Self {
+        Load { force, swept: OnceLock::new() }
+    }
+
+    /// The load f, length n.
+    pub fn force(&self) -> &[f64] {
+        &self.force
+    }
+
+    /// The load swept through the factor of `reduction`, in a unit that fits `gap`, the gaps of the selected rows, if this is
+    /// the first time.
+    pub fn swept(&self, reduction: &Reduction, gap: &[f64]) -> Arc<Loading> {
+        self.swept.get_or_init(|| Arc::new(Loading::of(reduction, self.force.clone(), gap))).clone()
+    }
+}
 
 /// A load in all the forms in which a solve needs it.
 #[derive(Clone, Debug)]

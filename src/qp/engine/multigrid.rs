@@ -2,12 +2,13 @@
 
 use std::time::Instant;
 
+use super::case::Case;
 use crate::error::Error;
 use crate::qp::cost::{Estimate, Kept, check_memory, check_time, seconds};
-use crate::qp::judged::{judged, with_solution};
+use crate::qp::judged::{answer, judged};
 use crate::qp::linear::multigrid::{Multigrid, NearNullSpace};
-use crate::qp::method::Outcome;
-use crate::qp::method::mprgp::{self, Limits, Start};
+use crate::qp::method::mprgp::{Limits, Mprgp};
+use crate::qp::method::{Outcome, Solver, Start};
 use crate::qp::problem::{ContactProblem, check_gap};
 use crate::qp::settings::{Method, Settings};
 use crate::qp::transform::RowSelection;
@@ -27,31 +28,45 @@ const FIRST: f64 = 0.1;
 const AIM: f64 = 0.3;
 
 /// Forces out of balance by less than this, relative, are rounding.
-const ROUNDING: f64 = 1e-15;
+const IMBALANCE_ROUNDING: f64 = 1e-15;
 
-/// A contact problem with the multigrid hierarchy of its stiffness: built once, for all gaps and starts.
+/// A contact problem with the multigrid hierarchy of its stiffness: built once, for all gaps, loads and starts.
 ///
 /// Nothing is scaled: the hierarchy brings itself to order one, and MPRGP compares only relative quantities. The bound on
 /// the energy error comes from a few cycles more; it rests on a measured eigenvalue, as its certificates say.
 #[derive(Debug)]
-pub struct Iterative {
+pub(super) struct Hierarchical {
     problem: ContactProblem,
     multigrid: Multigrid,
     seconds: f64,
 }
 
-impl Iterative {
+impl Hierarchical {
     /// Builds the hierarchy from the near-null space of `problem`, or from constants where it has none.
     ///
     /// # Errors
-    /// Those of [`Multigrid::new`].
-    pub fn new(problem: &ContactProblem, threads: usize) -> Result<Self, Error> {
+    /// Those of [`Multigrid::new`]; before that [`Error::Interrupted`], [`Error::TooLarge`] and [`Error::OutOfTime`].
+    pub fn new(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
+        let Settings { watch, threads, .. } = settings;
+        if watch.is_stopped() {
+            return Err(Error::Interrupted);
+        }
+        check_memory(problem, Kept::Multigrid, settings)?;
+        seconds::learn(watch);
+        let estimate = Estimate::of(problem).hierarchy_seconds;
+        check_time(watch, estimate + seconds::certificate(problem))?;
+        watch.step("multigrid hierarchy", 0);
         let clock = Instant::now();
-        let multigrid = match problem.near_null() {
-            Some(near_null) => Multigrid::new(problem.stiffness(), near_null, threads),
-            None => Multigrid::new(problem.stiffness(), &NearNullSpace::constants(problem.stiffness())?, threads),
-        }?;
-        Ok(Iterative { problem: problem.clone(), multigrid, seconds: clock.elapsed().as_secs_f64() })
+        let multigrid = watch.timed(estimate, || match problem.near_null() {
+            Some(near_null) => Multigrid::new(problem.stiffness(), near_null, *threads),
+            None => Multigrid::new(problem.stiffness(), &NearNullSpace::constants(problem.stiffness())?, *threads),
+        })?;
+        Ok(Hierarchical { problem: problem.clone(), multigrid, seconds: clock.elapsed().as_secs_f64() })
+    }
+
+    /// The problem as it came.
+    pub fn problem(&self) -> &ContactProblem {
+        &self.problem
     }
 
     /// The hierarchy.
@@ -59,20 +74,12 @@ impl Iterative {
         &self.multigrid
     }
 
-    /// Seconds that the hierarchy took.
-    pub fn seconds(&self) -> f64 {
-        self.seconds
+    /// What the hierarchy cost.
+    pub fn seconds(&self) -> Seconds {
+        Seconds { factor: self.seconds, proof: 0.0, solve: self.seconds }
     }
 
-    /// Solves with the gaps of the problem, from `start`, such as the contact set of a coarser mesh.
-    ///
-    /// # Errors
-    /// As [`Iterative::solve_gap`].
-    pub fn solve(&self, start: Start, settings: &Settings) -> Result<Solution, Error> {
-        self.solve_gap(self.problem.gap().to_vec(), start, settings)
-    }
-
-    /// Solves with other gaps, from `start`, such as the answer at the last ones.
+    /// The whole answer, certified.
     ///
     /// # Errors
     /// * [`Error::Length`] and [`Error::NotFinite`] for gaps or a start that do not fit,
@@ -81,22 +88,25 @@ impl Iterative {
     /// * [`Error::Unbounded`] and [`Error::UnderHeld`] for a motion that nothing stops, where the method meets one,
     /// * [`Error::NotConvex`] for a direction of negative energy,
     /// * [`Error::NotCertified`] with the best answer, where the method stagnates above the tolerance.
-    pub fn solve_gap(&self, gap: Vec<f64>, start: Start, settings: &Settings) -> Result<Solution, Error> {
-        let settings = &settings.started()?;
+    pub fn solve(&self, case: &Case) -> Result<Solution, Error> {
+        let Case { gap, start, settings, .. } = *case;
         // Once the loop ends, its answer is still to be certified.
         let watch = &settings.watch.keeping(seconds::certificate(&self.problem));
         let clock = Instant::now();
-        check_gap(&gap, self.problem.rows())?;
-        RowSelection::of(self.problem.contact(), &gap)?;
-        if let Some(found) = start.displacement.map(<[f64]>::len).filter(|&found| found != self.problem.dofs()) {
+        check_gap(gap, self.problem.rows())?;
+        RowSelection::of(self.problem.contact(), gap)?;
+        if let Some(found) = start.displacement.as_ref().map(Vec::len).filter(|&found| found != self.problem.dofs()) {
             return Err(Error::Length { name: "start displacement", found, expected: self.problem.dofs(), of: "dofs" });
         }
-        let problem = self.problem.with_gap(gap)?;
+        let problem = self.problem.with(case.load.force().to_vec(), gap.to_vec())?;
         let goal = settings.goal();
         let mut tolerance = settings.accuracy.map_or(MARGIN * settings.tolerance, |accuracy| FIRST * accuracy);
         let mut most_cycles = settings.max_iterations;
-        let limits = |tolerance, most_cycles| Limits { tolerance, most_cycles, watch };
-        let mut found = mprgp::solve(&problem, &self.multigrid, start, limits(tolerance, most_cycles))?;
+        let multigrid = &self.multigrid;
+        let solve = |tolerance, most_cycles, start| {
+            Mprgp { problem: &problem, multigrid, limits: Limits { tolerance, most_cycles, watch } }.solve(start)
+        };
+        let mut found = solve(tolerance, most_cycles, start.clone())?;
         let certificate = loop {
             let certificate = self.certificate(&problem, &found, &settings.watch)?;
             most_cycles = settings.max_iterations.saturating_sub(found.iterations);
@@ -106,32 +116,22 @@ impl Iterative {
                 _ => NEXT,
             };
             let met = goal.is_met_by(&certificate);
-            if met || !found.settled || tolerance < ROUNDING || most_cycles == 0 || watch.is_over() {
+            if met || !found.settled || tolerance < IMBALANCE_ROUNDING || most_cycles == 0 || watch.is_over() {
                 break certificate;
             }
-            let start = Start { displacement: Some(&found.displacement), contact_set: None };
-            let mut next = mprgp::solve(&problem, &self.multigrid, start, limits(tolerance, most_cycles))?;
+            let mut next = solve(tolerance, most_cycles, Start::near(found.displacement))?;
             next.iterations += found.iterations;
             found.history.append(&mut next.history);
             next.history = found.history;
             found = next;
         };
-        let solution = Solution {
-            displacement: found.displacement,
-            multiplier: found.multiplier,
-            contact_set: found.contact_set,
-            method: format!("{}{}", Method::Mprgp.name(), found.variant),
-            iterations: found.iterations,
-            history: found.history,
-            certificate,
-            proven: None,
-            refinements: None,
-            lost_pivot: None,
-            reason: None,
-            attempts: Vec::new(),
-            condensed_dofs: problem.dofs(),
-            seconds: Seconds { factor: 0.0, solve: clock.elapsed().as_secs_f64() },
-        };
+        let before_proof = Instant::now();
+        let may_prove = settings.prove && !settings.watch.is_over();
+        let prove = || problem.prove_by_cycles(multigrid, &settings.watch, &found.displacement, &found.multiplier);
+        let proven = if may_prove { prove() } else { None };
+        let proof = before_proof.elapsed().as_secs_f64();
+        let seconds = Seconds { factor: 0.0, proof, solve: clock.elapsed().as_secs_f64() };
+        let solution = Solution { seconds, proven, ..answer(found, Method::Mprgp.name(), certificate) };
         judged(solution, goal)
     }
 
@@ -140,23 +140,4 @@ impl Iterative {
         watch.step("certificate", 0);
         problem.certify_by_cycles(&self.multigrid, &watch.finishing(), &found.displacement, &found.multiplier)
     }
-}
-
-/// Builds the hierarchy and solves from nothing known.
-pub(in crate::qp) fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
-    if settings.watch.is_stopped() {
-        return Err(Error::Interrupted);
-    }
-    check_memory(problem, Kept::Multigrid, settings)?;
-    seconds::learn(&settings.watch);
-    let estimate = Estimate::of(problem).hierarchy_seconds;
-    check_time(&settings.watch, estimate + seconds::certificate(problem))?;
-    settings.watch.step("multigrid hierarchy", 0);
-    let iterative = settings.watch.timed(estimate, || Iterative::new(problem, settings.threads))?;
-    let timed = |mut solution: Solution| {
-        solution.seconds.factor += iterative.seconds;
-        solution.seconds.solve += iterative.seconds;
-        solution
-    };
-    with_solution(iterative.solve(Start::default(), settings), timed)
 }

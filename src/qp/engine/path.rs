@@ -1,25 +1,46 @@
 //! The exact path between two sets of gaps: every gap at which a row touches or releases, and every answer between.
 
-use super::factored::Prepared;
+use std::sync::Arc;
+
+use super::case::Case;
+use super::factored::Factored;
 use super::found::Found;
+use super::prepared::Prepared;
 use crate::error::Error;
 use crate::qp::linear::ldexp;
 use crate::qp::method::parametric::{Compliance, Event, Piece};
-use crate::qp::settings::Settings;
 use crate::solution::{ContactSet, Solution};
 
 /// The answers for all gaps `(1 - t) from + t to`, t from 0 to 1, as polylines.
+///
+/// ```
+/// use signorini::{ContactProblem, Prepared, Settings, SparseMatrix, SymmetricMatrix};
+///
+/// // Four springs of stiffness 4 in a row, the end pushed with force 3: it goes to 3 by itself, and a wall at g takes 3 - g.
+/// let springs = [(0, 0, 8.0), (1, 0, -4.0), (1, 1, 8.0), (2, 1, -4.0), (2, 2, 8.0), (3, 2, -4.0), (3, 3, 4.0)];
+/// let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(4, 4, &springs)?)?;
+/// let contact = SparseMatrix::from_triplets(1, 4, &[(0, 3, 1.0)])?;
+/// let problem = ContactProblem::new(stiffness, vec![0.0, 0.0, 0.0, 3.0], contact, vec![4.0])?;
+///
+/// let path = Prepared::new(&problem, &Settings::default())?.path(&[4.0], &[2.0])?;
+/// // Half way the wall is at 3, where the end touches it; a quarter later it is at 2.5 and takes 0.5.
+/// assert!(path.events().len() == 1 && (path.events()[0].at - 0.5).abs() < 1e-12);
+/// assert!((path.multiplier(0.75)[0] + 0.5).abs() < 1e-12);
+/// assert_eq!((path.multiplier(0.25), path.contact_set(1.0).count()), (vec![0.0], 1));
+/// # Ok::<(), signorini::Error>(())
+/// ```
 #[derive(Clone, Debug)]
-pub struct Path<'a> {
-    pub(super) prepared: &'a Prepared,
-    pub(super) from: Vec<f64>,
-    pub(super) to: Vec<f64>,
-    pub(super) unit: i32,
-    pub(super) pieces: Vec<Piece>,
-    pub(super) events: Vec<Event>,
+pub struct Path {
+    prepared: Prepared,
+    engine: Arc<Factored>,
+    from: Vec<f64>,
+    to: Vec<f64>,
+    unit: i32,
+    pieces: Vec<Piece>,
+    events: Vec<Event>,
 }
 
-impl Path<'_> {
+impl Path {
     /// The rows that touch or release on the way, in order.
     pub fn events(&self) -> &[Event] {
         &self.events
@@ -33,18 +54,18 @@ impl Path<'_> {
     }
 
     /// The stretches on which the contact set does not change.
-    pub fn pieces(&self) -> &[Piece] {
+    pub(crate) fn pieces(&self) -> &[Piece] {
         &self.pieces
     }
 
     /// The multipliers at `t` as they are on `piece`: at a corner the pieces on both sides agree but for rounding.
-    pub fn multiplier_on(&self, piece: &Piece, t: f64) -> Vec<f64> {
-        self.prepared.expand_multiplier(&piece.multiplier(t), self.unit)
+    pub(crate) fn multiplier_on(&self, piece: &Piece, t: f64) -> Vec<f64> {
+        self.engine.expand_multiplier(&piece.multiplier(t), self.unit)
     }
 
     /// The closed rows on `piece`.
-    pub fn contact_set_on(&self, piece: &Piece) -> ContactSet {
-        self.prepared.expand_set(&piece.contact_set)
+    pub(crate) fn contact_set_on(&self, piece: &Piece) -> ContactSet {
+        self.engine.expand_set(&piece.contact_set)
     }
 
     /// The gaps at `t`, length m.
@@ -66,14 +87,36 @@ impl Path<'_> {
     /// The whole answer at `t`, certified like any other.
     ///
     /// # Errors
-    /// As [`Prepared::solve_gap`].
-    pub fn solution(&self, t: f64, settings: &Settings) -> Result<Solution, Error> {
-        self.prepared.solve_gap(self.gap(t), Some(&self.contact_set(t)), settings)
+    /// As [`Prepared::solve`].
+    pub fn solution(&self, t: f64) -> Result<Solution, Error> {
+        self.prepared.starting_from(self.contact_set(t)).solve(&self.gap(t))
     }
 
     fn piece(&self, t: f64) -> Option<&Piece> {
         let index = self.pieces.partition_point(|piece| piece.to < t);
         self.pieces.get(index).or(self.pieces.last())
+    }
+
+    /// The path from the gaps of `from` to the gaps `to`, on the problem `prepared` with this `engine`.
+    fn walked(prepared: &Prepared, engine: &Arc<Factored>, from: &Case, to: &[f64]) -> Result<Self, Error> {
+        let reduction = &engine.reduction;
+        let is_walkable = reduction.norm.is_some() && !engine.is_single();
+        let Some(condensed) = reduction.condensation.as_ref().filter(|_| is_walkable) else {
+            return Err(Error::NotCondensed { step: "the exact path" });
+        };
+        engine.check_gap(to)?;
+        let (found, _) = engine.on_boundary(engine.find(from)?, from.settings, true)?;
+        let Found { loading, unit, problem, outcome, .. } = &found;
+        let free = condensed.contact().mul(&condensed.free_displacement(&loading.sweep));
+        let at_end = reduction.scaling.gap(&reduction.selection.gap(to), *unit);
+        let constant =
+            free.iter().zip(problem.gap()).map(|(&free, gap)| ldexp(free, loading.unit - unit) - gap).collect();
+        let slope = problem.gap().iter().zip(&at_end).map(|(first, last)| first - last).collect();
+        let compliance = Compliance::new(condensed.compliance(), constant, slope);
+        let (pieces, mut events) = compliance.walk(&outcome.contact_set, &from.settings.watch)?;
+        events.iter_mut().for_each(|event| event.row = reduction.selection.kept()[event.row]);
+        let (prepared, engine) = (prepared.clone(), engine.clone());
+        Ok(Path { prepared, engine, from: from.gap.to_vec(), to: to.to_vec(), unit: *unit, pieces, events })
     }
 }
 
@@ -81,28 +124,13 @@ impl Prepared {
     /// The exact path of the answer while the gaps move from `from` to `to` (length m each) on a straight line.
     ///
     /// # Errors
-    /// As [`Prepared::solve_gap`] for both ends; [`Error::Interrupted`]; [`Error::NotCondensed`] for a problem that was not condensed or whose
-    /// stiffness is not definite by itself.
-    pub fn path(&self, from: &[f64], to: &[f64], settings: &Settings) -> Result<Path<'_>, Error> {
-        let Some(condensed) =
-            self.reduction.condensation.as_ref().filter(|_| self.reduction.norm.is_some() && !self.is_single())
-        else {
-            return Err(Error::NotCondensed { step: "the exact path" });
-        };
-        self.check_gap(to)?;
-        let settings = &settings.started()?;
-        let found = self.find(self.own_load(), from.to_vec(), None, settings)?;
-        let start = self.on_boundary(found, settings)?;
-        let Found { loading, unit, problem, .. } = &start.found;
-        let free = condensed.contact().mul(&condensed.free_displacement(&loading.sweep));
-        let at_end = self.reduction.scaling.gap(&self.reduction.selection.gap(to), *unit);
-        let constant =
-            free.iter().zip(problem.gap()).map(|(&free, gap)| ldexp(free, loading.unit - unit) - gap).collect();
-        let slope = problem.gap().iter().zip(&at_end).map(|(first, last)| first - last).collect();
-        let compliance = Compliance::new(condensed.compliance(), constant, slope);
-        let (pieces, mut events) =
-            compliance.walk(&self.reduction.selection.restrict_set(&start.contact_set), &settings.watch)?;
-        events.iter_mut().for_each(|event| event.row = self.reduction.selection.kept()[event.row]);
-        Ok(Path { prepared: self, from: from.to_vec(), to: to.to_vec(), unit: *unit, pieces, events })
+    /// As [`Prepared::solve`] for both ends; [`Error::Interrupted`]; [`Error::NotCondensed`] for a problem that was not
+    /// condensed or whose stiffness is not definite by itself.
+    pub fn path(&self, from: &[f64], to: &[f64]) -> Result<Path, Error> {
+        let settings = &self.settings.started()?;
+        match self.factored() {
+            Some(engine) => Path::walked(self, engine, &self.case(from, settings), to),
+            None => Err(Error::NotCondensed { step: "the exact path" }),
+        }
     }
 }

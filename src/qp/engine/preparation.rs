@@ -3,14 +3,15 @@
 use std::sync::OnceLock;
 use std::time::Instant;
 
-use super::factored::Prepared;
+use super::factored::Factored;
 use super::reduction::Reduction;
 use crate::error::Error;
+use crate::qp::certificate::EnergyNorm;
 use crate::qp::cost::seconds::factor_seconds;
 use crate::qp::cost::{Kept, check_memory, check_time, seconds};
 use crate::qp::linear::{Analysis, AugmentedMatrix, Cholesky, FactorError, largest};
 use crate::qp::plan::{Layout, Way};
-use crate::qp::problem::{ContactProblem, EnergyNorm};
+use crate::qp::problem::ContactProblem;
 use crate::qp::settings::Settings;
 use crate::qp::transform::{Condensation, RowSelection, Scaling};
 use crate::solution::Seconds;
@@ -21,22 +22,19 @@ const SINGLE_PIVOT: f64 = 1e-4;
 /// A pivot below this share of a diagonal of order one leaves fewer than four digits of a double.
 pub(super) const LOST_PIVOT: f64 = 1e-10;
 
-impl Prepared {
-    /// As [`Prepared::new`], with the threads and the precision of `settings`.
+impl Factored {
+    /// Scales, condenses and factorises `problem`.
     ///
     /// # Errors
-    /// As [`Prepared::new`], [`Error::Setting`], and instead of a factorisation [`Error::OutOfTime`],
-    /// [`Error::Interrupted`] or [`Error::TooLarge`], where time or memory is not left for it.
-    pub fn with_settings(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
-        let settings = &settings.started()?;
+    /// As [`Prepared::new`](super::Prepared::new).
+    pub fn new(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
         let Settings { threads, watch, .. } = settings;
         let clock = Instant::now();
         watch.step("ordering", 0);
         seconds::learn(watch);
         let selection = RowSelection::of(problem.contact(), problem.gap())?;
         let scaling = Scaling::of(problem.stiffness(), &selection.contact(problem.contact()))?;
-        let diagonal = problem.stiffness().diagonal();
-        let (has_empty_diagonal, stiffest) = (diagonal.contains(&0.0), largest(&diagonal));
+        let stiffest = largest(&problem.stiffness().diagonal());
         let factor_clock = Instant::now();
         let layout = Layout::within(problem, &scaling, settings)?;
         let Layout { analysis, last, is_condensed, multiplications, mut way, is_single: single } = layout;
@@ -44,19 +42,14 @@ impl Prepared {
             return Err(Error::Interrupted);
         }
         watch.step("factorisation", 0);
-        let proof_seconds = match last.len() as f64 {
-            0.0 => seconds::sweeps(problem.rows(), analysis.factor_entries() as f64),
-            boundary => seconds::sweeps(problem.rows(), boundary * boundary),
+        let of_row = match last.len() as f64 {
+            0.0 => analysis.factor_entries() as f64,
+            boundary => boundary * boundary,
         };
+        let proof_seconds = seconds::sweeps(problem.rows(), of_row).min(seconds::selected_inverse(&analysis));
         let norm_seconds = seconds::ordering(problem) + seconds::factorisation(&analysis);
         let mut factoring = Factoring { problem, scaling: &scaling, analysis: &analysis, settings, least_pivot: None };
-        let cholesky = match has_empty_diagonal {
-            true => {
-                factoring.least_pivot = Some(0.0);
-                None
-            }
-            false => factoring.definite(single, last.len())?,
-        };
+        let cholesky = factoring.definite(single, last.len())?;
         let least_pivot = factoring.least_pivot;
         drop(analysis);
         if cholesky.is_none() {
@@ -68,17 +61,10 @@ impl Prepared {
             true => condensed(cholesky.as_ref(), &scaling, &last, settings)?,
             false => None,
         };
-        let augmented = match &condensation {
-            Some(condensed) => {
-                // Dense: the order is of no matter to the factor, and its last block is all of it.
-                let all: Vec<usize> = (0..condensed.stiffness().dim()).collect();
-                AugmentedMatrix::with_last(condensed.stiffness(), condensed.contact(), &all)?
-            }
-            None => AugmentedMatrix::new(scaling.stiffness(), scaling.contact())?.with_threads(*threads),
-        };
+        let augmented = augmented(condensation.as_ref(), &scaling, *threads)?;
         let norm = cholesky.map(|cholesky| EnergyNorm::new(cholesky, scaling.equilibration().clone(), last));
         let factor = factor_clock.elapsed().as_secs_f64();
-        Ok(Prepared {
+        Ok(Factored {
             problem: problem.clone(),
             reduction: Reduction { selection, scaling, stiffest, norm, condensation },
             lost_pivot: least_pivot.filter(|&pivot| pivot < LOST_PIVOT),
@@ -88,8 +74,7 @@ impl Prepared {
             proof_seconds,
             norm_seconds,
             condensed_norm: OnceLock::new(),
-            loading: OnceLock::new(),
-            seconds: Seconds { factor, solve: clock.elapsed().as_secs_f64() },
+            seconds: Seconds { factor, proof: 0.0, solve: clock.elapsed().as_secs_f64() },
         })
     }
 }
@@ -111,6 +96,10 @@ impl Factoring<'_> {
     /// # Errors
     /// [`Error::TooLarge`] and [`Error::OutOfTime`] for a second factor, [`Error::Numerical`].
     fn definite(&mut self, is_single: bool, contact_dofs: usize) -> Result<Option<Cholesky>, Error> {
+        if self.problem.stiffness().diagonal().contains(&0.0) {
+            self.least_pivot = Some(0.0);
+            return Ok(None);
+        }
         if is_single {
             if let Some(cholesky) = self.factor(true)? {
                 return Ok(Some(cholesky));
@@ -161,6 +150,18 @@ fn condensed(
     let Some(factor) = factor else { return Ok(None) };
     check_time(&settings.watch, seconds::dense(last.len()))?;
     Condensation::new(factor, last.to_vec(), scaling.contact(), cholesky.is_none()).map(Some)
+}
+
+/// The pattern of the matrices that the methods factorise, analysed.
+fn augmented(condensation: Option<&Condensation>, scaling: &Scaling, threads: usize) -> Result<AugmentedMatrix, Error> {
+    Ok(match condensation {
+        Some(condensed) => {
+            // Dense: the order is of no matter to the factor, and its last block is all of it.
+            let all: Vec<usize> = (0..condensed.stiffness().dim()).collect();
+            AugmentedMatrix::with_last(condensed.stiffness(), condensed.contact(), &all)?
+        }
+        None => AugmentedMatrix::new(scaling.stiffness(), scaling.contact())?.with_threads(threads),
+    })
 }
 
 /// The factor of `K + B'B` with the contact dofs last, or `None` where it is not safely definite.

@@ -1,6 +1,6 @@
 //! A problem reduced to what the methods work on.
 
-use crate::qp::problem::EnergyNorm;
+use crate::qp::certificate::EnergyNorm;
 use crate::qp::transform::{Condensation, RowSelection, Scaling};
 
 /// Rows selected, data scaled, the stiffness factorised and condensed where that pays; load and gaps play no part in it.

@@ -14,7 +14,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::factored::Prepared;
+use super::factored::Factored;
 use super::found::{Found, Refined};
 use super::loading::Loading;
 use crate::error::Error;
@@ -33,7 +33,7 @@ const MOST_CORRECTIONS: usize = 6;
 const LARGEST_CONTRACTION: f64 = 0.2;
 
 /// Steps below this share of the displacement are rounding, and say nothing of the contraction.
-const ROUNDING: f64 = 1e-9;
+const LEAST_STEP: f64 = 1e-9;
 
 /// A step of this share of the displacement changes it no more.
 const NOTHING: f64 = 4.0 * f64::EPSILON;
@@ -41,7 +41,7 @@ const NOTHING: f64 = 4.0 * f64::EPSILON;
 /// The accuracy that is aimed at is this share of the one asked for, because the contraction is an estimate.
 const AIM: f64 = 0.1;
 
-impl Prepared {
+impl Factored {
     /// Refines what the method found with the factor in single precision.
     ///
     /// # Errors
@@ -62,7 +62,7 @@ impl Prepared {
             let elastic = self.problem.stiffness().mul(&displacement);
             let (length, size) = (work.max(0.0).sqrt(), dot(&displacement, &elastic).max(0.0).sqrt());
             let ratio = if last_length > 0.0 { length / last_length } else { 0.0 };
-            if last_length.is_finite() && last_length > ROUNDING * size {
+            if last_length.is_finite() && last_length > LEAST_STEP * size {
                 refined.contraction = refined.contraction.max(ratio);
             }
             if refined.contraction > LARGEST_CONTRACTION {

@@ -9,7 +9,7 @@ use faer::sparse::linalg::cholesky::{self as fc, supernodal};
 use faer::{Par, Side};
 
 use super::factor::{self, FactorError, Real, call};
-use super::{Equilibration, SparseMatrix, SymmetricMatrix, dot, ldexp, ordering};
+use super::{Equilibration, LowerTriangle, SparseMatrix, SymmetricMatrix, dot, ldexp, ordering};
 
 /// Fill-reducing ordering and structure of the factor, for all matrices of one sparsity pattern.
 #[derive(Clone, Debug)]
@@ -238,15 +238,35 @@ impl Cholesky {
         x
     }
 
-    /// The trailing block of L that belongs to the columns put last: m x m, lower triangle, column by column with zeros
-    /// above the diagonal. Its product with its transpose is their Schur complement.
-    pub fn trailing_block(&self) -> Vec<f64> {
+    /// The trailing block of L that belongs to the columns put last, m x m. Its product with its transpose is their Schur
+    /// complement.
+    pub fn trailing_block(&self) -> LowerTriangle {
         let (size, dim) = (self.analysis.trailing, self.analysis.symbolic.nrows());
-        let Some(nodes) = self.analysis.supernodes() else { return Vec::new() };
-        by_precision!(self.values, values => factor::trailing_block(nodes, values, dim - size, size))
+        let Some(nodes) = self.analysis.supernodes() else { return LowerTriangle::new(0, Vec::new()) };
+        let block = by_precision!(self.values, values => factor::trailing_block(nodes, values, dim - size, size));
+        LowerTriangle::new(size, block)
     }
 
-    fn order(&self) -> &[usize] {
+    /// The structure of the factor, in block columns.
+    pub(super) fn supernodes(&self) -> Option<&supernodal::SymbolicSupernodalCholesky<usize>> {
+        self.analysis.supernodes()
+    }
+
+    /// The values of block column `node`: the rows of its own columns, then those below.
+    pub(super) fn block_column(&self, node: usize) -> faer::Mat<f64> {
+        match self.supernodes() {
+            Some(nodes) => by_precision!(self.values, values => factor::block_column(nodes, values, node)),
+            None => faer::Mat::new(),
+        }
+    }
+
+    /// Number of multiplications of its factorisation, as if each column went through its own.
+    pub fn multiplications(&self) -> f64 {
+        self.analysis.multiplications()
+    }
+
+    /// The columns of the matrix in the order of elimination.
+    pub(super) fn order(&self) -> &[usize] {
         self.analysis.symbolic.perm().map_or(&[], |perm| perm.arrays().0)
     }
 

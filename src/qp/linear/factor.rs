@@ -217,3 +217,13 @@ pub(super) fn trailing_block<T: Real>(
     }
     block
 }
+
+/// The values of block column `node`, as doubles.
+pub(super) fn block_column<T: Real>(
+    nodes: &supernodal::SymbolicSupernodalCholesky<usize>,
+    values: &[T],
+    node: usize,
+) -> faer::Mat<f64> {
+    let block = supernodal::SupernodalLltRef::new(nodes, values).supernode(node).val();
+    faer::Mat::from_fn(block.nrows(), block.ncols(), |i, j| block[(i, j)].into())
+}

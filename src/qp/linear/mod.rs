@@ -4,6 +4,7 @@ mod accumulator;
 mod augmented;
 mod cholesky;
 mod definite;
+mod dense;
 mod dependence;
 mod elimination;
 mod factor;
@@ -17,19 +18,22 @@ mod ordering;
 mod orthogonal;
 mod power_of_two;
 mod quotient;
+mod selected_inverse;
 mod symmetric;
-mod vector;
+pub mod twice;
 
 pub use accumulator::Accumulator;
 pub use augmented::AugmentedMatrix;
 pub use cholesky::{Analysis, Cholesky};
+pub use dense::{LowerTriangle, UpperTriangle, dot, largest, norm, subtract, take_out, turned};
 pub use dependence::Dependence;
 pub use factor::FactorError;
-pub use null_space::generic;
+pub use null_space::{NullSpace, generic};
 pub use orthogonal::inverse_lengths;
 pub use power_of_two::{Equilibration, exponent, ldexp};
+pub use selected_inverse::SelectedInverse;
 pub use symmetric::SymmetricMatrix;
-pub use vector::{dot, largest};
+pub use twice::Twice;
 
 use std::sync::Arc;
 

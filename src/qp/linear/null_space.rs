@@ -1,7 +1,7 @@
 //! The vectors that a positive semidefinite matrix does not resist.
 
 use super::definite::NULL_ROUNDING;
-use super::{AugmentedMatrix, Cholesky, FactorError, SparseMatrix, SymmetricMatrix, dot, largest};
+use super::{AugmentedMatrix, Cholesky, FactorError, SparseMatrix, SymmetricMatrix, Twice, dot, largest};
 
 /// What is added to a diagonal of order one, so that a singular matrix has a factor: far below what resists, far above rounding.
 const SHIFT: f64 = 1e-10;
@@ -15,15 +15,42 @@ const ZERO: f64 = 1e-12;
 /// Null vectors beyond which none is looked for: every vector is held against all before it.
 const MOST_VECTORS: usize = 256;
 
+/// Corrections of a null vector in twice the working precision.
+const MOST_CORRECTIONS: usize = 20;
+
+/// `A v` vanishes exactly where it is below this share of its terms.
+const EXACT: f64 = 1e-26;
+
+/// Beside the largest entry of a vector in twice the working precision, less than this is what its corrections leave of zero.
+const NOTHING: f64 = 1e-24;
+
+/// A change of every entry of A by this much of itself makes `A v` vanish: A may be a singular matrix whose entries were
+/// rounded, several times where it was assembled.
+///
+/// # Source
+/// W. Oettli, W. Prager, *Compatibility of approximate solution of linear equations with given error bounds for coefficients and
+/// right-hand sides*, Numer. Math. 6 (1964) 405-409.
+const OF_ENTRIES: f64 = 4.0 * f64::EPSILON;
+
+/// A basis of the null space of a matrix.
+#[derive(Clone, Debug, Default)]
+pub struct NullSpace {
+    /// Vectors of length about one, independent of each other.
+    pub vectors: Vec<Vec<Twice>>,
+    /// `true` if the matrix resists them exactly nothing, as its doubles stand. Otherwise it would with its entries rounded in
+    /// another way, and the vectors have no more digits than the entries.
+    pub is_exact: bool,
+}
+
 impl SymmetricMatrix {
-    /// An orthonormal basis of the null space, to rounding, of a positive semidefinite matrix with a diagonal of order one or
-    /// zero; `None` where it has more than 256 vectors.
+    /// A basis of the null space of a positive semidefinite matrix with a diagonal of order one or zero; `None` where it has more
+    /// than 256 vectors.
     ///
     /// Inverse iteration with A + 1e-10 I, each vector at right angles to those before, ends at the first that A resists.
     ///
     /// # Errors
     /// [`FactorError::NotPositiveDefinite`] where an eigenvalue is clearly negative, and those of the factorisation.
-    pub(crate) fn null_space(&self) -> Result<Option<Vec<Vec<f64>>>, FactorError> {
+    pub(crate) fn null_space(&self) -> Result<Option<NullSpace>, FactorError> {
         let factor = self.shifted_factor(SHIFT)?;
         let mut found: Vec<Vec<f64>> = Vec::new();
         while found.len() < self.dim() {
@@ -33,7 +60,59 @@ impl SymmetricMatrix {
             let Some(vector) = self.null_vector(&factor, &found) else { break };
             found.push(vector);
         }
-        Ok(Some(found))
+        let mut basis = NullSpace { vectors: Vec::new(), is_exact: true };
+        for vector in &found {
+            let (vector, share) = self.corrected(&factor, vector);
+            if share <= OF_ENTRIES {
+                basis.vectors.push(vector);
+                basis.is_exact &= share <= EXACT;
+            }
+        }
+        Ok(Some(basis))
+    }
+
+    /// A null vector in twice the working precision, and the largest share of its terms that is left in an entry of `A v`.
+    ///
+    /// `(A + s I)^-1 A v` is what A resists of v, but for the share `s / eigenvalue`; what rounding adds to it lies mostly in the
+    /// null space.
+    fn corrected(&self, factor: &Cholesky, vector: &[f64]) -> (Vec<Twice>, f64) {
+        let mut vector: Vec<Twice> = vector.iter().map(|&value| value.into()).collect();
+        let mut left = self.resistance(&vector);
+        for _ in 0..MOST_CORRECTIONS {
+            let forces: Vec<f64> = left.iter().map(|entry| entry.0).collect();
+            let correction = factor.solve(&forces);
+            let next = vector.iter().zip(correction).map(|(&value, change)| value - change.into());
+            let next = without_noise(next.collect());
+            let of_next = self.resistance(&next);
+            let most = |left: &[(f64, f64)]| left.iter().fold(0.0, |most: f64, (force, _)| most.max(force.abs()));
+            // Also where one of them is not a number.
+            let is_less = most(&of_next) < 0.5 * most(&left);
+            if !is_less {
+                break;
+            }
+            (vector, left) = (next, of_next);
+        }
+        let shares = left.iter().filter(|entry| entry.1 > 0.0).map(|(force, terms)| force.abs() / terms);
+        let share = shares.fold(0.0, f64::max);
+        (vector, share)
+    }
+
+    /// The entries of `A v`, each with the sum of the magnitudes of its terms.
+    pub fn resistance(&self, vector: &[Twice]) -> Vec<(f64, f64)> {
+        let mut sums = vec![(Twice::ZERO, 0.0); vector.len()];
+        let mut add = |row: usize, value: f64, of: Twice| {
+            let term = Twice::from(value) * of;
+            let (sum, terms) = &mut sums[row];
+            *sum = *sum + term;
+            *terms += term.rounded().abs();
+        };
+        for (row, column, value) in self.lower().triplets() {
+            add(row, value, vector[column]);
+            if row != column {
+                add(column, value, vector[row]);
+            }
+        }
+        sums.into_iter().map(|(sum, terms)| (sum.rounded(), terms)).collect()
     }
 
     /// A unit vector that is not resisted, at right angles to those `found`.
@@ -100,6 +179,13 @@ impl SymmetricMatrix {
         let augmented = AugmentedMatrix::new(self, &no_rows)?;
         augmented.factor(&augmented.matrix(|_| 0.0, shift))
     }
+}
+
+/// A vector without the entries that are nothing beside the largest.
+pub fn without_noise(mut vector: Vec<Twice>) -> Vec<Twice> {
+    let largest = vector.iter().fold(0.0, |largest: f64, value| largest.max(value.rounded().abs()));
+    vector.iter_mut().filter(|value| value.rounded().abs() <= NOTHING * largest).for_each(|value| *value = Twice::ZERO);
+    vector
 }
 
 /// A vector without symmetry, another for each number, the same in every run.

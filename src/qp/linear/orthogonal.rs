@@ -1,9 +1,9 @@
 //! How far vectors are from the span of the others, by orthogonal directions: products of vectors would lose half the digits.
 
-use super::dot;
+use super::{UpperTriangle, dot, norm, take_out};
 
 /// What is left of a vector across the others is rounding where it is below this share of the terms that cancel.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
+const CANCELLED: f64 = 64.0 * f64::EPSILON;
 
 /// `sqrt((Z'Z)^-1_ii)`, one over the distance of column i of Z from the span of the others, for independent columns. It is
 /// infinite for columns with a share in what rounding cannot tell from a dependence. `None` where it `is_over` before.
@@ -11,11 +11,11 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// # Source
 /// Å. Björck, *Numerics of Gram-Schmidt orthogonalization*, Linear Algebra Appl. 197/198 (1994) 297-316.
 pub fn inverse_lengths(columns: Vec<Vec<f64>>, is_over: impl Fn() -> bool) -> Option<Vec<f64>> {
-    let sizes: Vec<f64> = columns.iter().map(|column| dot(column, column).sqrt()).collect();
+    let sizes: Vec<f64> = columns.iter().map(|column| norm(column)).collect();
     if sizes.iter().any(|size| !size.is_normal()) {
         return Some(vec![f64::INFINITY; sizes.len()]);
     }
-    let triangle = Triangle::of(columns, &sizes, &is_over)?;
+    let triangle = Ordered::of(columns, &sizes, &is_over)?;
     let mut lengths = vec![f64::INFINITY; sizes.len()];
     for (place, &column) in triangle.order.iter().enumerate() {
         if is_over() {
@@ -27,22 +27,21 @@ pub fn inverse_lengths(columns: Vec<Vec<f64>>, is_over: impl Fn() -> bool) -> Op
 }
 
 /// R of the columns, each of length one, the farthest from the span of those before it first.
-struct Triangle {
+#[derive(Default)]
+struct Ordered {
     order: Vec<usize>,
-    /// The columns of R in that order, each down to its diagonal entry.
-    columns: Vec<Vec<f64>>,
-    /// Is the diagonal entry more than rounding?
-    is_clear: Vec<bool>,
+    /// R of the columns in that order; a column is independent if its diagonal entry is more than rounding.
+    triangle: UpperTriangle,
 }
 
-impl Triangle {
+impl Ordered {
     fn of(mut rest: Vec<Vec<f64>>, sizes: &[f64], is_over: &impl Fn() -> bool) -> Option<Self> {
         for (column, size) in rest.iter_mut().zip(sizes) {
             column.iter_mut().for_each(|value| *value /= size);
         }
         let mut left: Vec<usize> = (0..rest.len()).collect();
         let mut entries: Vec<Vec<f64>> = vec![Vec::new(); rest.len()];
-        let mut found = Triangle { order: Vec::new(), columns: Vec::new(), is_clear: Vec::new() };
+        let mut found = Ordered::default();
         let mut directions: Vec<Vec<f64>> = Vec::new();
         while !left.is_empty() {
             if is_over() {
@@ -54,15 +53,15 @@ impl Triangle {
             let (mut direction, mut column) = (std::mem::take(&mut rest[next]), std::mem::take(&mut entries[next]));
             // Rounding of the first turn is taken out.
             for (entry, before) in column.iter_mut().zip(&directions) {
-                *entry += subtract(&mut direction, before);
+                *entry += take_out(&mut direction, before);
             }
-            let length = dot(&direction, &direction).sqrt();
+            let length = norm(&direction);
             found.close(next, column, length);
             if length > 0.0 {
                 direction.iter_mut().for_each(|value| *value /= length);
             }
             for &index in &left {
-                let share = subtract(&mut rest[index], &direction);
+                let share = take_out(&mut rest[index], &direction);
                 entries[index].push(share);
             }
             directions.push(direction);
@@ -70,49 +69,37 @@ impl Triangle {
         Some(found)
     }
 
-    /// Appends a column of R with this diagonal entry.
-    fn close(&mut self, index: usize, mut column: Vec<f64>, length: f64) {
-        let mut weights = column.clone();
-        for (place, before) in self.columns.iter().enumerate().rev() {
-            weights[place] = if self.is_clear[place] { weights[place] / before[place] } else { 0.0 };
-            let weight = weights[place];
-            weights[..place].iter_mut().zip(before).for_each(|(entry, r)| *entry -= r * weight);
-        }
+    /// Appends a column of R with these entries above its diagonal entry.
+    fn close(&mut self, index: usize, above: Vec<f64>, length: f64) {
+        let weights = self.triangle.solve_upper(above.clone());
         let terms = weights.iter().fold(1.0, |sum, weight| sum + weight.abs());
-        self.is_clear.push(length > ROUNDING * terms);
-        column.push(length);
+        self.triangle.push(above, length, length > CANCELLED * terms);
         self.order.push(index);
-        self.columns.push(column);
     }
 
     /// The length of `R'^-1 e_i`.
     fn inverse_length(&self, place: usize) -> f64 {
-        if !self.is_clear[place] {
+        let triangle = &self.triangle;
+        if !triangle.independent()[place] {
             return f64::INFINITY;
         }
-        let mut x = vec![1.0 / self.columns[place][place]];
-        for (column, &is_clear) in self.columns.iter().zip(&self.is_clear).skip(place + 1) {
-            let above = &column[place..column.len() - 1];
+        let mut x = vec![1.0 / triangle.column(place)[place]];
+        for next in place + 1..triangle.size() {
+            let column = triangle.column(next);
+            let above = &column[place..next];
             let share = dot(above, &x);
-            if is_clear {
-                x.push(-share / column[column.len() - 1]);
+            if triangle.independent()[next] {
+                x.push(-share / column[next]);
                 continue;
             }
             let terms: f64 = above.iter().zip(&x).map(|(r, x)| (r * x).abs()).sum();
-            if share.abs() > ROUNDING * terms {
+            if share.abs() > CANCELLED * terms {
                 return f64::INFINITY;
             }
             x.push(0.0);
         }
-        dot(&x, &x).sqrt()
+        norm(&x)
     }
-}
-
-/// Takes the share of a direction out of a vector.
-fn subtract(vector: &mut [f64], direction: &[f64]) -> f64 {
-    let share = dot(vector, direction);
-    vector.iter_mut().zip(direction).for_each(|(value, d)| *value -= share * d);
-    share
 }
 
 #[cfg(test)]

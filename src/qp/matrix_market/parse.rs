@@ -21,6 +21,9 @@ pub(super) struct Content {
     pub entries: Vec<(usize, usize, f64)>,
 }
 
+/// What the second line of a file of coordinates must be.
+const COORDINATE_SIZES: &str = "3 whole numbers (rows, columns and entries)";
+
 /// Words of a file that an error repeats are cut to this many characters.
 const LONGEST_EXCERPT: usize = 80;
 
@@ -42,104 +45,161 @@ pub(super) enum Quotes {
 
 /// Parses `text`; `file` is named in errors.
 pub(super) fn parse(file: &Path, text: &str, values: Values, quotes: Quotes) -> Result<Content, Error> {
-    let excerpt = |words: &str| quotes.excerpt(words);
     // Some editors put a byte order mark in front.
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let fault = |line: usize, message: String| Error::FileSyntax { file: file.to_path_buf(), line, message };
+    let source = Source { file, text, values, quotes };
     let mut lines = text.lines().enumerate().map(|(index, line)| (index + 1, line.trim()));
-    let (_, header) = lines.next().ok_or_else(|| fault(1, "the file is empty".into()))?;
-    let words: Vec<String> = header.split_whitespace().map(str::to_lowercase).collect();
-    let words: Vec<&str> = words.iter().map(String::as_str).collect();
-    let ["%%matrixmarket", "matrix", layout, field, symmetry] = words[..] else {
-        let expected = "%%MatrixMarket matrix coordinate|array real|integer general|symmetric";
-        return Err(fault(1, format!("the first line is {}; it must be `{expected}`", excerpt(header))));
-    };
-    let is_array = match layout {
-        "coordinate" => false,
-        "array" => true,
-        other => {
-            return Err(fault(1, format!("the layout is {}; it must be `coordinate` or `array`", excerpt(other))));
-        }
-    };
-    if !["real", "integer", "double"].contains(&field) {
-        return Err(fault(1, format!("the field is {}; it must be `real` or `integer`", excerpt(field))));
-    }
-    let symmetric = match symmetry {
-        "general" => false,
-        "symmetric" => true,
-        other => {
-            return Err(fault(1, format!("the symmetry is {}; it must be `general` or `symmetric`", excerpt(other))));
-        }
-    };
-
+    let (_, first) = lines.next().ok_or_else(|| source.fault(1, "the file is empty"))?;
+    let header = source.header(first)?;
     let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('%'));
-    let (line, sizes) = lines.next().ok_or_else(|| fault(1, "the line with the sizes is missing".into()))?;
-    let wanted = if is_array { 2 } else { 3 };
-    let numbers: Option<Vec<usize>> = sizes.split_whitespace().map(|word| word.parse().ok()).collect();
-    let numbers = numbers.filter(|numbers| numbers.len() == wanted).ok_or_else(|| {
-        let names = if is_array { "rows and columns" } else { "rows, columns and entries" };
-        fault(line, format!("the sizes are {}; they must be {wanted} whole numbers ({names})", excerpt(sizes)))
-    })?;
-    let (rows, columns) = (numbers[0], numbers[1]);
-    if rows.max(columns) > LARGEST_DIMENSION {
-        return Err(fault(line, format!("{rows} x {columns} is too large; at most {LARGEST_DIMENSION} each way")));
+    let (line, sizes) = lines.next().ok_or_else(|| source.fault(1, "the line with the sizes is missing"))?;
+    let (rows, columns, announced) = source.sizes(&header, line, sizes)?;
+    let symmetric = header.symmetric;
+    let content = Content { line, rows, columns, symmetric, entries: Vec::new() };
+    match header.is_array {
+        true => source.array(content, lines),
+        false => source.coordinates(content, announced, lines),
     }
-    if symmetric && rows != columns {
-        return Err(fault(line, format!("a symmetric matrix must be square, not {rows} x {columns}")));
+}
+
+/// The text of a file, and what may be in it.
+struct Source<'a> {
+    file: &'a Path,
+    text: &'a str,
+    values: Values,
+    quotes: Quotes,
+}
+
+/// What the first line says.
+struct Header {
+    is_array: bool,
+    symmetric: bool,
+}
+
+impl<'a> Source<'a> {
+    fn fault(&self, line: usize, message: impl Into<String>) -> Error {
+        Error::FileSyntax { file: self.file.to_path_buf(), line, message: message.into() }
     }
 
-    let mut entries = Vec::new();
-    if is_array {
+    fn excerpt(&self, words: &str) -> String {
+        self.quotes.excerpt(words)
+    }
+
+    fn header(&self, first: &str) -> Result<Header, Error> {
+        let words: Vec<String> = first.split_whitespace().map(str::to_lowercase).collect();
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
+        let ["%%matrixmarket", "matrix", layout, field, symmetry] = words[..] else {
+            let expected = "%%MatrixMarket matrix coordinate|array real|integer general|symmetric";
+            let message = format!("the first line is {}; it must be `{expected}`", self.excerpt(first));
+            return Err(self.fault(1, message));
+        };
+        let wrong = |what: &str, found: &str, allowed: &str| {
+            self.fault(1, format!("the {what} is {}; it must be {allowed}", self.excerpt(found)))
+        };
+        let is_array = match layout {
+            "coordinate" => false,
+            "array" => true,
+            other => return Err(wrong("layout", other, "`coordinate` or `array`")),
+        };
+        if !["real", "integer", "double"].contains(&field) {
+            return Err(wrong("field", field, "`real` or `integer`"));
+        }
+        match symmetry {
+            "general" => Ok(Header { is_array, symmetric: false }),
+            "symmetric" => Ok(Header { is_array, symmetric: true }),
+            other => Err(wrong("symmetry", other, "`general` or `symmetric`")),
+        }
+    }
+
+    /// Rows, columns and, in a file of coordinates, the number of entries announced.
+    fn sizes(&self, header: &Header, line: usize, sizes: &str) -> Result<(usize, usize, usize), Error> {
+        let numbers: Option<Vec<usize>> = sizes.split_whitespace().map(|word| word.parse().ok()).collect();
+        let (rows, columns, announced) = match (numbers.as_deref(), header.is_array) {
+            (Some(&[rows, columns]), true) => (rows, columns, 0),
+            (Some(&[rows, columns, announced]), false) => (rows, columns, announced),
+            (_, is_array) => {
+                let names = if is_array { "2 whole numbers (rows and columns)" } else { COORDINATE_SIZES };
+                let message = format!("the sizes are {}; they must be {names}", self.excerpt(sizes));
+                return Err(self.fault(line, message));
+            }
+        };
+        if rows.max(columns) > LARGEST_DIMENSION {
+            let message = format!("{rows} x {columns} is too large; at most {LARGEST_DIMENSION} each way");
+            return Err(self.fault(line, message));
+        }
+        if header.symmetric && rows != columns {
+            let message = format!("a symmetric matrix must be square, not {rows} x {columns}");
+            return Err(self.fault(line, message));
+        }
+        Ok((rows, columns, announced))
+    }
+
+    /// One value a line, column by column.
+    fn array(&self, mut content: Content, lines: impl Iterator<Item = (usize, &'a str)>) -> Result<Content, Error> {
+        let Content { rows, columns, symmetric, .. } = content;
         let mut places =
             (0..columns).flat_map(|column| (if symmetric { column } else { 0 }..rows).map(move |row| (row, column)));
         for (line, word) in lines {
-            let value = number(word).ok_or_else(|| fault(line, format!("{} is not a number", excerpt(word))))?;
-            values.check(value).map_err(|message| fault(line, message))?;
+            let not_a_number = || self.fault(line, format!("{} is not a number", self.excerpt(word)));
+            let value = number(word).ok_or_else(not_a_number)?;
+            self.values.check(value).map_err(|message| self.fault(line, message))?;
             let Some((row, column)) = places.next() else {
-                return Err(fault(line, format!("there are more values than the {rows} x {columns} announced")));
+                return Err(self.fault(line, format!("there are more values than the {rows} x {columns} announced")));
             };
-            entries.push((row, column, value));
+            content.entries.push((row, column, value));
         }
-        if let Some((row, column)) = places.next() {
-            let message = format!("the file ends before the value of ({}, {})", row + 1, column + 1);
-            return Err(fault(text.lines().count(), message));
-        }
-    } else {
-        let announced = numbers[2];
-        for (line, content) in lines {
-            let words: Vec<&str> = content.split_whitespace().collect();
-            let entry = match words[..] {
-                [row, column, value] => row.parse().ok().zip(column.parse().ok()).zip(number(value)),
-                _ => None,
-            };
-            let Some(((row, column), value)): Option<((usize, usize), f64)> = entry else {
-                return Err(fault(
-                    line,
-                    format!("{} is not an entry; it must be `row column value`", excerpt(content)),
-                ));
-            };
-            if row == 0 || column == 0 || row > rows || column > columns {
-                let message = format!("entry ({row}, {column}) lies outside {rows} x {columns} (indices from 1)");
-                return Err(fault(line, message));
+        match places.next() {
+            Some((row, column)) => {
+                let message = format!("the file ends before the value of ({}, {})", row + 1, column + 1);
+                Err(self.fault(self.text.lines().count(), message))
             }
-            if symmetric && row < column {
-                let message = format!(
-                    "entry ({row}, {column}) lies above the diagonal; a symmetric file holds the lower triangle"
-                );
-                return Err(fault(line, message));
-            }
-            if entries.len() == announced {
-                return Err(fault(line, format!("there are more entries than the {announced} announced")));
-            }
-            values.check(value).map_err(|message| fault(line, message))?;
-            entries.push((row - 1, column - 1, value));
-        }
-        if entries.len() < announced {
-            let message = format!("the file ends after {} of {announced} entries", entries.len());
-            return Err(fault(text.lines().count(), message));
+            None => Ok(content),
         }
     }
-    Ok(Content { line, rows, columns, symmetric, entries })
+
+    /// One entry a line: row, column, value.
+    fn coordinates(
+        &self,
+        mut content: Content,
+        announced: usize,
+        lines: impl Iterator<Item = (usize, &'a str)>,
+    ) -> Result<Content, Error> {
+        for (line, words) in lines {
+            let entry = self.entry(&content, words).map_err(|message| self.fault(line, message))?;
+            if content.entries.len() == announced {
+                return Err(self.fault(line, format!("there are more entries than the {announced} announced")));
+            }
+            self.values.check(entry.2).map_err(|message| self.fault(line, message))?;
+            content.entries.push(entry);
+        }
+        let found = content.entries.len();
+        if found < announced {
+            let message = format!("the file ends after {found} of {announced} entries");
+            return Err(self.fault(self.text.lines().count(), message));
+        }
+        Ok(content)
+    }
+
+    /// The entry of a line, indices from 0, or what is wrong with it.
+    fn entry(&self, content: &Content, line: &str) -> Result<(usize, usize, f64), String> {
+        let Content { rows, columns, symmetric, .. } = *content;
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let entry = match words[..] {
+            [row, column, value] => row.parse().ok().zip(column.parse().ok()).zip(number(value)),
+            _ => None,
+        };
+        let Some(((row, column), value)): Option<((usize, usize), f64)> = entry else {
+            return Err(format!("{} is not an entry; it must be `row column value`", self.excerpt(line)));
+        };
+        if row == 0 || column == 0 || row > rows || column > columns {
+            return Err(format!("entry ({row}, {column}) lies outside {rows} x {columns} (indices from 1)"));
+        }
+        if symmetric && row < column {
+            let rule = "a symmetric file holds the lower triangle";
+            return Err(format!("entry ({row}, {column}) lies above the diagonal; {rule}"));
+        }
+        Ok((row - 1, column - 1, value))
+    }
 }
 
 impl Content {

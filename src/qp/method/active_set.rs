@@ -16,7 +16,7 @@
 
 use std::collections::HashSet;
 
-use super::{Holding, Outcome, SIGN_TOLERANCE, ScaledProblem, multiplier_rounding};
+use super::{Holding, Outcome, SIGN_TOLERANCE, ScaledProblem, Solver, Start, multiplier_rounding};
 use crate::error::Error;
 use crate::qp::linear::{Cholesky, largest};
 use crate::qp::problem::ContactProblem;
@@ -49,68 +49,71 @@ pub struct Equilibrium {
     pub consistent: bool,
 }
 
-/// Runs the loop from the set `start`.
-///
-/// # Errors
-/// [`Error::Unbounded`] and [`Error::UnderHeld`] for a free motion that no row stops, [`Error::NotConvex`],
-/// [`Error::Numerical`].
-pub fn solve(scaled: &ScaledProblem, start: ContactSet, max_iterations: usize) -> Result<Outcome, Error> {
-    let rows = scaled.problem.rows();
-    let mut closed = start;
-    let mut displacement = vec![0.0; scaled.problem.dofs()];
-    let mut multiplier = vec![0.0; rows];
-    let mut history = Vec::new();
-    let mut seen = HashSet::new();
-    let mut rule = Rule::Exchange;
-    let mut settled = false;
-    let mut stops = 0;
-    while !settled && history.len() + stops < max_iterations && (history.is_empty() || !scaled.watch().is_over()) {
-        scaled.watch().step("active set", history.len() + 1);
-        let cholesky = match scaled.hold(&closed, WEIGHT)? {
-            Holding::Held(cholesky) => cholesky,
-            Holding::Free(motion) => match scaled.stopping_rows(&motion, &displacement, &closed) {
-                // A motion that rows stop again and again must not keep the loop alive.
-                Some(stopped) if stops < MOST_STOPS.max(rows) => {
-                    stops += 1;
-                    closed = stopped;
-                    continue;
-                }
-                Some(_) => {
-                    break;
-                }
-                None => return Err(motion.into_error()),
-            },
-        };
-        let balance = equilibrium(scaled.problem, &cholesky, &closed);
-        history.push(Iteration { contact_set: closed.clone(), penalty: 0.0 });
-        if !balance.consistent {
-            break;
-        }
-        (displacement, multiplier) = (balance.displacement, balance.multiplier);
-        let wrong = wrong_rows(scaled.problem, &displacement, &multiplier, &closed);
-        if wrong.is_empty() {
-            settled = true;
-        } else {
-            if !seen.insert((closed.clone(), rule)) {
-                if matches!(rule, Rule::Pivoting { .. }) {
-                    // Pivoting comes back to a set where rounding decides signs: it would do so for ever.
-                    break;
-                }
-                rule = rule.pivoting(wrong.len());
+/// The active-set loop on a scaled problem.
+#[derive(Clone, Copy)]
+pub struct ActiveSet<'a> {
+    /// The problem.
+    pub scaled: &'a ScaledProblem<'a>,
+    /// Most factorisations.
+    pub most_iterations: usize,
+}
+
+impl Solver for ActiveSet<'_> {
+    /// Runs the loop from the contact set of `start`.
+    ///
+    /// # Errors
+    /// [`Error::Unbounded`] and [`Error::UnderHeld`] for a free motion that no row stops, [`Error::NotConvex`],
+    /// [`Error::Numerical`].
+    fn solve(&self, start: Start) -> Result<Outcome, Error> {
+        let scaled = self.scaled;
+        let rows = scaled.problem.rows();
+        let mut closed = start.into_set(rows);
+        let (mut displacement, mut multiplier) = (vec![0.0; scaled.problem.dofs()], vec![0.0; rows]);
+        let mut history = Vec::new();
+        let mut seen = HashSet::new();
+        let mut rule = Rule::Exchange;
+        let mut settled = false;
+        let mut stops = 0;
+        let is_over = |done: usize| done > 0 && scaled.watch().is_over();
+        while !settled && history.len() + stops < self.most_iterations && !is_over(history.len()) {
+            scaled.watch().step("active set", history.len() + 1);
+            let cholesky = match scaled.hold(&closed, WEIGHT)? {
+                Holding::Held(cholesky) => cholesky,
+                Holding::Free(motion) => match scaled.stopping_rows(&motion, &displacement, &closed) {
+                    // A motion that rows stop again and again must not keep the loop alive.
+                    Some(stopped) if stops < MOST_STOPS.max(rows) => {
+                        stops += 1;
+                        closed = stopped;
+                        continue;
+                    }
+                    Some(_) => break,
+                    None => return Err(motion.into_error()),
+                },
+            };
+            let balance = equilibrium(scaled.problem, &cholesky, &closed);
+            history.push(Iteration { contact_set: closed.clone(), penalty: 0.0 });
+            if !balance.consistent {
+                break;
             }
-            let exchanged = rule.choose(&wrong);
-            exchanged.iter().for_each(|&row| closed.set(row, !closed.contains(row)));
+            (displacement, multiplier) = (balance.displacement, balance.multiplier);
+            let wrong = wrong_rows(scaled.problem, &displacement, &multiplier, &closed);
+            if wrong.is_empty() {
+                settled = true;
+            } else {
+                if !seen.insert((closed.clone(), rule)) {
+                    if matches!(rule, Rule::Pivoting { .. }) {
+                        // Pivoting comes back to a set where rounding decides signs: it would do so for ever.
+                        break;
+                    }
+                    rule = rule.pivoting(wrong.len());
+                }
+                rule.choose(&wrong).iter().for_each(|&row| closed.set(row, !closed.contains(row)));
+            }
         }
+        multiplier.iter_mut().for_each(|value| *value = value.min(0.0));
+        let (iterations, variant) = (history.len(), rule.variant(settled));
+        Ok(Outcome { displacement, multiplier, contact_set: closed, iterations, history, settled, variant })
     }
-    multiplier.iter_mut().for_each(|value| *value = value.min(0.0));
-    let variant = match (settled, rule) {
-        (false, _) => "-unsettled",
-        (true, Rule::Exchange) => "",
-        (true, Rule::Pivoting { single: false, .. }) => "-block-pivoting",
-        (true, Rule::Pivoting { single: true, .. }) => "-single-pivoting",
-    };
-    let iterations = history.len();
-    Ok(Outcome { displacement, multiplier, contact_set: closed, iterations, history, settled, variant })
 }
 
 /// Balance of forces with the rows of `closed` held at their gaps, pushing or pulling, and all others free.
@@ -147,6 +150,16 @@ impl Rule {
         match self {
             Rule::Exchange => Rule::Pivoting { fewest, patience: 0, single: false },
             pivoting => pivoting,
+        }
+    }
+
+    /// The variant that ended the loop.
+    fn variant(self, settled: bool) -> &'static str {
+        match (settled, self) {
+            (false, _) => "-unsettled",
+            (true, Rule::Exchange) => "",
+            (true, Rule::Pivoting { single: false, .. }) => "-block-pivoting",
+            (true, Rule::Pivoting { single: true, .. }) => "-single-pivoting",
         }
     }
 

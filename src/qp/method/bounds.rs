@@ -8,7 +8,7 @@ use crate::qp::linear::multigrid::Direction;
 use crate::solution::ContactSet;
 
 /// Parts of a unit vector below this are rounding of the turning.
-const ROUNDING: f64 = 1e-12;
+const TURNING_ROUNDING: f64 = 1e-12;
 
 /// A row on one side of its unknown: `coefficient * v <= gap`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,13 +63,13 @@ impl Bounds {
     pub fn of(contact: &SparseMatrix, gap: &[f64]) -> Result<Self, Error> {
         let by_row = contact.transposed();
         let mut all = Bounds { reflections: Vec::new(), touching: HashMap::new(), bounds: Vec::new(), rows: gap.len() };
-        let mut bound_of: HashMap<usize, usize> = HashMap::new();
+        let mut bound_of: Vec<Option<usize>> = vec![None; contact.columns()];
         for row in (0..gap.len()).filter(|&row| gap[row].is_finite()) {
             let entries: Vec<(usize, f64)> = by_row.column(row).filter(|entry| entry.1 != 0.0).collect();
             let length = entries.iter().fold(0.0, |length: f64, entry| length.hypot(entry.1));
             let turned = all.reflected(entries.iter().map(|&(place, b)| (place, b / length)).collect(), false);
             let Some(&(first, _)) = turned.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())) else { continue };
-            let taken: Vec<usize> = turned.iter().filter_map(|entry| bound_of.get(&entry.0).copied()).collect();
+            let taken: Vec<usize> = turned.iter().filter_map(|entry| bound_of[entry.0]).collect();
             let index = match (taken[..].first(), turned.len()) {
                 (Some(&index), 1) => index,
                 (Some(&index), _) => {
@@ -81,7 +81,7 @@ impl Bounds {
                     return Err(Error::Numerical { step: "turning contact rows into bounds", reason });
                 }
                 (None, _) => {
-                    bound_of.insert(first, all.bounds.len());
+                    bound_of[first] = Some(all.bounds.len());
                     let (lower, upper) = (f64::NEG_INFINITY, f64::INFINITY);
                     all.bounds.push(Bound { unknown: first, lower, upper, sides: [None; 2] });
                     all.bounds.len() - 1
@@ -96,6 +96,9 @@ impl Bounds {
 
     /// A unit vector after those reflections that touch it, in their order, or `back` in the opposite one.
     fn reflected(&self, vector: Direction, back: bool) -> Direction {
+        if vector.len() == 1 && vector.iter().all(|entry| !self.touching.contains_key(&entry.0)) {
+            return vector;
+        }
         let mut entries: HashMap<usize, f64> = vector.into_iter().collect();
         let of_place = |place: &usize| self.touching.get(place).into_iter().flatten().copied();
         let mut waiting: BTreeSet<usize> = entries.keys().flat_map(of_place).collect();
@@ -107,7 +110,7 @@ impl Bounds {
                 waiting.extend(of_place(&place).filter(|&other| if back { other < next } else { other > next }));
             }
         }
-        let mut reflected: Direction = entries.into_iter().filter(|entry| entry.1.abs() > ROUNDING).collect();
+        let mut reflected: Direction = entries.into_iter().filter(|entry| entry.1.abs() > TURNING_ROUNDING).collect();
         reflected.sort_unstable_by_key(|entry| entry.0);
         reflected
     }

@@ -1,14 +1,16 @@
 //! The QP by Clarabel's interior-point method. The only place that names clarabel, and that knows z = -lambda.
 
 use clarabel::algebra::CscMatrix;
-use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverError, SolverStatus, SupportedConeT};
+use clarabel::solver::{
+    DefaultSettings, DefaultSolution, DefaultSolver, IPSolver, SolverError, SolverStatus, SupportedConeT,
+};
 
-use super::ScaledProblem;
+use super::{Outcome, ScaledProblem, Solver, Start};
 use crate::error::Error;
 use crate::qp::barrier::guarded;
 use crate::qp::linear::{SparseMatrix, exponent, largest, ldexp};
 use crate::qp::problem::ContactProblem;
-use crate::solution::ContactSet;
+use crate::solution::{ContactSet, Iteration};
 use crate::watch::Watch;
 
 /// A gap this many times the displacement is out of reach: the row is left out, where it would only spoil the scale.
@@ -26,62 +28,91 @@ const UNIT_CORRECTIONS: usize = 4;
 /// Steps after which more do not help: on ill-conditioned data the residuals stall, and the barrier falls on.
 const MAX_STEPS: u32 = 50;
 
-/// What the interior-point method ended with.
-#[derive(Clone, Debug)]
+/// Options of [`Method::Qp`](crate::Method::Qp).
+///
+/// ```
+/// use signorini::{InteriorPoint, Method, Settings};
+///
+/// let loose = InteriorPoint { polish: false, tolerance: 1e-4 };
+/// let settings = Settings::with_method(Method::Qp(loose)).with_tolerance(1e-3);
+/// assert_eq!(settings.method.name(), "qp");
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InteriorPoint {
-    /// Displacement v, one entry per dof.
-    pub displacement: Vec<f64>,
-    /// Multiplier -z, one entry per row, `<= 0`.
-    pub multiplier: Vec<f64>,
-    /// Rows with `z / z_scale > s / s_scale`.
-    pub contact_set: ContactSet,
-    /// Interior-point steps, over all units that were tried.
-    pub iterations: usize,
+    /// `true` to settle the contact set by the active-set loop: the multipliers become those of a linear solve.
+    pub polish: bool,
+    /// Tolerance of the interior-point method, on data of order one.
+    pub tolerance: f64,
 }
 
 impl InteriorPoint {
-    /// No displacement and no closed row: what there is to say where nothing was found or no row is there to close.
-    pub fn nothing_found(problem: &ContactProblem) -> Self {
-        InteriorPoint {
-            displacement: vec![0.0; problem.dofs()],
-            multiplier: vec![0.0; problem.rows()],
-            contact_set: ContactSet::open(problem.rows()),
-            iterations: 0,
+    /// Polished, to 1e-9.
+    pub(crate) const DEFAULT: InteriorPoint = InteriorPoint { polish: true, tolerance: 1e-9 };
+}
+
+impl Default for InteriorPoint {
+    fn default() -> Self {
+        InteriorPoint::DEFAULT
+    }
+}
+
+/// The interior-point method on a scaled problem.
+#[derive(Clone, Copy)]
+pub struct Barrier<'a> {
+    /// The problem.
+    pub scaled: &'a ScaledProblem<'a>,
+    /// Tolerance, relative to data of order one.
+    pub tolerance: f64,
+}
+
+impl Solver for Barrier<'_> {
+    /// Solves the QP; the start is of no use to it. The contact set is that of the rows with `z / z_scale > s / s_scale`, and
+    /// `iterations` counts the steps over all units that were tried.
+    ///
+    /// An ending without full accuracy is no error here: the set is settled and the answer certified later. A problem that
+    /// is reported as unbounded or infeasible returns with no closed row, for others to find the motion or the rows.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] if the solver refuses its input.
+    fn solve(&self, _: Start) -> Result<Outcome, Error> {
+        let (problem, watch) = (self.scaled.problem, self.scaled.watch());
+        if problem.rows() == 0 {
+            return Ok(nothing_found(problem, 0));
+        }
+        let mut unit = Unit { displacement: 0, force: exponent(largest(problem.load())) };
+        let mut iterations = 0;
+        let mut corrections = 0;
+        loop {
+            let mut found = solve_in_unit(problem, self.tolerance, unit, watch)?;
+            iterations += found.iterations;
+            found.iterations = iterations;
+            let size = largest(&found.displacement);
+            let displacement = exponent(size) - unit.displacement;
+            let force = exponent(largest(&found.multiplier).max(largest(problem.load()))) - unit.force;
+            let fits = displacement.abs().max(force.abs()) <= UNIT_EXPONENT;
+            if fits
+                || size == 0.0
+                || watch.is_over()
+                || displacement < -NOTHING_EXPONENT
+                || corrections == UNIT_CORRECTIONS
+            {
+                return Ok(found);
+            }
+            unit = Unit { displacement: unit.displacement + displacement, force: unit.force + force };
+            corrections += 1;
         }
     }
 }
 
-/// Solves the QP to `tolerance`, relative to data of order one.
-///
-/// An ending without full accuracy is no error here: the set is settled and the answer certified later. A problem that
-/// is reported as unbounded or infeasible returns with no closed row, for others to find the motion or the rows.
-///
-/// # Errors
-/// [`Error::Numerical`] if the solver refuses its input.
-pub fn solve(scaled: &ScaledProblem, tolerance: f64) -> Result<InteriorPoint, Error> {
-    let problem = scaled.problem;
-    let mut unit = Unit { displacement: 0, force: exponent(largest(problem.load())) };
-    let mut iterations = 0;
-    let mut corrections = 0;
-    loop {
-        let mut found = solve_in_unit(problem, tolerance, unit, scaled.watch())?;
-        iterations += found.iterations;
-        found.iterations = iterations;
-        let size = largest(&found.displacement);
-        let displacement = exponent(size) - unit.displacement;
-        let force = exponent(largest(&found.multiplier).max(largest(problem.load()))) - unit.force;
-        let fits = displacement.abs().max(force.abs()) <= UNIT_EXPONENT;
-        if fits
-            || size == 0.0
-            || scaled.watch().is_over()
-            || displacement < -NOTHING_EXPONENT
-            || corrections == UNIT_CORRECTIONS
-        {
-            return Ok(found);
-        }
-        unit = Unit { displacement: unit.displacement + displacement, force: unit.force + force };
-        corrections += 1;
-    }
+/// An answer of the barrier as it stands.
+fn unpolished(displacement: Vec<f64>, multiplier: Vec<f64>, contact_set: ContactSet, iterations: usize) -> Outcome {
+    let history = vec![Iteration { contact_set: contact_set.clone(), penalty: 0.0 }];
+    Outcome { displacement, multiplier, contact_set, iterations, history, settled: true, variant: "-unpolished" }
+}
+
+/// No displacement and no closed row: what there is to say if nothing was found or there is no row to close.
+fn nothing_found(problem: &ContactProblem, iterations: usize) -> Outcome {
+    unpolished(vec![0.0; problem.dofs()], vec![0.0; problem.rows()], ContactSet::open(problem.rows()), iterations)
 }
 
 /// Units in which the answer is of order one, as exponents of two: where a fine mesh makes the stiffness large beside
@@ -92,7 +123,8 @@ struct Unit {
     force: i32,
 }
 
-fn solve_in_unit(problem: &ContactProblem, tolerance: f64, unit: Unit, watch: &Watch) -> Result<InteriorPoint, Error> {
+/// Solves the QP of the rows within reach in a unit.
+fn solve_in_unit(problem: &ContactProblem, tolerance: f64, unit: Unit, watch: &Watch) -> Result<Outcome, Error> {
     let gap: Vec<f64> = problem.gap().iter().map(|&g| ldexp(g, -unit.displacement)).collect();
     let rows: Vec<usize> = (0..gap.len()).filter(|&row| gap[row] < OUT_OF_REACH).collect();
     let near_gap: Vec<f64> = rows.iter().map(|&row| gap[row]).collect();
@@ -123,29 +155,34 @@ fn solve_in_unit(problem: &ContactProblem, tolerance: f64, unit: Unit, watch: &W
     });
     let failed = |reason: String| Error::Numerical { step: "Clarabel", reason };
     let answer = solved.map_err(failed)?.map_err(|error: SolverError| failed(error.to_string()))?;
-    let iterations = answer.iterations as usize;
+    Ok(read_off(problem, &answer, &rows, unit))
+}
 
-    match answer.status {
+/// The answer of Clarabel on `rows`, in the units of the problem.
+fn read_off(problem: &ContactProblem, answer: &DefaultSolution<f64>, rows: &[usize], unit: Unit) -> Outcome {
+    let iterations = answer.iterations as usize;
+    if matches!(
+        answer.status,
         SolverStatus::PrimalInfeasible
-        | SolverStatus::AlmostPrimalInfeasible
-        | SolverStatus::DualInfeasible
-        | SolverStatus::AlmostDualInfeasible => {}
-        _ => {
-            let mut multiplier = vec![0.0; problem.rows()];
-            let mut contact_set = ContactSet::open(problem.rows());
-            let (z_scale, s_scale) = (largest(&answer.z), largest(&answer.s).min(1.0));
-            for (near, &row) in rows.iter().enumerate() {
-                let (z, s) = (answer.z[near], answer.s[near]);
-                multiplier[row] = -ldexp(z.max(0.0), unit.force);
-                contact_set.set(row, z * s_scale > s * z_scale);
-            }
-            let displacement = answer.x.iter().map(|&x| ldexp(x, unit.displacement)).collect::<Vec<_>>();
-            if displacement.iter().chain(&multiplier).all(|value| value.is_finite()) {
-                return Ok(InteriorPoint { displacement, multiplier, contact_set, iterations });
-            }
-        }
+            | SolverStatus::AlmostPrimalInfeasible
+            | SolverStatus::DualInfeasible
+            | SolverStatus::AlmostDualInfeasible
+    ) {
+        return nothing_found(problem, iterations);
     }
-    Ok(InteriorPoint { iterations, ..InteriorPoint::nothing_found(problem) })
+    let mut multiplier = vec![0.0; problem.rows()];
+    let mut contact_set = ContactSet::open(problem.rows());
+    let (z_scale, s_scale) = (largest(&answer.z), largest(&answer.s).min(1.0));
+    for (near, &row) in rows.iter().enumerate() {
+        let (z, s) = (answer.z[near], answer.s[near]);
+        multiplier[row] = -ldexp(z.max(0.0), unit.force);
+        contact_set.set(row, z * s_scale > s * z_scale);
+    }
+    let displacement = answer.x.iter().map(|&x| ldexp(x, unit.displacement)).collect::<Vec<_>>();
+    match displacement.iter().chain(&multiplier).all(|value| value.is_finite()) {
+        true => unpolished(displacement, multiplier, contact_set, iterations),
+        false => nothing_found(problem, iterations),
+    }
 }
 
 fn csc(matrix: &SparseMatrix) -> CscMatrix<f64> {

@@ -10,12 +10,14 @@ pub mod interior_point;
 pub mod mprgp;
 pub mod parametric;
 pub mod penalty;
+mod start;
 
 use std::cell::Cell;
 use std::time::Instant;
 
 pub use holding::Holding;
 pub(crate) use holding::WORK_TOLERANCE;
+pub use start::Start;
 
 use crate::error::Error;
 use crate::qp::linear::{AugmentedMatrix, Cholesky, FactorError, SymmetricMatrix, largest};
@@ -29,6 +31,15 @@ pub(crate) const SIGN_TOLERANCE: f64 = 1e-12;
 
 /// Rounding of a multiplier, in units of the last place of the forces that balance it.
 const FORCE_ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// A method, together with the problem that it works on.
+pub trait Solver {
+    /// What the method finds from `start`.
+    ///
+    /// # Errors
+    /// What it meets in the problem: see the methods.
+    fn solve(&self, start: Start) -> Result<Outcome, Error>;
+}
 
 /// A scaled problem with its pattern analysed: what every method works on.
 #[derive(Debug)]

@@ -12,27 +12,45 @@
 
 use std::collections::HashSet;
 
-use super::{Holding, Outcome, ScaledProblem};
+use super::{Holding, Outcome, ScaledProblem, Solver, Start};
 use crate::error::Error;
 use crate::qp::linear::{Cholesky, largest};
+use crate::qp::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
 
 /// The penalty at which the two parts of the error meet: one over the square root of the machine precision.
 pub const BEST_PENALTY: f64 = 1e8;
 
-/// The ladder of penalties, in multiples of the local stiffness, and where it may end early.
-#[derive(Clone, Copy)]
-pub struct Ladder<'a> {
-    /// First penalty.
+/// The ladder of penalties of [`Method::Penalty`](crate::Method::Penalty), and where it may end early.
+///
+/// ```
+/// use signorini::{Method, Penalty, Settings};
+///
+/// let settings = Settings::with_method(Method::Penalty(Penalty { last: 1e3, ..Penalty::default() }));
+/// assert_eq!(settings.method.name(), "penalty");
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Penalty {
+    /// First penalty, in multiples of the local stiffness.
     pub first: f64,
-    /// Last penalty.
+    /// Last penalty, in multiples of the local stiffness; 1e8 balances penetration and rounding.
     pub last: f64,
-    /// Penetration, relative to the largest displacement of a contact row, at which the ladder ends.
-    pub threshold: f64,
-    /// Are answers extrapolated to an infinite penalty, from two rungs with one set?
+    /// `true` to extrapolate the answer to an infinite penalty, from two rungs of the ladder with one contact set.
     pub extrapolate: bool,
-    /// The relative energy error at which the ladder ends, if any.
-    pub goal: Option<Goal<'a>>,
+    /// Penetration at which the ladder ends, relative to the largest displacement of a contact row.
+    pub penetration_threshold: f64,
+}
+
+impl Penalty {
+    /// The ladder from 1 to [`BEST_PENALTY`].
+    pub(crate) const DEFAULT: Penalty =
+        Penalty { first: 1.0, last: BEST_PENALTY, extrapolate: false, penetration_threshold: 1e-10 };
+}
+
+impl Default for Penalty {
+    fn default() -> Self {
+        Penalty::DEFAULT
+    }
 }
 
 /// An accuracy, with the bound that is held against it.
@@ -44,6 +62,19 @@ pub struct Goal<'a> {
     pub bound: &'a dyn Fn(&[f64], &[f64]) -> f64,
 }
 
+/// The penalty loop on a scaled problem.
+#[derive(Clone, Copy)]
+pub struct PenaltyLoop<'a> {
+    /// The problem.
+    pub scaled: &'a ScaledProblem<'a>,
+    /// The ladder.
+    pub ladder: Penalty,
+    /// The relative energy error at which the ladder ends, if any.
+    pub goal: Option<Goal<'a>>,
+    /// Most factorisations.
+    pub most_iterations: usize,
+}
+
 /// Factor from rung to rung.
 const RUNG: f64 = 10.0;
 
@@ -53,86 +84,118 @@ const FLOOR: f64 = 0.5;
 /// Solves on the last rung after the set has settled: in the second the shift is the displacement itself.
 const FINAL_SOLVES: usize = 2;
 
-/// Climbs the ladder from the set `start`.
-///
-/// # Errors
-/// [`Error::Unbounded`] and [`Error::UnderHeld`] for a free motion that no row stops, [`Error::NotConvex`],
-/// [`Error::Numerical`].
-pub fn solve(
-    scaled: &ScaledProblem,
-    start: ContactSet,
-    ladder: Ladder,
-    max_iterations: usize,
-) -> Result<Outcome, Error> {
-    let problem = scaled.problem;
-    let mut closed = start;
-    let mut state =
-        State { displacement: vec![0.0; problem.dofs()], violation: vec![f64::NEG_INFINITY; problem.rows()] };
-    let mut history = Vec::new();
-    let mut penalty = ladder.first;
-    let mut settled;
-    let mut stops = 0;
-    let mut answer;
-    let mut rung_before: Option<Rung> = None;
-    let mut last_bound = f64::INFINITY;
-    loop {
-        let mut seen = HashSet::new();
-        settled = false;
-        while !settled
-            && seen.insert(closed.clone())
-            && history.len() + stops < max_iterations
-            && (history.is_empty() || !scaled.watch().is_over())
-        {
-            scaled.watch().step("penalty loop", history.len() + 1);
-            let cholesky = match scaled.hold(&closed, penalty)? {
-                Holding::Held(cholesky) => cholesky,
-                Holding::Free(motion) => match scaled.stopping_rows(&motion, &state.displacement, &closed) {
-                    Some(stopped) => {
-                        stops += 1;
-                        closed = stopped;
-                        continue;
-                    }
-                    None => return Err(motion.into_error()),
-                },
-            };
-            history.push(Iteration { contact_set: closed.clone(), penalty });
-            state.advance(scaled, &cholesky, &closed, penalty);
-            let next = ContactSet::from_fn(problem.rows(), |row| state.violation[row] > 0.0);
-            settled = next == closed;
-            if settled {
-                (0..FINAL_SOLVES).for_each(|_| state.advance(scaled, &cholesky, &closed, penalty));
+impl Solver for PenaltyLoop<'_> {
+    /// Climbs the ladder from the contact set of `start`.
+    ///
+    /// # Errors
+    /// [`Error::Unbounded`] and [`Error::UnderHeld`] for a free motion that no row stops, [`Error::NotConvex`],
+    /// [`Error::Numerical`].
+    fn solve(&self, start: Start) -> Result<Outcome, Error> {
+        let PenaltyLoop { scaled, ladder, .. } = self;
+        let mut climb = Climb::new(scaled.problem, start);
+        let mut penalty = ladder.first;
+        let mut rung_before: Option<Rung> = None;
+        let mut last_bound = f64::INFINITY;
+        let answer = loop {
+            self.settle(&mut climb, penalty)?;
+            let rung = Rung::new(&climb.state, climb.closed.clone(), penalty);
+            let answer = self.extrapolated(&rung, rung_before.as_ref(), climb.settled)?;
+            if let Some(goal) = self.goal.filter(|_| climb.settled) {
+                let bound = (goal.bound)(&answer.displacement, &answer.multiplier);
+                if bound <= goal.accuracy || (bound > FLOOR * last_bound && bound.is_finite()) {
+                    break answer;
+                }
+                last_bound = bound;
             }
-            closed = next;
-        }
-        let penetration = closed.iter().map(|row| state.violation[row]).fold(0.0, f64::max);
-        let reach = largest(&problem.contact().mul(&state.displacement));
-        let small = settled && penetration <= ladder.threshold * reach;
-        let rung = Rung::new(&state, closed.clone(), penalty);
-        answer = match (&rung_before, ladder.extrapolate && settled) {
-            (Some(before), true) if before.closed == rung.closed => rung.extrapolated(before),
-            (_, true) => rung.extrapolated(&rung_below(scaled, &rung)?),
-            (_, false) => rung.clone(),
+            rung_before = Some(rung);
+            let is_small = climb.settled && climb.penetrates_at_most(scaled.problem, ladder.penetration_threshold);
+            let is_last = penalty * RUNG > ladder.last || climb.history.len() >= self.most_iterations;
+            if is_small || scaled.watch().is_over() || is_last {
+                break answer;
+            }
+            penalty *= RUNG;
         };
-        if let Some(goal) = ladder.goal.filter(|_| settled) {
-            let bound = (goal.bound)(&answer.displacement, &answer.multiplier);
-            if bound <= goal.accuracy || (bound > FLOOR * last_bound && bound.is_finite()) {
-                break;
-            }
-            last_bound = bound;
-        }
-        rung_before = Some(rung);
-        if small || scaled.watch().is_over() || penalty * RUNG > ladder.last || history.len() >= max_iterations {
-            break;
-        }
-        penalty *= RUNG;
+        let variant = match (climb.settled, ladder.extrapolate) {
+            (false, _) => "-unsettled",
+            (true, false) => "",
+            (true, true) => "-extrapolated",
+        };
+        let Rung { displacement, multiplier, .. } = answer;
+        let Climb { closed: contact_set, history, settled, .. } = climb;
+        Ok(Outcome { displacement, multiplier, contact_set, iterations: history.len(), history, settled, variant })
     }
-    let (iterations, variant) = match (settled, ladder.extrapolate) {
-        (false, _) => (history.len(), "-unsettled"),
-        (true, false) => (history.len(), ""),
-        (true, true) => (history.len(), "-extrapolated"),
-    };
-    let Rung { displacement, multiplier, .. } = answer;
-    Ok(Outcome { displacement, multiplier, contact_set: closed, iterations, history, settled, variant })
+}
+
+impl PenaltyLoop<'_> {
+    /// One rung: exchanges the rows of the set until it comes back, or the loop must end.
+    fn settle(&self, climb: &mut Climb, penalty: f64) -> Result<(), Error> {
+        let scaled = self.scaled;
+        let mut seen = HashSet::new();
+        climb.settled = false;
+        while !climb.settled
+            && seen.insert(climb.closed.clone())
+            && climb.history.len() + climb.stops < self.most_iterations
+            && (climb.history.is_empty() || !scaled.watch().is_over())
+        {
+            scaled.watch().step("penalty loop", climb.history.len() + 1);
+            let cholesky = match scaled.hold(&climb.closed, penalty)? {
+                Holding::Held(cholesky) => cholesky,
+                Holding::Free(motion) => {
+                    match scaled.stopping_rows(&motion, &climb.state.displacement, &climb.closed) {
+                        Some(stopped) => {
+                            climb.stops += 1;
+                            climb.closed = stopped;
+                            continue;
+                        }
+                        None => return Err(motion.into_error()),
+                    }
+                }
+            };
+            climb.history.push(Iteration { contact_set: climb.closed.clone(), penalty });
+            climb.state.advance(scaled, &cholesky, &climb.closed, penalty);
+            let next = ContactSet::from_fn(scaled.problem.rows(), |row| climb.state.violation[row] > 0.0);
+            climb.settled = next == climb.closed;
+            if climb.settled {
+                (0..FINAL_SOLVES).for_each(|_| climb.state.advance(scaled, &cholesky, &climb.closed, penalty));
+            }
+            climb.closed = next;
+        }
+        Ok(())
+    }
+
+    /// The answer of a rung: extrapolated if that is asked for and the set has settled.
+    fn extrapolated(&self, rung: &Rung, before: Option<&Rung>, settled: bool) -> Result<Rung, Error> {
+        Ok(match before {
+            _ if !(self.ladder.extrapolate && settled) => rung.clone(),
+            Some(before) if before.closed == rung.closed => rung.extrapolated(before),
+            _ => rung.extrapolated(&rung_below(self.scaled, rung)?),
+        })
+    }
+}
+
+/// What the loop has in hand between two rungs.
+struct Climb {
+    closed: ContactSet,
+    state: State,
+    history: Vec<Iteration>,
+    /// `true` if the last rung ended with the set that it began with.
+    settled: bool,
+    /// Free motions that rows have stopped.
+    stops: usize,
+}
+
+impl Climb {
+    fn new(problem: &ContactProblem, start: Start) -> Self {
+        let state =
+            State { displacement: vec![0.0; problem.dofs()], violation: vec![f64::NEG_INFINITY; problem.rows()] };
+        Climb { closed: start.into_set(problem.rows()), state, history: Vec::new(), settled: false, stops: 0 }
+    }
+
+    /// Returns `true` if no closed row penetrates by more than this share of the largest displacement of a row.
+    fn penetrates_at_most(&self, problem: &ContactProblem, share: f64) -> bool {
+        let penetration = self.closed.iter().map(|row| self.state.violation[row]).fold(0.0, f64::max);
+        penetration <= share * largest(&problem.contact().mul(&self.state.displacement))
+    }
 }
 
 /// The answer of one penalty.

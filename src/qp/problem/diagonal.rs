@@ -4,7 +4,7 @@ use crate::qp::linear::SymmetricMatrix;
 
 /// The diagonal of K.
 #[derive(Clone, Debug)]
-pub(super) struct Diagonal {
+pub(in crate::qp) struct Diagonal {
     /// K_ii of each dof.
     pub values: Vec<f64>,
     /// `sqrt(K_ii)` of each dof.

@@ -1,25 +1,13 @@
-//! The contact problem as a convex QP, checked once, and the certificate of an answer to it.
+//! The contact problem as a convex QP, checked once.
 
-mod certificate;
-mod claims;
-mod contradiction;
 mod diagonal;
-mod energy_bound;
-mod energy_norm;
-mod multigrid_bound;
 mod parts;
-mod proof;
-mod scales;
-mod springs;
-mod units;
 
-pub(crate) use claims::Motion;
-pub use energy_norm::EnergyNorm;
+pub(in crate::qp) use parts::Parts;
 
 use std::sync::{Arc, OnceLock};
 
 use diagonal::Diagonal;
-use parts::Parts;
 
 use crate::error::Error;
 use crate::qp::linear::multigrid::NearNullSpace;
@@ -36,10 +24,10 @@ use crate::qp::linear::{Accumulator, SparseMatrix, SymmetricMatrix};
 /// supports and obstacle hold the body, is found out when it is solved.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactProblem {
-    stiffness: SymmetricMatrix,
-    load: Vec<f64>,
-    contact: SparseMatrix,
-    gap: Vec<f64>,
+    pub(in crate::qp) stiffness: SymmetricMatrix,
+    pub(in crate::qp) load: Vec<f64>,
+    pub(in crate::qp) contact: SparseMatrix,
+    pub(in crate::qp) gap: Vec<f64>,
     near_null: Option<Arc<NearNullSpace>>,
     diagonal: FoundOnce<Diagonal>,
     parts: FoundOnce<Parts>,
@@ -187,8 +175,13 @@ impl ContactProblem {
     }
 
     /// The diagonal of K, found when it is first asked for.
-    fn diagonal(&self) -> &Diagonal {
+    pub(in crate::qp) fn diagonal(&self) -> &Diagonal {
         self.diagonal.get_or_find(|| Diagonal::of(&self.stiffness))
+    }
+
+    /// The parts, found when they are first asked for.
+    pub(in crate::qp) fn parts(&self) -> &Parts {
+        self.parts.get_or_find(|| Parts::of(&self.stiffness, self.diagonal(), &self.contact, &self.gap))
     }
 
     /// The violation B u - g of each row, length m: positive is penetration; `-inf` where there is no obstacle.

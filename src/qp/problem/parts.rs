@@ -11,7 +11,7 @@ const WEAK: f64 = 1e-6;
 
 /// The connected components of K and B: dofs that a coupling of K or a row with an obstacle joins.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Parts {
+pub(in crate::qp) struct Parts {
     /// The part of each dof, length n, numbered from 0 in the order of their first dofs.
     of_dof: Vec<usize>,
     count: usize,

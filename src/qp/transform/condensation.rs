@@ -12,7 +12,7 @@
 //! `S + B_t'B_t`: the interior blocks, and so both sweeps, are the same.
 
 use crate::error::Error;
-use crate::qp::linear::{Analysis, Cholesky, FactorError, SparseMatrix, SymmetricMatrix, dot};
+use crate::qp::linear::{Analysis, Cholesky, FactorError, LowerTriangle, SparseMatrix, SymmetricMatrix, dot};
 
 /// Contact dofs beyond this share of all leave little to condense.
 const LARGEST_SHARE: f64 = 0.25;
@@ -34,7 +34,7 @@ const FEW_VALUES: f64 = 1e6;
 pub struct Condensation {
     contact_dofs: Vec<usize>,
     cholesky: Cholesky,
-    trailing: Vec<f64>,
+    trailing: LowerTriangle,
     stiffness: SymmetricMatrix,
     contact: SparseMatrix,
 }
@@ -81,7 +81,7 @@ impl Condensation {
             .flat_map(|(column, &dof)| contact.column(dof).map(move |(row, value)| (row, column, value)))
             .collect();
         let contact = SparseMatrix::from_triplets(contact.rows(), size, &entries)?;
-        let mut schur = lower_times_transpose(&trailing, size);
+        let mut schur = trailing.times_transpose();
         if shifted {
             let before = schur.clone();
             let by_row = contact.transposed();
@@ -137,14 +137,7 @@ impl Condensation {
     /// The condensed load L_tt y_t.
     pub fn load(&self, sweep: &[f64]) -> Vec<f64> {
         let size = self.contact_dofs.len();
-        let last = &sweep[sweep.len() - size..];
-        let mut load = vec![0.0; size];
-        for (column, y) in last.iter().enumerate() {
-            for (row, entry) in load.iter_mut().enumerate().skip(column) {
-                *entry += self.trailing[column * size + row] * y;
-            }
-        }
-        load
+        self.trailing.mul(&sweep[sweep.len() - size..])
     }
 
     /// The square of the energy norm that the load alone adds inside the body, whatever the contact dofs do.
@@ -156,13 +149,7 @@ impl Condensation {
     /// The displacement of the contact dofs that the load alone causes, where K is definite.
     pub fn free_displacement(&self, sweep: &[f64]) -> Vec<f64> {
         let size = self.contact_dofs.len();
-        let mut x = sweep[sweep.len() - size..].to_vec();
-        for row in (0..size).rev() {
-            let column = &self.trailing[row * size..(row + 1) * size];
-            let known: f64 = (row + 1..size).map(|i| column[i] * x[i]).sum();
-            x[row] = (x[row] - known) / column[row];
-        }
-        x
+        self.trailing.backward(sweep[sweep.len() - size..].to_vec())
     }
 
     /// The compliance B S^-1 B' of the contact rows (m x m, column by column), where K is definite.
@@ -170,21 +157,16 @@ impl Condensation {
         let (rows, size) = (self.contact.rows(), self.contact_dofs.len());
         let by_row = self.contact.transposed();
         // The columns of L_tt^-1 B_t', one for each row.
-        let mut halves = vec![0.0; rows * size];
-        for (row, half) in halves.chunks_exact_mut(size).enumerate() {
+        let half = |row: usize| {
+            let mut half = vec![0.0; size];
             by_row.column(row).for_each(|(dof, value)| half[dof] += value);
-            let first = by_row.column(row).map(|entry| entry.0).min().unwrap_or(size);
-            for j in first..size {
-                let column = &self.trailing[j * size..(j + 1) * size];
-                half[j] /= column[j];
-                let value = half[j];
-                half[j + 1..].iter_mut().zip(&column[j + 1..]).for_each(|(entry, l)| *entry -= l * value);
-            }
-        }
+            self.trailing.forward(half)
+        };
+        let halves: Vec<Vec<f64>> = (0..rows).map(half).collect();
         let mut compliance = vec![0.0; rows * rows];
         for i in 0..rows {
             for j in 0..=i {
-                let value = dot(&halves[i * size..(i + 1) * size], &halves[j * size..(j + 1) * size]);
+                let value = dot(&halves[i], &halves[j]);
                 compliance[i * rows + j] = value;
                 compliance[j * rows + i] = value;
             }
@@ -197,9 +179,7 @@ impl Condensation {
         let size = self.contact_dofs.len();
         let first = sweep.len() - size;
         let mut y = sweep.to_vec();
-        for (column, entry) in y[first..].iter_mut().enumerate() {
-            *entry = (column..size).map(|row| self.trailing[column * size + row] * displacement[row]).sum();
-        }
+        y[first..].copy_from_slice(&self.trailing.mul_transposed(displacement));
         let mut expanded = self.cholesky.backward(y);
         // The sweep gives these back but for rounding.
         self.contact_dofs.iter().zip(displacement).for_each(|(&dof, &u)| expanded[dof] = u);
@@ -226,20 +206,4 @@ fn dense_triangle(matrix: Vec<f64>, size: usize) -> Result<SparseMatrix, Error> 
         return Err(Error::NotFinite { name: "matrix", at, value, allowed: "finite" });
     }
     Ok(SparseMatrix::from_parts(size, starts, rows, values))
-}
-
-/// The lower triangle of L L' for a lower triangular L (n x n, column by column).
-fn lower_times_transpose(factor: &[f64], size: usize) -> Vec<f64> {
-    let mut product = vec![0.0; size * size];
-    for k in 0..size {
-        let column = &factor[k * size..(k + 1) * size];
-        for j in k..size {
-            let scale = column[j];
-            let target = &mut product[j * size..(j + 1) * size];
-            for i in j..size {
-                target[i] += scale * column[i];
-            }
-        }
-    }
-    product
 }

@@ -77,6 +77,12 @@ impl Scaling {
         scaled.iter().zip(&self.equilibration.diagonal).map(|(&v, &d)| ldexp(v, d + unit)).collect()
     }
 
+    /// The scaled multiplier mu of a multiplier lambda, for u0 = `2^unit`.
+    pub fn multiplier(&self, multiplier: &[f64], unit: i32) -> Vec<f64> {
+        let exponent = self.equilibration.factor - unit;
+        multiplier.iter().zip(&self.rows).map(|(&lambda, &r)| ldexp(lambda, exponent - r)).collect()
+    }
+
     /// The multiplier lambda of a scaled multiplier mu, for u0 = `2^unit`.
     pub fn expand_multiplier(&self, scaled: &[f64], unit: i32) -> Vec<f64> {
         let exponent = unit - self.equilibration.factor;

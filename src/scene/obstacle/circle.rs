@@ -1,7 +1,47 @@
 //! A circle, the half that faces the body: h(s) = R - sqrt(R^2 - s^2).
 
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
 use super::frame::Local;
+use super::profile::Profile;
+use super::shape::{About, Geometry, ObstacleShape, Site};
 use super::surface::{Foot, Surface};
+use crate::error::Error;
+
+/// A circle, given by its centre or by its apex.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct CircleSpec {
+    /// The centre.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub centre: Option<[f64; 2]>,
+    /// The point nearest to the body: the centre less the radius along the approach direction.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub apex: Option<[f64; 2]>,
+    /// Radius, positive. Nodes beyond its reach have no contact row.
+    pub radius: f64,
+}
+
+pub(super) const ABOUT: About = About { name: "circle", dimensions: &[2] };
+
+impl ObstacleShape for CircleSpec {
+    fn about(&self) -> About {
+        ABOUT
+    }
+
+    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+        let radius = site.positive("radius", self.radius)?;
+        let apex = site.apex(self.centre, self.apex, radius)?;
+        Ok(Geometry::rigid(Profile::new(site, site.local(apex), Arc::new(Circle { radius }))))
+    }
+
+    fn radius(&self) -> f64 {
+        self.radius
+    }
+}
 
 /// A circle with its apex at the origin and its centre at (0, R).
 #[derive(Debug)]

@@ -15,10 +15,10 @@ pub(in crate::scene) struct Frame {
 }
 
 impl Frame {
-    /// The frame of an approach direction in the plane.
-    pub fn of(approach: Approach) -> Option<Self> {
+    /// The frame of an approach direction in the plane; a model in the plane has no other.
+    pub fn of(approach: Approach) -> Self {
         let (axis, sense) = approach.axis();
-        (axis < 2).then_some(Frame { axis, sense })
+        Frame { axis: axis.min(1), sense }
     }
 
     /// From [x, y] to [along, towards].

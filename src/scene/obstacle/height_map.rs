@@ -1,10 +1,15 @@
 //! Heights on a grid, bilinear in every cell: h = a + b t1 + c t2 + d t1 t2.
 
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
 use super::patch::{Foot, Patch};
+use super::shape::{About, Geometry, ObstacleShape, Site};
+use super::solid::{Form, Grid, Solid, across};
 use crate::error::Error;
 use crate::fem::geometry::dot;
-use crate::scene::entry::{PLACE_TOLERANCE, finite, number, wrong};
-use crate::scene::schema::HeightMapSpec;
+use crate::scene::entry::{PLACE_TOLERANCE, finite, number, point, wrong};
 
 /// Feet closer together than this, relative to the body's size, are one: neighbouring cells share their edges, and a
 /// search ends at the square root of rounding.
@@ -13,9 +18,37 @@ const SAME_FOOT: f64 = 1e-6;
 /// Unit normals closer than this are those of one smooth piece.
 const SAME_NORMAL: f64 = 1e-12;
 
+/// Heights on a grid over the two coordinates across the approach direction.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct HeightMapSpec {
+    /// Grid lines of the first coordinate across the approach direction (x, or y where that is along x): at least two,
+    /// increasing, from the first candidate to the last or further.
+    pub x: Vec<f64>,
+    /// Grid lines of the second coordinate across it (z, or y where the approach direction is along z), likewise.
+    pub y: Vec<f64>,
+    /// `heights[i][j]`: the surface's coordinate along the axis of the approach direction over `x[i]`, `y[j]`.
+    pub heights: Vec<Vec<f64>>,
+}
+
+pub(super) const ABOUT: About = About { name: "height-map", dimensions: &[3] };
+
+impl ObstacleShape for HeightMapSpec {
+    fn about(&self) -> About {
+        ABOUT
+    }
+
+    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+        let map = HeightMap::new(self, site)?;
+        check_reach(&map, site)?;
+        Ok(Geometry::rigid(Solid::new(site, [0.0; 3], Form::Grid(Arc::new(map)))))
+    }
+}
+
 /// A grid of heights towards the obstacle.
 #[derive(Debug)]
-pub(super) struct HeightMap {
+struct HeightMap {
     lines: [Vec<f64>; 2],
     /// Row by row of the first lines.
     heights: Vec<f64>,
@@ -25,48 +58,43 @@ pub(super) struct HeightMap {
 }
 
 /// Where a height map ends short of a place.
-pub(super) struct Reach {
-    pub field: &'static str,
-    pub name: &'static str,
-    pub range: (f64, f64),
-    pub needed: f64,
+struct Reach {
+    field: &'static str,
+    name: &'static str,
+    range: (f64, f64),
+    needed: f64,
 }
 
 impl HeightMap {
-    /// Checks the grid at JSON path `path`; `names` are those of its coordinates, `sense` the one of the approach direction,
-    /// `size` the body's.
-    pub fn new(
-        spec: &HeightMapSpec,
-        path: &str,
-        names: [&'static str; 2],
-        sense: f64,
-        size: f64,
-    ) -> Result<Self, Error> {
+    /// Checks the grid.
+    fn new(spec: &HeightMapSpec, site: &Site) -> Result<Self, Error> {
+        let (_, sense) = site.approach.axis();
         for (field, lines) in [("x", &spec.x), ("y", &spec.y)] {
-            check_lines(lines, &format!("{path}.{field}"))?;
+            check_lines(lines, &site.field(field))?;
         }
         let (rows, columns) = (spec.x.len(), spec.y.len());
         let count = |found: usize, expected: usize, what: &str, lines: &str| {
             format!("the array has {found} {what}, but there are {expected} grid lines in `{lines}`")
         };
         if spec.heights.len() != rows {
-            return Err(wrong(format!("{path}.heights"), count(spec.heights.len(), rows, "rows", "x")));
+            return Err(wrong(site.field("heights"), count(spec.heights.len(), rows, "rows", "x")));
         }
         let mut heights = Vec::with_capacity(rows * columns);
         for (i, row) in spec.heights.iter().enumerate() {
             if row.len() != columns {
-                return Err(wrong(format!("{path}.heights[{i}]"), count(row.len(), columns, "entries", "y")));
+                return Err(wrong(format!("{}.heights[{i}]", site.path), count(row.len(), columns, "entries", "y")));
             }
             for (j, &height) in row.iter().enumerate() {
-                finite(format!("{path}.heights[{i}][{j}]"), height)?;
+                finite(format!("{}.heights[{i}][{j}]", site.path), height)?;
                 heights.push(sense * height);
             }
         }
-        Ok(HeightMap { lines: [spec.x.clone(), spec.y.clone()], heights, names, size })
+        let names = across(site.approach).map(|axis| ["x", "y", "z"][axis]);
+        Ok(HeightMap { lines: [spec.x.clone(), spec.y.clone()], heights, names, size: site.body.mesh().size() })
     }
 
     /// The coordinate in which the map does not reach over a place, if there is one.
-    pub fn beyond(&self, at: [f64; 2]) -> Option<Reach> {
+    fn beyond(&self, at: [f64; 2]) -> Option<Reach> {
         let rim = PLACE_TOLERANCE * self.size;
         (0..2).find_map(|axis| {
             let range = self.range(axis);
@@ -74,61 +102,6 @@ impl HeightMap {
             let (field, name, needed) = (["x", "y"][axis], self.names[axis], at[axis]);
             (!inside).then_some(Reach { field, name, range, needed })
         })
-    }
-
-    /// The height at a place, or `None` beyond the rim.
-    pub fn height(&self, at: [f64; 2]) -> Option<f64> {
-        self.beyond(at).is_none().then(|| {
-            let [i, j] = [0, 1].map(|axis| self.cell_at(axis, at[axis]));
-            self.patch(i, j).height(at)
-        })
-    }
-
-    /// Unit normal into the obstacle at the closest point, and the distance along it; `None` beyond the rim.
-    ///
-    /// Cells farther away than the best so far are left out. The surface ends at its rim. A node equally close to
-    /// several points, to within `tolerance`, takes their mean normal.
-    pub fn closest(&self, node: [f64; 3], tolerance: f64) -> Option<([f64; 3], f64)> {
-        let height = self.height([node[0], node[1]])?;
-        let sense = if node[2] > height { -1.0 } else { 1.0 };
-        let [home_i, home_j] = [0, 1].map(|axis| self.cell_at(axis, node[axis]));
-        let best = |feet: &[Foot]| feet.iter().fold(f64::INFINITY, |best: f64, foot| best.min(foot.distance));
-        let mut feet = self.patch(home_i, home_j).feet(node);
-        let reach = best(&feet) + tolerance;
-        let [near_i, near_j] = [0, 1].map(|axis| {
-            let first = self.cell_at(axis, node[axis] - reach);
-            first..=self.cell_at(axis, node[axis] + reach)
-        });
-        for i in near_i {
-            for j in near_j.clone().filter(|&j| (i, j) != (home_i, home_j)) {
-                let patch = self.patch(i, j);
-                if patch.box_distance(node) <= best(&feet) + tolerance {
-                    feet.extend(patch.feet(node));
-                }
-            }
-        }
-        let nearest = best(&feet);
-        feet.retain(|foot| foot.distance <= nearest + tolerance);
-        // A foot inside a cell is more exact than the one on an edge next to it.
-        feet.sort_by_key(|foot| foot.on_edge);
-        let mut apart: Vec<Foot> = Vec::new();
-        for foot in feet {
-            let beside = |other: &Foot| {
-                let way = [0, 1, 2].map(|axis| other.at[axis] - foot.at[axis]);
-                dot(way, way).sqrt() <= SAME_FOOT * self.size
-            };
-            if !apart.iter().any(beside) {
-                apart.push(foot);
-            }
-        }
-        let normals: Vec<[f64; 3]> = apart.iter().map(|foot| self.normal(node, foot, sense, tolerance)).collect();
-        let sum = normals.iter().fold([0.0; 3], |sum, normal| [0, 1, 2].map(|axis| sum[axis] + normal[axis]));
-        let length = dot(sum, sum).sqrt();
-        let normal = sum.map(|part| part / length);
-        // Along its own normal a foot is as far as it is; along a mean normal the plane through it is farther.
-        let (foot, own) = (apart.first()?, *normals.first()?);
-        let to_foot = [0, 1, 2].map(|axis| foot.at[axis] - node[axis]);
-        Some((normal, dot(own, to_foot) / dot(own, normal)))
     }
 
     /// The normal at a foot: of the surface where it is smooth there or the node lies on it, else the way to the foot.
@@ -179,6 +152,79 @@ impl HeightMap {
             corners: [height(i, j), height(i + 1, j), height(i, j + 1), height(i + 1, j + 1)],
         }
     }
+}
+
+impl Grid for HeightMap {
+    fn height(&self, at: [f64; 2]) -> Option<f64> {
+        self.beyond(at).is_none().then(|| {
+            let [i, j] = [0, 1].map(|axis| self.cell_at(axis, at[axis]));
+            self.patch(i, j).height(at)
+        })
+    }
+
+    /// Cells farther away than the best so far are left out. The surface ends at its rim. A node equally close to
+    /// several points, to within `tolerance`, takes their mean normal.
+    fn closest(&self, node: [f64; 3], tolerance: f64) -> Option<([f64; 3], f64)> {
+        let height = self.height([node[0], node[1]])?;
+        let sense = if node[2] > height { -1.0 } else { 1.0 };
+        let [home_i, home_j] = [0, 1].map(|axis| self.cell_at(axis, node[axis]));
+        let best = |feet: &[Foot]| feet.iter().fold(f64::INFINITY, |best: f64, foot| best.min(foot.distance));
+        let mut feet = self.patch(home_i, home_j).feet(node);
+        let reach = best(&feet) + tolerance;
+        let [near_i, near_j] = [0, 1].map(|axis| {
+            let first = self.cell_at(axis, node[axis] - reach);
+            first..=self.cell_at(axis, node[axis] + reach)
+        });
+        for i in near_i {
+            for j in near_j.clone().filter(|&j| (i, j) != (home_i, home_j)) {
+                let patch = self.patch(i, j);
+                if patch.box_distance(node) <= best(&feet) + tolerance {
+                    feet.extend(patch.feet(node));
+                }
+            }
+        }
+        let nearest = best(&feet);
+        feet.retain(|foot| foot.distance <= nearest + tolerance);
+        // A foot inside a cell is more exact than the one on an edge next to it.
+        feet.sort_by_key(|foot| foot.on_edge);
+        let mut apart: Vec<Foot> = Vec::new();
+        for foot in feet {
+            let beside = |other: &Foot| {
+                let way = [0, 1, 2].map(|axis| other.at[axis] - foot.at[axis]);
+                dot(way, way).sqrt() <= SAME_FOOT * self.size
+            };
+            if !apart.iter().any(beside) {
+                apart.push(foot);
+            }
+        }
+        let normals: Vec<[f64; 3]> = apart.iter().map(|foot| self.normal(node, foot, sense, tolerance)).collect();
+        let sum = normals.iter().fold([0.0; 3], |sum, normal| [0, 1, 2].map(|axis| sum[axis] + normal[axis]));
+        let length = dot(sum, sum).sqrt();
+        let normal = sum.map(|part| part / length);
+        // Along its own normal a foot is as far as it is; along a mean normal the plane through it is farther.
+        let (foot, own) = (apart.first()?, *normals.first()?);
+        let to_foot = [0, 1, 2].map(|axis| foot.at[axis] - node[axis]);
+        Some((normal, dot(own, to_foot) / dot(own, normal)))
+    }
+}
+
+/// Every candidate must lie over the grid: a height map says nothing beyond its rim.
+fn check_reach(map: &HeightMap, site: &Site) -> Result<(), Error> {
+    let across = across(site.approach);
+    for &(node, _) in site.candidates {
+        let at = site.body.mesh().nodes()[node];
+        let Some(Reach { field, name, range: (first, last), needed }) = map.beyond(across.map(|axis| at[axis])) else {
+            continue;
+        };
+        let (first, last, needed) = (number(first), number(last), number(needed));
+        let message = format!(
+            "the height map reaches from {name} = {first} to {last}, but candidate node {node} at {} needs it at \
+                 {name} = {needed}",
+            point(&at)
+        );
+        return Err(wrong(site.field(field), message));
+    }
+    Ok(())
 }
 
 fn check_lines(lines: &[f64], path: &str) -> Result<(), Error> {

@@ -1,165 +1,116 @@
-//! Obstacles: a surface in a frame, the rule of its contact rows, and the candidates that may touch it.
+//! Obstacles: a row for every point. Each shape has a file, and is named here and nowhere else.
 
 mod circle;
+mod cone;
+mod cylinder;
 mod facing;
 mod frame;
-mod half_space;
 mod height_map;
+mod pairs;
 mod parabola;
 mod patch;
+mod placed;
 mod plane;
 mod polyline;
 mod profile;
+mod row;
 mod shape;
 mod solid;
+mod sphere;
 mod surface;
-mod way;
+mod table;
+mod wedge;
 
-use super::entry::wrong;
-use super::schema::{ObstacleSpec, Rule, ShapeSpec};
-use crate::error::Error;
-use crate::fem::body::ElasticBody;
-use facing::Facing;
-use frame::Frame;
-use half_space::HalfSpace;
-use profile::Profile;
-use shape::{fits, misfit, plane_of};
-use solid::Solid;
-use way::Approachable;
+pub use circle::CircleSpec;
+pub use cone::ConeSpec;
+pub use cylinder::CylinderSpec;
+pub use facing::FacingSpec;
+pub use height_map::HeightMapSpec;
+pub use parabola::ParabolaSpec;
+pub use placed::PlacedObstacle;
+pub use plane::PlaneSpec;
+pub use row::{Obstacle, ObstacleRow};
+pub use sphere::SphereSpec;
+pub use table::TableSpec;
+pub use wedge::WedgeSpec;
 
-/// A component of a unit normal below this is rounding of the geometry, not a direction.
-const NO_COMPONENT: f64 = 1e-14;
+use serde::{Deserialize, Serialize};
 
-/// An obstacle of a model: rigid, or the surface of another body.
-#[derive(Clone, Debug)]
-pub struct Obstacle {
-    boundary: String,
-    candidates: Vec<(usize, f64)>,
-    rule: Rule,
-    approach: [f64; 3],
-    geometry: Geometry,
+use super::schema::json::object;
+use shape::{About, ObstacleShape};
+
+/// The surface of an obstacle, over the coordinates across the approach direction.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum ShapeSpec {
+    /// A plane.
+    Plane(#[serde(deserialize_with = "object")] PlaneSpec),
+    /// A parabola t^2/(2 radius) that bulges towards the body.
+    Parabola(#[serde(deserialize_with = "object")] ParabolaSpec),
+    /// The half of a circle that faces the body.
+    Circle(#[serde(deserialize_with = "object")] CircleSpec),
+    /// A wedge slope |t| that points at the body.
+    Wedge(#[serde(deserialize_with = "object")] WedgeSpec),
+    /// A polyline.
+    Table(#[serde(deserialize_with = "object")] TableSpec),
+    /// In space: the half of a sphere that faces the body.
+    Sphere(#[serde(deserialize_with = "object")] SphereSpec),
+    /// In space: the half of a cylinder that faces the body, its axis across the approach direction.
+    Cylinder(#[serde(deserialize_with = "object")] CylinderSpec),
+    /// In space: a cone that points at the body, its axis along the approach direction.
+    Cone(#[serde(deserialize_with = "object")] ConeSpec),
+    /// In space: heights on a grid, bilinear in between.
+    HeightMap(#[serde(deserialize_with = "object")] HeightMapSpec),
+    /// The surface of another elastic body, node to node.
+    Body(#[serde(deserialize_with = "object")] FacingSpec),
 }
 
-/// What an obstacle looks like.
-#[derive(Clone, Debug)]
-enum Geometry {
-    /// In the plane: a graph over the coordinate across the approach direction.
-    Profile(Profile),
-    /// On a line or in space: a plane.
-    HalfSpace(HalfSpace),
-    /// In space: a graph over the two coordinates across the approach direction.
-    Solid(Solid),
-    /// The nodes of another body.
-    Facing(Facing),
+/// What all shapes are called, in the order in which messages name them.
+const ALL: [About; 10] = [
+    plane::ABOUT,
+    parabola::ABOUT,
+    circle::ABOUT,
+    wedge::ABOUT,
+    table::ABOUT,
+    sphere::ABOUT,
+    cylinder::ABOUT,
+    cone::ABOUT,
+    height_map::ABOUT,
+    facing::ABOUT,
+];
+
+impl ShapeSpec {
+    /// The shape, whichever it is.
+    pub(super) fn shape(&self) -> &dyn ObstacleShape {
+        match self {
+            ShapeSpec::Plane(spec) => spec,
+            ShapeSpec::Parabola(spec) => spec,
+            ShapeSpec::Circle(spec) => spec,
+            ShapeSpec::Wedge(spec) => spec,
+            ShapeSpec::Table(spec) => spec,
+            ShapeSpec::Sphere(spec) => spec,
+            ShapeSpec::Cylinder(spec) => spec,
+            ShapeSpec::Cone(spec) => spec,
+            ShapeSpec::HeightMap(spec) => spec,
+            ShapeSpec::Body(spec) => spec,
+        }
+    }
+
+    /// Says that a model of `dimension` coordinates does not have the shape, and what there is instead; `None` if it has.
+    fn misfit(&self, dimension: usize) -> Option<String> {
+        let about = self.shape().about();
+        if about.dimensions.contains(&dimension) {
+            return None;
+        }
+        let of = if about.dimensions.contains(&2) { "the plane" } else { "space" };
+        let there = ALL.iter().filter(|other| other.dimensions.contains(&dimension));
+        let there: Vec<String> = there.map(|other| format!("`{}`", other.name)).collect();
+        let (last, others) = there.split_last()?;
+        let there = format!("{} there are {} and {last}", PLACES[dimension - 1], others.join(", "));
+        Some(format!("`{}` is a shape of {of}; {there}", about.name))
+    }
 }
 
-impl Obstacle {
-    /// Checks the obstacle at JSON path `path`; `candidates` are the nodes of its boundary with their tributary areas.
-    pub(super) fn new(
-        spec: &ObstacleSpec,
-        path: &str,
-        body: &ElasticBody,
-        candidates: Vec<(usize, f64)>,
-    ) -> Result<Self, Error> {
-        let mesh = body.mesh();
-        let dimension = mesh.dimension();
-        let (axis, sense) = spec.approach.axis();
-        if axis >= dimension {
-            let names = ["x", "x and y", "x, y and z"][dimension - 1];
-            let message = format!("`{}` is no direction of this model, which has {names}", spec.approach.name());
-            return Err(wrong(format!("{path}.approach"), message));
-        }
-        let mut approach = [0.0; 3];
-        approach[axis] = sense;
-        let shape_path = format!("{path}.shape");
-        let geometry = match (&spec.shape, Frame::of(spec.approach).filter(|_| dimension == 2)) {
-            (shape, _) if !fits(shape, dimension) => return Err(misfit(shape, shape_path, dimension)),
-            (ShapeSpec::Body(facing), _) => {
-                Geometry::Facing(Facing::new(facing, spec, path, body, approach, &candidates)?)
-            }
-            (_, Some(frame)) => Geometry::Profile(Profile::new(spec, &shape_path, mesh, frame)?),
-            (ShapeSpec::Plane(plane), None) => {
-                let (point, normal) = plane_of(plane, &format!("{shape_path}.plane"), dimension, approach)?;
-                Geometry::HalfSpace(HalfSpace { point, normal })
-            }
-            (shape, None) => Geometry::Solid(Solid::new(shape, &shape_path, spec.approach, mesh.size())?),
-        };
-        let obstacle = Obstacle { boundary: spec.boundary.clone(), candidates, rule: spec.rule, approach, geometry };
-        match (&spec.shape, &obstacle.geometry) {
-            (ShapeSpec::Table(_), Geometry::Profile(profile)) => {
-                profile.check_reach(&format!("{shape_path}.table.points"), mesh, &obstacle.candidates)?;
-            }
-            (ShapeSpec::HeightMap(_), Geometry::Solid(solid)) => {
-                solid.check_reach(&format!("{shape_path}.height-map"), mesh, &obstacle.candidates)?;
-            }
-            _ => {}
-        }
-        Ok(obstacle)
-    }
-
-    /// Name of the boundary whose nodes are its candidates.
-    pub fn boundary(&self) -> &str {
-        &self.boundary
-    }
-
-    /// Is it no body of its own?
-    pub fn is_rigid(&self) -> bool {
-        !matches!(self.geometry, Geometry::Facing(_))
-    }
-
-    /// How its contact rows are made.
-    pub fn rule(&self) -> Rule {
-        self.rule
-    }
-
-    /// The approach direction [x, y, z], of length 1: from the body to the obstacle.
-    pub fn approach(&self) -> [f64; 3] {
-        self.approach
-    }
-
-    /// The candidate nodes, in the order of the boundary, each with its tributary area.
-    pub fn candidates(&self) -> &[(usize, f64)] {
-        &self.candidates
-    }
-
-    /// The surface as a polyline [x, y] for pictures: over the body's extent and a little more, shifted by `gap`
-    /// along the approach direction, in `segments` pieces (10,000 at most), corners met exactly. The obstacle lies on
-    /// the side that [`approach`](Self::approach) points to. Empty where the surface does not reach over the body, for
-    /// another body, and outside the plane.
-    pub fn outline(&self, gap: f64, segments: usize) -> Vec<[f64; 2]> {
-        match &self.geometry {
-            Geometry::Profile(profile) => profile.outline(gap, segments),
-            Geometry::HalfSpace(_) | Geometry::Solid(_) | Geometry::Facing(_) => Vec::new(),
-        }
-    }
-
-    /// The node of another body across the candidate of this index; `None` where the obstacle is rigid.
-    pub(super) fn partner(&self, candidate: usize) -> Option<usize> {
-        match &self.geometry {
-            Geometry::Facing(facing) => facing.partner(candidate),
-            _ => None,
-        }
-    }
-
-    /// The way from the candidate of this index, which lies at `node`, to the surface shifted by `gap`, or `None` where
-    /// it is out of reach.
-    ///
-    /// # Errors
-    /// A predicate of the node, where it lies so deep that the rule makes no sense.
-    pub(super) fn row(&self, candidate: usize, node: [f64; 3], gap: f64) -> Result<Option<Approachable>, &'static str> {
-        let way = match &self.geometry {
-            Geometry::Profile(profile) => profile.row(node, gap, self.rule)?,
-            Geometry::HalfSpace(half_space) => Some(half_space.row(node, gap, self.approach, self.rule)),
-            Geometry::Solid(solid) => solid.row(node, gap, self.rule)?,
-            Geometry::Facing(facing) => facing.row(candidate, gap, self.approach),
-        };
-        match way {
-            Some(way) if way.distance.is_nan() => Err("has no distance that could be computed"),
-            Some(way) if way.distance.is_finite() => {
-                let normal = way.normal.map(|c| if c.abs() < NO_COMPONENT { 0.0 } else { c });
-                Ok(Some(Approachable { normal, ..way }))
-            }
-            _ => Ok(None),
-        }
-    }
-}
+/// Where a model of one, two and three coordinates lives.
+const PLACES: [&str; 3] = ["on a line", "in the plane", "in space"];

@@ -1,10 +1,42 @@
 //! A parabola: h(s) = s^2/(2R).
 
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
 use super::frame::Local;
+use super::profile::Profile;
+use super::shape::{About, Geometry, ObstacleShape, Site};
 use super::surface::{Foot, Surface};
+use crate::error::Error;
 
 /// Newton's method from the right of the root of a convex cubic converges monotonically; it never needs as many.
 const NEWTON_STEPS: usize = 200;
+
+/// A parabola.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct ParabolaSpec {
+    /// The point nearest to the body.
+    pub apex: [f64; 2],
+    /// Radius of curvature at the apex, positive.
+    pub radius: f64,
+}
+
+pub(super) const ABOUT: About = About { name: "parabola", dimensions: &[2] };
+
+impl ObstacleShape for ParabolaSpec {
+    fn about(&self) -> About {
+        ABOUT
+    }
+
+    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+        let apex = site.point("apex", &self.apex)?;
+        let radius = site.positive("radius", self.radius)?;
+        Ok(Geometry::rigid(Profile::new(site, site.local(apex), Arc::new(Parabola { radius }))))
+    }
+}
 
 /// A parabola with its apex at the origin and the radius of curvature R there.
 #[derive(Debug)]

@@ -1,62 +1,122 @@
-//! Which shapes a model has, and what they are checked for.
+//! What every obstacle shape tells: where it belongs, and its surface in a model.
 
+use std::sync::Arc;
+
+use super::frame::{Frame, Local};
+use super::pairs::Pair;
+use super::row::Obstacle;
 use crate::error::Error;
-use crate::fem::geometry::{dot, length};
-use crate::scene::entry::{finite, number, point, vector, wrong};
-use crate::scene::schema::{PlaneSpec, ShapeSpec};
+use crate::fem::body::ElasticBody;
+use crate::scene::entry::{ROUNDING, finite, number, vector, wrong};
+use crate::scene::schema::{Approach, Rule};
 
-/// Whether a model of `dimension` coordinates has the shape.
-pub(super) fn fits(shape: &ShapeSpec, dimension: usize) -> bool {
-    match shape {
-        ShapeSpec::Plane(_) | ShapeSpec::Body(_) => true,
-        ShapeSpec::Parabola(_) | ShapeSpec::Circle(_) | ShapeSpec::Wedge(_) | ShapeSpec::Table(_) => dimension == 2,
-        ShapeSpec::Sphere(_) | ShapeSpec::Cylinder(_) | ShapeSpec::Cone(_) | ShapeSpec::HeightMap(_) => dimension == 3,
+/// What an obstacle shape is called, and where it belongs.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::scene) struct About {
+    /// As it is written.
+    pub name: &'static str,
+    /// The numbers of coordinates of the models that have it.
+    pub dimensions: &'static [usize],
+}
+
+/// An obstacle shape with its numbers.
+pub(in crate::scene) trait ObstacleShape {
+    fn about(&self) -> About;
+
+    /// Checks the numbers, and puts the surface where it stands.
+    fn place(&self, site: &Site) -> Result<Geometry, Error>;
+
+    /// A length, beyond which the surface does not reach or touch.
+    fn radius(&self) -> f64 {
+        f64::INFINITY
     }
 }
 
-/// The refusal of a shape that does not fit: where it belongs, and what there is instead.
-pub(super) fn misfit(shape: &ShapeSpec, path: String, dimension: usize) -> Error {
-    let of = if fits(shape, 2) { "the plane" } else { "space" };
-    let there = [
-        "on a line there are `plane` and `body`",
-        "in the plane there are `plane`, `parabola`, `circle`, `wedge`, `table` and `body`",
-        "in space there are `plane`, `sphere`, `cylinder`, `cone`, `height-map` and `body`",
-    ][dimension - 1];
-    wrong(path, format!("`{}` is a shape of {of}; {there}", shape.name()))
+/// What an obstacle of a model looks like.
+#[derive(Clone, Debug)]
+pub(in crate::scene) enum Geometry {
+    /// A rigid surface.
+    Rigid(Arc<dyn Obstacle>),
+    /// The nodes of another body, in the order of the candidates.
+    Pairs(Vec<Pair>),
 }
 
-/// Point and unit normal of a plane in `dimension` coordinates.
-pub(super) fn plane_of(
-    spec: &PlaneSpec,
-    path: &str,
-    dimension: usize,
-    approach: [f64; 3],
-) -> Result<([f64; 3], [f64; 3]), Error> {
-    let at = vector(&format!("{path}.point"), &spec.point, dimension)?;
-    let normal = vector(&format!("{path}.normal"), &spec.normal, dimension)?;
-    let length = length(normal);
-    if length == 0.0 {
-        let zero = point(&normal[..dimension]);
-        return Err(wrong(format!("{path}.normal"), format!("{zero} has no direction; the normal needs a length")));
+impl Geometry {
+    pub fn rigid(obstacle: impl Obstacle + 'static) -> Self {
+        Geometry::Rigid(Arc::new(obstacle))
     }
-    let normal = normal.map(|component| component / length);
-    let towards = dot(normal, approach);
-    if !(towards > 0.0 && towards.is_finite()) {
-        let message = format!(
-            "{} must point into the obstacle: to the side of the approach direction {}",
-            point(&spec.normal),
-            point(&approach[..dimension])
-        );
-        return Err(wrong(format!("{path}.normal"), message));
-    }
-    Ok((at, normal))
 }
 
-pub(super) fn positive(path: String, value: f64) -> Result<f64, Error> {
-    finite(path.as_str(), value)?;
-    if value > 0.0 {
-        Ok(value)
-    } else {
-        Err(wrong(path, format!("{} is not allowed: it must be positive", number(value))))
+/// Where an obstacle stands in a scene.
+pub(in crate::scene) struct Site<'a> {
+    /// JSON path of the obstacle, as `obstacles[0]`.
+    pub obstacle: &'a str,
+    /// That of its shape, as `obstacles[0].shape.plane`.
+    pub path: String,
+    /// The boundary whose nodes are the candidates.
+    pub boundary: &'a str,
+    pub approach: Approach,
+    pub rule: Rule,
+    pub body: &'a ElasticBody,
+    /// The candidate nodes with their tributary areas.
+    pub candidates: &'a [(usize, f64)],
+}
+
+impl Site<'_> {
+    /// The JSON path of a field of the shape.
+    pub fn field(&self, name: &str) -> String {
+        format!("{}.{name}", self.path)
+    }
+
+    /// The approach direction, a unit vector [x, y, z].
+    pub fn direction(&self) -> [f64; 3] {
+        let (axis, sense) = self.approach.axis();
+        let mut direction = [0.0; 3];
+        direction[axis] = sense;
+        direction
+    }
+
+    /// A point of the plane in the frame of the obstacle.
+    pub fn local(&self, [x, y, _]: [f64; 3]) -> Local {
+        Frame::of(self.approach).local([x, y])
+    }
+
+    /// Lengths below this are rounding of coordinates.
+    pub fn rounding(&self) -> f64 {
+        ROUNDING * self.body.mesh().size()
+    }
+
+    /// A field that is a point.
+    pub fn point(&self, name: &str, entries: &[f64]) -> Result<[f64; 3], Error> {
+        vector(&self.field(name), entries, entries.len())
+    }
+
+    /// A field that is positive.
+    pub fn positive(&self, name: &str, value: f64) -> Result<f64, Error> {
+        let path = self.field(name);
+        finite(path.as_str(), value)?;
+        if value > 0.0 {
+            Ok(value)
+        } else {
+            Err(wrong(path, format!("{} is not allowed: it must be positive", number(value))))
+        }
+    }
+
+    /// The point nearest to the body of a round shape, which its centre or its apex gives.
+    pub fn apex<const N: usize>(
+        &self,
+        centre: Option<[f64; N]>,
+        apex: Option<[f64; N]>,
+        radius: f64,
+    ) -> Result<[f64; 3], Error> {
+        match (centre, apex) {
+            (None, Some(apex)) => self.point("apex", &apex),
+            (Some(centre), None) => {
+                let (centre, approach) = (self.point("centre", &centre)?, self.direction());
+                Ok([0, 1, 2].map(|axis| centre[axis] - radius * approach[axis]))
+            }
+            (Some(_), Some(_)) => Err(wrong(self.path.as_str(), "gives both centre and apex; give one of them")),
+            (None, None) => Err(wrong(self.path.as_str(), "gives neither centre nor apex; give one of them")),
+        }
     }
 }

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::json::{choice, given, object, objects, word};
+use crate::motion::SchemeSpec;
 
 /// The analysis; a scene without one is static.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -64,26 +65,6 @@ pub struct DynamicSpec {
 
 fn frames() -> usize {
     60
-}
-
-/// The schemes to choose from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case")]
-pub enum SchemeSpec {
-    /// Midpoint rule, its contact nodes without mass: keeps energy, and the pressure does not chatter.
-    #[default]
-    Midpoint,
-    /// Trapezoidal Newmark with the constraint at the end of each step: gains energy at every blow. For comparison.
-    Trapezoidal,
-    /// Newmark with a contact-stabilised prediction: loses a little energy at every blow, never gains.
-    ContactStabilised,
-    /// HHT-alpha: damps what the mesh does not resolve.
-    Hht,
-    /// Trapezoidal Newmark with penalty springs: penetrates, and gains energy where they are stiff. For comparison.
-    Penalty,
-    /// Explicit central differences with Moreau's impact law; steps are small and cheap.
-    CentralDifference,
 }
 
 /// The forms of the mass to choose from.

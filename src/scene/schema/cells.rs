@@ -1,20 +1,8 @@
-//! Cells of a mesh: along an axis, their element, its integration.
+//! Cells of a mesh: their element; the half of a body that they fill.
 
 use serde::{Deserialize, Serialize};
 
-/// One axis of a structured mesh.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields)]
-pub struct AxisSpec {
-    /// Breakpoints, at least two, increasing.
-    pub points: Vec<f64>,
-    /// Cells of each interval between breakpoints, at least 1.
-    pub divisions: Vec<usize>,
-    /// Last cell size over first cell size of each interval, positive; all 1 where left out.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub ratios: Vec<f64>,
-}
+use crate::fem::mesh::{ElementKind, Mesh};
 
 /// The elements of the plane to choose from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -44,15 +32,48 @@ pub enum SolidElementSpec {
     Hex8,
 }
 
-/// How the stiffness of an element is integrated.
+/// The half of a disc or a ball.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
-pub enum IntegrationSpec {
-    /// All of it at all quadrature points.
+pub enum HalfSpec {
+    /// Below the centre.
     #[default]
-    Standard,
-    /// The dilatation is replaced by its mean over the element: for `q4` and `hex8`, which then do not lock as
-    /// Poisson's ratio nears 0.5.
-    MeanDilatation,
+    Lower,
+    /// Above the centre.
+    Upper,
+}
+
+impl ElementSpec {
+    pub(in crate::scene) fn kind(self) -> ElementKind {
+        match self {
+            ElementSpec::T3 => ElementKind::T3,
+            ElementSpec::T6 => ElementKind::T6,
+            ElementSpec::Q4 => ElementKind::Q4,
+            ElementSpec::Q8 => ElementKind::Q8,
+        }
+    }
+}
+
+impl SolidElementSpec {
+    pub(in crate::scene) fn kind(self) -> ElementKind {
+        match self {
+            SolidElementSpec::Tet4 => ElementKind::Tet4,
+            SolidElementSpec::Hex8 => ElementKind::Hex8,
+        }
+    }
+}
+
+impl HalfSpec {
+    pub(in crate::scene) fn is_lower(&self) -> bool {
+        *self == HalfSpec::Lower
+    }
+
+    /// The half of a body of which `lower` is the lower one, the cut lying where the coordinate `axis` is `centre`.
+    pub(in crate::scene) fn of(self, lower: Mesh, axis: usize, centre: f64) -> Mesh {
+        match self {
+            HalfSpec::Lower => lower,
+            HalfSpec::Upper => lower.mirrored(axis, centre),
+        }
+    }
 }

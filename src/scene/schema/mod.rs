@@ -3,26 +3,25 @@
 use serde::{Deserialize, Serialize};
 
 mod analysis;
+mod approach;
 mod body;
 mod cells;
 mod condition;
 pub(super) mod json;
+mod model;
 mod obstacle;
-mod shape;
-mod solid;
 
-pub use analysis::{
-    AnalysisSpec, DynamicSpec, FactorSpec, FieldSpec, LoadInTimeSpec, MassSpec, PenetrationSpec, SchemeSpec,
-};
-pub use body::{BodySpec, FurtherBodySpec, MaterialSpec};
-pub use cells::{AxisSpec, ElementSpec, IntegrationSpec, SolidElementSpec};
+pub use analysis::{AnalysisSpec, DynamicSpec, FactorSpec, FieldSpec, LoadInTimeSpec, MassSpec, PenetrationSpec};
+pub use approach::{Approach, Rule};
+pub use body::{FurtherBodySpec, MaterialSpec};
+pub use cells::{ElementSpec, HalfSpec, SolidElementSpec};
 pub use condition::{LoadSpec, Place, SupportSpec};
-pub use obstacle::{Approach, CircleSpec, FacingSpec, ObstacleSpec, PlaneSpec, Rule, ShapeSpec};
-pub use shape::{DiscSpec, GmshSpec, HalfBallSpec, HalfDiscSpec, HalfSpec, RingSpec, SymmetrySpec, ZoneSpec};
-pub use solid::HeightMapSpec;
+pub use model::ModelSpec;
+pub use obstacle::ObstacleSpec;
 
 use std::path::PathBuf;
 
+use super::body::BodySpec;
 use json::{choice, choices, object, objects, word};
 
 /// A contact scene: an elastic body, its supports and loads, and the obstacles around it.
@@ -114,46 +113,6 @@ impl Units {
             ("N", "mm") => "MPa".into(),
             ("", "") => String::new(),
             (force, length) => format!("{force}/{length}²"),
-        }
-    }
-}
-
-/// The space of a model, and what happens in the directions that it leaves out.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case")]
-pub enum ModelSpec {
-    /// A bar along x, free across.
-    Bar,
-    /// No strain across the plane: a long body.
-    #[default]
-    PlaneStrain,
-    /// No stress across the plane: a thin body.
-    PlaneStress,
-    /// A body of revolution about the y axis, x being the radius; forces are those of the full circle.
-    Axisymmetric,
-    /// Three dimensions.
-    Space,
-}
-
-impl ModelSpec {
-    /// As it is written.
-    pub fn name(self) -> &'static str {
-        match self {
-            ModelSpec::Bar => "bar",
-            ModelSpec::PlaneStrain => "plane-strain",
-            ModelSpec::PlaneStress => "plane-stress",
-            ModelSpec::Axisymmetric => "axisymmetric",
-            ModelSpec::Space => "space",
-        }
-    }
-
-    /// Coordinates of a point: 1 in a bar, 2 in the plane and about an axis, 3 in space.
-    pub fn dimension(self) -> usize {
-        match self {
-            ModelSpec::Bar => 1,
-            ModelSpec::PlaneStrain | ModelSpec::PlaneStress | ModelSpec::Axisymmetric => 2,
-            ModelSpec::Space => 3,
         }
     }
 }

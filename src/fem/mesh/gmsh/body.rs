@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use super::cells::CellType;
 use super::{Element, GmshFile};
 use crate::error::Error;
-use crate::fem::element::{Cell, ElementKind, MAX_NODES, Tabulated};
+use crate::fem::element::{Cell, ElementKind, MAX_NODES, Rule, Tabulated};
 use crate::fem::mesh::{Mesh, fail};
 
 /// A node farther from the plane than this times the size of the body lies outside it: far above the rounding of a mesh
@@ -108,7 +108,7 @@ impl<'a> Body<'a> {
 
     /// Checks that no element is turned inside out or without volume.
     fn check(&self, file: &GmshFile, nodes: &[[f64; 3]], connectivity: &[usize]) -> Result<(), Error> {
-        let table = Tabulated::new(self.kind.reference(), false);
+        let table = Tabulated::new(self.kind.reference(), Rule::Straight);
         for (element, places) in self.elements.iter().zip(connectivity.chunks_exact(self.kind.nodes())) {
             let mut coordinates = [[0.0; 3]; MAX_NODES];
             for (at, &place) in coordinates.iter_mut().zip(places) {
@@ -144,14 +144,10 @@ fn kind(file: &GmshFile, elements: &[Element]) -> Result<ElementKind, Error> {
 /// The element here that an element type is; their nodes have the same order.
 fn accepted(cell: &CellType) -> Result<ElementKind, String> {
     let refused = |reason: &str| Err(format!("{} are refused: {reason}", cell.plural));
+    if let Some(kind) = ElementKind::ALL.into_iter().find(|kind| kind.reference().gmsh == cell.number) {
+        return Ok(kind);
+    }
     match cell.number {
-        1 => Ok(ElementKind::Line2),
-        2 => Ok(ElementKind::T3),
-        3 => Ok(ElementKind::Q4),
-        4 => Ok(ElementKind::Tet4),
-        5 => Ok(ElementKind::Hex8),
-        9 => Ok(ElementKind::T6),
-        16 => Ok(ElementKind::Q8),
         10 => refused("quadratic quadrilaterals have eight nodes here (in Gmsh, `Mesh.SecondOrderIncomplete = 1`)"),
         11 | 12 | 17 => refused(WRONG_SIGN),
         8 => refused("a bar has two nodes here (in Gmsh, `Mesh.ElementOrder = 1`)"),

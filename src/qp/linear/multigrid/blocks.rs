@@ -143,6 +143,19 @@ impl<T: Real> BlockMatrix<T> {
         sum
     }
 
+    /// The same matrix without the blocks whose values are all zero.
+    pub fn without_zeros(&self) -> Self {
+        let mut kept = Self::empty(0, self.columns, (self.height, self.width));
+        for row in 0..self.rows() {
+            for (column, block) in self.row(row).filter(|entry| entry.1.iter().any(|&value| value != T::default())) {
+                kept.indices.push(column as u32);
+                kept.values.extend_from_slice(block);
+            }
+            kept.starts.push(kept.indices.len());
+        }
+        kept
+    }
+
     /// The transposed matrix.
     pub fn transposed(&self) -> Self {
         let mut starts = vec![0_usize; self.columns + 1];

@@ -1,6 +1,7 @@
 //! The smoother: Chebyshev polynomials of the fourth kind in D^-1 A, D the diagonal blocks.
 
 use super::blocks::BlockMatrix;
+use super::coarsest::GONE;
 use super::operator::Operator;
 use super::real::Real;
 
@@ -93,6 +94,12 @@ impl<T: Real> Chebyshev<T> {
             };
             for (work, (own, changed)) in work.iter_mut().zip(matrix.block(own).iter().zip(change.block(changed))) {
                 *work = own.double() - changed.double();
+            }
+            for i in 0..size {
+                let whole = matrix.block(own)[i * size + i].double();
+                if work[i * size + i] <= GONE * T::EPSILON * whole {
+                    (0..size).for_each(|j| (work[i * size + j], work[j * size + i]) = (0.0, 0.0));
+                }
             }
             invert(&mut work, size, &mut result);
             let place = &mut smoother.inverse[node * size * size..(node + 1) * size * size];

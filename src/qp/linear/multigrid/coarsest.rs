@@ -8,6 +8,9 @@ use crate::qp::linear::{Cholesky, Equilibration, FactorError, SparseMatrix, Symm
 /// body that nothing holds.
 const LEAST_PIVOT: f64 = 1000.0;
 
+/// A diagonal entry of which less than so many units in the last place are left in a face is rounding.
+pub(super) const GONE: f64 = 100.0;
+
 /// What then holds it, on a diagonal of order one: its contact will, about as stiffly as a coarse cell.
 const SHIFT: f64 = 1e-3;
 
@@ -43,6 +46,41 @@ impl Coarsest {
         }
     }
 
+    /// Factorises a coarsest `matrix` less `change`, what a face takes off it. Unknowns of which rounding is all that is
+    /// left do not move.
+    ///
+    /// # Errors
+    /// As [`Coarsest::of`].
+    pub fn in_face<T: Real>(matrix: &BlockMatrix<T>, change: &BlockMatrix<T>) -> Result<Self, FactorError> {
+        let mut rest = matrix.plus(-1.0, change);
+        let size = rest.height;
+        let diagonal_of = |blocks: &BlockMatrix<T>| -> Vec<f64> {
+            let at = |node: usize, i: usize| {
+                blocks.diagonal_place(node).map_or(0.0, |place| blocks.block(place)[i * size + i].double())
+            };
+            (0..blocks.rows()).flat_map(|node| (0..size).map(move |i| at(node, i))).collect()
+        };
+        let is_gone: Vec<bool> = diagonal_of(&rest)
+            .iter()
+            .zip(diagonal_of(matrix))
+            .map(|(rest, whole)| *rest <= GONE * T::EPSILON * whole)
+            .collect();
+        if is_gone.contains(&true) {
+            for node in 0..rest.rows() {
+                for place in rest.starts[node]..rest.starts[node + 1] {
+                    let other = rest.indices[place] as usize;
+                    for (i, j) in (0..size).flat_map(|i| (0..size).map(move |j| (i, j))) {
+                        let value = &mut rest.values[(place * size + i) * size + j];
+                        if is_gone[node * size + i] || is_gone[other * size + j] {
+                            *value = T::of(f64::from(u8::from(node == other && i == j)));
+                        }
+                    }
+                }
+            }
+        }
+        Self::of(&rest)
+    }
+
     /// Number of values of the factor.
     pub fn entries(&self) -> usize {
         self.cholesky.entries()
@@ -62,7 +100,8 @@ impl Coarsest {
     }
 }
 
-fn lower_part<T: Real>(blocks: &BlockMatrix<T>) -> SymmetricMatrix {
+/// The matrix of the blocks, one unknown after another.
+pub(super) fn lower_part<T: Real>(blocks: &BlockMatrix<T>) -> SymmetricMatrix {
     let size = blocks.height;
     let dim = blocks.rows() * size;
     let (mut starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());

@@ -19,7 +19,7 @@ impl<T: Real> Hierarchy<T> {
     fn descend(&self, depth: usize, mut rest: Vec<T>, face: Option<&FaceLevels<T>>) -> Vec<T> {
         let Some(level) = self.levels.get(depth) else {
             let force: Vec<f64> = rest.iter().map(|value| value.double()).collect();
-            let coarsest = face.map_or(&self.coarsest, |face| &face.coarsest);
+            let coarsest = face.map_or(&*self.coarsest, |face| &face.coarsest);
             let mut x: Vec<T> = coarsest.solve(&force).into_iter().map(T::of).collect();
             if let Some(held) = face.filter(|_| depth == 0).map(|face| &face.held) {
                 held.subtract_from(&mut x);

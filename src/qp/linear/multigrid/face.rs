@@ -7,6 +7,9 @@
 //! A_1 - C_1 = P' (I - Q) A (I - Q) P,     C_1 = S + S' - P' (Q A Q) P  with S = P' (Q A) P,     C_k+1 = P' C_k P
 //! ```
 //!
+//! From the face of Q to that of Q + D, C_1 grows by `S + S' - P' (D A D) P` with `S = P' D A (I - Q) P`: work for what changes,
+//! not for what is held.
+//!
 //! # Source
 //! R. Kornhuber, *Monotone multigrid methods for elliptic variational inequalities I*, Numer. Math. 69 (1994) 167-184:
 //! truncated basis functions.
@@ -35,39 +38,61 @@ pub struct FaceLevels<T> {
 }
 
 impl<T: Real> FaceLevels<T> {
-    /// The hierarchy where nothing moves along `directions`.
+    /// The hierarchy where nothing moves along `directions`: from the `last` face if less changes from there.
     ///
     /// # Errors
     /// As [`Hierarchy::new`].
-    pub fn new(hierarchy: &Hierarchy<T>, directions: &[Direction]) -> Result<Self, FactorError> {
+    pub fn new(
+        hierarchy: &Hierarchy<T>,
+        directions: &[Direction],
+        last: Option<&FaceLevels<T>>,
+    ) -> Result<Self, FactorError> {
         let held = projection(hierarchy, directions);
-        let threads = hierarchy.threads;
-        let (mut changes, mut smoothers): (Vec<BlockMatrix<T>>, Vec<Chebyshev<T>>) = (Vec::new(), Vec::new());
-        let mut coarser =
-            hierarchy.levels.iter().skip(1).map(|level| &level.matrix).chain([&hierarchy.coarsest_matrix]);
-        for (depth, level) in hierarchy.levels.iter().enumerate() {
-            let through =
-                |inner: &BlockMatrix<T>| level.restriction.product(&inner.product(&level.prolongator, 1), threads);
-            let change = match changes.last() {
-                None => {
-                    let rows = held.product(&level.matrix, 1);
-                    let one_side = through(&rows);
-                    one_side.plus(1.0, &one_side.transposed()).plus(-1.0, &through(&rows.product(&held, 1)))
-                }
-                Some(above) => through(above),
-            };
-            let Some(matrix) = coarser.next() else { break };
-            if let Some(next) = hierarchy.levels.get(depth + 1) {
-                smoothers.push(next.smoother.changed(matrix, &change));
-            }
-            changes.push(change);
-        }
-        let coarsest = match changes.last() {
-            Some(change) => Coarsest::of(&hierarchy.coarsest_matrix.plus(-1.0, change))?,
+        let from_last = last.map(|last| (last, held.plus(-1.0, &last.held).without_zeros()));
+        let near = from_last.filter(|(_, change)| change.indices.len() < held.indices.len());
+        let changes = match &near {
+            Some((last, newly_held)) => changes(hierarchy, newly_held, Some(last)),
+            None => changes(hierarchy, &held, None),
+        };
+        let matrices = || hierarchy.matrices().skip(1).zip(&changes);
+        let smoothers = (hierarchy.levels.iter().skip(1).zip(matrices()))
+            .map(|(level, (matrix, change))| level.smoother.changed(matrix, change))
+            .collect();
+        let coarsest = match matrices().last() {
+            Some((matrix, change)) => Coarsest::in_face(matrix, change)?,
             None => Coarsest::of(&held_matrix(&hierarchy.coarsest_matrix, &held))?,
         };
         Ok(FaceLevels { held, changes, smoothers, coarsest })
     }
+}
+
+/// C of each level but the finest, where D is `newly_held` beyond what the face `last` holds, Q.
+fn changes<T: Real>(
+    hierarchy: &Hierarchy<T>,
+    newly_held: &BlockMatrix<T>,
+    last: Option<&FaceLevels<T>>,
+) -> Vec<BlockMatrix<T>> {
+    let threads = hierarchy.threads;
+    let (mut of_levels, mut steps): (Vec<BlockMatrix<T>>, Vec<BlockMatrix<T>>) = (Vec::new(), Vec::new());
+    for level in &hierarchy.levels {
+        let through =
+            |inner: &BlockMatrix<T>| level.restriction.product(&inner.product(&level.prolongator, 1), threads);
+        let step = match steps.last() {
+            None => {
+                let rows = newly_held.product(&level.matrix, 1);
+                let one_side = match last {
+                    Some(last) => through(&rows.plus(-1.0, &rows.product(&last.held, 1))),
+                    None => through(&rows),
+                };
+                one_side.plus(1.0, &one_side.transposed()).plus(-1.0, &through(&rows.product(newly_held, 1)))
+            }
+            Some(above) => through(above),
+        };
+        let before = last.and_then(|last| last.changes.get(of_levels.len()));
+        of_levels.push(before.map_or_else(|| step.clone(), |before| before.plus(1.0, &step)));
+        steps.push(step);
+    }
+    of_levels
 }
 
 /// `(I - Q) A (I - Q) + Q`, for a hierarchy of one level.

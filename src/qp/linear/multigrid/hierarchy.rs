@@ -1,5 +1,7 @@
 //! The levels of a hierarchy.
 
+use std::sync::Arc;
+
 use super::aggregation::aggregate;
 use super::blocks::BlockMatrix;
 use super::chebyshev::Chebyshev;
@@ -34,10 +36,10 @@ pub struct Hierarchy<T> {
     pub(super) nodes: Nodes,
     /// The matrix times `2^shift` has a diagonal of order one.
     pub(super) shift: i32,
-    pub(super) levels: Vec<Level<T>>,
+    pub(super) levels: Vec<Arc<Level<T>>>,
     /// The matrix of the coarsest level, and its factor.
-    pub(super) coarsest_matrix: BlockMatrix<T>,
-    pub(super) coarsest: Coarsest,
+    pub(super) coarsest_matrix: Arc<BlockMatrix<T>>,
+    pub(super) coarsest: Arc<Coarsest>,
     pub(super) threads: usize,
 }
 
@@ -47,6 +49,8 @@ pub(super) struct Level<T> {
     pub smoother: Chebyshev<T>,
     pub prolongator: BlockMatrix<T>,
     pub restriction: BlockMatrix<T>,
+    /// The near-null space in the unknowns of the next level.
+    pub near_null: Candidates,
 }
 
 impl<T: Real> Hierarchy<T> {
@@ -84,24 +88,44 @@ impl<T: Real> Hierarchy<T> {
             let restriction = prolongator.transposed();
             let mut next = restriction.product(&blocks.product(&prolongator, threads), threads);
             fill_empty_diagonal(&mut next);
-            levels.push(Level { matrix: blocks, smoother, prolongator, restriction });
+            let near_null = coarse.clone();
+            levels.push(Arc::new(Level { matrix: blocks, smoother, prolongator, restriction, near_null }));
             (blocks, candidates) = (next, coarse);
             threshold /= 2.0;
         }
-        let coarsest = Coarsest::of(&blocks)?;
-        Ok(Hierarchy { nodes, shift, levels, coarsest_matrix: blocks, coarsest, threads })
+        let coarsest = Arc::new(Coarsest::of(&blocks)?);
+        Ok(Hierarchy { nodes, shift, levels, coarsest_matrix: Arc::new(blocks), coarsest, threads })
+    }
+
+    /// The hierarchy of the second level, which shares the levels; `None` if there is only one.
+    pub fn below(&self) -> Option<Self> {
+        let (_, rest) = self.levels.split_first()?;
+        let matrix = rest.first().map_or(&*self.coarsest_matrix, |level| &level.matrix);
+        Some(Hierarchy {
+            nodes: Nodes::in_order(matrix.height, matrix.rows()),
+            shift: 0,
+            levels: rest.to_vec(),
+            coarsest_matrix: Arc::clone(&self.coarsest_matrix),
+            coarsest: Arc::clone(&self.coarsest),
+            threads: self.threads,
+        })
+    }
+
+    /// The matrix of each level, the finest first.
+    pub fn matrices(&self) -> impl Iterator<Item = &BlockMatrix<T>> {
+        self.levels.iter().map(|level| &level.matrix).chain([&*self.coarsest_matrix])
     }
 
     /// Unknowns of each level, the finest first.
     pub fn unknowns(&self) -> Vec<usize> {
-        let of_level = |level: &Level<T>| level.matrix.rows() * level.matrix.height;
+        let of_level = |level: &Arc<Level<T>>| level.matrix.rows() * level.matrix.height;
         let coarsest = self.coarsest_matrix.rows() * self.coarsest_matrix.height;
         self.levels.iter().map(of_level).chain([coarsest]).collect()
     }
 
     /// Bytes that it holds.
     pub fn bytes(&self) -> usize {
-        let of_level = |level: &Level<T>| {
+        let of_level = |level: &Arc<Level<T>>| {
             level.matrix.bytes() + level.prolongator.bytes() + level.restriction.bytes() + level.smoother.bytes()
         };
         self.levels.iter().map(of_level).sum::<usize>() + size_of::<f64>() * self.coarsest.entries()

@@ -12,6 +12,7 @@
 mod aggregation;
 mod blocks;
 mod chebyshev;
+mod coarser;
 mod coarsest;
 mod conjugate_gradients;
 mod cycle;
@@ -25,6 +26,7 @@ mod prolongator;
 mod real;
 mod threads;
 
+pub use coarser::Interval;
 pub use conjugate_gradients::{ConjugateGradients, conjugate_gradients};
 pub use dual_norm::{DualNorm, dual_norm, dual_norm_within};
 pub use face::Direction;
@@ -103,17 +105,22 @@ impl Multigrid {
         }
     }
 
-    /// The hierarchy with nothing moving along `directions`, orthonormal vectors of few dofs each.
+    /// The hierarchy with nothing moving along `directions`, orthonormal vectors of few dofs each; `last` is a face of the
+    /// same hierarchy that may be near.
     ///
     /// # Errors
     /// As [`Multigrid::new`].
-    pub fn face(&self, directions: &[Direction]) -> Result<Face<'_>, Error> {
+    pub fn face(&self, directions: &[Direction], last: Option<&Face>) -> Result<Face<'_>, Error> {
         let levels = match &self.levels {
             Levels::Single(hierarchy) => {
-                FaceLevels::new(hierarchy, directions).map(|face| LevelsInFace::Single(hierarchy, face))
+                let last = last
+                    .and_then(|face| if let LevelsInFace::Single(_, last) = &face.levels { Some(last) } else { None });
+                FaceLevels::new(hierarchy, directions, last).map(|face| LevelsInFace::Single(hierarchy, face))
             }
             Levels::Double(hierarchy) => {
-                FaceLevels::new(hierarchy, directions).map(|face| LevelsInFace::Double(hierarchy, face))
+                let last = last
+                    .and_then(|face| if let LevelsInFace::Double(_, last) = &face.levels { Some(last) } else { None });
+                FaceLevels::new(hierarchy, directions, last).map(|face| LevelsInFace::Double(hierarchy, face))
             }
         };
         Ok(Face { levels: levels.map_err(located)? })

@@ -65,6 +65,11 @@ impl Nodes {
         (nodes, blocks, shift)
     }
 
+    /// So many nodes of `size` dofs each, one after another.
+    pub fn in_order(size: usize, count: usize) -> Self {
+        Nodes { size, count, place: (0..(size * count) as u32).collect() }
+    }
+
     /// Dofs of a node, and which of them each dof is.
     pub fn components(matrix: &SymmetricMatrix) -> (usize, Vec<usize>) {
         let graph = Quotient::of(matrix.lower());

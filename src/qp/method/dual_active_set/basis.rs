@@ -7,7 +7,7 @@
 //! J. W. Daniel, W. B. Gragg, L. Kaufman, G. W. Stewart, 1976, "Reorthogonalization and stable algorithms for updating
 //! the Gram-Schmidt QR factorization", Mathematics of Computation 30, pp. 772-795.
 
-use crate::qp::linear::{dot, largest};
+use crate::qp::linear::{UpperTriangle, dot, largest, norm, subtract, turned};
 
 /// What is left of a row below this share of it, times the size of its weights, is rounding: the row depends on the
 /// closed ones. Any value between 1e-15 and 1e-5 gives the same sets on several thousand random problems.
@@ -25,8 +25,8 @@ pub(super) struct Basis {
     rows: Vec<usize>,
     /// The columns of Q.
     directions: Vec<Vec<f64>>,
-    /// The columns of R, each down to its diagonal entry.
-    triangle: Vec<Vec<f64>>,
+    /// R.
+    triangle: UpperTriangle,
 }
 
 /// A row c beside a basis: `c = Q along + across`.
@@ -53,7 +53,7 @@ impl Basis {
         let (mut along, mut across, mut left) = (vec![0.0; self.rows.len()], c.to_vec(), length);
         for _ in 0..MOST_TURNS {
             let turn = self.along(&across);
-            self.subtract(&turn, &mut across);
+            self.take_out(&turn, &mut across);
             along.iter_mut().zip(&turn).for_each(|(sum, part)| *sum += part);
             let before = left;
             left = norm(&across);
@@ -61,41 +61,31 @@ impl Basis {
                 break;
             }
         }
-        let weights = self.solve_upper(along.clone());
+        let weights = self.triangle.solve_upper(along.clone());
         let depends = left <= DEPENDENT * (1.0 + largest(&weights)) * length;
         Split { along, across, weights, depends }
     }
 
     /// Closes `row`, split by this basis.
     pub fn close(&mut self, row: usize, split: Split) {
-        let Split { mut along, mut across, .. } = split;
+        let Split { along, mut across, .. } = split;
         let length = norm(&across);
         across.iter_mut().for_each(|entry| *entry /= length);
-        along.push(length);
         self.rows.push(row);
         self.directions.push(across);
-        self.triangle.push(along);
+        self.triangle.push(along, length, true);
     }
 
     /// Opens the row at `place` of [`rows`](Self::rows).
     pub fn open(&mut self, place: usize) {
         self.rows.remove(place);
-        self.triangle.remove(place);
-        // R has one entry below its diagonal from `place` on: each is rotated away.
-        for first in place..self.triangle.len() {
-            let (a, b) = (self.triangle[first][first], self.triangle[first][first + 1]);
-            let length = a.hypot(b);
-            let (cosine, sine) = if length > 0.0 { (a / length, b / length) } else { (1.0, 0.0) };
-            let turned = |x: f64, y: f64| (cosine * x + sine * y, cosine * y - sine * x);
-            for column in &mut self.triangle[first..] {
-                (column[first], column[first + 1]) = turned(column[first], column[first + 1]);
-            }
-            let (left, right) = self.directions.split_at_mut(first + 1);
+        let directions = &mut self.directions;
+        self.triangle.remove(place, |first, cosine, sine| {
+            let (left, right) = directions.split_at_mut(first + 1);
             for (x, y) in left[first].iter_mut().zip(&mut right[0]) {
-                (*x, *y) = turned(*x, *y);
+                (*x, *y) = turned(cosine, sine, *x, *y);
             }
-            self.triangle[first].truncate(first + 1);
-        }
+        });
         self.directions.pop();
     }
 
@@ -103,11 +93,11 @@ impl Basis {
     /// the closed rows for which `w = target - C_A' y`.
     pub fn nearest(&self, target: &[f64], values: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let mut excess = self.along(target);
-        let wanted = self.solve_lower(values.to_vec());
+        let wanted = self.triangle.solve_lower(values.to_vec());
         excess.iter_mut().zip(&wanted).for_each(|(along, wanted)| *along -= wanted);
         let mut point = target.to_vec();
-        self.subtract(&excess, &mut point);
-        (point, self.solve_upper(excess))
+        self.take_out(&excess, &mut point);
+        (point, self.triangle.solve_upper(excess))
     }
 
     /// Q' x.
@@ -115,32 +105,14 @@ impl Basis {
         self.directions.iter().map(|direction| dot(direction, x)).collect()
     }
 
-    fn subtract(&self, shares: &[f64], x: &mut [f64]) {
+    fn take_out(&self, shares: &[f64], x: &mut [f64]) {
         for (direction, &share) in self.directions.iter().zip(shares) {
-            x.iter_mut().zip(direction).for_each(|(entry, q)| *entry -= share * q);
+            subtract(x, share, direction);
         }
     }
 
     /// R^-1 b.
-    pub fn solve_upper(&self, mut b: Vec<f64>) -> Vec<f64> {
-        for (place, column) in self.triangle.iter().enumerate().rev() {
-            b[place] /= column[place];
-            let value = b[place];
-            b[..place].iter_mut().zip(column).for_each(|(entry, r)| *entry -= r * value);
-        }
-        b
+    pub fn solve_upper(&self, b: Vec<f64>) -> Vec<f64> {
+        self.triangle.solve_upper(b)
     }
-
-    /// R'^-1 b.
-    fn solve_lower(&self, mut b: Vec<f64>) -> Vec<f64> {
-        for (place, column) in self.triangle.iter().enumerate() {
-            b[place] = (b[place] - dot(&column[..place], &b[..place])) / column[place];
-        }
-        b
-    }
-}
-
-/// The Euclidean length.
-pub(super) fn norm(x: &[f64]) -> f64 {
-    dot(x, x).sqrt()
 }

@@ -25,10 +25,11 @@ mod polyhedron;
 
 use std::collections::HashSet;
 
-use super::{Outcome, ScaledProblem};
+use super::{Outcome, ScaledProblem, Solver, Start};
 use crate::error::Error;
+use crate::qp::linear::norm;
 use crate::solution::{ContactSet, Iteration};
-use basis::{Basis, norm};
+use basis::Basis;
 use pass::{Ending, Pass};
 use polyhedron::Polyhedron;
 
@@ -57,40 +58,57 @@ const CONVERGED: f64 = 1e-10;
 /// Units in the last place of its terms to which a row is met.
 const MET: f64 = 4.0 * f64::EPSILON;
 
-/// Solves the problem; `None` where its factorisation fails or it is too large for a dense basis of its rows.
-///
-/// The answer is not settled where the method was cut short or its corrections do not converge, as where rows and
-/// stiffness do not hold the body: it makes no claim about that.
-///
-/// # Errors
-/// [`Error::Infeasible`] with verified weights, [`Error::Numerical`] for want of memory.
-pub fn solve(scaled: &ScaledProblem) -> Result<Option<Outcome>, Error> {
-    let Some(polyhedron) = Polyhedron::of(scaled)? else { return Ok(None) };
-    let (dofs, rows) = (scaled.problem.dofs(), scaled.problem.rows());
-    let mut search = Search {
-        polyhedron: &polyhedron,
-        basis: Basis::default(),
-        displacement: vec![0.0; dofs],
-        pressures: vec![0.0; rows],
-        rests: vec![0.0; rows],
-        point: vec![0.0; dofs],
-        history: Vec::new(),
-    };
-    let mut seen = HashSet::new();
-    let mut settled = false;
-    for _ in 0..MOST_PASSES {
-        let ending = search.pass(scaled)?;
-        let converged = search.correct();
-        let violated = search.violates();
-        settled = ending == Ending::Met && converged && !violated;
-        let pulls = search.pressures.iter().any(|&pressure| pressure < 0.0);
-        // A set that comes back will do so for ever.
-        if settled && !pulls || scaled.watch().is_over() || !seen.insert(search.contact_set()) {
-            break;
-        }
+/// The dual active-set method on a scaled problem, whose polyhedron it has factorised.
+pub struct DualActiveSet<'a> {
+    scaled: &'a ScaledProblem<'a>,
+    polyhedron: Polyhedron,
+}
+
+impl<'a> DualActiveSet<'a> {
+    /// Factorises the problem; `None` if that fails or the problem is too large for a dense basis of its rows.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] for want of memory.
+    pub fn of(scaled: &'a ScaledProblem<'a>) -> Result<Option<Self>, Error> {
+        Ok(Polyhedron::of(scaled)?.map(|polyhedron| DualActiveSet { scaled, polyhedron }))
     }
-    let Search { basis, displacement, pressures, history, .. } = search;
-    Ok(Some(polyhedron.expand(&displacement, &pressures, basis.rows(), history, settled)))
+}
+
+impl Solver for DualActiveSet<'_> {
+    /// Solves the problem; it always starts from the free point.
+    ///
+    /// The answer is not settled if the method was cut short or its corrections do not converge, for example if rows and
+    /// stiffness do not hold the body: it makes no claim about that.
+    ///
+    /// # Errors
+    /// [`Error::Infeasible`] with verified weights, [`Error::Numerical`] for want of memory.
+    fn solve(&self, _: Start) -> Result<Outcome, Error> {
+        let (dofs, rows) = (self.scaled.problem.dofs(), self.scaled.problem.rows());
+        let mut search = Search {
+            polyhedron: &self.polyhedron,
+            basis: Basis::default(),
+            displacement: vec![0.0; dofs],
+            pressures: vec![0.0; rows],
+            rests: vec![0.0; rows],
+            point: vec![0.0; dofs],
+            history: Vec::new(),
+        };
+        let mut seen = HashSet::new();
+        let mut settled = false;
+        for _ in 0..MOST_PASSES {
+            let ending = search.pass(self.scaled)?;
+            let converged = search.correct();
+            let violated = search.violates();
+            settled = ending == Ending::Met && converged && !violated;
+            let pulls = search.pressures.iter().any(|&pressure| pressure < 0.0);
+            // A set that comes back will do so for ever.
+            if settled && !pulls || self.scaled.watch().is_over() || !seen.insert(search.contact_set()) {
+                break;
+            }
+        }
+        let Search { basis, displacement, pressures, history, .. } = search;
+        Ok(self.polyhedron.expand(&displacement, &pressures, basis.rows(), history, settled))
+    }
 }
 
 /// The best answer so far, in the units of the polyhedron.

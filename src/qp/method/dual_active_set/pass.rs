@@ -2,10 +2,10 @@
 
 use std::collections::HashSet;
 
-use super::basis::{Basis, DEPENDENT, norm};
+use super::basis::{Basis, DEPENDENT};
 use super::polyhedron::Polyhedron;
 use crate::error::Error;
-use crate::qp::linear::{dot, largest};
+use crate::qp::linear::{dot, largest, norm};
 use crate::solution::{ContactSet, Iteration};
 use crate::watch::Watch;
 

@@ -6,10 +6,9 @@
 
 use std::cell::Cell;
 
-use super::basis::norm;
 use crate::error::Error;
 use crate::qp::linear::{
-    Accumulator, AugmentedMatrix, Cholesky, Equilibration, FactorError, SparseMatrix, exponent, ldexp,
+    Accumulator, AugmentedMatrix, Cholesky, Equilibration, FactorError, SparseMatrix, exponent, ldexp, norm,
 };
 use crate::qp::method::{Outcome, ScaledProblem};
 use crate::qp::problem::ContactProblem;

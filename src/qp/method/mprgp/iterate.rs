@@ -1,9 +1,9 @@
 //! What MPRGP has in hand, and the steps that it takes.
 
-use super::start::Start;
 use crate::error::Error;
 use crate::qp::linear::multigrid::{Direction, Face};
 use crate::qp::linear::{dot, largest};
+use crate::qp::method::Start;
 use crate::qp::method::bounds::{Bound, Bounds};
 use crate::qp::method::holding::where_largest;
 use crate::qp::problem::ContactProblem;
@@ -78,13 +78,13 @@ impl<'a> Iterate<'a> {
     pub fn new(problem: &'a ContactProblem, bounds: &'a Bounds, start: Start, threads: usize) -> Self {
         let mut load = problem.load().to_vec();
         bounds.turn(&mut load);
-        let mut x = start.displacement.map_or_else(|| vec![0.0; problem.dofs()], <[f64]>::to_vec);
+        let mut x = start.displacement.unwrap_or_else(|| vec![0.0; problem.dofs()]);
         bounds.turn(&mut x);
         let diagonal = problem.stiffness().diagonal();
         let at = vec![At::Free; bounds.bounds().len()];
         let mut iterate = Iterate { problem, bounds, load, diagonal, x, gradient: Vec::new(), at, threads };
         for (index, bound) in bounds.bounds().iter().enumerate() {
-            if let Some(closed) = start.contact_set {
+            if let Some(closed) = &start.contact_set {
                 let value = &mut iterate.x[bound.unknown];
                 if bounds.is_closed(index, true, closed) {
                     *value = bound.upper;
@@ -241,30 +241,39 @@ impl<'a> Iterate<'a> {
         self.project();
     }
 
-    /// The CG step, or where it would cross bounds, the expansion.
-    pub fn advance(&mut self, direction: &Conjugate) {
+    /// The CG step, or if it would cross bounds, the expansion: its projection; if that raises the energy, the least energy on
+    /// the way there or the step to the first bound, whichever is lower, and a projected gradient step. Returns the direction
+    /// if the next one is conjugate to it.
+    pub fn advance(&mut self, direction: Conjugate) -> Option<Conjugate> {
         let length = direction.slope / direction.energy;
         let room = self.longest_step(&direction.p);
         if length <= room {
             self.step_along(&direction.p, &direction.moved, length);
             self.project();
-            return;
+            return Some(direction);
         }
         let (x, gradient, at) = (self.x.clone(), self.gradient.clone(), self.at.clone());
+        let mut on_the_way = None;
         if length.is_finite() {
             self.x.iter_mut().zip(&direction.p).for_each(|(x, p)| *x -= length * p);
             self.project();
             self.refresh_gradient();
-            let change: f64 = (self.x.iter().zip(&x))
-                .zip(self.gradient.iter().zip(&gradient))
-                .map(|((new, old), (g, before))| (new - old) * (g + before))
-                .sum();
-            if change < 0.0 {
-                return;
+            on_the_way = self.least_energy_from(&x, &gradient);
+        }
+        let to_bounds = room * direction.slope - 0.5 * room * room * direction.energy;
+        match on_the_way {
+            Some((share, _)) if share >= 1.0 => return None,
+            Some((share, fall)) if fall >= to_bounds => {
+                for (new, old) in self.x.iter_mut().zip(&x).chain(self.gradient.iter_mut().zip(&gradient)) {
+                    *new = old + share * (*new - old);
+                }
+                self.project();
+            }
+            _ => {
+                (self.x, self.gradient, self.at) = (x, gradient, at);
+                self.step_to_bounds(&direction, room);
             }
         }
-        (self.x, self.gradient, self.at) = (x, gradient, at);
-        self.step_to_bounds(direction, room);
         let share = 1.0 / self.largest_eigenvalue();
         let free = self.free_gradient();
         for ((x, g), d) in self.x.iter_mut().zip(&free).zip(&self.diagonal) {
@@ -272,6 +281,23 @@ impl<'a> Iterate<'a> {
         }
         self.project();
         self.refresh_gradient();
+        None
+    }
+
+    /// The share of the way from `x`, with its `gradient`, to the unknowns as they are that is to be gone, and by how much the
+    /// energy falls: all of the way if the energy at its end is lower, else that to the least energy; `None` if the energy rises
+    /// at once.
+    fn least_energy_from(&self, x: &[f64], gradient: &[f64]) -> Option<(f64, f64)> {
+        let (mut slope, mut curvature) = (0.0, 0.0);
+        for ((new, old), (after, before)) in self.x.iter().zip(x).zip(self.gradient.iter().zip(gradient)) {
+            slope += (new - old) * before;
+            curvature += (new - old) * (after - before);
+        }
+        let at_end = slope + 0.5 * curvature;
+        (slope < 0.0).then(|| match at_end < 0.0 {
+            true => (1.0, -at_end),
+            false => (-slope / curvature, 0.5 * slope * slope / curvature),
+        })
     }
 
     /// An upper bound on the eigenvalues of `D^-1 K`, by Gershgorin's circles.

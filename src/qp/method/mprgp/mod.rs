@@ -7,7 +7,8 @@
 //! proportioning   where the chopped gradient outweighs the free one: a step along it, which opens rows
 //! CG step         along conjugate directions of the free face, one cycle of the hierarchy each
 //! expansion       where the CG step would cross bounds: its projection, which closes rows; should that raise the energy,
-//!                 the step to the first bound and a projected gradient step of fixed length
+//!                 the least energy on the way there or the step to the first bound, and a projected gradient step of
+//!                 fixed length
 //! ```
 //!
 //! The energy falls in every one of them. The hierarchy is built once, for K; a face is a small change of it.
@@ -16,18 +17,17 @@
 //! Z. Dostál, *Optimal Quadratic Programming Algorithms*, Springer (2009), algorithm 5.8 and section 5.10.
 
 mod iterate;
-mod start;
+mod nested;
 mod uniqueness;
 
-pub use start::Start;
-
-use super::Outcome;
 use super::bounds::Bounds;
+use super::{Outcome, Solver, Start};
 use crate::error::Error;
-use crate::qp::linear::multigrid::Multigrid;
+use crate::qp::linear::multigrid::{Face, Multigrid};
 use crate::qp::problem::ContactProblem;
 use crate::watch::Watch;
 use iterate::{Conjugate, Iterate};
+use nested::nested_start;
 
 /// Iterations without a residual half as large as the best before, after which the loop has stagnated; those in which the
 /// face changes count only beyond one for each row.
@@ -47,6 +47,22 @@ pub struct Limits<'a> {
     pub watch: &'a Watch,
 }
 
+/// MPRGP on a problem as it came, with the hierarchy of its stiffness.
+pub struct Mprgp<'a> {
+    /// The problem.
+    pub problem: &'a ContactProblem,
+    /// The hierarchy.
+    pub multigrid: &'a Multigrid,
+    /// When the loop ends.
+    pub limits: Limits<'a>,
+}
+
+impl Solver for Mprgp<'_> {
+    fn solve(&self, start: Start) -> Result<Outcome, Error> {
+        solve(self.problem, self.multigrid, start, self.limits)
+    }
+}
+
 /// Finds displacement, multipliers and contact set; `iterations` counts the cycles of the hierarchy.
 ///
 /// The loop is finite: it ends at the limits, where only rounding is left, or, as `-stagnated`, where 60 iterations together
@@ -56,65 +72,31 @@ pub struct Limits<'a> {
 /// [`Error::Numerical`] for rows that no turning makes bounds of, [`Error::NotConvex`] for a direction of negative energy
 /// in a face, [`Error::Unbounded`] for a load that drives a motion which no row stops, [`Error::UnderHeld`] for a motion
 /// that the rows under pressure leave free.
-pub fn solve(problem: &ContactProblem, multigrid: &Multigrid, start: Start, limits: Limits) -> Result<Outcome, Error> {
+fn solve(problem: &ContactProblem, multigrid: &Multigrid, start: Start, limits: Limits) -> Result<Outcome, Error> {
     let bounds = Bounds::of(problem.contact(), problem.gap())?;
+    let start = if start.is_unknown() { nested(problem, &bounds, multigrid, limits).unwrap_or(start) } else { start };
     let mut iterate = Iterate::new(problem, &bounds, start, multigrid.threads());
     let mut history = vec![iterate.step()];
-    let mut face = None;
-    let mut last: Option<Conjugate> = None;
-    let (mut cycles, mut settled) = (0, false);
-    let (mut best, mut since_best, mut changes, mut is_fresh) = (f64::INFINITY, 0, 0, true);
-    let mut last_checked = f64::INFINITY;
+    let mut steps = Steps { multigrid, limits, face: None, is_old: false, last: None, cycles: 0 };
+    let mut progress = Progress::default();
+    let mut settled = false;
     let is_late = || limits.watch.is_over();
-    while cycles < limits.most_cycles && since_best < PATIENCE + changes.min(problem.rows()) && !is_late() {
+    while steps.cycles < limits.most_cycles && progress.since_best < progress.patience(problem.rows()) && !is_late() {
         let residual = iterate.residual();
         if residual <= limits.tolerance {
-            if is_fresh {
-                settled = true;
+            settled = progress.is_fresh || progress.has_settled(&mut iterate);
+            if settled {
                 break;
             }
-            // What the steps have carried along is checked before it is believed.
-            iterate.refresh_gradient_accurately();
-            let checked = iterate.residual();
-            if checked > NO_GAIN * last_checked {
-                // Rounding of the displacement is all that is left.
-                settled = true;
-                break;
-            }
-            (is_fresh, last, last_checked) = (true, None, checked);
+            steps.last = None;
             continue;
         }
-        is_fresh = false;
-        since_best += 1;
-        if residual < 0.5 * best {
-            (best, since_best, changes) = (residual, 0, 0);
-        }
+        progress.note(residual);
         let before = iterate.at.clone();
-        if iterate.is_disproportionate() {
-            iterate.proportion();
-        } else {
-            let gradient = iterate.free_gradient();
-            let free_face = match face.take() {
-                Some(free_face) => free_face,
-                None => multigrid.face(&iterate.held())?,
-            };
-            let step = iterate.preconditioned(&free_face, &gradient);
-            face = Some(free_face);
-            cycles += 1;
-            limits.watch.step("MPRGP", cycles);
-            let direction = Conjugate::of(step, last.take(), &gradient, &iterate);
-            if direction.is_free {
-                return Err(iterate.free_motion(direction.p));
-            }
-            if direction.energy < 0.0 {
-                return Err(iterate.negative_energy(direction));
-            }
-            iterate.advance(&direction);
-            last = Some(direction);
-        }
+        steps.take_one(&mut iterate)?;
         if iterate.at != before {
-            (face, last) = (None, None);
-            changes += 1;
+            (steps.is_old, steps.last) = (true, None);
+            progress.changes += 1;
             history.push(iterate.step());
         }
     }
@@ -127,8 +109,101 @@ pub fn solve(problem: &ContactProblem, multigrid: &Multigrid, start: Start, limi
     bounds.turn_back(&mut displacement);
     let variant = match settled {
         true => "",
-        false if cycles >= limits.most_cycles || is_late() => "-unsettled",
+        false if steps.cycles >= limits.most_cycles || is_late() => "-unsettled",
         false => "-stagnated",
     };
-    Ok(Outcome { displacement, multiplier, contact_set, iterations: cycles, history, settled, variant })
+    Ok(Outcome { displacement, multiplier, contact_set, iterations: steps.cycles, history, settled, variant })
+}
+
+/// The start from the second level, if there is one with the values of nodes.
+fn nested(problem: &ContactProblem, bounds: &Bounds, multigrid: &Multigrid, limits: Limits) -> Option<Start> {
+    let below = |problem: &ContactProblem, multigrid: &Multigrid, tolerance, most_cycles| {
+        solve(problem, multigrid, Start::default(), Limits { tolerance, most_cycles, ..limits })
+    };
+    nested_start(problem, bounds, multigrid, below).map(Start::near)
+}
+
+/// How far the iteration has come.
+struct Progress {
+    best: f64,
+    since_best: usize,
+    /// Changes of the face since then.
+    changes: usize,
+    /// Was the gradient just computed from the unknowns, in twice the precision?
+    is_fresh: bool,
+    last_checked: f64,
+}
+
+impl Default for Progress {
+    fn default() -> Self {
+        let best = f64::INFINITY;
+        Progress { best, since_best: 0, changes: 0, is_fresh: true, last_checked: f64::INFINITY }
+    }
+}
+
+impl Progress {
+    fn patience(&self, rows: usize) -> usize {
+        PATIENCE + self.changes.min(rows)
+    }
+
+    /// Notes a residual above the tolerance.
+    fn note(&mut self, residual: f64) {
+        self.is_fresh = false;
+        self.since_best += 1;
+        if residual < 0.5 * self.best {
+            (self.best, self.since_best, self.changes) = (residual, 0, 0);
+        }
+    }
+
+    /// Checks what the steps have carried along before it is believed. Returns `true` if rounding of the displacement is all
+    /// that is left.
+    fn has_settled(&mut self, iterate: &mut Iterate) -> bool {
+        iterate.refresh_gradient_accurately();
+        let checked = iterate.residual();
+        if checked > NO_GAIN * self.last_checked {
+            return true;
+        }
+        (self.is_fresh, self.last_checked) = (true, checked);
+        false
+    }
+}
+
+/// What the steps keep from one to the next.
+struct Steps<'a> {
+    multigrid: &'a Multigrid,
+    limits: Limits<'a>,
+    face: Option<Face<'a>>,
+    /// Has the set of unknowns at bounds changed since the face was built?
+    is_old: bool,
+    last: Option<Conjugate>,
+    cycles: usize,
+}
+
+impl Steps<'_> {
+    /// Takes a proportioning, conjugate gradient or expansion step.
+    fn take_one(&mut self, iterate: &mut Iterate) -> Result<(), Error> {
+        if iterate.is_disproportionate() {
+            iterate.proportion();
+            return Ok(());
+        }
+        let gradient = iterate.free_gradient();
+        let face = match self.face.take() {
+            Some(face) if !self.is_old => face,
+            old => self.multigrid.face(&iterate.held(), old.as_ref())?,
+        };
+        self.is_old = false;
+        let step = iterate.preconditioned(&face, &gradient);
+        self.face = Some(face);
+        self.cycles += 1;
+        self.limits.watch.step("MPRGP", self.cycles);
+        let direction = Conjugate::of(step, self.last.take(), &gradient, iterate);
+        if direction.is_free {
+            return Err(iterate.free_motion(direction.p));
+        }
+        if direction.energy < 0.0 {
+            return Err(iterate.negative_energy(direction));
+        }
+        self.last = iterate.advance(direction);
+        Ok(())
+    }
 }

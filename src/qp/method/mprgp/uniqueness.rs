@@ -70,8 +70,8 @@ impl Iterate<'_> {
         }
         let bounds = self.bounds.bounds();
         let held: Vec<usize> = (0..bounds.len()).filter(|&index| is_held(index)).collect();
-        let face =
-            multigrid.face(&held.iter().map(|&index| self.bounds.direction(&bounds[index])).collect::<Vec<_>>())?;
+        let face = multigrid
+            .face(&held.iter().map(|&index| self.bounds.direction(&bounds[index])).collect::<Vec<_>>(), None)?;
         if !face.is_shifted() {
             return Ok(None);
         }

@@ -5,14 +5,16 @@ use signorini::Error;
 use super::dyadic::Dyadic;
 use super::solve::Exact;
 
-/// Sums that vanish exactly may be left with this share of their terms, and entries below this share of the largest stand for
-/// zero: the evidence is given in doubles.
+/// Sums that vanish exactly may be left with this share of their terms: the evidence is given in doubles.
 const ROUNDING: f64 = 1e-9;
+
+/// Entries of a direction below this share of the largest stand for zero.
+const NOTHING: f64 = 1e-15;
 
 /// The entries of a direction, with those that stand for zero replaced by it.
 fn cleaned(direction: &[f64]) -> Vec<Dyadic> {
     let largest = direction.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-    let kept = |&value: &f64| if value.abs() > ROUNDING * largest { value } else { 0.0 };
+    let kept = |&value: &f64| if value.abs() > NOTHING * largest { value } else { 0.0 };
     direction.iter().map(kept).map(Dyadic::from).collect()
 }
 

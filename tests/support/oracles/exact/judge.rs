@@ -5,7 +5,7 @@ use signorini::{Certificate, ContactProblem, Error, Goal, ProvenSet, Solution};
 use nalgebra::DMatrix;
 
 use super::case::Case;
-use super::dyadic::{Dyadic, ratio};
+use super::dyadic::{Dyadic, dot, ratio};
 use super::evidence;
 use super::measure::{Errors, Relative};
 use super::solve::{Answer, Exact, Outcome};
@@ -15,6 +15,9 @@ const BORDERLINE: f64 = 1e-8;
 
 /// Rows closer to a dependence than this have lost all but the last digits of what tells them apart.
 const DEPENDENT: f64 = 1e-13;
+
+/// A change of a gap by this share of the terms of its row, `|g| + |B| |u|`, is rounding of the data.
+const OF_DATA: f64 = 1e-15;
 
 /// A bound that falls short by a smaller factor has lost it by rounding, as far as it is above rounding itself.
 const OF_THE_BOUND: f64 = 1.001;
@@ -167,6 +170,19 @@ impl<'a> Judge<'a> {
         matches!(self.outcome, Outcome::Solved(answer) if answer.is_unique) && self.condition < CONDITIONED
     }
 
+    /// Returns `true` if a displacement u meets every row of an infeasible problem, exactly, once each gap is changed by at most
+    /// 1e-15 of `|g| + |B| |u|`. Then data that agree with these to their rounding have an answer there, however much the rows overlap beside
+    /// gaps that are small: a displacement in doubles meets no row better.
+    fn meets_rounded_rows(&self, displacement: &[f64]) -> bool {
+        let (u, rounding) = (displacement.iter().map(|&value| Dyadic::from(value)), Dyadic::from(OF_DATA));
+        let u: Vec<Dyadic> = u.collect();
+        let meets = |(row, gap): (&Vec<Dyadic>, &Dyadic)| {
+            let terms = row.iter().zip(&u).fold(gap.abs(), |sum, (b, u)| &sum + &(b * u).abs());
+            (&dot(row, &u) - gap) <= &terms * &rounding
+        };
+        matches!(self.outcome, Outcome::Infeasible { .. }) && self.exact.contact.iter().zip(&self.exact.gap).all(meets)
+    }
+
     /// The faults of how a solve ended; those of the program's own choice may not be refusals either.
     pub fn ending(&self, asked: &str, goal: Goal, ending: &Result<Solution, Error>, must_end: bool) -> Vec<Fault> {
         let (solution, said) = match ending {
@@ -213,7 +229,10 @@ impl<'a> Judge<'a> {
             Outcome::Solved(answer) if answer.is_unique => is_certified,
             Outcome::Solved(_) => is_certified || matches!(ending, Err(Error::UnderHeld { .. })),
             // What meets the rows to a tolerance meets rows that overlap by less.
-            Outcome::Infeasible { overlap, .. } if is_certified => *overlap <= goal.tolerance,
+            Outcome::Infeasible { overlap, .. } if is_certified => {
+                *overlap <= goal.tolerance
+                    || solution.is_some_and(|answer| self.meets_rounded_rows(&answer.displacement))
+            }
             Outcome::Infeasible { .. } => matches!(ending, Err(Error::Infeasible { .. } | Error::Unbounded { .. })),
             Outcome::Unbounded { .. } => matches!(ending, Err(Error::Unbounded { .. })),
             Outcome::Indefinite { .. } => !is_certified,
@@ -248,7 +267,7 @@ impl<'a> Judge<'a> {
                 let met = goal.is_met_by(&certificate).then_some(goal);
                 let mut faults = self.answer(asked, displacement, multiplier, &certificate, proven.as_ref(), met);
                 let has_answer = matches!(self.outcome, Outcome::Solved(_));
-                if met.is_some() && !has_answer && !self.is_borderline() {
+                if met.is_some() && !(has_answer || self.is_borderline() || self.meets_rounded_rows(displacement)) {
                     let detail = format!("{asked}: certified, but it is {}", self.verdict());
                     let answer = Some((displacement.to_vec(), multiplier.to_vec()));
                     faults.push(Fault { answer, ..Fault::new(Sort::Certified, detail) });

@@ -242,7 +242,7 @@ impl Trial {
 
 /// A method with options.
 fn settings(draws: &mut Draws) -> Settings {
-    let methods = [Method::Auto, Method::Qp, Method::ActiveSet, Method::Penalty, Method::Mprgp];
+    let methods = [Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty(), Method::Mprgp];
     let mut settings = Settings::with_method(draws.pick(&methods));
     if draws.one_in(4) {
         settings.condense = Condense::Never;
@@ -257,11 +257,15 @@ fn settings(draws: &mut Draws) -> Settings {
         settings.precision = Precision::Mixed;
     }
     if draws.one_in(16) {
-        settings.time = Some(0.0);
+        settings.time = Some(std::time::Duration::ZERO);
     }
-    settings.polish = !draws.one_in(6);
-    settings.prove = draws.one_in(2);
-    settings.extrapolate = draws.one_in(4);
+    let (polish, prove, extrapolates) = (!draws.one_in(6), draws.one_in(2), draws.one_in(4));
+    settings.prove = prove;
+    match &mut settings.method {
+        Method::Qp(options) => options.polish = polish,
+        Method::Penalty(ladder) => ladder.extrapolate = extrapolates,
+        _ => {}
+    }
     settings
 }
 
@@ -273,9 +277,9 @@ fn words(settings: &Settings) -> String {
         (settings.condense == Condense::Never, "all dofs"),
         (settings.precision == Precision::Mixed, "mixed precision"),
         (settings.prove, "proving"),
-        (!settings.polish, "unpolished"),
+        (matches!(settings.method, Method::Qp(options) if !options.polish), "unpolished"),
         (settings.time.is_some(), "without time"),
-        (settings.extrapolate, "extrapolating"),
+        (matches!(settings.method, Method::Penalty(ladder) if ladder.extrapolate), "extrapolating"),
     ];
     words.extend(marks.into_iter().filter(|mark| mark.0).map(|mark| mark.1.to_string()));
     words.join(", ")

@@ -1,0 +1,109 @@
+//! What an element says of itself: the form in which each has a file of its own.
+
+/// The largest number of nodes that an element here has.
+pub const MAX_NODES: usize = 8;
+
+/// One value per node of an element; entries beyond its nodes are zero.
+pub type PerNode<T> = [T; MAX_NODES];
+
+/// What a reference cell is the product or the hull of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// A simplex: origin and unit vectors; linear functions have total degree one.
+    Simplex,
+    /// A product of intervals [-1, 1]; linear functions have degree one in each coordinate.
+    Product,
+}
+
+/// A point of a quadrature rule.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct QuadraturePoint {
+    /// Reference coordinates.
+    pub at: [f64; 3],
+    /// Weight; the weights add up to the size of the reference cell.
+    pub weight: f64,
+}
+
+/// An element on its reference cell.
+#[derive(Debug)]
+pub struct ReferenceElement {
+    /// Short name, as `Q4`.
+    pub name: &'static str,
+    /// Simplex or product of intervals.
+    pub form: Shape,
+    /// Dimension of the cell, 0 to 3.
+    pub dimension: usize,
+    /// Reference coordinates of the nodes; the corners come first.
+    pub nodes: &'static [[f64; 3]],
+    /// Number of corners.
+    pub corners: usize,
+    /// Local nodes of every face, in the order of the facet's own reference cell, seen from outside counterclockwise.
+    pub faces: &'static [&'static [usize]],
+    /// Local nodes in the order along the cell; the own order where the cell is no line.
+    pub along: &'static [usize],
+    /// Values of the shape functions at a reference point.
+    pub shape: fn([f64; 3]) -> PerNode<f64>,
+    /// Derivatives of the shape functions with respect to the reference coordinates, at a reference point.
+    pub derivative: fn([f64; 3]) -> PerNode<[f64; 3]>,
+    /// Quadrature that integrates stiffness and constant loads of an undistorted cell exactly.
+    pub quadrature: &'static [QuadraturePoint],
+    /// The same for a cell that is revolved about an axis: the radius is one degree more.
+    pub quadrature_revolved: &'static [QuadraturePoint],
+    /// Reference coordinates of the centroid.
+    pub centroid: [f64; 3],
+    /// What a face of the element is; of a point and of an edge, which are no elements of a body in the plane, its ends.
+    pub facet: FacetKind,
+    /// The number by which a file of Gmsh knows the element, with its nodes in the same order.
+    pub gmsh: usize,
+    /// The number by which a file of VTK knows it.
+    pub vtk: u8,
+    /// What a cell of a structured mesh brings with it.
+    pub counts: LatticeCounts,
+}
+
+/// What a cell of a large structured mesh brings with it: a quadrilateral or a brick, cut into simplices where the element
+/// is one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LatticeCounts {
+    /// Nodes that a cell adds.
+    pub nodes: f64,
+    /// Nodes that a cell adds to a line across it.
+    pub line: f64,
+    /// Nodes of the elements of a cell together.
+    pub connections: f64,
+    /// Nodes whose stiffness a node meets, itself among them, on average.
+    pub neighbours: f64,
+}
+
+impl LatticeCounts {
+    /// Of what no mesh is made.
+    pub const NONE: Self = LatticeCounts { nodes: 0.0, line: 0.0, connections: 0.0, neighbours: 0.0 };
+}
+
+impl ReferenceElement {
+    /// The local nodes in the order that a mirrored element has: that of the cell with xi and eta exchanged, or, on a
+    /// line, with xi reversed.
+    pub fn mirrored(&self) -> Vec<usize> {
+        let mirror = |[xi, eta, zeta]: [f64; 3]| match self.dimension {
+            1 => [-xi, eta, zeta],
+            _ => [eta, xi, zeta],
+        };
+        let place = |at: [f64; 3]| self.nodes.iter().position(|&node| node == at);
+        self.nodes.iter().enumerate().map(|(local, &at)| place(mirror(at)).unwrap_or(local)).collect()
+    }
+}
+
+/// The faces of elements.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FacetKind {
+    /// The end of a bar.
+    Point1,
+    /// Straight edge of two nodes.
+    Line2,
+    /// Quadratic edge: two ends, then the mid-side.
+    Line3,
+    /// Triangle of three nodes.
+    T3,
+    /// Quadrilateral of four nodes, in order around it.
+    Q4,
+}

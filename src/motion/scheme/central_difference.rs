@@ -1,0 +1,89 @@
+//! Central differences with a diagonal mass; a node that would cross the obstacle gets an impulse.
+//!
+//! ```text
+//! v* = v + dt a/2,   v~ = argmin norm_M(v~ - v*) with B v~ <= bound,   u+ = u + dt v~
+//! M a+ = f+ - K u+ - C v~,   v+ = v~ + dt a+/2,   lambda = M (v~ - v*)/dt
+//! ```
+//!
+//! The bound lets an open row come to the obstacle and no further; with a restitution e > 0 a row that would cross it
+//! leaves with `-e` times its velocity.
+//!
+//! # Source
+//! J. J. Moreau, *Numerical aspects of the sweeping process*, Comput. Methods Appl. Mech. Eng. 177 (1999) 329-349: the
+//! impact law.
+
+use super::projection::MassProjection;
+use super::stable_step::check_step;
+use crate::error::Error;
+use crate::fem::assembly::MassForm;
+use crate::motion::step::{About, Advance, Parameter, plus};
+use crate::motion::{DynamicProblem, State};
+use crate::solution::ContactSet;
+
+pub(super) static ABOUT: About = About {
+    name: "central-difference",
+    parameter: Some(Parameter {
+        name: "restitution",
+        default: 0.0,
+        allows: |restitution| (0.0..=1.0).contains(&restitution),
+        range: "from 0 to 1",
+    }),
+    // It divides by the mass.
+    masses: &[MassForm::Lumped],
+    gains_energy: false,
+    penetrates: false,
+    is_explicit: true,
+    prepare: |problem, step, restitution, settings| {
+        check_step(problem, step)?;
+        let mass = MassProjection::new(problem, settings)?;
+        Ok(Box::new(CentralDifference { restitution, mass, diagonal: problem.mass().diagonal() }))
+    },
+};
+
+#[derive(Debug)]
+struct CentralDifference {
+    restitution: f64,
+    mass: MassProjection,
+    diagonal: Vec<f64>,
+}
+
+impl CentralDifference {
+    /// The acceleration without contact.
+    fn acceleration(&self, problem: &DynamicProblem, t: f64, elastic: &[f64], velocity: &[f64]) -> Vec<f64> {
+        let mut force = plus(&problem.load_at(t), -1.0, elastic);
+        problem.damp(1.0, velocity, &mut force);
+        force.iter().zip(&self.diagonal).map(|(f, m)| f / m).collect()
+    }
+}
+
+impl Advance for CentralDifference {
+    fn start(&self, problem: &DynamicProblem, _: f64, state: State) -> Result<State, Error> {
+        let acceleration = self.acceleration(problem, 0.0, &state.elastic, &state.velocity);
+        Ok(State { acceleration, ..state })
+    }
+
+    fn advance(&self, problem: &DynamicProblem, step: f64, state: &State) -> Result<State, Error> {
+        let statics = problem.statics();
+        let mut velocity = plus(&state.velocity, step / 2.0, &state.acceleration);
+        let approach = statics.contact().mul(&velocity);
+        let room = problem.remaining_gap(&state.displacement);
+        let bound = room.iter().zip(&approach).map(|(room, &approach)| {
+            let crosses = step * approach > *room && approach > 0.0;
+            let allowed = if crosses && self.restitution > 0.0 { -self.restitution * approach } else { room / step };
+            allowed - approach
+        });
+        let (mut multiplier, mut contact_set) = (vec![0.0; statics.rows()], ContactSet::open(statics.rows()));
+        if let Some(blow) = self.mass.smallest(bound.collect(), &state.contact_set)? {
+            velocity = plus(&velocity, 1.0, &blow.change);
+            multiplier = blow.multiplier.iter().map(|impulse| impulse / step).collect();
+            contact_set = blow.contact_set;
+        }
+        let displacement = plus(&state.displacement, step, &velocity);
+        let elastic = statics.stiffness().mul(&displacement);
+        let steps = state.steps + 1;
+        let acceleration = self.acceleration(problem, steps as f64 * step, &elastic, &velocity);
+        let velocity = plus(&velocity, step / 2.0, &acceleration);
+        let momentum = problem.mass().mul(&velocity);
+        Ok(State { steps, displacement, velocity, acceleration, elastic, momentum, multiplier, contact_set })
+    }
+}

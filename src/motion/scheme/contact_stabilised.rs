@@ -1,0 +1,70 @@
+//! Newmark's rule, contact-stabilised: the prediction is made admissible first, and contact forces are implicit.
+//!
+//! ```text
+//! u^ = argmin norm_M(u^ - u - dt v) with B u^ <= g,   u+ = u^ + w,   v+ = v + 2 w/dt
+//! (2/dt^2) M w + C (v + w/dt) + K (u + u+)/2 = f(t + dt/2) + B' lambda,   B u+ <= g
+//! ```
+//!
+//! # Source
+//! P. Deuflhard, R. Krause, S. Ertel, *A contact-stabilized Newmark method for dynamical contact problems*, Int. J.
+//! Numer. Methods Eng. 73 (2008) 1274-1290.
+
+use super::projection::MassProjection;
+use crate::error::Error;
+use crate::fem::assembly::MassForm;
+use crate::motion::step::{About, Advance, Stepping, plus};
+use crate::motion::{DynamicProblem, State};
+
+pub(super) static ABOUT: About = About {
+    name: "contact-stabilised",
+    parameter: None,
+    masses: &[MassForm::Consistent, MassForm::Lumped],
+    gains_energy: false,
+    penetrates: false,
+    is_explicit: false,
+    prepare: |problem, step, _, settings| {
+        // Twice the equation above.
+        let matrix = problem.combination(4.0 / (step * step), 2.0 / step, 1.0)?;
+        let stepping = Stepping::of(problem, matrix, settings)?;
+        Ok(Box::new(ContactStabilised { stepping, mass: MassProjection::new(problem, settings)? }))
+    },
+};
+
+#[derive(Debug)]
+struct ContactStabilised {
+    stepping: Stepping,
+    mass: MassProjection,
+}
+
+impl Advance for ContactStabilised {
+    fn start(&self, _: &DynamicProblem, _: f64, state: State) -> Result<State, Error> {
+        Ok(state)
+    }
+
+    fn advance(&self, problem: &DynamicProblem, step: f64, state: &State) -> Result<State, Error> {
+        let mut predicted = plus(&state.displacement, step, &state.velocity);
+        let bound = problem.remaining_gap(&predicted);
+        if let Some(correction) = self.mass.smallest(bound, &state.contact_set)? {
+            predicted = plus(&predicted, 1.0, &correction.change);
+        }
+        let stiffness = problem.statics().stiffness();
+        let elastic = plus(&state.elastic, 1.0, &stiffness.mul(&predicted));
+        let load = problem.load_at((state.steps as f64 + 0.5) * step);
+        let mut force: Vec<f64> = load.iter().zip(&elastic).map(|(f, k)| 2.0 * f - k).collect();
+        problem.damp(2.0, &state.velocity, &mut force);
+        let gap = problem.remaining_gap(&predicted);
+        let found = self.stepping.solve(force, gap, &state.contact_set)?;
+        let displacement = plus(&predicted, 1.0, &found.change);
+        let velocity = plus(&state.velocity, 2.0 / step, &found.change);
+        Ok(State {
+            steps: state.steps + 1,
+            momentum: problem.mass().mul(&velocity),
+            velocity,
+            acceleration: state.acceleration.clone(),
+            elastic: stiffness.mul(&displacement),
+            displacement,
+            multiplier: found.multiplier.iter().map(|lambda| lambda / 2.0).collect(),
+            contact_set: found.contact_set,
+        })
+    }
+}

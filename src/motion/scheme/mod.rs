@@ -1,0 +1,220 @@
+//! The schemes: a file each, named here and nowhere else.
+
+mod central_difference;
+mod contact_stabilised;
+mod hht;
+mod midpoint;
+mod newmark;
+mod penalty;
+mod projection;
+mod stable_step;
+mod trapezoidal;
+
+pub use stable_step::stable_step;
+
+use serde::{Deserialize, Serialize};
+
+use super::step::{About, Parameter, Prepare};
+use crate::error::Error;
+use crate::fem::assembly::MassForm;
+
+/// The schemes to choose from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum SchemeSpec {
+    /// Midpoint rule, its contact nodes without mass: keeps energy, and the pressure does not chatter.
+    #[default]
+    Midpoint,
+    /// Trapezoidal Newmark with the constraint at the end of each step: gains energy at every blow. For comparison.
+    Trapezoidal,
+    /// Newmark with a contact-stabilised prediction: loses a little energy at every blow, never gains.
+    ContactStabilised,
+    /// HHT-alpha: damps what the mesh does not resolve.
+    Hht,
+    /// Trapezoidal Newmark with penalty springs: penetrates, and gains energy where they are stiff. For comparison.
+    Penalty,
+    /// Explicit central differences with Moreau's impact law; steps are small and cheap.
+    CentralDifference,
+}
+
+impl SchemeSpec {
+    /// All schemes: the default first, those that are there for comparison behind those that answer, the explicit one last.
+    pub const ALL: [SchemeSpec; 6] = [
+        SchemeSpec::Midpoint,
+        SchemeSpec::ContactStabilised,
+        SchemeSpec::Hht,
+        SchemeSpec::Trapezoidal,
+        SchemeSpec::Penalty,
+        SchemeSpec::CentralDifference,
+    ];
+
+    /// The scheme with a value of its parameter, or with the default of that.
+    pub fn with(self, value: Option<f64>) -> Scheme {
+        let value = value.or(self.parameter().map(|parameter| parameter.default)).unwrap_or_default();
+        match self {
+            SchemeSpec::Midpoint => Scheme::Midpoint,
+            SchemeSpec::Trapezoidal => Scheme::Trapezoidal,
+            SchemeSpec::ContactStabilised => Scheme::ContactStabilised,
+            SchemeSpec::Hht => Scheme::Hht { alpha: value },
+            SchemeSpec::Penalty => Scheme::Penalty { penalty: value },
+            SchemeSpec::CentralDifference => Scheme::CentralDifference { restitution: value },
+        }
+    }
+
+    /// The name in scenes and reports.
+    pub fn name(self) -> &'static str {
+        self.about().name
+    }
+
+    /// The parameter, if the scheme has one.
+    pub fn parameter(self) -> Option<Parameter> {
+        self.about().parameter
+    }
+
+    /// Returns `true` if the step is limited.
+    pub fn is_explicit(self) -> bool {
+        self.about().is_explicit
+    }
+
+    fn about(self) -> &'static About {
+        match self {
+            SchemeSpec::Midpoint => &midpoint::ABOUT,
+            SchemeSpec::Trapezoidal => &trapezoidal::ABOUT,
+            SchemeSpec::ContactStabilised => &contact_stabilised::ABOUT,
+            SchemeSpec::Hht => &hht::ABOUT,
+            SchemeSpec::Penalty => &penalty::ABOUT,
+            SchemeSpec::CentralDifference => &central_difference::ABOUT,
+        }
+    }
+}
+
+/// A scheme of time integration.
+///
+/// | scheme | energy at a blow | pressure | penetration |
+/// |---|---|---|---|
+/// | midpoint, redistributed mass | kept to about 1e-5 a step | smooth | none |
+/// | trapezoidal | **gained**, more the smaller the step | chatters | none |
+/// | contact-stabilised | lost a little, never gained | smooth after some steps | none |
+/// | HHT-alpha | **gained**, less than by the trapezoidal rule | chatters, damped | none |
+/// | penalty | **gained** where the springs are stiff | chatters | force over penalty |
+/// | central differences | lost a little: the mass of the contact nodes stops | smooth on lumped mass | none |
+///
+/// Alone the midpoint rule takes the force of the middle of a step, where a node that closes in its second half does not
+/// touch yet. A bar of length L and cells h that hits a wall flatly would gain or lose up to `(c dt/h)^2 h/(4 L)` of its
+/// energy. A step that is off by more than 1e-5 therefore takes a force between those of its middle and of its ends that
+/// does the right work, at the cost of a few steps; bodies whose nodes close one after the other hardly need it, and with
+/// damping it is left out.
+///
+/// Implicit steps slow short waves, a consistent mass quickens them: along a uniform mesh of linear elements the wave number
+/// k travels with `c (1 + (1/12 - (c dt/h)^2/6) (k h)^2/2)`. The front that comes back is smeared over some cells, and what
+/// trails behind it stays in the body: the rebound is slow by a share that falls with h^(2/3).
+///
+/// `tools/impact` prints the figures.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Scheme {
+    /// The midpoint rule: contact at the middle of each step; massless dofs follow in equilibrium at its end.
+    #[default]
+    Midpoint,
+    /// Newmark's trapezoidal rule, beta = 1/4 and gamma = 1/2, with the constraint at the end of each step.
+    ///
+    /// **Gains energy**: the acceleration that stops a node in one step returns in the next. Kept to show it.
+    Trapezoidal,
+    /// Newmark's rule with a prediction that is projected onto the admissible displacements in the norm of the mass,
+    /// contact forces implicit.
+    ContactStabilised,
+    /// HHT-alpha with beta = (1 - alpha)^2/4, gamma = 1/2 - alpha, and the constraint at the end of each step.
+    ///
+    /// **Gains energy** at a blow as the trapezoidal rule does, and damps it afterwards.
+    Hht {
+        /// From -1/3 (most damping) to 0 (the trapezoidal rule).
+        alpha: f64,
+    },
+    /// The trapezoidal rule with closed rows as springs in every step: `(K_eff + eps C) u = f_eff + eps C g` until C
+    /// repeats.
+    ///
+    /// **Gains energy** where the springs are stiff, and penetrates where they are soft.
+    Penalty {
+        /// Stiffness of the springs eps in multiples of the local stiffness of a step, positive.
+        penalty: f64,
+    },
+    /// Central differences: explicit; a node that would cross the obstacle gets an impulse, by Moreau's law.
+    CentralDifference {
+        /// Velocity after over before the blow of a node, from 0 to 1.
+        restitution: f64,
+    },
+}
+
+impl Scheme {
+    /// The scheme without the value of its parameter.
+    pub fn spec(self) -> SchemeSpec {
+        match self {
+            Scheme::Midpoint => SchemeSpec::Midpoint,
+            Scheme::Trapezoidal => SchemeSpec::Trapezoidal,
+            Scheme::ContactStabilised => SchemeSpec::ContactStabilised,
+            Scheme::Hht { .. } => SchemeSpec::Hht,
+            Scheme::Penalty { .. } => SchemeSpec::Penalty,
+            Scheme::CentralDifference { .. } => SchemeSpec::CentralDifference,
+        }
+    }
+
+    /// The value of the parameter; 0 if the scheme has none.
+    pub fn value(self) -> f64 {
+        match self {
+            Scheme::Midpoint | Scheme::Trapezoidal | Scheme::ContactStabilised => 0.0,
+            Scheme::Hht { alpha: value }
+            | Scheme::Penalty { penalty: value }
+            | Scheme::CentralDifference { restitution: value } => value,
+        }
+    }
+
+    /// The name in scenes and reports.
+    pub fn name(self) -> &'static str {
+        self.spec().name()
+    }
+
+    /// Returns `true` if the scheme can gain energy at a blow.
+    pub fn gains_energy(self) -> bool {
+        self.spec().about().gains_energy
+    }
+
+    /// Returns `true` if closed rows give way like springs, so that no answer of a step is certified.
+    pub fn penetrates(self) -> bool {
+        self.spec().about().penetrates
+    }
+
+    /// The form of the mass that suits it.
+    pub fn mass_form(self) -> MassForm {
+        self.spec().about().masses[0]
+    }
+
+    /// Returns `true` if the scheme can use a mass of this form. Only the midpoint rule knows dofs without mass, and the
+    /// explicit scheme needs a diagonal.
+    pub fn allows(self, form: MassForm) -> bool {
+        self.spec().about().masses.contains(&form)
+    }
+
+    /// Returns `true` if the step is limited.
+    pub fn is_explicit(self) -> bool {
+        self.spec().is_explicit()
+    }
+
+    /// Checks the range of the parameter.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for a value outside of it.
+    pub fn check(self) -> Result<(), Error> {
+        let value = self.value();
+        match self.spec().parameter() {
+            Some(Parameter { name, allows, range, .. }) if !allows(value) => {
+                Err(Error::Setting { name, value, allowed: range })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// What prepares the steps.
+    pub(super) fn prepare(self) -> Prepare {
+        self.spec().about().prepare
+    }
+}

@@ -1,0 +1,91 @@
+//! Newmark's family with the constraint at the end of the step.
+//!
+//! ```text
+//! u^ = u + dt v + dt^2 (1/2 - beta) a,   v^ = v + dt (1 - gamma) a,   u+ = u^ + w,   a+ = w/(beta dt^2),   v+ = v^ + dt gamma a+
+//! M a+ + (1 + alpha) (C v+ + K u+ - f+) - alpha (C v + K u - f) = B' lambda+,   B u+ <= g
+//! ```
+//!
+//! # Source
+//! H. M. Hilber, T. J. R. Hughes, R. L. Taylor, *Improved numerical dissipation for time integration algorithms in
+//! structural dynamics*, Earthq. Eng. Struct. Dyn. 5 (1977) 283-292.
+
+use super::projection::MassProjection;
+use crate::error::Error;
+use crate::fem::assembly::MassForm;
+use crate::motion::step::{Advance, Stepping, plus};
+use crate::motion::{DynamicProblem, State};
+use crate::qp::Settings;
+
+/// The forms of the mass that the family can use.
+pub(super) const MASSES: &[MassForm] = &[MassForm::Consistent, MassForm::Lumped];
+
+#[derive(Debug)]
+pub(super) struct Newmark {
+    alpha: f64,
+    beta: f64,
+    gamma: f64,
+    stepping: Stepping,
+    mass: MassProjection,
+}
+
+impl Newmark {
+    /// The rule of the parameter alpha; the contact problems with the mass are solved with `rigid`, those of the steps
+    /// with `settings`.
+    pub fn new(
+        problem: &DynamicProblem,
+        step: f64,
+        alpha: f64,
+        settings: &Settings,
+        rigid: &Settings,
+    ) -> Result<Self, Error> {
+        let (beta, gamma) = ((1.0 - alpha).powi(2) / 4.0, 0.5 - alpha);
+        let inertia = 1.0 / (beta * step * step);
+        let weight = 1.0 + alpha;
+        let matrix = problem.combination(inertia, weight * gamma / (beta * step), weight)?;
+        let stepping = Stepping::of(problem, matrix, settings)?;
+        Ok(Newmark { alpha, beta, gamma, stepping, mass: MassProjection::new(problem, rigid)? })
+    }
+}
+
+impl Advance for Newmark {
+    /// The acceleration with which the motion starts; rows that would be violated within the step hold against it.
+    fn start(&self, problem: &DynamicProblem, step: f64, state: State) -> Result<State, Error> {
+        let mut force = plus(&problem.load_at(0.0), -1.0, &state.elastic);
+        problem.damp(1.0, &state.velocity, &mut force);
+        let coasting = plus(&state.displacement, step, &state.velocity);
+        let room = problem.remaining_gap(&coasting);
+        let bound = room.into_iter().map(|gap| 2.0 * gap.max(0.0) / (step * step)).collect();
+        let acceleration = self.mass.solve(force, bound, &state.contact_set)?.change;
+        Ok(State { acceleration, ..state })
+    }
+
+    fn advance(&self, problem: &DynamicProblem, step: f64, state: &State) -> Result<State, Error> {
+        let Newmark { alpha, beta, gamma, .. } = *self;
+        let time = |steps: usize| steps as f64 * step;
+        let coasting = plus(&state.displacement, step, &state.velocity);
+        let predicted = plus(&coasting, step * step * (0.5 - beta), &state.acceleration);
+        let predicted_velocity = plus(&state.velocity, step * (1.0 - gamma), &state.acceleration);
+        let stiffness = problem.statics().stiffness();
+        let mut force = plus(&problem.load_at(time(state.steps + 1)), -1.0, &stiffness.mul(&predicted));
+        problem.damp(1.0, &predicted_velocity, &mut force);
+        if alpha != 0.0 {
+            let mut before = plus(&problem.load_at(time(state.steps)), -1.0, &state.elastic);
+            problem.damp(1.0, &state.velocity, &mut before);
+            force.iter_mut().zip(before).for_each(|(f, before)| *f = (1.0 + alpha) * *f - alpha * before);
+        }
+        let gap = problem.remaining_gap(&predicted);
+        let found = self.stepping.solve(force, gap, &state.contact_set)?;
+        let displacement = plus(&predicted, 1.0, &found.change);
+        let velocity = plus(&predicted_velocity, gamma / (beta * step), &found.change);
+        Ok(State {
+            steps: state.steps + 1,
+            momentum: problem.mass().mul(&velocity),
+            velocity,
+            acceleration: found.change.iter().map(|w| w / (beta * step * step)).collect(),
+            elastic: stiffness.mul(&displacement),
+            displacement,
+            multiplier: found.multiplier,
+            contact_set: found.contact_set,
+        })
+    }
+}

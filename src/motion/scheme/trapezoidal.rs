@@ -1,0 +1,14 @@
+//! The trapezoidal rule: Newmark's with beta = 1/4 and gamma = 1/2.
+
+use super::newmark::{MASSES, Newmark};
+use crate::motion::step::About;
+
+pub(super) static ABOUT: About = About {
+    name: "trapezoidal",
+    parameter: None,
+    masses: MASSES,
+    gains_energy: true,
+    penetrates: false,
+    is_explicit: false,
+    prepare: |problem, step, _, settings| Ok(Box::new(Newmark::new(problem, step, 0.0, settings, settings)?)),
+};

@@ -1,0 +1,217 @@
+//! An upper bound on the energy norm of an answer's error, for the whole and for each part.
+//!
+//! For a feasible v and multipliers mu <= 0 with r = f + B' mu - K v,
+//!
+//! ```text
+//! 1/2 |v - u*|_K^2 <= J(v) - D(mu) = 1/2 r' K^-1 r + mu' (B v - g)
+//! ```
+//!
+//! so that `|u - u*|_K <= |u - v|_K + sqrt(r' K^-1 r + 2 mu' (B v - g))`. The pair (v, mu) is the answer repaired: the rows
+//! that look closed are put exactly at their gaps and no other row carries a force, so that the product vanishes.
+//!
+//! Where K is singular, the norm is that of `K_D = K + B_C' D B_C` with rows C that press, which stays the same on motions
+//! that these rows do not feel. With s = g - B u* on C and a = |r| in the dual norm of K_D,
+//!
+//! ```text
+//! |v - u*|_K^2 + sum |mu_i| s_i <= a |v - u*|_{K_D},     |v - u*|_{K_D}^2 = |v - u*|_K^2 + sum D_i s_i^2
+//! ```
+//!
+//! which gives `|v - u*|_K <= a` as long as a is below every `|mu_i| / sqrt(D_i)`; [`Springs::hold`] asks for half of that.
+
+mod boundary;
+mod cycles;
+mod row_by_row;
+mod triangle;
+
+use super::EnergyNorm;
+use super::springs::Springs;
+use crate::error::Error;
+use crate::qp::problem::{ContactProblem, Parts};
+
+/// An answer (u, lambda) and what its certificate has computed of it.
+pub(super) struct Answer<'a> {
+    pub displacement: &'a [f64],
+    pub multiplier: &'a [f64],
+    /// f + B' lambda - K u.
+    pub residual: Vec<f64>,
+    /// B u - g.
+    pub violation: &'a [f64],
+}
+
+/// Upper bounds on the energy norm of the error.
+#[derive(Clone, Debug)]
+pub(super) struct ErrorBound {
+    /// `|u - u*|_K`.
+    pub whole: f64,
+    /// The same for each part, where there are several.
+    pub of_parts: Option<Vec<f64>>,
+}
+
+impl ErrorBound {
+    /// No bound.
+    pub fn none() -> Self {
+        ErrorBound { whole: f64::INFINITY, of_parts: None }
+    }
+
+    /// What tells the smaller of two bounds; what is not a number is larger than anything.
+    fn size(&self) -> f64 {
+        let size = self.of_parts.as_ref().map_or(self.whole, |parts| parts.iter().sum());
+        if size.is_nan() { f64::INFINITY } else { size }
+    }
+
+    fn smaller(self, other: Self) -> Self {
+        if self.size() <= other.size() { self } else { other }
+    }
+
+    /// The bound on the error of an answer that is away by `step` from the one that this is of.
+    fn farther(mut self, problem: &ContactProblem, step: &[f64]) -> Self {
+        self.whole += problem.length(step);
+        if let Some(parts) = &mut self.of_parts {
+            problem.add_sizes(problem.parts(), step, parts);
+        }
+        self
+    }
+
+    fn widened(mut self, factor: f64) -> Self {
+        self.whole *= factor;
+        self.of_parts.iter_mut().flatten().for_each(|bound| *bound *= factor);
+        self
+    }
+}
+
+/// Squares of what is below this share of another number underflow beside it.
+const LOST: f64 = 1e-140;
+
+/// Squares of what is below this underflow, or lose digits.
+const LEAST: f64 = 1e-145;
+
+impl ContactProblem {
+    /// An upper bound on `|u - u*|_K`.
+    pub(super) fn energy_error_bound(&self, norm: &EnergyNorm, answer: &Answer) -> ErrorBound {
+        let closed = self.rows_that_look_closed(answer);
+        let on_boundary = norm.boundary().and_then(|boundary| self.bound_on_boundary(norm, boundary, answer, &closed));
+        // What was cut short is nothing.
+        let on_boundary = on_boundary.filter(|bound| bound.whole.is_finite() || !norm.is_over());
+        let bound = on_boundary.unwrap_or_else(|| {
+            let as_it_stands = self.bound_row_by_row(norm, answer, None);
+            self.bound_row_by_row(norm, answer, Some(&closed)).smaller(as_it_stands)
+        });
+        let underflow = self.underflow(answer);
+        let bound = bound.widened(norm.widening() * norm.rounding());
+        ErrorBound {
+            whole: bound.whole + underflow,
+            of_parts: bound.of_parts.map(|parts| parts.iter().map(|part| part + underflow).collect()),
+        }
+    }
+
+    /// What displacements are worth in energy whose squares are lost in double precision, or beside the forces; 0 where there
+    /// are none.
+    fn underflow(&self, answer: &Answer) -> f64 {
+        let roots = &self.diagonal().roots;
+        let contact = self.contact.mul_transposed(answer.multiplier);
+        let force = |dof: usize| self.load[dof].abs() + contact[dof].abs();
+        let loaded = (0..self.dofs()).filter(|&dof| force(dof) > 0.0 && roots[dof] > 0.0);
+        let least = loaded.map(|dof| LOST * force(dof) / roots[dof]).fold(LEAST, f64::max);
+        let is_lost = |dof: usize| {
+            let size = answer.displacement[dof].abs();
+            size > 0.0 && roots[dof] > 0.0 && size * roots[dof] < least
+        };
+        (0..self.dofs()).filter(|&dof| is_lost(dof)).count() as f64 * 2.0 * least
+    }
+
+    /// Rows whose force, times their compliance if all else stood still, exceeds their distance.
+    fn rows_that_look_closed(&self, answer: &Answer) -> Vec<bool> {
+        let mut compliance = vec![0.0; self.rows()];
+        for (dof, &stiffness) in self.diagonal().values.iter().enumerate() {
+            self.contact
+                .column(dof)
+                .filter(|entry| entry.1 != 0.0)
+                .for_each(|(row, b)| compliance[row] += b * b / stiffness);
+        }
+        let looks = |row: usize| -answer.multiplier[row] * compliance[row] > -answer.violation[row];
+        (0..self.rows()).map(|row| self.gap[row].is_finite() && looks(row)).collect()
+    }
+
+    /// The part of each row; 0 for a row without dofs.
+    fn parts_of_rows(&self, parts: &Parts) -> Vec<usize> {
+        let mut of_rows = vec![0; self.rows()];
+        (0..self.dofs()).for_each(|dof| {
+            self.contact
+                .column(dof)
+                .filter(|entry| entry.1 != 0.0)
+                .for_each(|(row, _)| of_rows[row] = parts.of_dof(dof));
+        });
+        of_rows
+    }
+
+    /// An upper bound on `|b / b'b|_K` of each row b: the motion along the row that it feels as one.
+    pub(super) fn lengths_along_rows(&self) -> Vec<f64> {
+        let (mut sums, mut squares) = (vec![0.0; self.rows()], vec![0.0; self.rows()]);
+        for (dof, &root) in self.diagonal().roots.iter().enumerate() {
+            for (row, b) in self.contact.column(dof) {
+                sums[row] += b.abs() * root;
+                squares[row] += b * b;
+            }
+        }
+        sums.iter().zip(&squares).map(|(sum, square)| if *square > 0.0 { sum / square } else { 0.0 }).collect()
+    }
+
+    /// The energy norm of a motion.
+    fn length(&self, motion: &[f64]) -> f64 {
+        let forces = self.unrounded_product(|column| self.stiffness.lower().column(column), motion);
+        forces.products_by(motion, |_| 0, 1)[0].max(0.0).sqrt()
+    }
+
+    /// The energy norms of a motion by parts, added to `sizes`.
+    fn add_sizes(&self, parts: &Parts, motion: &[f64], sizes: &mut [f64]) {
+        let energies = self.energies(parts, motion);
+        sizes.iter_mut().zip(energies).for_each(|(size, energy)| *size += energy.max(0.0).sqrt());
+    }
+}
+
+/// A row presses where its force could do more than this share of the energy norm of its part.
+const PRESSING: f64 = 1e-8;
+
+impl ContactProblem {
+    /// The energy norm of K or, where K is semidefinite, of K with springs on the rows that press; `None` where these do not
+    /// hold the body, or K has a negative eigenvalue: springs would hide it.
+    ///
+    /// # Errors
+    /// As [`EnergyNorm::of`].
+    pub(super) fn energy_norm(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Option<EnergyNorm>, Error> {
+        if let Some(norm) = EnergyNorm::of(&self.stiffness, &self.contact)? {
+            return Ok(Some(norm));
+        }
+        let springs = self.springs(displacement, multiplier);
+        let Some(held) = springs.added_to(&self.stiffness, &self.contact)? else { return Ok(None) };
+        let Some(norm) = EnergyNorm::of(&held, &self.contact)? else { return Ok(None) };
+        Ok(self.stiffness.is_semidefinite()?.then(|| norm.with_springs(springs)))
+    }
+
+    /// Springs on the rows that press, each as stiff as the row itself is when all but its own dofs stand still.
+    pub(super) fn springs(&self, displacement: &[f64], multiplier: &[f64]) -> Springs {
+        let parts = self.parts();
+        let mut compliance = vec![0.0; self.rows()];
+        for (dof, &stiffness) in self.diagonal().values.iter().enumerate().filter(|entry| *entry.1 > 0.0) {
+            for (row, b) in self.contact.column(dof) {
+                compliance[row] += b * b / stiffness;
+            }
+        }
+        let sizes: Vec<f64> = self.energies(parts, displacement).iter().map(|energy| energy.max(0.0).sqrt()).collect();
+        let (part_of_row, violation) = (self.parts_of_rows(parts), self.accurate_violation(displacement));
+        let spring = |row: usize| {
+            let (force, size) = (-multiplier[row], sizes[part_of_row[row]]);
+            // A row that only dofs without stiffness feel has no stiffness of its own: its force sets the scale.
+            let stiffness = match compliance[row] {
+                0.0 if size > 0.0 => (force / size).powi(2),
+                0.0 => 1.0,
+                compliance => 1.0 / compliance,
+            };
+            let presses = force > PRESSING * stiffness.sqrt() * size && force * compliance[row] >= -violation[row];
+            if presses { stiffness } else { 0.0 }
+        };
+        Springs {
+            stiffness: (0..self.rows()).map(|row| if multiplier[row] < 0.0 { spring(row) } else { 0.0 }).collect(),
+        }
+    }
+}

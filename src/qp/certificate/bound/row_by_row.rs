@@ -1,0 +1,242 @@
+//! The bound where the contact boundary is not known: rows are repaired one by one, each by its own dofs.
+
+use super::{Answer, EnergyNorm, ErrorBound};
+use crate::qp::linear::{SparseMatrix, dot};
+use crate::qp::problem::ContactProblem;
+
+/// Rounding a sum leaves about this much of its terms.
+const SUM_ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// Sweeps over the rows when a displacement is repaired row by row.
+const REPAIR_SWEEPS: usize = 50;
+
+/// Steps in which the rest of the body follows rows that were put at their gaps; each costs a product with K.
+const RELAXATIONS: usize = 20;
+
+/// Motions of a sweep below this share of those of all sweeps are followed by no more than all of them together.
+const LAST: f64 = 0.01;
+
+/// Where a row must be for a bound.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Aim {
+    /// At its gap: its force does no work then.
+    AtGap,
+    /// At its gap or open, without a force.
+    WithinGap,
+    /// Open, where it is: its force and the way that is left have been counted.
+    Stays,
+}
+
+/// A repaired answer, whose rows are put where they aim.
+struct Start<'a> {
+    answer: &'a Answer<'a>,
+    /// `B d` of the repair d.
+    moved_by: &'a [f64],
+    aims: &'a [Aim],
+}
+
+impl ContactProblem {
+    /// What B u - g may be off by rounding u, row by row.
+    pub(in super::super) fn negligible(&self, displacement: &[f64]) -> Vec<f64> {
+        let magnitude: Vec<f64> = displacement.iter().map(|value| SUM_ROUNDING * value).collect();
+        self.contact.mul_abs(&magnitude)
+    }
+
+    /// The bound from the displacement whose rows are moved one after the other, each by its own dofs: those of `closed`
+    /// to their gaps, all others out of their obstacles. Without `closed` every row keeps its force.
+    pub(super) fn bound_row_by_row(&self, norm: &EnergyNorm, answer: &Answer, closed: Option<&[bool]>) -> ErrorBound {
+        let by_row = self.contact.transposed();
+        let is_closed = |row: usize| closed.is_some_and(|closed| closed[row]);
+        let Some(mut repair) = self.repair(&by_row, answer, is_closed) else { return ErrorBound::none() };
+        let is_moved = repair.iter().any(|&change| change != 0.0);
+        let mut multiplier: Vec<f64> = (0..self.rows())
+            .map(|row| if closed.is_none() || is_closed(row) { answer.multiplier[row].min(0.0) } else { 0.0 })
+            .collect();
+        let dropped: Vec<f64> = multiplier.iter().zip(answer.multiplier).map(|(mu, lambda)| mu - lambda).collect();
+        let mut residual = answer.residual.clone();
+        residual.iter_mut().zip(self.contact.mul_transposed(&dropped)).for_each(|(entry, force)| *entry += force);
+        if is_moved {
+            residual.iter_mut().zip(self.stiffness.mul(&repair)).for_each(|(entry, force)| *entry -= force);
+        }
+        if closed.is_some() && is_moved {
+            let mut held = vec![false; self.dofs()];
+            for row in (0..self.rows()).filter(|&row| is_closed(row)) {
+                by_row.column(row).filter(|entry| entry.1 != 0.0).for_each(|(dof, _)| held[dof] = true);
+            }
+            let (follow, force) = self.relaxed(&residual, &held);
+            let both: Vec<f64> = repair.iter().zip(&follow).map(|(a, b)| a + b).collect();
+            let moved_by = self.contact.mul(&both);
+            let is_feasible = |row: usize| is_closed(row) || answer.violation[row] + moved_by[row] <= 0.0;
+            if (0..self.rows()).all(is_feasible) {
+                repair = both;
+                residual.iter_mut().zip(&force).for_each(|(entry, force)| *entry -= force);
+            }
+        }
+        // A row on a single dof takes what is out of balance there, as far as it may push.
+        for row in (0..self.rows()).filter(|&row| is_closed(row)) {
+            let mut entries = by_row.column(row).filter(|entry| entry.1 != 0.0);
+            if let (Some((dof, b)), None) = (entries.next(), entries.next()) {
+                let pushed = (multiplier[row] - residual[dof] / b).min(0.0);
+                residual[dof] += b * (pushed - multiplier[row]);
+                multiplier[row] = pushed;
+            }
+        }
+        self.with_slack(norm, &by_row, answer, &repair, &residual, &multiplier)
+    }
+
+    /// The bound of a repaired answer: u moved by `repair`, with `residual` and `multiplier` there. Rows that are still off
+    /// their gaps by rounding are put there along themselves, at the cost of those motions.
+    fn with_slack(
+        &self,
+        norm: &EnergyNorm,
+        by_row: &SparseMatrix,
+        answer: &Answer,
+        repair: &[f64],
+        residual: &[f64],
+        multiplier: &[f64],
+    ) -> ErrorBound {
+        let parts = self.parts();
+        let (moved_by, negligible) = (self.contact.mul(repair), self.negligible(answer.displacement));
+        let mut at_gap = vec![false; self.rows()];
+        let (mut slack_work, mut aims) = (vec![0.0; parts.count()], vec![Aim::Stays; self.rows()]);
+        let part_of_row = self.parts_of_rows(parts);
+        for (row, &part) in part_of_row.iter().enumerate() {
+            let distance = answer.violation[row] + moved_by[row];
+            at_gap[row] = distance.abs() <= negligible[row];
+            aims[row] = match multiplier[row] != 0.0 {
+                true if distance >= -negligible[row] => Aim::AtGap,
+                true if distance.is_finite() => {
+                    slack_work[part] += distance * multiplier[row];
+                    Aim::Stays
+                }
+                _ => Aim::WithinGap,
+            };
+        }
+        let start = Start { answer, moved_by: &moved_by, aims: &aims };
+        let Some(put) = self.put_along_rows(by_row, &start) else { return ErrorBound::none() };
+        let mut put_in_parts = vec![0.0; parts.count()];
+        part_of_row.iter().zip(&put).for_each(|(&part, cost)| put_in_parts[part] += cost);
+        let put = put_in_parts;
+        let length = |square: f64, slack: f64| (square + 2.0 * slack).max(0.0).sqrt();
+        let total = |values: &[f64]| values.iter().sum::<f64>();
+        // What moves the answer moves its residual too, by K times that.
+        let left = length(norm.of_force(residual).powi(2), total(&slack_work));
+        if norm.springs().is_some_and(|springs| !springs.hold(multiplier, &at_gap, left)) {
+            return ErrorBound::none();
+        }
+        let whole = left + self.length(repair) + 2.0 * total(&put);
+        let of_parts = (parts.count() > 1).then(|| {
+            let mut sizes = put.iter().map(|cost| 2.0 * cost).collect::<Vec<f64>>();
+            self.add_sizes(parts, repair, &mut sizes);
+            let energies = self.energies(parts, &norm.displacement(residual));
+            sizes
+                .iter_mut()
+                .zip(energies.iter().zip(&slack_work))
+                .for_each(|(size, (&e, &slack))| *size += length(e, slack));
+            sizes
+        });
+        ErrorBound { whole, of_parts }
+    }
+
+    /// An upper bound on the energy norm of the motions that put rows where they aim, row by row: each moves the others,
+    /// so that they follow each other until what is left of them is small beside the sum; `None` where it stays large.
+    fn put_along_rows(&self, by_row: &SparseMatrix, start: &Start) -> Option<Vec<f64>> {
+        let lengths = self.lengths_along_rows();
+        let (mut put, mut total, mut change) = (vec![0.0; self.rows()], 0.0, vec![0.0; self.dofs()]);
+        for _ in 0..REPAIR_SWEEPS {
+            let mut last = 0.0;
+            for (row, &aim) in start.aims.iter().enumerate() {
+                let moved: f64 = by_row.column(row).map(|(dof, b)| b * change[dof]).sum();
+                let distance = start.answer.violation[row] + start.moved_by[row] + moved;
+                if distance == 0.0 || !(aim == Aim::AtGap || distance > 0.0) {
+                    continue;
+                }
+                let square: f64 = by_row.column(row).map(|(_, b)| b * b).sum();
+                if square == 0.0 {
+                    return None;
+                }
+                by_row.column(row).for_each(|(dof, b)| change[dof] -= distance / square * b);
+                put[row] += distance.abs() * lengths[row];
+                last += distance.abs() * lengths[row];
+            }
+            total += last;
+            if last <= LAST * total {
+                // As much again may follow.
+                let follow = if last > 0.0 { 2.0 } else { 1.0 };
+                return Some(put.iter().map(|cost| follow * cost).collect());
+            }
+        }
+        None
+    }
+
+    /// A displacement d that follows the force `residual` where nothing is `held`, by a few steps of conjugate gradients,
+    /// and K d.
+    fn relaxed(&self, residual: &[f64], held: &[bool]) -> (Vec<f64>, Vec<f64>) {
+        let diagonal = &self.diagonal().values;
+        let free = |values: Vec<f64>| -> Vec<f64> {
+            values.into_iter().zip(held).map(|(value, &held)| if held { 0.0 } else { value }).collect()
+        };
+        let scaled = |rest: &[f64]| -> Vec<f64> { rest.iter().zip(diagonal).map(|(r, d)| r / d).collect() };
+        let (mut moved, mut force) = (vec![0.0; self.dofs()], vec![0.0; self.dofs()]);
+        let mut rest = free(residual.to_vec());
+        let mut preconditioned = scaled(&rest);
+        let mut direction = preconditioned.clone();
+        let mut work = dot(&rest, &preconditioned);
+        for _ in 0..RELAXATIONS {
+            let elastic = self.stiffness.mul(&direction);
+            let step = work / dot(&direction, &elastic);
+            if !step.is_finite() {
+                break;
+            }
+            moved.iter_mut().zip(&direction).for_each(|(entry, d)| *entry += step * d);
+            force.iter_mut().zip(&elastic).for_each(|(entry, k)| *entry += step * k);
+            let change = free(elastic);
+            rest.iter_mut().zip(&change).for_each(|(entry, k)| *entry -= step * k);
+            preconditioned = scaled(&rest);
+            let next = dot(&rest, &preconditioned);
+            let share = next / work;
+            direction.iter_mut().zip(&preconditioned).for_each(|(d, z)| *d = z + share * *d);
+            work = next;
+        }
+        (moved, force)
+    }
+
+    /// A change of u that puts the closed rows at their gaps and removes all penetration but for rounding of u, by
+    /// projections row after row; `None` where rows contradict.
+    fn repair(&self, by_row: &SparseMatrix, answer: &Answer, is_closed: impl Fn(usize) -> bool) -> Option<Vec<f64>> {
+        let mut change = vec![0.0; self.dofs()];
+        let negligible = self.negligible(answer.displacement);
+        for sweep in 0..REPAIR_SWEEPS {
+            // The last sweeps stop at rounding of u, the first ones at that of the change.
+            let patient = sweep < REPAIR_SWEEPS / 2;
+            let mut clean = true;
+            for (row, &negligible) in negligible.iter().enumerate() {
+                let (moved, terms) = by_row.column(row).map(|(dof, b)| b * change[dof]).fold((0.0, 0.0), add_term);
+                let excess = answer.violation[row] + moved;
+                // Rows that contradict a closed one as an equality may still be met as what they are.
+                let open = excess < 0.0 && !(is_closed(row) && patient);
+                let rounding = SUM_ROUNDING * (answer.violation[row].abs() + terms);
+                if excess == 0.0 || open || excess.abs() <= if patient { rounding } else { negligible.max(rounding) } {
+                    continue;
+                }
+                let square: f64 = by_row.column(row).map(|(_, b)| b * b).sum();
+                if square == 0.0 {
+                    return None;
+                }
+                clean = false;
+                for (dof, b) in by_row.column(row) {
+                    change[dof] -= excess / square * b;
+                }
+            }
+            if clean {
+                return Some(change);
+            }
+        }
+        None
+    }
+}
+
+/// A sum and the sum of magnitudes, with one term more.
+fn add_term((sum, magnitudes): (f64, f64), term: f64) -> (f64, f64) {
+    (sum + term, magnitudes + term.abs())
+}

@@ -1,0 +1,246 @@
+//! The certificate: every condition of the solution recomputed from the original problem.
+
+use super::EnergyNorm;
+use super::bound::{Answer, ErrorBound};
+use super::scales::{Forces, Scales, larger, relative};
+use crate::error::Error;
+use crate::qp::linear::Accumulator;
+use crate::qp::linear::multigrid::Multigrid;
+use crate::qp::problem::ContactProblem;
+use crate::solution::Certificate;
+use crate::watch::Watch;
+
+/// Rounding moves an entry of u or lambda by half a unit in the last place; what a sum of such errors may be is excused
+/// twice, once for the rounding and once for the arithmetic that made the entry.
+const ENTRY_ROUNDING: f64 = f64::EPSILON;
+
+/// Sums with twice the working precision leave out less than this share of their terms: no bound is smaller.
+const LEAST: f64 = 1e-28;
+
+/// What bounds the error in energy.
+#[derive(Clone, Copy)]
+enum Bounding<'a> {
+    Factor(&'a EnergyNorm),
+    Cycles(&'a Multigrid, &'a Watch),
+}
+
+/// The forces on each dof, with twice the working precision.
+struct Balance {
+    /// `f + B' lambda - K u`.
+    residual: Vec<f64>,
+    /// `u' K u`.
+    strain: f64,
+    /// `|K| |u|`, the scale of rounding in it.
+    terms: Vec<f64>,
+}
+
+fn worst(values: impl IntoIterator<Item = f64>) -> f64 {
+    values.into_iter().fold(0.0, |worst, value| larger(value.abs(), worst))
+}
+
+impl ContactProblem {
+    /// The certificate of an answer (u, lambda), with the energy bound where K is positive definite or the rows that press
+    /// hold the body.
+    ///
+    /// # Errors
+    /// [`Error::Length`] for vectors that do not fit, [`Error::Numerical`] when the factorisation of K fails for want
+    /// of memory.
+    pub fn certify(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Certificate, Error> {
+        self.check_answer(displacement, multiplier)?;
+        if let Some(units) = self.far_units(displacement) {
+            return self.in_units(&units)?.certify(&units.displacement(displacement), &units.force(multiplier));
+        }
+        let norm = self.energy_norm(displacement, multiplier)?;
+        self.certify_in(norm.as_ref(), displacement, multiplier)
+    }
+
+    /// As [`ContactProblem::certify`], in an energy norm that is at hand.
+    ///
+    /// # Errors
+    /// [`Error::Length`] for vectors that do not fit.
+    pub(crate) fn certify_in(
+        &self,
+        norm: Option<&EnergyNorm>,
+        displacement: &[f64],
+        multiplier: &[f64],
+    ) -> Result<Certificate, Error> {
+        self.check_answer(displacement, multiplier)?;
+        let Some(units) = self.far_units(displacement) else {
+            return Ok(self.recomputed(norm.map(Bounding::Factor), displacement, multiplier));
+        };
+        let (norm, problem) = (norm.map(|norm| units.norm(norm)), self.in_units(&units)?);
+        let bounding = norm.as_ref().map(Bounding::Factor);
+        Ok(problem.recomputed(bounding, &units.displacement(displacement), &units.force(multiplier)))
+    }
+
+    /// As [`ContactProblem::certify`], with the energy bound by the cycles of the hierarchy of K, which needs no factor and
+    /// rests on a measured eigenvalue; without a bound where K is singular to the precision of its levels, or where `watch` is
+    /// over before it is found. A hierarchy of one level is a factor already, of so few dofs that another in double precision
+    /// costs nothing.
+    ///
+    /// # Errors
+    /// As [`ContactProblem::certify`].
+    pub(crate) fn certify_by_cycles(
+        &self,
+        multigrid: &Multigrid,
+        watch: &Watch,
+        displacement: &[f64],
+        multiplier: &[f64],
+    ) -> Result<Certificate, Error> {
+        self.check_answer(displacement, multiplier)?;
+        if multigrid.unknowns().len() <= 1 {
+            return self.certify(displacement, multiplier);
+        }
+        if self.far_units(displacement).is_some() {
+            return self.certify_in(None, displacement, multiplier);
+        }
+        Ok(self.recomputed(Some(Bounding::Cycles(multigrid, watch)), displacement, multiplier))
+    }
+
+    fn recomputed(&self, bounding: Option<Bounding>, u: &[f64], lambda: &[f64]) -> Certificate {
+        let parts = self.parts();
+        let contact = self.contact.mul_transposed(lambda);
+        let Balance { residual, strain, terms } = self.accurate_balance(u, lambda);
+        let violation = self.accurate_violation(u);
+        let (contact_terms, lengths) = (self.contact.mul_abs_transposed(lambda), self.contact.mul_abs(u));
+        let scales =
+            Scales::of(self, parts, &Forces { displacement: u, multiplier: lambda, contact: &contact, strain });
+
+        let is_rounding = |dof: usize| residual[dof].abs() <= ENTRY_ROUNDING * (terms[dof] + contact_terms[dof]);
+        let excess = |dof: usize| if is_rounding(dof) { 0.0 } else { residual[dof] };
+        let own = |dof: usize| larger(self.load[dof].abs(), contact[dof].abs());
+        // A row without obstacle carries no multiplier; a violation that rounding of u explains does no work.
+        let work = |row: usize| {
+            if lambda[row] == 0.0 || violation[row].abs() <= ENTRY_ROUNDING * lengths[row] {
+                0.0
+            } else {
+                lambda[row] * violation[row]
+            }
+        };
+        let penetration = |row: usize| {
+            let scale = larger(
+                lengths[row],
+                larger(self.gap[row].abs(), scales.size(scales.part_of_row(row)) * scales.reach[row]),
+            );
+            relative(violation[row].max(0.0), scale)
+        };
+        let adhesion = |row: usize| {
+            let force = lambda[row].max(0.0) * scales.reach[row];
+            relative(force, scales.force[scales.part_of_row(row)])
+        };
+        let mut gaps = parts.sums(|dof| -u[dof] * excess(dof));
+        (0..self.rows()).for_each(|row| gaps[scales.part_of_row(row)] += work(row));
+        let rows = || (0..self.rows()).filter(|&row| self.gap[row].is_finite() || lambda[row] != 0.0);
+        let mut certificate = Certificate {
+            stationarity: scales.largest_force(parts, |dof| residual[dof], own),
+            stationarity_excess: scales.largest_force(parts, excess, own),
+            penetration: worst(rows().map(penetration)),
+            adhesion: worst(rows().map(adhesion)),
+            complementarity: worst(rows().map(|row| relative(work(row), scales.energy[scales.part_of_row(row)]))),
+            duality_gap: worst(gaps.iter().zip(&scales.energy).map(|(&gap, &energy)| relative(gap, energy))),
+            energy_error_bound: f64::INFINITY,
+            part_error_bound: f64::INFINITY,
+            energy_error_excess: f64::INFINITY,
+            parts: parts.count(),
+            bound_is_measured: matches!(bounding, Some(Bounding::Cycles(..))),
+        };
+        if let Some(bounding) = bounding {
+            let answer = Answer { displacement: u, multiplier: lambda, residual, violation: &violation };
+            let bound = match bounding {
+                Bounding::Factor(norm) => self.energy_error_bound(norm, &answer),
+                Bounding::Cycles(multigrid, watch) => self.energy_error_bound_by(multigrid, &answer, watch),
+            };
+            let rounding = parts.sums(|dof| u[dof].abs() * terms[dof]);
+            certificate.judge(&bound, &scales, strain, &rounding);
+        }
+        certificate
+    }
+
+    /// Do the vectors of an answer fit?
+    pub(super) fn check_answer(&self, displacement: &[f64], multiplier: &[f64]) -> Result<(), Error> {
+        let length = |name, found: usize, expected, of| {
+            if found == expected { Ok(()) } else { Err(Error::Length { name, found, expected, of }) }
+        };
+        length("displacement", displacement.len(), self.dofs(), "dofs")?;
+        length("multiplier", multiplier.len(), self.rows(), "contact rows")
+    }
+
+    /// `f + B' lambda - K u` of the given doubles, with twice the working precision.
+    pub(crate) fn accurate_residual(&self, u: &[f64], lambda: &[f64]) -> Vec<f64> {
+        self.accurate_balance(u, lambda).residual
+    }
+
+    /// The same, and what it consists of.
+    fn accurate_balance(&self, u: &[f64], lambda: &[f64]) -> Balance {
+        let mut sums = Accumulator::new(&vec![0.0; self.dofs()]);
+        let terms = sums.subtract_product(&self.stiffness, u);
+        // A body that moves far and bends little has so little energy that forces rounded before would leave none of it.
+        let strain = -sums.products_by(u, |_| 0, 1)[0];
+        for (dof, &load) in self.load.iter().enumerate() {
+            sums.add_product(dof, load, 1.0);
+            self.contact.column(dof).for_each(|(row, b)| sums.add_product(dof, b, lambda[row]));
+        }
+        Balance { residual: sums.into_sums(), strain, terms }
+    }
+
+    /// `B u - g` of the given doubles, with twice the working precision; `-inf` where there is no obstacle.
+    pub(crate) fn accurate_violation(&self, u: &[f64]) -> Vec<f64> {
+        let start: Vec<f64> = self.gap.iter().map(|&gap| if gap.is_finite() { -gap } else { 0.0 }).collect();
+        let mut sums = Accumulator::new(&start);
+        for (column, &at_column) in u.iter().enumerate() {
+            self.contact.column(column).for_each(|(row, b)| sums.add_product(row, b, at_column));
+        }
+        let sums = sums.into_sums();
+        sums.iter().zip(&self.gap).map(|(&sum, &gap)| if gap.is_finite() { sum } else { f64::NEG_INFINITY }).collect()
+    }
+
+    /// The product with u of the entries `(row, value)` of the lower triangle that `within(column)` gives, and of their
+    /// mirror images, with twice the working precision.
+    pub(super) fn accurate_product<I: Iterator<Item = (usize, f64)>>(
+        &self,
+        within: impl Fn(usize) -> I,
+        u: &[f64],
+    ) -> Vec<f64> {
+        self.unrounded_product(within, u).into_sums()
+    }
+
+    /// The same, not rounded yet.
+    pub(super) fn unrounded_product<I: Iterator<Item = (usize, f64)>>(
+        &self,
+        within: impl Fn(usize) -> I,
+        u: &[f64],
+    ) -> Accumulator {
+        let mut sums = Accumulator::new(&vec![0.0; u.len()]);
+        for (column, &at_column) in u.iter().enumerate() {
+            for (row, value) in within(column) {
+                sums.add_product(row, value, at_column);
+                if row != column {
+                    sums.add_product(column, value, u[row]);
+                }
+            }
+        }
+        sums
+    }
+}
+
+impl Certificate {
+    /// Takes in a bound on the error: of the whole and of each part, relative to its own energy norm. An error that rounding
+    /// explains, with `rounding` the sum of `|u_i| (|K| |u|)_i` of each part, is no excess.
+    fn judge(&mut self, bound: &ErrorBound, scales: &Scales, strain: f64, rounding: &[f64]) {
+        let explained = |sum: f64| ENTRY_ROUNDING * sum.sqrt();
+        let unexplained =
+            |error: f64, size: f64, sum: f64| if error <= explained(sum) { 0.0 } else { relative(error, size) };
+        let (whole, sum) = (scales.size_of_whole(strain), rounding.iter().sum::<f64>());
+        let of_whole = bound.whole + LEAST * sum.sqrt();
+        self.energy_error_bound = relative(of_whole, whole);
+        (self.part_error_bound, self.energy_error_excess) =
+            (self.energy_error_bound, unexplained(of_whole, whole, sum));
+        if let Some(of_parts) = &bound.of_parts {
+            for (part, &error) in of_parts.iter().enumerate().filter(|entry| scales.is_stiff[entry.0]) {
+                let (size, error) = (scales.size(part), error + LEAST * rounding[part].sqrt());
+                self.part_error_bound = larger(relative(error, size), self.part_error_bound);
+                self.energy_error_excess = larger(unexplained(error, size, rounding[part]), self.energy_error_excess);
+            }
+        }
+    }
+}

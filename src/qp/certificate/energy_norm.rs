@@ -1,0 +1,264 @@
+//! The energy norm of a definite stiffness, and what it knows of the contact boundary.
+
+use std::sync::Arc;
+
+use super::springs::Springs;
+use crate::error::Error;
+use crate::qp::linear::{
+    Analysis, Cholesky, Equilibration, FactorError, LowerTriangle, SelectedInverse, SparseMatrix, SymmetricMatrix, dot,
+    ldexp,
+};
+use crate::watch::Watch;
+
+/// Contact dofs beyond this share of all are not ordered last: the boundary would be most of the body.
+const LARGEST_SHARE: f64 = 0.25;
+
+/// So few contact dofs are ordered last whatever their share: dense matrices of them cost less than a millisecond.
+const FEW_DOFS: usize = 100;
+
+/// A contraction that is measured may be so many times larger.
+const MEASURED: f64 = 10.0;
+
+/// Rounding of a sweep, relative, over the smallest pivot.
+const SWEEP_ROUNDING: f64 = 1e5 * f64::EPSILON;
+
+/// Where rounding of a sweep may be so many times the sweep itself, the factor is that of another matrix.
+const LOST: f64 = 1e3;
+
+/// A bound is multiplied with this, because its own sums are rounded too.
+pub(super) const ROUNDED_BOUND: f64 = 1.0 + 1e-6;
+
+/// Values of a dense matrix on the boundary that are not worth counting.
+const FEW_VALUES: usize = 1_000_000;
+
+/// The energy norm of a positive definite stiffness and its dual, from one factorisation of K with a diagonal near one.
+#[derive(Clone, Debug)]
+pub(crate) struct EnergyNorm {
+    cholesky: Cholesky,
+    equilibration: Equilibration,
+    boundary: Option<Arc<Boundary>>,
+    /// What a bound in this norm is multiplied with, because the factor is not quite that of K.
+    widening: f64,
+    /// The springs that made a singular K definite.
+    springs: Option<Arc<Springs>>,
+    /// When a bound in this norm must be done with.
+    watch: Watch,
+}
+
+/// The contact dofs t, eliminated last: their block of the factor is that of the Schur complement.
+#[derive(Clone, Debug)]
+pub(super) struct Boundary {
+    dofs: Vec<usize>,
+    /// L_tt, t x t.
+    block: LowerTriangle,
+}
+
+impl EnergyNorm {
+    /// The energy norm of `stiffness`, with the boundary that the rows `contact` touch, or `None` where it is not
+    /// positive definite to working precision.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] when the factorisation fails for another reason, as memory.
+    pub fn of(stiffness: &SymmetricMatrix, contact: &SparseMatrix) -> Result<Option<Self>, Error> {
+        if stiffness.diagonal().iter().any(|&value| value <= 0.0) {
+            return Ok(None);
+        }
+        let equilibration = Equilibration::of(stiffness);
+        let scaled = equilibration.apply(stiffness);
+        let dofs = Self::last_dofs(contact);
+        let factor = Analysis::with_last(&scaled, &dofs).and_then(|analysis| analysis.factor(&scaled));
+        match factor {
+            Ok(cholesky) if cholesky.is_definite(&scaled) => Ok(Some(Self::new(cholesky, equilibration, dofs))),
+            Ok(_) | Err(FactorError::NotPositiveDefinite) => Ok(None),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// The dofs to eliminate last, so that the contact boundary is known: those that appear in the rows `contact`, or none
+    /// where that is most of the body.
+    pub fn last_dofs(contact: &SparseMatrix) -> Vec<usize> {
+        let dofs: Vec<usize> =
+            (0..contact.columns()).filter(|&dof| contact.column(dof).any(|entry| entry.1 != 0.0)).collect();
+        let most = FEW_DOFS.max((LARGEST_SHARE * contact.columns() as f64) as usize);
+        if dofs.len() > most { Vec::new() } else { dofs }
+    }
+
+    /// The energy norm from a factor of the equilibrated stiffness `c D K D` that is at hand and has `last` as its last
+    /// columns.
+    pub fn new(cholesky: Cholesky, equilibration: Equilibration, last: Vec<usize>) -> Self {
+        let values = last.len().saturating_mul(last.len());
+        let worth = !last.is_empty() && values <= FEW_VALUES.max(cholesky.entries());
+        let boundary = worth.then(|| Arc::new(Boundary { block: cholesky.trailing_block(), dofs: last }));
+        EnergyNorm { cholesky, equilibration, boundary, widening: 1.0, springs: None, watch: Watch::default() }
+    }
+
+    /// The energy norm of the equilibrated stiffness itself.
+    pub fn equilibrated(&self) -> Self {
+        EnergyNorm { equilibration: Equilibration::none(self.cholesky.dim()), ..self.clone() }
+    }
+
+    /// The same norm, whose bounds are cut short when `watch` says so: a weaker one, or none, is what is left.
+    pub fn watched(&self, watch: &Watch) -> Self {
+        EnergyNorm { watch: watch.clone(), ..self.clone() }
+    }
+
+    /// Must a bound be done with?
+    pub(super) fn is_over(&self) -> bool {
+        self.watch.is_over()
+    }
+
+    /// The same norm, for a factor K~ whose contraction `|I - K~^-1 K|` is measured to be this.
+    pub fn off_by(&self, contraction: f64) -> Self {
+        EnergyNorm { widening: 1.0 + MEASURED * contraction, ..self.clone() }
+    }
+
+    /// What a bound in this norm is multiplied with.
+    pub(super) fn widening(&self) -> f64 {
+        self.widening
+    }
+
+    /// By how much a norm that comes from sweeps through the factor may be rounded: by some units in the last place over the
+    /// smallest pivot, on a diagonal of order one.
+    pub(super) fn rounding(&self) -> f64 {
+        let share = SWEEP_ROUNDING * self.loss();
+        if share < LOST { ROUNDED_BOUND + share } else { f64::INFINITY }
+    }
+
+    /// What a sweep makes of rounding of a force, on a diagonal of order one: one over the smallest pivot, at least one.
+    pub(super) fn loss(&self) -> f64 {
+        1.0 / self.cholesky.smallest_pivot().min(1.0)
+    }
+
+    /// The same norm with the stiffness in another unit, `2^unit`.
+    pub(super) fn with_unit(&self, unit: i32) -> Self {
+        let mut norm = self.clone();
+        norm.equilibration.factor += unit;
+        norm.springs = norm.springs.map(|springs| Arc::new(springs.in_unit(unit)));
+        norm
+    }
+
+    /// The displacement of the equilibrated stiffness under an equilibrated load.
+    pub fn scaled_displacement(&self, load: &[f64]) -> Vec<f64> {
+        self.cholesky.solve(load)
+    }
+
+    /// `sqrt(r' K^-1 r)`: the energy norm of the displacement that the force r causes.
+    pub(super) fn of_force(&self, force: &[f64]) -> f64 {
+        // K^-1 = c D (c D K D)^-1 D
+        ldexp(self.cholesky.inverse_product(&self.scaled(force)), self.equilibration.factor).max(0.0).sqrt()
+    }
+
+    /// The displacement that the force r causes: `K^-1 r`.
+    pub(super) fn displacement(&self, force: &[f64]) -> Vec<f64> {
+        let scaled = self.cholesky.solve(&self.scaled(force));
+        let exponents = self.equilibration.diagonal.iter().map(|d| d + self.equilibration.factor);
+        scaled.iter().zip(exponents).map(|(&value, exponent)| ldexp(value, exponent)).collect()
+    }
+
+    /// The same norm, of a matrix that these springs are part of.
+    pub(super) fn with_springs(self, springs: Springs) -> Self {
+        EnergyNorm { springs: Some(Arc::new(springs)), ..self }
+    }
+
+    /// The springs that made a singular K definite, where there are some.
+    pub(super) fn springs(&self) -> Option<&Springs> {
+        self.springs.as_deref()
+    }
+
+    /// The contact boundary, where it is known.
+    pub(super) fn boundary(&self) -> Option<&Boundary> {
+        self.boundary.as_deref()
+    }
+
+    /// `L^-1 D r`, whose length times [`unit`](Self::unit) is the energy norm of the displacement that the force r
+    /// causes: the squares of the interior added up, and the entries of the boundary.
+    pub(super) fn sweep(&self, force: &[f64]) -> (f64, Vec<f64>) {
+        let swept = self.cholesky.forward(&self.scaled(force));
+        let size = self.boundary.as_ref().map_or(0, |boundary| boundary.dofs.len());
+        let (interior, last) = swept.split_at(swept.len() - size.min(swept.len()));
+        (dot(interior, interior), last.to_vec())
+    }
+
+    /// `c`, as its exponent of two: `K^-1 = c D (c D K D)^-1 D`.
+    pub(super) fn factor(&self) -> i32 {
+        self.equilibration.factor
+    }
+
+    /// The entries of each row of `contact` that `counts`, on the boundary: place among its dofs, coefficient times D; `None`
+    /// where such a row reaches beyond it.
+    pub(super) fn rows_on(
+        &self,
+        boundary: &Boundary,
+        contact: &SparseMatrix,
+        counts: impl Fn(usize) -> bool,
+    ) -> Option<Vec<Vec<(usize, f64)>>> {
+        let mut rows = vec![Vec::new(); contact.rows()];
+        let is_entry = |entry: &(usize, f64)| entry.1 != 0.0 && counts(entry.0);
+        for (place, &dof) in boundary.dofs.iter().enumerate() {
+            for (row, value) in contact.column(dof).filter(is_entry) {
+                rows[row].push((place, ldexp(value, self.equilibration.diagonal[dof])));
+            }
+        }
+        let count: usize = rows.iter().map(Vec::len).sum();
+        let whole = (0..contact.columns()).flat_map(|dof| contact.column(dof)).filter(is_entry).count();
+        (count == whole).then_some(rows)
+    }
+
+    /// The entries of each row of `contact` in the whole body: dof, coefficient times D.
+    pub(super) fn rows_in_body(&self, contact: &SparseMatrix) -> Vec<Vec<(usize, f64)>> {
+        let mut rows = vec![Vec::new(); contact.rows()];
+        for (dof, &scale) in self.equilibration.diagonal.iter().enumerate() {
+            contact
+                .column(dof)
+                .filter(|entry| entry.1 != 0.0)
+                .for_each(|(row, b)| rows[row].push((dof, ldexp(b, scale))));
+        }
+        rows
+    }
+
+    /// Number of values of the factor.
+    pub(super) fn factor_entries(&self) -> usize {
+        self.cholesky.entries()
+    }
+
+    /// Number of multiplications of the factorisation.
+    pub(super) fn multiplications(&self) -> f64 {
+        self.cholesky.multiplications()
+    }
+
+    /// The entries of the inverse of the equilibrated stiffness in the pattern of its factor; `None` for want of memory.
+    pub(super) fn selected_inverse(&self) -> Option<SelectedInverse<'_>> {
+        self.cholesky.selected_inverse()
+    }
+
+    /// Number of dofs.
+    pub(super) fn dofs(&self) -> usize {
+        self.cholesky.dim()
+    }
+
+    /// The sweep L^-1 b of a load in equilibrated units.
+    pub(super) fn forward(&self, b: &[f64]) -> Vec<f64> {
+        self.cholesky.forward(b)
+    }
+
+    fn scaled(&self, force: &[f64]) -> Vec<f64> {
+        force.iter().zip(&self.equilibration.diagonal).map(|(&r, &d)| ldexp(r, d)).collect()
+    }
+}
+
+impl Boundary {
+    /// Number of contact dofs.
+    pub fn len(&self) -> usize {
+        self.dofs.len()
+    }
+
+    /// `L_tt^-1 b`.
+    pub fn forward(&self, b: Vec<f64>) -> Vec<f64> {
+        self.block.forward(b)
+    }
+
+    /// `L_tt'^-1 y`.
+    pub fn backward(&self, y: Vec<f64>) -> Vec<f64> {
+        self.block.backward(y)
+    }
+}

@@ -1,0 +1,18 @@
+//! The certificate of an answer, recomputed from the problem by code that shares nothing with the methods.
+//!
+//! The conditions of the solution, a bound on the error in energy, the rows that it proves open or closed; and, of a problem
+//! without a unique answer, the rows that contradict each other and the motions that nothing holds.
+
+mod bound;
+mod conditions;
+mod energy_norm;
+mod infeasible;
+mod motion;
+mod proof;
+mod reach;
+mod scales;
+mod springs;
+mod units;
+
+pub(crate) use energy_norm::EnergyNorm;
+pub(crate) use motion::{Motion, Rounding};

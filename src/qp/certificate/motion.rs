@@ -1,0 +1,128 @@
+//! What is said of a problem that has no unique answer, rechecked in the problem itself with twice the working precision.
+
+use crate::error::Error;
+use crate::qp::linear::{NullSpace, Twice, largest, twice};
+use crate::qp::problem::ContactProblem;
+
+/// A load drives a motion if its work is beyond this share of its terms.
+const DRIVES: f64 = 1e-9;
+
+/// The work of a load vanishes below this share of its terms, however the direction was found: a load that is out of balance by
+/// its last bit is held by some row.
+const IDLE: f64 = 1e-25;
+
+/// What rounding leaves of sums over a direction, as shares of their terms.
+#[derive(Clone, Copy)]
+pub(crate) struct Rounding {
+    /// Entries below this share of the largest are left of zero.
+    entry: f64,
+    /// Forces `K d` up to this are none, and so are the coordinates of a row.
+    pub vanishes: f64,
+    /// A sum up to this is zero.
+    pub zero: f64,
+    /// A sum beyond this has a sign; between both it is not known.
+    sure: f64,
+}
+
+impl Rounding {
+    /// Of a direction in twice the working precision that the stiffness resists exactly nothing.
+    const OF_EXACT: Rounding = Rounding { entry: 1e-24, vanishes: 1e-24, zero: 1e-24, sure: 1e-24 };
+
+    /// Of a direction that is known no better than rounded entries of the stiffness.
+    const OF_ROUNDED: Rounding = Rounding { entry: 1e-9, vanishes: 1e-10, zero: 1e-15, sure: 1e-8 };
+
+    pub fn of(null: &NullSpace) -> Self {
+        if null.is_exact { Self::OF_EXACT } else { Self::OF_ROUNDED }
+    }
+}
+
+/// Energy of a direction counts as negative beyond this share of its terms.
+const NEGATIVE: f64 = 1e-12;
+
+/// A direction without energy, and what the rows and the load say of it.
+#[derive(Clone, Debug)]
+pub(crate) struct Motion {
+    /// The direction d, one entry per dof, largest entry one.
+    pub direction: Vec<f64>,
+    /// `B d` of each row, zero where it vanishes, positive where the motion closes the row.
+    pub approach: Vec<f64>,
+    /// The share of its terms that is left of `f'd`, zero where that vanishes.
+    pub work: f64,
+    /// The share of their terms that `K d` stays below.
+    resistance: f64,
+}
+
+impl Motion {
+    /// The error that it is, if the load drives the motion and no row stops it.
+    pub fn escapes(&self) -> bool {
+        self.work > DRIVES && self.approach.iter().all(|&speed| speed <= 0.0)
+    }
+
+    /// Returns `true` if the load does exactly no work on the motion.
+    pub fn is_idle(&self) -> bool {
+        self.work == 0.0
+    }
+
+    /// How the motion was rechecked, and most of it.
+    pub fn in_words(&self) -> String {
+        let mut entries: Vec<(usize, f64)> = self.direction.iter().copied().enumerate().collect();
+        entries.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+        let named: Vec<String> = entries.iter().take(3).filter(|e| e.1 != 0.0).map(|e| e.0.to_string()).collect();
+        format!(
+            "most of it at dof {} (indices from 0); its forces K d vanish to {:.0e} of their terms",
+            named.join(", "),
+            self.resistance
+        )
+    }
+}
+
+impl ContactProblem {
+    /// A direction of which the stiffness resists nothing, if it is one: `K d` vanishes in every dof. A direction is none if it
+    /// cannot tell whether it closes, opens or slides along a row.
+    pub(crate) fn motion_along(&self, direction: &[Twice], rounding: Rounding) -> Option<Motion> {
+        let by_size = |a: &&Twice, b: &&Twice| a.rounded().abs().total_cmp(&b.rounded().abs());
+        let size = direction.iter().max_by(by_size)?.abs();
+        if !(size.rounded() > 0.0 && size.rounded().is_finite()) {
+            return None;
+        }
+        let kept = |&value: &Twice| {
+            if value.rounded().abs() > rounding.entry * size.rounded() { value / size } else { Twice::ZERO }
+        };
+        let direction: Vec<Twice> = direction.iter().map(kept).collect();
+        let resists = |&(force, terms): &(f64, f64)| force.abs() > rounding.vanishes * terms;
+        if self.stiffness.resistance(&direction).iter().any(resists) {
+            return None;
+        }
+        let by_row = self.contact.transposed();
+        let mut approach = vec![0.0; self.rows()];
+        for row in (0..self.rows()).filter(|&row| self.gap[row].is_finite()) {
+            let terms = || by_row.column(row).map(|(dof, b)| Twice::from(b) * direction[dof]);
+            approach[row] = twice::sum(terms(), rounding.zero).rounded();
+            if approach[row] != 0.0 && twice::sum(terms(), rounding.sure) == Twice::ZERO {
+                return None;
+            }
+        }
+        let work = || self.load.iter().zip(&direction).map(|(&f, &d)| Twice::from(f) * d);
+        let terms: f64 = work().map(|term| term.rounded().abs()).sum();
+        let left = twice::sum(work(), IDLE).rounded();
+        let work = if left == 0.0 { 0.0 } else { left / terms };
+        let direction = direction.into_iter().map(Twice::rounded).collect();
+        Some(Motion { direction, approach, work, resistance: rounding.vanishes })
+    }
+
+    /// The error that a direction p of negative energy is, if `p'K p` is negative beyond rounding.
+    pub(crate) fn not_convex_along(&self, p: &[f64]) -> Option<Error> {
+        let size = largest(p);
+        let p: Vec<f64> = p.iter().map(|value| value / size).collect();
+        let forces = self.accurate_product(|column| self.stiffness.lower().column(column), &p);
+        let energy: f64 = forces.iter().zip(&p).map(|(force, p)| force * p).sum();
+        let terms: f64 = self.stiffness.mul_abs(&p).iter().zip(&p).map(|(force, p)| force * p.abs()).sum();
+        let dof = p.iter().position(|value| value.abs() == 1.0).unwrap_or(0);
+        (energy < -NEGATIVE * terms).then(|| Error::NotConvex {
+            evidence: format!(
+                "a direction p with largest entry one, at dof {dof} (indices from 0), has p'Kp = {energy:.3e}, beyond {NEGATIVE:.0e} \
+                 of its terms, {terms:.3e}"
+            ),
+        })
+    }
+}

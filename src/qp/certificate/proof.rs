@@ -1,0 +1,257 @@
+//! Which rows of a contact set are beyond doubt, from the bound on the energy norm of the error.
+//!
+//! With `|u - u*|_K <= E` and the compliance `G = B K^-1 B'` of the rows:
+//!
+//! * `|B_i (u - u*)| <= sqrt(G_ii) E`: a row whose distance is larger is open in the exact answer too.
+//! * Let C be all other rows, `r = f + B_C' lambda_C - K u`, and w a motion with `B_i w = 1` that no other row of C feels.
+//!   From `B_C' (lambda - lambda*)_C = r + K (u - u*)`: `|lambda_i - lambda*_i| <= |w|_K (|r|_{K^-1} + E)`. A row whose
+//!   force is larger is closed in the exact answer too. The cheapest such motion has `|w|_K^2 = (G_CC^-1)_ii`.
+
+use super::EnergyNorm;
+use super::bound::Answer;
+use super::energy_norm::ROUNDED_BOUND;
+use crate::error::Error;
+use crate::qp::linear::multigrid::{Multigrid, conjugate_gradients, dual_norm_within};
+use crate::qp::linear::{Dependence, SparseMatrix, dot, inverse_lengths, ldexp};
+use crate::qp::problem::ContactProblem;
+use crate::solution::{ContactSet, ProvenSet};
+use crate::watch::Watch;
+
+/// Sweeps of so few rows cost no more than a solve for all.
+const FEW_ROWS: usize = 8;
+
+/// Accuracy of the solve for an M-matrix without a factor; what it lacks widens the bounds.
+const ROUGH: f64 = 1e-2;
+
+/// Cycles of that solve.
+const MOST_CYCLES: usize = 20;
+
+/// Multiplications that the compliance of the rows in question may cost; beyond, one dof of each row is moved alone.
+const MOST_WORK: f64 = 2e9;
+
+impl ContactProblem {
+    /// The rows of which an answer proves, by its distance and force, that the exact answer has them open or closed;
+    /// `None` where K is not positive definite by itself and no bound is known.
+    ///
+    /// # Errors
+    /// As [`ContactProblem::certify`].
+    pub fn prove(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Option<ProvenSet>, Error> {
+        self.check_answer(displacement, multiplier)?;
+        let norm = EnergyNorm::of(&self.stiffness, &self.contact)?;
+        Ok(norm.and_then(|norm| self.prove_in(&norm, displacement, multiplier)))
+    }
+
+    /// As [`ContactProblem::prove`], in an energy norm that is at hand, for vectors that fit.
+    pub(crate) fn prove_in(&self, norm: &EnergyNorm, displacement: &[f64], multiplier: &[f64]) -> Option<ProvenSet> {
+        if let Some(units) = self.far_units(displacement) {
+            let problem = self.in_units(&units).ok()?;
+            return problem.prove_in(&units.norm(norm), &units.displacement(displacement), &units.force(multiplier));
+        }
+        let rows = self.rows();
+        let violation = self.accurate_violation(displacement);
+        let residual = self.accurate_residual(displacement, multiplier);
+        let answer = Answer { displacement, multiplier, residual, violation: &violation };
+        let error = ROUNDED_BOUND * self.energy_error_bound(norm, &answer).whole;
+        if !error.is_finite() {
+            return None;
+        }
+        let halves = Halves::of(self, norm);
+        let wide_error = norm.widening() * error;
+        // One solve is worth it if it saves sweeps.
+        let may_solve = rows > FEW_ROWS && !norm.is_over();
+        let reach = if may_solve { self.monotone_reach(|s| Some(norm.displacement(s))) } else { None };
+        let mut open = self.open_by(&answer, wide_error, reach);
+        let doubtful: Vec<(usize, f64)> = self
+            .distances(&answer)
+            .enumerate()
+            .filter(|&(row, distance)| distance > 0.0 && multiplier[row] == 0.0 && !open.contains(row))
+            .map(|(row, distance)| (row, distance / wide_error))
+            .collect();
+        self.within_reach(norm, &halves, &doubtful).into_iter().for_each(|row| open.set(row, true));
+        let of_force = |force: &[f64]| Some(ROUNDED_BOUND * norm.widening() * norm.of_force(force));
+        let mut closed = self.closed_by(&answer, &open, error, norm.widening(), of_force);
+        let in_question: Vec<usize> = (0..rows).filter(|&row| !open.contains(row)).collect();
+        let is_doubtful = |row: &usize| multiplier[*row] < 0.0 && !closed.set.contains(*row);
+        if in_question.iter().any(is_doubtful) && halves.work(in_question.len()) <= MOST_WORK {
+            for (&row, length) in in_question.iter().zip(halves.moved_together(&self.contact, &in_question)) {
+                closed.prove(row, -multiplier[row], norm.widening() * length);
+            }
+        }
+        Some(ProvenSet { open, closed: closed.set })
+    }
+
+    /// As [`ContactProblem::prove`], without a factor: with the bound by the cycles of the hierarchy of K, and one solve by them
+    /// for an M-matrix. `None` if the cycles find no bound, or if K is singular to their precision.
+    pub(crate) fn prove_by_cycles(
+        &self,
+        multigrid: &Multigrid,
+        watch: &Watch,
+        displacement: &[f64],
+        multiplier: &[f64],
+    ) -> Option<ProvenSet> {
+        if multigrid.is_shifted() || self.far_units(displacement).is_some() {
+            return None;
+        }
+        let violation = self.accurate_violation(displacement);
+        let residual = self.accurate_residual(displacement, multiplier);
+        let answer = Answer { displacement, multiplier, residual, violation: &violation };
+        let error = ROUNDED_BOUND * self.energy_error_bound_by(multigrid, &answer, watch).whole;
+        if !error.is_finite() {
+            return None;
+        }
+        let reach = self.monotone_reach(|s| {
+            let found = conjugate_gradients(&self.stiffness, s, multigrid, ROUGH, MOST_CYCLES).ok();
+            found.map(|found| found.solution)
+        });
+        let reach = reach.or_else(|| self.measured_reach(multigrid, displacement, watch));
+        let open = self.open_by(&answer, error, reach);
+        let of_force = |force: &[f64]| {
+            dual_norm_within(&self.stiffness, multigrid, force, watch).map(|norm| ROUNDED_BOUND * norm.most)
+        };
+        let closed = self.closed_by(&answer, &open, error, 1.0, of_force);
+        Some(ProvenSet { open, closed: closed.set })
+    }
+
+    /// The distance `g - B u` of each row, less what it may be off by rounding u; infinite without obstacle.
+    fn distances(&self, answer: &Answer) -> impl Iterator<Item = f64> {
+        let distances = answer.violation.iter().zip(self.negligible(answer.displacement));
+        distances.map(|(violation, negligible)| -violation - negligible).collect::<Vec<_>>().into_iter()
+    }
+
+    /// The rows that are open beyond an error of `error` in the energy norm, with bounds on their reach if there are any.
+    fn open_by(&self, answer: &Answer, error: f64, reach: Option<Vec<f64>>) -> ContactSet {
+        let reach = reach.unwrap_or_else(|| vec![f64::INFINITY; self.rows()]);
+        let is_open: Vec<bool> = self
+            .distances(answer)
+            .zip(reach)
+            .map(|(distance, reach)| distance > 0.0 && (distance.is_infinite() || distance > reach * error))
+            .collect();
+        is_open.into_iter().collect()
+    }
+
+    /// The rows that are closed, by one dof each, where the error is `error` in the energy norm and `of_force` bounds the norm
+    /// of the displacement under a force.
+    fn closed_by(
+        &self,
+        answer: &Answer,
+        open: &ContactSet,
+        error: f64,
+        widening: f64,
+        of_force: impl FnOnce(&[f64]) -> Option<f64>,
+    ) -> Closed {
+        let rows = self.rows();
+        let dropped: Vec<f64> =
+            (0..rows).map(|row| if open.contains(row) { -answer.multiplier[row] } else { 0.0 }).collect();
+        let force: Vec<f64> =
+            answer.residual.iter().zip(self.contact.mul_transposed(&dropped)).map(|(r, part)| r + part).collect();
+        let imbalance = of_force(&force).map_or(f64::INFINITY, |force| force + error);
+        let mut closed = Closed { set: ContactSet::open(rows), imbalance };
+        let in_question: Vec<usize> = (0..rows).filter(|&row| !open.contains(row)).collect();
+        for (&row, length) in in_question.iter().zip(self.moved_alone(&in_question)) {
+            closed.prove(row, -answer.multiplier[row], widening * length);
+        }
+        closed
+    }
+
+    /// `|w|_K` of the motion of a single dof that only this one of `rows` feels; infinite where there is none.
+    fn moved_alone(&self, rows: &[usize]) -> Vec<f64> {
+        let mut place = vec![usize::MAX; self.rows()];
+        rows.iter().enumerate().for_each(|(index, &row)| place[row] = index);
+        let mut lengths = vec![f64::INFINITY; rows.len()];
+        for (dof, &stiffness) in self.diagonal().values.iter().enumerate() {
+            let mut felt = self.contact.column(dof).filter(|&(row, b)| b != 0.0 && place[row] != usize::MAX);
+            if let (Some((row, b)), None) = (felt.next(), felt.next()) {
+                let length = &mut lengths[place[row]];
+                *length = length.min(stiffness.sqrt() / b.abs());
+            }
+        }
+        lengths
+    }
+}
+
+/// The rows that are proven closed, and the norm of what may be out of balance.
+struct Closed {
+    set: ContactSet,
+    imbalance: f64,
+}
+
+impl Closed {
+    /// Is a row with this force closed, if a motion that it alone feels has this length?
+    fn prove(&mut self, row: usize, force: f64, length: f64) {
+        self.set.set(row, self.set.contains(row) || force > length * self.imbalance);
+    }
+}
+
+/// The columns of `L^-1 B'`, whose products are the compliance of the rows.
+pub(super) struct Halves<'a> {
+    norm: &'a EnergyNorm,
+    /// The entries of each row, where they are swept: on the boundary, or in the whole body.
+    rows: Vec<Vec<(usize, f64)>>,
+    on_boundary: bool,
+}
+
+impl<'a> Halves<'a> {
+    fn of(problem: &ContactProblem, norm: &'a EnergyNorm) -> Self {
+        let on_boundary = norm.boundary().and_then(|boundary| norm.rows_on(boundary, &problem.contact, |_| true));
+        match on_boundary {
+            Some(rows) => Halves { norm, rows, on_boundary: true },
+            None => Halves { norm, rows: norm.rows_in_body(&problem.contact), on_boundary: false },
+        }
+    }
+
+    fn half(&self, row: usize) -> Vec<f64> {
+        let boundary = self.norm.boundary().filter(|_| self.on_boundary);
+        let mut column = vec![0.0; boundary.map_or(self.norm.dofs(), |boundary| boundary.len())];
+        self.rows[row].iter().for_each(|&(place, b)| column[place] += b);
+        match boundary {
+            Some(boundary) => boundary.forward(column),
+            None => self.norm.forward(&column),
+        }
+    }
+
+    /// `sqrt(G_ii)`: how far a displacement of unit energy norm moves the row.
+    pub(super) fn reach(&self, row: usize) -> f64 {
+        if self.norm.is_over() {
+            return f64::INFINITY;
+        }
+        let half = self.half(row);
+        ldexp(dot(&half, &half), self.norm.factor()).sqrt()
+    }
+
+    /// Multiplications of one sweep.
+    pub(super) fn sweep(&self) -> f64 {
+        match self.norm.boundary().filter(|_| self.on_boundary) {
+            Some(boundary) => boundary.len() as f64 * boundary.len() as f64 / 2.0,
+            None => self.norm.factor_entries() as f64,
+        }
+    }
+
+    /// Multiplications of the compliance of so many rows.
+    fn work(&self, rows: usize) -> f64 {
+        let length =
+            self.norm.boundary().filter(|_| self.on_boundary).map_or(self.norm.dofs(), |boundary| boundary.len());
+        (rows * rows) as f64 * (length + rows) as f64
+    }
+
+    /// `sqrt((G_CC^-1)_ii)` of the rows C of `contact`; infinite for those with a share in a dependence.
+    fn moved_together(&self, contact: &SparseMatrix, rows: &[usize]) -> Vec<f64> {
+        let none = || vec![f64::INFINITY; rows.len()];
+        let Some(Dependence { independent, takes_part }) = Dependence::of(contact, rows, || self.norm.is_over()) else {
+            return none();
+        };
+        let basis: Vec<usize> = (0..rows.len()).filter(|&index| independent[index]).collect();
+        let in_time = |&index: &usize| if self.norm.is_over() { None } else { Some(self.half(rows[index])) };
+        let Some(halves) = basis.iter().map(in_time).collect::<Option<Vec<_>>>() else { return none() };
+        let Some(reciprocals) = inverse_lengths(halves, || self.norm.is_over()) else { return none() };
+        let mut lengths = none();
+        for (&index, reciprocal) in basis.iter().zip(reciprocals).filter(|entry| !takes_part[*entry.0]) {
+            lengths[index] = ldexp_root(reciprocal, -self.norm.factor());
+        }
+        lengths
+    }
+}
+
+/// `sqrt(2^e) x`
+fn ldexp_root(x: f64, e: i32) -> f64 {
+    ldexp(if e.rem_euclid(2) == 1 { x * std::f64::consts::SQRT_2 } else { x }, e.div_euclid(2))
+}

@@ -1,0 +1,61 @@
+//! Data at the ends of double precision in other units: powers of two, so that nothing but the range changes.
+
+use super::EnergyNorm;
+use crate::error::Error;
+use crate::qp::linear::{SymmetricMatrix, exponent, largest, ldexp};
+use crate::qp::problem::ContactProblem;
+
+/// Forces and energies beyond 2 to plus or minus this power are near the ends of double precision.
+const FAR: i32 = 800;
+
+/// A displacement below 2 to this power of what the load could do is nothing beside it, and sets no unit.
+const NOTHING: i32 = -200;
+
+/// Units of stiffness and of length, as exponents of two.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Units {
+    pub stiffness: i32,
+    pub length: i32,
+}
+
+impl Units {
+    /// A displacement in these units.
+    pub fn displacement(&self, displacement: &[f64]) -> Vec<f64> {
+        displacement.iter().map(|&value| ldexp(value, -self.length)).collect()
+    }
+
+    /// A force in these units.
+    pub fn force(&self, force: &[f64]) -> Vec<f64> {
+        force.iter().map(|&value| ldexp(value, -self.stiffness - self.length)).collect()
+    }
+
+    /// An energy norm in these units of stiffness.
+    pub fn norm(&self, norm: &EnergyNorm) -> EnergyNorm {
+        norm.with_unit(self.stiffness)
+    }
+}
+
+impl ContactProblem {
+    /// The units in which an answer is of order one, where forces or energies would over- or underflow in its own.
+    pub(super) fn far_units(&self, displacement: &[f64]) -> Option<Units> {
+        let stiffness = exponent(largest(&self.diagonal().values));
+        let (moved, load) = (largest(displacement), largest(&self.load));
+        let statics = exponent(load) - stiffness;
+        let length = match (moved > 0.0, load > 0.0) {
+            (true, true) => exponent(moved).max(statics + NOTHING),
+            (true, false) => exponent(moved),
+            (false, _) => statics,
+        };
+        let is_far = |power: i32| power.abs() > FAR;
+        let far = is_far(stiffness) || is_far(length) || is_far(stiffness + length) || is_far(stiffness + 2 * length);
+        far.then_some(Units { stiffness, length })
+    }
+
+    /// The same problem in other units.
+    pub(super) fn in_units(&self, units: &Units) -> Result<Self, Error> {
+        let lower = self.stiffness.lower();
+        let values = lower.values().iter().map(|&value| ldexp(value, -units.stiffness)).collect();
+        let stiffness = SymmetricMatrix::from_lower(lower.with_values(values))?;
+        Self::new(stiffness, units.force(&self.load), self.contact.clone(), units.displacement(&self.gap))
+    }
+}

@@ -1,0 +1,294 @@
+//! What is said of a problem without a unique answer: not convex, infeasible, unbounded, under-held. A method that ends with such
+//! a claim, or without a bound, is a reason to look; what is said then rests on the problem alone.
+//!
+//! With N a basis of the null space of K, everything turns on cones in the few coordinates a of d = N a:
+//!
+//! ```text
+//! unbounded    d = N a with  B d <= 0                              and  f'd > 0
+//! under-held   d = N a with  B d <= 0 on the rows that touch        and  f'd = 0,  from a displacement u that is an answer
+//! ```
+//!
+//! The point of a cone that is nearest to some c is itself the answer to a contact problem, with K = I. It is zero exactly if
+//! no direction of the cone leans towards c. N and the signs of all these sums have twice the working precision: what is said
+//! of a problem holds for its doubles as they stand. Where a method left no answer, steps with `K + rho E` instead of K find one.
+
+mod cone;
+mod steps;
+
+use cone::{Cone, Face, Row};
+
+use super::cost::{Kept, check_memory, check_time, seconds};
+use super::judged::{judged, not_rechecked};
+use super::settings::Settings;
+use crate::error::Error;
+use crate::qp::certificate::{Motion, Rounding};
+use crate::qp::linear::{Analysis, FactorError, NullSpace, Twice, generic, largest, twice};
+use crate::qp::problem::ContactProblem;
+use crate::qp::transform::Scaling;
+use crate::solution::Solution;
+
+/// The forces of the rows hold the load if no motion is left with more than this share of them.
+const BALANCED: f64 = 1e-9;
+
+/// A row presses if its force on a dof is beyond this share of the forces that are in balance there: less is their rounding.
+const PRESSED: f64 = 1e-13;
+
+/// Where an answer leaves forces out of balance that may move a row by more than this share of its displacement and gap, it does
+/// not show which rows touch.
+const SETTLED: f64 = 1e-4;
+
+/// A row that is open by less than this share of its displacement and gap may touch.
+const TOUCHING: f64 = 1e-8;
+
+/// The same, as a share of what the load would move.
+const STRAINED: f64 = 1e-13;
+
+/// A body moves at most so many times as far as a dof that a force moves alone: soft enough for what is not slender.
+const BENDS: f64 = 1e3;
+
+/// An answer shows which rows press only if its conditions hold to this, however little is asked for.
+const SURE: f64 = 1e-9;
+
+/// The ending of a solve, with every claim rechecked; where an ending left no answer, the one that is found here.
+///
+/// # Errors
+/// As [`solve`](super::solve()).
+pub(super) fn rechecked(
+    problem: &ContactProblem,
+    settings: &Settings,
+    ending: Result<Solution, Error>,
+) -> Result<Solution, Error> {
+    let before = match ending {
+        Err(error) if is_doubtful(&error, settings) => error,
+        sure => return sure,
+    };
+    if settings.watch.is_over() {
+        return Err(not_decided(problem, before)?);
+    }
+    let scaling = Scaling::of(problem.stiffness(), problem.contact())?;
+    let (load, gap) = (scaling.load(problem.load(), 0), scaling.gap(problem.gap(), 0));
+    let scaled = match ContactProblem::new(scaling.stiffness().clone(), load, scaling.contact().clone(), gap) {
+        Ok(scaled) => scaled,
+        // Beyond the range of doubles nothing can be rechecked.
+        Err(_) => return Err(not_decided(problem, before)?),
+    };
+    if check_room(&scaled, settings).is_err() {
+        return Err(not_decided(problem, before)?);
+    }
+    let null = match scaled.stiffness().null_space() {
+        Ok(null) => null,
+        Err(FactorError::NotPositiveDefinite) => {
+            let direction = scaled.stiffness().negative_direction()?;
+            let claim = direction.and_then(|p| scaled.not_convex_along(&p));
+            return Err(claim.map_or_else(|| not_decided(problem, before), Ok)?);
+        }
+        Err(error) => return Err(error.into()),
+    };
+    let Some(null) = null else { return Err(not_decided(problem, before)?) };
+    let looked = Looked::of(&scaled, &scaling, null);
+    if let Some(motion) = looked.escape() {
+        return Err(Error::Unbounded { motion: motion.in_words(), direction: looked.expanded(&motion) });
+    }
+    let tolerance = settings.tolerance.min(SURE);
+    let holds = |solution: &Solution| solution.certificate.conditions_hold(tolerance);
+    let solution = match before {
+        Error::NotCertified { solution, .. } if holds(&solution) => *solution,
+        before => steps::answer(problem, &scaling, settings, before)?,
+    };
+    // A problem that has a place within its rows, and no motion that the load drives, has an answer.
+    let motion = match solution.certificate.penetration <= tolerance {
+        true => looked.drift(),
+        false => None,
+    };
+    if let Some(motion) = motion.or_else(|| looked.freedom(problem, &solution).filter(|_| holds(&solution))) {
+        return Err(Error::UnderHeld { motion: motion.in_words(), direction: looked.expanded(&motion) });
+    }
+    judged(solution, settings.goal())
+}
+
+/// Refuses a factorisation of the stiffness that memory or time do not allow.
+///
+/// # Errors
+/// [`Error::TooLarge`], [`Error::OutOfTime`], and those of the analysis.
+fn check_room(problem: &ContactProblem, settings: &Settings) -> Result<(), Error> {
+    check_memory(problem, Kept::Nothing, settings)?;
+    check_time(&settings.watch, seconds::ordering(problem))?;
+    let analysis = Analysis::of(problem.stiffness())?;
+    let kept = Kept::Factors { values: analysis.factor_entries(), last: 0, by_interior_point: false };
+    check_memory(problem, kept, settings)?;
+    check_time(&settings.watch, seconds::factorisation(&analysis))
+}
+
+/// Does an ending make a claim, or leave open whether there is one? Without a bound it does where its answer holds its
+/// conditions, or where a factor has shown the stiffness to be singular and the answer was to be as good as can be.
+fn is_doubtful(error: &Error, settings: &Settings) -> bool {
+    match error {
+        Error::NotConvex { .. } | Error::Unbounded { .. } | Error::UnderHeld { .. } => true,
+        Error::NotCertified { solution, .. } => {
+            let is_singular = solution.lost_pivot.is_some() && settings.wants_best();
+            let is_open = is_singular || solution.certificate.conditions_hold(settings.tolerance);
+            !solution.certificate.has_bound() && is_open
+        }
+        _ => false,
+    }
+}
+
+/// The ending of a claim that cannot be rechecked: no answer, and why.
+fn not_decided(problem: &ContactProblem, before: Error) -> Result<Error, Error> {
+    match before {
+        before @ Error::NotCertified { .. } => Ok(before),
+        claim => not_rechecked(problem, &claim),
+    }
+}
+
+/// A scaled problem with a basis of the null space of its stiffness.
+struct Looked<'a> {
+    scaled: &'a ContactProblem,
+    scaling: &'a Scaling,
+    null: NullSpace,
+    rounding: Rounding,
+    /// `B N` of each row with a bound, and the place of the row among all.
+    rows: Vec<(usize, Row)>,
+    /// `-f'N`: the load stops what goes against it.
+    against_load: Row,
+}
+
+impl<'a> Looked<'a> {
+    fn of(scaled: &'a ContactProblem, scaling: &'a Scaling, null: NullSpace) -> Self {
+        let (rounding, by_row) = (Rounding::of(&null), scaled.contact().transposed());
+        let bounded = (0..scaled.rows()).filter(|&row| scaled.gap()[row].is_finite());
+        let rows = bounded.map(|row| (row, coordinates(&null, || by_row.column(row), rounding))).collect();
+        let against_load = coordinates(&null, || scaled.load().iter().map(|f| -f).enumerate(), rounding);
+        Looked { scaled, scaling, null, rounding, rows, against_load }
+    }
+
+    /// The direction in the displacements of the problem itself, largest entry one.
+    fn expanded(&self, motion: &Motion) -> Vec<f64> {
+        let mut direction = self.scaling.expand_displacement(&motion.direction, 0);
+        let size = largest(&direction);
+        direction.iter_mut().for_each(|value| *value /= size);
+        direction
+    }
+
+    /// A motion without energy that the load drives and no row stops.
+    fn escape(&self) -> Option<Motion> {
+        let rows = self.rows.iter().map(|(_, row)| row).collect();
+        let cone = Cone { rows, fixed: None, rounding: self.exact_rounding() };
+        let along_load: Vec<f64> = self.against_load.values.iter().map(|value| -value.rounded()).collect();
+        self.motion(&cone.nearest(&along_load)?).filter(Motion::escapes)
+    }
+
+    /// A motion without energy on which the load does no work, and that no row stops, wherever it starts: of a problem that has
+    /// an answer, it has others.
+    fn drift(&self) -> Option<Motion> {
+        self.idle(&|_| true)
+    }
+
+    /// A motion without energy that leads from an answer to others.
+    ///
+    /// A displacement that differs from u by a d with `K d = 0` and `f'd = 0` has the same energy, and meets the rows if d closes
+    /// none of those that touch.
+    fn freedom(&self, problem: &ContactProblem, solution: &Solution) -> Option<Motion> {
+        let u = &solution.displacement;
+        let violation = problem.accurate_violation(u);
+        let sizes = problem.contact().mul_abs(u);
+        // What the load would move dofs that nothing but their own stiffness holds: all that is left of u may be rounding of it.
+        let unit = self.scaling.expand_displacement(&vec![STRAINED * largest(self.scaled.load()); u.len()], 0);
+        let strained = problem.contact().mul_abs(&unit);
+        let shares = shares_of_forces(problem, solution);
+        let presses = |row: usize| shares[row] > PRESSED;
+        let pressing: Vec<f64> = (solution.multiplier.iter().enumerate())
+            .map(|(row, &force)| if presses(row) { force } else { 0.0 })
+            .collect();
+        let unbalanced = moved_by_residual(problem, u, &pressing);
+        let sure = |row: usize| unbalanced[row] <= SETTLED * (sizes[row] + problem.gap()[row].abs()) + strained[row];
+        if !(self.rows.iter().all(|&(row, _)| sure(row)) && self.is_carried_by(&self.scaling.multiplier(&pressing, 0)))
+        {
+            return None;
+        }
+        let touches = |row: usize| {
+            let closed = TOUCHING * (sizes[row] + problem.gap()[row].abs()) + strained[row] + unbalanced[row];
+            violation[row] >= -closed || solution.multiplier[row] != 0.0
+        };
+        self.idle(&touches)
+            .filter(|motion| self.rows.iter().all(|&(row, _)| !presses(row) || motion.approach[row] == 0.0))
+    }
+
+    /// Returns `true` if these forces of the rows hold the load on all motions without energy: they do so to the digits of doubles, in
+    /// their own terms, and the rows that carry them can do so exactly. The last bit of the load may need another row.
+    fn is_carried_by(&self, forces: &[f64]) -> bool {
+        let (mut left, mut terms) = (self.against_load.values.clone(), Vec::new());
+        terms.extend(left.iter().map(|value| value.rounded().abs()));
+        let mut face = Face::default();
+        for (row, of_row) in self.rows.iter().filter(|(row, _)| forces[*row] != 0.0) {
+            face.hold(of_row, self.rounding.vanishes);
+            for ((left, terms), &value) in left.iter_mut().zip(&mut terms).zip(&of_row.values) {
+                let force = value * forces[*row].into();
+                *left = *left - force;
+                *terms += force.rounded().abs();
+            }
+        }
+        let is_balanced = left.iter().zip(&terms).all(|(left, terms)| left.rounded().abs() <= BALANCED * terms);
+        is_balanced && face.contains(&self.against_load, self.rounding.vanishes)
+    }
+
+    /// A motion without energy on which the load does no work, and that closes none of these rows.
+    fn idle(&self, stops: &dyn Fn(usize) -> bool) -> Option<Motion> {
+        let rows = self.rows.iter().filter(|(row, _)| stops(*row)).map(|(_, row)| row).collect();
+        let cone = Cone { rows, fixed: Some(&self.against_load), rounding: self.exact_rounding() };
+        let stays = |motion: &Motion| {
+            motion.is_idle() && self.rows.iter().all(|&(row, _)| motion.approach[row] <= 0.0 || !stops(row))
+        };
+        // No direction of a cone leans towards c or towards -c only if all are at right angles to it.
+        [1.0, -1.0].iter().find_map(|way| {
+            let towards: Vec<f64> = generic(self.null.vectors.len(), 0).iter().map(|value| way * value).collect();
+            self.motion(&cone.nearest(&towards)?).filter(stays)
+        })
+    }
+
+    fn exact_rounding(&self) -> Option<f64> {
+        self.null.is_exact.then_some(self.rounding.zero)
+    }
+
+    fn motion(&self, coordinates: &[Twice]) -> Option<Motion> {
+        let mut direction = vec![Twice::ZERO; self.scaled.dofs()];
+        for (&a, vector) in coordinates.iter().zip(&self.null.vectors) {
+            direction.iter_mut().zip(vector).for_each(|(d, &value)| *d = *d + a * value);
+        }
+        self.scaled.motion_along(&direction, self.rounding)
+    }
+}
+
+/// A linear function of displacements in the coordinates of a null space.
+fn coordinates<I: Iterator<Item = (usize, f64)>>(null: &NullSpace, entries: impl Fn() -> I, rounding: Rounding) -> Row {
+    let mut terms = 0.0;
+    let mut value = |vector: &Vec<Twice>| {
+        terms += entries().map(|(dof, b)| (b * vector[dof].rounded()).abs()).sum::<f64>();
+        twice::sum(entries().map(|(dof, b)| Twice::from(b) * vector[dof]), rounding.vanishes)
+    };
+    let values = null.vectors.iter().map(&mut value).collect();
+    Row { values, terms }
+}
+
+/// How far rows may move by what u and lambda leave out of balance: a force moves its dof against no more than the stiffness of that
+/// dof, and a body that bends moves further.
+fn moved_by_residual(problem: &ContactProblem, u: &[f64], lambda: &[f64]) -> Vec<f64> {
+    let residual = problem.accurate_residual(u, lambda);
+    let alone = problem.stiffness().diagonal();
+    // A force on a dof without stiffness moves nothing that others resist.
+    let moved = |(force, stiffness): (f64, &f64)| if *stiffness > 0.0 { BENDS * force.abs() / stiffness } else { 0.0 };
+    problem.contact().mul_abs(&residual.into_iter().zip(&alone).map(moved).collect::<Vec<f64>>())
+}
+
+/// The force of each row in the dof where it is largest, as a share of those that are in balance there.
+fn shares_of_forces(problem: &ContactProblem, solution: &Solution) -> Vec<f64> {
+    let lambda: Vec<f64> = solution.multiplier.iter().map(|value| value.abs()).collect();
+    let (contact, elastic) =
+        (problem.contact().mul_abs_transposed(&lambda), problem.stiffness().mul_abs(&solution.displacement));
+    let terms = |dof: usize| contact[dof] + elastic[dof] + problem.load()[dof].abs();
+    let mut shares = vec![0.0_f64; problem.rows()];
+    for (row, dof, b) in problem.contact().triplets().filter(|entry| entry.2 != 0.0 && lambda[entry.0] > 0.0) {
+        shares[row] = shares[row].max(b.abs() * lambda[row] / terms(dof));
+    }
+    shares
+}

@@ -1,0 +1,121 @@
+//! The whole answer of the engine with a factor: expanded, certified, refined, and found again where it falls short.
+
+use std::time::Instant;
+
+use super::factored::Factored;
+use super::found::Found;
+use crate::error::Error;
+use crate::qp::judged::{answer, judged};
+use crate::qp::method::{Outcome, ScaledProblem};
+use crate::qp::problem::ContactProblem;
+use crate::qp::run::last_resort;
+use crate::qp::settings::Settings;
+use crate::solution::{Certificate, Iteration, Seconds, Solution};
+use crate::watch::Watch;
+
+impl Factored {
+    /// The whole answer, certified, and what was found for it: by a second attempt where `found` falls short.
+    pub(super) fn best(&self, found: Found, settings: &Settings) -> Result<(Found, Solution), Error> {
+        let goal = settings.goal();
+        let solution = self.whole(&found, settings)?;
+        let mut best = (found, solution);
+        if goal.is_met_by(&best.1.certificate) {
+            return Ok(best);
+        }
+        let miss = |solution: &Solution| {
+            let (_, value, _) = goal.decisive(&solution.certificate);
+            if value.is_nan() { f64::INFINITY } else { value }
+        };
+        let other = self.second_attempt(&best.0, settings)?;
+        if let Some(other) = other.filter(|_| self.resolved(settings).allows_last_resort(miss(&best.1))) {
+            let solution = self.whole(&other, settings)?;
+            if miss(&solution) < miss(&best.1) {
+                best = (other, solution);
+            }
+        }
+        let (found, solution) = best;
+        Ok((found, judged(solution, goal)?))
+    }
+
+    /// What the last resort finds, where `found` is not its answer already.
+    ///
+    /// # Errors
+    /// [`Error::Infeasible`] for contact rows that contradict each other.
+    fn second_attempt(&self, found: &Found, settings: &Settings) -> Result<Option<Found>, Error> {
+        let clock = Instant::now();
+        // Of an answer that was cut short it is known why it falls short.
+        if found.outcome.is_last_resort() || settings.watch.is_over() {
+            return Ok(None);
+        }
+        let task =
+            ScaledProblem::new(&found.problem, &self.augmented, self.reduction.norm.is_some()).watched(&settings.watch);
+        let outcome = last_resort(&task, found.outcome.clone())
+            .map_err(|error| self.expand_error(error, &found.loading.load, &found.gap))?;
+        let seconds = Seconds { solve: found.seconds.solve + clock.elapsed().as_secs_f64(), ..found.seconds };
+        Ok(outcome.is_last_resort().then(|| Found { outcome, seconds, ..found.clone() }))
+    }
+
+    /// The whole answer with its certificate.
+    fn whole(&self, found: &Found, settings: &Settings) -> Result<Solution, Error> {
+        let clock = Instant::now();
+        settings.watch.step("certificate", 0);
+        let displacement = self.displacement(found);
+        let method = self.resolved(settings).method;
+        let Found { loading, gap, unit, outcome, seconds, refined, .. } = found;
+        let finishing = settings.watch.finishing();
+        let norm = self.reduction.norm.as_ref().map(|norm| norm.watched(&finishing));
+        let norm = match refined {
+            Some(refined) => norm.map(|norm| norm.off_by(refined.contraction)),
+            None => norm,
+        };
+        let multiplier = self.expand_multiplier(&outcome.multiplier, *unit);
+        let problem = self.problem.with(loading.load.clone(), gap.clone())?;
+        let certificate = match &norm {
+            Some(norm) => problem.certify_in(Some(norm), &displacement, &multiplier)?,
+            None => self.certificate(&problem, &displacement, &multiplier, &settings.watch)?,
+        };
+        let expand_iteration = |step: &Iteration| Iteration {
+            contact_set: self.reduction.selection.expand_set(&step.contact_set),
+            penalty: step.penalty,
+        };
+        let whole = Outcome {
+            displacement,
+            multiplier,
+            contact_set: self.reduction.selection.expand_set(&outcome.contact_set),
+            history: outcome.history.iter().map(expand_iteration).collect(),
+            ..*outcome
+        };
+        let mut solution = Solution {
+            refinements: refined.as_ref().map(|refined| refined.steps),
+            lost_pivot: self.lost_pivot,
+            condensed_dofs: self.condensed_dofs(),
+            seconds: Seconds { solve: seconds.solve + clock.elapsed().as_secs_f64(), ..*seconds },
+            ..answer(whole, method.name(), certificate)
+        };
+        if !self.is_single() && self.resolved(settings).wants_best() {
+            solution = self.corrected(solution, &problem, settings)?;
+        }
+        let clock = Instant::now();
+        let may_prove = settings.prove && !settings.watch.is_stopped() && settings.watch.allows(self.proof_seconds);
+        let proven = norm.as_ref().filter(|_| may_prove);
+        solution.proven = proven.and_then(|norm| problem.prove_in(norm, &solution.displacement, &solution.multiplier));
+        solution.seconds.proof += clock.elapsed().as_secs_f64();
+        solution.seconds.solve += clock.elapsed().as_secs_f64();
+        Ok(solution)
+    }
+
+    /// The certificate of an answer to `problem`, this one under some load and gaps: with what bound there is time for.
+    pub(super) fn certificate(
+        &self,
+        problem: &ContactProblem,
+        displacement: &[f64],
+        multiplier: &[f64],
+        watch: &Watch,
+    ) -> Result<Certificate, Error> {
+        match &self.reduction.norm {
+            Some(norm) => problem.certify_in(Some(&norm.watched(&watch.finishing())), displacement, multiplier),
+            None if !watch.finishing().allows(self.norm_seconds) => problem.certify_in(None, displacement, multiplier),
+            None => problem.certify(displacement, multiplier),
+        }
+    }
+}

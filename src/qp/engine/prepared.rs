@@ -1,0 +1,264 @@
+//! The door to the engines: a problem prepared once, and solved for many gaps, loads and starts.
+
+use std::sync::Arc;
+
+use super::boundary::BoundarySolution;
+use super::case::Case;
+use super::factored::Factored;
+use super::loading::Load;
+use super::multigrid::Hierarchical;
+use crate::error::Error;
+use crate::qp::linear::multigrid::Multigrid;
+use crate::qp::method::Start;
+use crate::qp::plan::Tried;
+use crate::qp::problem::{ContactProblem, check_load};
+use crate::qp::settings::{Method, Settings};
+use crate::solution::{Seconds, Solution};
+
+/// A contact problem prepared once for many gaps, loads and starts: its stiffness is factorised, or a multigrid hierarchy is
+/// built for it, depending on the method.
+///
+/// Clones are cheap and share what was prepared, and so do [`with_load`](Self::with_load),
+/// [`with_settings`](Self::with_settings) and [`starting_from`](Self::starting_from).
+///
+/// ```
+/// use signorini::{ContactProblem, Prepared, Settings, SparseMatrix, SymmetricMatrix};
+///
+/// // A spring of stiffness 2, pushed with force 3 towards a wall.
+/// let one = |value| SparseMatrix::from_triplets(1, 1, &[(0, 0, value)]);
+/// let stiffness = SymmetricMatrix::from_lower(one(2.0)?)?;
+/// let problem = ContactProblem::new(stiffness, vec![3.0], one(1.0)?, vec![1.0])?;
+/// let prepared = Prepared::new(&problem, &Settings::default())?;
+///
+/// // At distance 1 the spring takes 2 x 1 of the force and the wall the rest; at distance 2 there is no contact.
+/// assert_eq!(prepared.solve(&[1.0])?.multiplier, [-1.0]);
+/// assert_eq!(prepared.solve(&[2.0])?.displacement, [1.5]);
+/// // Twice the force: u = 1, and the wall takes 6 - 2.
+/// assert_eq!(prepared.solve_load(vec![6.0])?.multiplier, [-4.0]);
+/// # Ok::<(), signorini::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    engine: Engine,
+    pub(super) settings: Settings,
+    load: Arc<Load>,
+    start: Start,
+}
+
+/// What was prepared.
+#[derive(Clone, Debug)]
+enum Engine {
+    Factored(Arc<Factored>),
+    Multigrid(Arc<Hierarchical>),
+}
+
+impl Engine {
+    /// MPRGP works on a hierarchy, every other method on a factor.
+    ///
+    /// # Errors
+    /// Those of the engine.
+    fn of(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
+        let settings = &settings.started()?;
+        Ok(match settings.method {
+            Method::Mprgp => Engine::Multigrid(Arc::new(Hierarchical::new(problem, settings)?)),
+            _ => Engine::Factored(Arc::new(Factored::new(problem, settings)?)),
+        })
+    }
+
+    /// Returns `true` if `method` works on what was prepared.
+    fn serves(&self, method: Method) -> bool {
+        match self {
+            Engine::Factored(_) => method != Method::Mprgp,
+            Engine::Multigrid(_) => matches!(method, Method::Mprgp | Method::Auto),
+        }
+    }
+
+    fn problem(&self) -> &ContactProblem {
+        match self {
+            Engine::Factored(engine) => engine.problem(),
+            Engine::Multigrid(engine) => engine.problem(),
+        }
+    }
+}
+
+impl Prepared {
+    /// Prepares `problem` for the method of `settings`: a hierarchy for [`Method::Mprgp`], a factor for every other.
+    ///
+    /// # Errors
+    /// * [`Error::Setting`] for a setting outside its range,
+    /// * [`Error::Infeasible`] for rows that contradict each other at the gaps of `problem`,
+    /// * [`Error::NotConvex`] for a stiffness with a negative eigenvalue,
+    /// * [`Error::OutOfTime`], [`Error::Interrupted`] and [`Error::TooLarge`] if there is not enough time or memory left,
+    /// * [`Error::Numerical`] if the preparation fails for want of memory.
+    pub fn new(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
+        let (engine, load) = (Engine::of(problem, settings)?, Arc::new(Load::new(problem.load().to_vec())));
+        Ok(Prepared { engine, settings: settings.clone(), load, start: Start::default() })
+    }
+
+    /// The same problem under other settings. What was prepared is kept if their method works on it, with its condensation,
+    /// precision and threads; otherwise the problem is prepared again.
+    ///
+    /// # Errors
+    /// As [`Prepared::new`].
+    pub fn with_settings(&self, settings: &Settings) -> Result<Self, Error> {
+        let (settings, start) = (settings.clone(), self.start.clone());
+        if self.engine.serves(settings.method) {
+            return Ok(Prepared { settings, start, engine: self.engine.clone(), load: self.load.clone() });
+        }
+        let engine = Engine::of(self.engine.problem(), &settings)?;
+        Ok(Prepared { engine, settings, start, load: Arc::new(Load::new(self.load.force().to_vec())) })
+    }
+
+    /// The same problem under another load, length n, in N; a factor is swept once for it.
+    ///
+    /// # Errors
+    /// [`Error::Length`] and [`Error::NotFinite`] for a load that does not fit.
+    pub fn with_load(&self, load: Vec<f64>) -> Result<Self, Error> {
+        check_load(&load, self.dofs())?;
+        Ok(Prepared { load: Arc::new(Load::new(load)), ..self.clone() })
+    }
+
+    /// The same, solved from what is known of the answer, such as the contact set at the last gap.
+    pub fn starting_from(&self, start: impl Into<Start>) -> Self {
+        Prepared { start: start.into(), ..self.clone() }
+    }
+
+    /// Solves with these gaps, one per contact row, in m.
+    ///
+    /// # Errors
+    /// As [`solve`](crate::solve()); [`Error::Length`] and [`Error::NotFinite`] for gaps that do not fit or, with a factor, that
+    /// are infinite in other rows than those of the problem that was prepared; [`Error::OutOfTime`] if there is no time for a
+    /// first factorisation.
+    pub fn solve(&self, gap: &[f64]) -> Result<Solution, Error> {
+        let settings = &self.settings.started()?;
+        match &self.engine {
+            Engine::Factored(engine) => engine.solve(&self.case(gap, settings)),
+            Engine::Multigrid(engine) => engine.solve(&self.case(gap, settings)),
+        }
+    }
+
+    /// Solves with another load, length n, in N, and the gaps of the problem that was prepared.
+    ///
+    /// # Errors
+    /// As [`Prepared::with_load`] and [`Prepared::solve`].
+    pub fn solve_load(&self, load: Vec<f64>) -> Result<Solution, Error> {
+        self.with_load(load)?.solve(self.engine.problem().gap())
+    }
+
+    /// Contact set, multipliers and forces with these gaps. The displacement of the body is not computed, so that a condensed
+    /// problem costs what its contact boundary costs.
+    ///
+    /// # Errors
+    /// As [`Prepared::solve`]; the tolerance is held against the certificate of the condensed problem.
+    pub fn boundary(&self, gap: &[f64]) -> Result<BoundarySolution, Error> {
+        let settings = &self.settings.started()?;
+        match &self.engine {
+            Engine::Factored(engine) => {
+                let found = engine.find(&self.case(gap, settings))?;
+                let on_boundary = engine.on_boundary(found, settings, true)?;
+                Ok(BoundarySolution::on(engine.clone(), on_boundary, &self.settings))
+            }
+            Engine::Multigrid(engine) => Ok(engine.solve(&self.case(gap, settings))?.into()),
+        }
+    }
+
+    /// What an engine is asked for at these gaps.
+    pub(super) fn case<'a>(&'a self, gap: &'a [f64], settings: &'a Settings) -> Case<'a> {
+        Case { load: &self.load, gap, start: &self.start, settings }
+    }
+}
+
+impl Prepared {
+    /// Number of dofs of the problem.
+    pub fn dofs(&self) -> usize {
+        self.engine.problem().dofs()
+    }
+
+    /// Number of unknowns that the methods work on.
+    pub fn condensed_dofs(&self) -> usize {
+        self.factored().map_or(self.dofs(), |engine| engine.condensed_dofs())
+    }
+
+    /// Number of values of the factor of the stiffness; zero if the methods factorise by themselves or not at all.
+    pub fn factor_entries(&self) -> usize {
+        self.factored().map_or(0, |engine| engine.factor_entries())
+    }
+
+    /// Bytes of these values.
+    pub fn factor_bytes(&self) -> usize {
+        self.factor_entries() * if self.is_single() { size_of::<f32>() } else { size_of::<f64>() }
+    }
+
+    /// Multiplications of the factorisation of the stiffness; zero without one.
+    pub fn multiplications(&self) -> f64 {
+        self.factored().map_or(0.0, |engine| engine.multiplications())
+    }
+
+    /// Returns `true` if the factor is in single precision.
+    pub fn is_single(&self) -> bool {
+        self.factored().is_some_and(|engine| engine.is_single())
+    }
+
+    /// The multigrid hierarchy; `None` if the stiffness was factorised.
+    #[doc(hidden)]
+    pub fn hierarchy(&self) -> Option<&Multigrid> {
+        match &self.engine {
+            Engine::Factored(_) => None,
+            Engine::Multigrid(engine) => Some(engine.multigrid()),
+        }
+    }
+
+    /// What the preparation cost.
+    pub fn seconds(&self) -> Seconds {
+        match &self.engine {
+            Engine::Factored(engine) => engine.seconds(),
+            Engine::Multigrid(engine) => engine.seconds(),
+        }
+    }
+
+    /// What a solve tries here.
+    pub(in crate::qp) fn tried(&self) -> Tried {
+        self.factored().map_or(Tried::on_all_dofs(Method::Mprgp), |engine| engine.tried(&self.settings))
+    }
+
+    /// The engine with a factor, if that was prepared.
+    pub(super) fn factored(&self) -> Option<&Arc<Factored>> {
+        match &self.engine {
+            Engine::Factored(engine) => Some(engine),
+            Engine::Multigrid(_) => None,
+        }
+    }
+}
+
+/// What a motion asks for in every step.
+impl Prepared {
+    /// As [`Prepared::boundary`], for one of many steps: held against its conditions alone, which cost no triangular
+    /// solve, unless the settings name an accuracy.
+    ///
+    /// # Errors
+    /// As [`Prepared::boundary`].
+    pub(crate) fn step(&self, gap: &[f64]) -> Result<BoundarySolution, Error> {
+        let Engine::Factored(engine) = &self.engine else { return self.boundary(gap) };
+        let settings = &self.settings.started()?;
+        let found = engine.find(&self.case(gap, settings))?;
+        let on_boundary = engine.on_boundary(found, settings, settings.accuracy.is_some())?;
+        Ok(BoundarySolution::on(engine.clone(), on_boundary, &self.settings))
+    }
+
+    /// The displacement at these gaps without a certificate; `None` if the method did not settle on a set, or only a certified
+    /// answer is known to be one.
+    ///
+    /// # Errors
+    /// As [`Prepared::boundary`].
+    pub(crate) fn settled(&self, gap: &[f64]) -> Result<Option<Vec<f64>>, Error> {
+        let Engine::Factored(engine) = &self.engine else { return Ok(None) };
+        let settings = &self.settings.started()?;
+        let found = engine.find(&self.case(gap, settings))?;
+        Ok(found.outcome.settled.then(|| engine.displacement(&found)))
+    }
+
+    /// The displacement that the load causes if no row is closed, in the precision of the factor; `None` without one.
+    pub(crate) fn response(&self) -> Option<Vec<f64>> {
+        self.factored()?.response(&self.load)
+    }
+}

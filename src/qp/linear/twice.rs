@@ -1,0 +1,120 @@
+//! Numbers with twice the working precision.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// The unrounded sum of two doubles, of which the second is below half a unit in the last place of the first.
+///
+/// # Source
+/// T. J. Dekker, *A floating-point technique for extending the available precision*, Numer. Math. 18 (1971) 224-242.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Twice {
+    head: f64,
+    tail: f64,
+}
+
+impl Twice {
+    /// Zero.
+    pub const ZERO: Twice = Twice { head: 0.0, tail: 0.0 };
+
+    /// The nearest double.
+    pub fn rounded(self) -> f64 {
+        self.head
+    }
+
+    /// The magnitude.
+    pub fn abs(self) -> Self {
+        if self.head < 0.0 { -self } else { self }
+    }
+
+    /// The sum of two doubles, of which the first is the larger in magnitude.
+    fn of_sorted(head: f64, tail: f64) -> Self {
+        let sum = head + tail;
+        Twice { head: sum, tail: tail - (sum - head) }
+    }
+
+    /// The sum of any two doubles.
+    fn of_sum(a: f64, b: f64) -> Self {
+        let sum = a + b;
+        let part = sum - a;
+        Twice { head: sum, tail: (a - (sum - part)) + (b - part) }
+    }
+}
+
+impl From<f64> for Twice {
+    fn from(value: f64) -> Self {
+        Twice { head: value, tail: 0.0 }
+    }
+}
+
+impl Neg for Twice {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Twice { head: -self.head, tail: -self.tail }
+    }
+}
+
+impl Add for Twice {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        let (heads, tails) = (Self::of_sum(self.head, other.head), Self::of_sum(self.tail, other.tail));
+        let sum = Self::of_sorted(heads.head, heads.tail + tails.head);
+        Self::of_sorted(sum.head, sum.tail + tails.tail)
+    }
+}
+
+impl Sub for Twice {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Mul for Twice {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        let product = self.head * other.head;
+        let rest = self.head.mul_add(other.head, -product);
+        Self::of_sorted(product, rest + (self.head * other.tail + self.tail * other.head))
+    }
+}
+
+impl Div for Twice {
+    type Output = Self;
+
+    fn div(self, other: Self) -> Self {
+        let first = Self::from(self.head / other.head);
+        let rest = self - first * other;
+        let second = Self::from(rest.head / other.head);
+        let rest = rest - second * other;
+        first + second + Self::from(rest.head / other.head)
+    }
+}
+
+/// A sum, zero where its terms cancel to less than `rounding` of the sum of their magnitudes.
+pub fn sum(terms: impl Iterator<Item = Twice>, rounding: f64) -> Twice {
+    let (sum, size) = terms.fold((Twice::ZERO, 0.0_f64), |(sum, size), term| (sum + term, size + term.rounded().abs()));
+    if sum.rounded().abs() > rounding * size { sum } else { Twice::ZERO }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_third_is_held_to_twice_the_digits() {
+        let third = Twice::from(1.0) / Twice::from(3.0);
+        let left = third * Twice::from(3.0) - Twice::from(1.0);
+        assert!(left.rounded().abs() < 1e-31 && third.tail != 0.0, "{third:?}: {left:?}");
+    }
+
+    #[test]
+    fn a_small_term_survives_beside_large_ones_that_cancel() {
+        let terms = [1e8, 3e-17, -1e8].map(Twice::from);
+        assert_eq!(sum(terms.into_iter(), 1e-26).rounded(), 3e-17);
+        assert_eq!(sum(terms.into_iter(), 1e-24), Twice::ZERO);
+    }
+}

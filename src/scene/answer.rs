@@ -1,0 +1,172 @@
+//! An answer: a model joined with displacements and multipliers. What follows from them is computed once.
+
+use std::sync::{Arc, OnceLock};
+
+use super::Model;
+use super::rigid_modes::RigidMotions;
+use crate::error::Error;
+use crate::fem::assembly::internal_force;
+use crate::fem::recovery::{self, StressField};
+use crate::solution::{ContactSet, Solution};
+
+/// Displacements, multipliers and closed rows of a model, and what follows from them: stresses, pressures, forces. Stresses
+/// and forces are computed if somebody asks for them, and only once.
+#[derive(Clone, Debug)]
+pub struct Answer {
+    model: Arc<Model>,
+    displacement: Vec<f64>,
+    multiplier: Vec<f64>,
+    contact_set: ContactSet,
+    pressure: Vec<f64>,
+    stress: OnceLock<StressField>,
+    forces: OnceLock<Forces>,
+}
+
+/// The forces on the nodes of a model, in force, length `dim * n_nodes` each.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Forces {
+    /// Contact forces, as [`Model::contact_forces`].
+    pub contact: Vec<f64>,
+    /// Support reactions, as [`Model::reactions`].
+    pub reactions: Vec<f64>,
+    /// The imbalance of loads, reactions and contact forces, as [`Model::force_balance`].
+    pub balance: f64,
+}
+
+impl Answer {
+    /// The answer of a solver.
+    ///
+    /// # Errors
+    /// [`Error::Length`] if it is not one to this model.
+    pub fn of(model: Arc<Model>, solution: &Solution) -> Result<Self, Error> {
+        Self::new(model, &solution.displacement, &solution.multiplier, &solution.contact_set)
+    }
+
+    /// The displacement of the free dofs (one entry per free dof, in length) with the multiplier (one entry per contact
+    /// row, in force) and the closed rows.
+    ///
+    /// # Errors
+    /// [`Error::Length`] if one of them does not fit the model.
+    pub fn new(
+        model: Arc<Model>,
+        displacement: &[f64],
+        multiplier: &[f64],
+        contact_set: &ContactSet,
+    ) -> Result<Self, Error> {
+        let (found, expected) = (contact_set.rows(), model.rows().len());
+        if found != expected {
+            return Err(Error::Length { name: "contact set", found, expected, of: "contact rows" });
+        }
+        Ok(Answer {
+            displacement: model.nodal_displacement(displacement)?,
+            pressure: model.pressure(multiplier)?,
+            multiplier: multiplier.to_vec(),
+            contact_set: contact_set.clone(),
+            stress: OnceLock::new(),
+            forces: OnceLock::new(),
+            model,
+        })
+    }
+
+    /// The model.
+    pub fn model(&self) -> &Arc<Model> {
+        &self.model
+    }
+
+    /// Nodal displacements, length `dim * n_nodes`, order `[u_x0, u_y0, u_x1, ...]`, in length.
+    pub fn displacement(&self) -> &[f64] {
+        &self.displacement
+    }
+
+    /// The closed rows.
+    pub fn contact_set(&self) -> &ContactSet {
+        &self.contact_set
+    }
+
+    /// Contact pressure of each row, in force per area, `>= 0` in compression.
+    pub fn pressure(&self) -> &[f64] {
+        &self.pressure
+    }
+
+    /// The stress in the displaced body, per element and per node.
+    ///
+    /// # Errors
+    /// As [`Model::stress`].
+    pub fn stress(&self) -> Result<&StressField, Error> {
+        once(&self.stress, || recovery::stress(self.model.body(), &self.displacement))
+    }
+
+    /// The forces on the nodes.
+    ///
+    /// # Errors
+    /// As [`Model::reactions`].
+    pub fn forces(&self) -> Result<&Forces, Error> {
+        once(&self.forces, || self.model.forces(&self.displacement, &self.multiplier))
+    }
+
+    /// The error of the mesh, relative in energy, estimated from the stress.
+    ///
+    /// # Errors
+    /// As [`Model::stress`].
+    ///
+    /// # Source
+    /// [`recovery::discretisation_error`].
+    pub fn discretisation_error(&self) -> Result<f64, Error> {
+        recovery::discretisation_error(self.model.body(), &self.displacement, self.stress()?)
+    }
+}
+
+/// What a cell holds, found if it is empty.
+fn once<T>(cell: &OnceLock<T>, find: impl FnOnce() -> Result<T, Error>) -> Result<&T, Error> {
+    match cell.get() {
+        Some(found) => Ok(found),
+        None => {
+            let found = find()?;
+            Ok(cell.get_or_init(|| found))
+        }
+    }
+}
+
+impl Model {
+    /// Nodal support reactions on the body, in force; zero along free dofs, so that a roller pushes along its normal.
+    ///
+    /// What the stress in the elements asks for at the supported dofs, less load and contact force there. The
+    /// multiplier enters because a contact row may press on a supported dof.
+    ///
+    /// # Errors
+    /// [`Error::Length`] where `displacement` or `multiplier` do not fit.
+    pub fn reactions(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Vec<f64>, Error> {
+        Ok(self.forces(&self.nodal_displacement(displacement)?, multiplier)?.reactions)
+    }
+
+    /// The imbalance of loads, support reactions and contact forces on each body: the largest of the virtual works
+    /// on its unit rigid motions (the resultant forces, and the resultant moments over half its size), relative
+    /// to the sum of all force magnitudes. A body of revolution has one rigid motion, and its forces count along the
+    /// axis.
+    ///
+    /// # Errors
+    /// As [`Model::reactions`].
+    pub fn force_balance(&self, displacement: &[f64], multiplier: &[f64]) -> Result<f64, Error> {
+        Ok(self.forces(&self.nodal_displacement(displacement)?, multiplier)?.balance)
+    }
+
+    /// The stress in the displaced body, per element and per node.
+    ///
+    /// # Errors
+    /// As [`Model::nodal_displacement`].
+    pub fn stress(&self, displacement: &[f64]) -> Result<StressField, Error> {
+        recovery::stress(self.body(), &self.nodal_displacement(displacement)?)
+    }
+
+    /// The forces of a nodal displacement.
+    fn forces(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Forces, Error> {
+        let contact = self.contact_forces(multiplier)?;
+        let mut forces = internal_force(self.body(), displacement)?;
+        let acting = self.nodal_load().iter().zip(&contact);
+        forces.iter_mut().zip(acting).for_each(|(force, (load, contact))| *force = *force - load - contact);
+        let reactions = self.dofs().supported_part(&forces)?;
+        let motions = RigidMotions::of(self.body());
+        let balance = motions.imbalance(self.mesh().nodes(), &[self.nodal_load(), &reactions, &contact]);
+        Ok(Forces { contact, reactions, balance })
+    }
+}

@@ -1,0 +1,98 @@
+//! A body from a mesh file of Gmsh.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::shape::{About, Block, BodyShape, Site};
+use crate::error::Error;
+use crate::fem::Integration;
+use crate::fem::mesh::gmsh::GmshFile;
+use crate::fem::mesh::{ElementKind, Mesh};
+use crate::scene::entry::wrong;
+use crate::scene::schema::json::word;
+
+/// Bytes of a mesh file for one node and the elements that belong to it, about.
+const OF_MESH_FILE: f64 = 150.0;
+
+/// A mesh written by Gmsh: a `.msh` file of version 4.1 or 2.2 in ASCII. A bar has the cross-section 1.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct GmshSpec {
+    /// The file, below the folder of the scene unless that is allowed to read outside; a relative name starts there.
+    pub file: String,
+    /// What the coordinates of the file are multiplied by, positive.
+    #[serde(default = "unchanged")]
+    pub scale: f64,
+    /// The physical group that is the body; all elements of the highest dimension where left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub group: Option<String>,
+    /// How the stiffness is integrated.
+    #[serde(default, deserialize_with = "word")]
+    pub integration: Integration,
+}
+
+fn unchanged() -> f64 {
+    1.0
+}
+
+pub(super) const ABOUT: About = About { name: "gmsh", dimension: None };
+
+impl GmshSpec {
+    /// The mesh file that is named, which lies below the folder of the scene once `..` and links are followed, unless the
+    /// scene may read outside.
+    fn mesh_file(&self, site: &Site) -> Result<PathBuf, Error> {
+        // The folder of a scene that is named alone is the empty path.
+        let folder = site.folder.unwrap_or(Path::new(""));
+        let file = folder.join(&self.file);
+        if site.reads_outside {
+            return Ok(file);
+        }
+        let real = |path: &Path| {
+            path.canonicalize().map_err(|source| Error::File { action: "read", path: path.into(), source })
+        };
+        let home = real(if folder.as_os_str().is_empty() { Path::new(".") } else { folder })?;
+        if !real(&file)?.starts_with(home) {
+            let message = format!(
+                "the file {} lies outside the folder of the scene; copy it there, or allow it (--allow-outside)",
+                file.display()
+            );
+            return Err(wrong(format!("{}.file", site.path), message));
+        }
+        Ok(file)
+    }
+}
+
+impl BodyShape for GmshSpec {
+    fn about(&self) -> About {
+        ABOUT
+    }
+
+    fn integration(&self) -> Integration {
+        self.integration
+    }
+
+    fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
+        let mesh = GmshFile::read(self.mesh_file(site)?)?.mesh(self.group.as_deref(), self.scale)?;
+        let (found, model) = (mesh.dimension(), site.model.name());
+        if found != site.model.dimension() {
+            let body = ["a bar", "plane", "in space"][found - 1];
+            let message = format!("the mesh is {body}, which is no body of the model `{model}`");
+            return Err(wrong(format!("{}.file", site.path), message));
+        }
+        Ok(mesh)
+    }
+
+    fn block(&self, folder: Option<&Path>) -> Block {
+        let file = folder.map_or_else(|| self.file.clone().into(), |folder| folder.join(&self.file));
+        let bytes = std::fs::metadata(file).map_or(0.0, |about| about.len() as f64);
+        // What is plane has fewer elements for a node, which its own estimate hardly notices.
+        let side = (bytes / OF_MESH_FILE).sqrt();
+        Block { cells: vec![side; 2], lengths: Vec::new(), counts: ElementKind::T3.reference().counts }
+    }
+
+    fn refine(&mut self, _: usize) -> Result<(), Error> {
+        Err(wrong("body.gmsh", "a mesh from a file has no finer one; mesh the body again with smaller cells"))
+    }
+}

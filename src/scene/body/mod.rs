@@ -1,0 +1,108 @@
+//! Body shapes: a file each, named here and nowhere else.
+
+mod bar;
+mod cuboid;
+mod disc;
+mod gmsh;
+mod half_ball;
+mod half_disc;
+mod rectangle;
+mod ring;
+mod shape;
+
+pub use bar::{BarSpec, bar};
+pub use cuboid::{BoxSpec, cuboid};
+pub use disc::{DiscSpec, disc};
+pub use gmsh::GmshSpec;
+pub use half_ball::{HalfBallSpec, half_ball};
+pub use half_disc::{HalfDiscSpec, half_disc};
+pub use rectangle::{RectangleSpec, rectangle};
+pub use ring::{RingSpec, ring};
+pub use shape::Sides;
+pub(super) use shape::{BodyShape, Site};
+
+use serde::{Deserialize, Serialize};
+
+use super::schema::json::object;
+use shape::About;
+
+/// The elastic body.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum BodySpec {
+    /// A rectangle with a structured mesh; its boundaries are `left`, `right`, `bottom`, `top`. In an axisymmetric
+    /// model its section.
+    Rectangle(#[serde(deserialize_with = "object")] RectangleSpec),
+    /// A bar along x; its boundaries are `left`, `right`.
+    Bar(#[serde(deserialize_with = "object")] BarSpec),
+    /// A box with a structured mesh; its boundaries are `left`, `right` (along x), `front`, `back` (along y), `bottom`,
+    /// `top` (along z).
+    Box(#[serde(deserialize_with = "object")] BoxSpec),
+    /// A disc, graded towards its lowest and its highest point; its boundaries are `lower` and `upper` and, where it is
+    /// symmetric, `symmetry-x`. In an axisymmetric model, symmetric about x = 0, a ball.
+    Disc(#[serde(deserialize_with = "object")] DiscSpec),
+    /// Half of a disc, graded towards its lowest (highest) point; its boundaries are `cut` (flat), `arc` and, where it
+    /// is symmetric, `symmetry-x`. In an axisymmetric model, symmetric about x = 0, half a ball.
+    HalfDisc(#[serde(deserialize_with = "object")] HalfDiscSpec),
+    /// Half of a ball, or a quarter or an eighth of one, graded towards its lowest (highest) point; its boundaries are
+    /// `cut` (flat), `round` and the planes `symmetry-x` and `symmetry-y`.
+    HalfBall(#[serde(deserialize_with = "object")] HalfBallSpec),
+    /// A ring or a sector of it; its boundaries are `inner`, `outer` and, where it does not close, `start` and `end`.
+    Ring(#[serde(deserialize_with = "object")] RingSpec),
+    /// A mesh written by Gmsh; its physical groups are the boundaries.
+    Gmsh(#[serde(deserialize_with = "object")] GmshSpec),
+}
+
+/// What all body shapes are called, in the order in which messages name them.
+const ALL: [About; 8] = [
+    rectangle::ABOUT,
+    bar::ABOUT,
+    cuboid::ABOUT,
+    disc::ABOUT,
+    half_disc::ABOUT,
+    half_ball::ABOUT,
+    ring::ABOUT,
+    gmsh::ABOUT,
+];
+
+impl BodySpec {
+    /// The shape, whichever it is.
+    pub(super) fn shape(&self) -> &dyn BodyShape {
+        match self {
+            BodySpec::Rectangle(spec) => spec,
+            BodySpec::Bar(spec) => spec,
+            BodySpec::Box(spec) => spec,
+            BodySpec::Disc(spec) => spec,
+            BodySpec::HalfDisc(spec) => spec,
+            BodySpec::HalfBall(spec) => spec,
+            BodySpec::Ring(spec) => spec,
+            BodySpec::Gmsh(spec) => spec,
+        }
+    }
+
+    /// The shape, to be changed.
+    pub(super) fn shape_mut(&mut self) -> &mut dyn BodyShape {
+        match self {
+            BodySpec::Rectangle(spec) => spec,
+            BodySpec::Bar(spec) => spec,
+            BodySpec::Box(spec) => spec,
+            BodySpec::Disc(spec) => spec,
+            BodySpec::HalfDisc(spec) => spec,
+            BodySpec::HalfBall(spec) => spec,
+            BodySpec::Ring(spec) => spec,
+            BodySpec::Gmsh(spec) => spec,
+        }
+    }
+
+    /// The bodies that a model of `dimension` coordinates has, as `box, half-ball or gmsh`.
+    pub(super) fn fitting(dimension: usize) -> String {
+        let fits = |about: &&About| about.dimension.is_none_or(|own| own == dimension);
+        let names: Vec<&str> = ALL.iter().filter(fits).map(|about| about.name).collect();
+        match names.split_last() {
+            Some((last, [])) => (*last).to_string(),
+            Some((last, others)) => format!("{} or {last}", others.join(", ")),
+            None => String::new(),
+        }
+    }
+}

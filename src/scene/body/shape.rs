@@ -1,0 +1,133 @@
+//! What every body shape tells: its mesh, its size before anything is built, the same on finer cells.
+
+use std::path::Path;
+
+use crate::error::Error;
+use crate::fem::Integration;
+use crate::fem::element::LatticeCounts;
+use crate::fem::mesh::{Axis, ElementKind, MAX_NODES, Mesh, Zone};
+use crate::scene::entry::wrong;
+use crate::scene::schema::ModelSpec;
+
+/// The corner to corner part of a round body's radius that is not core, about.
+const SHELLS: f64 = 0.6;
+
+/// What a body shape is called, and where it belongs.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::scene) struct About {
+    /// As it is written.
+    pub name: &'static str,
+    /// The coordinates that the body has; `None` if only its file tells.
+    pub dimension: Option<usize>,
+}
+
+/// A body shape with its numbers.
+pub(in crate::scene) trait BodyShape {
+    fn about(&self) -> About;
+
+    /// How the stiffness is integrated.
+    fn integration(&self) -> Integration;
+
+    /// The cross-section of a bar, in area.
+    fn area(&self) -> f64 {
+        1.0
+    }
+
+    /// The mesh; errors that are not of the scene yet are those of the body as a whole.
+    fn mesh(&self, site: &Site) -> Result<Mesh, Error>;
+
+    /// A block of cells that stands for the mesh; files start from `folder`.
+    fn block(&self, folder: Option<&Path>) -> Block;
+
+    /// Cuts every cell into `times` along each edge.
+    fn refine(&mut self, times: usize) -> Result<(), Error>;
+}
+
+/// Where a body stands in a scene.
+pub(in crate::scene) struct Site<'a> {
+    /// Its JSON path, as `body.ring`.
+    pub path: String,
+    pub model: ModelSpec,
+    /// Where relative file names start.
+    pub folder: Option<&'a Path>,
+    /// Files outside the folder may be read.
+    pub reads_outside: bool,
+}
+
+impl Site<'_> {
+    /// The mesh lines of an axis that is the field `name`.
+    pub fn lines(&self, axis: &Axis, name: &str) -> Result<Vec<f64>, Error> {
+        axis.coordinates().map_err(|error| wrong(format!("{}.{name}.{}", self.path, error.field), error.message))
+    }
+
+    /// Refuses a product of divisions that makes more nodes than are allowed, before its lines are made.
+    pub fn check_product(&self, axes: &[&Axis]) -> Result<(), Error> {
+        let cells: Vec<usize> = axes.iter().map(|axis| axis.cells()).collect();
+        // A single axis of too many is refused at its own path.
+        let possible = cells.iter().all(|&cells| cells <= MAX_NODES);
+        let product = cells.iter().fold(1_usize, |product, &cells| product.saturating_mul(cells));
+        if possible && product > MAX_NODES {
+            let cells: Vec<String> = cells.iter().map(usize::to_string).collect();
+            let message = format!("{} cells make more than the {MAX_NODES} nodes that are allowed", cells.join(" x "));
+            return Err(wrong(self.path.clone(), message));
+        }
+        Ok(())
+    }
+
+    /// The same by an estimate, which refuses only what is far beyond.
+    pub fn check_estimate(&self, block: &Block) -> Result<(), Error> {
+        let cells: f64 = block.cells.iter().product();
+        if cells > 4.0 * MAX_NODES as f64 {
+            let message = format!("some {cells:.0e} cells make more than the {MAX_NODES} nodes that are allowed");
+            return Err(wrong(self.path.clone(), message));
+        }
+        Ok(())
+    }
+}
+
+/// What of a round body is meshed along an axis across its lowest point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sides {
+    /// Both sides of the centre.
+    Both,
+    /// The part beyond the centre, which ends at a plane of symmetry.
+    Beyond,
+}
+
+/// A block of cells that stands for the mesh of a body.
+pub(in crate::scene) struct Block {
+    /// Cells along each axis.
+    pub cells: Vec<f64>,
+    /// Lengths along each axis, where they are known.
+    pub lengths: Vec<f64>,
+    /// What each cell brings with it.
+    pub counts: LatticeCounts,
+}
+
+impl Block {
+    /// The product of divided axes.
+    pub fn product(axes: &[&Axis], kind: ElementKind) -> Self {
+        let of = |axis: &Axis| axis.divisions.iter().map(|&cells| cells as f64).sum::<f64>();
+        Block {
+            cells: axes.iter().map(|axis| of(axis)).collect(),
+            lengths: axes.iter().map(|axis| axis.length()).collect(),
+            counts: kind.reference().counts,
+        }
+    }
+}
+
+/// Cells of a round body, estimated: from the lowest point to the corner of its core, from there to the cut, in the shells.
+pub(in crate::scene) struct RoundCells {
+    pub aside: f64,
+    pub down: f64,
+    pub shells: f64,
+}
+
+impl RoundCells {
+    pub fn of(zone: &Zone, radius: f64) -> Self {
+        let quarter = radius * std::f64::consts::FRAC_PI_4;
+        let (aside, last) = zone.count(quarter);
+        let (shells, _) = zone.count(radius * SHELLS);
+        RoundCells { aside, down: quarter / last, shells }
+    }
+}

@@ -1,0 +1,149 @@
+//! The bodies of a scene: mesh, material, formulation.
+
+use super::Warning;
+use super::body::{BodySpec, Site};
+use super::entry::{located, wrong};
+use super::schema::{MaterialSpec, ModelSpec, Scene};
+use crate::error::Error;
+use crate::fem::body::{ElasticBody, Integration};
+use crate::fem::formulation::Formulation;
+use crate::fem::material::Material;
+use crate::fem::mesh::Mesh;
+
+/// Above this ratio linear elements are known to lock noticeably; measured, quadratic ones do above the second.
+const LOCKING_POISSON: [f64; 2] = [0.49, 0.499];
+
+/// A body as a scene describes it, and where.
+struct DescribedBody<'a> {
+    scene: &'a Scene,
+    spec: &'a BodySpec,
+    material: &'a MaterialSpec,
+    /// What stands before its JSON paths.
+    place: String,
+}
+
+impl Scene {
+    /// All bodies of the scene in one.
+    pub(super) fn elastic_body(&self) -> Result<ElasticBody, Error> {
+        let first = DescribedBody { scene: self, spec: &self.body, material: &self.material, place: String::new() };
+        let mut body = first.elastic_body()?;
+        for (index, further) in self.further_bodies.iter().enumerate() {
+            let path = format!("further-bodies[{index}]");
+            let name = &further.name;
+            if name.is_empty() || self.further_bodies[..index].iter().any(|other| other.name == *name) {
+                let message = format!("`{name}` is not allowed: every further body needs a name of its own");
+                return Err(wrong(format!("{path}.name"), message));
+            }
+            let described = DescribedBody {
+                scene: self,
+                spec: &further.body,
+                material: &further.material,
+                place: format!("{path}."),
+            };
+            body = body.beside(&described.elastic_body()?, name).map_err(|error| described.at_body(error))?;
+        }
+        Ok(body)
+    }
+}
+
+impl DescribedBody<'_> {
+    /// The JSON path of a field of the body.
+    fn path(&self, field: &str) -> String {
+        format!("{}body.{}{field}", self.place, self.spec.shape().about().name)
+    }
+
+    /// The mesh of the shape.
+    fn mesh(&self) -> Result<Mesh, Error> {
+        let site = Site {
+            path: self.path(""),
+            model: self.scene.model,
+            folder: self.scene.folder.as_deref(),
+            reads_outside: self.scene.reads_outside,
+        };
+        self.spec.shape().mesh(&site).map_err(|error| self.at_body(error))
+    }
+
+    /// An error of the mesh at its place in the scene; what has a file and a line of its own stays there.
+    fn at_body(&self, error: Error) -> Error {
+        match error {
+            Error::Mesh { message } => wrong(self.path(""), message),
+            other => located(other, &self.path(".")),
+        }
+    }
+
+    fn formulation(&self) -> Result<Formulation, Error> {
+        let (thickness, model) = (self.scene.thickness, self.scene.model);
+        let about = self.spec.shape().about();
+        if about.dimension.is_some_and(|dimension| dimension != model.dimension()) {
+            let (body, fitting, model) = (about.name, BodySpec::fitting(model.dimension()), model.name());
+            let message = format!("a {body} is no body of the model `{model}`; there it is a {fitting}");
+            return Err(wrong(self.path(""), message));
+        }
+        let formulation = match model {
+            ModelSpec::Bar => Formulation::Bar { area: self.spec.shape().area() },
+            ModelSpec::PlaneStrain => Formulation::PlaneStrain { thickness },
+            ModelSpec::PlaneStress => Formulation::PlaneStress { thickness },
+            ModelSpec::Axisymmetric => Formulation::Axisymmetric,
+            ModelSpec::Space => Formulation::Space,
+        };
+        let plane = matches!(formulation, Formulation::PlaneStrain { .. } | Formulation::PlaneStress { .. });
+        if !plane && thickness != 1.0 {
+            let message = format!("the model `{}` has no thickness; leave it out", model.name());
+            return Err(wrong("thickness", message));
+        }
+        let prefix = if model == ModelSpec::Bar { self.path(".") } else { String::new() };
+        formulation.check().map_err(|error| located(error, &prefix))?;
+        Ok(formulation)
+    }
+
+    fn elastic_body(&self) -> Result<ElasticBody, Error> {
+        let material = Material::new(self.material.young, self.material.poisson);
+        let material = material.map_err(|error| self.in_material(error))?;
+        let material = match self.material.density {
+            Some(density) => material.with_density(density).map_err(|error| self.in_material(error))?,
+            None if self.scene.analysis.is_some() => {
+                return Err(wrong(format!("{}material", self.place), "a dynamic analysis needs a `density`; give it"));
+            }
+            None => material,
+        };
+        let formulation = self.formulation()?;
+        material.lame(&formulation).map_err(|error| self.in_material(error))?;
+        let at_body = |error| match error {
+            // A setting that stands beside the body: the thickness.
+            Error::Setting { .. } => located(error, ""),
+            other => self.at_body(other),
+        };
+        let body = ElasticBody::new(self.mesh()?, material, formulation).map_err(at_body)?;
+        body.with_integration(self.spec.shape().integration()).map_err(|error| match error {
+            Error::Mesh { message } => wrong(self.path(".integration"), message),
+            other => other,
+        })
+    }
+
+    /// An error of the material at its place; the allowed range is that of the model.
+    fn in_material(&self, error: Error) -> Error {
+        let prefix = format!("{}material.", self.place);
+        let allowed = match self.scene.model {
+            ModelSpec::Bar => "above -1 and at most 0.5 in a bar",
+            ModelSpec::PlaneStrain => "above -1 and below 0.5 in plane strain",
+            ModelSpec::PlaneStress => "above -1 and at most 0.5 in plane stress",
+            ModelSpec::Axisymmetric => "above -1 and below 0.5 in an axisymmetric body",
+            ModelSpec::Space => "above -1 and below 0.5 in space",
+        };
+        match error {
+            Error::Setting { name: "poisson", value, .. } => {
+                located(Error::Setting { name: "poisson", value, allowed }, &prefix)
+            }
+            other => located(other, &prefix),
+        }
+    }
+}
+
+/// The warning of a body whose elements lock.
+pub(super) fn locking(body: &ElasticBody) -> Option<Warning> {
+    let kind = body.mesh().kind();
+    let poisson = body.regions().iter().map(|region| region.material().poisson()).fold(f64::NEG_INFINITY, f64::max);
+    let limit = LOCKING_POISSON[usize::from(kind.is_quadratic())];
+    let locks = body.formulation().can_lock() && body.integration() == Integration::Standard && poisson > limit;
+    locks.then(|| Warning::NearlyIncompressible { poisson, element: kind.name() })
+}

@@ -1,0 +1,35 @@
+//! A cone: a wedge turned about the approach direction.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::polyline::Polyline;
+use super::shape::{About, Geometry, ObstacleShape, Site};
+use super::solid::{Form, Solid};
+use crate::error::Error;
+
+/// A cone that opens along the approach direction.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct ConeSpec {
+    /// The point nearest to the body.
+    pub apex: [f64; 3],
+    /// Slope of the flank away from the body, positive.
+    pub slope: f64,
+}
+
+pub(super) const ABOUT: About = About { name: "cone", dimensions: &[3] };
+
+impl ObstacleShape for ConeSpec {
+    fn about(&self) -> About {
+        ABOUT
+    }
+
+    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+        let apex = site.point("apex", &self.apex)?;
+        let slope = site.positive("slope", self.slope)?;
+        Ok(Geometry::rigid(Solid::new(site, apex, Form::Turned(Arc::new(Polyline::wedge(slope))))))
+    }
+}

@@ -1,0 +1,21 @@
+//! Pairs of nodes: what an obstacle that is another body comes to.
+
+use super::row::ObstacleRow;
+use crate::fem::geometry::dot;
+
+/// The node of another body across a candidate.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::scene) struct Pair {
+    pub partner: usize,
+    /// Unit vector from the candidate's body into the other.
+    pub normal: [f64; 3],
+    /// Along the normal from the candidate to its partner, in length.
+    pub distance: f64,
+}
+
+impl Pair {
+    /// The row of the candidate, the other body shifted by `gap` along the unit vector `approach`.
+    pub fn row(&self, gap: f64, approach: [f64; 3]) -> ObstacleRow {
+        ObstacleRow { normal: self.normal, gap: self.distance + gap * dot(self.normal, approach) }
+    }
+}

@@ -1,0 +1,161 @@
+//! An obstacle of a model: its surface, and the candidates that may touch it.
+
+use std::sync::Arc;
+
+use super::row::{Obstacle, ObstacleRow};
+use super::shape::{Geometry, Site};
+use crate::error::Error;
+use crate::fem::assembly::tributary_areas;
+use crate::fem::body::ElasticBody;
+use crate::fem::geometry::length;
+use crate::scene::entry::{boundary, number, wrong};
+use crate::scene::schema::ObstacleSpec;
+
+/// A component of a unit normal below this is rounding of the geometry, not a direction.
+const NO_COMPONENT: f64 = 1e-14;
+
+/// A normal is of unit length to within this: rounding of whoever made it.
+const UNIT: f64 = 1e-9;
+
+/// An obstacle of a model: rigid, or the surface of another body.
+#[derive(Clone, Debug)]
+pub struct PlacedObstacle {
+    boundary: String,
+    candidates: Vec<(usize, f64)>,
+    approach: [f64; 3],
+    dimension: usize,
+    geometry: Geometry,
+}
+
+impl PlacedObstacle {
+    /// Checks the obstacle at JSON path `path`.
+    pub(in crate::scene) fn of_scene(spec: &ObstacleSpec, path: &str, body: &ElasticBody) -> Result<Self, Error> {
+        let candidates = candidates(body, &spec.boundary, &format!("{path}.boundary"))?;
+        let dimension = body.dimension();
+        let (axis, _) = spec.approach.axis();
+        if axis >= dimension {
+            let names = ["x", "x and y", "x, y and z"][dimension - 1];
+            let message = format!("`{}` is no direction of this model, which has {names}", spec.approach.name());
+            return Err(wrong(format!("{path}.approach"), message));
+        }
+        if let Some(misfit) = spec.shape.misfit(dimension) {
+            return Err(wrong(format!("{path}.shape"), misfit));
+        }
+        let shape = spec.shape.shape();
+        let site = Site {
+            obstacle: path,
+            path: format!("{path}.shape.{}", shape.about().name),
+            boundary: &spec.boundary,
+            approach: spec.approach,
+            rule: spec.rule,
+            body,
+            candidates: &candidates,
+        };
+        let (approach, geometry) = (site.direction(), shape.place(&site)?);
+        Ok(PlacedObstacle { boundary: spec.boundary.clone(), candidates, approach, dimension, geometry })
+    }
+
+    /// An obstacle of a user's own, number `path` of all.
+    pub(in crate::scene) fn of_user(
+        boundary: &str,
+        obstacle: Arc<dyn Obstacle>,
+        path: &str,
+        body: &ElasticBody,
+    ) -> Result<Self, Error> {
+        let candidates = candidates(body, boundary, &format!("{path}.boundary"))?;
+        let (approach, dimension) = (obstacle.approach(), body.dimension());
+        match check_direction(approach, dimension) {
+            Err(reason) => Err(wrong(format!("{path}.approach"), format!("the approach direction {reason}"))),
+            Ok(()) => {
+                let geometry = Geometry::Rigid(obstacle);
+                Ok(PlacedObstacle { boundary: boundary.into(), candidates, approach, dimension, geometry })
+            }
+        }
+    }
+
+    /// Name of the boundary whose nodes are its candidates.
+    pub fn boundary(&self) -> &str {
+        &self.boundary
+    }
+
+    /// The obstacle, if it is rigid; `None` for the surface of another body.
+    pub fn rigid(&self) -> Option<&dyn Obstacle> {
+        match &self.geometry {
+            Geometry::Rigid(obstacle) => Some(obstacle.as_ref()),
+            Geometry::Pairs(_) => None,
+        }
+    }
+
+    /// The approach direction [x, y, z], of length 1: from the body to the obstacle.
+    pub fn approach(&self) -> [f64; 3] {
+        self.approach
+    }
+
+    /// The candidate nodes, in the order of the boundary, each with its tributary area.
+    pub fn candidates(&self) -> &[(usize, f64)] {
+        &self.candidates
+    }
+
+    /// The surface as a polyline [x, y] for pictures: over the body's extent and a little more, shifted by `gap`
+    /// along the approach direction, in `segments` pieces (10,000 at most), corners met exactly. The obstacle lies on
+    /// the side that [`approach`](Self::approach) points to. Empty where the surface does not reach over the body, for
+    /// another body, and outside the plane.
+    pub fn outline(&self, gap: f64, segments: usize) -> Vec<[f64; 2]> {
+        self.rigid().map_or_else(Vec::new, |obstacle| obstacle.outline(gap, segments))
+    }
+
+    /// The node of another body across the candidate of this index; `None` if the obstacle is rigid.
+    pub(in crate::scene) fn partner(&self, candidate: usize) -> Option<usize> {
+        match &self.geometry {
+            Geometry::Pairs(pairs) => pairs.get(candidate).map(|pair| pair.partner),
+            Geometry::Rigid(_) => None,
+        }
+    }
+
+    /// The row of the candidate of this index, which lies at `node`, the surface shifted by `gap`, or `None` if it is
+    /// out of reach.
+    ///
+    /// # Errors
+    /// A predicate of the node, if it has no row that makes sense.
+    pub(in crate::scene) fn row(
+        &self,
+        candidate: usize,
+        node: [f64; 3],
+        gap: f64,
+    ) -> Result<Option<ObstacleRow>, String> {
+        let row = match &self.geometry {
+            Geometry::Rigid(obstacle) => obstacle.shifted_row(node, gap).map_err(|reason| away(&reason))?,
+            Geometry::Pairs(pairs) => pairs.get(candidate).map(|pair| pair.row(gap, self.approach)),
+        };
+        let Some(row) = row else { return Ok(None) };
+        if row.gap.is_nan() {
+            return Err(away("has no distance that could be computed"));
+        }
+        if !row.gap.is_finite() {
+            return Ok(None);
+        }
+        check_direction(row.normal, self.dimension).map_err(|reason| format!("has a row whose normal {reason}"))?;
+        Ok(Some(ObstacleRow { normal: row.normal.map(|c| if c.abs() < NO_COMPONENT { 0.0 } else { c }), ..row }))
+    }
+}
+
+fn candidates(body: &ElasticBody, name: &str, path: &str) -> Result<Vec<(usize, f64)>, Error> {
+    Ok(tributary_areas(body, boundary(body.mesh(), name, path)?))
+}
+
+/// What is wrong with a node, and what helps.
+fn away(reason: &str) -> String {
+    format!("{reason}; move the obstacle away from it")
+}
+
+/// Checks that a vector is of unit length and lies in a space of `dimension` coordinates.
+fn check_direction(vector: [f64; 3], dimension: usize) -> Result<(), String> {
+    let length = length(vector);
+    if length.is_nan() || (length - 1.0).abs() > UNIT {
+        return Err(format!("has the length {}; it must be 1", number(length)));
+    }
+    match vector[dimension..].iter().any(|&component| component != 0.0) {
+        true => Err(format!("leads out of the model, which has {dimension} coordinates")),
+        false => Ok(()),
+    }
+}

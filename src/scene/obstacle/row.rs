@@ -1,0 +1,79 @@
+//! What an obstacle is: a contact row for every point.
+
+use std::fmt::Debug;
+
+/// The contact row of a node, `normal . u <= gap`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ObstacleRow {
+    /// Unit vector [x, y, z] into the obstacle; zero beyond the dimension of the model.
+    pub normal: [f64; 3],
+    /// Signed distance from the undeformed node to the obstacle along `normal`, in length; negative inside.
+    pub gap: f64,
+}
+
+/// A rigid obstacle: it gives the node at any point its contact row.
+///
+/// All rigid shapes of a scene are obstacles. One of a user's own stands beside them by
+/// [`Scene::build_with`](crate::Scene::build_with).
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use signorini::Scene;
+/// use signorini::scene::{Obstacle, ObstacleRow};
+///
+/// /// The surface y = 2 + x^2, with rows along y.
+/// #[derive(Debug)]
+/// struct Bowl;
+///
+/// impl Obstacle for Bowl {
+///     fn approach(&self) -> [f64; 3] {
+///         [0.0, 1.0, 0.0]
+///     }
+///
+///     fn row(&self, [x, y, _]: [f64; 3]) -> Result<Option<ObstacleRow>, String> {
+///         Ok(Some(ObstacleRow { normal: self.approach(), gap: 2.0 + x * x - y }))
+///     }
+/// }
+///
+/// let scene = Scene::from_json(
+///     r#"{
+///         "body": {"rectangle": {"x": {"points": [0, 1], "divisions": [1]}, "y": {"points": [0, 1], "divisions": [1]}}},
+///         "material": {"young": 1, "poisson": 0},
+///         "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}],
+///         "gap": -0.25
+///     }"#,
+///     "scene",
+/// )?;
+/// let model = scene.build_with(&[("top", Arc::new(Bowl))])?;
+/// // At (0, 1) the surface is 1 away, at (1, 1) it is 2; the gap of the scene brings it nearer by 0.25.
+/// assert_eq!(model.problem().gap(), [0.75, 1.75]);
+/// # Ok::<(), signorini::Error>(())
+/// ```
+pub trait Obstacle: Debug + Send + Sync {
+    /// The approach direction: a unit vector [x, y, z] from the body to the obstacle. The gap of a scene shifts the
+    /// obstacle along it.
+    fn approach(&self) -> [f64; 3];
+
+    /// The row of a node at `point` [x, y, z], zero beyond the dimension of the model; `None` if the obstacle does not
+    /// reach there.
+    ///
+    /// # Errors
+    /// What is wrong with the node, to stand behind "node 7 at (0, 1)", as "lies deeper in the circle than its centre".
+    fn row(&self, point: [f64; 3]) -> Result<Option<ObstacleRow>, String>;
+
+    /// The same with the obstacle moved by `shift` along its approach direction, in length.
+    ///
+    /// # Errors
+    /// As [`row`](Self::row).
+    fn shifted_row(&self, point: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
+        let approach = self.approach();
+        self.row([0, 1, 2].map(|axis| point[axis] - shift * approach[axis]))
+    }
+
+    /// The surface in the plane as a polyline [x, y] for pictures, moved by `shift`, in `segments` pieces; empty if there
+    /// is none to show.
+    fn outline(&self, _shift: f64, _segments: usize) -> Vec<[f64; 2]> {
+        Vec::new()
+    }
+}

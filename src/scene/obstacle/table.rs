@@ -1,0 +1,83 @@
+//! A polyline through points; it says nothing beyond its ends.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::frame::{Frame, Local};
+use super::polyline::Polyline;
+use super::profile::Profile;
+use super::shape::{About, Geometry, ObstacleShape, Site};
+use super::surface::Surface;
+use crate::error::Error;
+use crate::scene::entry::{PLACE_TOLERANCE, finite_pair, number, point, wrong};
+
+/// A polyline through points.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct TableSpec {
+    /// At least two points [x, y], increasing in the coordinate across the approach direction, from the first
+    /// candidate to the last or further.
+    pub points: Vec<[f64; 2]>,
+}
+
+pub(super) const ABOUT: About = About { name: "table", dimensions: &[2] };
+
+impl TableSpec {
+    fn polyline(&self, site: &Site) -> Result<Polyline, Error> {
+        let (frame, path) = (Frame::of(site.approach), site.field("points"));
+        let axis = ["x", "y"][frame.along_axis()];
+        let mut knots: Vec<Local> = Vec::with_capacity(self.points.len());
+        for (index, &at) in self.points.iter().enumerate() {
+            finite_pair(&format!("{path}[{index}]"), at)?;
+            let knot = frame.local(at);
+            if let Some(last) = knots.last().filter(|last| knot[0] <= last[0]) {
+                let (this, before) = (number(knot[0]), number(last[0]));
+                let message =
+                    format!("{axis} = {this} does not lie beyond {before}, the one before; the {axis} must increase");
+                return Err(wrong(format!("{path}[{index}]"), message));
+            }
+            knots.push(knot);
+        }
+        let found = knots.len();
+        Polyline::table(knots, PLACE_TOLERANCE * site.body.mesh().size())
+            .ok_or_else(|| wrong(path.as_str(), format!("a table needs at least two points, but there are {found}")))
+    }
+}
+
+impl ObstacleShape for TableSpec {
+    fn about(&self) -> About {
+        ABOUT
+    }
+
+    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+        let table = self.polyline(site)?;
+        check_reach(&table, site)?;
+        Ok(Geometry::rigid(Profile::new(site, [0.0; 2], Arc::new(table))))
+    }
+}
+
+/// Every candidate must lie over the surface.
+fn check_reach(table: &Polyline, site: &Site) -> Result<(), Error> {
+    let (frame, path) = (Frame::of(site.approach), site.field("points"));
+    let axis = ["x", "y"][frame.along_axis()];
+    let (first, last) = table.range();
+    for &(node, _) in site.candidates {
+        let [x, y, _] = site.body.mesh().nodes()[node];
+        let at = [x, y];
+        let along = frame.local(at)[0];
+        if !(first..=last).contains(&along) {
+            let corners = table.corners();
+            let ends = corners.first().zip(corners.last());
+            let reach = ends.map_or(String::new(), |(a, b)| format!(" from {axis} = {} to {}", number(*a), number(*b)));
+            let message = format!(
+                "the table reaches{reach}, but candidate node {node} at {} needs it at {axis} = {}",
+                point(&at),
+                number(along)
+            );
+            return Err(wrong(path.as_str(), message));
+        }
+    }
+    Ok(())
+}

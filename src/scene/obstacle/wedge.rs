@@ -1,0 +1,35 @@
+//! A wedge: h(s) = slope |s|.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::polyline::Polyline;
+use super::profile::Profile;
+use super::shape::{About, Geometry, ObstacleShape, Site};
+use crate::error::Error;
+
+/// A wedge.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct WedgeSpec {
+    /// The point nearest to the body.
+    pub apex: [f64; 2],
+    /// Slope of both flanks away from the body, positive.
+    pub slope: f64,
+}
+
+pub(super) const ABOUT: About = About { name: "wedge", dimensions: &[2] };
+
+impl ObstacleShape for WedgeSpec {
+    fn about(&self) -> About {
+        ABOUT
+    }
+
+    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+        let apex = site.point("apex", &self.apex)?;
+        let slope = site.positive("slope", self.slope)?;
+        Ok(Geometry::rigid(Profile::new(site, site.local(apex), Arc::new(Polyline::wedge(slope)))))
+    }
+}

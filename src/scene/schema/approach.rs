@@ -1,0 +1,65 @@
+//! From which side an obstacle comes, and how its rows are made.
+
+use serde::{Deserialize, Serialize};
+
+/// A direction along an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub enum Approach {
+    /// Along x.
+    #[serde(rename = "+x")]
+    PlusX,
+    /// Against x.
+    #[serde(rename = "-x")]
+    MinusX,
+    /// Along y.
+    #[serde(rename = "+y")]
+    PlusY,
+    /// Against y.
+    #[serde(rename = "-y")]
+    MinusY,
+    /// Along z.
+    #[serde(rename = "+z")]
+    PlusZ,
+    /// Against z.
+    #[serde(rename = "-z")]
+    MinusZ,
+}
+
+impl Approach {
+    /// The axis, 0 to 2, and the sense along it, 1 or -1.
+    pub fn axis(self) -> (usize, f64) {
+        match self {
+            Approach::PlusX => (0, 1.0),
+            Approach::MinusX => (0, -1.0),
+            Approach::PlusY => (1, 1.0),
+            Approach::MinusY => (1, -1.0),
+            Approach::PlusZ => (2, 1.0),
+            Approach::MinusZ => (2, -1.0),
+        }
+    }
+
+    /// As it is written.
+    pub fn name(self) -> &'static str {
+        match self {
+            Approach::PlusX => "+x",
+            Approach::MinusX => "-x",
+            Approach::PlusY => "+y",
+            Approach::MinusY => "-y",
+            Approach::PlusZ => "+z",
+            Approach::MinusZ => "-z",
+        }
+    }
+}
+
+/// How a candidate node's contact row is made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum Rule {
+    /// Along the approach direction: `u . approach <= distance along it`; one entry per row.
+    #[default]
+    Approach,
+    /// Along the obstacle's normal at the point closest to the node: `n . u <= distance`; one entry per coordinate.
+    ClosestPoint,
+}

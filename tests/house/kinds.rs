@@ -1,0 +1,137 @@
+//! One place per kind: a new element, body shape, obstacle shape, time scheme or error is written in few files.
+//!
+//! The files that name a kind are counted: comments and texts in quotes are no names.
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+use crate::imports::House;
+
+/// The code of every file of `src/`.
+fn sources() -> Vec<(PathBuf, String)> {
+    House::read().files.into_values().map(|source| (source.path, code(&source.text))).collect()
+}
+
+/// A text without comments and without what stands in quotes.
+fn code(text: &str) -> String {
+    let mut code = String::new();
+    let mut is_quoted = false;
+    for line in text.lines() {
+        let line = if is_quoted { line } else { line.split("//").next().unwrap_or_default() };
+        let mut before = ' ';
+        for character in line.chars() {
+            match character {
+                '"' if before != '\\' && before != '\'' => is_quoted = !is_quoted,
+                _ if is_quoted => {}
+                _ => code.push(character),
+            }
+            before = character;
+        }
+        code.push('\n');
+    }
+    code
+}
+
+/// Does `code` have the name, which no longer name contains?
+fn names(code: &str, name: &str) -> bool {
+    let continues = |character: Option<char>| character.is_some_and(|c| c.is_alphanumeric() || c == '_');
+    code.match_indices(name)
+        .any(|(at, _)| !continues(code[..at].chars().next_back()) && !continues(code[at + name.len()..].chars().next()))
+}
+
+/// Asserts that a kind is named in these files and in no other.
+fn assert_named_in(names_of_kind: &[String], expected: &[&str]) {
+    let named = |(path, code): &(PathBuf, String)| {
+        names_of_kind.iter().any(|name| names(code, name)).then(|| path.to_str().unwrap().to_string())
+    };
+    let found: BTreeSet<String> = sources().iter().filter_map(named).collect();
+    let expected: BTreeSet<String> = expected.iter().map(|path| (*path).to_string()).collect();
+    assert_eq!(found, expected, "files that name {names_of_kind:?}");
+}
+
+#[test]
+fn an_element_stands_in_three_files() {
+    let (all, scene) = ("fem/element/mod.rs", "scene/schema/cells.rs");
+    // Bodies that are made of one element name it too, and the estimate of a mesh file takes triangles for its elements.
+    for (element, file, others) in [
+        ("Line2", "fem/element/line2.rs", &["scene/body/bar.rs"][..]),
+        ("T3", "fem/element/t3.rs", &[scene, "scene/body/gmsh.rs"]),
+        ("T6", "fem/element/t6.rs", &[scene]),
+        ("Q4", "fem/element/q4.rs", &[scene]),
+        ("Q8", "fem/element/q8.rs", &[scene]),
+        ("Tet4", "fem/element/tet4.rs", &[scene]),
+        ("Hex8", "fem/element/hex8.rs", &[scene, "scene/body/half_ball.rs"]),
+    ] {
+        let of_kinds = ["ElementKind", "ElementSpec", "SolidElementSpec"].map(|kinds| format!("{kinds}::{element}"));
+        assert_named_in(&of_kinds, &[&[all], others].concat());
+        let own = format!("static {}:", element.to_uppercase());
+        assert!(sources().iter().any(|(path, code)| path.to_str() == Some(file) && code.contains(&own)), "{file}");
+    }
+}
+
+#[test]
+fn a_body_shape_stands_in_two_files() {
+    for (shape, spec, file) in [
+        ("Rectangle", "RectangleSpec", "rectangle"),
+        ("Bar", "BarSpec", "bar"),
+        ("Box", "BoxSpec", "cuboid"),
+        ("Disc", "DiscSpec", "disc"),
+        ("HalfDisc", "HalfDiscSpec", "half_disc"),
+        ("HalfBall", "HalfBallSpec", "half_ball"),
+        ("Ring", "RingSpec", "ring"),
+        ("Gmsh", "GmshSpec", "gmsh"),
+    ] {
+        let file = format!("scene/body/{file}.rs");
+        assert_named_in(&[spec.into(), format!("BodySpec::{shape}")], &["scene/body/mod.rs", &file]);
+    }
+}
+
+#[test]
+fn an_obstacle_shape_stands_in_two_files() {
+    for (shape, spec, file) in [
+        ("Plane", "PlaneSpec", "plane"),
+        ("Parabola", "ParabolaSpec", "parabola"),
+        ("Circle", "CircleSpec", "circle"),
+        ("Wedge", "WedgeSpec", "wedge"),
+        ("Table", "TableSpec", "table"),
+        ("Sphere", "SphereSpec", "sphere"),
+        ("Cylinder", "CylinderSpec", "cylinder"),
+        ("Cone", "ConeSpec", "cone"),
+        ("HeightMap", "HeightMapSpec", "height_map"),
+        ("Body", "FacingSpec", "facing"),
+    ] {
+        let file = format!("scene/obstacle/{file}.rs");
+        assert_named_in(&[spec.into(), format!("ShapeSpec::{shape}")], &["scene/obstacle/mod.rs", &file]);
+    }
+}
+
+#[test]
+fn a_time_scheme_stands_in_two_files() {
+    for (scheme, file) in [
+        ("Midpoint", "midpoint"),
+        ("Trapezoidal", "trapezoidal"),
+        ("ContactStabilised", "contact_stabilised"),
+        ("Hht", "hht"),
+        ("Penalty", "penalty"),
+        ("CentralDifference", "central_difference"),
+    ] {
+        let of_enums = ["Scheme", "SchemeSpec"].map(|kinds| format!("{kinds}::{scheme}"));
+        assert_named_in(&of_enums, &["motion/scheme/mod.rs"]);
+        let file = format!("motion/scheme/{file}.rs");
+        let has_about =
+            |(path, code): &(PathBuf, String)| path.to_str() == Some(&file) && code.contains("ABOUT: About");
+        assert!(sources().iter().any(has_about), "{file}");
+    }
+}
+
+/// Beside the place that raises it, an error stands in `error.rs`: code, status and exit code come from there.
+#[test]
+fn no_error_is_classified_outside_its_own_file() {
+    let words = ["bad_input", "under_held", "not_convex", "out_of_time", "infeasible", "unbounded"];
+    for (_, source) in House::read().files.into_iter().filter(|(_, source)| source.path.to_str() != Some("error.rs")) {
+        for word in words {
+            let quoted = format!("\"{word}\"");
+            assert!(!source.text.contains(&quoted), "{} names the status {quoted}", source.path.display());
+        }
+    }
+}

@@ -1,0 +1,258 @@
+//! Problems of other fields, as matrices: many rows, two-sided bounds, separate parts, rotations.
+
+use signorini::{ContactProblem, Error, SparseMatrix, SymmetricMatrix};
+
+/// A problem with its name.
+pub struct Kind {
+    pub name: &'static str,
+    pub make: fn() -> Result<ContactProblem, Error>,
+}
+
+/// All kinds, small ones first within a kind.
+pub const KINDS: [Kind; 13] = [
+    Kind { name: "membrane 127", make: || membrane(127) },
+    Kind { name: "membrane 255", make: || membrane(255) },
+    Kind { name: "membrane 511", make: || membrane(511) },
+    Kind { name: "membrane 1023", make: || membrane(1023) },
+    Kind { name: "Poisson 24^3", make: || poisson(24) },
+    Kind { name: "torsion", make: || torsion(100) },
+    Kind { name: "image graph", make: || image_graph(100) },
+    Kind { name: "journal bearing", make: || journal_bearing(198) },
+    Kind { name: "separate bodies", make: || separate_bodies(1000) },
+    Kind { name: "frame", make: || frame(100) },
+    Kind { name: "plate", make: || plate(100) },
+    Kind { name: "Poisson 40^3", make: || poisson(40) },
+    Kind { name: "torsion 256", make: || torsion(256) },
+];
+
+/// `-u <= -lower` for each `(unknown, lower)`, then `u <= upper` for each `(unknown, upper)`.
+fn bounds(dofs: usize, lower: &[(usize, f64)], upper: &[(usize, f64)]) -> Result<(SparseMatrix, Vec<f64>), Error> {
+    let below = lower.iter().enumerate().map(|(row, &(dof, _))| (row, dof, -1.0));
+    let above = upper.iter().enumerate().map(|(row, &(dof, _))| (lower.len() + row, dof, 1.0));
+    let entries: Vec<_> = below.chain(above).collect();
+    let contact = SparseMatrix::from_triplets(lower.len() + upper.len(), dofs, &entries)?;
+    Ok((contact, lower.iter().map(|&(_, value)| -value).chain(upper.iter().map(|&(_, value)| value)).collect()))
+}
+
+fn problem(
+    dofs: usize,
+    entries: &[(usize, usize, f64)],
+    load: Vec<f64>,
+    (contact, gap): (SparseMatrix, Vec<f64>),
+) -> Result<ContactProblem, Error> {
+    let lower: Vec<_> = entries.iter().copied().filter(|&(row, column, _)| row >= column).collect();
+    let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &lower)?)?;
+    ContactProblem::new(stiffness, load, contact, gap)
+}
+
+/// The membrane of deal.II's step-41: load -10 over a staircase, bilinear cells on (-1, 1)^2, `n` unknowns along a side.
+fn membrane(n: usize) -> Result<ContactProblem, Error> {
+    let h = 2.0 / (n + 1) as f64;
+    let at = |i: usize, j: usize| j * n + i;
+    let mut entries = Vec::new();
+    let mut lower = Vec::new();
+    for j in 0..n {
+        for i in 0..n {
+            let x = -1.0 + (i + 1) as f64 * h;
+            let stair = if x < -0.5 {
+                -0.2
+            } else if x < 0.0 {
+                -0.4
+            } else if x < 0.5 {
+                -0.6
+            } else {
+                -0.8
+            };
+            lower.push((at(i, j), stair));
+            for dj in -1_isize..=1 {
+                for di in -1_isize..=1 {
+                    let (other_i, other_j) = (i.wrapping_add_signed(di), j.wrapping_add_signed(dj));
+                    if other_i < n && other_j < n {
+                        let value = if di == 0 && dj == 0 { 8.0 / 3.0 } else { -1.0 / 3.0 };
+                        entries.push((at(i, j), at(other_i, other_j), value));
+                    }
+                }
+            }
+        }
+    }
+    problem(n * n, &entries, vec![-10.0 * h * h; n * n], bounds(n * n, &lower, &[])?)
+}
+
+/// Seven points on a cube of `n` unknowns along an edge, pressed onto a bowl below every one.
+fn poisson(n: usize) -> Result<ContactProblem, Error> {
+    let h = 1.0 / (n + 1) as f64;
+    let at = |i: usize, j: usize, k: usize| (k * n + j) * n + i;
+    let (mut entries, mut lower) = (Vec::new(), Vec::new());
+    for k in 0..n {
+        for j in 0..n {
+            for i in 0..n {
+                let own = at(i, j, k);
+                entries.push((own, own, 6.0 * h));
+                let near = [(i + 1, j, k), (i, j + 1, k), (i, j, k + 1)];
+                for (a, b, c) in near.into_iter().filter(|&(a, b, c)| a < n && b < n && c < n) {
+                    entries.push((at(a, b, c), own, -h));
+                }
+                let away = |i: usize| ((i + 1) as f64 * h - 0.5).powi(2);
+                lower.push((own, -0.1 - 0.5 * (away(i) + away(j) + away(k))));
+            }
+        }
+    }
+    problem(n.pow(3), &entries, vec![-10.0 * h.powi(3); n.pow(3)], bounds(n.pow(3), &lower, &[])?)
+}
+
+/// Elastic-plastic torsion of a square bar: |u| at most the distance to the boundary, five points.
+fn torsion(n: usize) -> Result<ContactProblem, Error> {
+    let h = 1.0 / (n + 1) as f64;
+    let (mut entries, mut lower, mut upper) = (Vec::new(), Vec::new(), Vec::new());
+    for j in 0..n {
+        for i in 0..n {
+            let own = j * n + i;
+            let to_wall = |i: usize| (i + 1).min(n - i) as f64 * h;
+            let distance = to_wall(i).min(to_wall(j));
+            lower.push((own, -distance));
+            upper.push((own, distance));
+            entries.push((own, own, 4.0));
+            if i + 1 < n {
+                entries.push((own + 1, own, -1.0));
+            }
+            if j + 1 < n {
+                entries.push((own + n, own, -1.0));
+            }
+        }
+    }
+    problem(n * n, &entries, vec![5.0 * h * h; n * n], bounds(n * n, &lower, &upper)?)
+}
+
+/// Numbers in [0, 1) that look random, always the same.
+fn noise(index: usize) -> f64 {
+    let mut x = (index as u64).wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    ((x ^ (x >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+/// The graph of an image: edges with weights from 1e-3 to 1e3, a weak pull to noisy values, all within [0, 1].
+fn image_graph(n: usize) -> Result<ContactProblem, Error> {
+    let dofs = n * n;
+    let mut diagonal = vec![1e-2; dofs];
+    let mut entries = Vec::new();
+    for own in 0..dofs {
+        let neighbours = [(own % n + 1 < n).then_some(own + 1), (own + n < dofs).then_some(own + n)];
+        for (side, other) in neighbours.into_iter().enumerate().filter_map(|(side, other)| Some((side, other?))) {
+            let weight = 10.0_f64.powf(6.0 * noise(2 * own + side) - 3.0);
+            entries.push((other, own, -weight));
+            diagonal[own] += weight;
+            diagonal[other] += weight;
+        }
+    }
+    entries.extend(diagonal.iter().enumerate().map(|(dof, &value)| (dof, dof, value)));
+    let load = (0..dofs).map(|dof| 4.0 * noise(7 * dof + 3) - 1.5).collect();
+    let both: Vec<(usize, f64)> = (0..dofs).map(|dof| (dof, 0.0)).collect();
+    let ones: Vec<(usize, f64)> = (0..dofs).map(|dof| (dof, 1.0)).collect();
+    problem(dofs, &entries, load, bounds(dofs, &both, &ones)?)
+}
+
+/// Pressure in a journal bearing: eccentricity 0.1, length 20, u >= 0, five points of (1 + e cos x)^3.
+fn journal_bearing(n: usize) -> Result<ContactProblem, Error> {
+    let (eccentricity, height) = (0.1, 10.0);
+    let (hx, hy) = (2.0 * std::f64::consts::PI / (n + 1) as f64, 2.0 * height / (n + 1) as f64);
+    let film = |x: f64| (1.0 + eccentricity * x.cos()).powi(3);
+    let (mut entries, mut load) = (Vec::new(), Vec::new());
+    for j in 0..n {
+        for i in 0..n {
+            let (own, x) = (j * n + i, (i + 1) as f64 * hx);
+            let (left, right) = (film(x - 0.5 * hx) * hy / hx, film(x + 0.5 * hx) * hy / hx);
+            let across = film(x) * hx / hy;
+            entries.push((own, own, left + right + 2.0 * across));
+            if i + 1 < n {
+                entries.push((own + 1, own, -right));
+            }
+            if j + 1 < n {
+                entries.push((own + n, own, -across));
+            }
+            load.push(eccentricity * x.sin() * hx * hy);
+        }
+    }
+    let lower: Vec<(usize, f64)> = (0..n * n).map(|dof| (dof, 0.0)).collect();
+    problem(n * n, &entries, load, bounds(n * n, &lower, &[])?)
+}
+
+/// Chains of ten dofs that touch nothing of each other, three rows each, stiffness over four decades.
+fn separate_bodies(count: usize) -> Result<ContactProblem, Error> {
+    let (mut entries, mut load, mut lower) = (Vec::new(), Vec::new(), Vec::new());
+    for body in 0..count {
+        let stiffness = 10.0_f64.powf(4.0 * noise(body));
+        for place in 0..10 {
+            let own = 10 * body + place;
+            entries.push((own, own, (if place == 9 { 1.0 } else { 2.0 }) * stiffness));
+            if place < 9 {
+                entries.push((own + 1, own, -stiffness));
+            }
+            load.push(stiffness * (noise(11 * own) - 0.6));
+            if place % 3 == 2 {
+                lower.push((own, -noise(13 * own)));
+            }
+        }
+    }
+    problem(10 * count, &entries, load, bounds(10 * count, &lower, &[])?)
+}
+
+/// `n` beams of `n` nodes side by side, deflection and rotation at each, springs from beam to beam; a floor under every node.
+fn frame(n: usize) -> Result<ContactProblem, Error> {
+    let dofs = 2 * n * n;
+    let mut entries: Vec<(usize, usize, f64)> = Vec::new();
+    let mut add = |dofs: &[usize], block: &[&[f64]]| {
+        for (i, &row) in dofs.iter().enumerate() {
+            for (j, &column) in dofs.iter().enumerate().filter(|entry| *entry.1 <= row) {
+                entries.push((row, column, block[i][j]));
+            }
+        }
+    };
+    let beam: [&[f64]; 4] =
+        [&[12.0, 6.0, -12.0, 6.0], &[6.0, 4.0, -6.0, 2.0], &[-12.0, -6.0, 12.0, -6.0], &[6.0, 2.0, -6.0, 4.0]];
+    for line in 0..n {
+        for node in 0..n {
+            let own = 2 * (line * n + node);
+            if node + 1 < n {
+                add(&[own, own + 1, own + 2, own + 3], &beam);
+            }
+            if line + 1 < n {
+                add(&[own, own + 2 * n], &[&[1e-3, -1e-3], &[-1e-3, 1e-3]]);
+            }
+            if node == 0 {
+                add(&[own, own + 1], &[&[1e3, 0.0], &[0.0, 1e3]]);
+            }
+            if node + 1 == n {
+                add(&[own], &[&[1e3]]);
+            }
+        }
+    }
+    let load = (0..dofs).map(|dof| if dof % 2 == 0 { -1e-3 * (1.0 + noise(dof)) } else { 0.0 }).collect();
+    let lower: Vec<(usize, f64)> = (0..n * n).map(|node| (2 * node, -1.0 - 4.0 * noise(3 * node / n))).collect();
+    problem(dofs, &entries, load, bounds(dofs, &lower, &[])?)
+}
+
+/// A clamped plate, thirteen points of the biharmonic operator, over a ball below every node.
+fn plate(n: usize) -> Result<ContactProblem, Error> {
+    let h = 1.0 / (n + 1) as f64;
+    let mut entries = Vec::new();
+    let near = [(1_isize, 0_isize, -8.0), (0, 1, -8.0), (1, 1, 2.0), (-1, 1, 2.0), (2, 0, 1.0), (0, 2, 1.0)];
+    let (mut load, mut lower) = (Vec::new(), Vec::new());
+    for j in 0..n {
+        for i in 0..n {
+            let own = j * n + i;
+            let edges = [i == 0, i + 1 == n, j == 0, j + 1 == n].into_iter().filter(|&edge| edge).count();
+            entries.push((own, own, 20.0 + edges as f64));
+            for (di, dj, value) in near {
+                let (other_i, other_j) = (i.wrapping_add_signed(di), j.wrapping_add_signed(dj));
+                if other_i < n && other_j < n {
+                    entries.push((other_j * n + other_i, own, value));
+                }
+            }
+            load.push(-100.0 * h.powi(4));
+            let away = |i: usize| ((i + 1) as f64 * h - 0.5).powi(2);
+            lower.push((own, -0.05 - 0.5 * (away(i) + away(j))));
+        }
+    }
+    problem(n * n, &entries, load, bounds(n * n, &lower, &[])?)
+}
