@@ -30,10 +30,14 @@ example() { printf -- '-- %s\n' "$*"; "$built/examples/$1" "${@:2}"; }
 program() { printf -- '-- signorini %s\n' "$*"; "$built/signorini" "$@"; }
 
 step "format";                      cargo fmt --check
-step "lints, as errors";            cargo clippy --quiet --all-targets -- -D warnings
-step "documentation, as errors";    RUSTDOCFLAGS="-D warnings" cargo doc --quiet --no-deps
-step "build";                       cargo test --quiet --no-run
-step "tests";                       cargo test --quiet
+step "lints, as errors";            cargo clippy --quiet --all-targets --all-features -- -D warnings
+step "documentation, as errors";    RUSTDOCFLAGS="-D warnings" cargo doc --quiet --no-deps --all-features
+step "features, each without the others"
+for features in "" pictures faer nalgebra; do
+    cargo clippy --quiet --no-default-features --features "$features" -- -D warnings
+done
+step "build";                       cargo test --quiet --no-run --all-features
+step "tests";                       cargo test --quiet --all-features
 step "examples, in short"
 for lesson in two_springs one_scene find_the_contact_set many_gaps judge_an_answer bouncing_mass; do example $lesson; done
 example verification --short
@@ -46,6 +50,7 @@ example dynamic_cost --short
 for scene in examples/*.json; do program compare "$scene" --out "$out/$(basename "$scene" .json)"; done
 for scene in tools/impact/*.json; do program solve "$scene" --out "$out/$(basename "$scene" .json)"; done
 program sweep examples/indentation.json --gaps -0.01:-0.10:10 --out "$out/sweep"
+step "answers, the same twice";     python3 reference/same_reports.py "$built/signorini" "$built/signorini" examples tests/corpus
 
 step "reference, its own tests";    reference/environment.sh
 target/reference-venv/bin/python -m unittest discover --start-directory reference

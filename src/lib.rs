@@ -80,13 +80,23 @@ pub use watch::Watch;
 /// What the tests of this crate look at beside its interface; it may change at any time.
 #[doc(hidden)]
 pub mod internals {
+    pub use crate::fem::element::{Cell, MAX_NODES, QuadraturePoint, Rule, Tabulated};
+    #[cfg(feature = "pictures")]
+    pub use crate::output::body::{ContactPicture, ObstacleLine, common_limits, common_window};
     #[cfg(feature = "pictures")]
     pub use crate::output::ticks::{Ticks, brief, decimal, power_of_ten};
     pub use crate::qp::barrier::guarded;
-    pub use crate::qp::cost::Estimate;
-    pub use crate::qp::cost::bytes;
+    pub use crate::qp::cost::{Estimate, bytes};
     pub use crate::qp::linear::{AugmentedMatrix, Cholesky, dot, multigrid};
     pub use crate::qp::matrix_market::format_vector;
     pub use crate::qp::method::dual_active_set::DualActiveSet;
     pub use crate::qp::method::{Outcome, ScaledProblem, Solver};
+    pub use crate::scene::body::BodySpec;
+    pub use crate::scene::schema::AnalysisSpec;
+    pub use crate::study::manufactured::{NodalPressure, SolvedBlock, solve_block};
+
+    /// Exact solutions that the tests hold answers against.
+    pub mod closed_forms {
+        pub use crate::fem::closed_forms::*;
+    }
 }

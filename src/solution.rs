@@ -1,6 +1,12 @@
 //! What an answer consists of: plain data, no logic of the solvers.
+//!
+//! Every type serialises as it stands in a report; a number that is not finite is null there.
 
 use std::fmt;
+use std::ops::Not;
+
+use serde::ser::SerializeStruct;
+use serde::{Serialize, Serializer};
 
 /// Rounding of the entries of an assembled stiffness, as a share of its diagonal.
 const ROUNDED_ENTRIES: f64 = 512.0 * f64::EPSILON;
@@ -122,7 +128,7 @@ impl fmt::Debug for ContactSet {
 /// | `energy_error_bound` | an upper bound on `norm_K(u - u*) / norm_K(u)`, infinite where none is known |
 /// | `part_error_bound` | the largest of it and of the same for each part |
 /// | `energy_error_excess` | the same where rounding u to double precision does not explain it |
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Certificate {
     /// Relative imbalance of forces.
     pub stationarity: f64,
@@ -146,6 +152,7 @@ pub struct Certificate {
     pub parts: usize,
     /// Does the bound rest on a measured eigenvalue, because K was not factorised? It is the least Ritz value of K with its
     /// multigrid cycle, of which half is taken.
+    #[serde(skip_serializing_if = "Not::not")]
     pub bound_is_measured: bool,
 }
 
@@ -205,12 +212,13 @@ impl Certificate {
 }
 
 /// What an answer is held against.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Goal {
     /// Relative tolerance of the conditions.
     pub tolerance: f64,
     /// Relative error in the energy norm that is good enough; where one is named and a bound is known, the bound decides
     /// alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub accuracy: Option<f64>,
 }
 
@@ -265,6 +273,17 @@ impl ProvenSet {
     }
 }
 
+/// The numbers of open and of closed rows, and the undecided ones from 0.
+impl Serialize for ProvenSet {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut object = serializer.serialize_struct("ProvenSet", 3)?;
+        object.serialize_field("open", &self.open.count())?;
+        object.serialize_field("closed", &self.closed.count())?;
+        object.serialize_field("undecided", &self.undecided().collect::<Vec<_>>())?;
+        object.end()
+    }
+}
+
 /// Wall-clock seconds that an answer cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Seconds {
@@ -277,16 +296,27 @@ pub struct Seconds {
 }
 
 /// One iteration of a method: the set that it worked with and what it found there.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Iteration {
-    /// The closed rows in this iteration.
+    /// The closed rows in this iteration; a report has their number.
+    #[serde(rename = "closed", serialize_with = "count")]
     pub contact_set: ContactSet,
     /// The penalty, in multiples of the local stiffness; zero where the method has none.
+    #[serde(skip_serializing_if = "is_zero")]
     pub penalty: f64,
 }
 
+/// Serialises a contact set as the number of its closed rows.
+fn count<S: Serializer>(set: &ContactSet, serializer: S) -> Result<S::Ok, S::Error> {
+    set.count().serialize(serializer)
+}
+
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
+}
+
 /// A way that was tried beside the one that gave the answer.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Attempt {
     /// The method, as in [`Solution::method`].
     pub method: String,
@@ -297,13 +327,18 @@ pub struct Attempt {
 }
 
 /// The answer to a contact problem.
-#[derive(Clone, Debug, PartialEq)]
+///
+/// A report has its numbers without the vectors: they go into files of their own.
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Solution {
     /// Displacement u, one entry per dof, in the problem's unit of length.
+    #[serde(skip)]
     pub displacement: Vec<f64>,
     /// Contact multiplier lambda, one entry per contact row, in the problem's unit of force, `<= 0` in compression.
+    #[serde(skip)]
     pub multiplier: Vec<f64>,
     /// The closed rows.
+    #[serde(skip)]
     pub contact_set: ContactSet,
     /// `qp`, `active-set`, `penalty` or `mprgp`, with a suffix where a variant ran.
     pub method: String,
@@ -315,19 +350,26 @@ pub struct Solution {
     pub certificate: Certificate,
     /// The rows whose contact is beyond doubt, where [`Settings::prove`](crate::Settings::prove) asks for them and
     /// an energy bound is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub proven: Option<ProvenSet>,
     /// Steps of refinement, where the factor was in single precision.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub refinements: Option<usize>,
     /// Why no factor was taken, in words, where [`Method::Auto`](crate::Method::Auto) decided that.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
     /// What else was tried, in order; its time is in `seconds`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub attempts: Vec<Attempt>,
     /// The smallest pivot of the stiffness, of a diagonal of order one, where it is so close to rounding that digits are lost;
     /// 0 where a pivot was not positive.
+    #[serde(skip)]
     pub lost_pivot: Option<f64>,
     /// Unknowns that the method worked on; fewer than all where the problem was condensed.
+    #[serde(skip)]
     pub condensed_dofs: usize,
     /// What it cost.
+    #[serde(skip)]
     pub seconds: Seconds,
 }
 

@@ -4,16 +4,16 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::input::{scene_title, unit_names, warnings};
-use super::options::{Format, Solve};
-use super::outcome::{Outcome, warn};
+use super::input::{scene_title, warnings};
+use super::options::Solve;
+use super::outcome::{Outcome, Report, warn};
 use super::settings::settings;
 use crate::error::Error;
 use crate::motion::Integrator;
-use crate::output::{MotionFolder, MotionSeconds, motion_is_certified, motion_json, motion_text, write_files};
+use crate::output::{MotionFolder, MotionReport, compact_json};
 use crate::qp::Method;
 use crate::scene::{Dynamics, Model, Scene};
-use crate::study::MotionSummary;
+use crate::study::{MotionSummary, RunSeconds};
 use crate::watch::Watch;
 
 /// Energy beyond this, relative to the largest of the motion, is told even of a scheme that should keep it.
@@ -22,13 +22,13 @@ const GAIN: f64 = 0.01;
 pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outcome, Error> {
     let clock = Instant::now();
     let model = Arc::new(scene.build()?);
-    let Some(dynamics) = scene.dynamics(&model)? else { return Ok(Outcome::certified(String::new())) };
+    let Some(dynamics) = scene.dynamics(&model)? else { return Ok(Outcome::done(String::new())) };
     warn(&warnings(&model));
     warn(&dynamics.warnings.iter().map(|warning| format!("warning: {warning}\n")).collect::<String>());
     let assemble = clock.elapsed().as_secs_f64();
 
     let clock = Instant::now();
-    let mut settings = settings(options.method.method(), &options.common, watch);
+    let mut settings = settings(options.method, &options.common, watch);
     if settings.method == Method::Auto {
         settings.method = Method::ActiveSet;
     }
@@ -40,8 +40,8 @@ pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outco
     let clock = Instant::now();
     let mut run = match &options.common.out {
         None => Run::without_folder(&model, &dynamics, integrator),
-        Some(path) if options.resume => Run::resumed(&model, &dynamics, integrator, path, written(scene)?)?,
-        Some(path) => Run::in_folder(&model, &dynamics, integrator, path, written(scene)?)?,
+        Some(path) if options.resume => Run::resumed(&model, &dynamics, integrator, path, compact_json(scene)?)?,
+        Some(path) => Run::in_folder(&model, &dynamics, integrator, path, compact_json(scene)?)?,
     };
     run.advance(watch)?;
     let Run { summary, folder, .. } = run;
@@ -53,23 +53,16 @@ pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outco
         let percent = 100.0 * summary.energy_gain();
         warn(&format!("warning: the energy grew by {percent:.1} % of its largest: do not trust this motion\n"));
     }
-    let seconds = MotionSeconds { assemble, factor, steps: clock.elapsed().as_secs_f64() };
-    let json = format!("{:#}\n", motion_json(&model, &dynamics, settings.method, &summary, &seconds));
-    let title = scene_title(&model, &options.input);
-    let text = match options.common.format {
-        Format::Text => motion_text(&title, &model, &dynamics, &summary, &seconds, &unit_names(&model)),
-        Format::Json => json.clone(),
+    let seconds = RunSeconds::new(assemble, factor, clock.elapsed().as_secs_f64());
+    let motion =
+        MotionReport { model: &model, dynamics: &dynamics, method: settings.method, summary: &summary, seconds };
+    let report = Report::new(&motion, motion.text(&scene_title(&model, &options.input)))?;
+    let (format, is_certified) = (options.common.format, motion.is_certified());
+    let (Some(folder), Some(path)) = (folder, &options.common.out) else {
+        return Ok(report.outcome(format, is_certified));
     };
-    let outcome = Outcome::judged(text, motion_is_certified(&dynamics, settings.method, &summary));
-    let (Some(folder), Some(path)) = (folder, &options.common.out) else { return Ok(outcome) };
-    write_files(path, &[("report.json", json)])?;
-    Ok(outcome.with_pictures(move || folder.draw(&model)))
-}
-
-/// The scene as a checkpoint keeps it.
-fn written(scene: &Scene) -> Result<String, Error> {
-    let failed = |error: serde_json::Error| Error::Numerical { step: "writing JSON", reason: error.to_string() };
-    serde_json::to_string(scene).map_err(failed)
+    report.write(path)?;
+    Ok(report.outcome(format, is_certified).with_pictures(move || folder.draw(&model)))
 }
 
 /// The steps of a motion, and what they leave.

@@ -6,17 +6,16 @@ use std::time::Instant;
 
 use super::options::Limits;
 use crate::error::Error;
-use crate::output::UnitNames;
 use crate::qp::matrix_market;
 use crate::qp::problem::ContactProblem;
-use crate::scene::{Answer, Model, Scene};
+use crate::scene::{Answer, Model, Scene, Units};
 use crate::solution::{Goal, Solution};
 use crate::study::{ModelSize, Summary, scene_summary};
 
 /// What there is to solve.
 pub(super) struct Input {
     pub title: String,
-    pub units: UnitNames,
+    pub units: Units,
     pub assemble_seconds: f64,
     pub content: Content,
 }
@@ -42,7 +41,7 @@ impl Source {
             return Ok(Source::Scene(scene, clock.elapsed().as_secs_f64()));
         }
         let content = Content::Directory(matrix_market::read_problem(path)?);
-        let (title, units) = (format!("Problem directory {}", path.display()), UnitNames::default());
+        let (title, units) = (format!("Problem directory {}", path.display()), Units::unnamed());
         let assemble_seconds = clock.elapsed().as_secs_f64();
         Ok(Source::Directory(Box::new(Input { title, units, assemble_seconds, content })))
     }
@@ -66,7 +65,7 @@ impl Input {
         let clock = Instant::now();
         let model = build(scene, path)?;
         let assemble_seconds = read_seconds + clock.elapsed().as_secs_f64();
-        let (title, units) = (scene_title(&model, path), unit_names(&model));
+        let (title, units) = (scene_title(&model, path), model.units().clone());
         Ok(Input { title, units, assemble_seconds, content: Content::Scene(Arc::new(model)) })
     }
 
@@ -88,7 +87,7 @@ impl Input {
     /// The numbers of a solution, with what only its answer to a scene can tell.
     pub fn summary(
         &self,
-        solution: &Solution,
+        solution: Solution,
         answer: Option<&Answer>,
         goal: impl Into<Goal>,
     ) -> Result<Summary, Error> {
@@ -155,9 +154,4 @@ pub(super) fn scene_title(model: &Model, path: &Path) -> String {
 /// The warnings of a scene, one line each.
 pub(super) fn warnings(model: &Model) -> String {
     model.warnings().iter().map(|warning| format!("warning: {warning}\n")).collect()
-}
-
-pub(super) fn unit_names(model: &Model) -> UnitNames {
-    let units = model.units();
-    UnitNames { length: units.length.clone(), force: units.force.clone(), stress: units.pressure() }
 }

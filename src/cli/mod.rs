@@ -3,6 +3,7 @@
 mod compare;
 mod dynamic;
 mod export;
+mod failure;
 mod input;
 mod interrupt;
 mod memory;
@@ -21,12 +22,11 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use crate::error::{Error, Failure};
-use crate::output::printable;
 use crate::scene::Scene;
 use crate::watch::Watch;
+use failure::{failed, sentence};
 use interrupt::INTERRUPTED;
-use options::{Arguments, Command, Format};
+use options::{Arguments, Command};
 use outcome::{Ending, Outcome, Pictures, warn};
 use progress::Progress;
 
@@ -53,21 +53,15 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Tradeoff(options) => tradeoff::run(&options, &watch),
         Command::Export(options) => export::run(&options),
         Command::Verify(options) => verify::run(&options),
-        Command::Schema => Ok(Outcome::certified(format!("{:#}\n", Scene::json_schema()))),
+        Command::Schema => Ok(Outcome::done(format!("{:#}\n", Scene::json_schema()))),
     };
     drop(shown);
     if watch.is_stopped() && outcome.is_ok() {
         warn(&interrupt::sentence(&watch));
     }
     let outcome = outcome.unwrap_or_else(|error| {
-        let message = sentence(&error);
-        warn(&format!("error: {message}\n"));
-        let ending = ending_of(&error);
-        let text = match format {
-            Format::Json => format!("{:#}\n", failure_json(&error, &message)),
-            Format::Text => String::new(),
-        };
-        Outcome { text, ending, pictures: None }
+        warn(&format!("error: {}\n", sentence(&error)));
+        failed(&error, format)
     });
     let printed = io::stdout().write_all(outcome.text.as_bytes()).and_then(|()| io::stdout().flush());
     if let Err(error) = printed
@@ -84,35 +78,9 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     match outcome.pictures.filter(|_| !watch.is_stopped()).map_or(Ok(()), draw) {
         Err(error) => {
             warn(&format!("error: {}\n", sentence(&error)));
-            ExitCode::from(ending_of(&error) as u8)
+            ExitCode::from(failed(&error, format).ending as u8)
         }
         _ if watch.is_stopped() => ExitCode::from(INTERRUPTED),
         _ => ExitCode::from(outcome.ending as u8),
     }
-}
-
-/// More characters than this of a message are left out of its middle: a file may repeat megabytes in it.
-const LONGEST_SENTENCE: usize = 800;
-
-/// The message of an error on one line of bearable length.
-fn sentence(error: &Error) -> String {
-    let message: Vec<char> = printable(&error.to_string()).chars().collect();
-    let half = LONGEST_SENTENCE / 2;
-    if message.len() <= LONGEST_SENTENCE {
-        return message.into_iter().collect();
-    }
-    let (head, tail) = (&message[..half], &message[message.len() - half..]);
-    head.iter().chain(&[' ', '.', '.', '.', ' ']).chain(tail).collect()
-}
-
-fn ending_of(error: &Error) -> Ending {
-    match error.failure() {
-        Failure::BadInput => Ending::BadInput,
-        Failure::NoSolution => Ending::NoSolution,
-        Failure::NotCertified => Ending::NotCertified,
-    }
-}
-
-fn failure_json(error: &Error, message: &str) -> serde_json::Value {
-    serde_json::json!({ "status": error.status(), "code": error.code(), "message": message })
 }

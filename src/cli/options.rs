@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 
+use clap::builder::PossibleValue;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::memory::{self, parse_size};
-use crate::qp;
+use crate::qp::{Method, Precision};
 
 /// Frictionless contact of elastic bodies with obstacles: a convex QP, cross-checked and certified.
 #[derive(Debug, Parser)]
@@ -48,28 +49,36 @@ pub(super) enum Format {
     Json,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum MethodName {
-    /// The program chooses
-    Auto,
-    /// Convex QP by an interior-point method, its contact set settled by active-set steps
-    Qp,
-    /// Active-set loop with Lagrange multipliers
-    ActiveSet,
-    /// Penalty loop
-    Penalty,
-    /// Projected conjugate gradients with multigrid, for bodies too large to factorise
-    Mprgp,
+impl ValueEnum for Method {
+    fn value_variants<'a>() -> &'a [Self] {
+        const ALL: [Method; 5] = [Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty(), Method::Mprgp];
+        &ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(self.name()).help(match self {
+            Method::Auto => "The program chooses",
+            Method::Qp(_) => "Convex QP by an interior-point method, its contact set settled by active-set steps",
+            Method::ActiveSet => "Active-set loop with Lagrange multipliers",
+            Method::Penalty(_) => "Penalty loop",
+            Method::Mprgp => "Projected conjugate gradients with multigrid, for bodies too large to factorise",
+        }))
+    }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum PrecisionName {
-    /// Double, unless an accuracy is asked for that single precision reaches sooner
-    Auto,
-    /// Double precision
-    Double,
-    /// Single precision, half the memory, refined in double precision
-    Mixed,
+impl ValueEnum for Precision {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Precision::Auto, Precision::Double, Precision::Mixed]
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        let (name, help) = match self {
+            Precision::Auto => ("auto", "Double, unless an accuracy is asked for that single precision reaches sooner"),
+            Precision::Double => ("double", "Double precision"),
+            Precision::Mixed => ("mixed", "Single precision, half the memory, refined in double precision"),
+        };
+        Some(PossibleValue::new(name).help(help))
+    }
 }
 
 #[derive(Debug, Args)]
@@ -77,8 +86,8 @@ pub(super) struct Solve {
     /// Scene (a JSON file) or problem directory (with K.mtx, f.mtx, B.mtx, g.mtx)
     pub input: PathBuf,
     /// Method that finds the contact set
-    #[arg(long, value_enum, default_value_t = MethodName::Auto)]
-    pub method: MethodName,
+    #[arg(long, value_enum, default_value_t = Method::Auto)]
+    pub method: Method,
     /// Relative error in the energy norm that is good enough, certified
     #[arg(long, value_name = "A", allow_negative_numbers = true, value_parser = parse_tolerance)]
     pub accuracy: Option<f64>,
@@ -86,8 +95,8 @@ pub(super) struct Solve {
     #[arg(long, visible_alias = "time-limit", value_name = "T", allow_negative_numbers = true, value_parser = parse_tolerance)]
     pub time: Option<f64>,
     /// Precision of the sparse factor
-    #[arg(long, value_enum, default_value_t = PrecisionName::Auto)]
-    pub precision: PrecisionName,
+    #[arg(long, value_enum, default_value_t = Precision::Auto)]
+    pub precision: Precision,
     /// Extrapolate the penalty answer to an infinite penalty
     #[arg(long)]
     pub extrapolate: bool,
@@ -265,30 +274,6 @@ impl Command {
             Command::Tradeoff(options) => options.format,
             Command::Verify(options) => options.format,
             Command::Export(_) | Command::Schema => Format::Text,
-        }
-    }
-}
-
-impl PrecisionName {
-    /// The precision of the library.
-    pub fn precision(self) -> qp::Precision {
-        match self {
-            PrecisionName::Auto => qp::Precision::Auto,
-            PrecisionName::Double => qp::Precision::Double,
-            PrecisionName::Mixed => qp::Precision::Mixed,
-        }
-    }
-}
-
-impl MethodName {
-    /// The method of the library.
-    pub fn method(self) -> qp::Method {
-        match self {
-            MethodName::Auto => qp::Method::Auto,
-            MethodName::Qp => qp::Method::qp(),
-            MethodName::ActiveSet => qp::Method::ActiveSet,
-            MethodName::Penalty => qp::Method::penalty(),
-            MethodName::Mprgp => qp::Method::Mprgp,
         }
     }
 }

@@ -1,8 +1,13 @@
 //! What a command leaves, and what it says on the way.
 
 use std::io::{self, IsTerminal, Write};
+use std::path::Path;
 
+use serde::Serialize;
+
+use super::options::Format;
 use crate::error::Error;
+use crate::output::{report_json, write_files};
 
 /// How a command ended, as an exit code; a usage error is 2, from the argument parser.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,15 +40,42 @@ pub(super) fn warn(text: &str) {
     let _ = io::stderr().write_all(format!("{erased}{text}").as_bytes());
 }
 
-impl Outcome {
-    pub fn certified(text: String) -> Self {
-        Outcome::judged(text, true)
+/// A report in both of its forms.
+pub(super) struct Report {
+    text: String,
+    json: String,
+}
+
+impl Report {
+    /// The report `value` with its text.
+    pub fn new(value: &impl Serialize, text: String) -> Result<Self, Error> {
+        Ok(Report { text, json: report_json(value)? })
     }
 
-    /// Certified or not, with that exit code.
-    pub fn judged(text: String, certified: bool) -> Self {
-        let ending = if certified { Ending::Certified } else { Ending::NotCertified };
-        Outcome { text, ending, pictures: None }
+    /// Writes `report.json` into the folder.
+    pub fn write(&self, folder: &Path) -> Result<(), Error> {
+        write_files(folder, &[("report.json", &self.json)])
+    }
+
+    /// The same with its text in a file of its own.
+    pub fn write_with_text(&self, folder: &Path, name: &str) -> Result<(), Error> {
+        write_files(folder, &[(name, &self.text), ("report.json", &self.json)])
+    }
+
+    /// The outcome of a command that prints the report in this form, certified or not.
+    pub fn outcome(self, format: Format, is_certified: bool) -> Outcome {
+        let text = match format {
+            Format::Text => self.text,
+            Format::Json => self.json,
+        };
+        Outcome { ending: if is_certified { Ending::Certified } else { Ending::NotCertified }, ..Outcome::done(text) }
+    }
+}
+
+impl Outcome {
+    /// The outcome of a command that has done what it was asked for.
+    pub fn done(text: String) -> Self {
+        Outcome { text, ending: Ending::Certified, pictures: None }
     }
 
     pub fn with_pictures(self, pictures: impl FnOnce() -> Result<(), Error> + 'static) -> Self {

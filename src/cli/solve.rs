@@ -2,14 +2,14 @@
 
 use super::dynamic;
 use super::input::{Input, Source};
-use super::options::{Format, Solve};
-use super::outcome::{Outcome, warn};
+use super::options::{Common, Solve};
+use super::outcome::{Outcome, Report, warn};
 use super::settings::settings;
 use crate::error::Error;
-use crate::output::{gallery, solve_json, solve_text, write_files};
+use crate::output::{gallery, solve_text};
 use crate::qp::{Method, Settings, solve};
 use crate::scene::Scene;
-use crate::solution::Solution;
+use crate::solution::{Goal, Solution};
 use crate::watch::Watch;
 
 /// Assembly that takes so many seconds at the most is done without time too: the report then says what the rest needs.
@@ -24,8 +24,7 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
     let source = Source::read(&options.input, &options.common.limits)?;
     let mut report_seconds = 0.0;
     if let Source::Scene(scene, _) = &source {
-        let needed = assembly_seconds(scene, options, watch)?;
-        report_seconds = REPORT * needed;
+        report_seconds = REPORT * assembly_seconds(scene, options, watch)?;
         if scene.analysis.is_some() {
             return dynamic::run(options, scene, watch);
         }
@@ -39,10 +38,10 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
         Source::Directory(input) => *input,
     };
     warn(&input.warnings());
-    let mut settings = settings(options.method.method(), &options.common, &watch.keeping(report_seconds));
+    let mut settings = settings(options.method, &options.common, &watch.keeping(report_seconds));
     settings.prove = true;
     settings.accuracy = options.accuracy;
-    settings.precision = options.precision.precision();
+    settings.precision = options.precision;
     if let Method::Penalty(ladder) = &mut settings.method {
         ladder.extrapolate = options.extrapolate;
     }
@@ -53,14 +52,13 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
             "warning: --extrapolate changes nothing: the method is {method}; it goes with --method penalty\n"
         ));
     }
-    watch.step("report", 0);
-    report(options, &input, solution, &settings, watch)
+    reported(&input, solution, settings.goal(), &options.common, watch)
 }
 
 /// Refuses a scene that does not fit into memory or time; the seconds that its assembly will take.
 fn assembly_seconds(scene: &Scene, options: &Solve, watch: &Watch) -> Result<f64, Error> {
     let most_memory = options.common.limits.most_memory();
-    let needs_factor = !matches!(options.method.method(), Method::Auto | Method::Mprgp);
+    let needs_factor = !matches!(options.method, Method::Auto | Method::Mprgp);
     if needs_factor || scene.analysis.is_some() {
         scene.check_size(most_memory)?;
     } else {
@@ -85,34 +83,26 @@ fn best_of(input: &Input, settings: &Settings) -> Result<Solution, Error> {
     }
 }
 
-/// What the answer leaves: numbers, files, pictures.
-fn report(
-    options: &Solve,
-    input: &Input,
-    solution: Solution,
-    settings: &Settings,
-    watch: &Watch,
-) -> Result<Outcome, Error> {
+/// Reports an answer, and leaves what `--out` asks for.
+fn reported(input: &Input, solution: Solution, goal: Goal, common: &Common, watch: &Watch) -> Result<Outcome, Error> {
+    watch.step("report", 0);
     let answer = input.answer(&solution)?;
-    let mut summary = input.summary(&solution, answer.as_ref(), settings.goal())?;
+    let mut summary = input.summary(solution, answer.as_ref(), goal)?;
     if let Some(answer) = &answer
         && !watch.is_over()
     {
         summary.discretisation_error = Some(answer.discretisation_error()?);
     }
-    let json = || format!("{:#}\n", solve_json(&summary));
-    let text = match options.common.format {
-        Format::Text => solve_text(&input.title, &summary, &input.units),
-        Format::Json => json(),
-    };
-    let outcome = Outcome::judged(text, summary.is_certified());
-    let Some(folder) = options.common.out.clone() else { return Ok(outcome) };
-    gallery::write_answer(&folder, &solution)?;
-    write_files(&folder, &[("report.json", json())])?;
+    let report = Report::new(&summary, solve_text(&input.title, &summary, &input.units))?;
+    let is_certified = summary.is_certified();
+    let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, is_certified)) };
+    gallery::write_answer(&folder, &summary.solution)?;
+    report.write(&folder)?;
+    let outcome = report.outcome(common.format, is_certified);
     if watch.is_over() && !watch.is_stopped() {
         warn("warning: no fields and no pictures: the time is over\n");
         return Ok(outcome);
     }
     let Some(answer) = answer else { return Ok(outcome) };
-    Ok(outcome.with_pictures(move || gallery::write_solve(&folder, &answer, &solution.history)))
+    Ok(outcome.with_pictures(move || gallery::write_solve(&folder, &answer, &summary.solution.history)))
 }

@@ -1,10 +1,10 @@
 //! `signorini verify`: the certificate of an answer that came from elsewhere.
 
-use super::options::{Format, Verify};
-use super::outcome::Outcome;
+use super::options::Verify;
+use super::outcome::{Outcome, Report};
 use crate::error::Error;
-use crate::output::{verify_json, verify_text};
-use crate::qp::matrix_market::{read_problem, read_vector};
+use crate::output::verify_text;
+use crate::qp::{read_problem, read_vector};
 use crate::study::{ModelSize, Verification};
 
 pub(super) fn run(options: &Verify) -> Result<Outcome, Error> {
@@ -12,10 +12,7 @@ pub(super) fn run(options: &Verify) -> Result<Outcome, Error> {
     let displacement = read_vector(&options.displacement)?;
     let multiplier = read_vector(&options.multiplier)?;
     let certificate = problem.certify(&displacement, &multiplier)?;
-    let verification = Verification::new(&certificate, &multiplier, ModelSize::of(&problem), options.tolerance);
-    let text = match options.format {
-        Format::Text => verify_text(&format!("Problem directory {}", options.directory.display()), &verification),
-        Format::Json => format!("{:#}\n", verify_json(&verification)),
-    };
-    Ok(Outcome::judged(text, verification.is_certified()))
+    let verification = Verification::new(certificate, &multiplier, ModelSize::of(&problem), options.tolerance);
+    let text = verify_text(&format!("Problem directory {}", options.directory.display()), &verification);
+    Ok(Report::new(&verification, text)?.outcome(options.format, verification.is_certified()))
 }

@@ -3,7 +3,7 @@
 
 pub(crate) mod assembly;
 pub(crate) mod body;
-pub mod closed_forms;
+pub(crate) mod closed_forms;
 pub(crate) mod element;
 pub(crate) mod formulation;
 pub(crate) mod geometry;
@@ -17,7 +17,7 @@ pub use assembly::{
     free_load, internal_force, mass, rigid_motions, stiffness, tributary_areas,
 };
 pub use body::{ElasticBody, Integration, Region};
-pub use element::{Cell, ElementKind, FacetKind, MAX_NODES, QuadraturePoint, Rule, Tabulated};
+pub use element::{ElementKind, FacetKind};
 pub use formulation::Formulation;
 pub use material::Material;
 pub use mesh::gmsh::GmshFile;

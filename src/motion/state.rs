@@ -1,9 +1,11 @@
 //! What a step starts from and what it leaves.
 
+use serde::{Deserialize, Serialize};
+
 use crate::solution::ContactSet;
 
 /// The state of a body after some steps: all that the next step depends on.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// Steps so far.
     pub steps: usize,
@@ -20,7 +22,8 @@ pub struct State {
     pub momentum: Vec<f64>,
     /// Contact multiplier of the last step, one entry per contact row, in force, `<= 0`.
     pub multiplier: Vec<f64>,
-    /// Rows that were closed in the last step: where the search of the next one starts.
+    /// Rows that were closed in the last step: where the search of the next one starts. What writes a state lists them itself.
+    #[serde(skip)]
     pub contact_set: ContactSet,
 }
 

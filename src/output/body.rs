@@ -62,7 +62,7 @@ pub struct ContactPicture<'a> {
 /// `[0, 1]` where there is no finite value.
 ///
 /// ```
-/// use signorini::output::common_limits;
+/// use signorini::internals::common_limits;
 /// let limits = common_limits([&[-3.0, 0.0][..], &[-5.0, f64::NAN, 1.0][..]]);
 /// assert_eq!(limits, [-5.0, 1.0]);
 /// ```

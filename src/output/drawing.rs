@@ -2,7 +2,7 @@
 
 use tiny_skia::Pixmap;
 
-pub use super::paint::{Anchor, Paint};
+pub(crate) use super::paint::{Anchor, Paint};
 use super::shape::{Shape, Text};
 use super::{raster, svg};
 use crate::error::Error;
@@ -36,41 +36,41 @@ impl Drawing {
     }
 
     /// A rectangle with its upper left corner at `(x, y)`.
-    pub fn rect(&mut self, [x, y]: [f64; 2], [width, height]: [f64; 2], paint: &Paint) {
+    pub(crate) fn rect(&mut self, [x, y]: [f64; 2], [width, height]: [f64; 2], paint: &Paint) {
         self.polygon(&[[x, y], [x + width, y], [x + width, y + height], [x, y + height]], paint);
     }
 
     /// A circle.
-    pub fn circle(&mut self, centre: [f64; 2], radius: f64, paint: &Paint) {
+    pub(crate) fn circle(&mut self, centre: [f64; 2], radius: f64, paint: &Paint) {
         if drawable(centre) && radius.is_finite() && radius > 0.0 {
             self.shapes.push(Shape::Circle { centre, radius, paint: *paint });
         }
     }
 
     /// A straight line.
-    pub fn line(&mut self, from: [f64; 2], to: [f64; 2], paint: &Paint) {
+    pub(crate) fn line(&mut self, from: [f64; 2], to: [f64; 2], paint: &Paint) {
         self.polyline(&[from, to], paint);
     }
 
     /// An open line through the points, interrupted where a coordinate is not a finite number.
-    pub fn polyline(&mut self, points: &[[f64; 2]], paint: &Paint) {
+    pub(crate) fn polyline(&mut self, points: &[[f64; 2]], paint: &Paint) {
         let pieces: Vec<&[[f64; 2]]> =
             points.split(|&point| !drawable(point)).filter(|piece| piece.len() > 1).collect();
         self.path(&pieces, false, paint);
     }
 
     /// A closed polygon; points that are not finite numbers are left out.
-    pub fn polygon(&mut self, points: &[[f64; 2]], paint: &Paint) {
+    pub(crate) fn polygon(&mut self, points: &[[f64; 2]], paint: &Paint) {
         self.polygons(&[points], paint);
     }
 
     /// Polygons that are filled together by the even-odd rule: a polygon inside another is a hole.
-    pub fn polygons<P: AsRef<[[f64; 2]]>>(&mut self, polygons: &[P], paint: &Paint) {
+    pub(crate) fn polygons<P: AsRef<[[f64; 2]]>>(&mut self, polygons: &[P], paint: &Paint) {
         self.path(polygons, true, paint);
     }
 
     /// Open lines that share one paint.
-    pub fn polylines<P: AsRef<[[f64; 2]]>>(&mut self, lines: &[P], paint: &Paint) {
+    pub(crate) fn polylines<P: AsRef<[[f64; 2]]>>(&mut self, lines: &[P], paint: &Paint) {
         self.path(lines, false, paint);
     }
 
@@ -83,17 +83,17 @@ impl Drawing {
     }
 
     /// A text in the colour of axes with its baseline at `position`.
-    pub fn text(&mut self, position: [f64; 2], text: &str, size: f64, anchor: Anchor) {
+    pub(crate) fn text(&mut self, position: [f64; 2], text: &str, size: f64, anchor: Anchor) {
         self.any_text(Text { position, text: text.to_owned(), size, anchor, bold: false, upward: false });
     }
 
     /// A bold text with its baseline at `position`.
-    pub fn bold_text(&mut self, position: [f64; 2], text: &str, size: f64, anchor: Anchor) {
+    pub(crate) fn bold_text(&mut self, position: [f64; 2], text: &str, size: f64, anchor: Anchor) {
         self.any_text(Text { position, text: text.to_owned(), size, anchor, bold: true, upward: false });
     }
 
     /// A text that reads upwards, with its baseline through `position`.
-    pub fn upward_text(&mut self, position: [f64; 2], text: &str, size: f64, anchor: Anchor) {
+    pub(crate) fn upward_text(&mut self, position: [f64; 2], text: &str, size: f64, anchor: Anchor) {
         self.any_text(Text { position, text: text.to_owned(), size, anchor, bold: false, upward: true });
     }
 
@@ -104,7 +104,7 @@ impl Drawing {
     }
 
     /// Draws what `content` draws, cut to the rectangle with its upper left corner at `corner`.
-    pub fn clipped(&mut self, corner: [f64; 2], size: [f64; 2], content: impl FnOnce(&mut Drawing)) {
+    pub(crate) fn clipped(&mut self, corner: [f64; 2], size: [f64; 2], content: impl FnOnce(&mut Drawing)) {
         let outside = std::mem::take(&mut self.shapes);
         content(self);
         let shapes = std::mem::replace(&mut self.shapes, outside);

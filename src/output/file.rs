@@ -59,6 +59,6 @@ pub fn write_picture(folder: &Path, stem: &str, drawing: &Drawing) -> Result<[Pa
 ///
 /// # Errors
 /// [`Error::File`] where the system refuses; the files before the one that failed are complete.
-pub fn write_files(folder: &Path, files: &[(&str, String)]) -> Result<(), Error> {
-    files.iter().try_for_each(|(name, text)| write_atomically(&folder.join(name), text.as_bytes()))
+pub fn write_files(folder: &Path, files: &[(&str, impl AsRef<str>)]) -> Result<(), Error> {
+    files.iter().try_for_each(|(name, text)| write_atomically(&folder.join(name), text.as_ref().as_bytes()))
 }

@@ -13,7 +13,7 @@ use crate::qp::matrix_market::solution_files;
 use crate::qp::with_contact_set;
 use crate::scene::{Answer, Model};
 use crate::solution::{ContactSet, Iteration, Solution};
-use crate::study::{Comparison, Sweep, SweepCorner, SweepPoint};
+use crate::study::{Summary, Sweep, SweepCorner, SweepPoint};
 
 /// More iterations than this are not drawn one by one.
 const MOST_ITERATIONS: usize = 12;
@@ -77,8 +77,8 @@ fn write_iterations(folder: &Path, model: &Arc<Model>, history: &[Iteration]) ->
 ///
 /// # Errors
 /// As [`write_solve`].
-pub fn write_compare(folder: &Path, answers: &[Answer; 3], comparison: &Comparison) -> Result<(), Error> {
-    let [_, active_set, _] = &comparison.answers;
+pub fn write_compare(folder: &Path, answers: &[Answer; 3], summaries: &[Summary; 3]) -> Result<(), Error> {
+    let [_, active_set, _] = summaries;
     write_solve(folder, &answers[0], &active_set.solution.history)?;
     let model = answers[0].model();
     if !is_plane(model) {
@@ -87,8 +87,8 @@ pub fn write_compare(folder: &Path, answers: &[Answer; 3], comparison: &Comparis
     let mut plots = Vec::new();
     for obstacle in 0..model.obstacles().len() {
         let mut series = Vec::new();
-        for (answer, by_method) in answers.iter().zip(&comparison.answers) {
-            series.push(Series::new(by_method.solution.method.clone(), pressure_line(answer, obstacle)));
+        for (answer, Summary { solution, .. }) in answers.iter().zip(summaries) {
+            series.push(Series::new(solution.method.clone(), pressure_line(answer, obstacle)));
         }
         if series[0].points.is_empty() {
             continue;

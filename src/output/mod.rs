@@ -12,7 +12,10 @@ mod colour_bar;
 mod contour;
 pub(crate) mod drawing;
 pub(crate) mod file;
+// What the program leaves in its folders; of it a motion needs the fields and the scene of a picture only.
+#[cfg_attr(not(feature = "cli"), allow(dead_code))]
 pub(crate) mod gallery;
+mod json;
 mod legend;
 mod mark;
 mod motion;
@@ -32,19 +35,19 @@ mod tradeoff;
 mod typeface;
 pub(crate) mod vtu;
 
-pub use animation::animate;
-pub use body::{ContactPicture, ObstacleLine, common_limits, common_window};
-pub use colour::Colour;
-pub use drawing::{Anchor, Drawing, Paint};
+pub(crate) use body::{ContactPicture, ObstacleLine, common_limits, common_window};
+pub use drawing::Drawing;
 pub use file::{write_atomically, write_files, write_picture};
+#[cfg(feature = "cli")]
+pub(crate) use json::compact_json;
+pub use json::report_json;
 pub use motion::MotionFolder;
-pub use motion_report::{MotionSeconds, motion_is_certified, motion_json, motion_text};
-pub use motion_tradeoff::{motion_tradeoff_csv, motion_tradeoff_json, motion_tradeoff_plot, motion_tradeoff_text};
+pub use motion_report::MotionReport;
+pub use motion_tradeoff::{motion_tradeoff_csv, motion_tradeoff_plot, motion_tradeoff_text};
 pub use plot::{Plot, Series, line_plots};
-pub use report::{
-    UnitNames, compare_json, compare_text, printable, solve_json, solve_text, sweep_json, sweep_text, verify_json,
-    verify_text,
-};
+#[cfg(feature = "cli")]
+pub(crate) use report::printable;
+pub use report::{compare_text, solve_text, sweep_text, verify_text};
 pub use ticks::{Quantity, Scale};
-pub use tradeoff::{tradeoff_csv, tradeoff_json, tradeoff_plot, tradeoff_text};
+pub use tradeoff::{tradeoff_csv, tradeoff_plot, tradeoff_text};
 pub use vtu::{Array, Unstructured};

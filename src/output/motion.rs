@@ -15,7 +15,8 @@ use serde::{Deserialize, Serialize};
 use super::animation::animate;
 use super::gallery::{Scene, fields};
 use super::{
-    ContactPicture, Plot, Quantity, Series, common_limits, common_window, line_plots, write_atomically, write_picture,
+    ContactPicture, Plot, Quantity, Series, common_limits, common_window, json::compact_json, line_plots,
+    write_atomically, write_picture,
 };
 use crate::error::Error;
 use crate::file::{MOST_OF_TABLE, read_text_capped};
@@ -64,13 +65,8 @@ struct Frame {
 #[derive(Debug, Serialize, Deserialize)]
 struct Checkpoint {
     scene: String,
-    steps: usize,
-    displacement: Vec<f64>,
-    velocity: Vec<f64>,
-    acceleration: Vec<f64>,
-    elastic: Vec<f64>,
-    momentum: Vec<f64>,
-    multiplier: Vec<f64>,
+    #[serde(flatten)]
+    state: State,
     closed: Vec<usize>,
     history_bytes: u64,
     frame_times: Vec<f64>,
@@ -122,19 +118,8 @@ impl MotionFolder {
             path: history,
             source,
         })?;
-        let rows = found.multiplier.len();
-        let mut contact_set = ContactSet::open(rows);
-        found.closed.iter().for_each(|&row| contact_set.set(row, true));
-        let state = State {
-            steps: found.steps,
-            displacement: found.displacement,
-            velocity: found.velocity,
-            acceleration: found.acceleration,
-            elastic: found.elastic,
-            momentum: found.momentum,
-            multiplier: found.multiplier,
-            contact_set,
-        };
+        let mut state = found.state;
+        state.contact_set = closed_of(state.multiplier.len(), &found.closed);
         let run = MotionFolder {
             folder: folder.into(),
             scene,
@@ -193,24 +178,18 @@ impl MotionFolder {
             multiplier: state.multiplier.clone(),
             closed: closed.clone(),
         };
-        write_atomically(&self.frame_path(number), json(&frame)?.as_bytes())?;
+        write_atomically(&self.frame_path(number), compact_json(&frame)?.as_bytes())?;
         self.times.push(time);
         write_atomically(&self.folder.join("series.pvd"), self.series().as_bytes())?;
         let checkpoint = Checkpoint {
             scene: self.scene.clone(),
-            steps: state.steps,
-            displacement: state.displacement.clone(),
-            velocity: state.velocity.clone(),
-            acceleration: state.acceleration.clone(),
-            elastic: state.elastic.clone(),
-            momentum: state.momentum.clone(),
-            multiplier: state.multiplier.clone(),
+            state: state.clone(),
             closed,
             history_bytes: self.written,
             frame_times: self.times.clone(),
             summary: summary.clone(),
         };
-        write_atomically(&self.folder.join(CHECKPOINT), json(&checkpoint)?.as_bytes())
+        write_atomically(&self.folder.join(CHECKPOINT), compact_json(&checkpoint)?.as_bytes())
     }
 
     /// The list of the series for ParaView.
@@ -256,8 +235,7 @@ impl MotionFolder {
         }
         let scene = |number: usize| -> Result<Scene, Error> {
             let frame = self.read_frame(number)?;
-            let mut set = ContactSet::open(model.rows().len());
-            frame.closed.iter().for_each(|&row| set.set(row, true));
+            let set = closed_of(model.rows().len(), &frame.closed);
             let title = format!("{}, t = {:.4}", model.title(), frame.time);
             let shown = Answer::new(model.clone(), &frame.displacement, &frame.multiplier, &set)?;
             Ok(Scene::new(&shown, title)?.in_place())
@@ -302,6 +280,13 @@ impl MotionFolder {
     }
 }
 
+/// The set of `rows` rows in which the rows of `closed` are closed; a row beyond the last is left out.
+fn closed_of(rows: usize, closed: &[usize]) -> ContactSet {
+    let mut set = ContactSet::open(rows);
+    closed.iter().for_each(|&row| set.set(row, true));
+    set
+}
+
 /// Cuts a history off behind its first `bytes`; whatever is no history of a run in its own folder is left as it is.
 fn cut_history(path: &Path, bytes: u64) -> std::io::Result<()> {
     let wrong = |message: &str| Err(std::io::Error::new(std::io::ErrorKind::InvalidData, message));
@@ -337,9 +322,4 @@ fn undated(scene: &str) -> Option<serde_json::Value> {
 
 fn vtu_name(number: usize) -> String {
     format!("series-{number:05}.vtu")
-}
-
-fn json<T: Serialize>(value: &T) -> Result<String, Error> {
-    let failed = |error: serde_json::Error| Error::Numerical { step: "writing JSON", reason: error.to_string() };
-    serde_json::to_string(value).map_err(failed)
 }

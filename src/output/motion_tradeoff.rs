@@ -1,7 +1,5 @@
 //! What each scheme of a motion costs, as a table, as comma-separated values, and as a picture of error over time.
 
-use serde_json::{Value, json};
-
 use super::report::{columns, printable};
 use super::{Drawing, Plot, Quantity, Scale, Series, line_plots};
 use crate::study::{MotionPoint, MotionTradeoff};
@@ -57,11 +55,6 @@ pub fn motion_tradeoff_csv(tradeoff: &MotionTradeoff) -> String {
         )
     };
     heading.to_string() + &tradeoff.points.iter().map(row).collect::<String>()
-}
-
-/// The trade-off as one JSON object.
-pub fn motion_tradeoff_json(tradeoff: &MotionTradeoff) -> Value {
-    json!(tradeoff)
 }
 
 /// Error over time, a line for each scheme.

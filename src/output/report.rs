@@ -1,21 +1,8 @@
 //! Answers as text and as JSON.
 
-use serde_json::{Value, json};
-
-use crate::study::{
-    Agreement, CertificateSummary, ProvenSummary, Summary, Sweep, SweepEvent, SweepPoint, Verification,
-};
-
-/// The unit names of a report; empty for a raw problem, whose units are the user's own.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct UnitNames {
-    /// Unit of length.
-    pub length: String,
-    /// Unit of force.
-    pub force: String,
-    /// Unit of stress and pressure.
-    pub stress: String,
-}
+use crate::scene::Units;
+use crate::solution::{Certificate, Goal, ProvenSet};
+use crate::study::{Agreement, Summary, Sweep, SweepEvent, SweepPoint, Verification};
 
 /// Text on one line, without characters that would steer a terminal.
 pub fn printable(text: &str) -> String {
@@ -41,8 +28,8 @@ const LONGEST_REASON: usize = 50;
 const LONGEST_LINE: usize = 84;
 
 /// The report of one answer, in lines of at most 100 characters.
-pub fn solve_text(title: &str, summary: &Summary, units: &UnitNames) -> String {
-    let Summary { contact, model, seconds, .. } = summary;
+pub fn solve_text(title: &str, summary: &Summary, units: &Units) -> String {
+    let Summary { solution, contact, model, seconds, .. } = summary;
     let mesh = match (model.nodes, model.elements) {
         (Some(nodes), Some(elements)) => format!("{nodes} nodes, {elements} elements, "),
         _ => String::new(),
@@ -54,18 +41,18 @@ pub fn solve_text(title: &str, summary: &Summary, units: &UnitNames) -> String {
         all if all == model.dofs => ", on all dofs".to_string(),
         condensed => format!(", condensed to {condensed} dofs"),
     };
-    line("method", format!("{}, {}{unknowns}", summary.method, plural(summary.iterations, "iteration")));
-    if let Some(steps) = summary.refinements {
+    line("method", format!("{}, {}{unknowns}", solution.method, plural(solution.iterations, "iteration")));
+    if let Some(steps) = solution.refinements {
         line("", format!("factor in single precision, {}", plural(steps, "refinement")));
     }
-    if let Some(reason) = &summary.reason {
+    if let Some(reason) = &solution.reason {
         line("", reason.clone());
     }
-    for attempt in &summary.attempts {
+    for attempt in &solution.attempts {
         let reason: String = printable(&attempt.reason).chars().take(LONGEST_REASON).collect();
         line("", format!("also tried: {}, {:.3} s, {reason}", attempt.method, attempt.seconds));
     }
-    if let Some(penalty) = summary.history.last().and_then(|step| step.penalty) {
+    if let Some(penalty) = solution.history.last().map(|step| step.penalty).filter(|&penalty| penalty > 0.0) {
         line("", format!("the penalty went up to {penalty:.0e} times the local stiffness"));
     }
     line(
@@ -77,18 +64,15 @@ pub fn solve_text(title: &str, summary: &Summary, units: &UnitNames) -> String {
             Some(width) => format!("width {}", quantity(width, &units.length)),
             None => format!("area {}", quantity(area, &format!("{}²", units.length))),
         };
-        line("", format!("peak pressure {}, {extent}", quantity(pressure, &units.stress)));
+        line("", format!("peak pressure {}, {extent}", quantity(pressure, &units.pressure())));
     }
-    if let Some(proven) = &summary.proven {
+    if let Some(proven) = &solution.proven {
         line("", proven_text(proven));
     }
     if let Some(balance) = contact.force_balance {
         line("", format!("loads, reactions and contact forces balance to {balance:.1e}"));
     }
-    text += &match summary.accuracy.filter(|_| summary.certificate.energy_error_bound.is_finite()) {
-        Some(accuracy) => accuracy_text(&summary.certificate, summary.is_certified(), accuracy),
-        None => certificate_text(&summary.certificate, summary.is_certified(), summary.tolerance),
-    };
+    text += &certificate_text(&solution.certificate, summary.goal);
     text += &warnings_text(summary);
     text += &mesh_text(summary);
     text += &entry(
@@ -105,8 +89,9 @@ pub fn solve_text(title: &str, summary: &Summary, units: &UnitNames) -> String {
 const NAMED_ROWS: usize = 8;
 
 /// How much of the contact set is proven.
-fn proven_text(proven: &ProvenSummary) -> String {
-    let ProvenSummary { open, closed, undecided } = proven;
+fn proven_text(proven: &ProvenSet) -> String {
+    let (open, closed) = (proven.open.count(), proven.closed.count());
+    let undecided: Vec<usize> = proven.undecided().collect();
     let of = format!("{closed} proven closed, {open} proven open by the bound below");
     match undecided.len() {
         0 => of,
@@ -133,7 +118,7 @@ fn warnings_text(summary: &Summary) -> String {
 fn mesh_text(summary: &Summary) -> String {
     let Some(of_mesh) = summary.discretisation_error else { return String::new() };
     let mut text = entry("mesh", &format!("about {of_mesh:.1e} of the energy norm off, by its stresses"));
-    let bound = summary.certificate.energy_error_bound;
+    let bound = summary.solution.certificate.energy_error_bound;
     if bound < of_mesh * FAR_BELOW {
         text += &entry("", "the solver is far below that: more of its digits buy nothing, a finer mesh does");
     } else if bound > of_mesh {
@@ -162,9 +147,17 @@ pub(super) fn entry(name: &str, content: &str) -> String {
     format!("  {name:<14}{content}\n")
 }
 
-fn certificate_text(certificate: &CertificateSummary, certified: bool, tolerance: f64) -> String {
+/// What an answer was held against, and how it did.
+fn certificate_text(certificate: &Certificate, goal: Goal) -> String {
+    let certified = goal.is_met_by(certificate);
     let verdict = if certified { "certified to" } else { "NOT certified to" };
-    let mut text = entry("certificate", &format!("{verdict} {tolerance:.1e}, each relative:"));
+    let bound = certificate.energy_error_bound;
+    if let Some(accuracy) = goal.accuracy.filter(|_| bound.is_finite()) {
+        let measured = if certificate.bound_is_measured { ", measured" } else { "" };
+        let what = format!("{verdict} {accuracy:.1e} of the energy norm: the error is at most {bound:.1e}{measured}");
+        return entry("certificate", &what);
+    }
+    let mut text = entry("certificate", &format!("{verdict} {:.1e}, each relative:", goal.tolerance));
     for (name, formula, value) in conditions(certificate) {
         text += &entry("", &format!("{name:<18}{formula:<38}{value}"));
     }
@@ -174,22 +167,13 @@ fn certificate_text(certificate: &CertificateSummary, certified: bool, tolerance
             &format!("of {} parts the worst is at most {:.1e} off", certificate.parts, certificate.part_error_bound),
         );
     }
-    if certified && certificate.part_error_bound > tolerance {
+    if certified && certificate.part_error_bound > goal.tolerance {
         text += &entry("", "what is above the tolerance is explained by rounding the displacement to double precision");
     }
-    if certificate.energy_error_bound.is_infinite() {
+    if bound.is_infinite() {
         text += &entry("", "no error bound: the conditions alone do not tell how far off the displacement is");
     }
     text
-}
-
-/// The certificate of an answer that was asked for by its accuracy.
-fn accuracy_text(certificate: &CertificateSummary, certified: bool, accuracy: f64) -> String {
-    let verdict = if certified { "certified to" } else { "NOT certified to" };
-    let bound = certificate.energy_error_bound;
-    let measured = if certificate.bound_is_measured { ", measured" } else { "" };
-    let what = format!("{verdict} {accuracy:.1e} of the energy norm: the error is at most {bound:.1e}{measured}");
-    entry("certificate", &what)
 }
 
 /// The report of a verification.
@@ -198,34 +182,34 @@ pub fn verify_text(title: &str, verification: &Verification) -> String {
     let mut text = format!("{}\n", printable(title));
     text += &entry("model", &format!("{} dofs, {}", model.dofs, plural(model.contact_rows, "contact row")));
     text += &entry("contact", &format!("{} under force {:.6e}", plural(contact.count, "row"), contact.force));
-    text + &certificate_text(&verification.certificate, verification.is_certified(), verification.tolerance)
+    text + &certificate_text(&verification.certificate, verification.tolerance.into())
 }
 
 /// Events of a sweep that its text shows; the rest is in the JSON form.
 const MOST_EVENTS: usize = 40;
 
 /// The table of a sweep, and what happens between its gaps.
-pub fn sweep_text(title: &str, sweep: &Sweep, units: &UnitNames) -> String {
+pub fn sweep_text(title: &str, sweep: &Sweep, units: &Units) -> String {
     let header = [
         in_unit("gap", &units.length),
         "iterations".to_string(),
         "contact".to_string(),
         in_unit("force", &units.force),
-        in_unit("peak pressure", &units.stress),
+        in_unit("peak pressure", &units.pressure()),
         in_unit("width", &units.length),
         "energy error <=".to_string(),
         "status".to_string(),
     ];
     let row = |point: &SweepPoint| {
-        let Summary { contact, certificate, .. } = &point.summary;
+        let Summary { solution, contact, .. } = &point.summary;
         vec![
             format!("{:.6}", point.gap),
-            point.summary.iterations.to_string(),
+            solution.iterations.to_string(),
             contact.count.to_string(),
             format!("{:.9e}", contact.force),
             format!("{:.6e}", contact.pressure_max.unwrap_or(0.0)),
             contact.width.map_or_else(|| "-".to_string(), |width| format!("{width:.6}")),
-            conditions(certificate)[5].2.clone(),
+            conditions(&solution.certificate)[5].2.clone(),
             point.summary.status.replace('_', " "),
         ]
     };
@@ -250,7 +234,7 @@ fn in_unit(name: &str, unit: &str) -> String {
     if unit.is_empty() { name.to_string() } else { format!("{name} [{}]", printable(unit)) }
 }
 
-fn conditions(certificate: &CertificateSummary) -> [(&'static str, &'static str, String); 6] {
+fn conditions(certificate: &Certificate) -> [(&'static str, &'static str, String); 6] {
     let number = |value: f64| if value == 0.0 { "0".to_string() } else { format!("{value:.1e}") };
     let bound = match certificate.energy_error_bound {
         bound if bound.is_finite() && certificate.bound_is_measured => format!("{}, measured", number(bound)),
@@ -268,7 +252,7 @@ fn conditions(certificate: &CertificateSummary) -> [(&'static str, &'static str,
 }
 
 /// The table of a comparison, and the line that says whether the methods agree.
-pub fn compare_text(title: &str, summaries: &[Summary; 3], agreement: &Agreement, units: &UnitNames) -> String {
+pub fn compare_text(title: &str, summaries: &[Summary; 3], agreement: &Agreement, units: &Units) -> String {
     let zero = |value: f64| if value == 0.0 { "0".to_string() } else { format!("{value:.1e}") };
     let [qp, active_set, penalty] = summaries;
     let rows = [
@@ -281,15 +265,15 @@ pub fn compare_text(title: &str, summaries: &[Summary; 3], agreement: &Agreement
         "iterations".to_string(),
         "contact".to_string(),
         in_unit("force", &units.force),
-        in_unit("peak pressure", &units.stress),
+        in_unit("peak pressure", &units.pressure()),
         "max |du|".to_string(),
         "max |dlambda|".to_string(),
         "seconds".to_string(),
     ]];
     for (summary, displacement, multiplier) in rows {
         table.push(vec![
-            summary.method.clone(),
-            summary.iterations.to_string(),
+            summary.solution.method.clone(),
+            summary.solution.iterations.to_string(),
             summary.contact.count.to_string(),
             format!("{:.9e}", summary.contact.force),
             summary.contact.pressure_max.map_or("-".to_string(), |pressure| format!("{pressure:.6e}")),
@@ -308,8 +292,8 @@ pub fn compare_text(title: &str, summaries: &[Summary; 3], agreement: &Agreement
             .to_vec(),
     ];
     for summary in summaries {
-        let mut row = vec![summary.method.clone()];
-        row.extend(conditions(&summary.certificate).into_iter().map(|(_, _, value)| value));
+        let mut row = vec![summary.solution.method.clone()];
+        row.extend(conditions(&summary.solution.certificate).into_iter().map(|(_, _, value)| value));
         table.push(row);
     }
     text += &columns(&table);
@@ -320,12 +304,12 @@ pub fn compare_text(title: &str, summaries: &[Summary; 3], agreement: &Agreement
 fn verdict(summaries: &[Summary; 3], agreement: &Agreement) -> String {
     let [qp, active_set, penalty] = summaries;
     let exact = match (agreement.exact_methods, qp.is_certified() && active_set.is_certified()) {
-        (true, _) => format!("The QP and the active set agree, both certified to {:.1e}", qp.tolerance),
+        (true, _) => format!("The QP and the active set agree, both certified to {:.1e}", qp.goal.tolerance),
         (false, true) => "The QP and the active set DISAGREE, though both are certified".to_string(),
-        (false, false) => format!("The QP and the active set are NOT both certified to {:.1e}", qp.tolerance),
+        (false, false) => format!("The QP and the active set are NOT both certified to {:.1e}", qp.goal.tolerance),
     };
     let certified = if penalty.is_certified() { "certified" } else { "not certified" };
-    let distance = match (agreement.penalty_within_its_bound, penalty.certificate.energy_error_bound) {
+    let distance = match (agreement.penalty_within_its_bound, penalty.solution.certificate.energy_error_bound) {
         (true, bound) if bound.is_finite() => {
             format!("{:.1e} from the QP in energy, within its stated {bound:.1e}", agreement.penalty.energy)
         }
@@ -358,24 +342,4 @@ pub(crate) fn columns(table: &[Vec<String>]) -> String {
         text += "\n";
     }
     text
-}
-
-/// The JSON object of one answer.
-pub fn solve_json(summary: &Summary) -> Value {
-    json!(summary)
-}
-
-/// The JSON object of a comparison.
-pub fn compare_json(summaries: &[Summary; 3], agreement: &Agreement) -> Value {
-    json!({ "methods": summaries, "agreement": agreement })
-}
-
-/// The JSON object of a sweep.
-pub fn sweep_json(sweep: &Sweep) -> Value {
-    json!(sweep)
-}
-
-/// The JSON object of a verification.
-pub fn verify_json(verification: &Verification) -> Value {
-    json!(verification)
 }

@@ -1,7 +1,5 @@
 //! A trade-off as a table, as comma-separated values, and as a picture of error over time.
 
-use serde_json::{Value, json};
-
 use super::report::{columns, plural, printable};
 use super::{Drawing, Plot, Quantity, Scale, Series, line_plots};
 use crate::study::{Tradeoff, TradeoffMesh, TradeoffPoint};
@@ -132,11 +130,6 @@ pub fn tradeoff_csv(tradeoff: &Tradeoff) -> String {
         );
     }
     text
-}
-
-/// The JSON object of a trade-off.
-pub fn tradeoff_json(tradeoff: &Tradeoff) -> Value {
-    json!(tradeoff)
 }
 
 /// Error over time, a panel a mesh, a line a method, and the Pareto front.

@@ -28,7 +28,7 @@ pub(crate) mod transform;
 pub use engine::{BoundarySolution, Path, Prepared};
 pub use linear::multigrid::NearNullSpace;
 pub use linear::{SparseMatrix, SymmetricMatrix};
-pub use matrix_market::{problem_files, read_problem, read_vector, solution_files};
+pub use matrix_market::{near_null_file, problem_files, read_problem, read_vector, solution_files};
 pub use method::Start;
 pub use method::interior_point::InteriorPoint;
 pub use method::parametric::Event;
@@ -84,6 +84,7 @@ pub fn solve_qp(problem: &ContactProblem) -> Result<Solution, Error> {
 ///
 /// # Errors
 /// As [`solve`], without [`Error::NotCertified`]; [`Error::Infeasible`] where the rows of the set contradict each other.
+#[cfg_attr(not(feature = "pictures"), allow(dead_code))]
 pub(crate) fn with_contact_set(problem: &ContactProblem, closed: &ContactSet) -> Result<(Vec<f64>, Vec<f64>), Error> {
     engine::with_contact_set(problem, closed)
 }

@@ -15,7 +15,7 @@
 //! ```
 
 mod answer;
-mod body;
+pub(crate) mod body;
 mod build;
 mod condition;
 mod dynamics;
@@ -32,22 +32,17 @@ mod parts;
 mod refine;
 mod rigid_modes;
 mod rows;
-mod schema;
+pub(crate) mod schema;
 mod size;
 mod warning;
 
 pub use crate::motion::SchemeSpec;
 pub use answer::{Answer, Forces};
-pub use body::*;
+pub use body::{Sides, bar, cuboid, disc, half_ball, half_disc, rectangle, ring};
 pub use dynamics::Dynamics;
 pub use model::Model;
-pub use obstacle::*;
+pub use obstacle::{Obstacle, ObstacleRow, PlacedObstacle};
 pub use rows::ContactRow;
-pub use schema::{
-    AnalysisSpec, Approach, DampingSpec, DynamicSpec, ElementSpec, FactorSpec, FactorTableSpec, FieldSpec, ForceSpec,
-    FurtherBodySpec, HalfSpec, InitialSpec, IntervalSpec, LoadInTimeSpec, LoadSpec, MassSpec, MaterialSpec, ModelSpec,
-    ObstacleSpec, PenetrationSpec, Place, PressureSpec, Rule, Scene, SineSpec, SolidElementSpec, SupportSpec,
-    TractionSpec, Units,
-};
+pub use schema::{Rule, Scene, Units};
 pub use size::Size;
 pub use warning::Warning;

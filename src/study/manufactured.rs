@@ -92,9 +92,9 @@ fn in_space([x, y]: [f64; 2]) -> [f64; 3] {
 /// elastic constants that are none, and as [`solve_qp`](crate::qp::solve_qp).
 ///
 /// ```
-/// use signorini::fem::closed_forms::manufactured::{HertzBlock, PlaneElasticity};
+/// use signorini::internals::closed_forms::manufactured::{HertzBlock, PlaneElasticity};
 /// use signorini::fem::{ElementKind, Integration};
-/// use signorini::study::solve_block;
+/// use signorini::internals::solve_block;
 ///
 /// let elasticity = PlaneElasticity::plane_strain(1.0, 0.3);
 /// let exact = HertzBlock { elasticity, half_width: 0.53, peak_pressure: 1.0 };

@@ -7,7 +7,8 @@ use serde::Serialize;
 use crate::error::Error;
 use crate::motion::Integrator;
 use crate::qp::Settings;
-use crate::scene::{AnalysisSpec, Dynamics, Model, Scene, SchemeSpec};
+use crate::scene::schema::AnalysisSpec;
+use crate::scene::{Dynamics, Model, Scene, SchemeSpec};
 
 /// Times at which displacements are compared.
 const SAMPLES: usize = 20;

@@ -21,7 +21,7 @@ const STRAIGHT: f64 = 1e-12;
 /// As [`Model::reactions`].
 pub fn scene_summary(
     answer: &Answer,
-    solution: &Solution,
+    solution: Solution,
     goal: impl Into<Goal>,
     assemble_seconds: f64,
 ) -> Result<Summary, Error> {
@@ -33,20 +33,21 @@ pub fn scene_summary(
         ..ModelSize::of(model.problem())
     };
     let mut summary = Summary::new(solution, size, goal, assemble_seconds);
-    summary.contact.pressure_max = Some(answer.pressure().iter().copied().fold(0.0, f64::max));
-    summary.contact.width = contact_width(model, closed);
-    summary.contact.area = Some(contact_area(model, closed));
-    summary.contact.force_balance = Some(answer.forces()?.balance);
+    let contact = &mut summary.contact;
+    contact.pressure_max = Some(answer.pressure().iter().copied().fold(0.0, f64::max));
+    contact.width = contact_width(model, closed);
+    contact.area = Some(contact_area(model, closed));
+    contact.force_balance = Some(answer.forces()?.balance);
     Ok(summary)
 }
 
 /// Area of the boundary that the closed rows stand for; thickness, cross-section or circumference included.
-pub fn contact_area(model: &Model, closed: &ContactSet) -> f64 {
+fn contact_area(model: &Model, closed: &ContactSet) -> f64 {
     closed.iter().filter_map(|row| model.rows().get(row)).fold(0.0, |area, row| area + row.tributary_area)
 }
 
 /// Length of the boundary that the closed rows stand for, in the unit of length, where the model has a thickness.
-pub fn contact_width(model: &Model, closed: &ContactSet) -> Option<f64> {
+fn contact_width(model: &Model, closed: &ContactSet) -> Option<f64> {
     match *model.body().formulation() {
         Formulation::PlaneStrain { thickness } | Formulation::PlaneStress { thickness } => {
             Some(contact_area(model, closed) / thickness)
@@ -60,15 +61,12 @@ pub fn contact_width(model: &Model, closed: &ContactSet) -> Option<f64> {
 pub struct SweepPoint {
     /// The scene-wide gap.
     pub gap: f64,
-    /// The numbers of the answer.
+    /// The solution with its numbers.
     #[serde(flatten)]
     pub summary: Summary,
     /// The answer, joined with the scene at this gap.
     #[serde(skip)]
     pub answer: Answer,
-    /// The answer as the solver gave it.
-    #[serde(skip)]
-    pub solution: Solution,
 }
 
 /// A row that touches or releases on the way from the first to the last gap of a sweep.
@@ -133,7 +131,7 @@ pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, 
         let model = model.with_gap(gap)?;
         let assemble_seconds = clock.elapsed().as_secs_f64();
         let same_rows = model.problem().contact() == at_first.problem().contact();
-        let known = points.last().map_or_else(Start::default, |point| Start::from(&point.solution));
+        let known = points.last().map_or_else(Start::default, |point| Start::from(&point.summary.solution));
         let solved = match same_rows {
             true => prepared.starting_from(known).solve(model.problem().gap()),
             false => solve(model.problem(), settings),
@@ -146,8 +144,8 @@ pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, 
             Err(error) => return Err(model.explain(error)),
         };
         let answer = Answer::of(Arc::new(model), &solution)?;
-        let summary = scene_summary(&answer, &solution, settings.goal(), assemble_seconds)?;
-        points.push(SweepPoint { gap, summary, answer, solution });
+        let summary = scene_summary(&answer, solution, settings.goal(), assemble_seconds)?;
+        points.push(SweepPoint { gap, summary, answer });
         if settings.watch.is_stopped() {
             break;
         }

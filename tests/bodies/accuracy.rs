@@ -3,9 +3,11 @@
 use serde_json::json;
 use signorini::fem::ElementKind::{Q4, Q8, T3, T6};
 use signorini::fem::Integration;
-use signorini::fem::closed_forms::manufactured::{ContactSolution, GenericEdge, HertzBlock, PlaneElasticity, Smooth};
+use signorini::internals::closed_forms::manufactured::{
+    ContactSolution, GenericEdge, HertzBlock, PlaneElasticity, Smooth,
+};
+use signorini::internals::solve_block;
 use signorini::scene::Answer;
-use signorini::study::solve_block;
 use signorini::{Scene, solve_qp};
 
 /// Effectivity that an estimate is wanted to have: neither half nor twice the error.

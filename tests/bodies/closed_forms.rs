@@ -2,8 +2,8 @@
 
 use crate::bodies::built;
 use serde_json::{Value, json};
-use signorini::fem::closed_forms::{Bar, ContactPatch, Sides};
 use signorini::internals::Cholesky;
+use signorini::internals::closed_forms::{Bar, ContactPatch, Sides};
 
 /// Tolerance of the bar and of the patch test, relative to the largest value: elements are exact, rounding remains.
 const EXACT: f64 = 1e-11;

@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use signorini::Error;
-use signorini::fem::{Cell, MAX_NODES, Rule, Tabulated};
 use signorini::fem::{ElementKind, Mesh, Zone};
+use signorini::internals::{Cell, MAX_NODES, Rule, Tabulated};
 use signorini::scene::{Sides, disc, half_ball, half_disc, ring};
 
 const PLANE: [ElementKind; 4] = [ElementKind::T3, ElementKind::T6, ElementKind::Q4, ElementKind::Q8];

@@ -5,10 +5,9 @@ use crate::output_fixture::{
     page::{assert_readable, texts_of, tree_of},
 };
 use resvg::tiny_skia::{Pixmap, Transform};
-use signorini::{
-    Error,
-    output::{ContactPicture, Drawing, ObstacleLine, common_limits, common_window},
-};
+use signorini::Error;
+use signorini::internals::{ContactPicture, ObstacleLine, common_limits, common_window};
+use signorini::output::Drawing;
 
 fn colour_at(drawing: &Drawing, x: u32, y: u32) -> [u8; 3] {
     let png = drawing.png(1.0).expect("rasterises");

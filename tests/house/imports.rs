@@ -17,7 +17,7 @@ pub struct Source {
     /// The paths that it imports, from the crate root.
     imports: Vec<Module>,
     /// The names that it exports under its own path, and where they come from.
-    exports: BTreeMap<String, Module>,
+    pub exports: BTreeMap<String, Module>,
 }
 
 /// All files of `src/` by their modules.

@@ -1,9 +1,11 @@
 //! What every user may rely on: types that cross threads and print themselves, sets that are collections, matrices from
-//! compressed columns, the best answer inside an error.
+//! compressed columns, the best answer inside an error; and that the front stays small.
 
 use signorini::Penalty;
+use std::collections::BTreeSet;
 use std::fmt::Debug;
 
+use crate::imports::House;
 use signorini::fem::ElasticBody;
 use signorini::fem::Mesh;
 use signorini::motion::{DynamicProblem, Integrator, Scheme, State};
@@ -74,4 +76,41 @@ fn an_error_that_carries_an_answer_gives_it_away() {
     let best = solve(&problem, &settings).unwrap_err().into_best().unwrap();
     assert!((best.displacement[0] - 1.25).abs() < 1e-15, "{:?}", best.displacement);
     assert!(Error::Interrupted.into_best().is_none());
+}
+
+/// The names that a module offers to users: what it re-exports and what it defines itself.
+fn names(house: &House, module: &[String]) -> BTreeSet<String> {
+    let source = &house.files[module];
+    let defined = source.text.lines().filter_map(|line| {
+        let kinds = ["struct ", "enum ", "trait ", "fn ", "const ", "static ", "type "];
+        let item = line.strip_prefix("pub ")?;
+        let name = kinds.iter().find_map(|kind| item.strip_prefix(kind))?;
+        Some(name.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect())
+    });
+    source.exports.keys().cloned().chain(defined).collect()
+}
+
+/// A user reads every module and every name: the limits are those of a front that fits into one sitting.
+#[test]
+fn the_front_has_at_most_eight_modules_and_150_names() {
+    let house = House::read();
+    let root = &house.files[&Vec::new()];
+    let front = root.text.split("#[doc(hidden)]").next().unwrap();
+    let rooms: Vec<Vec<String>> = front
+        .lines()
+        .filter_map(|line| Some(vec![line.strip_prefix("pub mod ")?.trim_end_matches(';').to_string()]))
+        .collect();
+    assert!(rooms.len() < 8, "{rooms:?} beside the crate itself");
+    // What a room offers already is no further name at the root.
+    let is_own = |from: &Vec<String>| from.len() > 1 && !rooms.contains(&from[..1].to_vec());
+    let at_root = root.exports.values().filter(|from| is_own(from)).count();
+    let in_rooms: usize = rooms
+        .iter()
+        .map(|room| {
+            assert!(!house.files[room].text.contains("\npub mod "), "{room:?} has a public module inside");
+            names(&house, room).len()
+        })
+        .sum();
+    assert!(at_root > 5 && in_rooms > 100, "{at_root} names at the root, {in_rooms} in the rooms");
+    assert!(at_root + in_rooms <= 150, "{at_root} names at the root, {in_rooms} in the rooms");
 }

@@ -5,7 +5,7 @@
 //! Elastic Solids*, Oxford, 1975, section 2.4).
 
 use serde_json::{Value, json};
-use signorini::fem::closed_forms::ImpactingBar;
+use signorini::internals::closed_forms::ImpactingBar;
 use signorini::motion::{Integrator, Observation};
 use signorini::{Scene, Settings};
 

@@ -10,8 +10,7 @@ mod measure;
 
 use cases::cases;
 use measure::run;
-use signorini::motion::{DynamicProblem, Integrator, Scheme, TimeFunction, stable_step};
-use signorini::scene::SchemeSpec;
+use signorini::motion::{DynamicProblem, Integrator, Scheme, SchemeSpec, TimeFunction, stable_step};
 use signorini::{ContactProblem, Error, Precision, Scene, Settings, SparseMatrix, SymmetricMatrix};
 
 /// What the default scheme promises at its usual step, a Courant number of 0.5, on 100 cells.

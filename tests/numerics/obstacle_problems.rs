@@ -6,7 +6,7 @@
 use std::f64::consts::PI;
 
 use crate::oracles::Draws;
-use signorini::fem::closed_forms::{DiscMembrane, ObstacleString};
+use signorini::internals::closed_forms::{DiscMembrane, ObstacleString};
 use signorini::{ContactProblem, Method, Settings, SparseMatrix, SymmetricMatrix, solve};
 
 const METHODS: [Method; 2] = [Method::qp(), Method::ActiveSet];

@@ -133,7 +133,7 @@ fn a_sweep_that_is_stopped_has_the_gaps_until_then() {
     assert!(part.events.is_empty() && part.corners.is_empty());
     for (point, expected) in part.points.iter().zip(&whole.points) {
         assert!(point.gap == expected.gap && point.summary.is_certified());
-        assert_eq!(point.solution.multiplier, expected.solution.multiplier);
+        assert_eq!(point.summary.solution.multiplier, expected.summary.solution.multiplier);
     }
 }
 

@@ -6,7 +6,7 @@
 use std::path::PathBuf;
 
 use serde_json::{Value, json};
-use signorini::fem::closed_forms::{Bar, ContactPatch, Sides};
+use signorini::internals::closed_forms::{Bar, ContactPatch, Sides};
 use signorini::study::compare;
 use signorini::{Error, Method, Model, Scene, Settings, Solution, solve, solve_qp};
 

@@ -2,7 +2,7 @@
 
 use crate::bodies::{built, largest};
 use serde_json::{Value, json};
-use signorini::fem::closed_forms::Bar;
+use signorini::internals::closed_forms::Bar;
 use signorini::scene::Warning;
 use signorini::{Error, Model, Scene, solve_qp};
 

@@ -8,8 +8,8 @@
 use std::f64::consts::PI;
 
 use serde_json::{Value, json};
-use signorini::output::{UnitNames, solve_json, solve_text};
-use signorini::scene::Answer;
+use signorini::output::solve_text;
+use signorini::scene::{Answer, Units};
 use signorini::study::scene_summary;
 use signorini::{Condense, Error, Method, Scene, Settings, Solution, solve};
 
@@ -210,22 +210,23 @@ fn a_certified_answer_whose_stiffness_has_few_digits_comes_with_a_warning() {
         let model = Scene::from_json(&scene.to_string(), "block").unwrap().build().unwrap();
         let solution = solve(model.problem(), &Settings::default()).unwrap_or_else(|e| panic!("{height:e}: {e}"));
         let error = (solution.contact_force() / (0.7 / (1.3 * 0.4) * 0.01) - 1.0).abs();
+        let digits = solution.digits_of_stiffness();
         let answer = Answer::of(model.into(), &solution).unwrap();
-        (error, scene_summary(&answer, &solution, TOLERANCE, 0.0).unwrap(), solution.digits_of_stiffness())
+        (error, scene_summary(&answer, solution, TOLERANCE, 0.0).unwrap(), digits)
     };
     let (error, summary, digits) = block(1e6);
     let digits = digits.unwrap();
     assert!(summary.is_certified() && error <= 10.0_f64.powi(1 - digits as i32), "{error:e}, {digits} digits");
-    let report = solve_json(&summary);
+    let report = json!(summary);
     let warning = &report["warnings"][0];
     assert_eq!((&warning["code"], report["warnings"].as_array().unwrap().len()), (&json!("lost-digits"), 1));
     let message = warning["message"].as_str().unwrap();
     assert!(message.contains(&format!("{digits} digit")) && message.contains("smallest pivot"), "{message}");
     assert!(message.contains("bending") && message.contains("contrast"), "{message}");
-    let text = solve_text("block", &summary, &UnitNames::default());
+    let text = solve_text("block", &summary, &Units::default());
     assert!(text.contains("  warning       the entries of the stiffness"), "{text}");
     assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
     let (_, summary, digits) = block(1.0);
-    assert!(digits.is_none() && solve_json(&summary).get("warnings").is_none());
-    assert!(!solve_text("block", &summary, &UnitNames::default()).contains("warning"));
+    assert!(digits.is_none() && json!(summary).get("warnings").is_none());
+    assert!(!solve_text("block", &summary, &Units::default()).contains("warning"));
 }

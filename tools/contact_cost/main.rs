@@ -8,40 +8,29 @@ mod case;
 mod clock;
 mod linear;
 mod measure;
+#[path = "../process.rs"]
+mod process;
 mod table;
 
 use std::path::Path;
-use std::process::{Command, ExitCode, Stdio};
+use std::process::ExitCode;
 
 use case::{CASES, Case};
 use linear::Ordering;
-use measure::{Bench, TASKS, peak_bytes};
+use measure::{Bench, TASKS};
+use process::{Failure, child, ended, option, peak_bytes};
 use serde_json::{Map, Value, json};
 use signorini::output::write_files;
-
-type Failure = Box<dyn std::error::Error>;
 
 /// Rounds of every case; the least time of each task counts.
 const ROUNDS: usize = 4;
 
 fn main() -> ExitCode {
-    match run() {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::FAILURE
-        }
-    }
-}
-
-fn run() -> Result<(), Failure> {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    match words[..] {
+    ended(|words| match *words {
         ["time", name, rounds] => answer(&time(&known(name)?, rounds.parse()?)?),
         ["memory", name, task] => answer(&memory(&known(name)?, task)?),
-        _ => measure_all(&words),
-    }
+        _ => measure_all(words),
+    })
 }
 
 fn known(name: &str) -> Result<Case, Failure> {
@@ -54,10 +43,9 @@ fn answer(value: &Value) -> Result<(), Failure> {
 }
 
 fn measure_all(words: &[&str]) -> Result<(), Failure> {
-    let option = |name: &str| words.iter().position(|word| *word == name).and_then(|place| words.get(place + 1));
-    let only = option("--only").map(|list| list.split(',').collect::<Vec<_>>());
+    let only = option(words, "--only").map(|list| list.split(',').collect::<Vec<_>>());
     let default_rounds = ROUNDS.to_string();
-    let rounds = option("--rounds").copied().unwrap_or(&default_rounds);
+    let rounds = option(words, "--rounds").unwrap_or(&default_rounds);
     let mut cases = Vec::new();
     for case in CASES.iter().filter(|case| only.as_ref().is_none_or(|names| names.contains(&case.name))) {
         eprintln!("{} ...", case.name);
@@ -69,20 +57,11 @@ fn measure_all(words: &[&str]) -> Result<(), Failure> {
     }
     let text = table::text(&cases, rounds);
     print!("{text}");
-    if let Some(folder) = option("--out") {
+    if let Some(folder) = option(words, "--out") {
         let json = format!("{:#}\n", json!({"rounds": rounds.parse::<usize>()?, "cases": cases}));
         write_files(Path::new(folder), &[("contact_cost.md", text), ("contact_cost.json", json)])?;
     }
     Ok(())
-}
-
-/// What this program prints when it is run with `arguments`.
-fn child(arguments: &[&str]) -> Result<Value, Failure> {
-    let output = Command::new(std::env::current_exe()?).args(arguments).stderr(Stdio::inherit()).output()?;
-    if !output.status.success() {
-        return Err(format!("{arguments:?} failed").into());
-    }
-    Ok(serde_json::from_slice(&output.stdout)?)
 }
 
 fn time(case: &Case, rounds: usize) -> Result<Value, Failure> {

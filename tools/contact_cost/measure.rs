@@ -184,11 +184,3 @@ impl Bench {
         linear::solve(problem.stiffness(), problem.load(), ordering).map(|(_, values)| 8.0 * values as f64)
     }
 }
-
-/// Bytes of the greatest memory that this process ever had; nothing where the system has no such file.
-pub fn peak_bytes() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = text.lines().find(|line| line.starts_with("VmHWM"))?;
-    let kilobytes: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
-    Some(kilobytes * 1024.0)
-}

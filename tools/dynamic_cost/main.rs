@@ -10,8 +10,7 @@ use std::time::Instant;
 use serde_json::json;
 use signorini::internals::Cholesky;
 use signorini::motion::{Integrator, Scheme};
-use signorini::{Scene, Settings};
-use signorini::{SparseMatrix, SymmetricMatrix};
+use signorini::{Scene, Settings, SparseMatrix, SymmetricMatrix};
 
 /// Cells along a side: 8,320, 33,024 and 131,584 dofs.
 const CELLS: [usize; 3] = [64, 128, 256];

@@ -1,6 +1,6 @@
 //! The two bars.
 
-use signorini::fem::closed_forms::{BouncingBar, ImpactingBar};
+use signorini::internals::closed_forms::{BouncingBar, ImpactingBar};
 
 use super::measure::Case;
 

@@ -15,16 +15,6 @@ use signorini::Error;
 use signorini::output::{write_files, write_picture};
 use signorini::scene::SchemeSpec;
 
-/// The schemes, the default first.
-const SCHEMES: [SchemeSpec; 6] = [
-    SchemeSpec::Midpoint,
-    SchemeSpec::ContactStabilised,
-    SchemeSpec::Hht,
-    SchemeSpec::Trapezoidal,
-    SchemeSpec::Penalty,
-    SchemeSpec::CentralDifference,
-];
-
 /// Time steps in the time of a wave through a cell.
 const COURANT: [f64; 3] = [0.5, 1.0, 1.5];
 
@@ -45,7 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     for case in &cases() {
         let mut runs = Vec::new();
-        for scheme in SCHEMES {
+        for scheme in SchemeSpec::ALL {
             let steps = if scheme == SchemeSpec::CentralDifference { &EXPLICIT_COURANT[..] } else { &COURANT };
             for &courant in steps {
                 runs.push(run(case, scheme, courant, CELLS)?);

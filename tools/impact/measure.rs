@@ -1,7 +1,8 @@
 //! One run of one scheme, held against a closed form.
 
+use signorini::internals::{AnalysisSpec, BodySpec};
 use signorini::motion::{Integrator, Observation, Scheme};
-use signorini::scene::{AnalysisSpec, SchemeSpec};
+use signorini::scene::SchemeSpec;
 use signorini::{Error, Scene, Settings};
 
 /// A bar whose motion is known.
@@ -47,7 +48,7 @@ pub struct Run {
 pub fn run(case: &Case, scheme: SchemeSpec, courant: f64, cells: usize) -> Result<Run, Error> {
     let path = format!("{}/tools/impact/{}.json", env!("CARGO_MANIFEST_DIR"), case.scene);
     let mut scene = Scene::read(path)?;
-    if let signorini::scene::BodySpec::Bar(bar) = &mut scene.body {
+    if let BodySpec::Bar(bar) = &mut scene.body {
         bar.x.divisions = vec![cells];
     }
     if let Some(AnalysisSpec::Dynamic(spec)) = &mut scene.analysis {

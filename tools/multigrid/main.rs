@@ -12,36 +12,27 @@ mod bodies;
 mod case;
 mod growth;
 mod measure;
+#[path = "../process.rs"]
+mod process;
 
 use std::path::Path;
-use std::process::{Command, ExitCode, Stdio};
+use std::process::ExitCode;
 
 use case::{CASES, Case};
-use serde_json::{Value, json};
+use process::{Failure, child, ended, option};
+use serde_json::json;
 use signorini::Scene;
 use signorini::output::{write_files, write_picture};
-
-type Failure = Box<dyn std::error::Error>;
 
 /// The direct path is not measured beyond: its factor would take tens of gigabytes.
 const MOST_DIRECT: usize = 120_000;
 
 fn main() -> ExitCode {
-    match run() {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::FAILURE
-        }
-    }
+    ended(run)
 }
 
-fn run() -> Result<(), Failure> {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    let option =
-        |name: &str| words.iter().position(|word| *word == name).and_then(|place| words.get(place + 1)).copied();
-    match words[..] {
+fn run(words: &[&str]) -> Result<(), Failure> {
+    match *words {
         ["iterative", index, threads] => {
             println!("{}", measure::iterative(&CASES[index.parse::<usize>()?].model()?, threads.parse()?)?);
         }
@@ -59,12 +50,12 @@ fn run() -> Result<(), Failure> {
                 println!("{}", growth::body_line(name, &child(&["body", &index.to_string()])?));
             }
         }
-        _ => match option("--scene") {
+        _ => match option(words, "--scene") {
             Some(scene) => {
                 let model = Scene::read(Path::new(scene))?.build()?;
                 println!("{}\n{}", growth::BODIES_HEAD, growth::body_line(scene, &measure::iterative(&model, 1)?));
             }
-            None => measure_all(option("--out"), option("--most-dofs").unwrap_or("1000000").parse()?)?,
+            None => measure_all(option(words, "--out"), option(words, "--most-dofs").unwrap_or("1000000").parse()?)?,
         },
     }
     Ok(())
@@ -94,13 +85,4 @@ fn measure_all(out: Option<&str>, most_dofs: usize) -> Result<(), Failure> {
         write_picture(folder, "multigrid", &growth::plot(&measured))?;
     }
     Ok(())
-}
-
-/// What this program prints when it is run with `arguments`.
-fn child(arguments: &[&str]) -> Result<Value, Failure> {
-    let output = Command::new(std::env::current_exe()?).args(arguments).stderr(Stdio::inherit()).output()?;
-    if !output.status.success() {
-        return Err(format!("{arguments:?} failed").into());
-    }
-    Ok(serde_json::from_slice(&output.stdout)?)
 }

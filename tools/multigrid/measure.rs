@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use crate::process::peak_bytes;
 use serde_json::{Value, json};
 use signorini::internals::multigrid::{Multigrid, conjugate_gradients};
 use signorini::{Error, Method, Model, Prepared, Settings};
@@ -23,13 +24,6 @@ fn processor_seconds(start: Instant) -> f64 {
     };
     std::thread::yield_now();
     from_system().unwrap_or_else(|| start.elapsed().as_secs_f64())
-}
-
-/// Bytes of the greatest memory that this process ever had.
-fn peak_bytes() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = text.lines().find(|line| line.starts_with("VmHWM"))?;
-    Some(1024.0 * line.split_whitespace().nth(1)?.parse::<f64>().ok()?)
 }
 
 /// Hierarchy, linear solve and contact solve of a model, on so many threads.

@@ -4,9 +4,11 @@ use signorini::Error;
 use signorini::fem::ElementKind;
 use signorini::fem::ErrorNorms;
 use signorini::fem::Integration;
-use signorini::fem::closed_forms::manufactured::{ContactSolution, GenericEdge, HertzBlock, PlaneElasticity, Smooth};
+use signorini::internals::closed_forms::manufactured::{
+    ContactSolution, GenericEdge, HertzBlock, PlaneElasticity, Smooth,
+};
+use signorini::internals::solve_block;
 use signorini::output::{Drawing, Plot, Quantity, Scale, Series, line_plots};
-use signorini::study::solve_block;
 
 use super::answer::Answer;
 use super::reference_errors::{REFERENCE, reference_rule};

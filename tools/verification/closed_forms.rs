@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use serde_json::{Value, json};
-use signorini::fem::closed_forms::{Bar, DiscMembrane, ObstacleString};
+use signorini::internals::closed_forms::{Bar, DiscMembrane, ObstacleString};
 use signorini::{ContactProblem, Error, Scene, SparseMatrix, SymmetricMatrix, solve_qp};
 
 use super::answer::{Answer, Solved};

@@ -5,7 +5,7 @@
 
 use serde_json::{Value, json};
 use signorini::Error;
-use signorini::fem::closed_forms::{Cone, FlatDisc, FlatStrip, LineContact, PointContact, Wedge};
+use signorini::internals::closed_forms::{Cone, FlatDisc, FlatStrip, LineContact, PointContact, Wedge};
 
 use super::answer::{Answer, Solved};
 

@@ -4,7 +4,7 @@
 //! error of quadratic elements. Whoever uses its rules finds its numbers.
 
 use signorini::fem::ElementKind::{self, Q4, Q8, T3, T6};
-use signorini::fem::QuadraturePoint;
+use signorini::internals::QuadraturePoint;
 
 /// Relative errors in energy and in L2 of one element on one block.
 pub struct ReferenceErrors {

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 use signorini::Error;
-use signorini::fem::closed_forms::{LineContact, PointContact};
+use signorini::internals::closed_forms::{LineContact, PointContact};
 
 use super::answer::{Answer, Solved};
 

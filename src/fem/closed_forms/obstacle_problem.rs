@@ -19,7 +19,7 @@ impl ObstacleString {
     /// The force on the obstacle, `q (1 - 2 b)`.
     ///
     /// ```
-    /// let string = signorini::fem::closed_forms::ObstacleString { load: 1.0, gap: 0.08 };
+    /// let string = signorini::internals::closed_forms::ObstacleString { load: 1.0, gap: 0.08 };
     /// assert!((string.force() - 0.2).abs() < 1e-15);
     /// ```
     pub fn force(&self) -> f64 {
@@ -47,7 +47,7 @@ impl DiscMembrane {
     /// The radius b of the contact: `q (1 - b^2)/4 + (q b^2/2) ln b = g`; 0 where the obstacle is not reached.
     ///
     /// ```
-    /// let membrane = signorini::fem::closed_forms::DiscMembrane { load: 8.0, gap: 0.25 };
+    /// let membrane = signorini::internals::closed_forms::DiscMembrane { load: 8.0, gap: 0.25 };
     /// assert!((membrane.radius() - 0.737351524416).abs() < 1e-12);
     /// assert!((membrane.force() - 13.6643514803).abs() < 1e-10);
     /// ```

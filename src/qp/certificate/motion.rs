@@ -85,14 +85,15 @@ impl ContactProblem {
         if !(size.rounded() > 0.0 && size.rounded().is_finite()) {
             return None;
         }
-        let kept = |&value: &Twice| {
-            if value.rounded().abs() > rounding.entry * size.rounded() { value / size } else { Twice::ZERO }
+        let whole: Vec<Twice> = direction.iter().map(|&value| value / size).collect();
+        let kept = |&value: &Twice| if value.rounded().abs() > rounding.entry { value } else { Twice::ZERO };
+        let cleaned = whole.iter().map(kept).collect();
+        let is_free = |direction: &Vec<Twice>| {
+            let resists = |&(force, terms): &(f64, f64)| force.abs() > rounding.vanishes * terms;
+            !self.stiffness.resistance(direction).iter().any(resists)
         };
-        let direction: Vec<Twice> = direction.iter().map(kept).collect();
-        let resists = |&(force, terms): &(f64, f64)| force.abs() > rounding.vanishes * terms;
-        if self.stiffness.resistance(&direction).iter().any(resists) {
-            return None;
-        }
+        // Small entries may be what is left of zero, or part of the motion.
+        let direction = [cleaned, whole].into_iter().find(is_free)?;
         let by_row = self.contact.transposed();
         let mut approach = vec![0.0; self.rows()];
         for row in (0..self.rows()).filter(|&row| self.gap[row].is_finite()) {

@@ -73,7 +73,7 @@ impl Cone<'_> {
         }
     }
 
-    /// The same as the answer to a contact problem with K = I, in doubles. What is fixed may grow.
+    /// The same as the answer to a contact problem with K = I, in doubles. What is fixed may grow, unless doubles decide.
     fn nearest_in_doubles(&self, c: &[f64]) -> Option<Vec<f64>> {
         let (size, dofs) = (largest(c), c.len());
         if dofs == 0 || !(size > 0.0 && size.is_finite()) {
@@ -82,7 +82,8 @@ impl Cone<'_> {
         let diagonal: Vec<(usize, usize, f64)> = (0..dofs).map(|dof| (dof, dof, 1.0)).collect();
         let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &diagonal).ok()?).ok()?;
         let grows = self.fixed.map(Row::negative);
-        let rows: Vec<Vec<f64>> = (self.rows.iter().copied().chain(&grows))
+        let falls = self.fixed.filter(|_| self.rounding.is_none());
+        let rows: Vec<Vec<f64>> = (self.rows.iter().copied().chain(&grows).chain(falls))
             .filter(|row| !row.is_zero())
             .map(|row| row.values.iter().map(|value| value.rounded()).collect())
             .collect();

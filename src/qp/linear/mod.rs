@@ -10,6 +10,10 @@ mod elimination;
 mod factor;
 pub mod multigrid;
 mod null_space;
+#[cfg(feature = "faer")]
+mod of_faer;
+#[cfg(feature = "nalgebra")]
+mod of_nalgebra;
 mod ordering;
 mod orthogonal;
 mod power_of_two;

@@ -14,7 +14,7 @@ pub use bar::{BarSpec, bar};
 pub use cuboid::{BoxSpec, cuboid};
 pub use disc::{DiscSpec, disc};
 pub use gmsh::GmshSpec;
-pub use half_ball::{HalfBallSpec, SymmetrySpec, half_ball};
+pub use half_ball::{HalfBallSpec, half_ball};
 pub use half_disc::{HalfDiscSpec, half_disc};
 pub use rectangle::{RectangleSpec, rectangle};
 pub use ring::{RingSpec, ring};

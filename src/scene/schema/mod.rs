@@ -11,14 +11,11 @@ pub(super) mod json;
 mod model;
 mod obstacle;
 
-pub use analysis::{
-    AnalysisSpec, DampingSpec, DynamicSpec, FactorSpec, FactorTableSpec, FieldSpec, InitialSpec, IntervalSpec,
-    LoadInTimeSpec, MassSpec, PenetrationSpec, SineSpec,
-};
+pub use analysis::{AnalysisSpec, DynamicSpec, FactorSpec, FieldSpec, LoadInTimeSpec, MassSpec, PenetrationSpec};
 pub use approach::{Approach, Rule};
 pub use body::{FurtherBodySpec, MaterialSpec};
 pub use cells::{ElementSpec, HalfSpec, SolidElementSpec};
-pub use condition::{ForceSpec, LoadSpec, Place, PressureSpec, SupportSpec, TractionSpec};
+pub use condition::{LoadSpec, Place, SupportSpec};
 pub use model::ModelSpec;
 pub use obstacle::ObstacleSpec;
 
@@ -104,11 +101,17 @@ impl Default for Units {
 }
 
 impl Units {
+    /// The units of a problem that names none.
+    pub fn unnamed() -> Self {
+        Units { length: String::new(), force: String::new() }
+    }
+
     /// The unit of pressure and stress: `Pa`, `MPa`, or force over length squared.
     pub fn pressure(&self) -> String {
         match (self.force.as_str(), self.length.as_str()) {
             ("N", "m") => "Pa".into(),
             ("N", "mm") => "MPa".into(),
+            ("", "") => String::new(),
             (force, length) => format!("{force}/{length}²"),
         }
     }

@@ -5,7 +5,8 @@
 
 pub mod page;
 
-use signorini::output::{ContactPicture, ObstacleLine, Quantity};
+use signorini::internals::{ContactPicture, ObstacleLine};
+use signorini::output::Quantity;
 
 /// Everything a [`ContactPicture`] borrows.
 #[derive(Clone)]

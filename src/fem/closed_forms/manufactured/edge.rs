@@ -9,7 +9,7 @@ use super::{ContactSolution, PlaneElasticity};
 /// `Zbar = -p0 zeta^1.5` with `zeta = (x0 - x) + i y`.
 ///
 /// ```
-/// use signorini::fem::closed_forms::manufactured::{ContactSolution, GenericEdge, PlaneElasticity};
+/// use signorini::internals::closed_forms::manufactured::{ContactSolution, GenericEdge, PlaneElasticity};
 /// let elasticity = PlaneElasticity::plane_strain(1.0, 0.3);
 /// let edge = GenericEdge { elasticity, edge: 0.53, pressure: 1.0 };
 /// assert!((edge.pressure(0.28) - 0.75).abs() < 1e-15);

@@ -10,7 +10,7 @@ use super::{ContactSolution, PlaneElasticity};
 /// `s = sqrt(a - z) sqrt(a + z)`. The obstacle is `u_y >= -x^2/(2R)`, `R = a E*/(2 p0)`.
 ///
 /// ```
-/// use signorini::fem::closed_forms::manufactured::{ContactSolution, HertzBlock, PlaneElasticity};
+/// use signorini::internals::closed_forms::manufactured::{ContactSolution, HertzBlock, PlaneElasticity};
 /// let elasticity = PlaneElasticity::plane_strain(1.0, 0.3);
 /// let hertz = HertzBlock { elasticity, half_width: 0.5, peak_pressure: 1.0 };
 /// assert!((hertz.pressure(0.3) - 0.8).abs() < 1e-15);

@@ -27,7 +27,7 @@ impl PlaneElasticity {
     /// The constants in plane strain of Young's modulus E and Poisson's ratio nu.
     ///
     /// ```
-    /// let elastic = signorini::fem::closed_forms::manufactured::PlaneElasticity::plane_strain(1.0, 0.25);
+    /// let elastic = signorini::internals::closed_forms::manufactured::PlaneElasticity::plane_strain(1.0, 0.25);
     /// assert_eq!((elastic.lambda, elastic.mu), (0.4, 0.4));
     /// assert!((elastic.contact_modulus() - 1.0 / (1.0 - 0.25 * 0.25)).abs() < 1e-15);
     /// ```

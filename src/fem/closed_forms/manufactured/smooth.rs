@@ -9,7 +9,7 @@ use super::{ContactSolution, PlaneElasticity};
 /// the highest derivative.
 ///
 /// ```
-/// use signorini::fem::closed_forms::manufactured::{ContactSolution, PlaneElasticity, Smooth};
+/// use signorini::internals::closed_forms::manufactured::{ContactSolution, PlaneElasticity, Smooth};
 /// let elasticity = PlaneElasticity::plane_strain(1.0, 0.3);
 /// let smooth = Smooth { elasticity, opening: 2.0, pressure: 4.0, edge: 0.5, power: 3 };
 /// assert_eq!(smooth.pressure(0.0), 0.5);

@@ -1,0 +1,43 @@
+//! An error as a command leaves it: one sentence, the status of its report, one exit code.
+
+use serde_json::json;
+
+use super::options::Format;
+use super::outcome::{Ending, Outcome};
+use crate::error::{Error, Failure};
+use crate::output::printable;
+
+/// More characters than this of a message are left out of its middle: a file may repeat megabytes in it.
+const LONGEST_SENTENCE: usize = 800;
+
+/// The message of an error on one line of bearable length.
+pub(super) fn sentence(error: &Error) -> String {
+    let message: Vec<char> = printable(&error.to_string()).chars().collect();
+    let half = LONGEST_SENTENCE / 2;
+    if message.len() <= LONGEST_SENTENCE {
+        return message.into_iter().collect();
+    }
+    let (head, tail) = (&message[..half], &message[message.len() - half..]);
+    head.iter().chain(&[' ', '.', '.', '.', ' ']).chain(tail).collect()
+}
+
+/// The exit code of an error.
+fn ending(error: &Error) -> Ending {
+    match error.failure() {
+        Failure::BadInput => Ending::BadInput,
+        Failure::NoSolution => Ending::NoSolution,
+        Failure::NotCertified => Ending::NotCertified,
+    }
+}
+
+/// The outcome of a command that ended with an error; in JSON it is an object.
+pub(super) fn failed(error: &Error, format: Format) -> Outcome {
+    let text = match format {
+        Format::Text => String::new(),
+        Format::Json => {
+            let report = json!({ "status": error.status(), "code": error.code(), "message": sentence(error) });
+            format!("{report:#}\n")
+        }
+    };
+    Outcome { ending: ending(error), ..Outcome::done(text) }
+}
