@@ -150,7 +150,8 @@ fn interrupted(desk: &Desk, arguments: &[&str], event: &str, cut: impl Fn(&Run) 
 fn an_interrupt_of_a_factorisation_ends_the_program_without_an_answer() {
     let desk = Desk::new();
     desk.write("large.json", block(1000, 500).to_string());
-    let run = interrupted(&desk, &["solve", "large.json", "--out", "o"], "factorisation", |_| true);
+    let solve = ["solve", "large.json", "--method", "active-set", "--out", "o"];
+    let run = interrupted(&desk, &solve, "factorisation", |_| true);
     assert!(run.stdout.is_empty() && run.stderr.lines().count() == 1, "{}{}", run.stdout, run.stderr);
     assert!(run.stderr.contains("interrupted"), "{}", run.stderr);
     assert_eq!(whole(&desk.path("o")), 0);
@@ -383,7 +384,7 @@ fn on_a_terminal_long_work_shows_what_it_does_and_leaves_nothing_of_it() {
     desk.write("large.json", block(1000, 500).to_string());
     // What is done in the second that has begun depends on the machine.
     let awaited = ["[0-9] s: (ordering|factorisation|certificate|report)"];
-    let drawn_by_solve = drawn(&desk, &["solve", "large.json"], &awaited);
+    let drawn_by_solve = drawn(&desk, &["solve", "large.json", "--method", "active-set"], &awaited);
     let (left, _) = left_and_shown(&drawn_by_solve);
     assert!(left.contains("interrupted") && left.lines().count() == 1, "{drawn_by_solve:?}");
 }

@@ -13,6 +13,9 @@ use crate::qp::settings::{Method, Settings};
 /// A point of a cone that is nearer to its tip than this share of c is the tip.
 const TIP: f64 = 1e-8;
 
+/// A row that a point is nearer to than this share of its terms is touched, as far as rows that are rounded can tell.
+const TOUCHED: f64 = 1e-8;
+
 /// Coordinates below this share of the largest are what a solve in doubles leaves of zero.
 const ROUNDING: f64 = 1e-10;
 
@@ -28,10 +31,6 @@ pub(super) struct Row {
 }
 
 impl Row {
-    pub fn negative(&self) -> Self {
-        Row { values: self.values.iter().map(|&value| -value).collect(), terms: self.terms }
-    }
-
     fn is_zero(&self) -> bool {
         self.values.iter().all(|&value| value == Twice::ZERO)
     }
@@ -41,39 +40,49 @@ impl Row {
 pub(super) struct Cone<'a> {
     pub rows: Vec<&'a Row>,
     pub fixed: Option<&'a Row>,
-    /// What rounding may leave of a sum, as a share of its terms; `None` where the rows themselves are rounded, and doubles decide.
-    pub rounding: Option<f64>,
+    /// What rounding may leave of a sum, as a share of its terms.
+    pub rounding: f64,
+    /// `false` if the rows themselves are rounded: then the point slides along all rows that doubles put it next to.
+    pub is_exact: bool,
 }
 
 impl Cone<'_> {
     /// The point that is nearest to c, about; `None` where that is the tip.
     pub fn nearest(&self, c: &[f64]) -> Option<Vec<Twice>> {
-        let found: Vec<Twice> = self.nearest_in_doubles(c)?.into_iter().map(Twice::from).collect();
-        let Some(rounding) = self.rounding else { return Some(found) };
+        let twice = |values: &[f64]| -> Vec<Twice> { values.iter().map(|&value| value.into()).collect() };
+        let mut start = twice(&self.nearest_in_doubles(c)?);
+        let rows = || self.rows.iter().copied().filter(|row| !row.is_zero());
+        let closing = |row: &Row, point: &[Twice]| product(&row.values, point).rounded() / row.terms;
         let mut face = Face::default();
         if let Some(fixed) = self.fixed {
-            face.hold(fixed, rounding);
+            face.hold(fixed, self.rounding);
         }
-        let least = TIP * size(&found);
+        if !self.is_exact {
+            for row in rows().filter(|row| closing(row, &start) > -TOUCHED * size(&start)) {
+                face.hold(row, self.rounding);
+            }
+            // The nearest point is that of the rows it touches, which doubles have found with fewer digits.
+            start = twice(c);
+        }
+        let least = TIP * size(&start);
         loop {
-            let point = face.along(&found);
+            let point = face.along(&start);
             let size = size(&point);
             if size <= least {
                 return None;
             }
-            let closing = |row: &&Row| product(&row.values, &point).rounded() / row.terms;
-            let worst = self.rows.iter().copied().filter(|row| !row.is_zero());
-            let worst = worst.max_by(|a, b| closing(a).total_cmp(&closing(b)));
-            match worst.filter(|row| closing(row) > rounding * size) {
+            let worst = rows().max_by(|a, b| closing(a, &point).total_cmp(&closing(b, &point)));
+            match worst.filter(|row| closing(row, &point) > self.rounding * size) {
                 // A row that follows from those which are held, and still stops the point, shows that their digits are lost.
-                Some(row) if !face.hold(row, rounding) => return None,
+                Some(row) if !face.hold(row, self.rounding) => return None,
                 Some(_) => {}
                 None => return Some(point),
             }
         }
     }
 
-    /// The same as the answer to a contact problem with K = I, in doubles. What is fixed may grow, unless doubles decide.
+    /// The same as the answer to a contact problem with K = I, in doubles. What is fixed may be negative: in doubles two
+    /// opposed rows would leave nothing.
     fn nearest_in_doubles(&self, c: &[f64]) -> Option<Vec<f64>> {
         let (size, dofs) = (largest(c), c.len());
         if dofs == 0 || !(size > 0.0 && size.is_finite()) {
@@ -81,9 +90,7 @@ impl Cone<'_> {
         }
         let diagonal: Vec<(usize, usize, f64)> = (0..dofs).map(|dof| (dof, dof, 1.0)).collect();
         let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &diagonal).ok()?).ok()?;
-        let grows = self.fixed.map(Row::negative);
-        let falls = self.fixed.filter(|_| self.rounding.is_none());
-        let rows: Vec<Vec<f64>> = (self.rows.iter().copied().chain(&grows).chain(falls))
+        let rows: Vec<Vec<f64>> = (self.rows.iter().copied().chain(self.fixed))
             .filter(|row| !row.is_zero())
             .map(|row| row.values.iter().map(|value| value.rounded()).collect())
             .collect();

@@ -172,8 +172,7 @@ impl<'a> Looked<'a> {
 
     /// A motion without energy that the load drives and no row stops.
     fn escape(&self) -> Option<Motion> {
-        let rows = self.rows.iter().map(|(_, row)| row).collect();
-        let cone = Cone { rows, fixed: None, rounding: self.exact_rounding() };
+        let cone = self.cone(&|_| true, None);
         let along_load: Vec<f64> = self.against_load.values.iter().map(|value| -value.rounded()).collect();
         self.motion(&cone.nearest(&along_load)?).filter(Motion::escapes)
     }
@@ -234,8 +233,7 @@ impl<'a> Looked<'a> {
 
     /// A motion without energy on which the load does no work, and that closes none of these rows.
     fn idle(&self, stops: &dyn Fn(usize) -> bool) -> Option<Motion> {
-        let rows = self.rows.iter().filter(|(row, _)| stops(*row)).map(|(_, row)| row).collect();
-        let cone = Cone { rows, fixed: Some(&self.against_load), rounding: self.exact_rounding() };
+        let cone = self.cone(stops, Some(&self.against_load));
         let stays = |motion: &Motion| {
             motion.is_idle() && self.rows.iter().all(|&(row, _)| motion.approach[row] <= 0.0 || !stops(row))
         };
@@ -246,8 +244,10 @@ impl<'a> Looked<'a> {
         })
     }
 
-    fn exact_rounding(&self) -> Option<f64> {
-        self.null.is_exact.then_some(self.rounding.zero)
+    /// The cone of the motions that close none of these rows, without work of a load that is `fixed`.
+    fn cone<'b>(&'b self, stops: &dyn Fn(usize) -> bool, fixed: Option<&'b Row>) -> Cone<'b> {
+        let rows = self.rows.iter().filter(|(row, _)| stops(*row)).map(|(_, row)| row).collect();
+        Cone { rows, fixed, rounding: self.rounding.vanishes, is_exact: self.null.is_exact }
     }
 
     fn motion(&self, coordinates: &[Twice]) -> Option<Motion> {

@@ -62,10 +62,13 @@ impl SymmetricMatrix {
         }
         let mut basis = NullSpace { vectors: Vec::new(), is_exact: true };
         for vector in &found {
-            let (vector, share) = self.corrected(&factor, vector);
-            if share <= OF_ENTRIES {
-                basis.vectors.push(vector);
-                basis.is_exact &= share <= EXACT;
+            let (corrected, share) = self.corrected(&factor, vector);
+            if share <= EXACT {
+                basis.vectors.push(corrected);
+            } else if share <= OF_ENTRIES {
+                // Corrections follow the rounding of the entries, and turn the vectors towards each other.
+                basis.vectors.push(vector.iter().map(|&value| value.into()).collect());
+                basis.is_exact = false;
             }
         }
         Ok(Some(basis))
