@@ -17,7 +17,7 @@ const SEEDS: [u64; 4] = [1, 20, 300, 4000];
 
 /// Problems of other seeds that once had a fault: of seed 77 the first of each sort with each kind of stiffness, and every wrong
 /// proof.
-const ONCE_WRONG: [(u64, &[u64]); 14] = [
+const ONCE_WRONG: [(u64, &[u64]); 16] = [
     (301, &[10625]),
     (303, &[19129]),
     (502, &[15150]),
@@ -27,6 +27,8 @@ const ONCE_WRONG: [(u64, &[u64]); 14] = [
     (7102, &[983]),
     (7301, &[2201, 4846, 7629, 13149, 14000, 14290, 16646]),
     (7401, &[2433]),
+    (7402, &[15974]),
+    (7404, &[7349]),
     (9101, &[7376]),
     (9103, &[16598]),
     (9202, &[14483]),
