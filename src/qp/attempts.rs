@@ -12,9 +12,6 @@ use crate::error::Error;
 use crate::qp::method::Start;
 use crate::solution::{Attempt, Seconds, Solution};
 
-/// Cycles after which an iteration that was chosen for its speed is no longer fast: a factor comes next.
-const EXPECTED_CYCLES: usize = 80;
-
 /// How the ways that are tried end by themselves.
 ///
 /// # Errors
@@ -62,8 +59,8 @@ impl Attempts {
                 }
                 decided => return decided,
             },
-            Choice::Speed { reason } => {
-                most_cycles = EXPECTED_CYCLES.min(most_cycles);
+            Choice::Speed { reason, most_cycles: expected } => {
+                most_cycles = expected.min(most_cycles);
                 reason
             }
             Choice::Room { reason } => reason,

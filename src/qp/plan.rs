@@ -4,7 +4,7 @@
 //!
 //! 1. **Factor or multigrid** (`Estimate::choose`): multigrid where a factorisation would take [`CLEARLY`] times as long, or
 //!    does not fit into the memory; else the direct path. Where that turns out to be too large or too slow, multigrid;
-//!    where multigrid falls short, the direct path if it fits.
+//!    where multigrid falls short, or takes as long as a factor would, the direct path if it fits.
 //! 2. **The layout of the factor** ([`Layout::within`]): condensed onto the contact dofs where that pays; else all dofs with the
 //!    contact boundary last, which makes bounds and proofs cheap; else all dofs. The first that fits into memory and time.
 //! 3. **The way on that layout** ([`Way::chosen`]): method and precision, by rules that were fitted to measured times.
@@ -31,6 +31,9 @@ use crate::solution::Certificate;
 /// beyond some 20,000 dofs.
 const CLEARLY: f64 = 3.0;
 
+/// Cycles that the estimate of multigrid stands for, about.
+const EXPECTED_CYCLES: f64 = 30.0;
+
 /// An estimate may be so many times too large.
 const UNSURE: f64 = 2.0;
 
@@ -39,8 +42,8 @@ const UNSURE: f64 = 2.0;
 pub(super) enum Choice {
     /// The direct path.
     Factor,
-    /// Multigrid: it is much the faster.
-    Speed { reason: String },
+    /// Multigrid: it is much the faster, unless it takes more cycles than this.
+    Speed { reason: String, most_cycles: usize },
     /// Multigrid: nothing else fits into the memory.
     Room { reason: String },
 }
@@ -57,10 +60,13 @@ impl Estimate {
     /// [`Error::NoRoom`] where neither fits.
     pub(super) fn choose(&self, most_bytes: f64) -> Result<Choice, Error> {
         let ratio = self.direct_seconds / self.multigrid_seconds;
+        let fits = self.direct_bytes <= most_bytes;
         // Constants alone make a poor hierarchy of a body.
         if ratio > CLEARLY && self.suits_multigrid && self.multigrid_bytes <= most_bytes {
             let reason = format!("by multigrid: a factorisation would take about {ratio:.0} times as long");
-            return Ok(Choice::Speed { reason });
+            // After so many cycles a factorisation would have been as fast.
+            let most_cycles = if fits { (EXPECTED_CYCLES * ratio) as usize } else { usize::MAX };
+            return Ok(Choice::Speed { reason, most_cycles });
         }
         if self.direct_bytes > UNSURE * most_bytes {
             return self.without_factor(self.direct_bytes, most_bytes).map(|reason| Choice::Room { reason });

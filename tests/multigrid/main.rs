@@ -11,4 +11,5 @@ mod cycle_bound;
 mod mprgp;
 mod multigrid;
 mod near_null_files;
+mod obstacle;
 mod room;

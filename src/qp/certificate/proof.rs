@@ -61,11 +61,12 @@ impl ContactProblem {
         let may_solve = rows > FEW_ROWS && !norm.is_over();
         let reach = if may_solve { self.monotone_reach(|s| Some(norm.displacement(s))) } else { None };
         let mut open = self.open_by(&answer, wide_error, reach);
+        let least = self.least_reach();
         let doubtful: Vec<(usize, f64)> = self
             .distances(&answer)
             .enumerate()
-            .filter(|&(row, distance)| distance > 0.0 && multiplier[row] == 0.0 && !open.contains(row))
             .map(|(row, distance)| (row, distance / wide_error))
+            .filter(|&(row, limit)| limit > least[row] && !open.contains(row))
             .collect();
         self.within_reach(norm, &halves, &doubtful).into_iter().for_each(|row| open.set(row, true));
         let of_force = |force: &[f64]| Some(ROUNDED_BOUND * norm.widening() * norm.of_force(force));
@@ -191,7 +192,7 @@ pub(super) struct Halves<'a> {
 }
 
 impl<'a> Halves<'a> {
-    fn of(problem: &ContactProblem, norm: &'a EnergyNorm) -> Self {
+    pub(super) fn of(problem: &ContactProblem, norm: &'a EnergyNorm) -> Self {
         let on_boundary = norm.boundary().and_then(|boundary| norm.rows_on(boundary, &problem.contact, |_| true));
         match on_boundary {
             Some(rows) => Halves { norm, rows, on_boundary: true },

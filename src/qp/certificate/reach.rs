@@ -17,6 +17,7 @@
 use super::EnergyNorm;
 use super::proof::Halves;
 use crate::qp::linear::multigrid::{Multigrid, dual_norm_within};
+use crate::qp::linear::selected_inverse::FACTORISATIONS;
 use crate::qp::linear::{dot, largest, ldexp};
 use crate::qp::problem::ContactProblem;
 use crate::watch::Watch;
@@ -27,14 +28,11 @@ const POWER_STEPS: usize = 6;
 /// What the quotient of two measured eigenvalues may be off by.
 const SAFETY: f64 = 4.0;
 
-/// Rounding of an entry of K w, relative to the sum of its terms.
-const PRODUCT_ROUNDING: f64 = 1e-13;
+/// Rounding of an entry of K w, relative to the sum of its terms: no more than this for each term.
+const OF_TERM: f64 = 2.0 * f64::EPSILON;
 
 /// Multiplications of a blocked factorisation that take the time of one in a sweep.
 const BLOCKED: f64 = 4.0;
-
-/// The selected inverse costs so many factorisations.
-const SELECTED: f64 = 2.0;
 
 impl ContactProblem {
     /// Upper bounds on `sqrt(G_ii)` of every row, from one solve: `solve(s)` returns about `K^-1 s`. `None` if that does not show
@@ -50,7 +48,8 @@ impl ContactProblem {
             return None;
         }
         let terms = self.stiffness().mul_abs(&w);
-        let sure = self.stiffness().mul(&w).into_iter().zip(terms).map(|(sum, terms)| sum - PRODUCT_ROUNDING * terms);
+        let rounding = OF_TERM * self.dofs() as f64;
+        let sure = self.stiffness().mul(&w).into_iter().zip(terms).map(|(sum, terms)| sum - rounding * terms);
         let kappa = sure.zip(&load).map(|(sum, s)| sum / s).fold(f64::INFINITY, f64::min);
         if kappa.is_nan() || kappa <= 0.0 {
             return None;
@@ -99,10 +98,19 @@ impl ContactProblem {
         Some(squares.into_iter().map(|square| (square / mu).sqrt()).collect())
     }
 
+    /// Lower bounds on `sqrt(G_ii)` of every row: how far a single dof of unit energy norm moves it.
+    pub(super) fn least_reach(&self) -> Vec<f64> {
+        let mut least = vec![0.0_f64; self.rows()];
+        for (dof, stiffness) in self.stiffness().diagonal().into_iter().enumerate().filter(|entry| entry.1 > 0.0) {
+            self.contact().column(dof).for_each(|(row, b)| least[row] = least[row].max(b.abs() / stiffness.sqrt()));
+        }
+        least
+    }
+
     /// Which of `rows` have a `sqrt(G_ii)` below their limit, by sweeps or by the selected inverse, whichever costs less.
     pub(super) fn within_reach(&self, norm: &EnergyNorm, halves: &Halves, rows: &[(usize, f64)]) -> Vec<usize> {
         let by_sweeps = rows.len() as f64 * halves.sweep();
-        let at_once = SELECTED * norm.multiplications() / BLOCKED;
+        let at_once = FACTORISATIONS * norm.multiplications() / BLOCKED;
         let one_by_one = |row: usize| halves.reach(row);
         let chosen = |reach: &dyn Fn(usize) -> f64| {
             rows.iter().filter(|&&(row, limit)| reach(row) < limit).map(|&(row, _)| row).collect()
@@ -116,5 +124,99 @@ impl ContactProblem {
             Some(square) => ldexp(norm.rounding() * square.max(0.0), norm.factor()).sqrt(),
             None => halves.reach(row),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::qp::linear::multigrid::NearNullSpace;
+    use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
+
+    /// A row on every unknown, twice the unknown.
+    fn problem(dofs: usize, entries: &[(usize, usize, f64)]) -> ContactProblem {
+        let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, entries).unwrap()).unwrap();
+        let rows: Vec<_> = (0..dofs).map(|dof| (dof, dof, 2.0)).collect();
+        let contact = SparseMatrix::from_triplets(dofs, dofs, &rows).unwrap();
+        ContactProblem::new(stiffness, vec![1.0; dofs], contact, vec![1.0; dofs]).unwrap()
+    }
+
+    /// Five points on a square of `n` unknowns along a side; with `twist` an entry of either sign across each cell.
+    fn lattice(n: usize, twist: f64) -> ContactProblem {
+        let mut entries = Vec::new();
+        for own in 0..n * n {
+            entries.push((own, own, 4.0 + 2.0 * twist));
+            let (right, above) = (own % n + 1 < n, own + n < n * n);
+            entries.extend(right.then_some((own + 1, own, -1.0)));
+            entries.extend(above.then_some((own + n, own, -1.0)));
+            entries.extend((right && above).then_some((own + n + 1, own, twist)));
+        }
+        problem(n * n, &entries)
+    }
+
+    /// `sqrt(G_ii)` of every row, by a solve each.
+    fn exact(problem: &ContactProblem, norm: &EnergyNorm) -> Vec<f64> {
+        let of_row = |row: usize| {
+            let mut force = vec![0.0; problem.dofs()];
+            force[row] = 2.0;
+            (2.0 * norm.displacement(&force)[row]).sqrt()
+        };
+        (0..problem.rows()).map(of_row).collect()
+    }
+
+    #[test]
+    fn the_reach_of_unknowns_that_stand_alone_is_exact_however_rough_the_solve() {
+        let alone = problem(3, &[(0, 0, 4.0), (1, 1, 1.0), (2, 2, 0.25)]);
+        for share in [1.0, 0.5, 3.0] {
+            let solve = |s: &[f64]| Some((0..3).map(|i| share * s[i] / [4.0, 1.0, 0.25][i]).collect());
+            let reach = alone.monotone_reach(solve).unwrap();
+            for (reach, exact) in reach.iter().zip([1.0, 2.0, 4.0]) {
+                assert!((reach / exact - 1.0).abs() < 1e-14, "{reach} {exact}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_reach_by_one_solve_is_above_the_exact_one_and_needs_an_m_matrix() {
+        let lattice = lattice(14, 0.0);
+        let norm = EnergyNorm::of(lattice.stiffness(), lattice.contact()).unwrap().unwrap();
+        let reach = lattice.monotone_reach(|s| Some(norm.displacement(s))).unwrap();
+        let exact = exact(&lattice, &norm);
+        assert!(reach.iter().zip(&exact).all(|(reach, exact)| reach >= exact && *reach < 20.0 * exact));
+        let twisted = super::tests::lattice(14, 0.3);
+        assert!(twisted.monotone_reach(|s| Some(s.to_vec())).is_none());
+        // K w with a negative entry shows nothing.
+        assert!(
+            lattice
+                .monotone_reach(|s| Some(s.iter().enumerate().map(|(i, s)| s * (1.0 + (i % 2) as f64)).collect()))
+                .is_none()
+        );
+    }
+
+    #[test]
+    fn the_measured_reach_is_above_the_exact_one() {
+        for twist in [0.0, 0.3] {
+            let lattice = lattice(48, twist);
+            let near_null = NearNullSpace::constants(lattice.stiffness()).unwrap();
+            let multigrid = Multigrid::new(lattice.stiffness(), &near_null, 1).unwrap();
+            let norm = EnergyNorm::of(lattice.stiffness(), lattice.contact()).unwrap().unwrap();
+            let smooth = norm.displacement(lattice.load());
+            let reach = lattice.measured_reach(&multigrid, &smooth, &Watch::default()).unwrap();
+            let exact = exact(&lattice, &norm);
+            assert!(reach.iter().zip(&exact).all(|(reach, exact)| reach >= exact && *reach < 100.0 * exact));
+        }
+    }
+
+    #[test]
+    fn rows_are_within_reach_by_the_selected_inverse_exactly_where_they_are() {
+        let lattice = lattice(14, 0.3);
+        let norm = EnergyNorm::of(lattice.stiffness(), lattice.contact()).unwrap().unwrap();
+        let halves = Halves::of(&lattice, &norm);
+        let exact = exact(&lattice, &norm);
+        assert!(exact.len() as f64 * halves.sweep() > FACTORISATIONS * norm.multiplications() / BLOCKED);
+        let limits = |share: f64| exact.iter().map(|reach| share * reach).enumerate().collect::<Vec<_>>();
+        assert_eq!(lattice.within_reach(&norm, &halves, &limits(1.0 + 1e-5)).len(), exact.len());
+        assert!(lattice.within_reach(&norm, &halves, &limits(1.0 - 1e-5)).is_empty());
+        assert!(lattice.least_reach().iter().zip(&exact).all(|(least, exact)| least < exact && 2.0 * least > *exact));
     }
 }

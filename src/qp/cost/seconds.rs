@@ -5,6 +5,7 @@ use std::sync::LazyLock;
 
 use serde::Deserialize;
 
+use crate::qp::linear::selected_inverse::FACTORISATIONS;
 use crate::qp::linear::{Analysis, SparseMatrix, SymmetricMatrix};
 use crate::qp::problem::ContactProblem;
 use crate::watch::Watch;
@@ -50,9 +51,6 @@ const ENTRY_BY_ENTRY: f64 = 1.5e-9;
 /// Its order needs so many times the multiplications of ours.
 const MORE_FILL: f64 = 3.0;
 
-/// Factorisations that the selected inverse costs.
-const SELECTED: f64 = 3.0;
-
 /// Cells along a side of the lattice whose matrix is factorised to learn the pace.
 const LATTICE: usize = 64;
 
@@ -95,7 +93,7 @@ pub(in crate::qp) fn sweeps(count: usize, values: f64) -> f64 {
 
 /// Seconds of the entries of the inverse in the pattern of the factor.
 pub(in crate::qp) fn selected_inverse(analysis: &Analysis) -> f64 {
-    SELECTED * factorisation(analysis)
+    FACTORISATIONS * factorisation(analysis)
 }
 
 /// Learns the pace from a small factorisation, if there is a deadline and nothing was timed before.

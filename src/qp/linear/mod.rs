@@ -18,7 +18,7 @@ mod ordering;
 mod orthogonal;
 mod power_of_two;
 mod quotient;
-mod selected_inverse;
+pub mod selected_inverse;
 mod symmetric;
 pub mod twice;
 

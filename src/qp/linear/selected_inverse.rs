@@ -21,6 +21,9 @@ use faer::{Accum, Mat, MatMut, Par};
 use super::Cholesky;
 use super::factor::{FactorError, call};
 
+/// Factorisations that take as many multiplications.
+pub const FACTORISATIONS: f64 = 2.0;
+
 /// Entries of the inverse of a factorised matrix.
 #[derive(Debug)]
 pub struct SelectedInverse<'a> {
