@@ -103,7 +103,7 @@ impl ContactProblem {
     fn recomputed(&self, bounding: Option<Bounding>, u: &[f64], lambda: &[f64]) -> Certificate {
         let parts = self.parts();
         let contact = self.contact.mul_transposed(lambda);
-        let Balance { residual, strain, terms } = self.accurate_balance(u, lambda);
+        let Balance { residual, strain, terms } = self.accurate_balance(u, &[lambda]);
         let violation = self.accurate_violation(u);
         let (contact_terms, lengths) = (self.contact.mul_abs_transposed(lambda), self.contact.mul_abs(u));
         let scales =
@@ -170,11 +170,16 @@ impl ContactProblem {
 
     /// `f + B' lambda - K u` of the given doubles, with twice the working precision.
     pub(crate) fn accurate_residual(&self, u: &[f64], lambda: &[f64]) -> Vec<f64> {
-        self.accurate_balance(u, lambda).residual
+        self.accurate_residual_of(u, &[lambda])
+    }
+
+    /// The same of multipliers that are sums, which are not rounded.
+    pub(super) fn accurate_residual_of(&self, u: &[f64], multipliers: &[&[f64]]) -> Vec<f64> {
+        self.accurate_balance(u, multipliers).residual
     }
 
     /// The same, and what it consists of.
-    fn accurate_balance(&self, u: &[f64], lambda: &[f64]) -> Balance {
+    fn accurate_balance(&self, u: &[f64], multipliers: &[&[f64]]) -> Balance {
         // Of opposite sign, K u first: a body that moves far and bends little has so little energy that forces rounded before
         // would leave none of it.
         let mut sums = Accumulator::new(&vec![0.0; self.dofs()]);
@@ -182,7 +187,9 @@ impl ContactProblem {
         let strain = sums.products_by(u, |_| 0, 1)[0];
         for (dof, &load) in self.load.iter().enumerate() {
             sums.add_product(dof, load, -1.0);
-            self.contact.column(dof).for_each(|(row, b)| sums.add_product(dof, b, -lambda[row]));
+            for lambda in multipliers {
+                self.contact.column(dof).for_each(|(row, b)| sums.add_product(dof, b, -lambda[row]));
+            }
         }
         Balance { residual: sums.sums().map(|sum| -sum).collect(), strain, terms }
     }

@@ -6,7 +6,7 @@ use super::springs::Springs;
 use crate::error::Error;
 use crate::qp::linear::{
     Analysis, Cholesky, Equilibration, FactorError, LowerTriangle, SelectedInverse, SparseMatrix, SymmetricMatrix, dot,
-    ldexp,
+    generic, ldexp,
 };
 use crate::watch::Watch;
 
@@ -18,6 +18,9 @@ const FEW_DOFS: usize = 100;
 
 /// A contraction that is measured may be so many times larger.
 const MEASURED: f64 = 10.0;
+
+/// Steps of the power method for a contraction.
+const POWER_STEPS: usize = 3;
 
 /// Rounding of a sweep, relative, over the smallest pivot.
 const SWEEP_ROUNDING: f64 = 1e5 * f64::EPSILON;
@@ -110,6 +113,25 @@ impl EnergyNorm {
     /// The same norm, for a factor K~ whose contraction `|I - K~^-1 K|` is measured to be this.
     pub fn off_by(&self, contraction: f64) -> Self {
         EnergyNorm { widening: 1.0 + MEASURED * contraction, ..self.clone() }
+    }
+
+    /// An estimate of `|I - K~^-1 K|` of this factor K~ of the stiffness K, from below: by some steps of the power method, since
+    /// the steps of a refinement may be too few, or too short, to show it.
+    pub fn contraction(&self, stiffness: &SymmetricMatrix) -> f64 {
+        let (mut vector, mut contraction) = (generic(self.dofs(), 0), 0.0_f64);
+        let size = |vector: &[f64]| dot(vector, &stiffness.mul(vector)).max(0.0).sqrt();
+        for _ in 0..POWER_STEPS {
+            let length = size(&vector);
+            let kept = self.displacement(&stiffness.mul(&vector));
+            vector.iter_mut().zip(kept).for_each(|(value, kept)| *value -= kept);
+            let left = size(&vector);
+            if !(left > 0.0 && length > 0.0) {
+                break;
+            }
+            contraction = contraction.max(left / length);
+            vector.iter_mut().for_each(|value| *value /= left);
+        }
+        contraction
     }
 
     /// What a bound in this norm is multiplied with.

@@ -9,7 +9,7 @@ const DRIVES: f64 = 1e-9;
 
 /// The work of a load vanishes below this share of its terms, however the direction was found: a load that is out of balance by
 /// its last bit is held by some row.
-const IDLE: f64 = 1e-25;
+const IDLE: f64 = 1e-29;
 
 /// What rounding leaves of sums over a direction, as shares of their terms.
 #[derive(Clone, Copy)]

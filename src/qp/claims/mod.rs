@@ -43,6 +43,9 @@ const TOUCHING: f64 = 1e-8;
 /// The same, as a share of what the load would move.
 const STRAINED: f64 = 1e-13;
 
+/// An answer is settled to this share of its largest displacement, in the units of equal stiffness.
+const SETTLED_TO: f64 = 1e-11;
+
 /// A body moves at most so many times as far as a dof that a force moves alone: soft enough for what is not slender.
 const BENDS: f64 = 1e3;
 
@@ -191,8 +194,12 @@ impl<'a> Looked<'a> {
         let u = &solution.displacement;
         let violation = problem.accurate_violation(u);
         let sizes = problem.contact().mul_abs(u);
-        // What the load would move dofs that nothing but their own stiffness holds: all that is left of u may be rounding of it.
-        let unit = self.scaling.expand_displacement(&vec![STRAINED * largest(self.scaled.load()); u.len()], 0);
+        // What the load would move dofs that nothing but their own stiffness holds, and what the largest displacement leaves of
+        // others: all that is left of u may be rounding of it.
+        let ones = self.scaling.expand_displacement(&vec![1.0; u.len()], 0);
+        let largest_move = u.iter().zip(&ones).fold(0.0, |most: f64, (u, one)| most.max(u.abs() / one));
+        let unit = STRAINED * largest(self.scaled.load()) + SETTLED_TO * largest_move;
+        let unit: Vec<f64> = ones.iter().map(|one| unit * one).collect();
         let strained = problem.contact().mul_abs(&unit);
         let shares = shares_of_forces(problem, solution);
         let presses = |row: usize| shares[row] > PRESSED;

@@ -11,8 +11,11 @@ use crate::qp::method::{Outcome, ScaledProblem};
 use crate::qp::problem::ContactProblem;
 use crate::qp::run::last_resort;
 use crate::qp::settings::Settings;
-use crate::solution::{Certificate, Iteration, Seconds, Solution};
+use crate::solution::{Certificate, ContactSet, Iteration, Seconds, Solution};
 use crate::watch::Watch;
+
+/// Repairs of an answer: the second takes out what rounding of the first has left.
+const MOST_REPAIRS: usize = 2;
 
 impl Factored {
     /// The whole answer, certified, and what was found for it: by a second attempt where `found` falls short.
@@ -66,7 +69,9 @@ impl Factored {
         let finishing = settings.watch.finishing();
         let norm = self.norm_within(&finishing);
         let norm = match refined {
-            Some(refined) => norm.map(|norm| norm.off_by(refined.contraction)),
+            Some(refined) => {
+                norm.map(|norm| norm.off_by(refined.contraction.max(norm.contraction(self.problem.stiffness()))))
+            }
             None => norm,
         };
         let multiplier = self.expand_multiplier(&outcome.multiplier, *unit);
@@ -95,6 +100,9 @@ impl Factored {
         };
         if !self.is_single() && self.resolved(settings).wants_best() {
             solution = self.corrected(solution, &problem, settings)?;
+            if let Some(norm) = &norm {
+                solution = repaired(solution, norm, &problem, settings)?;
+            }
         }
         let clock = Instant::now();
         let may_prove = settings.prove && !settings.watch.is_stopped() && settings.watch.allows(self.proof_seconds);
@@ -127,4 +135,38 @@ impl Factored {
         let in_time = self.reduction.is_norm_at_hand() || watch.allows(self.norm_seconds);
         if in_time { self.reduction.norm().map(|norm| norm.watched(watch)) } else { None }
     }
+}
+
+/// A solution that falls short, by the repair of its own bound as long as that brings it closer to its goal: rows that hold many
+/// dofs, or no dof but rounding, leave nothing that a step of the method can take.
+///
+/// # Errors
+/// Those of the certificate.
+fn repaired(
+    mut solution: Solution,
+    norm: &EnergyNorm,
+    problem: &ContactProblem,
+    settings: &Settings,
+) -> Result<Solution, Error> {
+    for _ in 0..MOST_REPAIRS {
+        if settings.goal().is_met_by(&solution.certificate) || settings.watch.is_over() {
+            break;
+        }
+        let clock = Instant::now();
+        let Some((displacement, multiplier)) = problem.repaired(norm, &solution.displacement, &solution.multiplier)
+        else {
+            break;
+        };
+        let certificate = problem.certify_in(Some(norm), &displacement, &multiplier)?;
+        let (before, after) = (solution.certificate.worst().1, certificate.worst().1);
+        if after.is_nan() || after >= before {
+            break;
+        }
+        let closed: ContactSet = multiplier.iter().map(|&force| force < 0.0).collect();
+        let seconds = Seconds { solve: solution.seconds.solve + clock.elapsed().as_secs_f64(), ..solution.seconds };
+        let refinements = Some(solution.refinements.unwrap_or(0) + 1);
+        solution =
+            Solution { displacement, multiplier, certificate, contact_set: closed, seconds, refinements, ..solution };
+    }
+    Ok(solution)
 }

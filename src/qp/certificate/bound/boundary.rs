@@ -66,14 +66,13 @@ impl ContactProblem {
         // Rows that follow from others: what is rounding of a large motion may be a large distance between them. Forces that
         // cancel each other leave what the factor has rounded. The same again from the witness itself, whose motions, forces
         // and changes of force are small; how far the answer is from there needs no factor.
-        let motion = repair.motion(&witness.error);
-        let moved: Vec<f64> = answer.displacement.iter().zip(&motion).map(|(u, d)| u + d).collect();
-        let multiplier = repair.expanded(&witness.multiplier);
+        let (moved, multiplier) = repair.answer(&witness);
+        let [first, change] = [&witness.first, &witness.change].map(|part| repair.expanded(part));
         let violation = self.accurate_violation(&moved);
         let near = Answer {
             displacement: &moved,
             multiplier: &multiplier,
-            residual: self.accurate_residual(&moved, &multiplier),
+            residual: self.accurate_residual_of(&moved, &[&first, &change]),
             violation: &violation,
         };
         let near = Answer { residual: residual(&near), ..near };
@@ -81,6 +80,17 @@ impl ContactProblem {
         let of_near = repair.bound(&repair.best_witness(&witness.closed)?);
         let step: Vec<f64> = moved.iter().zip(answer.displacement).map(|(v, u)| v - u).collect();
         Some(of_near.farther(self, &step))
+    }
+
+    /// An answer repaired, in doubles: displacements at which the rows that look closed are at their gaps, and the multipliers
+    /// of their equilibrium; `None` where there is none, or where the boundary is not known.
+    pub(crate) fn repaired(&self, norm: &EnergyNorm, u: &[f64], lambda: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
+        let violation = self.accurate_violation(u);
+        let residual = self.accurate_residual(u, lambda);
+        let answer = Answer { displacement: u, multiplier: lambda, residual, violation: &violation };
+        let repair = Repair::new(self, norm, norm.boundary()?, &answer)?;
+        let witness = repair.settle(&self.rows_that_look_closed(&answer), true)?;
+        Some(repair.answer(&witness))
     }
 }
 
@@ -114,7 +124,10 @@ impl Force {
 struct Witness {
     error: Force,
     left: Force,
+    /// The multipliers mu, rounded: the sum of the next two.
     multiplier: Vec<f64>,
+    first: Vec<f64>,
+    change: Vec<f64>,
     closed: Vec<bool>,
     /// For each closed row an upper bound on the energy norm of the motion that puts it exactly at its gap, and leaves the others
     /// there.
@@ -210,6 +223,13 @@ impl<'a> Repair<'a> {
         let contact = self.problem.contact.mul_transposed(&rows);
         let total: Vec<f64> = self.answer.residual.iter().zip(contact).map(|(r, b)| force.alpha * r + b).collect();
         self.norm.displacement(&total)
+    }
+
+    /// The displacements and multipliers of a witness, in the units of the problem.
+    fn answer(&self, witness: &Witness) -> (Vec<f64>, Vec<f64>) {
+        let motion = self.motion(&witness.error);
+        let moved = self.answer.displacement.iter().zip(motion).map(|(u, d)| u + d).collect();
+        (moved, self.expanded(&witness.multiplier))
     }
 
     fn bound(&self, witness: &Witness) -> ErrorBound {
@@ -341,8 +361,12 @@ impl<'a> Repair<'a> {
             false => multiplier[row] - self.multiplier[row] - change[row],
         };
         let rows = (0..change.len()).map(left).collect();
-        let (left, closed) = (Force::new(1.0 - error.alpha, rows), closed.to_vec());
-        Witness { error, left, multiplier, closed, rest: vec![0.0; change.len()], has_dependent: false }
+        let pushes = |row: usize| multiplier[row] < 0.0;
+        let change = (0..change.len()).map(|row| if in_equilibrium && pushes(row) { change[row] } else { 0.0 });
+        let (change, left, closed) = (change.collect(), Force::new(1.0 - error.alpha, rows), closed.to_vec());
+        let first = (0..closed.len()).map(|row| if pushes(row) { self.multiplier[row] } else { 0.0 }).collect();
+        let rest = vec![0.0; closed.len()];
+        Witness { error, left, multiplier, first, change, closed, rest, has_dependent: false }
     }
 
     /// For each row an upper bound on the energy norm of the motion that puts it exactly at its gap, from where a fit has left it, and

@@ -82,6 +82,9 @@ impl ErrorBound {
 /// Squares of what is below this share of another number underflow beside it.
 const LOST: f64 = 1e-140;
 
+/// Rounding of a sum in twice the working precision, in units of its terms.
+const OF_SUMS: f64 = 4.0 * f64::EPSILON * f64::EPSILON;
+
 /// Squares of what is below this underflow, or lose digits.
 const LEAST: f64 = 1e-145;
 
@@ -96,12 +99,25 @@ impl ContactProblem {
             let as_it_stands = self.bound_row_by_row(norm, answer, None);
             self.bound_row_by_row(norm, answer, Some(&closed)).smaller(as_it_stands)
         });
-        let underflow = self.underflow(answer);
+        let (underflow, rounding) = (self.underflow(answer), self.rounding_of_residual(answer));
         let bound = bound.widened(norm.widening() * norm.rounding());
+        let with_lost = |bound: f64, rounding: f64| bound + underflow + norm.loss() * rounding;
+        let of_part = |(bound, rounding): (f64, &f64)| with_lost(bound, *rounding);
         ErrorBound {
-            whole: bound.whole + underflow,
-            of_parts: bound.of_parts.map(|parts| parts.iter().map(|part| part + underflow).collect()),
+            whole: with_lost(bound.whole, rounding.iter().sum()),
+            of_parts: bound.of_parts.map(|parts| parts.into_iter().zip(&rounding).map(of_part).collect()),
         }
+    }
+
+    /// What loads and contact forces that cancel each other leave of twice the working precision, by parts, in energy norm of
+    /// dofs that stand alone.
+    fn rounding_of_residual(&self, answer: &Answer) -> Vec<f64> {
+        let roots = &self.diagonal().roots;
+        let contact = self.contact.mul_abs_transposed(answer.multiplier);
+        self.parts().sums(|dof| match roots[dof] {
+            root if root > 0.0 => OF_SUMS * (self.load[dof].abs() + contact[dof]) / root,
+            _ => 0.0,
+        })
     }
 
     /// What displacements are worth in energy whose squares are lost in double precision, or beside the forces; 0 where there
