@@ -26,7 +26,7 @@ pub(crate) struct Rounding {
 
 impl Rounding {
     /// Of a direction in twice the working precision that the stiffness resists exactly nothing.
-    const OF_EXACT: Rounding = Rounding { entry: 1e-24, vanishes: 1e-24, zero: 1e-24, sure: 1e-24 };
+    const OF_EXACT: Rounding = Rounding { entry: 1e-24, vanishes: 1e-28, zero: 1e-28, sure: 1e-28 };
 
     /// Of a direction that is known no better than rounded entries of the stiffness.
     const OF_ROUNDED: Rounding = Rounding { entry: 1e-9, vanishes: 1e-10, zero: 1e-15, sure: 1e-8 };
