@@ -57,6 +57,25 @@ fn a_block_costs_little_more_cycles_than_its_linear_solve() {
 }
 
 /// So fine that the closed rows reach beyond the first coarse level, whose smoother must follow.
+/// GOAL: cells that are much higher than wide cost few cycles more than square ones.
+#[test]
+fn stretched_cells_cost_few_cycles() {
+    let cycles = |width: f64| {
+        let mut scene = clamped_square(
+            1,
+            json!([{"boundary": "top", "approach": "+y",
+            "shape": {"parabola": {"apex": [width / 2.0, 0.5], "radius": 1}}}]),
+            -0.01,
+        );
+        scene["body"]["rectangle"]["x"] = json!({"points": [0, width], "divisions": [400]});
+        scene["body"]["rectangle"]["y"] = json!({"points": [0, 0.5], "divisions": [20]});
+        agrees_with_the_direct_path(built(&scene).problem(), &format!("width {width}")).iterations
+    };
+    let counts = [10.0, 1.0, 0.2].map(cycles);
+    // Square cells; 10 times as high as wide; 50 times, where aggregates of all neighbours let the iteration stagnate.
+    assert!(counts.iter().all(|&cycles| cycles <= 60), "{counts:?}");
+}
+
 #[test]
 fn closed_rows_are_known_on_every_level() {
     let circle = json!([{"boundary": "top", "approach": "+y", "shape": {"circle": {"apex": [0.5, 1], "radius": 2}}}]);

@@ -7,10 +7,17 @@ use super::real::Real;
 const NONE: u32 = u32::MAX;
 
 /// The strong connections of each node, itself left out.
-struct Graph {
+pub struct Graph {
     starts: Vec<usize>,
     neighbours: Vec<u32>,
     strengths: Vec<f32>,
+}
+
+impl Graph {
+    /// The nodes that one is strongly connected to.
+    pub fn neighbours(&self, node: usize) -> &[u32] {
+        &self.neighbours[self.starts[node]..self.starts[node + 1]]
+    }
 }
 
 /// The aggregate of each node, and their number.
@@ -22,14 +29,12 @@ struct Graph {
 /// # Source
 /// P. Vaněk, J. Mandel, M. Brezina, *Algebraic multigrid by smoothed aggregation for second and fourth order elliptic
 /// problems*, Computing 56 (1996) 179-196, algorithm 5.1.
-pub fn aggregate<T: Real>(matrix: &BlockMatrix<T>, threshold: f64) -> (Vec<u32>, usize) {
-    let graph = strong_connections(matrix, threshold);
-    let nodes = matrix.rows();
+pub fn aggregate(graph: &Graph) -> (Vec<u32>, usize) {
+    let nodes = graph.starts.len() - 1;
     let mut of_node = vec![NONE; nodes];
     let mut count = 0_u32;
-    let neighbours = |node: usize| &graph.neighbours[graph.starts[node]..graph.starts[node + 1]];
     for node in 0..nodes {
-        let around = neighbours(node);
+        let around = graph.neighbours(node);
         if of_node[node] == NONE && around.iter().all(|&other| of_node[other as usize] == NONE) {
             of_node[node] = count;
             around.iter().for_each(|&other| of_node[other as usize] = count);
@@ -48,7 +53,7 @@ pub fn aggregate<T: Real>(matrix: &BlockMatrix<T>, threshold: f64) -> (Vec<u32>,
     for node in 0..nodes {
         if of_node[node] == NONE {
             of_node[node] = count;
-            for &other in neighbours(node) {
+            for &other in graph.neighbours(node) {
                 if of_node[other as usize] == NONE {
                     of_node[other as usize] = count;
                 }
@@ -59,7 +64,8 @@ pub fn aggregate<T: Real>(matrix: &BlockMatrix<T>, threshold: f64) -> (Vec<u32>,
     (of_node, count as usize)
 }
 
-fn strong_connections<T: Real>(matrix: &BlockMatrix<T>, threshold: f64) -> Graph {
+/// The connections of a block matrix that are strong.
+pub fn strong_connections<T: Real>(matrix: &BlockMatrix<T>, threshold: f64) -> Graph {
     let square = |block: &[T]| block.iter().map(|value| value.double() * value.double()).sum::<f64>();
     let diagonal: Vec<f64> = (0..matrix.rows())
         .map(|node| matrix.diagonal_place(node).map_or(0.0, |place| square(matrix.block(place)).sqrt()))

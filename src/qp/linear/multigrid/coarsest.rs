@@ -8,8 +8,9 @@ use crate::qp::linear::{Cholesky, Equilibration, FactorError, SparseMatrix, Symm
 /// body that nothing holds.
 const LEAST_PIVOT: f64 = 1000.0;
 
-/// A diagonal entry of which less than so many units in the last place are left in a face is rounding.
-pub(super) const GONE: f64 = 100.0;
+/// A diagonal entry of which less than so many units in the last place are left in a face has lost its digits to rounding of what
+/// was taken off on this level and those above.
+pub(super) const GONE: f64 = 3000.0;
 
 /// What then holds it, on a diagonal of order one: its contact will, about as stiffly as a coarse cell.
 const SHIFT: f64 = 1e-3;

@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
-use super::aggregation::aggregate;
+use super::aggregation::{aggregate, strong_connections};
 use super::blocks::BlockMatrix;
 use super::chebyshev::Chebyshev;
 use super::coarsest::Coarsest;
+use super::lines::Lines;
 use super::near_null::NearNullSpace;
 use super::nodes::{Nodes, fill_empty_diagonal};
 use super::prolongator::{Candidates, smoothed, tentative};
@@ -53,6 +54,19 @@ pub(super) struct Level<T> {
     pub near_null: Candidates,
 }
 
+/// The aggregate of each node, and their number; `None` where there are too many. The threshold falls until there are few.
+fn gathered<T: Real>(blocks: &BlockMatrix<T>, count: usize, threshold: &mut f64) -> Option<(Vec<u32>, usize)> {
+    let most = (LEAST_COARSENING * (blocks.rows() * blocks.height) as f64) as usize;
+    loop {
+        let (of_node, aggregates) = aggregate(&strong_connections(blocks, *threshold));
+        match aggregates * count > most {
+            false => return Some((of_node, aggregates)),
+            true if *threshold == 0.0 => return None,
+            true => *threshold = if *threshold > LEAST_THRESHOLD { *threshold / 4.0 } else { 0.0 },
+        }
+    }
+}
+
 impl<T: Real> Hierarchy<T> {
     /// Builds the levels of `matrix`.
     ///
@@ -70,19 +84,19 @@ impl<T: Real> Hierarchy<T> {
         let mut levels = Vec::new();
         let mut threshold = THRESHOLD;
         while blocks.rows() * blocks.height > COARSEST {
-            let most = (LEAST_COARSENING * (blocks.rows() * blocks.height) as f64) as usize;
-            let (mut of_node, mut aggregates) = aggregate(&blocks, threshold);
-            while aggregates * count > most && threshold > 0.0 {
-                threshold = if threshold > LEAST_THRESHOLD { threshold / 4.0 } else { 0.0 };
-                (of_node, aggregates) = aggregate(&blocks, threshold);
-            }
-            if aggregates * count > most {
-                break;
-            }
+            let lines = Lines::of(&blocks);
+            let gathered = match &lines {
+                Some(lines) => Some((lines.of_node.clone(), lines.aggregates)),
+                None => gathered(&blocks, count, &mut threshold),
+            };
+            let Some((of_node, aggregates)) = gathered else { break };
             let smoother = Chebyshev::new(&blocks, DEGREE, threads);
             let (flat, coarse) = tentative::<T>(&candidates, blocks.height, &of_node, aggregates);
             drop(of_node);
-            let moved = blocks.product(&flat, threads);
+            let moved = match lines {
+                Some(lines) => lines.product(&blocks, &flat, &candidates, &coarse),
+                None => blocks.product(&flat, threads),
+            };
             let prolongator = smoothed(&flat, moved, &smoother.inverse, PROLONGATOR_STEP / smoother.largest, threads);
             drop(flat);
             let restriction = prolongator.transposed();

@@ -19,6 +19,7 @@ mod cycle;
 mod dual_norm;
 mod face;
 mod hierarchy;
+mod lines;
 mod near_null;
 mod nodes;
 mod operator;
