@@ -88,15 +88,18 @@ pub(super) struct Solve {
     /// Method that finds the contact set
     #[arg(long, value_enum, default_value_t = Method::Auto)]
     pub method: Method,
-    /// Relative error in the energy norm that is good enough, certified
-    #[arg(long, value_name = "A", allow_negative_numbers = true, value_parser = parse_tolerance)]
-    pub accuracy: Option<f64>,
+    /// Relative error in the energy norm that is good enough, certified; or `exact`: the linear solve with the settled contact set
+    #[arg(long, value_name = "A", allow_negative_numbers = true, value_parser = parse_accuracy)]
+    pub accuracy: Option<Accuracy>,
     /// Seconds after which the best answer so far is returned, or a motion ends
     #[arg(long, visible_alias = "time-limit", value_name = "T", allow_negative_numbers = true, value_parser = parse_tolerance)]
     pub time: Option<f64>,
     /// Precision of the sparse factor
     #[arg(long, value_enum, default_value_t = Precision::Auto)]
     pub precision: Precision,
+    /// Do not prove which rows are open and closed
+    #[arg(long)]
+    pub no_proof: bool,
     /// Extrapolate the penalty answer to an infinite penalty
     #[arg(long)]
     pub extrapolate: bool,
@@ -122,6 +125,9 @@ pub(super) struct Sweep {
     /// Gaps from the first to the last, and their number, as -0.01:-0.10:10
     #[arg(long, value_name = "FIRST:LAST:COUNT", allow_hyphen_values = true, value_parser = parse_gaps)]
     pub gaps: Gaps,
+    /// Method that finds the contact sets
+    #[arg(long, value_enum, default_value_t = Method::Auto)]
+    pub method: Method,
     #[command(flatten)]
     pub common: Common,
 }
@@ -160,6 +166,24 @@ fn parse_tolerance(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
         _ => Err("it must be a positive number, as 1e-9".to_string()),
+    }
+}
+
+/// What `--accuracy` asks for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Accuracy {
+    /// A factor, and the contact set that no step changes any more.
+    Exact,
+    /// So much, relative in the energy norm.
+    Within(f64),
+}
+
+fn parse_accuracy(text: &str) -> Result<Accuracy, String> {
+    match text {
+        "exact" => Ok(Accuracy::Exact),
+        number => parse_tolerance(number)
+            .map(Accuracy::Within)
+            .map_err(|_| "it must be a positive number, as 1e-3, or `exact`".to_string()),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::dynamic;
 use super::input::{Input, Source};
-use super::options::{Common, Solve};
+use super::options::{Accuracy, Common, Solve};
 use super::outcome::{Outcome, Report, warn};
 use super::settings::settings;
 use crate::error::Error;
@@ -39,8 +39,18 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
     };
     warn(&input.warnings());
     let mut settings = settings(options.method, &options.common, &watch.keeping(report_seconds));
-    settings.prove = true;
-    settings.accuracy = options.accuracy;
+    settings.prove = !options.no_proof;
+    match options.accuracy {
+        Some(Accuracy::Within(accuracy)) => settings.accuracy = Some(accuracy),
+        Some(Accuracy::Exact) if settings.method == Method::Auto => settings.method = Method::ActiveSet,
+        Some(Accuracy::Exact) => {
+            let method = settings.method.name();
+            warn(&format!(
+                "warning: --accuracy exact changes nothing: the method is {method}; it goes with --method auto\n"
+            ));
+        }
+        None => {}
+    }
     settings.precision = options.precision;
     if let Method::Penalty(ladder) = &mut settings.method {
         ladder.extrapolate = options.extrapolate;

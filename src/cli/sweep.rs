@@ -6,7 +6,6 @@ use super::outcome::{Outcome, Report, warn};
 use super::settings::settings;
 use crate::error::Error;
 use crate::output::{gallery, sweep_text};
-use crate::qp::Method;
 use crate::study::{even_gaps, sweep};
 use crate::watch::Watch;
 
@@ -15,7 +14,7 @@ pub(super) fn run(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
     let model = still_model(&options.scene, &common.limits)?;
     warn(&warnings(&model));
     let gaps = even_gaps(options.gaps.first, options.gaps.last, options.gaps.count);
-    let swept = sweep(&model, &gaps, &settings(Method::Auto, common, watch))?;
+    let swept = sweep(&model, &gaps, &settings(options.method, common, watch))?;
     watch.step("report", 0);
     let text = sweep_text(&scene_title(&model, &options.scene), &swept, model.units());
     let report = Report::new(&swept, text)?;

@@ -78,8 +78,8 @@ pub fn solve_text(title: &str, summary: &Summary, units: &Units) -> String {
     text += &entry(
         "seconds",
         &format!(
-            "assemble {:.3}, factor {:.3}, solve {:.3}, total {:.3}",
-            seconds.assemble, seconds.factor, seconds.solve, seconds.total
+            "assemble {:.3}, factor {:.3}, solve {:.3}, proof {:.3}, total {:.3}",
+            seconds.assemble, seconds.factor, seconds.solve, seconds.proof, seconds.total
         ),
     );
     text

@@ -2,7 +2,7 @@
 //!
 //! What [`Method::Auto`] does, in this order:
 //!
-//! 1. **Factor or multigrid** (`Estimate::choose`): multigrid where a factorisation would take [`CLEARLY`] times as long, or
+//! 1. **Factor or multigrid** (`Estimate::choose`; for many gaps [`method_for`]): multigrid where a factorisation would take [`CLEARLY`] times as long, or
 //!    does not fit into the memory; else the direct path. Where that turns out to be too large or too slow, multigrid;
 //!    where multigrid falls short, or takes as long as a factor would, the direct path if it fits.
 //! 2. **The layout of the factor** ([`Layout::within`]): condensed onto the contact dofs where that pays; else all dofs with the
@@ -74,6 +74,12 @@ impl Estimate {
         Ok(Choice::Factor)
     }
 
+    /// The same for many gaps: where a solve takes one factor, all share it.
+    fn of_many(self, gaps: usize) -> Self {
+        let shared = if self.factors > 1.0 { 1.0 } else { gaps.max(1) as f64 };
+        Estimate { direct_seconds: self.direct_seconds / shared, ..self }
+    }
+
     /// Why multigrid is taken where a solve with a factor takes `factor` bytes, and that is too much.
     ///
     /// # Errors
@@ -87,6 +93,15 @@ impl Estimate {
         Ok(format!(
             "by multigrid, of about {of_multigrid}: with a factor it would take about {of_factor}, {allowed} are allowed"
         ))
+    }
+}
+
+/// The method that so many gaps of `problem` are prepared for, where it is left to the program.
+pub(crate) fn method_for(problem: &ContactProblem, gaps: usize, settings: &Settings) -> Method {
+    let choice = Estimate::of(problem).of_many(gaps).choose(settings.memory.unwrap_or(f64::INFINITY));
+    match (settings.method, choice) {
+        (Method::Auto, Ok(Choice::Speed { .. } | Choice::Room { .. })) => Method::Mprgp,
+        (method, _) => method,
     }
 }
 

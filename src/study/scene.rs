@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::{ModelSize, Summary};
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
-use crate::qp::{Event, Prepared, Settings, Start, solve};
+use crate::qp::{Event, Prepared, Settings, Start, method_for, solve};
 use crate::scene::{Answer, Model};
 use crate::solution::{ContactSet, Goal, Solution};
 
@@ -111,8 +111,9 @@ pub struct Sweep {
 
 /// Solves a scene at every one of `gaps`; an answer that is not certified is an answer here.
 ///
-/// The stiffness is factorised once, and every solve starts from the last contact set. Where the rows move on straight
-/// lines (rows along the approach direction do), everything that happens between the first and the last gap is found.
+/// The stiffness is factorised once, or a hierarchy is built once, and every solve starts from the last contact set. Where the
+/// body is condensed and the rows move on straight lines (rows along the approach direction do), everything that happens between
+/// the first and the last gap is found.
 ///
 /// A sweep that is interrupted has the gaps that were done until then, and nothing between.
 ///
@@ -123,7 +124,8 @@ pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, 
         return Ok(Sweep { points: Vec::new(), events: Vec::new(), corners: Vec::new() });
     };
     let at_first = model.with_gap(first)?;
-    let prepared = Prepared::new(at_first.problem(), settings).map_err(|error| at_first.explain(error))?;
+    let chosen = Settings { method: method_for(at_first.problem(), gaps.len(), settings), ..settings.clone() };
+    let prepared = Prepared::new(at_first.problem(), &chosen).map_err(|error| at_first.explain(error))?;
     let mut points: Vec<SweepPoint> = Vec::new();
     for (index, &gap) in gaps.iter().enumerate() {
         settings.watch.part("gap", index + 1, gaps.len());
@@ -135,6 +137,11 @@ pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, 
         let solved = match same_rows {
             true => prepared.starting_from(known).solve(model.problem().gap()),
             false => solve(model.problem(), settings),
+        };
+        let solved = match solved {
+            // The method was not asked for.
+            Err(Error::NotCertified { .. }) if chosen.method != settings.method => solve(model.problem(), settings),
+            solved => solved,
         };
         let solution = match solved {
             Ok(solution) => solution,

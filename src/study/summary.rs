@@ -86,8 +86,10 @@ pub struct RunSeconds {
     pub assemble: f64,
     /// Factorisations, the analysis of the pattern included; of a motion those before its first step.
     pub factor: f64,
-    /// The solve without its factorisations; of a motion all steps, writing included.
+    /// The solve without its factorisations and its proof; of a motion all steps, writing included.
     pub solve: f64,
+    /// Proving which rows are open and closed.
+    pub proof: f64,
     /// All of it.
     pub total: f64,
 }
@@ -95,12 +97,17 @@ pub struct RunSeconds {
 impl RunSeconds {
     /// The seconds of an answer whose model took `assemble` seconds.
     pub fn of(assemble: f64, solution: Seconds) -> Self {
-        RunSeconds::new(assemble, solution.factor, (solution.solve - solution.factor).max(0.0))
+        let Seconds { factor, proof, solve } = solution;
+        RunSeconds { proof, ..RunSeconds::new(assemble, factor, (solve - factor - proof).max(0.0)) }.summed()
     }
 
-    /// The seconds of the three stages with their sum.
+    /// The seconds of the three stages of what is not proven, with their sum.
     pub fn new(assemble: f64, factor: f64, solve: f64) -> Self {
-        RunSeconds { assemble, factor, solve, total: assemble + factor + solve }
+        RunSeconds { assemble, factor, solve, proof: 0.0, total: 0.0 }.summed()
+    }
+
+    fn summed(self) -> Self {
+        RunSeconds { total: self.assemble + self.factor + self.solve + self.proof, ..self }
     }
 }
 

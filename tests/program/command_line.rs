@@ -45,7 +45,10 @@ fn is_answer(answer: &Value, of_scene: bool) {
     let bound = answer["certificate"].get("energy_error_bound").expect("a bound, or null where none is known");
     assert!(bound.is_f64() || bound.is_null(), "{bound}");
     has(&answer["model"], &[("dofs", "count"), ("contact_rows", "count"), ("condensed_dofs", "count")]);
-    has(&answer["seconds"], &[("assemble", "number"), ("factor", "number"), ("solve", "number"), ("total", "number")]);
+    has(
+        &answer["seconds"],
+        &[("assemble", "number"), ("factor", "number"), ("solve", "number"), ("proof", "number"), ("total", "number")],
+    );
 }
 
 fn vectors(desk: &Desk, folder: &str) -> (Vec<f64>, Vec<f64>) {
@@ -163,6 +166,52 @@ fn sweep_certifies_every_gap_with_growing_force_and_width() {
         assert!(force > last.0 && width >= last.1, "force {force}, width {width} after {last:?}");
         last = (force, width);
     }
+}
+
+/// GOAL: the methods that a sweep may be told give its answers, with and without a factor.
+#[test]
+fn a_sweep_by_any_method_finds_the_same_contact_sets() {
+    let desk = Desk::new();
+    let scene = example("indentation");
+    let sweep = |method: &str| {
+        let arguments = ["sweep", &scene, "--gaps", "-0.01:-0.10:4", "--format", "json", "--method", method];
+        desk.run(&arguments).ends_with(0).json()["points"].clone()
+    };
+    let auto = sweep("auto");
+    for method in ["active-set", "qp", "mprgp"] {
+        let points = sweep(method);
+        for (point, expected) in points.as_array().unwrap().iter().zip(auto.as_array().unwrap()) {
+            assert!(point["method"].as_str().unwrap().starts_with(method), "{}", point["method"]);
+            assert_eq!(point["contact"]["count"], expected["contact"]["count"], "{method} at {}", point["gap"]);
+        }
+    }
+}
+
+/// GOAL: `--accuracy exact` takes a factor where the program would choose otherwise, and warns where it has no say.
+#[test]
+fn an_exact_accuracy_is_the_linear_solve_of_the_settled_set() {
+    let desk = Desk::new();
+    let scene = example("indentation");
+    let solve = ["solve", &scene, "--format", "json", "--accuracy", "exact"];
+    let exact = desk.run(&solve).ends_with(0);
+    assert!(exact.stderr.is_empty() && exact.json()["method"].as_str().unwrap().starts_with("active-set"));
+    let warned = desk.run(&[&solve[..], &["--method", "mprgp"]].concat()).ends_with(0);
+    assert!(warned.stderr.contains("--accuracy exact changes nothing: the method is mprgp"), "{}", warned.stderr);
+    desk.run(&["solve", &scene, "--accuracy", "exactly"]).fails_with(2, &["a positive number, as 1e-3, or `exact`"]);
+}
+
+/// GOAL: what a proof costs stands by itself, and it is left out where it is not wanted.
+#[test]
+fn a_proof_has_seconds_of_its_own_and_can_be_left_out() {
+    let desk = Desk::new();
+    let scene = example("indentation");
+    let with = desk.run(&["solve", &scene, "--format", "json"]).ends_with(0).json();
+    let without = desk.run(&["solve", &scene, "--format", "json", "--no-proof"]).ends_with(0).json();
+    let seconds = |answer: &Value, stage: &str| answer["seconds"][stage].as_f64().unwrap();
+    assert!(with["proven"].is_object() && seconds(&with, "proof") > 0.0);
+    assert!(without.get("proven").is_none() && seconds(&without, "proof") == 0.0);
+    let parts: f64 = ["assemble", "factor", "solve", "proof"].iter().map(|stage| seconds(&with, stage)).sum();
+    assert!((parts - seconds(&with, "total")).abs() <= 1e-12 * parts);
 }
 
 #[test]

@@ -57,6 +57,8 @@ pub struct Estimate {
     pub multigrid_seconds: f64,
     /// Seconds of the hierarchy alone.
     pub hierarchy_seconds: f64,
+    /// Factorisations of one solve: the first serves all gaps, the others are those of its contact sets.
+    pub(super) factors: f64,
     /// Does a hierarchy know what costs next to no energy: are the rigid-body modes given, or do constants suffice?
     pub(super) suits_multigrid: bool,
 }
@@ -83,6 +85,7 @@ impl Estimate {
             multigrid_bytes: bytes::START + bytes::of_hierarchy(dofs, both),
             multigrid_seconds: 1.3e-7 * entries,
             hierarchy_seconds: 4e-8 * entries,
+            factors,
             suits_multigrid: problem.near_null().is_some() || is_diffusion(problem.stiffness()),
         }
     }

@@ -214,7 +214,10 @@ impl<'a> Judge<'a> {
                 Outcome::Solved(_) => true,
             },
             Err(Error::NotConvex { .. }) => !matches!(self.outcome, Outcome::Indefinite { .. }),
-            Err(Error::UnderHeld { .. }) => matches!(self.outcome, Outcome::Solved(answer) if answer.is_unique),
+            Err(Error::UnderHeld { direction, .. }) => {
+                let is_unique = matches!(self.outcome, Outcome::Solved(answer) if answer.is_unique);
+                is_unique && !evidence::is_free_to(OF_DATA, self.exact, direction)
+            }
             _ => false,
         };
         if is_false && !self.is_borderline() {
