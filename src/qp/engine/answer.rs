@@ -104,13 +104,15 @@ impl Factored {
                 solution = repaired(solution, norm, &problem, settings)?;
             }
         }
-        let clock = Instant::now();
         let may_prove = settings.prove && !settings.watch.is_stopped() && settings.watch.allows(self.proof_seconds);
         // A proof takes about the memory of one more factor.
-        let proven = norm.as_ref().filter(|_| may_prove && self.reduction.is_norm_at_hand());
-        solution.proven = proven.and_then(|norm| problem.prove_in(norm, &solution.displacement, &solution.multiplier));
-        solution.seconds.proof += clock.elapsed().as_secs_f64();
-        solution.seconds.solve += clock.elapsed().as_secs_f64();
+        if let Some(norm) = norm.as_ref().filter(|_| may_prove && self.reduction.is_norm_at_hand()) {
+            let clock = Instant::now();
+            solution.proven = problem.prove_in(norm, &solution.displacement, &solution.multiplier);
+            let seconds = clock.elapsed().as_secs_f64();
+            solution.seconds.proof += seconds;
+            solution.seconds.solve += seconds;
+        }
         Ok(solution)
     }
 

@@ -129,7 +129,7 @@ impl Hierarchical {
         let may_prove = settings.prove && !settings.watch.is_over();
         let prove = || problem.prove_by_cycles(multigrid, &settings.watch, &found.displacement, &found.multiplier);
         let proven = if may_prove { prove() } else { None };
-        let proof = before_proof.elapsed().as_secs_f64();
+        let proof = if may_prove { before_proof.elapsed().as_secs_f64() } else { 0.0 };
         let seconds = Seconds { factor: 0.0, proof, solve: clock.elapsed().as_secs_f64() };
         let solution = Solution { seconds, proven, ..answer(found, Method::Mprgp.name(), certificate) };
         judged(solution, goal)
