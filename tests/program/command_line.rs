@@ -84,7 +84,7 @@ fn each_method_answers_under_its_own_name() {
     let desk = Desk::new();
     desk.problem("p", &Problem::right());
     for (method, name, tolerance) in [
-        ("auto", "qp", "1e-9"),
+        ("auto", "active-set", "1e-9"),
         ("qp", "qp", "1e-9"),
         ("active-set", "active-set", "1e-9"),
         ("penalty", "penalty", "1e-4"),

@@ -1,6 +1,7 @@
 //! Seconds and iterations of every method on problems of other fields:
 //! `cargo run --release --example kinds [-- --only NAME,NAME] [--methods auto,mprgp] [--seconds N]`.
 
+mod bodies;
 mod problems;
 
 use std::process::ExitCode;

@@ -1,5 +1,6 @@
 //! Problems of other fields, as matrices: many rows, two-sided bounds, separate parts, rotations.
 
+use super::bodies::{block, graded_block, slab};
 use signorini::{ContactProblem, Error, SparseMatrix, SymmetricMatrix};
 
 /// A problem with its name.
@@ -9,7 +10,7 @@ pub struct Kind {
 }
 
 /// All kinds, small ones first within a kind.
-pub const KINDS: [Kind; 13] = [
+pub const KINDS: [Kind; 18] = [
     Kind { name: "membrane 127", make: || membrane(127) },
     Kind { name: "membrane 255", make: || membrane(255) },
     Kind { name: "membrane 511", make: || membrane(511) },
@@ -23,6 +24,11 @@ pub const KINDS: [Kind; 13] = [
     Kind { name: "plate", make: || plate(100) },
     Kind { name: "Poisson 40^3", make: || poisson(40) },
     Kind { name: "torsion 256", make: || torsion(256) },
+    Kind { name: "free slab", make: || slab(30, 0.01) },
+    Kind { name: "slab", make: || slab(30, -0.01) },
+    Kind { name: "block", make: || block(32) },
+    Kind { name: "graded block 40", make: || graded_block(38, 40.0) },
+    Kind { name: "graded block 160", make: || graded_block(38, 160.0) },
 ];
 
 /// `-u <= -lower` for each `(unknown, lower)`, then `u <= upper` for each `(unknown, upper)`.
