@@ -34,7 +34,7 @@ const OF_SETS: f64 = 20.0;
 
 /// Bytes of an entry of the stiffness in the matrix of one contact set at a time: its values, and what the attempts before have
 /// not given back.
-const OF_SET: f64 = 6.0;
+const OF_SET: f64 = 10.0;
 
 /// Bytes of a value of a dense triangle on the contact dofs that come last.
 const OF_BOUNDARY: f64 = 24.0;

@@ -80,6 +80,8 @@ impl Factored {
             Some(norm) => problem.certify_in(Some(norm), &displacement, &multiplier)?,
             None => self.certificate(&problem, &displacement, &multiplier, &settings.watch)?,
         };
+        // A factor that was made for the certificate alone makes room for those of a refinement.
+        let norm = norm.filter(|_| self.reduction.is_norm_at_hand());
         let expand_iteration = |step: &Iteration| Iteration {
             contact_set: self.reduction.selection.expand_set(&step.contact_set),
             penalty: step.penalty,
@@ -106,7 +108,7 @@ impl Factored {
         }
         let may_prove = settings.prove && !settings.watch.is_stopped() && settings.watch.allows(self.proof_seconds);
         // A proof takes about the memory of one more factor.
-        if let Some(norm) = norm.as_ref().filter(|_| may_prove && self.reduction.is_norm_at_hand()) {
+        if let Some(norm) = norm.as_ref().filter(|_| may_prove) {
             let clock = Instant::now();
             solution.proven = problem.prove_in(norm, &solution.displacement, &solution.multiplier);
             let seconds = clock.elapsed().as_secs_f64();
