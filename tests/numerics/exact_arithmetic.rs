@@ -54,6 +54,9 @@ const ONCE_WRONG: [(u64, &[u64]); 21] = [
     ),
 ];
 
+/// Fair problems that once were refused, since their multipliers have more digits than doubles.
+const ONCE_REFUSED: [(u64, u64); 4] = [(8101, 1832), (8102, 7352), (8107, 11423), (8109, 7651)];
+
 /// Faults that a failure shows.
 const SHOWN: usize = 20;
 
@@ -74,6 +77,14 @@ static RUN: LazyLock<(Table, Vec<(Sort, String)>)> = LazyLock::new(|| {
     }
     (table, faults)
 });
+
+#[test]
+fn fair_problems_that_once_were_refused_are_certified() {
+    for (seed, number) in ONCE_REFUSED {
+        let faults = draw(seed, number, None).run().faults;
+        assert!(faults.is_empty(), "{number} of seed {seed}: {}", faults[0].detail);
+    }
+}
 
 #[track_caller]
 fn has_none(sorts: &[Sort]) {
