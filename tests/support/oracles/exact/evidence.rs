@@ -27,13 +27,8 @@ fn sum<'a>(terms: impl Iterator<Item = (&'a Dyadic, &'a Dyadic)>) -> (Dyadic, Dy
 }
 
 /// Is a sum zero but for rounding?
-fn vanishes(sum: &(Dyadic, Dyadic)) -> bool {
-    vanishes_to(ROUNDING, sum)
-}
-
-/// Is a sum zero but for this share of its terms?
-fn vanishes_to(share: f64, (sum, size): &(Dyadic, Dyadic)) -> bool {
-    sum.abs() <= size * &Dyadic::from(share)
+fn vanishes((sum, size): &(Dyadic, Dyadic)) -> bool {
+    sum.abs() <= size * &Dyadic::from(ROUNDING)
 }
 
 /// What is wrong with the weights or the direction that an error names, if something is.
@@ -75,20 +70,6 @@ fn unbounded(exact: &Exact, direction: &[f64]) -> Option<&'static str> {
         return Some("a row stops the direction");
     }
     (sum(exact.load.iter().zip(&direction)).0.sign() <= 0).then_some("the load does not drive the direction")
-}
-
-/// Returns `true` if data that agree with these to a share of each number leave a direction free: the stiffness resists it nothing, the
-/// load does no work on it, no row stops it. Then rounding of the data decides whether the answer is unique.
-pub fn is_free_to(share: f64, exact: &Exact, direction: &[f64]) -> bool {
-    let direction: Vec<Dyadic> = direction.iter().copied().map(Dyadic::from).collect();
-    let along = |line: &[Dyadic]| sum(line.iter().zip(&direction));
-    let is_open = |row: &Vec<Dyadic>| {
-        let moved = along(row);
-        moved.0.sign() <= 0 || vanishes_to(share, &moved)
-    };
-    exact.stiffness.iter().all(|line| vanishes_to(share, &along(line)))
-        && vanishes_to(share, &along(&exact.load))
-        && exact.contact.iter().all(is_open)
 }
 
 fn has_no_energy(exact: &Exact, direction: &[f64]) -> bool {

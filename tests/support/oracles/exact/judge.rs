@@ -214,10 +214,7 @@ impl<'a> Judge<'a> {
                 Outcome::Solved(_) => true,
             },
             Err(Error::NotConvex { .. }) => !matches!(self.outcome, Outcome::Indefinite { .. }),
-            Err(Error::UnderHeld { direction, .. }) => {
-                let is_unique = matches!(self.outcome, Outcome::Solved(answer) if answer.is_unique);
-                is_unique && !evidence::is_free_to(OF_DATA, self.exact, direction)
-            }
+            Err(Error::UnderHeld { .. }) => matches!(self.outcome, Outcome::Solved(answer) if answer.is_unique),
             _ => false,
         };
         if is_false && !self.is_borderline() {
