@@ -17,7 +17,7 @@ const SEEDS: [u64; 4] = [1, 20, 300, 4000];
 
 /// Problems of other seeds that once had a fault: of seed 77 the first of each sort with each kind of stiffness, and every wrong
 /// proof.
-const ONCE_WRONG: [(u64, &[u64]); 20] = [
+const ONCE_WRONG: [(u64, &[u64]); 21] = [
     (301, &[10625]),
     (303, &[19129]),
     (502, &[15150]),
@@ -30,6 +30,7 @@ const ONCE_WRONG: [(u64, &[u64]); 20] = [
     (7402, &[15974]),
     (7404, &[7349]),
     (8102, &[4615]),
+    (8103, &[8204]),
     (8105, &[13974]),
     (8107, &[13002]),
     (8109, &[2936]),
@@ -54,7 +55,17 @@ const ONCE_WRONG: [(u64, &[u64]); 20] = [
 ];
 
 /// Fair problems that once were refused, since their multipliers have more digits than doubles.
-const ONCE_REFUSED: [(u64, u64); 4] = [(8101, 1832), (8102, 7352), (8107, 11423), (8109, 7651)];
+const ONCE_REFUSED: [(u64, u64); 9] = [
+    (8101, 1832),
+    (8102, 7352),
+    (8107, 11423),
+    (8109, 7651),
+    (9301, 843),
+    (9304, 12090),
+    (9305, 1717),
+    (9307, 1556),
+    (9308, 9790),
+];
 
 /// Faults that a failure shows.
 const SHOWN: usize = 20;

@@ -1,7 +1,7 @@
 //! The certificate: every condition of the solution recomputed from the original problem.
 
 use super::EnergyNorm;
-use super::bound::{Answer, ErrorBound};
+use super::bound::{Answer, ErrorBound, Measured};
 use super::scales::{Forces, Scales, larger, relative};
 use crate::error::Error;
 use crate::qp::linear::Accumulator;
@@ -25,6 +25,31 @@ const OF_ENERGY: f64 = 1e-31;
 enum Bounding<'a> {
     Factor(&'a EnergyNorm),
     Cycles(&'a Multigrid, &'a Watch),
+}
+
+/// A certificate, and what it has found of the answer; not of an answer in far units.
+pub(crate) struct Examined {
+    pub certificate: Certificate,
+    pub evidence: Option<Evidence>,
+}
+
+impl Examined {
+    /// A certificate alone.
+    pub fn without_evidence(certificate: Certificate) -> Self {
+        Examined { certificate, evidence: None }
+    }
+}
+
+/// What a certificate has found of an answer, for a proof of its contact set.
+pub(crate) struct Evidence {
+    /// `f + B' lambda - K u`.
+    pub(super) residual: Vec<f64>,
+    /// `B u - g`.
+    pub(super) violation: Vec<f64>,
+    /// An upper bound on `|u - u*|_K`; infinite where none is known.
+    pub(super) error: f64,
+    /// What cycles have measured, where the bound is theirs.
+    pub(super) measured: Option<Measured>,
 }
 
 /// The forces on each dof, with twice the working precision.
@@ -67,13 +92,27 @@ impl ContactProblem {
         displacement: &[f64],
         multiplier: &[f64],
     ) -> Result<Certificate, Error> {
+        Ok(self.examine_in(norm, displacement, multiplier)?.certificate)
+    }
+
+    /// The same, with what it has found.
+    ///
+    /// # Errors
+    /// [`Error::Length`] for vectors that do not fit.
+    pub(crate) fn examine_in(
+        &self,
+        norm: Option<&EnergyNorm>,
+        displacement: &[f64],
+        multiplier: &[f64],
+    ) -> Result<Examined, Error> {
         self.check_answer(displacement, multiplier)?;
         let Some(units) = self.far_units(displacement) else {
             return Ok(self.recomputed(norm.map(Bounding::Factor), displacement, multiplier));
         };
         let (norm, problem) = (norm.map(|norm| units.norm(norm)), self.in_units(&units)?);
         let bounding = norm.as_ref().map(Bounding::Factor);
-        Ok(problem.recomputed(bounding, &units.displacement(displacement), &units.force(multiplier)))
+        let in_units = problem.recomputed(bounding, &units.displacement(displacement), &units.force(multiplier));
+        Ok(Examined::without_evidence(in_units.certificate))
     }
 
     /// As [`ContactProblem::certify`], with the energy bound by the cycles of the hierarchy of K, which needs no factor and
@@ -83,24 +122,24 @@ impl ContactProblem {
     ///
     /// # Errors
     /// As [`ContactProblem::certify`].
-    pub(crate) fn certify_by_cycles(
+    pub(crate) fn examine_by_cycles(
         &self,
         multigrid: &Multigrid,
         watch: &Watch,
         displacement: &[f64],
         multiplier: &[f64],
-    ) -> Result<Certificate, Error> {
+    ) -> Result<Examined, Error> {
         self.check_answer(displacement, multiplier)?;
         if multigrid.unknowns().len() <= 1 {
-            return self.certify(displacement, multiplier);
+            return self.certify(displacement, multiplier).map(Examined::without_evidence);
         }
         if self.far_units(displacement).is_some() {
-            return self.certify_in(None, displacement, multiplier);
+            return self.examine_in(None, displacement, multiplier);
         }
         Ok(self.recomputed(Some(Bounding::Cycles(multigrid, watch)), displacement, multiplier))
     }
 
-    fn recomputed(&self, bounding: Option<Bounding>, u: &[f64], lambda: &[f64]) -> Certificate {
+    fn recomputed(&self, bounding: Option<Bounding>, u: &[f64], lambda: &[f64]) -> Examined {
         let parts = self.parts();
         let contact = self.contact.mul_transposed(lambda);
         let Balance { residual, strain, terms } = self.accurate_balance(u, &[lambda]);
@@ -147,16 +186,16 @@ impl ContactProblem {
             parts: parts.count(),
             bound_is_measured: matches!(bounding, Some(Bounding::Cycles(..))),
         };
-        if let Some(bounding) = bounding {
-            let answer = Answer { displacement: u, multiplier: lambda, residual, violation: &violation };
-            let bound = match bounding {
-                Bounding::Factor(norm) => self.energy_error_bound(norm, &answer),
-                Bounding::Cycles(multigrid, watch) => self.energy_error_bound_by(multigrid, &answer, watch),
-            };
-            let rounding = parts.sums(|dof| u[dof].abs() * terms[dof]);
-            certificate.judge(&bound, &scales, strain, &rounding);
-        }
-        certificate
+        let Some(bounding) = bounding else { return Examined::without_evidence(certificate) };
+        let answer = Answer { displacement: u, multiplier: lambda, residual, violation: &violation };
+        let (bound, measured) = match bounding {
+            Bounding::Factor(norm) => (self.energy_error_bound(norm, &answer), None),
+            Bounding::Cycles(multigrid, watch) => self.energy_error_bound_by(multigrid, &answer, watch),
+        };
+        let rounding = parts.sums(|dof| u[dof].abs() * terms[dof]);
+        certificate.judge(&bound, &scales, strain, &rounding);
+        let Answer { residual, .. } = answer;
+        Examined { certificate, evidence: Some(Evidence { residual, violation, error: bound.whole, measured }) }
     }
 
     /// Do the vectors of an answer fit?

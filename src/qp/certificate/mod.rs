@@ -14,5 +14,6 @@ mod scales;
 mod springs;
 mod units;
 
+pub(crate) use conditions::Examined;
 pub(crate) use energy_norm::EnergyNorm;
 pub(crate) use motion::{Motion, Rounding};

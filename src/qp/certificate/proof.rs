@@ -9,6 +9,7 @@
 
 use super::EnergyNorm;
 use super::bound::Answer;
+use super::conditions::Evidence;
 use super::energy_norm::ROUNDED_BOUND;
 use crate::error::Error;
 use crate::qp::linear::multigrid::{Multigrid, conjugate_gradients, dual_norm_within};
@@ -38,20 +39,27 @@ impl ContactProblem {
     pub fn prove(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Option<ProvenSet>, Error> {
         self.check_answer(displacement, multiplier)?;
         let norm = EnergyNorm::of(&self.stiffness, &self.contact)?;
-        Ok(norm.and_then(|norm| self.prove_in(&norm, displacement, multiplier)))
+        Ok(norm.and_then(|norm| self.prove_in(&norm, displacement, multiplier, None)))
     }
 
-    /// As [`ContactProblem::prove`], in an energy norm that is at hand, for vectors that fit.
-    pub(crate) fn prove_in(&self, norm: &EnergyNorm, displacement: &[f64], multiplier: &[f64]) -> Option<ProvenSet> {
+    /// As [`ContactProblem::prove`], in an energy norm that is at hand, for vectors that fit; from the evidence of their
+    /// certificate where there is any.
+    pub(crate) fn prove_in(
+        &self,
+        norm: &EnergyNorm,
+        displacement: &[f64],
+        multiplier: &[f64],
+        evidence: Option<Evidence>,
+    ) -> Option<ProvenSet> {
         if let Some(units) = self.far_units(displacement) {
-            let problem = self.in_units(&units).ok()?;
-            return problem.prove_in(&units.norm(norm), &units.displacement(displacement), &units.force(multiplier));
+            let (problem, norm) = (self.in_units(&units).ok()?, units.norm(norm));
+            return problem.prove_in(&norm, &units.displacement(displacement), &units.force(multiplier), None);
         }
         let rows = self.rows();
-        let violation = self.accurate_violation(displacement);
-        let residual = self.accurate_residual(displacement, multiplier);
+        let Evidence { residual, violation, error, .. } =
+            evidence.or_else(|| self.examine_in(Some(norm), displacement, multiplier).ok()?.evidence)?;
         let answer = Answer { displacement, multiplier, residual, violation: &violation };
-        let error = ROUNDED_BOUND * self.energy_error_bound(norm, &answer).whole;
+        let error = ROUNDED_BOUND * error;
         if !error.is_finite() {
             return None;
         }
@@ -70,7 +78,7 @@ impl ContactProblem {
             .collect();
         self.within_reach(norm, &halves, &doubtful).into_iter().for_each(|row| open.set(row, true));
         let of_force = |force: &[f64]| Some(ROUNDED_BOUND * norm.widening() * norm.of_force(force));
-        let mut closed = self.closed_by(&answer, &open, error, norm.widening(), of_force);
+        let mut closed = self.closed_by(&answer, &open, error, norm.widening(), |_, force| of_force(force));
         let in_question: Vec<usize> = (0..rows).filter(|&row| !open.contains(row)).collect();
         let is_doubtful = |row: &usize| multiplier[*row] < 0.0 && !closed.set.contains(*row);
         if in_question.iter().any(is_doubtful) && halves.work(in_question.len()) <= MOST_WORK {
@@ -89,14 +97,18 @@ impl ContactProblem {
         watch: &Watch,
         displacement: &[f64],
         multiplier: &[f64],
+        evidence: Option<Evidence>,
     ) -> Option<ProvenSet> {
-        if multigrid.is_shifted() || self.far_units(displacement).is_some() {
+        // A hierarchy of one level is a factor already.
+        if multigrid.unknowns().len() <= 1 {
+            return self.prove(displacement, multiplier).ok()?;
+        }
+        if multigrid.is_shifted() {
             return None;
         }
-        let violation = self.accurate_violation(displacement);
-        let residual = self.accurate_residual(displacement, multiplier);
+        let Evidence { residual, violation, error, measured } = evidence?;
         let answer = Answer { displacement, multiplier, residual, violation: &violation };
-        let error = ROUNDED_BOUND * self.energy_error_bound_by(multigrid, &answer, watch).whole;
+        let error = ROUNDED_BOUND * error;
         if !error.is_finite() {
             return None;
         }
@@ -104,10 +116,12 @@ impl ContactProblem {
             let found = conjugate_gradients(&self.stiffness, s, multigrid, ROUGH, MOST_CYCLES).ok();
             found.map(|found| found.solution)
         });
-        let reach = reach.or_else(|| self.measured_reach(multigrid, displacement, watch));
+        let least = || measured.map(|measured| measured.ritz);
+        let reach = reach.or_else(|| self.measured_reach(multigrid, displacement, least()?, watch));
         let open = self.open_by(&answer, error, reach);
-        let of_force = |force: &[f64]| {
-            dual_norm_within(&self.stiffness, multigrid, force, watch).map(|norm| ROUNDED_BOUND * norm.most)
+        let of_force = |is_residual: bool, force: &[f64]| match measured {
+            Some(measured) if is_residual => Some(measured.of_residual),
+            _ => dual_norm_within(&self.stiffness, multigrid, force, watch).map(|norm| ROUNDED_BOUND * norm.most),
         };
         let closed = self.closed_by(&answer, &open, error, 1.0, of_force);
         Some(ProvenSet { open, closed: closed.set })
@@ -131,21 +145,22 @@ impl ContactProblem {
     }
 
     /// The rows that are closed, by one dof each, where the error is `error` in the energy norm and `of_force` bounds the norm
-    /// of the displacement under a force.
+    /// of the displacement under a force, and knows whether that is the residual.
     fn closed_by(
         &self,
         answer: &Answer,
         open: &ContactSet,
         error: f64,
         widening: f64,
-        of_force: impl FnOnce(&[f64]) -> Option<f64>,
+        of_force: impl FnOnce(bool, &[f64]) -> Option<f64>,
     ) -> Closed {
         let rows = self.rows();
         let dropped: Vec<f64> =
             (0..rows).map(|row| if open.contains(row) { -answer.multiplier[row] } else { 0.0 }).collect();
         let force: Vec<f64> =
             answer.residual.iter().zip(self.contact.mul_transposed(&dropped)).map(|(r, part)| r + part).collect();
-        let imbalance = of_force(&force).map_or(f64::INFINITY, |force| force + error);
+        let is_residual = dropped.iter().all(|&force| force == 0.0);
+        let imbalance = of_force(is_residual, &force).map_or(f64::INFINITY, |force| force + error);
         let mut closed = Closed { set: ContactSet::open(rows), imbalance };
         let in_question: Vec<usize> = (0..rows).filter(|&row| !open.contains(row)).collect();
         for (&row, length) in in_question.iter().zip(self.moved_alone(&in_question)) {

@@ -5,7 +5,7 @@ use std::time::Instant;
 use super::factored::Factored;
 use super::found::Found;
 use crate::error::Error;
-use crate::qp::certificate::EnergyNorm;
+use crate::qp::certificate::{EnergyNorm, Examined};
 use crate::qp::judged::{answer, judged};
 use crate::qp::method::{Outcome, ScaledProblem};
 use crate::qp::problem::ContactProblem;
@@ -76,9 +76,11 @@ impl Factored {
         };
         let multiplier = self.expand_multiplier(&outcome.multiplier, *unit);
         let problem = self.problem.with(loading.load.clone(), gap.clone())?;
-        let certificate = match &norm {
-            Some(norm) => problem.certify_in(Some(norm), &displacement, &multiplier)?,
-            None => self.certificate(&problem, &displacement, &multiplier, &settings.watch)?,
+        let Examined { certificate, evidence } = match &norm {
+            Some(norm) => problem.examine_in(Some(norm), &displacement, &multiplier)?,
+            None => {
+                Examined::without_evidence(self.certificate(&problem, &displacement, &multiplier, &settings.watch)?)
+            }
         };
         // A factor that was made for the certificate alone makes room for those of a refinement.
         let norm = norm.filter(|_| self.reduction.is_norm_at_hand());
@@ -93,8 +95,9 @@ impl Factored {
             history: outcome.history.iter().map(expand_iteration).collect(),
             ..*outcome
         };
+        let refinements = refined.as_ref().map(|refined| refined.steps);
         let mut solution = Solution {
-            refinements: refined.as_ref().map(|refined| refined.steps),
+            refinements,
             lost_pivot: self.lost_pivot,
             condensed_dofs: self.condensed_dofs(),
             seconds: Seconds { solve: seconds.solve + clock.elapsed().as_secs_f64(), ..*seconds },
@@ -110,7 +113,9 @@ impl Factored {
         // A proof takes about the memory of one more factor.
         if let Some(norm) = norm.as_ref().filter(|_| may_prove) {
             let clock = Instant::now();
-            solution.proven = problem.prove_in(norm, &solution.displacement, &solution.multiplier);
+            // A refined answer leaves something else.
+            let evidence = evidence.filter(|_| solution.refinements == refinements);
+            solution.proven = problem.prove_in(norm, &solution.displacement, &solution.multiplier, evidence);
             let seconds = clock.elapsed().as_secs_f64();
             solution.seconds.proof += seconds;
             solution.seconds.solve += seconds;

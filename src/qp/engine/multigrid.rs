@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use super::case::Case;
 use crate::error::Error;
+use crate::qp::certificate::Examined;
 use crate::qp::cost::{Estimate, Kept, check_memory, check_time, seconds};
 use crate::qp::judged::{answer, judged};
 use crate::qp::linear::multigrid::{Multigrid, NearNullSpace};
@@ -12,7 +13,7 @@ use crate::qp::method::{Outcome, Solver, Start};
 use crate::qp::problem::{ContactProblem, check_gap};
 use crate::qp::settings::{Method, Settings};
 use crate::qp::transform::RowSelection;
-use crate::solution::{Certificate, Seconds, Solution};
+use crate::solution::{Seconds, Solution};
 use crate::watch::Watch;
 
 /// The method ends this much below the tolerance of the certificate, whose scales differ from its own.
@@ -107,17 +108,18 @@ impl Hierarchical {
             Mprgp { problem: &problem, multigrid, limits: Limits { tolerance, most_cycles, watch } }.solve(start)
         };
         let mut found = solve(tolerance, most_cycles, start.clone())?;
-        let certificate = loop {
-            let certificate = self.certificate(&problem, &found, &settings.watch)?;
+        let Examined { certificate, evidence } = loop {
+            let examined = self.examine(&problem, &found, &settings.watch)?;
+            let certificate = &examined.certificate;
             most_cycles = settings.max_iterations.saturating_sub(found.iterations);
             let bound = certificate.energy_error_bound;
             tolerance *= match settings.accuracy {
                 Some(accuracy) if bound.is_finite() => (AIM * accuracy / bound).clamp(NEXT, AIM),
                 _ => NEXT,
             };
-            let met = goal.is_met_by(&certificate);
+            let met = goal.is_met_by(certificate);
             if met || !found.settled || tolerance < IMBALANCE_ROUNDING || most_cycles == 0 || watch.is_over() {
-                break certificate;
+                break examined;
             }
             let mut next = solve(tolerance, most_cycles, Start::near(found.displacement))?;
             next.iterations += found.iterations;
@@ -127,7 +129,8 @@ impl Hierarchical {
         };
         let before_proof = Instant::now();
         let may_prove = settings.prove && !settings.watch.is_over();
-        let prove = || problem.prove_by_cycles(multigrid, &settings.watch, &found.displacement, &found.multiplier);
+        let (u, lambda) = (&found.displacement, &found.multiplier);
+        let prove = || problem.prove_by_cycles(multigrid, &settings.watch, u, lambda, evidence);
         let proven = if may_prove { prove() } else { None };
         let proof = if may_prove { before_proof.elapsed().as_secs_f64() } else { 0.0 };
         let seconds = Seconds { factor: 0.0, proof, solve: clock.elapsed().as_secs_f64() };
@@ -135,9 +138,9 @@ impl Hierarchical {
         judged(solution, goal)
     }
 
-    /// The certificate of what was found for `problem`, with the bound that there is time for.
-    fn certificate(&self, problem: &ContactProblem, found: &Outcome, watch: &Watch) -> Result<Certificate, Error> {
+    /// What was found for `problem`, examined, with the bound that there is time for.
+    fn examine(&self, problem: &ContactProblem, found: &Outcome, watch: &Watch) -> Result<Examined, Error> {
         watch.step("certificate", 0);
-        problem.certify_by_cycles(&self.multigrid, &watch.finishing(), &found.displacement, &found.multiplier)
+        problem.examine_by_cycles(&self.multigrid, &watch.finishing(), &found.displacement, &found.multiplier)
     }
 }

@@ -8,6 +8,7 @@ mod dense;
 mod dependence;
 mod elimination;
 mod factor;
+mod forest;
 pub mod multigrid;
 mod null_space;
 #[cfg(feature = "faer")]
@@ -28,6 +29,7 @@ pub use cholesky::{Analysis, Cholesky};
 pub use dense::{LowerTriangle, UpperTriangle, dot, largest, norm, subtract, take_out, turned};
 pub use dependence::Dependence;
 pub use factor::FactorError;
+pub use forest::Forest;
 pub use null_space::{NullSpace, generic};
 pub use orthogonal::inverse_lengths;
 pub use power_of_two::{Equilibration, exponent, ldexp};

@@ -1,7 +1,7 @@
 //! The vectors that a positive semidefinite matrix does not resist.
 
 use super::definite::NULL_ROUNDING;
-use super::{AugmentedMatrix, Cholesky, FactorError, SparseMatrix, SymmetricMatrix, Twice, dot, largest};
+use super::{AugmentedMatrix, Cholesky, FactorError, Forest, SparseMatrix, SymmetricMatrix, Twice, dot, largest};
 
 /// What is added to a diagonal of order one, so that a singular matrix has a factor: far below what resists, far above rounding.
 const SHIFT: f64 = 1e-10;
@@ -52,13 +52,14 @@ impl SymmetricMatrix {
     /// [`FactorError::NotPositiveDefinite`] where an eigenvalue is clearly negative, and those of the factorisation.
     pub(crate) fn null_space(&self) -> Result<Option<NullSpace>, FactorError> {
         let factor = self.shifted_factor(SHIFT)?;
-        let mut found: Vec<Vec<f64>> = Vec::new();
+        let (mut found, components): (Vec<Vec<f64>>, _) = (Vec::new(), self.components());
         while found.len() < self.dim() {
-            if found.len() == MOST_VECTORS {
+            let Some(vector) = self.null_vector(&factor, &found) else { break };
+            let pieces = self.in_components(&vector, &components);
+            if found.len() + pieces.len() > MOST_VECTORS {
                 return Ok(None);
             }
-            let Some(vector) = self.null_vector(&factor, &found) else { break };
-            found.push(vector);
+            found.extend(pieces);
         }
         let mut basis = NullSpace { vectors: Vec::new(), is_exact: true };
         for vector in &found {
@@ -145,6 +146,34 @@ impl SymmetricMatrix {
             before = resistance;
         }
         None
+    }
+
+    /// The connected component of each unknown, and their number.
+    fn components(&self) -> (Vec<usize>, usize) {
+        let mut forest = Forest::new(self.dim());
+        for (row, column, _) in self.lower().triplets().filter(|entry| entry.2 != 0.0) {
+            forest.join(row, column);
+        }
+        forest.into_trees()
+    }
+
+    /// A null vector as the sum of those of single components, of length one: what one component does is no matter of another, and
+    /// may be smaller by more digits than doubles have. What the iteration has left in a component that resists is left out.
+    fn in_components(&self, vector: &[f64], (component, count): &(Vec<usize>, usize)) -> Vec<Vec<f64>> {
+        if *count == 1 {
+            return vec![vector.to_vec()];
+        }
+        let mut squares = vec![0.0; *count];
+        vector.iter().zip(component).for_each(|(value, &at)| squares[at] += value * value);
+        let piece = |of: usize| -> Vec<f64> {
+            let length = squares[of].sqrt();
+            vector.iter().zip(component).map(|(value, &at)| if at == of { value / length } else { 0.0 }).collect()
+        };
+        let terms = largest(&self.mul_abs(&vec![1.0; self.dim()]));
+        let is_null = |piece: &Vec<f64>| largest(&self.mul(piece)) <= NULL_ROUNDING * terms;
+        let pieces = (0..*count).filter(|&of| squares[of] > 0.0).map(piece).filter(is_null);
+        let pieces: Vec<Vec<f64>> = pieces.take(MOST_VECTORS + 1).collect();
+        if pieces.is_empty() { vec![vector.to_vec()] } else { pieces }
     }
 
     /// A direction of negative energy, if there is one that stands out from rounding: largest entry one.

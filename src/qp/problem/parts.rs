@@ -4,7 +4,7 @@
 //! the whole. Therefore a certificate measures every part in its own scale.
 
 use super::diagonal::Diagonal;
-use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
+use crate::qp::linear::{Forest, SparseMatrix, SymmetricMatrix};
 
 /// A coupling below this share of `sqrt(K_ii K_jj)` does not make two dofs one part.
 const WEAK: f64 = 1e-6;
@@ -36,7 +36,8 @@ impl Parts {
                 forest.join(*first[row].get_or_insert(dof), dof);
             }
         }
-        forest.into_parts()
+        let (of_dof, count) = forest.into_trees();
+        Parts { of_dof, count }
     }
 
     /// Number of parts, at least one: a problem without dofs has an empty one.
@@ -64,48 +65,5 @@ impl Parts {
         let mut sums = vec![0.0; self.count()];
         self.of_dof.iter().enumerate().for_each(|(dof, &part)| sums[part] += term(dof));
         sums
-    }
-}
-
-/// Trees of dofs, each of which points towards the first of its part.
-struct Forest {
-    parent: Vec<usize>,
-}
-
-impl Forest {
-    fn new(dofs: usize) -> Self {
-        Forest { parent: (0..dofs).collect() }
-    }
-
-    fn root(&mut self, mut dof: usize) -> usize {
-        while self.parent[dof] != dof {
-            self.parent[dof] = self.parent[self.parent[dof]];
-            dof = self.parent[dof];
-        }
-        dof
-    }
-
-    fn join(&mut self, a: usize, b: usize) {
-        if self.parent[a] == self.parent[b] {
-            return;
-        }
-        let (a, b) = (self.root(a), self.root(b));
-        self.parent[a.max(b)] = a.min(b);
-    }
-
-    fn into_parts(mut self) -> Parts {
-        let mut of_dof = Vec::with_capacity(self.parent.len());
-        let mut count = 0;
-        for dof in 0..self.parent.len() {
-            // A root comes before the rest of its tree.
-            let root = self.root(dof);
-            if root == dof {
-                of_dof.push(count);
-                count += 1;
-            } else {
-                of_dof.push(of_dof[root]);
-            }
-        }
-        Parts { of_dof, count }
     }
 }

@@ -12,7 +12,7 @@
 //! Parts that no coupling joins are blocks of K, and the inequality holds for each by itself. Where a coupling is too weak to
 //! make one part of two, the parts have no bound of their own.
 
-use super::{Answer, ErrorBound};
+use super::{Answer, ErrorBound, Measured};
 use crate::qp::certificate::energy_norm::ROUNDED_BOUND;
 use crate::qp::linear::SymmetricMatrix;
 use crate::qp::linear::multigrid::{Blocks, Multigrid, dual_norms_within, negative_direction};
@@ -28,9 +28,10 @@ impl ContactProblem {
         multigrid: &Multigrid,
         answer: &Answer,
         watch: &Watch,
-    ) -> ErrorBound {
+    ) -> (ErrorBound, Option<Measured>) {
         let mut residual = answer.residual.clone();
-        if answer.multiplier.iter().any(|&lambda| lambda > 0.0) {
+        let is_pulled = answer.multiplier.iter().any(|&lambda| lambda > 0.0);
+        if is_pulled {
             let pulled: Vec<f64> = answer.multiplier.iter().map(|lambda| lambda.max(0.0)).collect();
             residual.iter_mut().zip(self.contact.mul_transposed(&pulled)).for_each(|(r, force)| *r -= force);
         }
@@ -50,14 +51,17 @@ impl ContactProblem {
                 springs.added_to(&self.stiffness, &self.contact).ok().flatten().and_then(|held| dual(&held))
             }
         };
-        let Some(left) = left else { return ErrorBound::none() };
+        let Some(left) = left else { return (ErrorBound::none(), None) };
+        let ritz = left.iter().fold(f64::INFINITY, |least, dual| dual.ritz.min(least));
         let left: Vec<f64> = left.iter().map(|dual| ROUNDED_BOUND * dual.most).collect();
         let of_rows = if are_apart { self.parts_of_rows(parts) } else { vec![0; self.rows()] };
         // Every row that presses is put at its gap below.
         let at_gap = vec![true; self.rows()];
         if springs.is_some_and(|springs| !springs.hold(answer.multiplier, &at_gap, |row| left[of_rows[row]])) {
-            return ErrorBound::none();
+            return (ErrorBound::none(), None);
         }
+        let of_residual = left.iter().map(|left| left * left).sum::<f64>().sqrt();
+        let measured = (!is_pulled && !multigrid.is_shifted()).then_some(Measured { of_residual, ritz });
         let mut moved = vec![0.0; left.len()];
         for (row, length) in self.lengths_along_rows().into_iter().enumerate() {
             let violation = answer.violation[row];
@@ -74,7 +78,7 @@ impl ContactProblem {
             (_, true) => Some(bounds),
             (count, false) => Some(vec![f64::INFINITY; count]),
         };
-        ErrorBound { whole, of_parts }
+        (ErrorBound { whole, of_parts }, measured)
     }
 
     /// Returns `true` if conjugate gradients with the cycles meet no direction of negative energy beyond rounding, and `watch` is

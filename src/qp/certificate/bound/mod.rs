@@ -20,7 +20,9 @@
 
 mod boundary;
 mod cycles;
+mod repair;
 mod row_by_row;
+mod settle;
 mod triangle;
 
 use super::EnergyNorm;
@@ -36,6 +38,15 @@ pub(super) struct Answer<'a> {
     pub residual: Vec<f64>,
     /// B u - g.
     pub violation: &'a [f64],
+}
+
+/// What cycles have measured for a bound.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Measured {
+    /// An upper bound on the dual norm of the residual.
+    pub of_residual: f64,
+    /// The least Ritz value of K with the cycle.
+    pub ritz: f64,
 }
 
 /// Upper bounds on the energy norm of the error.

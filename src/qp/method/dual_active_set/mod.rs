@@ -30,7 +30,7 @@ use crate::error::Error;
 use crate::qp::linear::norm;
 use crate::solution::{ContactSet, Iteration};
 use basis::Basis;
-use pass::{Ending, Pass};
+use pass::{Ending, Pass, Pressures};
 use polyhedron::Polyhedron;
 
 /// The suffix that the method leaves behind a name; more follows where it is not settled.
@@ -141,10 +141,10 @@ impl Search<'_> {
 
     /// One pass from the answer so far. The basis comes from the data again, free of what its updates have lost.
     fn pass(&mut self, scaled: &ScaledProblem) -> Result<Ending, Error> {
-        self.rests.fill(0.0);
         let residuals = self.residuals();
         let base = norm(&self.point);
-        let parts = (&mut self.basis, &mut self.pressures[..], &mut self.history);
+        let pressures = Pressures { rounded: &mut self.pressures, rests: &mut self.rests };
+        let parts = (&mut self.basis, pressures, &mut self.history);
         let mut pass = Pass::new(self.polyhedron, scaled.watch(), parts, residuals, base);
         let ending = pass.run()?;
         let change = pass.point;

@@ -32,13 +32,20 @@ pub(super) enum Ending {
     Stopped,
 }
 
+/// The pressures y = -lambda of all rows, scaled, as sums of two; none on open rows.
+pub(super) struct Pressures<'a> {
+    /// Positive on closed rows.
+    pub rounded: &'a mut [f64],
+    /// What pressures of the base have beyond double precision: a pass carries it along as it is.
+    pub rests: &'a mut [f64],
+}
+
 /// The state of a pass: the change w of the point and the pressures y.
 pub(super) struct Pass<'a> {
     polyhedron: &'a Polyhedron,
     watch: &'a Watch,
     pub basis: &'a mut Basis,
-    /// Pressures y = -lambda of all rows, scaled; positive on closed rows only.
-    pub pressures: &'a mut [f64],
+    pub pressures: Pressures<'a>,
     pub history: &'a mut Vec<Iteration>,
     /// The pressures of the base that the target has been relieved of.
     carried: Vec<f64>,
@@ -59,12 +66,12 @@ impl<'a> Pass<'a> {
     pub fn new(
         polyhedron: &'a Polyhedron,
         watch: &'a Watch,
-        (basis, pressures, history): (&'a mut Basis, &'a mut [f64], &'a mut Vec<Iteration>),
+        (basis, pressures, history): (&'a mut Basis, Pressures<'a>, &'a mut Vec<Iteration>),
         (target, distances): (Vec<f64>, Vec<f64>),
         base: f64,
     ) -> Self {
-        let mut carried = vec![0.0; pressures.len()];
-        basis.rows().iter().for_each(|&row| carried[row] = pressures[row]);
+        let mut carried = vec![0.0; distances.len()];
+        basis.rows().iter().for_each(|&row| carried[row] = pressures.rounded[row]);
         let point = target.clone();
         let given_up = HashSet::new();
         Pass { polyhedron, watch, basis, pressures, history, carried, target, distances, point, base, given_up }
@@ -83,7 +90,7 @@ impl<'a> Pass<'a> {
             }
             self.watch.step("dual active set", self.history.len() + 1);
             if self.close(row, violation)? {
-                let mut closed = ContactSet::open(self.pressures.len());
+                let mut closed = ContactSet::open(self.distances.len());
                 self.basis.rows().iter().for_each(|&row| closed.set(row, true));
                 self.history.push(Iteration { contact_set: closed.clone(), penalty: 0.0 });
                 if !seen.insert(closed) {
@@ -101,7 +108,7 @@ impl<'a> Pass<'a> {
         loop {
             self.balance();
             let rows = self.basis.rows().iter().enumerate();
-            let pulling = rows.map(|(place, &row)| (place, self.pressures[row])).filter(|entry| entry.1 < 0.0);
+            let pulling = rows.map(|(place, &row)| (place, self.pressures.rounded[row])).filter(|entry| entry.1 < 0.0);
             match pulling.min_by(|a, b| a.1.total_cmp(&b.1)) {
                 Some((place, _)) => self.open(place),
                 None => return,
@@ -115,18 +122,19 @@ impl<'a> Pass<'a> {
         let (point, change) = self.basis.nearest(&self.target, &distances);
         self.point = point;
         for (&row, change) in self.basis.rows().iter().zip(&change) {
-            self.pressures[row] = self.carried[row] + change;
+            self.pressures.rounded[row] = self.carried[row] + change;
         }
     }
 
     fn open(&mut self, place: usize) {
         let row = self.basis.rows()[place];
         self.basis.open(place);
-        self.pressures[row] = 0.0;
-        let carried = std::mem::take(&mut self.carried[row]);
-        if carried != 0.0 {
+        self.pressures.rounded[row] = 0.0;
+        let carried = [std::mem::take(&mut self.carried[row]), std::mem::take(&mut self.pressures.rests[row])];
+        if carried != [0.0; 2] {
             let direction = self.polyhedron.row(row);
-            self.target.iter_mut().zip(&direction).for_each(|(entry, c)| *entry += carried * c);
+            let relieved = |c: f64| carried[0] * c + carried[1] * c;
+            self.target.iter_mut().zip(&direction).for_each(|(entry, &c)| *entry += relieved(c));
         }
     }
 
@@ -161,7 +169,7 @@ impl<'a> Pass<'a> {
                 return Ok(false);
             };
             for (&closed, weight) in self.basis.rows().iter().zip(&split.weights) {
-                self.pressures[closed] = (self.pressures[closed] - step * weight).max(0.0);
+                self.pressures.rounded[closed] = (self.pressures.rounded[closed] - step * weight).max(0.0);
             }
             if !split.depends {
                 violation -= step * dot(&split.across, &split.across);
@@ -175,7 +183,7 @@ impl<'a> Pass<'a> {
         let rounding = DEPENDENT * (1.0 + largest(weights));
         let mut first = (f64::INFINITY, None);
         for (place, (&row, &weight)) in self.basis.rows().iter().zip(weights).enumerate() {
-            let step = self.pressures[row].max(0.0) / weight;
+            let step = self.pressures.rounded[row].max(0.0) / weight;
             if weight > rounding && step < first.0 {
                 first = (step, Some(place));
             }
@@ -185,7 +193,7 @@ impl<'a> Pass<'a> {
 
     /// Goes back to a set that was closed before.
     fn restore(&mut self, rows: &[usize]) {
-        self.pressures.fill(0.0);
+        self.pressures.rounded.fill(0.0);
         *self.basis = of_rows(self.polyhedron, rows);
         self.balance();
     }

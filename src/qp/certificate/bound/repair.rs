@@ -1,0 +1,198 @@
+//! An answer repaired on the contact boundary: its motions, forces and bound.
+
+use std::cell::OnceCell;
+
+use super::super::energy_norm::Boundary;
+use super::{Answer, EnergyNorm, ErrorBound};
+use crate::qp::linear::{dot, exponent, ldexp};
+use crate::qp::problem::ContactProblem;
+
+/// Rounding of a sum of forces, in units of its terms; a factor multiplies it by its [loss](EnergyNorm::loss).
+const CANCELLED: f64 = 4.0 * f64::EPSILON;
+
+/// The way of rows to their gaps counts as motion of the answer, as the residual that this makes, and once for the rounding of
+/// its length.
+const COUNTS: f64 = 3.0;
+
+/// The force `alpha r + B' x`, x in the units of normalised rows.
+pub(super) struct Force {
+    pub alpha: f64,
+    pub rows: Vec<f64>,
+    /// Magnitudes of the terms of x: what rounding of their sum is measured by.
+    pub terms: Vec<f64>,
+}
+
+impl Force {
+    pub fn new(alpha: f64, rows: Vec<f64>) -> Self {
+        let terms = rows.iter().map(|x| x.abs()).collect();
+        Force { alpha, rows, terms }
+    }
+
+    /// The force with more of each row, which was added up from steps of the magnitudes `steps`.
+    pub fn plus(&self, more: &[f64], steps: &[f64]) -> Self {
+        let rows = self.rows.iter().zip(more).map(|(a, b)| a + b).collect();
+        let terms = self.terms.iter().zip(steps).map(|(a, b)| a + b).collect();
+        Force { alpha: self.alpha, rows, terms }
+    }
+
+    pub fn is_none(&self) -> bool {
+        self.alpha == 0.0 && self.rows.iter().all(|&x| x == 0.0)
+    }
+}
+
+/// A feasible v and multipliers mu: `v - u = K^-1 error`, and what is left of the forces at (v, mu).
+pub(super) struct Witness {
+    pub error: Force,
+    pub left: Force,
+    /// The multipliers mu, rounded: those of the answer, as far as they push, and the change.
+    pub multiplier: Vec<f64>,
+    pub change: Vec<f64>,
+    pub closed: Vec<bool>,
+    /// For each closed row an upper bound on the energy norm of the motion that puts it exactly at its gap, and leaves the others
+    /// there.
+    pub rest: Vec<f64>,
+    /// Does a closed row follow from others?
+    pub has_dependent: bool,
+}
+
+/// An answer on the contact boundary, in equilibrated units, rows normalised by powers of two.
+pub(super) struct Repair<'a> {
+    problem: &'a ContactProblem,
+    pub norm: &'a EnergyNorm,
+    pub boundary: &'a Boundary,
+    answer: &'a Answer<'a>,
+    /// The entries of each row: place on the boundary, coefficient.
+    pub rows: Vec<Vec<(usize, f64)>>,
+    /// Exponent by which each row was multiplied.
+    shift: Vec<i32>,
+    pub violation: Vec<f64>,
+    pub multiplier: Vec<f64>,
+    /// `L_tt^-1 B_i'` of each row that was asked for.
+    halves: Vec<OnceCell<Vec<f64>>>,
+    /// The sweep of the residual: squares of the interior, and the boundary.
+    interior: f64,
+    swept: Vec<f64>,
+}
+
+impl<'a> Repair<'a> {
+    pub fn new(
+        problem: &'a ContactProblem,
+        norm: &'a EnergyNorm,
+        boundary: &'a Boundary,
+        answer: &'a Answer<'a>,
+    ) -> Option<Self> {
+        // A row without obstacle and without force may reach wherever it likes.
+        let counts = |row: usize| problem.gap[row].is_finite() || answer.multiplier[row] != 0.0;
+        let mut rows = norm.rows_on(boundary, &problem.contact, counts)?;
+        let largest = |row: &Vec<(usize, f64)>| row.iter().fold(0.0, |largest: f64, entry| largest.max(entry.1.abs()));
+        let shift: Vec<i32> = rows.iter().map(|row| -exponent(largest(row))).collect();
+        for (row, &shift) in rows.iter_mut().zip(&shift) {
+            row.iter_mut().for_each(|entry| entry.1 = ldexp(entry.1, shift));
+        }
+        let scaled = |values: &[f64], sign: i32, unit: i32| -> Vec<f64> {
+            values.iter().zip(&shift).map(|(&value, &shift)| ldexp(value, sign * shift - unit)).collect()
+        };
+        let (violation, multiplier) = (scaled(answer.violation, 1, norm.factor()), scaled(answer.multiplier, -1, 0));
+        let (interior, swept) = norm.sweep(&answer.residual);
+        let halves = vec![OnceCell::new(); rows.len()];
+        Some(Repair { problem, norm, boundary, answer, rows, shift, violation, multiplier, halves, interior, swept })
+    }
+
+    pub fn spread(&self, weights: &[f64]) -> Vec<f64> {
+        let mut sum = vec![0.0; self.boundary.len()];
+        for (row, &weight) in self.rows.iter().zip(weights).filter(|entry| *entry.1 != 0.0) {
+            row.iter().for_each(|&(place, b)| sum[place] += weight * b);
+        }
+        self.boundary.forward(sum)
+    }
+
+    pub fn half(&self, row: usize) -> &[f64] {
+        self.halves[row].get_or_init(|| {
+            let mut column = vec![0.0; self.boundary.len()];
+            self.rows[row].iter().for_each(|&(place, b)| column[place] += b);
+            self.boundary.forward(column)
+        })
+    }
+
+    /// The sweep of a force on the boundary.
+    pub fn sweep(&self, force: &Force) -> Vec<f64> {
+        let mut sweep = self.spread(&force.rows);
+        sweep.iter_mut().zip(&self.swept).for_each(|(entry, swept)| *entry += force.alpha * swept);
+        sweep
+    }
+
+    /// The energy norm of the motion that a force causes.
+    fn length(&self, force: &Force) -> f64 {
+        let sweep = self.sweep(force);
+        ldexp(force.alpha * force.alpha * self.interior + dot(&sweep, &sweep), self.norm.factor()).sqrt()
+    }
+
+    /// The energy norm of the motion that a unit force along a row causes.
+    fn reach(&self, row: usize) -> f64 {
+        if self.norm.is_over() {
+            return f64::INFINITY;
+        }
+        let half = self.half(row);
+        ldexp(dot(half, half), self.norm.factor()).sqrt()
+    }
+
+    /// The motion of the whole body that a force causes, length n.
+    fn motion(&self, force: &Force) -> Vec<f64> {
+        let rows: Vec<f64> = force.rows.iter().zip(&self.shift).map(|(&x, &shift)| ldexp(x, shift)).collect();
+        let contact = self.problem.contact.mul_transposed(&rows);
+        let total: Vec<f64> = self.answer.residual.iter().zip(contact).map(|(r, b)| force.alpha * r + b).collect();
+        self.norm.displacement(&total)
+    }
+
+    /// The displacements and multipliers of a witness, in the units of the problem.
+    pub fn answer(&self, witness: &Witness) -> (Vec<f64>, Vec<f64>) {
+        let motion = self.motion(&witness.error);
+        let moved = self.answer.displacement.iter().zip(motion).map(|(u, d)| u + d).collect();
+        (moved, self.expanded(&witness.multiplier))
+    }
+
+    pub fn bound(&self, witness: &Witness) -> ErrorBound {
+        let Witness { error, left, multiplier, closed, rest, .. } = witness;
+        let of_left = self.length(left);
+        let springs = self.norm.springs();
+        if springs.is_some_and(|springs| !springs.hold(&self.expanded(multiplier), closed, |_| of_left)) {
+            return ErrorBound::none();
+        }
+        // Closed rows are put exactly at their gaps, which moves the answer and its residual; and forces that cancel each other
+        // leave their rounding.
+        let put: Vec<f64> = (0..rest.len()).map(|row| COUNTS * rest[row] + self.cancelled_on(witness, row)).collect();
+        let of_error = match springs {
+            // The springs' own energy is no error, but rounding knows them.
+            Some(_) => self.problem.length(&self.motion(error)) + (self.norm.rounding() - 1.0) * self.length(error),
+            None => self.length(error),
+        };
+        let whole = of_error + of_left + put.iter().sum::<f64>();
+        let parts = self.problem.parts();
+        let of_parts = (parts.count() > 1).then(|| {
+            let mut sizes = vec![0.0; parts.count()];
+            self.problem.parts_of_rows(parts).iter().zip(&put).for_each(|(&part, put)| sizes[part] += put);
+            [error, left].iter().for_each(|force| self.problem.add_sizes(parts, &self.motion(force), &mut sizes));
+            sizes
+        });
+        ErrorBound { whole, of_parts }
+    }
+
+    /// What rounding of forces that cancel each other may be worth, row by row, in energy norm.
+    fn cancelled_on(&self, witness: &Witness, row: usize) -> f64 {
+        let terms = witness.error.terms[row] + witness.left.terms[row];
+        if terms > 0.0 { CANCELLED * self.norm.loss() * terms * self.reach(row) } else { 0.0 }
+    }
+
+    /// The same of all rows and of the residual.
+    pub fn cancelled(&self, witness: &Witness) -> f64 {
+        let alpha = witness.error.alpha.abs() + witness.left.alpha.abs();
+        let residual = self.length(&Force::new(alpha, vec![0.0; self.rows.len()]));
+        let of_residual = CANCELLED * self.norm.loss() * residual;
+        (0..self.rows.len()).map(|row| self.cancelled_on(witness, row)).fold(of_residual, |sum, of_row| sum + of_row)
+    }
+
+    /// Multipliers in the units of the problem.
+    pub fn expanded(&self, multiplier: &[f64]) -> Vec<f64> {
+        multiplier.iter().zip(&self.shift).map(|(&mu, &shift)| ldexp(mu, shift)).collect()
+    }
+}

@@ -1,0 +1,172 @@
+//! The repair itself: which rows are closed, and the forces that put them at their gaps.
+
+use super::repair::{Force, Repair, Witness};
+use super::triangle::{Triangle, triangle_of};
+use crate::qp::linear::{UpperTriangle, ldexp};
+
+/// Times that the rows which look closed are corrected; from then on rows are only added.
+const EXCHANGES: usize = 10;
+
+/// Corrections of the multipliers that put rows at their gaps; each gains the digits that the dependence of rows leaves.
+const CORRECTIONS: usize = 4;
+
+/// Rows that others follow from are off by their own rounding after a fit, and by that of their distances.
+const FOLLOWS: f64 = 2.0;
+
+/// Rounding of a row's distance after a motion, in units of its terms.
+const DISTANCE_ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+impl Repair<'_> {
+    /// The equilibrium of the rows that look closed where all of them push, or else the better of both repairs.
+    pub fn best_witness(&self, closed: &[bool]) -> Option<Witness> {
+        let settled = self.settle(closed, true);
+        if settled.as_ref().is_some_and(|witness| witness.left.is_none()) {
+            return settled;
+        }
+        let size = |witness: &Witness| self.bound(witness).size();
+        [settled, self.settle(closed, false)].into_iter().flatten().min_by(|a, b| size(a).total_cmp(&size(b)))
+    }
+
+    /// A feasible point at which the closed rows are at their gaps: their equilibrium, or with the forces of the answer.
+    pub fn settle(&self, closed: &[bool], in_equilibrium: bool) -> Option<Witness> {
+        let rows = self.rows.len();
+        let mut closed = closed.to_vec();
+        let mut first = vec![false; rows];
+        for exchange in 0..=rows {
+            // The deepest first: of two rows that contradict each other as equalities the tighter one is kept.
+            let mut set: Vec<usize> = (0..rows).filter(|&row| closed[row]).collect();
+            set.sort_by(|&a, &b| {
+                (first[b], self.violation[b])
+                    .partial_cmp(&(first[a], self.violation[a]))
+                    .unwrap_or(std::cmp::Ordering::Equal)
+            });
+            let base = match in_equilibrium {
+                // Open rows lose their forces.
+                true => {
+                    let dropped = |row: usize| if closed[row] { 0.0 } else { -self.multiplier[row] };
+                    Force::new(1.0, (0..rows).map(dropped).collect())
+                }
+                false => Force::new(0.0, vec![0.0; rows]),
+            };
+            let fitted = self.fit(&set, &base)?;
+            let Fitted { change, steps, distance, tolerance, triangle } = &fitted;
+            let independent = triangle.independent();
+            let violated: Vec<usize> =
+                (0..rows).filter(|&row| !closed[row] && distance[row] > tolerance[row]).collect();
+            let missed = |row: usize| closed[row] && distance[row].abs() > tolerance[row];
+            let follows: Vec<usize> = set
+                .iter()
+                .zip(independent)
+                .filter(|entry| !entry.1 && missed(*entry.0))
+                .map(|entry| *entry.0)
+                .collect();
+            let (deeper, looser): (Vec<usize>, Vec<usize>) = follows.iter().partition(|&&row| distance[row] > 0.0);
+            let pulling: Vec<usize> = match in_equilibrium {
+                true => set.iter().copied().filter(|&row| self.multiplier[row] + change[row] > 0.0).collect(),
+                false => Vec::new(),
+            };
+            let is_met = violated.is_empty() && deeper.is_empty() && looser.is_empty();
+            if is_met && (pulling.is_empty() || exchange >= EXCHANGES) {
+                let has_dependent = first.iter().any(|&first| first) || independent.contains(&false);
+                let error = base.plus(change, steps);
+                return Some(Witness {
+                    rest: self.rest(&set, &fitted),
+                    has_dependent,
+                    ..self.witness(error, change, &closed, in_equilibrium)
+                });
+            }
+            if deeper.iter().any(|&row| first[row]) {
+                return None;
+            }
+            deeper.iter().for_each(|&row| first[row] = true);
+            violated.iter().for_each(|&row| closed[row] = true);
+            looser.iter().filter(|_| deeper.is_empty()).for_each(|&row| closed[row] = false);
+            // The force of a looser row goes to others, which may pull no more then.
+            if exchange < EXCHANGES && looser.is_empty() {
+                pulling.iter().for_each(|&row| closed[row] = false);
+            }
+        }
+        None
+    }
+
+    /// The witness of rows that are at their gaps under the force `error`, a `change` of the multipliers included.
+    fn witness(&self, error: Force, change: &[f64], closed: &[bool], in_equilibrium: bool) -> Witness {
+        let balanced = |row: usize| self.multiplier[row] + if in_equilibrium { change[row] } else { 0.0 };
+        // What pulls is no multiplier.
+        let multiplier: Vec<f64> =
+            (0..change.len()).map(|row| if closed[row] { balanced(row).min(0.0) } else { 0.0 }).collect();
+        let left = |row: usize| match in_equilibrium {
+            true if closed[row] => -balanced(row).max(0.0),
+            true => 0.0,
+            false => multiplier[row] - self.multiplier[row] - change[row],
+        };
+        let rows = (0..change.len()).map(left).collect();
+        let pushes = |row: usize| multiplier[row] < 0.0;
+        let change = (0..change.len()).map(|row| if in_equilibrium && pushes(row) { change[row] } else { 0.0 });
+        let (change, left, closed) = (change.collect(), Force::new(1.0 - error.alpha, rows), closed.to_vec());
+        let rest = vec![0.0; closed.len()];
+        Witness { error, left, multiplier, change, closed, rest, has_dependent: false }
+    }
+
+    /// For each row an upper bound on the energy norm of the motion that puts it exactly at its gap, from where a fit has left it, and
+    /// does not move the others of the set; zero for rows that follow from others.
+    ///
+    /// The motions of all rows together put every row at its gap, so that their lengths, added up, bound the way to such a point,
+    /// whatever the signs of what rounding left of the distances. A row that the triangle keeps stands 64 units in the last place
+    /// across those before it: rounding of its column changes the lengths by a small share.
+    fn rest(&self, set: &[usize], fitted: &Fitted) -> Vec<f64> {
+        let mut rest = vec![0.0; self.rows.len()];
+        for (&row, length) in set.iter().zip(fitted.triangle.lengths_of_inverse()) {
+            let motion = (fitted.distance[row].abs() + fitted.tolerance[row]) * length;
+            rest[row] = ldexp(motion * motion, self.norm.factor()).sqrt();
+        }
+        rest
+    }
+
+    /// The multipliers that put the rows of `set` at their gaps beside the force `base`; `None` where there is no time.
+    fn fit(&self, set: &[usize], base: &Force) -> Option<Fitted> {
+        let half = |&row: &usize| if self.norm.is_over() { None } else { Some(self.half(row)) };
+        let columns: Vec<&[f64]> = set.iter().map(half).collect::<Option<_>>()?;
+        let Triangle { r: triangle, weights } = triangle_of(&columns, || self.norm.is_over())?;
+        let (mut change, mut steps) = (vec![0.0; self.rows.len()], vec![0.0; self.rows.len()]);
+        let mut moved = self.boundary.backward(self.sweep(base));
+        let mut correction = 0;
+        loop {
+            let terms = |row: usize| self.rows[row].iter().map(|&(place, b)| b * moved[place]);
+            let distance: Vec<f64> =
+                (0..self.rows.len()).map(|row| self.violation[row] + terms(row).sum::<f64>()).collect();
+            let rounding = |row: usize| {
+                DISTANCE_ROUNDING * terms(row).fold(self.violation[row].abs(), |sum, term| sum + term.abs())
+            };
+            let mut tolerance: Vec<f64> = (0..self.rows.len()).map(rounding).collect();
+            // A row that follows from others is at its gap as far as they are.
+            for (&row, weights) in set.iter().zip(&weights) {
+                let of_others = weights.iter().zip(set).map(|(weight, &other)| weight.abs() * tolerance[other]);
+                tolerance[row] += FOLLOWS * of_others.sum::<f64>();
+            }
+            let is_met = |(&row, &kept): (&usize, &bool)| !kept || distance[row].abs() <= tolerance[row];
+            if set.iter().zip(triangle.independent()).all(is_met) || correction == CORRECTIONS {
+                return Some(Fitted { change, steps, distance, tolerance, triangle });
+            }
+            correction += 1;
+            let step = triangle.solve_normal(set.iter().map(|&row| -distance[row]).collect());
+            let mut added = vec![0.0; self.rows.len()];
+            set.iter().zip(step).for_each(|(&row, step)| added[row] = step);
+            change.iter_mut().zip(&added).for_each(|(sum, step)| *sum += step);
+            // The motions are those of the forces but for the rounding of each step, however much the steps take from each other.
+            steps.iter_mut().zip(&added).for_each(|(sum, step)| *sum += step.abs());
+            moved.iter_mut().zip(self.boundary.backward(self.spread(&added))).for_each(|(sum, step)| *sum += step);
+        }
+    }
+}
+
+/// Rows after a fit: the change of each multiplier, distances and what is rounding of them, and the triangle of the rows of the
+/// set.
+struct Fitted {
+    change: Vec<f64>,
+    /// The magnitudes of the steps that it was added up from.
+    steps: Vec<f64>,
+    distance: Vec<f64>,
+    tolerance: Vec<f64>,
+    triangle: UpperTriangle,
+}
