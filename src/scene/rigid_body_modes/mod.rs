@@ -1,4 +1,4 @@
-//! Rigid motions: which of them nothing resists, and their names.
+//! Rigid-body modes: which of them nothing resists, and their names.
 
 mod unit;
 
@@ -14,18 +14,18 @@ use unit::{NAMED, UnitMotions, dot};
 /// zero to rounding, 1e-16, and any support or normal that a scene means is far above.
 const HELD: f64 = 1e-10;
 
-/// The rigid motions of the bodies of a model, each body moving for itself.
+/// The rigid-body modes of the bodies of a model, each body moving for itself.
 ///
 /// Amplitudes are the multiples of the unit motions, six for each body in turn.
 #[derive(Clone, Debug)]
-pub(super) struct RigidMotions {
+pub(super) struct RigidBodyModes {
     bodies: Vec<UnitMotions>,
     dimension: usize,
 }
 
-impl RigidMotions {
+impl RigidBodyModes {
     pub fn of(body: &ElasticBody) -> Self {
-        RigidMotions {
+        RigidBodyModes {
             bodies: body.regions().iter().map(|region| UnitMotions::of(body, region)).collect(),
             dimension: body.dimension(),
         }
@@ -63,7 +63,7 @@ impl RigidMotions {
         components
     }
 
-    /// Refuses bodies with a rigid motion that neither supports nor contact rows resist.
+    /// Refuses bodies with a rigid-body mode that neither supports nor contact rows resist.
     ///
     /// # Errors
     /// [`Error::UnderHeld`] that names every such motion.
@@ -120,7 +120,7 @@ impl RigidMotions {
         basis
     }
 
-    /// The name of the rigid motion next to a nodal motion (length `dim * n_nodes`), if every body moves rigidly.
+    /// The name of the rigid-body mode next to a nodal motion (length `dim * n_nodes`), if every body moves rigidly.
     pub fn name_of(&self, nodes: &[[f64; 3]], motion: &[f64]) -> Option<String> {
         if !motion.iter().all(|value| value.is_finite()) {
             return None;

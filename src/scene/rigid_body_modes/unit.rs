@@ -1,4 +1,4 @@
-//! The unit rigid motions of one body, and the names of their combinations.
+//! The unit rigid-body modes of one body, and the names of their combinations.
 
 use std::ops::Range;
 
