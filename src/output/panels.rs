@@ -55,7 +55,7 @@ impl ContactPicture<'_> {
             drawing.polylines(&lines, &Paint::stroke(MESH, (0.08 * spacing).clamp(0.3, 0.8)));
             drawing.polygons(&outline, &Paint::stroke(OUTLINE, 1.4));
             for obstacle in self.obstacles {
-                obstacle.draw(drawing, frame, self.magnification == 1.0);
+                obstacle.draw(drawing, frame, self.obstacle_look());
             }
         });
         let radius = self.dot_radius(&places);

@@ -20,7 +20,7 @@ impl Model {
                 Error::Unbounded { motion, direction }
             }
             Error::UnderHeld { motion, direction } => {
-                let named = self.name_of(&direction).map(|name| format!("{name}: {}", advice(!self.rows().is_empty())));
+                let named = self.name_of(&direction).map(|name| format!("{name}: {}", advice(self.rows())));
                 Error::UnderHeld { motion: named.unwrap_or(motion), direction }
             }
             Error::Infeasible { reason, rows, weights, overlap } => {
