@@ -2,6 +2,7 @@
 //! `cargo run --release --example kinds [-- --only NAME,NAME] [--methods auto,mprgp] [--seconds N]`.
 
 mod bodies;
+mod floors;
 mod problems;
 
 use std::process::ExitCode;
