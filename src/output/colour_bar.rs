@@ -2,7 +2,7 @@
 
 use super::{
     axes::{Axis, LINE, NORMAL, SMALL},
-    colour::{Colour, FAINT, INK, NO_VALUE, field_colour},
+    colour::{Colour, FAINT, INK, field_colour},
     drawing::{Anchor, Drawing, Paint},
     ticks::{Quantity, Scale},
     typeface::{self, Weight},
@@ -89,9 +89,4 @@ impl ColourRange {
         let baseline = bottom + TICK + GAP + SMALL * LINE + 0.8 * NORMAL;
         drawing.text([x + 0.5 * length, baseline], &label, size, Anchor::Middle);
     }
-}
-
-/// The colour under a field, which shows where it has no value.
-pub(crate) fn missing_paint() -> Paint {
-    Paint::fill(NO_VALUE)
 }
