@@ -39,10 +39,6 @@ pub struct DiscSpec {
 pub(super) const ABOUT: About = About { name: "disc", dimension: Some(2) };
 
 impl BodyShape for DiscSpec {
-    fn about(&self) -> About {
-        ABOUT
-    }
-
     fn integration(&self) -> Integration {
         self.integration
     }

@@ -55,10 +55,6 @@ pub enum SymmetrySpec {
 pub(super) const ABOUT: About = About { name: "half-ball", dimension: Some(3) };
 
 impl BodyShape for HalfBallSpec {
-    fn about(&self) -> About {
-        ABOUT
-    }
-
     fn integration(&self) -> Integration {
         self.integration
     }

@@ -43,10 +43,6 @@ pub struct HalfDiscSpec {
 pub(super) const ABOUT: About = About { name: "half-disc", dimension: Some(2) };
 
 impl BodyShape for HalfDiscSpec {
-    fn about(&self) -> About {
-        ABOUT
-    }
-
     fn integration(&self) -> Integration {
         self.integration
     }

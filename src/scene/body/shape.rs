@@ -23,8 +23,6 @@ pub(in crate::scene) struct About {
 
 /// A body shape with its numbers.
 pub(in crate::scene) trait BodyShape {
-    fn about(&self) -> About;
-
     /// How the stiffness is integrated.
     fn integration(&self) -> Integration;
 
