@@ -43,7 +43,7 @@ def element_stiffness(size):
 
 
 def block(cells):
-    """Stiffness (CSR) of the free dofs, load, and rigid motions of the block."""
+    """Stiffness (CSR) of the free dofs, load, and rigid-body modes of the block."""
     nodes = cells + 1
     index = np.arange(nodes**3).reshape(nodes, nodes, nodes)
     corner = index[:-1, :-1, :-1].ravel()

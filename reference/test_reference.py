@@ -78,7 +78,7 @@ class Generators(unittest.TestCase):
         self.assertFalse(np.any(closed[:400] & closed[400:]))
         self.assertTrue(50 < closed.sum() < 350)
 
-    def test_rectangle_resists_no_rigid_motion(self):
+    def test_rectangle_resists_no_rigid_body_mode(self):
         stiffness = elastic_block.rectangle_stiffness(0.3, 0.2, elastic_block.plane_strain(1e7, 0.3))
         x, y = np.array([0, 0.3, 0.3, 0]), np.array([0, 0, 0.2, 0.2])
         for motion in (np.tile([1, 0], 4), np.tile([0, 1], 4), np.column_stack([-y, x]).ravel()):

@@ -62,13 +62,17 @@ impl Report {
         write_files(folder, &[(name, &self.text), ("report.json", &self.json)])
     }
 
-    /// The outcome of a command that prints the report in this form, certified or not.
-    pub fn outcome(self, format: Format, is_certified: bool) -> Outcome {
-        let text = match format {
+    /// The outcome of a command that prints the report in this form and certifies nothing by it.
+    pub fn printed(self, format: Format) -> Outcome {
+        Outcome::done(match format {
             Format::Text => self.text,
             Format::Json => self.json,
-        };
-        Outcome { ending: if is_certified { Ending::Certified } else { Ending::NotCertified }, ..Outcome::done(text) }
+        })
+    }
+
+    /// The outcome of a command that prints the report in this form, certified or not.
+    pub fn outcome(self, format: Format, is_certified: bool) -> Outcome {
+        Outcome { ending: if is_certified { Ending::Certified } else { Ending::NotCertified }, ..self.printed(format) }
     }
 }
 

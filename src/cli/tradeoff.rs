@@ -52,5 +52,5 @@ fn reported(
         write_files(folder, &[("tradeoff.csv", csv)])?;
         write_picture(folder, "tradeoff", &plot())?;
     }
-    Ok(report.outcome(options.format, true))
+    Ok(report.printed(options.format))
 }

@@ -108,6 +108,25 @@ impl Stepping {
     }
 }
 
+/// The state one step after `before`, with its acceleration: a displacement, a velocity, and the contact forces of the step.
+pub(super) fn next(
+    problem: &DynamicProblem,
+    before: &State,
+    [displacement, velocity]: [Vec<f64>; 2],
+    (multiplier, contact_set): (Vec<f64>, ContactSet),
+) -> State {
+    State {
+        steps: before.steps + 1,
+        acceleration: before.acceleration.clone(),
+        elastic: problem.statics().stiffness().mul(&displacement),
+        momentum: problem.mass().mul(&velocity),
+        displacement,
+        velocity,
+        multiplier,
+        contact_set,
+    }
+}
+
 /// `a + factor b`, entry by entry.
 pub(super) fn plus(a: &[f64], factor: f64, b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a + factor * b).collect()

@@ -4,7 +4,7 @@ use super::{
     colour::{FAINT, GRID, INK},
     drawing::{Anchor, Drawing, Paint},
     ticks::{Quantity, Scale, Ticks},
-    typeface,
+    typeface::{self, Weight},
 };
 
 /// Size of tick labels and legends in pixels.
@@ -39,7 +39,7 @@ impl Axis {
         let most = (length / 75.0).clamp(1.0, 8.0) as usize;
         let fits = |ticks: &Ticks| {
             let places = ticks.positions.iter().map(|&position| length * scale.fraction(position, range));
-            let halves = ticks.labels.iter().map(|label| 0.5 * typeface::width(label, SMALL, false));
+            let halves = ticks.labels.iter().map(|label| 0.5 * typeface::width(label, SMALL, Weight::Regular));
             let spans: Vec<[f64; 2]> = places.zip(halves).map(|(at, half)| [at - half, at + half]).collect();
             spans.windows(2).all(|pair| pair[0][1] + 0.6 * SMALL < pair[1][0])
         };
@@ -77,7 +77,7 @@ impl Axis {
     }
 
     fn widest(&self) -> f64 {
-        self.ticks.labels.iter().map(|label| typeface::width(label, SMALL, false)).fold(0.0, f64::max)
+        self.ticks.labels.iter().map(|label| typeface::width(label, SMALL, Weight::Regular)).fold(0.0, f64::max)
     }
 
     fn fraction(&self, value: f64) -> f64 {
@@ -87,6 +87,13 @@ impl Axis {
 
 /// Room that a horizontal axis needs below its frame.
 pub(crate) const ROOM_BELOW: f64 = TICK + GAP + SMALL * LINE + NORMAL * LINE;
+
+/// Which axes of a frame have labels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Labels {
+    Both,
+    Horizontal,
+}
 
 /// A frame with its two axes.
 #[derive(Clone, Debug)]
@@ -123,8 +130,8 @@ impl Frame {
         }
     }
 
-    /// The frame, its ticks and the labels of both axes; `left` says whether the vertical axis has labels.
-    pub fn draw_axes(&self, drawing: &mut Drawing, left: bool) {
+    /// The frame, its ticks and the labels of its axes.
+    pub fn draw_axes(&self, drawing: &mut Drawing, labels: Labels) {
         let ([x0, y0], [width, height]) = (self.corner, self.size);
         let bottom = y0 + height;
         drawing.rect(self.corner, self.size, &Paint::stroke(FAINT, 1.0));
@@ -138,14 +145,14 @@ impl Frame {
             let x = x0 + width * self.x.fraction(position);
             drawing.line([x, bottom], [x, bottom + MINOR_TICK], &faint);
         }
-        let (label, size) = typeface::fitted(&self.x.label, NORMAL, false, width.max(150.0));
+        let (label, size) = typeface::fitted(&self.x.label, NORMAL, Weight::Regular, width.max(150.0));
         let baseline = bottom + TICK + GAP + SMALL * LINE + 0.8 * NORMAL;
         drawing.text([x0 + 0.5 * width, baseline], &label, size, Anchor::Middle);
 
         for (position, label) in self.y.ticks.positions.iter().zip(&self.y.ticks.labels) {
             let y = y0 + height * (1.0 - self.y.fraction(*position));
             drawing.line([x0 - TICK, y], [x0, y], &ink);
-            if left {
+            if labels == Labels::Both {
                 drawing.text([x0 - TICK - GAP, y + 0.36 * SMALL], label, SMALL, Anchor::End);
             }
         }
@@ -153,8 +160,8 @@ impl Frame {
             let y = y0 + height * (1.0 - self.y.fraction(position));
             drawing.line([x0 - MINOR_TICK, y], [x0, y], &faint);
         }
-        if left {
-            let (label, size) = typeface::fitted(&self.y.label, NORMAL, false, height.max(100.0));
+        if labels == Labels::Both {
+            let (label, size) = typeface::fitted(&self.y.label, NORMAL, Weight::Regular, height.max(100.0));
             let baseline = x0 - TICK - GAP - self.y.widest() - 2.0 * GAP;
             drawing.upward_text([baseline, y0 + 0.5 * height], &label, size, Anchor::Middle);
         }

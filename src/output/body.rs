@@ -1,14 +1,14 @@
 //! The picture of a contact answer: a field on the body as it was, and the moved mesh under its obstacle.
 
 use super::{
-    axes::{Axis, Frame, LARGE, LINE, MARGIN, ROOM_BELOW, TITLE, draw_heading},
+    axes::{Axis, Frame, LARGE, LINE, Labels, MARGIN, ROOM_BELOW, TITLE, draw_heading},
     colour_bar::{self, ColourRange},
     drawing::{Anchor, Drawing},
     legend::{self, Entry},
     mark::draw_dot,
-    obstacle,
+    obstacle::{self, Look},
     ticks::{Quantity, Scale, brief, common_exponent},
-    typeface,
+    typeface::{self, Weight},
 };
 use crate::error::Error;
 
@@ -120,12 +120,12 @@ impl ContactPicture<'_> {
         let missing = self.draw_field(&mut drawing, left, &range);
         self.draw_moved(&mut drawing, right, &moved);
         for (frame, text) in [(left, self.field_title()), (right, self.moved_title())] {
-            let (text, size) = typeface::fitted(&text, LARGE, false, frames.column);
+            let (text, size) = typeface::fitted(&text, LARGE, Weight::Regular, frames.column);
             let middle = frame.corner[0] + 0.5 * frame.size[0];
             drawing.text([middle, frame.corner[1] - 12.0], &text, size, Anchor::Middle);
         }
-        left.draw_axes(&mut drawing, true);
-        right.draw_axes(&mut drawing, false);
+        left.draw_axes(&mut drawing, Labels::Both);
+        right.draw_axes(&mut drawing, Labels::Horizontal);
 
         let [under_left, under_right] = [left, right].map(|frame| frame.corner[0] + 0.5 * frame.size[0]);
         let [low, high] = common_limits([self.field]);
@@ -165,6 +165,10 @@ impl ContactPicture<'_> {
         self.displacement.iter().any(|&component| component != 0.0)
     }
 
+    pub(crate) fn obstacle_look(&self) -> Look {
+        if self.magnification == 1.0 { Look::Solid } else { Look::Dashed }
+    }
+
     fn field_title(&self) -> String {
         // Where nothing is displaced, the nodes are where the body is.
         let of = if self.is_displaced() { "the undeformed body" } else { "the body" };
@@ -197,7 +201,7 @@ impl ContactPicture<'_> {
         let before = MARGIN + (vertical.room_left() - aside).max(0.0);
         let between = (2.0 * (overhang - aside) + 12.0).max(48.0);
         let width = before + column + between + column + MARGIN.max(overhang - aside + 8.0);
-        let title = typeface::wrapped(self.title, TITLE, true, width - 2.0 * MARGIN);
+        let title = typeface::wrapped(self.title, TITLE, Weight::Bold, width - 2.0 * MARGIN);
         let top = MARGIN + TITLE * LINE * title.len() as f64 + LARGE * LINE + 14.0;
         let panels = [before + aside, before + column + between + aside].map(|x| Frame {
             corner: [x, top],
@@ -221,13 +225,13 @@ impl ContactPicture<'_> {
             })
             .collect();
         if !self.obstacles.is_empty() {
-            let solid = self.magnification == 1.0;
+            let look = self.obstacle_look();
             let name = match self.obstacles.iter().any(|obstacle| obstacle.is_seen(frame)) {
-                true if solid => "obstacle",
+                true if look == Look::Solid => "obstacle",
                 true => "obstacle, where it is without magnification",
                 false => "obstacle: outside the picture",
             };
-            let key = Box::new(move |drawing: &mut Drawing, centre| obstacle::draw_key(drawing, centre, solid));
+            let key = Box::new(move |drawing: &mut Drawing, centre| obstacle::draw_key(drawing, centre, look));
             entries.push(Entry { name: name.to_owned(), key, key_width: 30.0 });
         }
         entries

@@ -2,10 +2,10 @@
 
 use super::{
     axes::{Axis, LINE, NORMAL, SMALL},
-    colour::{Colour, FAINT, INK, NO_VALUE, field_colour},
+    colour::{Colour, FAINT, INK, field_colour},
     drawing::{Anchor, Drawing, Paint},
     ticks::{Quantity, Scale},
-    typeface,
+    typeface::{self, Weight},
 };
 
 /// Bands that a colour range has at least: enough to look smooth, few enough to follow a band with the eye.
@@ -85,13 +85,8 @@ impl ColourRange {
             drawing.text([at(position), bottom + TICK + GAP + 0.75 * SMALL], label, SMALL, Anchor::Middle);
         }
         let label = if missing { format!("{}; grey: no value", self.axis.label) } else { self.axis.label.clone() };
-        let (label, size) = typeface::fitted(&label, NORMAL, false, length + 60.0);
+        let (label, size) = typeface::fitted(&label, NORMAL, Weight::Regular, length + 60.0);
         let baseline = bottom + TICK + GAP + SMALL * LINE + 0.8 * NORMAL;
         drawing.text([x + 0.5 * length, baseline], &label, size, Anchor::Middle);
     }
-}
-
-/// The colour under a field, which shows where it has no value.
-pub(crate) fn missing_paint() -> Paint {
-    Paint::fill(NO_VALUE)
 }

@@ -3,7 +3,8 @@
 use tiny_skia::Pixmap;
 
 pub(crate) use super::paint::{Anchor, Paint};
-use super::shape::{Shape, Text};
+use super::shape::{Line, Shape, Text};
+use super::typeface::Weight;
 use super::{raster, svg};
 use crate::error::Error;
 
@@ -56,7 +57,7 @@ impl Drawing {
     pub(crate) fn polyline(&mut self, points: &[[f64; 2]], paint: &Paint) {
         let pieces: Vec<&[[f64; 2]]> =
             points.split(|&point| !drawable(point)).filter(|piece| piece.len() > 1).collect();
-        self.path(&pieces, false, paint);
+        self.path(&pieces, Line::Open, paint);
     }
 
     /// A closed polygon; points that are not finite numbers are left out.
@@ -66,35 +67,35 @@ impl Drawing {
 
     /// Polygons that are filled together by the even-odd rule: a polygon inside another is a hole.
     pub(crate) fn polygons<P: AsRef<[[f64; 2]]>>(&mut self, polygons: &[P], paint: &Paint) {
-        self.path(polygons, true, paint);
+        self.path(polygons, Line::Closed, paint);
     }
 
     /// Open lines that share one paint.
     pub(crate) fn polylines<P: AsRef<[[f64; 2]]>>(&mut self, lines: &[P], paint: &Paint) {
-        self.path(lines, false, paint);
+        self.path(lines, Line::Open, paint);
     }
 
-    fn path<P: AsRef<[[f64; 2]]>>(&mut self, pieces: &[P], closed: bool, paint: &Paint) {
+    fn path<P: AsRef<[[f64; 2]]>>(&mut self, pieces: &[P], line: Line, paint: &Paint) {
         let pieces: Vec<Vec<[i64; 2]>> =
             pieces.iter().map(|piece| in_hundredths(piece.as_ref())).filter(|piece| !piece.is_empty()).collect();
         if !pieces.is_empty() {
-            self.shapes.push(Shape::Path { pieces, closed, paint: *paint });
+            self.shapes.push(Shape::Path { pieces, line, paint: *paint });
         }
     }
 
     /// A text in the colour of axes with its baseline at `position`.
     pub(crate) fn text(&mut self, position: [f64; 2], text: &str, size: f64, anchor: Anchor) {
-        self.any_text(Text { position, text: text.to_owned(), size, anchor, bold: false, upward: false });
+        self.any_text(Text { position, text: text.to_owned(), size, anchor, weight: Weight::Regular, upward: false });
     }
 
     /// A bold text with its baseline at `position`.
     pub(crate) fn bold_text(&mut self, position: [f64; 2], text: &str, size: f64, anchor: Anchor) {
-        self.any_text(Text { position, text: text.to_owned(), size, anchor, bold: true, upward: false });
+        self.any_text(Text { position, text: text.to_owned(), size, anchor, weight: Weight::Bold, upward: false });
     }
 
     /// A text that reads upwards, with its baseline through `position`.
     pub(crate) fn upward_text(&mut self, position: [f64; 2], text: &str, size: f64, anchor: Anchor) {
-        self.any_text(Text { position, text: text.to_owned(), size, anchor, bold: false, upward: true });
+        self.any_text(Text { position, text: text.to_owned(), size, anchor, weight: Weight::Regular, upward: true });
     }
 
     fn any_text(&mut self, text: Text) {

@@ -10,7 +10,7 @@ use super::{
 use crate::error::Error;
 use crate::fem::recovery::Stress;
 use crate::qp::matrix_market::solution_files;
-use crate::qp::with_contact_set;
+use crate::qp::with_contact_sets;
 use crate::scene::{Answer, Model};
 use crate::solution::{ContactSet, Iteration, Solution};
 use crate::study::{Summary, Sweep, SweepCorner, SweepPoint};
@@ -56,13 +56,14 @@ fn is_plane(model: &Model) -> bool {
 /// One picture for each set of the history, the displacement being that with the rows of the set held at their gaps.
 fn write_iterations(folder: &Path, model: &Arc<Model>, history: &[Iteration]) -> Result<(), Error> {
     let with_penalty = history.iter().any(|step| step.penalty > 0.0);
-    if with_penalty || history.len() > MOST_ITERATIONS {
+    if with_penalty || history.is_empty() || history.len() > MOST_ITERATIONS {
         return Ok(());
     }
+    let Ok(held_at) = with_contact_sets(model.problem()) else { return Ok(()) };
     let mut series = Vec::new();
     for (index, step) in history.iter().enumerate() {
         // A set that does not hold the body by itself has no displacement to show.
-        let Ok((displacement, multiplier)) = with_contact_set(model.problem(), &step.contact_set) else { continue };
+        let Ok((displacement, multiplier)) = held_at(&step.contact_set) else { continue };
         let number = index + 1;
         let what = format!("search for contact segments, iteration {number}");
         let title = format!("{}, {}", headline(model, &what), closed_nodes(&step.contact_set));

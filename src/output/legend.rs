@@ -3,7 +3,7 @@
 use super::{
     axes::{LINE, SMALL},
     drawing::{Anchor, Drawing},
-    typeface,
+    typeface::{self, Weight},
 };
 
 const SPACE: f64 = 8.0;
@@ -24,12 +24,12 @@ pub(crate) struct Entry<'a> {
 
 impl Entry<'_> {
     fn width(&self) -> f64 {
-        self.key_width + SPACE + typeface::width(&self.name, SMALL, false)
+        self.key_width + SPACE + typeface::width(&self.name, SMALL, Weight::Regular)
     }
 
     fn draw(&self, drawing: &mut Drawing, [x, middle]: [f64; 2], available: f64) {
         (self.key)(drawing, [x + 0.5 * self.key_width, middle]);
-        let (name, size) = typeface::fitted(&self.name, SMALL, false, available - self.key_width - SPACE);
+        let (name, size) = typeface::fitted(&self.name, SMALL, Weight::Regular, available - self.key_width - SPACE);
         drawing.text([x + self.key_width + SPACE, middle + 0.36 * SMALL], &name, size, Anchor::Start);
     }
 }

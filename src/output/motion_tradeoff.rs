@@ -1,15 +1,11 @@
 //! What each scheme of a motion costs, as a table, as comma-separated values, and as a picture of error over time.
 
-use super::report::{columns, printable};
+use super::report::{columns, number, printable};
 use super::{Drawing, Plot, Quantity, Scale, Series, line_plots};
 use crate::study::{MotionPoint, MotionTradeoff};
 
 const HEADING: [&str; 8] =
     ["scheme", "step", "steps", "seconds", "displacement error", "impulse error", "energy change", "penetration"];
-
-fn number(value: f64) -> String {
-    if value == 0.0 { "0".to_string() } else { format!("{value:.1e}") }
-}
 
 /// The table; a star marks what no other way beats.
 pub fn motion_tradeoff_text(title: &str, tradeoff: &MotionTradeoff) -> String {

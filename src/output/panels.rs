@@ -3,8 +3,8 @@
 use super::{
     axes::Frame,
     body::ContactPicture,
-    colour::Colour,
-    colour_bar::{self, ColourRange},
+    colour::{Colour, NO_VALUE},
+    colour_bar::ColourRange,
     contour::Field,
     drawing::{Drawing, Paint},
     mark::draw_dot,
@@ -34,7 +34,7 @@ impl ContactPicture<'_> {
         let outline = body.at_least(f64::NEG_INFINITY);
         drawing.clipped(frame.corner, frame.size, |drawing| {
             if missing {
-                drawing.polygons(&outline, &colour_bar::missing_paint());
+                drawing.polygons(&outline, &Paint::fill(NO_VALUE));
             }
             for (level, colour) in range.bands() {
                 drawing.polygons(&field.at_least(level), &Paint::fill(colour));
@@ -55,7 +55,7 @@ impl ContactPicture<'_> {
             drawing.polylines(&lines, &Paint::stroke(MESH, (0.08 * spacing).clamp(0.3, 0.8)));
             drawing.polygons(&outline, &Paint::stroke(OUTLINE, 1.4));
             for obstacle in self.obstacles {
-                obstacle.draw(drawing, frame, self.magnification == 1.0);
+                obstacle.draw(drawing, frame, self.obstacle_look());
             }
         });
         let radius = self.dot_radius(&places);

@@ -1,13 +1,13 @@
 //! Line plots: named series on linear or logarithmic axes, one panel or several side by side.
 
 use super::{
-    axes::{Axis, Frame, LARGE, LINE, MARGIN, NORMAL, ROOM_BELOW, TITLE, draw_heading},
+    axes::{Axis, Frame, LARGE, LINE, Labels, MARGIN, NORMAL, ROOM_BELOW, TITLE, draw_heading},
     colour::{GRID, WHITE},
     drawing::{Anchor, Drawing, Paint},
     legend::{self, Entry},
     style::{self, Style},
     ticks::{Quantity, Scale},
-    typeface,
+    typeface::{self, Weight},
 };
 
 /// Width of a picture with one panel, and of one with several.
@@ -102,8 +102,8 @@ impl Plot {
             let middle = [frame.corner[0] + 0.5 * frame.size[0], frame.corner[1] + 0.5 * frame.size[1]];
             drawing.text(middle, "no data", NORMAL, Anchor::Middle);
         }
-        frame.draw_axes(drawing, true);
-        let (title, size) = typeface::fitted(&self.title, LARGE, false, frame.size[0]);
+        frame.draw_axes(drawing, Labels::Both);
+        let (title, size) = typeface::fitted(&self.title, LARGE, Weight::Regular, frame.size[0]);
         drawing.text([frame.corner[0] + 0.5 * frame.size[0], frame.corner[1] - 12.0], &title, size, Anchor::Middle);
     }
 
@@ -153,7 +153,7 @@ impl Plot {
 /// ```
 pub fn line_plots(title: &str, plots: &[Plot]) -> Drawing {
     let width = if plots.len() < 2 { WIDTH[0] } else { WIDTH[1] };
-    let title = typeface::wrapped(title, TITLE, true, width - 2.0 * MARGIN);
+    let title = typeface::wrapped(title, TITLE, Weight::Bold, width - 2.0 * MARGIN);
     let heading = if plots.iter().any(|plot| !plot.title.trim().is_empty()) { LARGE * LINE + 14.0 } else { 14.0 };
     let top = MARGIN + TITLE * LINE * title.len() as f64 + heading;
     let column = (width - 2.0 * MARGIN) / plots.len().max(1) as f64;

@@ -6,7 +6,7 @@ use tiny_skia::{
 
 use super::colour::{Colour, INK};
 use super::paint::{Anchor, Paint};
-use super::shape::{Shape, Text};
+use super::shape::{Line, Shape, Text};
 use super::typeface;
 use crate::error::Error;
 
@@ -42,9 +42,10 @@ impl Canvas<'_> {
     fn draw(&mut self, shapes: &[Shape], mask: Option<&Mask>) {
         for shape in shapes {
             match shape {
-                Shape::Path { pieces, closed, paint } => {
-                    let Some(path) = path_of(pieces, *closed) else { continue };
-                    let rule = if *closed && pieces.len() > 1 { FillRule::EvenOdd } else { FillRule::Winding };
+                Shape::Path { pieces, line, paint } => {
+                    let Some(path) = path_of(pieces, *line) else { continue };
+                    let rule =
+                        if *line == Line::Closed && pieces.len() > 1 { FillRule::EvenOdd } else { FillRule::Winding };
                     self.paint(&path, paint, rule, mask);
                 }
                 Shape::Circle { centre, radius, paint } => {
@@ -102,14 +103,14 @@ fn ink(Colour(red, green, blue): Colour, opaque: u8) -> Ink<'static> {
     ink
 }
 
-fn path_of(pieces: &[Vec<[i64; 2]>], closed: bool) -> Option<Path> {
+fn path_of(pieces: &[Vec<[i64; 2]>], line: Line) -> Option<Path> {
     let mut path = PathBuilder::new();
     for piece in pieces {
         for (place, point) in piece.iter().enumerate() {
             let [x, y] = point.map(|hundredths| hundredths as f32 / 100.0);
             if place == 0 { path.move_to(x, y) } else { path.line_to(x, y) }
         }
-        if closed {
+        if line == Line::Closed {
             path.close();
         }
     }
@@ -119,7 +120,7 @@ fn path_of(pieces: &[Vec<[i64; 2]>], closed: bool) -> Option<Path> {
 /// The outlines of the letters of a text.
 fn outline(text: &Text) -> Option<Path> {
     let mut path = PathBuilder::new();
-    let whole = typeface::width(&text.text, text.size, text.bold);
+    let whole = typeface::width(&text.text, text.size, text.weight);
     let start = match text.anchor {
         Anchor::Start => 0.0,
         Anchor::Middle => -whole / 2.0,
@@ -130,6 +131,6 @@ fn outline(text: &Text) -> Option<Path> {
         false => [(x + start + along) as f32, (y - above) as f32],
         true => [(x - above) as f32, (y - start - along) as f32],
     };
-    typeface::outline(&text.text, text.size, text.bold, &mut path, place);
+    typeface::outline(&text.text, text.size, text.weight, &mut path, place);
     path.finish()
 }

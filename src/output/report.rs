@@ -9,6 +9,11 @@ pub fn printable(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { c.escape_default().to_string() } else { c.to_string() }).collect()
 }
 
+/// A number in two digits.
+pub(super) fn number(value: f64) -> String {
+    if value == 0.0 { "0".to_string() } else { format!("{value:.1e}") }
+}
+
 /// A number with its unit.
 pub(super) fn quantity(value: f64, unit: &str) -> String {
     format!("{value:.6e} {}", printable(unit)).trim_end().to_string()
@@ -235,7 +240,6 @@ fn in_unit(name: &str, unit: &str) -> String {
 }
 
 fn conditions(certificate: &Certificate) -> [(&'static str, &'static str, String); 6] {
-    let number = |value: f64| if value == 0.0 { "0".to_string() } else { format!("{value:.1e}") };
     let bound = match certificate.energy_error_bound {
         bound if bound.is_finite() && certificate.bound_is_measured => format!("{}, measured", number(bound)),
         bound if bound.is_finite() => number(bound),

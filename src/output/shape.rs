@@ -1,14 +1,15 @@
 //! What a drawing consists of.
 
 use super::paint::{Anchor, Paint};
+use super::typeface::Weight;
 
 /// What a drawing consists of; each shape is drawn over those before it.
 #[derive(Clone, Debug)]
 pub(super) enum Shape {
-    /// Lines in hundredths of a pixel. `closed` ones are filled together by the even-odd rule.
+    /// Lines in hundredths of a pixel; closed ones are filled together by the even-odd rule.
     Path {
         pieces: Vec<Vec<[i64; 2]>>,
-        closed: bool,
+        line: Line,
         paint: Paint,
     },
     Circle {
@@ -25,6 +26,13 @@ pub(super) enum Shape {
     },
 }
 
+/// Does a line return to its first point?
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Line {
+    Open,
+    Closed,
+}
+
 /// A text with its baseline at `position`, from left to right or upwards.
 #[derive(Clone, Debug)]
 pub(super) struct Text {
@@ -32,6 +40,6 @@ pub(super) struct Text {
     pub text: String,
     pub size: f64,
     pub anchor: Anchor,
-    pub bold: bool,
+    pub weight: Weight,
     pub upward: bool,
 }

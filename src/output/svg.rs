@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use super::colour::INK;
 use super::paint::{Anchor, hex, hundredths, number};
-use super::shape::{Shape, Text};
-use super::typeface;
+use super::shape::{Line, Shape, Text};
+use super::typeface::{self, Weight};
 
 /// The SVG text of a picture of `width` times `height` pixels, on white.
 pub(super) fn written([width, height]: [f64; 2], shapes: &[Shape]) -> String {
@@ -23,9 +23,9 @@ pub(super) fn written([width, height]: [f64; 2], shapes: &[Shape]) -> String {
 fn write_shapes(body: &mut String, shapes: &[Shape], clips: &mut usize) {
     for shape in shapes {
         match shape {
-            Shape::Path { pieces, closed, paint } => {
-                let data: String = pieces.iter().map(|piece| path_data(piece, *closed)).collect();
-                let rule = if *closed && pieces.len() > 1 { " fill-rule=\"evenodd\"" } else { "" };
+            Shape::Path { pieces, line, paint } => {
+                let data: String = pieces.iter().map(|piece| path_data(piece, *line)).collect();
+                let rule = if *line == Line::Closed && pieces.len() > 1 { " fill-rule=\"evenodd\"" } else { "" };
                 // Round joins: a mitre would make a spike of every sharp corner of a contour.
                 let join = if paint.stroke.is_some() { " stroke-linejoin=\"round\"" } else { "" };
                 let _ = writeln!(body, "<path d=\"{data}\"{rule}{join}{}/>", paint.attributes());
@@ -57,7 +57,7 @@ fn write_text(body: &mut String, text: &Text) {
         Anchor::Middle => " text-anchor=\"middle\"",
         Anchor::End => " text-anchor=\"end\"",
     };
-    let weight = if text.bold { " font-weight=\"bold\"" } else { "" };
+    let weight = if text.weight == Weight::Bold { " font-weight=\"bold\"" } else { "" };
     let place = match text.upward {
         false => format!(" x=\"{x}\" y=\"{y}\""),
         true => format!(" transform=\"translate({x} {y}) rotate(-90)\""),
@@ -67,7 +67,7 @@ fn write_text(body: &mut String, text: &Text) {
 }
 
 /// The points as SVG path data: an absolute start and relative steps.
-fn path_data(points: &[[i64; 2]], closed: bool) -> String {
+fn path_data(points: &[[i64; 2]], line: Line) -> String {
     let mut data = String::new();
     let mut last: Option<[i64; 2]> = None;
     for &here in points {
@@ -83,7 +83,7 @@ fn path_data(points: &[[i64; 2]], closed: bool) -> String {
         }
         last = Some(here);
     }
-    if closed {
+    if line == Line::Closed {
         data.push('z');
     }
     data

@@ -1,6 +1,6 @@
 //! A trade-off as a table, as comma-separated values, and as a picture of error over time.
 
-use super::report::{columns, plural, printable};
+use super::report::{columns, number, plural, printable};
 use super::{Drawing, Plot, Quantity, Scale, Series, line_plots};
 use crate::study::{Tradeoff, TradeoffMesh, TradeoffPoint};
 
@@ -47,7 +47,6 @@ pub fn tradeoff_text(title: &str, tradeoff: &Tradeoff) -> String {
 }
 
 fn row(point: &TradeoffPoint) -> Vec<String> {
-    let number = |value: f64| if value == 0.0 { "0".to_string() } else { format!("{value:.1e}") };
     let star = if point.best { " *" } else { "" };
     vec![
         format!("{}{star}", point.method),

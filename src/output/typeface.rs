@@ -8,14 +8,21 @@ use ttf_parser::{Face, GlyphId, OutlineBuilder};
 /// The family of the embedded fonts, then what a viewer of the SVG may take instead.
 pub(crate) const FAMILY: &str = "'Signorini Sans','DejaVu Sans',Verdana,sans-serif";
 
-/// The regular and the bold face. They have no tables for kerning and ligatures: a text is its letters side by side.
+/// The two faces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Weight {
+    Regular,
+    Bold,
+}
+
+/// The faces in the order of [`Weight`]. They have no tables for kerning and ligatures: a text is its letters side by side.
 static FACES: LazyLock<[Option<Face<'static>>; 2]> = LazyLock::new(|| {
     let files: [&[u8]; 2] = [include_bytes!("font/signorini-sans.ttf"), include_bytes!("font/signorini-sans-bold.ttf")];
     files.map(|file| Face::parse(file, 0).ok())
 });
 
-fn face(bold: bool) -> Option<&'static Face<'static>> {
-    FACES[usize::from(bold)].as_ref()
+fn face(weight: Weight) -> Option<&'static Face<'static>> {
+    FACES[weight as usize].as_ref()
 }
 
 /// The letters of a text, one after another, each with its width in units of the face; a letter that the face does not have
@@ -46,15 +53,21 @@ pub(crate) fn escape(text: &str) -> String {
 }
 
 /// Width of `text` at `size`, in the units of `size`.
-pub(crate) fn width(text: &str, size: f64, bold: bool) -> f64 {
-    let Some(face) = face(bold) else { return 0.0 };
+pub(crate) fn width(text: &str, size: f64, weight: Weight) -> f64 {
+    let Some(face) = face(weight) else { return 0.0 };
     letters(face, text).map(|letter| letter.1).sum::<f64>() * size / f64::from(face.units_per_em())
 }
 
 /// Adds the outlines of the letters of `text` to `path`; `place(along, above)` tells where a point of it stands, from the start
 /// of the baseline.
-pub(crate) fn outline(text: &str, size: f64, bold: bool, path: &mut PathBuilder, place: impl Fn(f64, f64) -> [f32; 2]) {
-    let Some(face) = face(bold) else { return };
+pub(crate) fn outline(
+    text: &str,
+    size: f64,
+    weight: Weight,
+    path: &mut PathBuilder,
+    place: impl Fn(f64, f64) -> [f32; 2],
+) {
+    let Some(face) = face(weight) else { return };
     let unit = size / f64::from(face.units_per_em());
     let mut start = 0.0;
     for (glyph, width) in letters(face, text) {
@@ -97,15 +110,15 @@ impl<F: Fn(f32, f32) -> [f32; 2]> OutlineBuilder for Outline<'_, F> {
 }
 
 /// `text` and the size at which it fits into `available`: first smaller, then cut with an ellipsis.
-pub(crate) fn fitted(text: &str, size: f64, bold: bool, available: f64) -> (String, f64) {
+pub(crate) fn fitted(text: &str, size: f64, weight: Weight, available: f64) -> (String, f64) {
     /// Below this share of its size a text is cut rather than shrunk.
     const SMALLEST: f64 = 0.75;
-    let needed = width(text, size, bold);
+    let needed = width(text, size, weight);
     if needed <= available {
         return (text.to_owned(), size);
     }
     let size = size * (available / needed).max(SMALLEST);
-    if width(text, size, bold) <= available * 1.001 {
+    if width(text, size, weight) <= available * 1.001 {
         return (text.to_owned(), size);
     }
     let characters: Vec<char> = text.chars().collect();
@@ -113,18 +126,18 @@ pub(crate) fn fitted(text: &str, size: f64, bold: bool, available: f64) -> (Stri
     let (mut fits, mut too_long) = (0, characters.len());
     while fits + 1 < too_long {
         let middle = fits.midpoint(too_long);
-        if width(&cut(middle), size, bold) <= available { fits = middle } else { too_long = middle }
+        if width(&cut(middle), size, weight) <= available { fits = middle } else { too_long = middle }
     }
     (cut(fits), size)
 }
 
 /// `text` in lines that fit into `available`, broken at spaces; a single word that is too long is cut.
-pub(crate) fn wrapped(text: &str, size: f64, bold: bool, available: f64) -> Vec<String> {
+pub(crate) fn wrapped(text: &str, size: f64, weight: Weight, available: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
         if let Some(line) = lines.last_mut() {
             let longer = format!("{line} {word}");
-            if width(&longer, size, bold) <= available {
+            if width(&longer, size, weight) <= available {
                 *line = longer;
                 continue;
             }
@@ -133,12 +146,16 @@ pub(crate) fn wrapped(text: &str, size: f64, bold: bool, available: f64) -> Vec<
     }
     lines
         .into_iter()
-        .map(|line| if width(&line, size, bold) > available { fitted_at(&line, size, bold, available) } else { line })
+        .map(
+            |line| {
+                if width(&line, size, weight) > available { fitted_at(&line, size, weight, available) } else { line }
+            },
+        )
         .collect()
 }
 
 /// `text` cut to `available` without changing its size.
-fn fitted_at(text: &str, size: f64, bold: bool, available: f64) -> String {
+fn fitted_at(text: &str, size: f64, weight: Weight, available: f64) -> String {
     // A size that shrinks to three quarters makes room for a third more; ask for what fits without shrinking.
-    fitted(text, size / 0.75, bold, available).0
+    fitted(text, size / 0.75, weight, available).0
 }

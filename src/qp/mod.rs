@@ -80,12 +80,12 @@ pub fn solve_qp(problem: &ContactProblem) -> Result<Solution, Error> {
     solve(problem, &Settings::with_method(Method::qp()))
 }
 
-/// Displacement and multiplier of the body with the rows of `closed` held at their gaps and all others free: one
-/// iteration of the active-set loop. The multiplier has either sign.
+/// Factorises `problem` once for many sets of held rows: each call of the function returned is one iteration of the
+/// active-set loop, whose multiplier has either sign.
 ///
 /// # Errors
 /// As [`solve`], without [`Error::NotCertified`]; [`Error::Infeasible`] where the rows of the set contradict each other.
 #[cfg_attr(not(feature = "pictures"), allow(dead_code))]
-pub(crate) fn with_contact_set(problem: &ContactProblem, closed: &ContactSet) -> Result<(Vec<f64>, Vec<f64>), Error> {
-    engine::with_contact_set(problem, closed)
+pub(crate) fn with_contact_sets(problem: &ContactProblem) -> Result<impl Fn(&ContactSet) -> engine::Held, Error> {
+    engine::with_contact_sets(problem)
 }

@@ -3,7 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use super::Model;
-use super::rigid_modes::RigidMotions;
+use super::rigid_body_modes::RigidBodyModes;
 use crate::error::Error;
 use crate::fem::assembly::internal_force;
 use crate::fem::recovery::{self, StressField};
@@ -140,8 +140,8 @@ impl Model {
     }
 
     /// The imbalance of loads, support reactions and contact forces on each body: the largest of the virtual works
-    /// on its unit rigid motions (the resultant forces, and the resultant moments over half its size), relative
-    /// to the sum of all force magnitudes. A body of revolution has one rigid motion, and its forces count along the
+    /// on its unit rigid-body modes (the resultant forces, and the resultant moments over half its size), relative
+    /// to the sum of all force magnitudes. A body of revolution has one rigid-body mode, and its forces count along the
     /// axis.
     ///
     /// # Errors
@@ -165,7 +165,7 @@ impl Model {
         let acting = self.nodal_load().iter().zip(&contact);
         forces.iter_mut().zip(acting).for_each(|(force, (load, contact))| *force = *force - load - contact);
         let reactions = self.dofs().supported_part(&forces)?;
-        let motions = RigidMotions::of(self.body());
+        let motions = RigidBodyModes::of(self.body());
         let balance = motions.imbalance(self.mesh().nodes(), &[self.nodal_load(), &reactions, &contact]);
         Ok(Forces { contact, reactions, balance })
     }

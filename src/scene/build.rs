@@ -13,7 +13,7 @@ impl Scene {
     /// Discretises the scene and poses its contact problem.
     ///
     /// # Errors
-    /// [`Error::Scene`] for a value that describes no problem, [`Error::UnderHeld`] for a rigid motion that neither
+    /// [`Error::Scene`] for a value that describes no problem, [`Error::UnderHeld`] for a rigid-body mode that neither
     /// supports nor obstacles resist.
     pub fn build(&self) -> Result<Model, Error> {
         self.build_with(&[])

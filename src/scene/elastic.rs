@@ -49,7 +49,7 @@ impl Scene {
 impl DescribedBody<'_> {
     /// The JSON path of a field of the body.
     fn path(&self, field: &str) -> String {
-        format!("{}body.{}{field}", self.place, self.spec.shape().about().name)
+        format!("{}body.{}{field}", self.place, self.spec.about().name)
     }
 
     /// The mesh of the shape.
@@ -73,7 +73,7 @@ impl DescribedBody<'_> {
 
     fn formulation(&self) -> Result<Formulation, Error> {
         let (thickness, model) = (self.scene.thickness, self.scene.model);
-        let about = self.spec.shape().about();
+        let about = self.spec.about();
         if about.dimension.is_some_and(|dimension| dimension != model.dimension()) {
             let (body, fitting, model) = (about.name, BodySpec::fitting(model.dimension()), model.name());
             let message = format!("a {body} is no body of the model `{model}`; there it is a {fitting}");

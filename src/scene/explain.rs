@@ -1,8 +1,8 @@
-//! Errors of the solvers in the words of the scene: rigid motions by name, rows by node and obstacle.
+//! Errors of the solvers in the words of the scene: rigid-body modes by name, rows by node and obstacle.
 
 use super::Model;
 use super::entry::{number, point};
-use super::rigid_modes::{RigidMotions, advice};
+use super::rigid_body_modes::{RigidBodyModes, advice};
 use crate::error::Error;
 
 /// More nodes than this are counted, not listed.
@@ -11,7 +11,7 @@ const LISTED_NODES: usize = 3;
 impl Model {
     /// Rewrites an error of a solver into the words of this scene; other errors come back as they are.
     ///
-    /// [`Error::Unbounded`] and [`Error::UnderHeld`] name the rigid motion; [`Error::Infeasible`] names nodes,
+    /// [`Error::Unbounded`] and [`Error::UnderHeld`] name the rigid-body mode; [`Error::Infeasible`] names nodes,
     /// coordinates and obstacles.
     pub fn explain(&self, error: Error) -> Error {
         match error {
@@ -20,7 +20,7 @@ impl Model {
                 Error::Unbounded { motion, direction }
             }
             Error::UnderHeld { motion, direction } => {
-                let named = self.name_of(&direction).map(|name| format!("{name}: {}", advice(!self.rows().is_empty())));
+                let named = self.name_of(&direction).map(|name| format!("{name}: {}", advice(self.rows())));
                 Error::UnderHeld { motion: named.unwrap_or(motion), direction }
             }
             Error::Infeasible { reason, rows, weights, overlap } => {
@@ -37,7 +37,7 @@ impl Model {
     fn name_of(&self, direction: &[f64]) -> Option<String> {
         let parts = self.parts();
         let motion = parts.dofs.expand_motion(direction).ok()?;
-        RigidMotions::of(&parts.body).name_of(parts.body.mesh().nodes(), &motion)
+        RigidBodyModes::of(&parts.body).name_of(parts.body.mesh().nodes(), &motion)
     }
 
     fn describe_rows(&self, rows: &[usize]) -> Option<String> {

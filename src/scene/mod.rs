@@ -30,7 +30,7 @@ mod obstacle;
 mod parse;
 mod parts;
 mod refine;
-mod rigid_modes;
+mod rigid_body_modes;
 mod rows;
 pub(crate) mod schema;
 mod size;

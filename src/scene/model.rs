@@ -5,11 +5,11 @@ use std::sync::Arc;
 use super::entry::wrong;
 use super::obstacle::PlacedObstacle;
 use super::parts::Parts;
-use super::rigid_modes::RigidMotions;
+use super::rigid_body_modes::RigidBodyModes;
 use super::rows::{self, ContactRow};
 use super::{Units, Warning};
 use crate::error::Error;
-use crate::fem::assembly::{DofMap, free_load, rigid_motions, stiffness};
+use crate::fem::assembly::{DofMap, free_load, rigid_body_modes, stiffness};
 use crate::fem::body::ElasticBody;
 use crate::fem::geometry::distance;
 use crate::fem::mesh::Mesh;
@@ -49,7 +49,7 @@ impl Model {
     pub(super) fn new(parts: Parts, gap: f64) -> Result<Self, Error> {
         let built = rows::build(&parts, gap)?;
         if !parts.moves {
-            RigidMotions::of(&parts.body).check_held(&parts, &built.rows)?;
+            RigidBodyModes::of(&parts.body).check_held(&parts, &built.rows)?;
         }
         let stiffness = stiffness(&parts.body, &parts.dofs).map_err(|error| match error {
             Error::NotFinite { .. } => {
@@ -59,7 +59,7 @@ impl Model {
             other => other,
         })?;
         let load = free_load(&parts.body, &parts.dofs, &parts.load)?;
-        let near_null = NearNullSpace::of_motions(rigid_motions(&parts.body, &parts.dofs)).map(Arc::new);
+        let near_null = NearNullSpace::of_motions(rigid_body_modes(&parts.body, &parts.dofs)).map(Arc::new);
         Self::with_rows(Arc::new(parts), gap, built, (stiffness, load, near_null))
     }
 
@@ -81,11 +81,11 @@ impl Model {
     ///
     /// # Errors
     /// [`Error::Scene`] for a gap that is not finite or puts a node so deep that it has no closest point,
-    /// [`Error::UnderHeld`] where the new rows leave a rigid motion free.
+    /// [`Error::UnderHeld`] where the new rows leave a rigid-body mode free.
     pub fn with_gap(&self, gap: f64) -> Result<Self, Error> {
         let built = rows::build(&self.parts, gap)?;
         if !self.parts.moves {
-            RigidMotions::of(&self.parts.body).check_held(&self.parts, &built.rows)?;
+            RigidBodyModes::of(&self.parts.body).check_held(&self.parts, &built.rows)?;
         }
         let (stiffness, load) = (self.problem.stiffness().clone(), self.problem.load().to_vec());
         let near_null = self.problem.near_null().cloned();

@@ -64,17 +64,15 @@ pub struct MotionTradeoff {
 /// not one run has ended.
 pub fn motion_tradeoff(scene: &Scene, settings: &Settings) -> Result<MotionTradeoff, Error> {
     let model = scene.build()?;
-    let Some(own) = scene.dynamics(&model)? else {
-        return Err(Error::Scene { path: "analysis".into(), message: "the scene does not move".into() });
-    };
+    let own = scene.dynamics(&model)?.ok_or_else(still)?;
     // The samples fall on steps.
     let quarter = own.steps.div_ceil(4 * SAMPLES).max(1);
-    let of = |scheme, steps: usize| with(scene, &model, scheme, steps);
+    let of = |scheme, steps: usize| with(scene, &model, scheme, Some(steps));
     let reference = run(of(SchemeSpec::default(), SAMPLES * quarter * REFERENCE)?, settings)?;
     let mut runs = Vec::new();
     for scheme in SchemeSpec::ALL {
         let counts: Vec<usize> = if scheme.is_explicit() {
-            let fewest = fewest_stable(scene, &model, scheme)?.div_ceil(SAMPLES);
+            let fewest = with(scene, &model, scheme, None)?.steps.div_ceil(SAMPLES);
             EXPLICIT.iter().map(|times| SAMPLES * fewest * times).collect()
         } else {
             QUARTERS.iter().map(|quarters| SAMPLES * quarter * quarters).collect()
@@ -167,24 +165,18 @@ fn run(dynamics: Dynamics, settings: &Settings) -> Result<Run, Error> {
     })
 }
 
-/// The motion of the scene by a scheme with its own form of the mass, in so many steps.
-fn with(scene: &Scene, model: &Model, scheme: SchemeSpec, steps: usize) -> Result<Dynamics, Error> {
+/// The motion of the scene by a scheme with its own form of the mass: in so many steps, or in those of its default.
+fn with(scene: &Scene, model: &Model, scheme: SchemeSpec, steps: Option<usize>) -> Result<Dynamics, Error> {
     let mut scene = scene.clone();
     if let Some(AnalysisSpec::Dynamic(spec)) = &mut scene.analysis {
         (spec.mass, spec.courant) = (None, None);
-        spec.step = Some(spec.duration / steps as f64);
+        spec.step = steps.map(|steps| spec.duration / steps as f64);
         *spec = spec.clone().with_scheme(scheme);
     }
-    let missing = || Error::Scene { path: "analysis".into(), message: "the scene does not move".into() };
-    Ok(Dynamics { steps, ..scene.dynamics(model)?.ok_or_else(missing)? })
+    let found = scene.dynamics(model)?.ok_or_else(still)?;
+    Ok(Dynamics { steps: steps.unwrap_or(found.steps), ..found })
 }
 
-/// The fewest stable steps of an explicit scheme.
-fn fewest_stable(scene: &Scene, model: &Model, scheme: SchemeSpec) -> Result<usize, Error> {
-    let mut scene = scene.clone();
-    if let Some(AnalysisSpec::Dynamic(spec)) = &mut scene.analysis {
-        (spec.mass, spec.courant, spec.step) = (None, None, None);
-        *spec = spec.clone().with_scheme(scheme);
-    }
-    Ok(scene.dynamics(model)?.map_or(1, |dynamics| dynamics.steps))
+fn still() -> Error {
+    Error::Scene { path: "analysis".into(), message: "the scene does not move".into() }
 }

@@ -1,4 +1,4 @@
-//! GOAL: every element in every formulation that it fits: patch tests on distorted meshes, rigid motions, stiffness
+//! GOAL: every element in every formulation that it fits: patch tests on distorted meshes, rigid-body modes, stiffness
 //! against internal force, mean dilatation.
 //!
 //! MESH: a bar of 5 cells, a 2 x 1 rectangle of 4 x 3 cells, a 2 x 1 x 1.5 box of 3 x 3 x 2 cells, inner nodes moved by
@@ -130,7 +130,7 @@ fn stress_that_is_linear_is_exact_at_the_nodes_of_quadratic_elements() {
 }
 
 #[test]
-fn rigid_motions_cause_no_force_but_a_radial_one_does() {
+fn rigid_body_modes_cause_no_force_but_a_radial_one_does() {
     for (name, body) in all() {
         type Motion = (fn([f64; 3]) -> [f64; 3], f64);
         let motions: &[Motion] = match body.formulation() {
@@ -184,7 +184,7 @@ fn stiffness_with_supports_is_the_part_of_the_free_dofs() {
 }
 
 #[test]
-fn stiffness_has_no_other_zero_energy_than_rigid_motions() {
+fn stiffness_has_no_other_zero_energy_than_rigid_body_modes() {
     for (name, body) in all() {
         let dofs = DofMap::new(vec![None; body.nodal_dofs()]).unwrap();
         let stiffness = fem::stiffness(&body, &dofs).unwrap();

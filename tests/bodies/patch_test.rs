@@ -88,7 +88,7 @@ fn principal_and_von_mises_stress_follow_their_definitions() {
 }
 
 #[test]
-fn rigid_motions_cause_no_force() {
+fn rigid_body_modes_cause_no_force() {
     for (kind, state) in VARIANTS {
         let body = distorted_body(kind, state);
         for (motion, allowed) in

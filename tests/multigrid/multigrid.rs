@@ -40,7 +40,7 @@ fn square_on_rollers(cells: usize) -> ContactProblem {
 }
 
 fn hierarchy(problem: &ContactProblem, precision: Precision, threads: usize) -> Multigrid {
-    let near_null = problem.near_null().expect("a body has rigid motions");
+    let near_null = problem.near_null().expect("a body has rigid-body modes");
     Multigrid::with_precision(problem.stiffness(), near_null, threads, precision).unwrap()
 }
 

@@ -57,7 +57,7 @@ fn unsupported() -> (ContactProblem, Vec<[f64; 3]>) {
 }
 
 #[test]
-fn coordinates_stand_for_the_rigid_motions() {
+fn coordinates_stand_for_the_rigid_body_modes() {
     let (problem, nodes) = unsupported();
     let folder = tempfile::tempdir().unwrap();
     write(folder.path(), &problem);

@@ -4,57 +4,16 @@
 //! of thirteen points over a bowl, whose stiffness is no M-matrix; a block in space under a sphere. The proofs are held against
 //! the contact set of the active set, for the answer itself and for answers that are moved away from it.
 
+#[path = "../../tools/kinds/floors.rs"]
+mod floors;
+
 use crate::bodies::{built, clamped_block};
 use crate::oracles::Draws;
-use signorini::{ContactProblem, ContactSet, Method, ProvenSet, Settings, SparseMatrix, Start, SymmetricMatrix, solve};
+use floors::{membrane, plate};
+use signorini::{ContactProblem, ContactSet, Method, ProvenSet, Settings, Start, solve};
 
 /// Measured 9 on both meshes; from zero 13 and 22.
 const CYCLES: usize = 12;
-
-fn problem(entries: &[(usize, usize, f64)], load: Vec<f64>, floor: &[f64]) -> ContactProblem {
-    let dofs = load.len();
-    let lower: Vec<_> = entries.iter().copied().filter(|entry| entry.0 >= entry.1).collect();
-    let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &lower).unwrap()).unwrap();
-    let rows: Vec<_> = (0..dofs).map(|dof| (dof, dof, -1.0)).collect();
-    let contact = SparseMatrix::from_triplets(dofs, dofs, &rows).unwrap();
-    ContactProblem::new(stiffness, load, contact, floor.iter().map(|floor| -floor).collect()).unwrap()
-}
-
-/// `n` unknowns along a side.
-fn membrane(n: usize) -> ContactProblem {
-    let h = 2.0 / (n + 1) as f64;
-    let (mut entries, mut floor) = (Vec::new(), Vec::new());
-    for (j, i) in (0..n).flat_map(|j| (0..n).map(move |i| (j, i))) {
-        floor.push([-0.2, -0.4, -0.6, -0.8][(((i + 1) as f64 * h) / 0.5) as usize]);
-        for (dj, di) in (-1_isize..=1).flat_map(|dj| (-1_isize..=1).map(move |di| (dj, di))) {
-            let (other_j, other_i) = (j.wrapping_add_signed(dj), i.wrapping_add_signed(di));
-            if other_j < n && other_i < n {
-                let value = if (dj, di) == (0, 0) { 8.0 / 3.0 } else { -1.0 / 3.0 };
-                entries.push((j * n + i, other_j * n + other_i, value));
-            }
-        }
-    }
-    problem(&entries, vec![-10.0 * h * h; n * n], &floor)
-}
-
-fn plate(n: usize) -> ContactProblem {
-    let h = 1.0 / (n + 1) as f64;
-    let near = [(1_isize, 0_isize, -8.0), (0, 1, -8.0), (1, 1, 2.0), (-1, 1, 2.0), (2, 0, 1.0), (0, 2, 1.0)];
-    let (mut entries, mut floor) = (Vec::new(), Vec::new());
-    for (j, i) in (0..n).flat_map(|j| (0..n).map(move |i| (j, i))) {
-        let edges = [i == 0, i + 1 == n, j == 0, j + 1 == n].into_iter().filter(|&edge| edge).count();
-        entries.push((j * n + i, j * n + i, 20.0 + edges as f64));
-        for (di, dj, value) in near {
-            let (other_i, other_j) = (i.wrapping_add_signed(di), j.wrapping_add_signed(dj));
-            if other_i < n && other_j < n {
-                entries.push((other_j * n + other_i, j * n + i, value));
-            }
-        }
-        let away = |i: usize| ((i + 1) as f64 * h - 0.5).powi(2);
-        floor.push(-0.05 - 0.5 * (away(i) + away(j)));
-    }
-    problem(&entries, vec![-100.0 * h.powi(4); n * n], &floor)
-}
 
 fn exact(problem: &ContactProblem) -> (Vec<f64>, Vec<f64>, ContactSet) {
     let solution = solve(problem, &Settings::with_method(Method::ActiveSet)).unwrap();
@@ -74,7 +33,7 @@ fn proven_rightly(proven: &ProvenSet, exact: &ContactSet, what: &str) -> usize {
 #[test]
 fn cycles_do_not_grow_with_the_mesh_where_every_unknown_has_a_bound() {
     for n in [63, 127] {
-        let problem = membrane(n);
+        let problem = membrane(n).unwrap();
         let found = solve(&problem, &Settings::with_method(Method::Mprgp).with_proof()).unwrap();
         assert!(found.iterations <= CYCLES, "{n}: {} cycles", found.iterations);
         let proven = found.proven.unwrap();
@@ -88,7 +47,7 @@ fn cycles_do_not_grow_with_the_mesh_where_every_unknown_has_a_bound() {
 
 #[test]
 fn the_start_from_the_second_level_changes_the_cycles_and_not_the_answer() {
-    let problem = membrane(127);
+    let problem = membrane(127).unwrap();
     let settings = Settings::with_method(Method::Mprgp);
     let prepared = signorini::Prepared::new(&problem, &settings).unwrap();
     let nested = prepared.solve(problem.gap()).unwrap();
@@ -100,7 +59,7 @@ fn the_start_from_the_second_level_changes_the_cycles_and_not_the_answer() {
 /// The selected inverse serves the plate, one solve the membrane.
 #[test]
 fn no_row_of_an_answer_that_is_moved_is_proven_wrongly() {
-    for (problem, name) in [(membrane(31), "membrane"), (plate(24), "plate")] {
+    for (problem, name) in [(membrane(31).unwrap(), "membrane"), (plate(24).unwrap(), "plate")] {
         let (u, lambda, set) = exact(&problem);
         let size = u.iter().fold(0.0, |size: f64, value| size.max(value.abs()));
         let mut draws = Draws::new(7);

@@ -3,9 +3,18 @@
 #[path = "../support/program.rs"]
 mod program;
 
+mod answers;
 mod auto;
-mod command_line;
-mod kept_limits;
+mod blocks;
+mod exit_codes;
+mod files_read;
 mod limits;
+mod memory;
+mod motion_runs;
 mod process;
+mod promised;
+mod schema;
+mod terminal;
+mod time;
 mod tradeoff;
+mod verify;

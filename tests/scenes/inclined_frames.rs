@@ -1,4 +1,4 @@
-//! GOAL: normals and coordinates that meet at a node make one frame or are refused; rigid motions along rollers are
+//! GOAL: normals and coordinates that meet at a node make one frame or are refused; rigid-body modes along rollers are
 //! named; the dof map turns vectors in and back.
 
 use std::collections::BTreeMap;
@@ -118,7 +118,7 @@ fn under_held(scene: &Value) -> (String, Vec<f64>) {
 }
 
 #[test]
-fn rigid_motions_along_rollers_are_found_and_named() {
+fn rigid_body_modes_along_rollers_are_found_and_named() {
     let rollers = |rollers: &[([f64; 2], [f64; 2])]| {
         let supports: Vec<Value> =
             rollers.iter().map(|(at, normal)| json!({"on": {"point": at}, "normal": normal})).collect();

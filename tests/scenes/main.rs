@@ -16,7 +16,7 @@ mod inclined_supports;
 mod mesh_scenes;
 mod obstacle_rows;
 mod obstacles_in_space;
-mod rigid_motions;
+mod rigid_body_modes;
 mod scene_errors;
 mod scene_model;
 mod slender;

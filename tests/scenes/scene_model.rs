@@ -194,7 +194,7 @@ fn under_held(scene: &Value) -> (String, Vec<f64>) {
 }
 
 #[test]
-fn a_rigid_motion_that_nothing_resists_is_named_before_anything_is_solved() {
+fn a_rigid_body_mode_that_nothing_resists_is_named_before_anything_is_solved() {
     let on_plane = |supports: Value| {
         let mut scene = plane_above(0.0);
         scene["supports"] = supports;
@@ -264,7 +264,7 @@ fn unbounded_motions_are_explained_in_words() {
         other => other.to_string(),
     };
     assert_eq!(explained(restricted(&|_| [0.0, -3.0])), "translation along -y");
-    assert_eq!(explained(restricted(&|[x, y]| [0.0, x * y])), "column 3", "no rigid motion");
+    assert_eq!(explained(restricted(&|[x, y]| [0.0, x * y])), "column 3", "no rigid-body mode");
     assert_eq!(explained(vec![1.0]), "column 3", "a direction of the wrong length");
     assert_eq!(explained(vec![f64::NAN; model.problem().dofs()]), "column 3");
     let free_of_supports = |field: &dyn Fn([f64; 2]) -> [f64; 2]| {

@@ -94,6 +94,21 @@ fn powers(exponents: impl IntoIterator<Item = i32>) -> impl Iterator<Item = f64>
 
 /// All entries; those of more than `most` dofs are left out.
 pub fn entries(most: usize) -> Result<Vec<Entry>, Error> {
+    let groups = [
+        units()?,
+        blocks()?,
+        springs()?,
+        walls()?,
+        held_only_by_contact()?,
+        sizes(most)?,
+        nothing_touches()?,
+        ends_of_double_precision()?,
+    ];
+    Ok(groups.into_iter().flatten().filter(|entry| entry.problem.dofs() <= most).collect())
+}
+
+/// Scales of stiffness, length and load.
+fn units() -> Result<Vec<Entry>, Error> {
     let mut entries = Vec::new();
     for scale in powers((-12..=12).step_by(4)) {
         entries.push(Block { young: scale, ..BLOCK }.entry("units", format!("E = {scale:e}"))?);
@@ -109,6 +124,12 @@ pub fn entries(most: usize) -> Result<Vec<Entry>, Error> {
         let label = format!("load and length {scale:e}");
         entries.push(Entry::new("units", label, wall(scale, scale)?, force(scale, scale)));
     }
+    Ok(entries)
+}
+
+/// Blocks at the extremes of penetration, material and shape.
+fn blocks() -> Result<Vec<Entry>, Error> {
+    let mut entries = Vec::new();
     for strain in powers((-12..=0).step_by(2)) {
         entries.push(Block { strain, ..BLOCK }.entry("gap over size", format!("{strain:e}"))?);
     }
@@ -124,6 +145,12 @@ pub fn entries(most: usize) -> Result<Vec<Entry>, Error> {
         let block = Block { element: "t3", sliver: Some(share), ..BLOCK };
         entries.push(block.entry("slivers", format!("angle {degrees} degrees"))?);
     }
+    Ok(entries)
+}
+
+/// Springs of very different stiffness, penalties, and walls that just touch.
+fn springs() -> Result<Vec<Entry>, Error> {
+    let mut entries = Vec::new();
     for contrast in powers((0..=12).step_by(3)) {
         let springs: Vec<f64> = (0..20).map(|spring| if spring % 2 == 0 { 1.0 } else { contrast }).collect();
         let compliance: f64 = springs.iter().map(|spring| 1.0 / spring).sum();
@@ -146,6 +173,12 @@ pub fn entries(most: usize) -> Result<Vec<Entry>, Error> {
         let problem = chain(&[10.0; 10], true, 2.0, &walls)?;
         entries.push(Entry::new("weakly active rows", label, problem, Truth::Force(1.0)));
     }
+    Ok(entries)
+}
+
+/// Walls that repeat each other, nearly or exactly, or leave no room between them.
+fn walls() -> Result<Vec<Entry>, Error> {
+    let mut entries = Vec::new();
     for copies in [2, 10, 100] {
         let problem = node([3.0, 1.0], &vec![([1.0, 0.0], 0.5); copies])?;
         entries.push(Entry::new("duplicate rows", format!("{copies}"), problem, Truth::Force(2.5)));
@@ -161,12 +194,24 @@ pub fn entries(most: usize) -> Result<Vec<Entry>, Error> {
         let problem = node([1.0, 0.0], &[([1.0, 0.0], 1.0), ([-1.0, 0.0], -1.0 - overlap)])?;
         entries.push(Entry::new("gaps that cross", format!("by {overlap:e}"), problem, Truth::None));
     }
+    Ok(entries)
+}
+
+/// Springs that no support holds.
+fn held_only_by_contact() -> Result<Vec<Entry>, Error> {
+    let mut entries = Vec::new();
     for dofs in [1, 2, 10, 1000] {
         let problem = chain(&vec![1.0; dofs], false, 2.0, &[(dofs - 1, 1.0)])?;
         entries.push(Entry::new("held only by contact", format!("{dofs} dofs"), problem, Truth::Force(2.0)));
     }
     let pulled = chain(&[1.0; 10], false, -2.0, &[(9, 1.0)])?;
     entries.push(Entry::new("held only by contact", "pulled away", pulled, Truth::None));
+    Ok(entries)
+}
+
+/// From one dof to half a million, for at most `most` dofs.
+fn sizes(most: usize) -> Result<Vec<Entry>, Error> {
+    let mut entries = Vec::new();
     for cells in [1, 4, 16, 60, 180, 500] {
         let dofs = 2 * cells * cells;
         if dofs <= most {
@@ -176,6 +221,12 @@ pub fn entries(most: usize) -> Result<Vec<Entry>, Error> {
     }
     let single = chain(&[1.0], true, 2.0, &[(0, 1.0)])?;
     entries.push(Entry::new("size, all candidates closed", "1 dof", single, Truth::Force(1.0)));
+    Ok(entries)
+}
+
+/// Walls that nothing reaches.
+fn nothing_touches() -> Result<Vec<Entry>, Error> {
+    let mut entries = Vec::new();
     let free = |walls: &[(usize, f64)]| chain(&[10.0; 10], true, 2.0, walls);
     entries.push(Entry::new("nothing touches", "no candidate", free(&[])?, Truth::Reach(2.0)));
     entries.push(Entry::new("nothing touches", "gap inf", free(&[(9, f64::INFINITY)])?, Truth::Reach(2.0)));
@@ -184,6 +235,12 @@ pub fn entries(most: usize) -> Result<Vec<Entry>, Error> {
     }
     let still = chain(&[10.0; 10], true, 0.0, &[(9, 0.0), (4, 0.0)])?;
     entries.push(Entry::new("nothing touches", "no load, no gap", still, Truth::Reach(0.0)));
+    Ok(entries)
+}
+
+/// Numbers at the ends of double precision.
+fn ends_of_double_precision() -> Result<Vec<Entry>, Error> {
+    let mut entries = Vec::new();
     for size in powers([-300, -200, -100, 100, 200, 300]) {
         let label = |what: &str| format!("{what} {size:e}");
         let problem = chain(&[size], true, 2.0 * size, &[(0, 1.0)])?;
@@ -193,6 +250,5 @@ pub fn entries(most: usize) -> Result<Vec<Entry>, Error> {
     }
     let denormal = chain(&[1.0], true, 4e-320, &[(0, 2e-320)])?;
     entries.push(Entry::new("ends of double precision", "denormal length", denormal, Truth::Force(2e-320)));
-    entries.retain(|entry| entry.problem.dofs() <= most);
     Ok(entries)
 }

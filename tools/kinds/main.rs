@@ -2,13 +2,14 @@
 //! `cargo run --release --example kinds [-- --only NAME,NAME] [--methods auto,mprgp] [--seconds N]`.
 
 mod bodies;
+mod floors;
 mod problems;
 
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use problems::KINDS;
-use signorini::{ContactSet, Error, Method, Settings, solve};
+use signorini::{ContactSet, Error, Method, Settings, Solution, solve};
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -41,44 +42,41 @@ fn main() -> ExitCode {
                 let clock = Instant::now();
                 let found = solve(&problem, &settings);
                 let seconds = clock.elapsed().as_secs_f64();
-                let told = match &found {
-                    Ok(solution) => Ok((solution, String::new())),
-                    Err(Error::NotCertified { solution, condition, value, .. }) => {
-                        Ok((&**solution, format!("NOT certified: {condition} {value:.1e}")))
-                    }
-                    Err(error) => Err(error.to_string()),
-                };
                 let name = if proof { format!("{}+proof", method.name()) } else { method.name().to_string() };
-                match told {
-                    Ok((solution, mut remark)) => {
-                        let undecided = solution.proven.as_ref().map_or(-1, |proven| proven.undecided().count() as i64);
-                        let set = reference.get_or_insert_with(|| solution.contact_set.clone());
-                        if *set != solution.contact_set {
-                            remark.push_str(" OTHER SET");
-                        }
-                        solution.attempts.iter().for_each(|attempt| {
-                            remark.push_str(&format!(
-                                " [{} {:.2} s: {}]",
-                                attempt.method, attempt.seconds, attempt.reason
-                            ));
-                        });
-                        println!(
-                            "{:16} {name:10} {:>8} {:>8}  {:22} {seconds:>9.3} {:>9.3} {:>9.3} {:>7} {:>7} {undecided:>9}  bound {:.1e} {remark}",
-                            kind.name,
-                            problem.dofs(),
-                            problem.rows(),
-                            solution.method,
-                            solution.seconds.factor,
-                            solution.seconds.proof,
-                            solution.iterations,
-                            solution.contact_set.count(),
-                            solution.certificate.energy_error_bound,
-                        );
+                let start = format!("{:16} {name:10}", kind.name);
+                match &found {
+                    Ok(solution) => print_answer(&start, solution, seconds, "", &mut reference),
+                    Err(Error::NotCertified { solution, condition, value, .. }) => {
+                        let remark = format!("NOT certified: {condition} {value:.1e}");
+                        print_answer(&start, solution, seconds, &remark, &mut reference);
                     }
-                    Err(error) => println!("{:16} {name:10} {seconds:>9.3} {error}", kind.name),
+                    Err(error) => println!("{start} {seconds:>9.3} {error}"),
                 }
             }
         }
     }
     ExitCode::SUCCESS
+}
+
+/// The rest of the line of an answer; its set is compared with the first one found of its problem.
+fn print_answer(start: &str, solution: &Solution, seconds: f64, remark: &str, reference: &mut Option<ContactSet>) {
+    let mut remark = remark.to_string();
+    let undecided = solution.proven.as_ref().map_or(-1, |proven| proven.undecided().count() as i64);
+    if *reference.get_or_insert_with(|| solution.contact_set.clone()) != solution.contact_set {
+        remark.push_str(" OTHER SET");
+    }
+    for attempt in &solution.attempts {
+        remark.push_str(&format!(" [{} {:.2} s: {}]", attempt.method, attempt.seconds, attempt.reason));
+    }
+    println!(
+        "{start} {:>8} {:>8}  {:22} {seconds:>9.3} {:>9.3} {:>9.3} {:>7} {:>7} {undecided:>9}  bound {:.1e} {remark}",
+        solution.displacement.len(),
+        solution.multiplier.len(),
+        solution.method,
+        solution.seconds.factor,
+        solution.seconds.proof,
+        solution.iterations,
+        solution.contact_set.count(),
+        solution.certificate.energy_error_bound,
+    );
 }

@@ -4,7 +4,7 @@ use signorini::fem;
 use signorini::fem::ElementKind::{self, Hex8, Q4, Q8, T3, T6, Tet4};
 use signorini::fem::Formulation;
 use signorini::fem::Material;
-use signorini::fem::{DofMap, add_pressure, free_load, stiffness, tributary_areas};
+use signorini::fem::{DofMap, Mesh, StressField, add_pressure, free_load, stiffness, tributary_areas};
 use signorini::fem::{ElasticBody, Integration};
 use signorini::scene::{cuboid, rectangle};
 use signorini::{ContactProblem, Error, SparseMatrix, solve_qp};
@@ -54,6 +54,29 @@ impl PatchErrors {
     }
 }
 
+/// A block of uneven cells whose inner nodes are moved.
+fn distorted(kind: ElementKind) -> Result<Mesh, Error> {
+    let lines = |size: f64, steps: &[f64]| steps.iter().map(|step| step * size).collect::<Vec<f64>>();
+    let (x, y) = (lines(1.0, &[0.0, 0.2, 0.45, 0.7, 1.0]), lines(0.8, &[0.0, 0.3, 0.6, 1.0]));
+    let regular = match kind.dimension() {
+        2 => rectangle(&x, &y, kind)?,
+        _ => cuboid(&x, &y, &lines(0.6, &[0.0, 0.4, 0.7, 1.0]), kind)?,
+    };
+    Ok(distort(&regular, [0.04, 0.04, if kind.dimension() == 3 { 0.03 } else { 0.0 }]))
+}
+
+/// The largest difference from the normal stresses `exact`, without shear.
+fn stress_error(stresses: &StressField, exact: [f64; 3]) -> f64 {
+    let mut worst: f64 = 0.0;
+    for found in stresses.elements.iter().chain(&stresses.nodes) {
+        let normal = [found.sigma_xx, found.sigma_yy, found.sigma_zz];
+        let shear = [found.sigma_xy, found.sigma_yz, found.sigma_zx];
+        let differences = normal.iter().zip(&exact).map(|(value, exact)| value - exact).chain(shear);
+        worst = differences.fold(worst, |worst, value| worst.max(value.abs()));
+    }
+    worst
+}
+
 /// Solves the patch test: pressure 300 above, guided at the left (and in front), free elsewhere.
 pub fn contact_patch(
     kind: ElementKind,
@@ -61,14 +84,8 @@ pub fn contact_patch(
     integration: Integration,
 ) -> Result<PatchErrors, Error> {
     let (young, nu, pressure) = (2e5, 0.3, 300.0);
-    let lines = |size: f64, steps: &[f64]| steps.iter().map(|step| step * size).collect::<Vec<f64>>();
-    let (x, y) = (lines(1.0, &[0.0, 0.2, 0.45, 0.7, 1.0]), lines(0.8, &[0.0, 0.3, 0.6, 1.0]));
-    let regular = match kind.dimension() {
-        2 => rectangle(&x, &y, kind)?,
-        _ => cuboid(&x, &y, &lines(0.6, &[0.0, 0.4, 0.7, 1.0]), kind)?,
-    };
-    let mesh = distort(&regular, [0.04, 0.04, if kind.dimension() == 3 { 0.03 } else { 0.0 }]);
-    let body = ElasticBody::new(mesh, Material::new(young, nu)?, formulation)?.with_integration(integration)?;
+    let body =
+        ElasticBody::new(distorted(kind)?, Material::new(young, nu)?, formulation)?.with_integration(integration)?;
     let (mesh, dimension) = (body.mesh(), body.dimension());
     let down = dimension - 1;
     let nodes_of = |name: &str| mesh.boundary(name).map_or_else(Vec::new, |boundary| boundary.nodes());
@@ -105,21 +122,9 @@ pub fn contact_patch(
     let forces = areas.iter().zip(&solution.multiplier);
     // The ends of quadratic edges on an axis have no area: forces are compared, relative to the mean one.
     let off = forces.map(|((_, area), lambda)| (lambda + pressure * area).abs()).fold(0.0, f64::max);
-    let stresses = fem::stress(&body, &nodal)?;
-    let mut stress: f64 = 0.0;
-    for found in stresses.elements.iter().chain(&stresses.nodes) {
-        let normal = [found.sigma_xx, found.sigma_yy, found.sigma_zz];
-        let shear = [found.sigma_xy, found.sigma_yz, found.sigma_zx];
-        for (axis, value) in normal.into_iter().enumerate() {
-            let exact = match axis {
-                _ if axis == down => -pressure,
-                2 if confined => -nu * pressure,
-                _ => 0.0,
-            };
-            stress = stress.max((value - exact).abs());
-        }
-        stress = shear.iter().fold(stress, |worst, value| worst.max(value.abs()));
-    }
+    let mut exact = [0.0, 0.0, if confined { -nu * pressure } else { 0.0 }];
+    exact[down] = -pressure;
+    let stress = stress_error(&fem::stress(&body, &nodal)?, exact);
     Ok(PatchErrors {
         unknowns: problem.dofs(),
         pressure: off / (pressure * total / areas.len() as f64),

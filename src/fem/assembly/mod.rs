@@ -13,7 +13,7 @@ mod load;
 mod mass;
 mod pattern;
 mod redistribution;
-mod rigid_motions;
+mod rigid_body_modes;
 mod stiffness;
 mod surface;
 
@@ -24,6 +24,6 @@ pub(crate) use frame::perpendicular;
 pub use internal_force::internal_force;
 pub use load::{add_body_force, add_body_force_field, add_pressure, add_traction, add_traction_field, free_load};
 pub use mass::{MassForm, mass};
-pub use rigid_motions::rigid_motions;
+pub use rigid_body_modes::rigid_body_modes;
 pub use stiffness::stiffness;
 pub use surface::{node_normals, tributary_areas};

@@ -12,7 +12,7 @@
 use super::projection::MassProjection;
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
-use crate::motion::step::{About, Advance, Stepping, plus};
+use crate::motion::step::{About, Advance, Stepping, next, plus};
 use crate::motion::{DynamicProblem, State};
 
 pub(super) static ABOUT: About = About {
@@ -47,8 +47,7 @@ impl Advance for ContactStabilised {
         if let Some(correction) = self.mass.smallest(bound, &state.contact_set)? {
             predicted = plus(&predicted, 1.0, &correction.change);
         }
-        let stiffness = problem.statics().stiffness();
-        let elastic = plus(&state.elastic, 1.0, &stiffness.mul(&predicted));
+        let elastic = plus(&state.elastic, 1.0, &problem.statics().stiffness().mul(&predicted));
         let load = problem.load_at((state.steps as f64 + 0.5) * step);
         let mut force: Vec<f64> = load.iter().zip(&elastic).map(|(f, k)| 2.0 * f - k).collect();
         problem.damp(2.0, &state.velocity, &mut force);
@@ -56,15 +55,7 @@ impl Advance for ContactStabilised {
         let found = self.stepping.solve(force, gap, &state.contact_set)?;
         let displacement = plus(&predicted, 1.0, &found.change);
         let velocity = plus(&state.velocity, 2.0 / step, &found.change);
-        Ok(State {
-            steps: state.steps + 1,
-            momentum: problem.mass().mul(&velocity),
-            velocity,
-            acceleration: state.acceleration.clone(),
-            elastic: stiffness.mul(&displacement),
-            displacement,
-            multiplier: found.multiplier.iter().map(|lambda| lambda / 2.0).collect(),
-            contact_set: found.contact_set,
-        })
+        let multiplier = found.multiplier.iter().map(|lambda| lambda / 2.0).collect();
+        Ok(next(problem, state, [displacement, velocity], (multiplier, found.contact_set)))
     }
 }

@@ -19,7 +19,7 @@
 
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
-use crate::motion::step::{About, Advance, Found, Stepping, plus};
+use crate::motion::step::{About, Advance, Found, Stepping, next, plus};
 use crate::motion::{DynamicProblem, State};
 use crate::qp::Settings;
 use crate::qp::linear::{SparseMatrix, SymmetricMatrix, dot, largest};
@@ -168,20 +168,12 @@ impl Midpoint {
             .iter()
             .flat_map(|massless| &massless.dofs)
             .for_each(|&dof| displacement[dof] = state.displacement[dof]);
-        let mut next = State {
-            steps: state.steps + 1,
-            momentum: problem.mass().mul(&velocity),
-            velocity,
-            acceleration: state.acceleration.clone(),
-            elastic: problem.statics().stiffness().mul(&displacement),
-            displacement,
-            multiplier: found.multiplier.clone(),
-            contact_set: found.contact_set.clone(),
-        };
+        let contact = (found.multiplier.clone(), found.contact_set.clone());
+        let mut end = next(problem, state, [displacement, velocity], contact);
         if let Some(massless) = massless {
-            massless.settle(problem, step, &state.displacement, &mut next)?;
+            massless.settle(problem, step, &state.displacement, &mut end)?;
         }
-        Ok(next)
+        Ok(end)
     }
 
     /// The end of the step with the contact force that keeps the energy; `None` where the step to `next` keeps it, or no

@@ -12,7 +12,7 @@
 use super::projection::MassProjection;
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
-use crate::motion::step::{Advance, Stepping, plus};
+use crate::motion::step::{Advance, Stepping, next, plus};
 use crate::motion::{DynamicProblem, State};
 use crate::qp::Settings;
 
@@ -65,8 +65,8 @@ impl Advance for Newmark {
         let coasting = plus(&state.displacement, step, &state.velocity);
         let predicted = plus(&coasting, step * step * (0.5 - beta), &state.acceleration);
         let predicted_velocity = plus(&state.velocity, step * (1.0 - gamma), &state.acceleration);
-        let stiffness = problem.statics().stiffness();
-        let mut force = plus(&problem.load_at(time(state.steps + 1)), -1.0, &stiffness.mul(&predicted));
+        let elastic = problem.statics().stiffness().mul(&predicted);
+        let mut force = plus(&problem.load_at(time(state.steps + 1)), -1.0, &elastic);
         problem.damp(1.0, &predicted_velocity, &mut force);
         if alpha != 0.0 {
             let mut before = plus(&problem.load_at(time(state.steps)), -1.0, &state.elastic);
@@ -77,15 +77,8 @@ impl Advance for Newmark {
         let found = self.stepping.solve(force, gap, &state.contact_set)?;
         let displacement = plus(&predicted, 1.0, &found.change);
         let velocity = plus(&predicted_velocity, gamma / (beta * step), &found.change);
-        Ok(State {
-            steps: state.steps + 1,
-            momentum: problem.mass().mul(&velocity),
-            velocity,
-            acceleration: found.change.iter().map(|w| w / (beta * step * step)).collect(),
-            elastic: stiffness.mul(&displacement),
-            displacement,
-            multiplier: found.multiplier,
-            contact_set: found.contact_set,
-        })
+        let acceleration = found.change.iter().map(|w| w / (beta * step * step)).collect();
+        let contact = (found.multiplier, found.contact_set);
+        Ok(State { acceleration, ..next(problem, state, [displacement, velocity], contact) })
     }
 }

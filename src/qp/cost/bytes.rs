@@ -1,6 +1,6 @@
 //! The memory that a solve takes: one model, for a scene that is not built yet and for a problem that is.
 //!
-//! Every number is measured at the peak of the program (`tests/limits.rs`, `tests/kept_limits.rs`), and is meant to lie
+//! Every number is measured at the peak of the program (`tests/program/limits.rs`, `memory.rs`), and is meant to lie
 //! above it, by less than a factor of two.
 
 /// Bytes of a program that does nothing yet.

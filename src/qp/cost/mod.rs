@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::watch::Watch;
 use seconds::factor_seconds;
 
-/// Rigid motions of a body in space: its factor grows faster than that of a plane body.
+/// Rigid-body modes of a body in space: its factor grows faster than that of a plane body.
 const MOTIONS_IN_SPACE: usize = 6;
 
 /// Values of the factor of a bar for an unknown, about.

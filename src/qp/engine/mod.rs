@@ -24,10 +24,14 @@ use crate::qp::problem::ContactProblem;
 use crate::qp::settings::Settings;
 use crate::solution::ContactSet;
 
-/// Displacement and multiplier of `problem` with the rows of `closed` held at their gaps.
+/// Displacement and multiplier of a body with some rows held at their gaps and all others free.
+pub(super) type Held = Result<(Vec<f64>, Vec<f64>), Error>;
+
+/// Factorises `problem`; the function returned gives displacement and multiplier with the rows of a set held at their gaps.
 ///
 /// # Errors
-/// As [`with_contact_set`](super::with_contact_set).
-pub(super) fn with_contact_set(problem: &ContactProblem, closed: &ContactSet) -> Result<(Vec<f64>, Vec<f64>), Error> {
-    factored::Factored::new(problem, &Settings::default())?.with_contact_set(closed)
+/// As [`with_contact_sets`](super::with_contact_sets).
+pub(super) fn with_contact_sets(problem: &ContactProblem) -> Result<impl Fn(&ContactSet) -> Held, Error> {
+    let factored = factored::Factored::new(problem, &Settings::default())?;
+    Ok(move |closed: &ContactSet| factored.with_contact_set(closed))
 }

@@ -68,7 +68,7 @@ fn near_null(directory: &Path, dofs: usize) -> Result<Option<NearNullSpace>, Err
             );
             return Err(fault(file, message));
         }
-        (file, rigid_motions(&columns(content)))
+        (file, rigid_body_modes(&columns(content)))
     };
     NearNullSpace::new(vectors, dofs).map(Some).map_err(|error| fault(file, error.to_string()))
 }
@@ -84,7 +84,7 @@ fn columns(content: Content) -> Vec<Vec<f64>> {
 }
 
 /// Translations and rotations of nodes with the coordinates `axes`, node by node.
-fn rigid_motions(axes: &[Vec<f64>]) -> Vec<Vec<f64>> {
+fn rigid_body_modes(axes: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let (dimension, nodes) = (axes.len(), axes.first().map_or(0, Vec::len));
     let mut motions = vec![vec![0.0; dimension * nodes]; dimension];
     for (axis, motion) in motions.iter_mut().enumerate() {

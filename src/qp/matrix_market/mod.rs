@@ -2,7 +2,7 @@
 //!
 //! A problem directory holds `K.mtx` (symmetric), `f.mtx`, `B.mtx` and `g.mtx`; an answer adds `u.mtx` and `lambda.mtx`.
 //! Indices are the free dofs. A gap may be `inf`: a row without obstacle. Multigrid reads `near_null.mtx` (one column for
-//! each displacement that costs next to no energy, as the rigid motions) or `coordinates.mtx` (one row for each node).
+//! each displacement that costs next to no energy, as the rigid-body modes) or `coordinates.mtx` (one row for each node).
 //!
 //! # Source
 //! R. F. Boisvert, R. Pozo, K. A. Remington, *The Matrix Market Exchange Formats: Initial Design*, NISTIR 5935 (1996).

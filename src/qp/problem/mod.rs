@@ -95,7 +95,7 @@ impl ContactProblem {
     }
 
     /// The same problem with what multigrid should know of its body: displacements that cost next to no energy, as the
-    /// rigid motions.
+    /// rigid-body modes.
     ///
     /// # Errors
     /// [`Error::Length`] where they are not those of so many dofs.

@@ -30,10 +30,6 @@ fn unit_area() -> f64 {
 pub(super) const ABOUT: About = About { name: "bar", dimension: Some(1) };
 
 impl BodyShape for BarSpec {
-    fn about(&self) -> About {
-        ABOUT
-    }
-
     fn integration(&self) -> Integration {
         Integration::Standard
     }

@@ -56,10 +56,6 @@ pub struct BoxSpec {
 pub(super) const ABOUT: About = About { name: "box", dimension: Some(3) };
 
 impl BodyShape for BoxSpec {
-    fn about(&self) -> About {
-        ABOUT
-    }
-
     fn integration(&self) -> Integration {
         self.integration
     }

@@ -65,10 +65,6 @@ impl GmshSpec {
 }
 
 impl BodyShape for GmshSpec {
-    fn about(&self) -> About {
-        ABOUT
-    }
-
     fn integration(&self) -> Integration {
         self.integration
     }

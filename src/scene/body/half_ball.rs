@@ -55,18 +55,13 @@ pub enum SymmetrySpec {
 pub(super) const ABOUT: About = About { name: "half-ball", dimension: Some(3) };
 
 impl BodyShape for HalfBallSpec {
-    fn about(&self) -> About {
-        ABOUT
-    }
-
     fn integration(&self) -> Integration {
         self.integration
     }
 
     fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
         site.check_estimate(&self.block(None))?;
-        let of = |axis| if self.symmetric.contains(&axis) { Sides::Beyond } else { Sides::Both };
-        let sides = [SymmetrySpec::X, SymmetrySpec::Y].map(of);
+        let sides = [SymmetrySpec::X, SymmetrySpec::Y].map(|axis| Sides::of(self.symmetric.contains(&axis)));
         let lower = half_ball(self.centre, self.radius, &self.zone, sides)?;
         Ok(self.half.of(lower, 2, self.centre[2]))
     }

@@ -67,17 +67,27 @@ const ALL: [About; 8] = [
 ];
 
 impl BodySpec {
+    /// What the shape is called, and where it belongs.
+    pub(super) fn about(&self) -> About {
+        self.told().0
+    }
+
     /// The shape, whichever it is.
     pub(super) fn shape(&self) -> &dyn BodyShape {
+        self.told().1
+    }
+
+    /// What the shape is called, and the shape, whichever it is.
+    fn told(&self) -> (About, &dyn BodyShape) {
         match self {
-            BodySpec::Rectangle(spec) => spec,
-            BodySpec::Bar(spec) => spec,
-            BodySpec::Box(spec) => spec,
-            BodySpec::Disc(spec) => spec,
-            BodySpec::HalfDisc(spec) => spec,
-            BodySpec::HalfBall(spec) => spec,
-            BodySpec::Ring(spec) => spec,
-            BodySpec::Gmsh(spec) => spec,
+            BodySpec::Rectangle(spec) => (rectangle::ABOUT, spec),
+            BodySpec::Bar(spec) => (bar::ABOUT, spec),
+            BodySpec::Box(spec) => (cuboid::ABOUT, spec),
+            BodySpec::Disc(spec) => (disc::ABOUT, spec),
+            BodySpec::HalfDisc(spec) => (half_disc::ABOUT, spec),
+            BodySpec::HalfBall(spec) => (half_ball::ABOUT, spec),
+            BodySpec::Ring(spec) => (ring::ABOUT, spec),
+            BodySpec::Gmsh(spec) => (gmsh::ABOUT, spec),
         }
     }
 

@@ -37,10 +37,6 @@ pub struct RectangleSpec {
 pub(super) const ABOUT: About = About { name: "rectangle", dimension: Some(2) };
 
 impl BodyShape for RectangleSpec {
-    fn about(&self) -> About {
-        ABOUT
-    }
-
     fn integration(&self) -> Integration {
         self.integration
     }

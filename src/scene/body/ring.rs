@@ -37,10 +37,6 @@ pub struct RingSpec {
 pub(super) const ABOUT: About = About { name: "ring", dimension: Some(2) };
 
 impl BodyShape for RingSpec {
-    fn about(&self) -> About {
-        ABOUT
-    }
-
     fn integration(&self) -> Integration {
         self.integration
     }

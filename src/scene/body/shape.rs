@@ -23,8 +23,6 @@ pub(in crate::scene) struct About {
 
 /// A body shape with its numbers.
 pub(in crate::scene) trait BodyShape {
-    fn about(&self) -> About;
-
     /// How the stiffness is integrated.
     fn integration(&self) -> Integration;
 
@@ -92,6 +90,13 @@ pub enum Sides {
     Both,
     /// The part beyond the centre, which ends at a plane of symmetry.
     Beyond,
+}
+
+impl Sides {
+    /// What is meshed of a body that is cut at its plane of symmetry, or is not.
+    pub(super) fn of(is_cut: bool) -> Self {
+        if is_cut { Sides::Beyond } else { Sides::Both }
+    }
 }
 
 /// A block of cells that stands for the mesh of a body.

@@ -28,10 +28,6 @@ pub struct CircleSpec {
 pub(super) const ABOUT: About = About { name: "circle", dimensions: &[2] };
 
 impl ObstacleShape for CircleSpec {
-    fn about(&self) -> About {
-        ABOUT
-    }
-
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let radius = site.positive("radius", self.radius)?;
         let apex = site.apex(self.centre, self.apex, radius)?;

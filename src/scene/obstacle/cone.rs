@@ -23,10 +23,6 @@ pub struct ConeSpec {
 pub(super) const ABOUT: About = About { name: "cone", dimensions: &[3] };
 
 impl ObstacleShape for ConeSpec {
-    fn about(&self) -> About {
-        ABOUT
-    }
-
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let apex = site.point("apex", &self.apex)?;
         let slope = site.positive("slope", self.slope)?;

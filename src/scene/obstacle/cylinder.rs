@@ -34,10 +34,6 @@ pub struct CylinderSpec {
 pub(super) const ABOUT: About = About { name: "cylinder", dimensions: &[3] };
 
 impl ObstacleShape for CylinderSpec {
-    fn about(&self) -> About {
-        ABOUT
-    }
-
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let radius = site.positive("radius", self.radius)?;
         let apex = site.apex(self.centre, self.apex, radius)?;

@@ -28,10 +28,6 @@ pub struct FacingSpec {
 pub(super) const ABOUT: About = About { name: "body", dimensions: &[1, 2, 3] };
 
 impl ObstacleShape for FacingSpec {
-    fn about(&self) -> About {
-        ABOUT
-    }
-
     /// Finds the node of the other body across each candidate.
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let mesh = site.body.mesh();

@@ -35,10 +35,6 @@ pub struct HeightMapSpec {
 pub(super) const ABOUT: About = About { name: "height-map", dimensions: &[3] };
 
 impl ObstacleShape for HeightMapSpec {
-    fn about(&self) -> About {
-        ABOUT
-    }
-
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let map = HeightMap::new(self, site)?;
         check_reach(&map, site)?;

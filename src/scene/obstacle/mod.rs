@@ -81,25 +81,35 @@ const ALL: [About; 10] = [
 ];
 
 impl ShapeSpec {
+    /// What the shape is called, and where it belongs.
+    fn about(&self) -> About {
+        self.told().0
+    }
+
     /// The shape, whichever it is.
     pub(super) fn shape(&self) -> &dyn ObstacleShape {
+        self.told().1
+    }
+
+    /// What the shape is called, and the shape, whichever it is.
+    fn told(&self) -> (About, &dyn ObstacleShape) {
         match self {
-            ShapeSpec::Plane(spec) => spec,
-            ShapeSpec::Parabola(spec) => spec,
-            ShapeSpec::Circle(spec) => spec,
-            ShapeSpec::Wedge(spec) => spec,
-            ShapeSpec::Table(spec) => spec,
-            ShapeSpec::Sphere(spec) => spec,
-            ShapeSpec::Cylinder(spec) => spec,
-            ShapeSpec::Cone(spec) => spec,
-            ShapeSpec::HeightMap(spec) => spec,
-            ShapeSpec::Body(spec) => spec,
+            ShapeSpec::Plane(spec) => (plane::ABOUT, spec),
+            ShapeSpec::Parabola(spec) => (parabola::ABOUT, spec),
+            ShapeSpec::Circle(spec) => (circle::ABOUT, spec),
+            ShapeSpec::Wedge(spec) => (wedge::ABOUT, spec),
+            ShapeSpec::Table(spec) => (table::ABOUT, spec),
+            ShapeSpec::Sphere(spec) => (sphere::ABOUT, spec),
+            ShapeSpec::Cylinder(spec) => (cylinder::ABOUT, spec),
+            ShapeSpec::Cone(spec) => (cone::ABOUT, spec),
+            ShapeSpec::HeightMap(spec) => (height_map::ABOUT, spec),
+            ShapeSpec::Body(spec) => (facing::ABOUT, spec),
         }
     }
 
     /// Says that a model of `dimension` coordinates does not have the shape, and what there is instead; `None` if it has.
     fn misfit(&self, dimension: usize) -> Option<String> {
-        let about = self.shape().about();
+        let about = self.about();
         if about.dimensions.contains(&dimension) {
             return None;
         }

@@ -27,10 +27,6 @@ pub struct ParabolaSpec {
 pub(super) const ABOUT: About = About { name: "parabola", dimensions: &[2] };
 
 impl ObstacleShape for ParabolaSpec {
-    fn about(&self) -> About {
-        ABOUT
-    }
-
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let apex = site.point("apex", &self.apex)?;
         let radius = site.positive("radius", self.radius)?;

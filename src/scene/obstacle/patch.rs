@@ -80,10 +80,10 @@ impl Patch {
         (dot(to_node, along) / dot(along, along)).clamp(0.0, 1.0)
     }
 
-    fn foot(&self, node: [f64; 3], own: [f64; 2], on_edge: bool) -> Foot {
+    fn foot(&self, node: [f64; 3], own: [f64; 2]) -> Foot {
         let at = self.point(own);
         let way = [0, 1, 2].map(|axis| at[axis] - node[axis]);
-        Foot { at, distance: way[0].hypot(way[1]).hypot(way[2]), on_edge }
+        Foot { at, distance: way[0].hypot(way[1]).hypot(way[2]), on_edge: false }
     }
 
     /// The closest points of the four edges, and all points inside the cell that are closer than those around them.
@@ -96,10 +96,11 @@ impl Patch {
             .map(|edge| {
                 let (from, to) = (corners[edge], corners[(edge + 1) % 4]);
                 let t = self.along_segment(node, from, to);
-                self.foot(node, [0, 1].map(|axis| (1.0 - t) * from[axis] + t * to[axis]), true)
+                let own = [0, 1].map(|axis| (1.0 - t) * from[axis] + t * to[axis]);
+                Foot { on_edge: true, ..self.foot(node, own) }
             })
             .collect();
-        let at_v = |v: f64| self.foot(node, self.on_ruling(node, v), false).distance;
+        let at_v = |v: f64| self.foot(node, self.on_ruling(node, v)).distance;
         let strip = |index: usize| index as f64 / STRIPS as f64;
         let sampled: Vec<f64> = (0..=STRIPS).map(|index| at_v(strip(index))).collect();
         for index in 0..=STRIPS {
@@ -114,7 +115,7 @@ impl Patch {
                 if at_v(a) < at_v(b) { high = b } else { low = a }
             }
             let found = self.on_ruling(node, (low + high) / 2.0);
-            feet.extend(self.settled(node, found).map(|own| self.foot(node, own, false)));
+            feet.extend(self.settled(node, found).map(|own| self.foot(node, own)));
         }
         feet
     }
@@ -124,7 +125,7 @@ impl Patch {
     fn settled(&self, node: [f64; 3], start: [f64; 2]) -> Option<[f64; 2]> {
         let [a, b, c, d] = self.corners;
         let twist = a - b - c + d;
-        let distance = |own: [f64; 2]| self.foot(node, own, false).distance;
+        let distance = |own: [f64; 2]| self.foot(node, own).distance;
         // A distance is as exact as the coordinates that it comes from, however short it is.
         let far = [0, 1].map(|axis| self.low[axis] + self.size[axis]);
         let coordinates = node.iter().chain(&self.low).chain(&far).chain(&self.corners);

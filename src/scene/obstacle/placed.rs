@@ -44,7 +44,7 @@ impl PlacedObstacle {
         let shape = spec.shape.shape();
         let site = Site {
             obstacle: path,
-            path: format!("{path}.shape.{}", shape.about().name),
+            path: format!("{path}.shape.{}", spec.shape.about().name),
             boundary: &spec.boundary,
             approach: spec.approach,
             rule: spec.rule,

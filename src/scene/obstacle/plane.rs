@@ -53,10 +53,6 @@ impl PlaneSpec {
 }
 
 impl ObstacleShape for PlaneSpec {
-    fn about(&self) -> About {
-        ABOUT
-    }
-
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let (point, normal) = self.checked(site)?;
         if site.body.dimension() == 2 {

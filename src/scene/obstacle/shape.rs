@@ -21,8 +21,6 @@ pub(in crate::scene) struct About {
 
 /// An obstacle shape with its numbers.
 pub(in crate::scene) trait ObstacleShape {
-    fn about(&self) -> About;
-
     /// Checks the numbers, and puts the surface where it stands.
     fn place(&self, site: &Site) -> Result<Geometry, Error>;
 

@@ -27,10 +27,6 @@ pub struct SphereSpec {
 pub(super) const ABOUT: About = About { name: "sphere", dimensions: &[3] };
 
 impl ObstacleShape for SphereSpec {
-    fn about(&self) -> About {
-        ABOUT
-    }
-
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let radius = site.positive("radius", self.radius)?;
         let apex = site.apex(self.centre, self.apex, radius)?;

@@ -47,10 +47,6 @@ impl TableSpec {
 }
 
 impl ObstacleShape for TableSpec {
-    fn about(&self) -> About {
-        ABOUT
-    }
-
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let table = self.polyline(site)?;
         check_reach(&table, site)?;

@@ -23,10 +23,6 @@ pub struct WedgeSpec {
 pub(super) const ABOUT: About = About { name: "wedge", dimensions: &[2] };
 
 impl ObstacleShape for WedgeSpec {
-    fn about(&self) -> About {
-        ABOUT
-    }
-
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let apex = site.point("apex", &self.apex)?;
         let slope = site.positive("slope", self.slope)?;

@@ -3,14 +3,13 @@
 use std::collections::HashSet;
 
 use super::body::Numbers;
-use super::{Element, GmshFile};
+use super::{Element, GmshFile, OffBody};
 use crate::error::Error;
 use crate::fem::mesh::outline::chained;
 use crate::fem::mesh::{Boundary, Mesh};
 
-/// The boundaries of `mesh`, in the order of the file. Groups off the body are a fault, unless it is a part of the
-/// file.
-pub(super) fn of(file: &GmshFile, mesh: &Mesh, numbers: &Numbers, is_part: bool) -> Result<Vec<Boundary>, Error> {
+/// The boundaries of `mesh`, in the order of the file.
+pub(super) fn of(file: &GmshFile, mesh: &Mesh, numbers: &Numbers, off_body: &OffBody) -> Result<Vec<Boundary>, Error> {
     let dimension = mesh.dimension() - 1;
     let mut boundaries = Vec::new();
     for (_, name) in file.names_in_use().into_iter().filter(|(other, _)| *other == dimension) {
@@ -24,7 +23,7 @@ pub(super) fn of(file: &GmshFile, mesh: &Mesh, numbers: &Numbers, is_part: bool)
                 // Version 2.2 writes an element once for each of its groups.
                 Some(face) if known.insert(face) => connectivity.extend(nodes_of(mesh, face)),
                 Some(_) => {}
-                None if is_part => {}
+                None if matches!(off_body, OffBody::LeftOut) => {}
                 None => {
                     let message =
                         format!("element {} of the physical group `{name}` is no face of the body", facet.tag);

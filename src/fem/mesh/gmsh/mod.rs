@@ -87,6 +87,14 @@ struct Element<'a> {
     nodes: &'a [usize],
 }
 
+/// What becomes of facets of a group that are no faces of the body.
+enum OffBody {
+    /// They are a fault of the file.
+    Refused,
+    /// They are left out: the body is a part of the file.
+    LeftOut,
+}
+
 impl GmshFile {
     /// Reads a file.
     ///
@@ -134,7 +142,8 @@ impl GmshFile {
         }
         let body = body::Body::select(self, domain)?;
         let (mut mesh, numbers) = body.mesh(self, scale)?;
-        mesh.boundaries = boundaries::of(self, &mesh, &numbers, domain.is_some())?;
+        let off_body = if domain.is_some() { OffBody::LeftOut } else { OffBody::Refused };
+        mesh.boundaries = boundaries::of(self, &mesh, &numbers, &off_body)?;
         Ok(mesh)
     }
 

@@ -40,7 +40,7 @@ struct Transfer {
 
 impl Multigrid {
     /// The second level as a problem of its own; `None` if there is none, or if its unknowns are no values of nodes, as the
-    /// rigid motions of a body's aggregates.
+    /// rigid-body modes of a body's aggregates.
     pub fn coarser(&self) -> Option<Coarser> {
         match &self.levels {
             Levels::Single(hierarchy) => coarser_of(hierarchy, Levels::Single),

@@ -7,10 +7,10 @@ use crate::qp::linear::{SymmetricMatrix, dot, largest};
 /// A vector of which less than this is left after those before it are taken off follows from them.
 const DEPENDENT: f64 = 1e-8;
 
-/// The near-null space of a stiffness: for a body its rigid motions, for a scalar problem the constants.
+/// The near-null space of a stiffness: for a body its rigid-body modes, for a scalar problem the constants.
 ///
 /// One vector for each motion, one entry per free dof, linearly independent. Bodies that share no dof are carried by the
-/// same vectors, as rigid motions of all space.
+/// same vectors, as rigid-body modes of all space.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NearNullSpace {
     vectors: Vec<Vec<f64>>,

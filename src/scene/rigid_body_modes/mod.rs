@@ -1,4 +1,4 @@
-//! Rigid motions: which of them nothing resists, and their names.
+//! Rigid-body modes: which of them nothing resists, and their names.
 
 mod unit;
 
@@ -8,24 +8,24 @@ use super::parts::Parts;
 use super::rows::ContactRow;
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
-use unit::{NAMED, UnitMotions, dot};
+use unit::{NAMED, Sense, UnitMotions, dot};
 
 /// A motion is held where the singular value that belongs to it exceeds this times the largest; exact geometry gives
 /// zero to rounding, 1e-16, and any support or normal that a scene means is far above.
 const HELD: f64 = 1e-10;
 
-/// The rigid motions of the bodies of a model, each body moving for itself.
+/// The rigid-body modes of the bodies of a model, each body moving for itself.
 ///
 /// Amplitudes are the multiples of the unit motions, six for each body in turn.
 #[derive(Clone, Debug)]
-pub(super) struct RigidMotions {
+pub(super) struct RigidBodyModes {
     bodies: Vec<UnitMotions>,
     dimension: usize,
 }
 
-impl RigidMotions {
+impl RigidBodyModes {
     pub fn of(body: &ElasticBody) -> Self {
-        RigidMotions {
+        RigidBodyModes {
             bodies: body.regions().iter().map(|region| UnitMotions::of(body, region)).collect(),
             dimension: body.dimension(),
         }
@@ -63,16 +63,16 @@ impl RigidMotions {
         components
     }
 
-    /// Refuses bodies with a rigid motion that neither supports nor contact rows resist.
+    /// Refuses bodies with a rigid-body mode that neither supports nor contact rows resist.
     ///
     /// # Errors
     /// [`Error::UnderHeld`] that names every such motion.
     pub fn check_held(&self, parts: &Parts, rows: &[ContactRow]) -> Result<(), Error> {
         let free = self.free(parts, rows);
         let Some(first) = free.first() else { return Ok(()) };
-        let names: Vec<String> = free.iter().map(|motion| self.describe(motion, false)).collect();
+        let names: Vec<String> = free.iter().map(|motion| self.describe(motion, Sense::Either)).collect();
         let direction = parts.dofs.free().iter().map(|&dof| dot(&self.at_dof(parts, dof), first)).collect();
-        Err(Error::UnderHeld { motion: format!("{}: {}", names.join(", "), advice(!rows.is_empty())), direction })
+        Err(Error::UnderHeld { motion: format!("{}: {}", names.join(", "), advice(rows)), direction })
     }
 
     /// A basis of the motions that nothing resists: unit motions first.
@@ -120,7 +120,7 @@ impl RigidMotions {
         basis
     }
 
-    /// The name of the rigid motion next to a nodal motion (length `dim * n_nodes`), if every body moves rigidly.
+    /// The name of the rigid-body mode next to a nodal motion (length `dim * n_nodes`), if every body moves rigidly.
     pub fn name_of(&self, nodes: &[[f64; 3]], motion: &[f64]) -> Option<String> {
         if !motion.iter().all(|value| value.is_finite()) {
             return None;
@@ -133,18 +133,18 @@ impl RigidMotions {
             rest = rest.hypot(away);
         }
         let whole = dot(motion, motion).sqrt();
-        (rest <= NAMED * whole && whole > 0.0).then(|| self.describe(&amplitudes, true))
+        (rest <= NAMED * whole && whole > 0.0).then(|| self.describe(&amplitudes, Sense::Told))
     }
 
-    /// The name of a motion, body by body where there are several; `signed` where its sense matters.
-    fn describe(&self, amplitudes: &[f64], signed: bool) -> String {
+    /// The name of a motion, body by body where there are several.
+    fn describe(&self, amplitudes: &[f64], sense: Sense) -> String {
         let whole = dot(amplitudes, amplitudes).sqrt();
         let mut names = Vec::new();
         for (body, part) in self.bodies.iter().zip(amplitudes.as_chunks::<6>().0) {
             if dot(part, part).sqrt() <= NAMED * whole {
                 continue;
             }
-            let motion = body.describe(part, signed);
+            let motion = body.describe(part, sense);
             names.push(match body.name.as_str() {
                 _ if self.bodies.len() == 1 => motion,
                 "" => format!("{motion} of the first body"),
@@ -193,6 +193,6 @@ fn translations_first(motions: &[Vec<f64>]) -> Vec<Vec<f64>> {
 }
 
 /// What to do about a free motion.
-pub(super) fn advice(has_rows: bool) -> &'static str {
-    if has_rows { "a frictionless obstacle does not hold it, add a guide" } else { "add a support" }
+pub(super) fn advice(rows: &[ContactRow]) -> &'static str {
+    if rows.is_empty() { "add a support" } else { "a frictionless obstacle does not hold it, add a guide" }
 }

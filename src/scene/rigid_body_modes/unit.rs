@@ -1,4 +1,4 @@
-//! The unit rigid motions of one body, and the names of their combinations.
+//! The unit rigid-body modes of one body, and the names of their combinations.
 
 use std::ops::Range;
 
@@ -16,6 +16,13 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// Translations along x, y, z, and rotations about axes through the centre along x, y, z, as multiples of unit motions:
 /// a rotation is measured by the displacement that it gives at the distance `size` from the axis.
 pub(super) type Amplitudes = [f64; 6];
+
+/// Does the name of a motion tell which way it goes?
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Sense {
+    Told,
+    Either,
+}
 
 /// The unit motions of a body; its centre and size make them comparable.
 #[derive(Clone, Debug)]
@@ -85,11 +92,11 @@ impl UnitMotions {
         Some((amplitudes, (design * &fitted - &target).norm()))
     }
 
-    /// The name of a motion; `signed` where its sense matters.
-    pub fn describe(&self, &[x, y, z, a, b, c]: &Amplitudes, signed: bool) -> String {
+    /// The name of a motion.
+    pub fn describe(&self, &[x, y, z, a, b, c]: &Amplitudes, sense: Sense) -> String {
         let (shift, turn) = ([x, y, z], [a, b, c]);
         let (distance, angle) = (dot(&shift, &shift).sqrt(), dot(&turn, &turn).sqrt());
-        let sign = |part: f64| if signed && part < 0.0 { "-" } else { "" };
+        let sign = |part: f64| if sense == Sense::Told && part < 0.0 { "-" } else { "" };
         if angle <= NAMED * distance.hypot(angle) {
             return match along_one_axis(shift) {
                 Some(axis) => format!("translation along {}{}", sign(shift[axis]), AXES[axis]),

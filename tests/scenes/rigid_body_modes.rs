@@ -1,4 +1,4 @@
-//! Rigid motions: every body that is not held is caught before it is built, with its motion by name; none that is held is
+//! Rigid-body modes: every body that is not held is caught before it is built, with its motion by name; none that is held is
 //! refused. Rows that contradict each other are named with their Farkas weights, which are checked here by hand.
 
 use crate::oracles::Dense;

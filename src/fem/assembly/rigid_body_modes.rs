@@ -1,13 +1,13 @@
-//! The rigid motions of a body at its free dofs: what costs no energy but for the supports.
+//! The rigid-body modes of a body at its free dofs: what costs no energy but for the supports.
 
 use super::DofMap;
 use crate::fem::body::ElasticBody;
 
-/// The rigid motions at the free dofs, one vector each: the translations, then the rotations about the middle of the mesh,
+/// The rigid-body modes at the free dofs, one vector each: the translations, then the rotations about the middle of the mesh,
 /// over half its size so that all are dimensionless and of order one.
 ///
 /// A body of revolution is taken for its half plane: its cells do not know how far the axis is.
-pub fn rigid_motions(body: &ElasticBody, dofs: &DofMap) -> Vec<Vec<f64>> {
+pub fn rigid_body_modes(body: &ElasticBody, dofs: &DofMap) -> Vec<Vec<f64>> {
     let (mesh, dimension) = (body.mesh(), body.dimension());
     let (least, most) = mesh.extent();
     let size = mesh.size();

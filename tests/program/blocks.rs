@@ -1,0 +1,48 @@
+//! Scenes of a few hundred to some ten thousand dofs for the tests of memory and time.
+#![cfg(target_os = "linux")]
+
+use serde_json::{Value, json};
+
+/// A block of so many by so many cells, one unit high, under a parabola.
+pub fn block(cells: [usize; 2], element: &str) -> Value {
+    let width = cells[0] as f64 / cells[1] as f64;
+    let axis = |length: f64, cells: usize| json!({"points": [0, length], "divisions": [cells]});
+    json!({
+        "body": {"rectangle": {"x": axis(width, cells[0]), "y": axis(1.0, cells[1]), "element": element}},
+        "material": {"young": 1000, "poisson": 0.3},
+        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}],
+        "obstacles": [{"boundary": "top", "approach": "+y",
+            "shape": {"parabola": {"apex": [width / 2.0, 1], "radius": 1}}}],
+        "gap": -0.01
+    })
+}
+
+pub fn cube(cells: usize, element: &str) -> Value {
+    let axis = json!({"points": [0, 1], "divisions": [cells]});
+    json!({
+        "model": "space",
+        "body": {"box": {"x": axis, "y": axis, "z": axis, "element": element}},
+        "material": {"young": 1000, "poisson": 0.3},
+        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0, "z": 0}],
+        "obstacles": [{"boundary": "top", "approach": "+z",
+            "shape": {"sphere": {"apex": [0.5, 0.5, 1], "radius": 1}}}],
+        "gap": -0.01
+    })
+}
+
+/// A thin strip of stretched cells.
+pub fn strip(cells: usize) -> Value {
+    let mut strip = block([cells, 20], "q4");
+    let width = cells as f64 / 2000.0;
+    strip["body"]["rectangle"]["x"]["points"] = json!([0, width]);
+    strip["body"]["rectangle"]["y"]["points"] = json!([0, 0.5]);
+    strip["obstacles"][0]["shape"]["parabola"]["apex"] = json!([width / 2.0, 0.5]);
+    strip
+}
+
+/// The same, of a material that hardly changes its volume: a hierarchy is of no use, iterations on it stagnate.
+pub fn stiff_in_volume(cells: usize) -> Value {
+    let mut strip = strip(cells);
+    strip["material"]["poisson"] = json!(0.49999);
+    strip
+}

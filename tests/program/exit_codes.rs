@@ -1,0 +1,118 @@
+//! The exit code with which a command ends, and what a failure says in text and JSON.
+
+use crate::program::{Desk, Problem, example, matrix, scene};
+use crate::promised::is_answer;
+use serde_json::json;
+
+#[test]
+fn exit_code_1_means_bad_input() {
+    let desk = Desk::new();
+    desk.write("bad.json", "{}");
+    desk.run(&["solve", "nowhere.json"]).fails_with(1, &["cannot read nowhere.json"]);
+    desk.run(&["solve", "bad.json"]).fails_with(1, &["bad.json:1:2", "missing field `body`"]);
+    desk.run(&["compare", "bad.json"]).fails_with(1, &["missing field `body`"]);
+    desk.run(&["sweep", "bad.json", "--gaps", "0:1:2"]).fails_with(1, &["missing field `body`"]);
+    desk.run(&["export", "bad.json", "p"]).fails_with(1, &["missing field `body`"]);
+    assert!(!desk.path("p").exists(), "nothing is written of a scene that fails");
+}
+
+#[test]
+fn exit_code_2_means_usage_and_says_what_is_expected() {
+    let desk = Desk::new();
+    desk.write("block.json", scene().to_string());
+    for (arguments, phrase) in [
+        (&["frobnicate"][..], "unrecognized subcommand 'frobnicate'"),
+        (&["solve"], "<INPUT>"),
+        (&["solve", "block.json", "--frob"], "unexpected argument '--frob'"),
+        (&["solve", "block.json", "other.json"], "unexpected argument 'other.json'"),
+        (&["solve", "block.json", "--method", "newton"], "auto, qp, active-set, penalty"),
+        (&["solve", "block.json", "--format", "yaml"], "text, json"),
+        (&["solve", "block.json", "--tolerance", "tiny"], "a positive number, as 1e-9"),
+        (&["solve", "block.json", "--tolerance", "-1"], "a positive number, as 1e-9"),
+        (&["compare", "block.json", "--tolerance", "0"], "a positive number, as 1e-9"),
+        (&["sweep", "block.json", "--gaps", "0:1:2", "--tolerance", "nan"], "a positive number, as 1e-9"),
+        (&["verify", "p", "--displacement", "u", "--multiplier", "l", "--tolerance", "inf"], "a positive number"),
+        (&["solve", "block.json", "--out", ""], "--out <DIR>"),
+        (&["compare"], "<INPUT>"),
+        (&["sweep", "block.json"], "--gaps <FIRST:LAST:COUNT>"),
+        (&["sweep", "block.json", "--gaps", "-0.01:-0.10"], "FIRST:LAST:COUNT, as -0.01:-0.10:10"),
+        (&["sweep", "block.json", "--gaps", "a:1:2"], "`a` is not a finite number"),
+        (&["sweep", "block.json", "--gaps", "0:inf:2"], "`inf` is not a finite number"),
+        (&["sweep", "block.json", "--gaps", "0:1:0"], "whole number from 1 to 10000"),
+        (&["sweep", "block.json", "--gaps", "0:1:1e9"], "whole number from 1 to 10000"),
+        (&["sweep", "block.json", "--gaps", "0:1:1"], "one gap cannot be both 0 and 1"),
+        (&["export", "block.json"], "<DIRECTORY>"),
+        (&["verify", "p"], "--displacement <u.mtx>"),
+        (&["schema", "block.json"], "unexpected argument"),
+    ] {
+        let run = desk.run(arguments).ends_with(2);
+        assert!(run.stdout.is_empty() && run.stderr.contains(phrase), "{arguments:?}: {}", run.stderr);
+    }
+}
+
+#[test]
+fn exit_code_3_means_that_there_is_no_one_solution() {
+    let desk = Desk::new();
+    let cases = [
+        ("infeasible", Problem::infeasible(), "contact rows 0 and 1 oppose each other"),
+        ("unbounded", Problem::unbounded(), "dof 1"),
+        ("under_held", Problem::under_held(), "held by neither supports nor obstacle"),
+    ];
+    for (status, problem, phrase) in cases {
+        desk.problem(status, &problem);
+        for command in ["solve", "compare"] {
+            let run = desk.run(&[command, status, "--format", "json"]).fails_with(3, &[phrase]);
+            assert_eq!(run.json()["status"], status);
+        }
+    }
+    let mut loose = scene();
+    loose["supports"] = json!([{"on": {"boundary": "left"}, "y": 0}]);
+    desk.write("loose.json", loose.to_string());
+    for arguments in [&["solve", "loose.json"][..], &["sweep", "loose.json", "--gaps", "0:1:2"]] {
+        desk.run(arguments).fails_with(3, &["translation along x", "add a guide"]);
+    }
+    let mut squeezed = scene();
+    let below =
+        json!({"boundary": "top", "approach": "-y", "shape": {"plane": {"point": [0, 0.5], "normal": [0, -1]}}});
+    squeezed["obstacles"].as_array_mut().unwrap().push(below);
+    desk.write("squeezed.json", squeezed.to_string());
+    desk.run(&["solve", "squeezed.json"]).fails_with(3, &["infeasible", "no room between obstacles[0]"]);
+}
+
+#[test]
+fn exit_code_4_means_an_answer_that_is_not_certified() {
+    let desk = Desk::new();
+    let run = desk.run(&["solve", &example("indentation"), "--method", "penalty", "--format", "json"]);
+    let run = run.fails_with(4, &["not certified", "above the tolerance 1.0e-9 (penalty after 12 iterations)"]);
+    is_answer(&run.json(), true);
+    assert_eq!(run.json()["status"], "not_certified");
+    let strict = desk.run(&["solve", &example("indentation"), "--tolerance", "1e-30"]);
+    // What is left of the error is rounding of the displacement to doubles, and the report says so.
+    let strict = strict.ends_with(0);
+    assert!(strict.stdout.contains("certified to 1.0e-30"), "{}", strict.stdout);
+    assert!(strict.stdout.contains("explained by rounding the displacement to double precision"), "{}", strict.stdout);
+    let loose = ["--method", "penalty", "--tolerance", "1e-12"];
+    let loose = desk.run(&[&["solve", &example("indentation")][..], &loose].concat());
+    let loose = loose.fails_with(4, &["not certified: ", "above the tolerance 1.0e-12"]);
+    assert!(loose.stdout.contains("NOT certified to 1.0e-12"), "{}", loose.stdout);
+}
+
+#[test]
+fn failures_in_json_are_one_object_with_status_and_message() {
+    let desk = Desk::new();
+    desk.write("bad.json", "{");
+    let indefinite = matrix("symmetric", "2 2", &["1 1 1", "2 1 -3", "2 2 1"]);
+    desk.problem("indefinite", &Problem { k: indefinite, ..Problem::right() });
+    for (arguments, status) in [
+        (&["solve", "bad.json"][..], "bad_input"),
+        (&["compare", "bad.json"], "bad_input"),
+        (&["sweep", "bad.json", "--gaps", "0:1:2"], "bad_input"),
+        (&["solve", "indefinite"], "not_convex"),
+        (&["verify", "nowhere", "--displacement", "u", "--multiplier", "l"], "bad_input"),
+    ] {
+        let run = desk.run(&[arguments, &["--format", "json"]].concat()).fails_with(1, &[]);
+        let report = run.json();
+        assert_eq!(report["status"], status);
+        assert_eq!(run.stderr, format!("error: {}\n", report["message"].as_str().unwrap()));
+    }
+}

@@ -1,0 +1,173 @@
+//! A limit of memory is kept: the peak stays below it, and a refusal names the least that suffices.
+#![cfg(target_os = "linux")]
+
+use std::fs;
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+use crate::blocks::{block, cube, stiff_in_volume, strip};
+use crate::program::Desk;
+use serde_json::Value;
+use signorini::internals::bytes::{START, of_problem};
+use signorini::qp::{Condense, Prepared};
+use signorini::{Error, Method, Scene, Settings, solve};
+
+/// Exit code, standard error, and the largest resident size in bytes of a run of the program.
+fn measured(desk: &Desk, arguments: &[&str]) -> (i32, String, f64) {
+    let mut child = desk.command(arguments).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+    let status = format!("/proc/{}/status", child.id());
+    let mut peak = 0.0_f64;
+    while child.try_wait().unwrap().is_none() {
+        let text = fs::read_to_string(&status).unwrap_or_default();
+        let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+        let kilobytes = line.and_then(|line| line.split_whitespace().next()?.parse::<f64>().ok());
+        peak = peak.max(1024.0 * kilobytes.unwrap_or(0.0));
+        std::thread::sleep(Duration::from_micros(200));
+    }
+    let output = child.wait_with_output().unwrap();
+    (output.status.code().expect("an exit code, no signal"), String::from_utf8(output.stderr).unwrap(), peak)
+}
+
+#[test]
+fn the_peak_of_memory_stays_below_the_limit_and_a_limit_refuses_or_certifies() {
+    let desk = Desk::new();
+    let scenes = [
+        block([80, 80], "q4"),
+        block([300, 6], "q4"),
+        block([40, 40], "q8"),
+        cube(9, "hex8"),
+        strip(400),
+        stiff_in_volume(400),
+    ];
+    let (mut solved, mut refused) = (0, 0);
+    for (number, scene) in scenes.iter().enumerate() {
+        let name = format!("scene{number}.json");
+        desk.write(&name, scene.to_string());
+        for options in ["--method auto", "--method auto --no-condense", "--method qp --no-condense", "--method mprgp"] {
+            // What fails without a limit may fail with one.
+            let free: Vec<&str> = ["solve", &name].into_iter().chain(options.split(' ')).collect();
+            let (without, ..) = measured(&desk, &free);
+            for megabytes in [30, 45, 65, 90] {
+                let limit = format!("{megabytes}MB");
+                let (code, said, peak) = measured(&desk, &[&free[..], &["--max-memory", &limit]].concat());
+                let run = format!("{name} {options} {limit}: code {code}, {:.1} MB, {said}", peak / 1e6);
+                assert!(peak <= 1e6 * f64::from(megabytes), "{run}");
+                match code {
+                    1 => refused += 1,
+                    code => {
+                        assert_eq!(code, without, "{run}");
+                        solved += 1;
+                    }
+                }
+            }
+        }
+    }
+    assert!(solved > 30 && refused > 10, "{solved} solved, {refused} refused");
+}
+
+/// Where memory is short the factor of the stiffness makes room for those of the contact sets, and is made again.
+#[test]
+fn the_least_memory_that_a_refusal_tells_suffices() {
+    let desk = Desk::new();
+    desk.write("strip.json", stiff_in_volume(800).to_string());
+    let solve = ["solve", "strip.json", "--format", "json"];
+    let free = desk.run(&solve).ends_with(0).json();
+    let refused = desk.run(&[&solve[..], &["--max-memory", "50MB"]].concat()).ends_with(1).stderr;
+    let told = refused.split_once("a factor of the stiffness it takes about ").unwrap_or_else(|| panic!("{refused}")).1;
+    let megabytes = told.split(' ').next().unwrap().parse::<f64>().unwrap() + 1.0;
+    let limit = format!("{megabytes}MB");
+    let (code, said, peak) = measured(&desk, &[&solve[..], &["--max-memory", &limit]].concat());
+    assert!(code == 0 && peak <= 1e6 * megabytes && peak > 0.5e6 * megabytes, "{limit}: {code}, {peak:e}, {said}");
+    let within = desk.run(&[&solve[..], &["--max-memory", &limit]].concat()).ends_with(0).json();
+    assert_eq!(within["model"]["condensed_dofs"], within["model"]["dofs"]);
+    assert_eq!(within["contact"]["count"], free["contact"]["count"]);
+    let bound = |report: &Value| report["certificate"]["energy_error_bound"].as_f64().unwrap();
+    assert!(bound(&within) <= 1e-9 && bound(&free) <= 1e-9);
+}
+
+#[test]
+fn a_limit_of_memory_tries_what_fits_and_tells_what_failed() {
+    let problem =
+        Scene::from_json(&stiff_in_volume(800).to_string(), "strip").unwrap().build().unwrap().problem().clone();
+    let within = |memory: f64| {
+        let mut settings = Settings::default();
+        settings.memory = Some(memory);
+        solve(&problem, &settings)
+    };
+    let free = solve(&problem, &Settings::default()).unwrap();
+    assert!(free.attempts.is_empty() && free.condensed_dofs < problem.dofs());
+    assert!(matches!(solve(&problem, &Settings::with_method(Method::Mprgp)), Err(Error::NotCertified { .. })));
+    let (mut on_all_dofs, mut refused_after_multigrid) = (0, 0);
+    for megabytes in (25..60).step_by(5).chain((60..300).step_by(20)) {
+        match within(1e6 * f64::from(megabytes)) {
+            Ok(found) => {
+                assert_eq!(found.contact_set, free.contact_set);
+                on_all_dofs += usize::from(found.condensed_dofs == problem.dofs());
+            }
+            Err(Error::NoRoom { factor, multigrid, allowed, ended }) => {
+                assert!(factor > allowed);
+                assert_eq!(multigrid > allowed, ended.is_none());
+                if let Some(ended) = ended {
+                    assert!(ended.starts_with("stationarity is "), "{ended}");
+                    refused_after_multigrid += 1;
+                }
+            }
+            Err(error) => panic!("{megabytes} MB: {error}"),
+        }
+    }
+    assert!(on_all_dofs > 0 && refused_after_multigrid > 0, "{on_all_dofs}, {refused_after_multigrid}");
+}
+
+#[test]
+fn a_refusal_names_the_least_memory_that_suffices() {
+    for scene in [strip(300), block([60, 60], "q4"), block([40, 40], "q8")] {
+        let problem = Scene::from_json(&scene.to_string(), "scene").unwrap().build().unwrap().problem().clone();
+        for condense in [Condense::Auto, Condense::Never] {
+            let prepared = |memory: f64| {
+                let mut settings = Settings::default();
+                (settings.condense, settings.memory) = (condense, Some(memory));
+                Prepared::new(&problem, &settings)
+            };
+            let entries = 2 * problem.stiffness().lower().entries() - problem.dofs();
+            let mut memory = START + 1.01 * of_problem(problem.dofs() as f64, entries as f64);
+            let mut refusals = 0;
+            while let Err(error) = prepared(memory) {
+                let Error::TooLarge { bytes, .. } = error else { panic!("{error}") };
+                assert!(bytes > memory && refusals < 4, "{bytes} of {memory}");
+                (memory, refusals) = (1.0001 * bytes, refusals + 1);
+            }
+            assert!(refusals > 0);
+            assert!(matches!(prepared(0.99 * memory), Err(Error::TooLarge { .. })), "less than {memory} is enough");
+        }
+    }
+}
+
+/// In an address space of any size a run ends with an answer or with one sentence.
+#[test]
+fn where_memory_cannot_be_had_the_program_says_so_and_ends() {
+    let desk = Desk::new();
+    let scenes = [block([120, 120], "q4"), cube(12, "hex8"), strip(600)];
+    let mut codes = [0, 0];
+    for (number, scene) in scenes.iter().enumerate() {
+        desk.write(&format!("scene{number}.json"), scene.to_string());
+        for options in ["", "--no-condense", "--method qp --no-condense", "--method mprgp"] {
+            for megabytes in [40, 90, 110, 130, 150, 180, 220, 270] {
+                let program = env!("CARGO_BIN_EXE_signorini");
+                let script = format!("ulimit -v {megabytes}000; exec '{program}' solve scene{number}.json {options}");
+                let output = Command::new("sh").args(["-c", &script]).current_dir(desk.path(".")).output().unwrap();
+                let said = String::from_utf8(output.stderr).unwrap();
+                let run = format!("scene {number} {options} {megabytes} MB: {:?}, {said}", output.status);
+                match output.status.code() {
+                    Some(1) => {
+                        assert!(said.starts_with("error: ") && said.lines().count() == 1, "{run}");
+                        codes[1] += 1;
+                    }
+                    Some(0) => codes[0] += 1,
+                    Some(4) if options.contains("mprgp") => {}
+                    _ => panic!("{run}"),
+                }
+            }
+        }
+    }
+    assert!(codes.iter().all(|&count| count > 10), "{codes:?}");
+}

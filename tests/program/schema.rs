@@ -1,0 +1,108 @@
+//! The printed schema of a scene: every example conforms to it.
+
+use std::fs;
+
+use crate::program::{Desk, example, examples, scene};
+use serde_json::{Value, json};
+
+/// Does `value` have the form of `schema`? As far as the words that the schema of a scene uses.
+fn conforms(value: &Value, schema: &Value, root: &Value) -> Result<(), String> {
+    let keys = |value: &Value| value.as_object().map(|map| map.keys().cloned().collect::<Vec<_>>()).unwrap_or_default();
+    for word in keys(schema) {
+        let known = [
+            "$defs",
+            "$ref",
+            "$schema",
+            "title",
+            "description",
+            "default",
+            "format",
+            "minimum",
+            "type",
+            "const",
+            "enum",
+            "oneOf",
+            "anyOf",
+            "items",
+            "minItems",
+            "maxItems",
+            "properties",
+            "required",
+            "additionalProperties",
+        ];
+        assert!(known.contains(&word.as_str()), "the test does not know the word `{word}`");
+    }
+    if let Some(reference) = schema["$ref"].as_str() {
+        let target = root.pointer(reference.trim_start_matches('#')).ok_or("a reference to nothing")?;
+        conforms(value, target, root)?;
+    }
+    if let Some(kinds) = schema.get("type") {
+        let is = |kind: &Value| match kind.as_str() {
+            Some("object") => value.is_object(),
+            Some("array") => value.is_array(),
+            Some("string") => value.is_string(),
+            Some("number") => value.is_number(),
+            Some("integer") => value.is_u64(),
+            Some("null") => value.is_null(),
+            _ => false,
+        };
+        if !kinds.as_array().map_or_else(|| is(kinds), |kinds| kinds.iter().any(is)) {
+            return Err(format!("{value} is not of type {kinds}"));
+        }
+    }
+    if schema.get("const").is_some_and(|constant| constant != value) {
+        return Err(format!("{value} is not {}", schema["const"]));
+    }
+    if schema["enum"].as_array().is_some_and(|choices| !choices.contains(value)) {
+        return Err(format!("{value} is none of {}", schema["enum"]));
+    }
+    for (word, allowed) in [("oneOf", 1..=1), ("anyOf", 1..=usize::MAX)] {
+        if let Some(choices) = schema[word].as_array() {
+            let fitting = choices.iter().filter(|choice| conforms(value, choice, root).is_ok()).count();
+            if !allowed.contains(&fitting) {
+                return Err(format!("{value} fits {fitting} of {word}"));
+            }
+        }
+    }
+    if let (Some(items), Some(of)) = (value.as_array(), schema.get("items")) {
+        items.iter().try_for_each(|item| conforms(item, of, root))?;
+        let bounds = [schema["minItems"].as_u64().unwrap_or(0), schema["maxItems"].as_u64().unwrap_or(u64::MAX)];
+        if !(bounds[0]..=bounds[1]).contains(&(items.len() as u64)) {
+            return Err(format!("{value} has {} items", items.len()));
+        }
+    }
+    let mut required = schema["required"].as_array().filter(|_| value.is_object()).into_iter().flatten();
+    if let Some(missing) = required.find(|key| value.get(key.as_str().unwrap()).is_none()) {
+        return Err(format!("{missing} is missing"));
+    }
+    for key in keys(value) {
+        match schema["properties"].get(&key) {
+            Some(of) => conforms(&value[&key], of, root).map_err(|error| format!("{key}: {error}"))?,
+            None if schema["additionalProperties"] == false => return Err(format!("unknown {key}")),
+            None => {}
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn every_example_conforms_to_the_printed_schema_and_a_misspelt_one_does_not() {
+    let schema = Desk::new().run(&["schema"]).ends_with(0).json();
+    for name in examples() {
+        let scene: Value = serde_json::from_str(&fs::read_to_string(example(&name)).unwrap()).unwrap();
+        conforms(&scene, &schema, &schema).unwrap_or_else(|error| panic!("{name}: {error}"));
+    }
+    conforms(&scene(), &schema, &schema).unwrap();
+    for (pointer, value) in [
+        ("/material", json!({"young": 1e7, "nu": 0.3})),
+        ("/body", json!({"blob": {}})),
+        ("/supports/0/on", json!("bottom")),
+        ("/obstacles/0/approach", json!("up")),
+        ("/loads/0", json!({"traction": {"boundary": "top"}})),
+        ("/gap", json!("0")),
+    ] {
+        let mut wrong = scene();
+        *wrong.pointer_mut(pointer).unwrap() = value;
+        assert!(conforms(&wrong, &schema, &schema).is_err(), "{pointer}");
+    }
+}

@@ -1,0 +1,138 @@
+//! A limit of time is kept, and attempts that failed count in it and are named.
+#![cfg(target_os = "linux")]
+
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+use crate::blocks::{block, strip};
+use crate::program::Desk;
+use serde_json::{Value, json};
+use signorini::{Error, Method, Scene, Settings, Watch, solve};
+
+#[test]
+fn time_of_failed_attempts_counts_and_they_are_named() {
+    // A factor in single precision is too poor for so slender cells.
+    let problem = Scene::from_json(&strip(300).to_string(), "strip").unwrap().build().unwrap().problem().clone();
+    let mut settings = Settings::for_accuracy(1e-30);
+    settings.precision = signorini::qp::Precision::Mixed;
+    let Err(Error::NotCertified { solution, .. }) = solve(&problem, &settings) else { panic!("1e-30 is out of reach") };
+    let tried: f64 = solution.attempts.iter().map(|attempt| attempt.seconds).sum();
+    assert_eq!(solution.attempts.len(), 1, "{:?}", solution.attempts);
+    let attempt = &solution.attempts[0];
+    assert!(attempt.method == "active-set" && attempt.reason.contains("single precision"), "{attempt:?}");
+    assert!(tried > 0.0 && solution.seconds.solve > tried, "{tried} of {:?}", solution.seconds);
+}
+
+#[test]
+fn a_step_that_is_estimated_to_take_longer_than_there_is_time_does_not_begin() {
+    let watch = Watch::default();
+    // Without a deadline everything may begin.
+    assert!(watch.allows(1e9) && watch.keeping(1e9).time_left().is_none());
+    let hour = watch.within(3600.0);
+    assert!(hour.allows(3000.0) && !hour.allows(4000.0));
+    // An hour less ten minutes for one more step.
+    let left = hour.keeping(600.0).time_left().unwrap();
+    assert!((2900.0..=3000.0).contains(&left), "{left}");
+    assert!(hour.keeping(4000.0).is_over() && !hour.is_over());
+    // What took at least a hundred times its estimate makes all that follows take as much longer.
+    hour.timed(0.001, || std::thread::sleep(Duration::from_millis(100)));
+    assert!(hour.needed(1.0) >= 100.0 && !hour.allows(36.0) && !watch.within(3600.0).allows(36.0));
+    assert!(hour.unhurried().allows(1e9));
+}
+
+#[test]
+fn no_way_begins_a_step_that_its_time_does_not_suffice_for() {
+    let model = Scene::from_json(&block([60, 60], "q4").to_string(), "block").unwrap().build().unwrap();
+    for method in [Method::Auto, Method::qp(), Method::ActiveSet, Method::penalty(), Method::Mprgp] {
+        for condense in [signorini::qp::Condense::Auto, signorini::qp::Condense::Never] {
+            // On a machine where everything takes a million times as long, a minute is nothing.
+            let mut settings = Settings::within(Duration::from_secs(60));
+            (settings.method, settings.condense, settings.tolerance) = (method, condense, 1e-6);
+            let fast = solve(model.problem(), &settings).unwrap();
+            assert!(fast.iterations > 0);
+            settings.watch = Watch::default();
+            settings.watch.learn(1e6);
+            settings.time = Some(Duration::from_secs(60));
+            match solve(model.problem(), &settings) {
+                Err(Error::NotCertified { solution, value, tolerance, .. }) => {
+                    assert_eq!((solution.method.as_str(), solution.iterations), ("none", 0));
+                    assert!(value > tolerance && tolerance > 30.0, "{value} of {tolerance}");
+                }
+                other => panic!("{method:?}: {:?}", other.map(|found| found.method)),
+            }
+        }
+    }
+}
+
+/// A flat strip of Q8 cells that touches with all its rows: the bound on its boundary takes longer than all else.
+fn touching(cells: usize) -> Value {
+    let mut scene = block([cells, 2], "q8");
+    scene["obstacles"][0]["shape"] = json!({"plane": {"point": [0, 1], "normal": [0, 1]}});
+    scene
+}
+
+#[test]
+fn a_certificate_that_is_asked_to_end_leaves_a_weaker_bound() {
+    let model = Scene::from_json(&touching(300).to_string(), "touching").unwrap().build().unwrap();
+    let solved = |stops: bool| {
+        let began = Arc::new(Mutex::new(None));
+        let seen = began.clone();
+        let mut settings = Settings::with_method(Method::ActiveSet);
+        settings.watch = Watch::observed(move |watch| {
+            if watch.activity().step == "certificate" {
+                seen.lock().unwrap().get_or_insert_with(Instant::now);
+                if stops {
+                    watch.stop();
+                }
+            }
+        });
+        let solution = match solve(model.problem(), &settings) {
+            Err(Error::NotCertified { solution, .. }) => *solution,
+            found => found.unwrap(),
+        };
+        let seconds = began.lock().unwrap().unwrap().elapsed().as_secs_f64();
+        (solution, seconds)
+    };
+    let ((whole, patient), (cut, hurried)) = (solved(false), solved(true));
+    assert_eq!((&cut.displacement, &cut.multiplier), (&whole.displacement, &whole.multiplier));
+    assert!(cut.certificate.conditions_hold(1e-9), "{:?}", cut.certificate);
+    assert!(cut.certificate.energy_error_bound >= whole.certificate.energy_error_bound);
+    assert!(hurried < 0.5 * patient, "{hurried} s of {patient} s");
+}
+
+#[test]
+fn an_answer_comes_by_a_fifth_more_than_its_time() {
+    // Of the machine: other tests run beside this one.
+    const DELAY: f64 = 1.5;
+    let desk = Desk::new();
+    desk.write("touching.json", touching(1000).to_string());
+    desk.write("fine.json", block([120, 120], "q8").to_string());
+    desk.write("strip.json", strip(1000).to_string());
+    for scene in ["touching.json", "fine.json", "strip.json"] {
+        for time in [0.1, 1.0, 5.0] {
+            let clock = Instant::now();
+            let run = desk.run(&["solve", scene, "--time", &time.to_string(), "--format", "json"]);
+            let seconds = clock.elapsed().as_secs_f64();
+            assert!([0, 4].contains(&run.code), "{scene}: {}", run.stderr);
+            assert!(seconds <= 1.2 * time + DELAY, "{scene}: {seconds} s of {time} s");
+        }
+    }
+}
+
+#[test]
+fn a_failed_attempt_stands_in_the_report_with_its_time_and_its_reason() {
+    let desk = Desk::new();
+    desk.write("strip.json", strip(300).to_string());
+    let arguments = ["solve", "strip.json", "--precision", "mixed"];
+    let text = desk.run(&arguments).ends_with(0).stdout;
+    assert!(text.contains("also tried: active-set, "), "{text}");
+    assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
+    let report = desk.run(&[&arguments[..], &["--format", "json"]].concat()).ends_with(0).json();
+    let attempt = &report["attempts"][0];
+    assert!(attempt["method"] == "active-set" && attempt["reason"].as_str().unwrap().contains("single precision"));
+    let seconds = |value: &Value| value.as_f64().unwrap();
+    assert!(seconds(&report["seconds"]["total"]) > seconds(&attempt["seconds"]), "{report}");
+    // What needs but one attempt tells of none.
+    let report = desk.run(&["solve", "strip.json", "--format", "json"]).ends_with(0).json();
+    assert!(report.get("attempts").is_none(), "{report}");
+}
