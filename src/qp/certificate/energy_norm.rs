@@ -279,6 +279,11 @@ impl Boundary {
         self.block.forward(b)
     }
 
+    /// Upper bounds on the sums of magnitudes of each column of `L_tt^-1`.
+    pub fn sums_of_inverse(&self) -> Vec<f64> {
+        self.block.sums_of_inverse()
+    }
+
     /// `L_tt'^-1 y`.
     pub fn backward(&self, y: Vec<f64>) -> Vec<f64> {
         self.block.backward(y)

@@ -67,7 +67,8 @@ impl ContactProblem {
         let wide_error = norm.widening() * error;
         // One solve is worth it if it saves sweeps.
         let may_solve = rows > FEW_ROWS && !norm.is_over();
-        let reach = if may_solve { self.monotone_reach(|s| Some(norm.displacement(s))) } else { None };
+        let at_once = || halves.reach_at_once().or_else(|| self.monotone_reach(|s| Some(norm.displacement(s))));
+        let reach = if may_solve { at_once() } else { None };
         let mut open = self.open_by(&answer, wide_error, reach);
         let least = self.least_reach();
         let doubtful: Vec<(usize, f64)> = self
@@ -232,6 +233,14 @@ impl<'a> Halves<'a> {
         }
         let half = self.half(row);
         ldexp(dot(&half, &half), self.norm.factor()).sqrt()
+    }
+
+    /// Upper bounds on the reach of all rows by one sweep, where the contact boundary is known: the length of a column is at most
+    /// the sum of its magnitudes.
+    fn reach_at_once(&self) -> Option<Vec<f64>> {
+        let sums = self.norm.boundary().filter(|_| self.on_boundary)?.sums_of_inverse();
+        let of_row = |row: &Vec<(usize, f64)>| row.iter().map(|&(place, b)| b.abs() * sums[place]).sum::<f64>();
+        Some(self.rows.iter().map(|row| ldexp(of_row(row).powi(2), self.norm.factor()).sqrt()).collect())
     }
 
     /// Multiplications of one sweep.

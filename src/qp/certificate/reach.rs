@@ -23,7 +23,7 @@ use crate::qp::problem::ContactProblem;
 use crate::watch::Watch;
 
 /// Steps of power iteration for the largest eigenvalue of M D.
-const POWER_STEPS: usize = 6;
+const POWER_STEPS: usize = 3;
 
 /// What the quotient of two measured eigenvalues may be off by.
 const SAFETY: f64 = 4.0;

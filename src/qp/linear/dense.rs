@@ -72,6 +72,21 @@ impl LowerTriangle {
         y
     }
 
+    /// Upper bounds on the sums of magnitudes of each column of `L^-1`, by one sweep: no entry of the inverse is larger than that
+    /// of the triangle with the magnitudes of L on the diagonal and less those of L below.
+    ///
+    /// # Source
+    /// N. J. Higham, *Accuracy and Stability of Numerical Algorithms*, SIAM (2002), section 8.2: the comparison matrix.
+    pub fn sums_of_inverse(&self) -> Vec<f64> {
+        let mut sums = vec![1.0; self.size];
+        for j in (0..self.size).rev() {
+            let column = self.column(j);
+            let below: f64 = column[1..].iter().zip(&sums[j + 1..]).map(|(l, sum)| l.abs() * sum).sum();
+            sums[j] = (1.0 + below) / column[0].abs();
+        }
+        sums
+    }
+
     /// `L x`.
     pub fn mul(&self, x: &[f64]) -> Vec<f64> {
         let mut product = vec![0.0; self.size];
@@ -207,6 +222,8 @@ mod tests {
         assert_eq!((l.mul(&[1.0, 2.0]), l.mul_transposed(&[1.0, 2.0])), (vec![2.0, 7.0], vec![4.0, 6.0]));
         assert_eq!((l.forward(vec![2.0, 7.0]), l.backward(vec![4.0, 6.0])), (vec![1.0, 2.0], vec![1.0, 2.0]));
         assert_eq!(l.forward(vec![0.0, 6.0]), [0.0, 2.0]);
+        // The inverse of [[2, 0], [1, 3]] is [[1/2, 0], [-1/6, 1/3]].
+        assert_eq!(l.sums_of_inverse(), [(1.0 + 1.0 / 3.0) / 2.0, 1.0 / 3.0]);
         assert_eq!(l.times_transpose(), [4.0, 2.0, 0.0, 10.0]);
     }
 
