@@ -280,3 +280,30 @@ impl<'a> Halves<'a> {
 fn ldexp_root(x: f64, e: i32) -> f64 {
     ldexp(if e.rem_euclid(2) == 1 { x * std::f64::consts::SQRT_2 } else { x }, e.div_euclid(2))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::qp::linear::SymmetricMatrix;
+
+    /// A chain of springs of both signs across, with a row `b u_i - u_(i-1) <= 1` at every fifth of its 50 dofs.
+    #[test]
+    fn the_reach_of_all_rows_by_one_sweep_is_above_that_of_each() {
+        let dofs = 50;
+        let stiff = |i: usize| 3.0 + (i % 7) as f64;
+        let mut entries: Vec<_> = (0..dofs).map(|i| (i, i, stiff(i))).collect();
+        entries.extend((1..dofs).map(|i| (i, i - 1, if i % 3 == 0 { 1.0 } else { -1.4 })));
+        let stiffness =
+            SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &entries).unwrap()).unwrap();
+        let rows: Vec<_> = (0..9).flat_map(|r| [(r, 5 * r + 1, 2.0), (r, 5 * r, -1.0)]).collect();
+        let contact = SparseMatrix::from_triplets(9, dofs, &rows).unwrap();
+        let problem = ContactProblem::new(stiffness, vec![1.0; dofs], contact, vec![1.0; 9]).unwrap();
+        let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
+        let halves = Halves::of(&problem, &norm);
+        let at_once = halves.reach_at_once().unwrap();
+        for (row, &bound) in at_once.iter().enumerate() {
+            let exact = halves.reach(row);
+            assert!(bound >= exact && bound < 10.0 * exact, "row {row}: {bound} {exact}");
+        }
+    }
+}

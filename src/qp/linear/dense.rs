@@ -222,8 +222,11 @@ mod tests {
         assert_eq!((l.mul(&[1.0, 2.0]), l.mul_transposed(&[1.0, 2.0])), (vec![2.0, 7.0], vec![4.0, 6.0]));
         assert_eq!((l.forward(vec![2.0, 7.0]), l.backward(vec![4.0, 6.0])), (vec![1.0, 2.0], vec![1.0, 2.0]));
         assert_eq!(l.forward(vec![0.0, 6.0]), [0.0, 2.0]);
-        // The inverse of [[2, 0], [1, 3]] is [[1/2, 0], [-1/6, 1/3]].
-        assert_eq!(l.sums_of_inverse(), [(1.0 + 1.0 / 3.0) / 2.0, 1.0 / 3.0]);
+        // The inverse of [[2, 0], [l, 3]] is [[1/2, 0], [-l/6, 1/3]].
+        for below in [1.0, -1.0] {
+            let l = LowerTriangle::new(2, vec![2.0, below, 9.0, 3.0]);
+            assert_eq!(l.sums_of_inverse(), [(1.0 + 1.0 / 3.0) / 2.0, 1.0 / 3.0]);
+        }
         assert_eq!(l.times_transpose(), [4.0, 2.0, 0.0, 10.0]);
     }
 
