@@ -53,7 +53,9 @@ def active_set_loop(problem: Problem) -> Answer:
             raise Cycled(f"singular matrix with {closed.sum()} closed rows")
         penetration = -problem.slack(answer.displacement)
         length = np.max(np.abs(answer.displacement), initial=0.0)
-        pressing = answer.multiplier < SIGN_TOLERANCE * np.max(np.abs(answer.multiplier), initial=0.0)
+        # Beside the load: where the only multiplier is zero, rounding of it must not count as a force.
+        force = max(np.max(np.abs(answer.multiplier), initial=0.0), np.max(np.abs(problem.load), initial=0.0))
+        pressing = answer.multiplier < -SIGN_TOLERANCE * force
         following = np.where(closed, pressing, penetration > SIGN_TOLERANCE * length)
         if np.array_equal(following, closed):
             return answer
