@@ -16,7 +16,8 @@
 
 use std::collections::HashSet;
 
-use super::{Holding, Outcome, SIGN_TOLERANCE, ScaledProblem, Solver, Start, multiplier_rounding};
+use super::earlier_factor::{BoundedDofs, EarlierFactor, TRIAL, steps_for_a_factor};
+use super::{FreeMotion, Holding, Outcome, SIGN_TOLERANCE, ScaledProblem, Solver, Start, multiplier_rounding};
 use crate::error::Error;
 use crate::qp::linear::{Cholesky, largest};
 use crate::qp::problem::ContactProblem;
@@ -24,7 +25,7 @@ use crate::solution::{ContactSet, Iteration};
 
 /// Weight of the closed rows in K + w B_C'B_C, on a diagonal of order one: every correction of the multipliers gains
 /// about four digits, and the factorisation loses as many.
-const WEIGHT: f64 = 65536.0;
+pub(super) const WEIGHT: f64 = 65536.0;
 
 /// Free motions that may be stopped, where there are fewer rows.
 const MOST_STOPS: usize = 100;
@@ -74,12 +75,13 @@ impl Solver for ActiveSet<'_> {
         let mut rule = Rule::Exchange;
         let mut settled = false;
         let mut stops = 0;
+        let mut balances = Balances::of_sets(scaled);
         let is_over = |done: usize| done > 0 && scaled.watch().is_over();
         while !settled && history.len() + stops < self.most_iterations && !is_over(history.len()) {
             scaled.watch().step("active set", history.len() + 1);
-            let cholesky = match scaled.hold(&closed, WEIGHT)? {
-                Holding::Held(cholesky) => cholesky,
-                Holding::Free(motion) => match scaled.stopping_rows(&motion, &displacement, &closed) {
+            let balance = match balances.of(&closed, &displacement)? {
+                Balance::Held(balance) => balance,
+                Balance::Free(motion) => match scaled.stopping_rows(&motion, &displacement, &closed) {
                     // A motion that rows stop again and again must not keep the loop alive.
                     Some(stopped) if stops < MOST_STOPS.max(rows) => {
                         stops += 1;
@@ -90,7 +92,6 @@ impl Solver for ActiveSet<'_> {
                     None => return Err(motion.into_error()),
                 },
             };
-            let balance = equilibrium(scaled.problem, &cholesky, &closed);
             history.push(Iteration { contact_set: closed.clone(), penalty: 0.0 });
             if !balance.consistent {
                 break;
@@ -113,6 +114,53 @@ impl Solver for ActiveSet<'_> {
         multiplier.iter_mut().for_each(|value| *value = value.min(0.0));
         let (iterations, variant) = (history.len(), rule.variant(settled));
         Ok(Outcome { displacement, multiplier, contact_set: closed, iterations, history, settled, variant })
+    }
+}
+
+/// The balances of the sets of a loop: by the factor of an earlier set while that takes few steps, else each by its own.
+struct Balances<'a> {
+    scaled: &'a ScaledProblem<'a>,
+    most_steps: usize,
+    /// Where K is definite, every row bounds one dof, and a factor is dear.
+    bounded: Option<BoundedDofs>,
+    earlier: Option<EarlierFactor>,
+}
+
+/// The balance of a set, or the motion that it leaves free.
+enum Balance {
+    Held(Equilibrium),
+    Free(FreeMotion),
+}
+
+impl<'a> Balances<'a> {
+    fn of_sets(scaled: &'a ScaledProblem<'a>) -> Self {
+        let most_steps = steps_for_a_factor(scaled.augmented.analysis());
+        let pays = scaled.definite && most_steps >= TRIAL;
+        let bounded = pays.then(|| BoundedDofs::of(scaled.problem.contact())).flatten();
+        Balances { scaled, most_steps, bounded, earlier: None }
+    }
+
+    /// The balance of `closed`, whose displacement is about `near`.
+    ///
+    /// # Errors
+    /// As [`ScaledProblem::hold`].
+    fn of(&mut self, closed: &ContactSet, near: &[f64]) -> Result<Balance, Error> {
+        let problem = self.scaled.problem;
+        if let (Some(bounded), Some(factor)) = (&self.bounded, &self.earlier)
+            && let Some(balance) = factor.balance(problem, (bounded, closed), near, self.most_steps)
+        {
+            return Ok(Balance::Held(balance));
+        }
+        // There is room for one factor at a time.
+        self.earlier = None;
+        Ok(match self.scaled.hold(closed, WEIGHT)? {
+            Holding::Held(cholesky) => {
+                let balance = equilibrium(problem, &cholesky, closed);
+                self.earlier = self.bounded.as_ref().map(|bounded| EarlierFactor::new(cholesky, bounded, closed));
+                Balance::Held(balance)
+            }
+            Holding::Free(motion) => Balance::Free(motion),
+        })
     }
 }
 

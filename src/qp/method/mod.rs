@@ -5,6 +5,7 @@
 pub mod active_set;
 mod bounds;
 pub mod dual_active_set;
+mod earlier_factor;
 mod holding;
 pub mod interior_point;
 pub mod mprgp;
@@ -15,8 +16,8 @@ mod start;
 use std::cell::Cell;
 use std::time::Instant;
 
-pub use holding::Holding;
 pub(crate) use holding::WORK_TOLERANCE;
+pub use holding::{FreeMotion, Holding};
 pub use start::Start;
 
 use crate::error::Error;

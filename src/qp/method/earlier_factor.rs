@@ -1,0 +1,252 @@
+//! Balance of forces on a set of closed rows, by conjugate gradients with the factor of an earlier set.
+//!
+//! From one set of an active-set loop to the next few rows change sides. Where every row bounds one dof, the dofs that are
+//! free in both sets take the earlier factor for their inverse, and those that became free their own diagonal: a few steps
+//! cost less than a factorisation.
+
+use super::active_set::Equilibrium;
+use crate::qp::linear::{Analysis, Cholesky, SparseMatrix, dot, subtract};
+use crate::qp::problem::ContactProblem;
+use crate::solution::ContactSet;
+
+/// Multiplications of a factorisation, for each value of the factor, that take about as long as a step.
+const WORK_OF_STEP: f64 = 10.0;
+
+/// Steps for one set, however dear a factor is: beyond, rounding of the conjugate directions costs more of them.
+const MOST_STEPS: f64 = 25.0;
+
+/// Steps after which the rate so far tells whether the rest will do.
+pub const TRIAL: usize = 4;
+
+/// Energy of what is left, over that of the displacement, at which the residual is computed anew.
+const ENOUGH: f64 = 1e-28;
+
+/// The same, at which a balance is as good as that of a factor of its own.
+const ACCEPTED: f64 = 1e-24;
+
+/// A residual that is computed anew and keeps this share of the energy before is rounding.
+const NO_GAIN: f64 = 0.1;
+
+/// Steps that take as long as a factorisation, about.
+pub fn steps_for_a_factor(analysis: &Analysis) -> usize {
+    let values = analysis.factor_entries().max(1) as f64;
+    (analysis.multiplications() / (WORK_OF_STEP * values)).min(MOST_STEPS) as usize
+}
+
+/// The dof that every row bounds, with its coefficient.
+pub struct BoundedDofs {
+    dofs: usize,
+    of_rows: Vec<(usize, f64)>,
+}
+
+impl BoundedDofs {
+    /// `None` where a row has several entries, or none.
+    pub fn of(contact: &SparseMatrix) -> Option<Self> {
+        let by_row = contact.transposed();
+        let single = |row| {
+            let mut entries = by_row.column(row).filter(|entry| entry.1 != 0.0);
+            entries.next().filter(|_| entries.next().is_none())
+        };
+        let of_rows = (0..contact.rows()).map(single).collect::<Option<Vec<_>>>()?;
+        Some(BoundedDofs { dofs: contact.columns(), of_rows })
+    }
+
+    /// Where a set of rows holds dofs; `None` where two rows hold one.
+    fn held(&self, gap: &[f64], closed: &ContactSet) -> Option<Vec<Option<f64>>> {
+        let mut held = vec![None; self.dofs];
+        for row in closed.iter() {
+            let (dof, coefficient) = self.of_rows[row];
+            if held[dof].replace(gap[row] / coefficient).is_some() {
+                return None;
+            }
+        }
+        Some(held)
+    }
+}
+
+/// The factor of a set of closed rows that bound one dof each.
+pub struct EarlierFactor {
+    /// That of K + w B_C'B_C, with a large w.
+    cholesky: Cholesky,
+    /// Is a dof held in that set?
+    held: Vec<bool>,
+}
+
+impl EarlierFactor {
+    /// The factor of K + w B_C'B_C for the set C, with a large w.
+    pub fn new(cholesky: Cholesky, bounded: &BoundedDofs, closed: &ContactSet) -> Self {
+        let mut held = vec![false; bounded.dofs];
+        closed.iter().for_each(|row| held[bounded.of_rows[row].0] = true);
+        EarlierFactor { cholesky, held }
+    }
+
+    /// The balance with the rows of `closed` at their gaps, from a displacement `near` it; `None` where that would take more than
+    /// `most_steps`, or where two of the rows hold one dof.
+    pub fn balance(
+        &self,
+        problem: &ContactProblem,
+        (bounded, closed): (&BoundedDofs, &ContactSet),
+        near: &[f64],
+        most_steps: usize,
+    ) -> Option<Equilibrium> {
+        let held = bounded.held(problem.gap(), closed)?;
+        let mut u: Vec<f64> = held.iter().zip(near).map(|(held, &near)| held.unwrap_or(near)).collect();
+        let energy = dot(&u, &problem.stiffness().mul(&u));
+        let task = Task { factor: self, problem, held: &held, diagonal: &problem.stiffness().diagonal(), most_steps };
+        let (mut steps, mut last) = (0, f64::INFINITY);
+        let force = loop {
+            let force = task.force(&u);
+            let residual = task.on_free(&force);
+            let direction = task.preconditioned(&residual);
+            let left = dot(&residual, &direction);
+            if left <= ENOUGH * energy || left > NO_GAIN * last {
+                break if left <= ACCEPTED * energy { force } else { return None };
+            }
+            last = left;
+            task.descend(&mut u, residual, direction, ENOUGH * energy, &mut steps)?;
+        };
+        let mut multiplier = vec![0.0; problem.rows()];
+        for row in closed.iter() {
+            let (dof, coefficient) = bounded.of_rows[row];
+            multiplier[row] = -force[dof] / coefficient;
+        }
+        Some(Equilibrium { displacement: u, multiplier, consistent: true })
+    }
+}
+
+/// A set whose balance is looked for.
+struct Task<'a> {
+    factor: &'a EarlierFactor,
+    problem: &'a ContactProblem,
+    held: &'a [Option<f64>],
+    diagonal: &'a [f64],
+    most_steps: usize,
+}
+
+impl Task<'_> {
+    /// f - K u, on all dofs.
+    fn force(&self, u: &[f64]) -> Vec<f64> {
+        self.problem.stiffness().mul(u).iter().zip(self.problem.load()).map(|(elastic, load)| load - elastic).collect()
+    }
+
+    fn on_free(&self, force: &[f64]) -> Vec<f64> {
+        force.iter().zip(self.held).map(|(&force, held)| if held.is_some() { 0.0 } else { force }).collect()
+    }
+
+    /// The earlier factor on the dofs that are free in both sets, the diagonal on those that became free.
+    fn preconditioned(&self, residual: &[f64]) -> Vec<f64> {
+        let was_held = &self.factor.held;
+        let known: Vec<f64> = residual.iter().zip(was_held).map(|(&r, &held)| if held { 0.0 } else { r }).collect();
+        let mut step = self.factor.cholesky.solve(&known);
+        for (dof, step) in step.iter_mut().enumerate() {
+            *step = match (self.held[dof], was_held[dof]) {
+                (Some(_), _) => 0.0,
+                (None, true) => residual[dof] / self.diagonal[dof],
+                (None, false) => *step,
+            };
+        }
+        step
+    }
+
+    /// Conjugate gradients until the energy that is left falls to `enough`; `None` where that takes too many steps.
+    fn descend(
+        &self,
+        u: &mut [f64],
+        mut residual: Vec<f64>,
+        mut direction: Vec<f64>,
+        enough: f64,
+        steps: &mut usize,
+    ) -> Option<()> {
+        let first = dot(&residual, &direction);
+        let mut left = first;
+        let mut taken = 0;
+        while left > enough {
+            *steps += 1;
+            taken += 1;
+            let elastic = self.on_free(&self.problem.stiffness().mul(&direction));
+            let length = left / dot(&direction, &elastic);
+            subtract(u, -length, &direction);
+            subtract(&mut residual, length, &elastic);
+            let step = self.preconditioned(&residual);
+            let next = dot(&residual, &step);
+            direction.iter_mut().zip(&step).for_each(|(d, &step)| *d = step + next / left * *d);
+            left = next;
+            let expected = taken as f64 * (first / enough).ln() / (first / left).ln();
+            let is_slow = taken >= TRIAL && left > enough && !(expected <= self.most_steps as f64 && left < first);
+            if is_slow || *steps > self.most_steps || !left.is_finite() {
+                return None;
+            }
+        }
+        Some(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::qp::linear::{AugmentedMatrix, SymmetricMatrix, largest};
+    use crate::qp::method::active_set::{WEIGHT, equilibrium};
+
+    const SIDE: usize = 12;
+
+    /// Seven points on a cube under a load, with a row `-2 u_i <= g_i` for every dof.
+    fn poisson() -> ContactProblem {
+        let at = |i: usize, j: usize, k: usize| (k * SIDE + j) * SIDE + i;
+        let dofs = SIDE.pow(3);
+        let mut entries: Vec<_> = (0..dofs).map(|dof| (dof, dof, 6.0)).collect();
+        for own in 0..dofs {
+            let (i, j, k) = (own % SIDE, own / SIDE % SIDE, own / SIDE / SIDE);
+            let near = [(i + 1, j, k), (i, j + 1, k), (i, j, k + 1)];
+            let inside = near.into_iter().filter(|&(a, b, c)| a < SIDE && b < SIDE && c < SIDE);
+            entries.extend(inside.map(|(a, b, c)| (at(a, b, c), own, -1.0)));
+        }
+        let stiffness =
+            SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &entries).unwrap()).unwrap();
+        let rows: Vec<_> = (0..dofs).map(|dof| (dof, dof, -2.0)).collect();
+        let contact = SparseMatrix::from_triplets(dofs, dofs, &rows).unwrap();
+        let gap = (0..dofs).map(|dof| 1.0 + 0.1 * (dof as f64).sin()).collect();
+        ContactProblem::new(stiffness, vec![-0.1; dofs], contact, gap).unwrap()
+    }
+
+    fn factor(problem: &ContactProblem, closed: &ContactSet) -> Cholesky {
+        let augmented = AugmentedMatrix::new(problem.stiffness(), problem.contact()).unwrap();
+        augmented.factor(augmented.matrix(|row| if closed.contains(row) { WEIGHT } else { 0.0 }, 0.0)).unwrap()
+    }
+
+    #[test]
+    fn rows_that_change_sides_are_balanced_as_by_a_factor_of_their_own() {
+        let problem = poisson();
+        let bounded = BoundedDofs::of(problem.contact()).unwrap();
+        let first = ContactSet::from_fn(problem.rows(), |row| row % 7 == 0);
+        let by_first = equilibrium(&problem, &factor(&problem, &first), &first);
+        let earlier = EarlierFactor::new(factor(&problem, &first), &bounded, &first);
+        // Some open, some close, none changes.
+        for changes in [97, 31, usize::MAX] {
+            let other = ContactSet::from_fn(problem.rows(), |row| (row % 7 == 0) != (row % changes == 21 % changes));
+            let found = earlier.balance(&problem, (&bounded, &other), &by_first.displacement, 25).unwrap();
+            let exact = equilibrium(&problem, &factor(&problem, &other), &other);
+            for (found, exact) in [(&found.displacement, &exact.displacement), (&found.multiplier, &exact.multiplier)] {
+                let off: Vec<f64> = found.iter().zip(exact).map(|(a, b)| a - b).collect();
+                // 1e-11: the energy to 1e-12, and the condition number of the lattice, 60.
+                assert!(largest(&off) < 1e-11 * largest(exact), "{changes}: {:e}", largest(&off));
+            }
+        }
+    }
+
+    #[test]
+    fn what_would_take_many_steps_or_holds_a_dof_twice_is_left_to_a_factor() {
+        let problem = poisson();
+        let bounded = BoundedDofs::of(problem.contact()).unwrap();
+        let none = ContactSet::open(problem.rows());
+        let free = equilibrium(&problem, &factor(&problem, &none), &none);
+        let earlier = EarlierFactor::new(factor(&problem, &none), &bounded, &none);
+        let checkered = ContactSet::from_fn(problem.rows(), |row| row % 2 == 0);
+        assert!(earlier.balance(&problem, (&bounded, &checkered), &free.displacement, TRIAL).is_none());
+        // A dof between two walls, both of them closed.
+        let twice = SparseMatrix::from_triplets(2, 1, &[(0, 0, 1.0), (1, 0, -1.0)]).unwrap();
+        let both = BoundedDofs::of(&twice).unwrap();
+        assert!(both.held(&[1.0, 1.0], &ContactSet::closed(2)).is_none());
+        let slanted = SparseMatrix::from_triplets(1, 2, &[(0, 0, 1.0), (0, 1, 1.0)]).unwrap();
+        assert!(BoundedDofs::of(&slanted).is_none());
+    }
+}
