@@ -26,7 +26,7 @@ fn graded(cells: usize, ratio: f64, towards: f64) -> Value {
 
 fn built(axes: [Value; 3], held: &str, height: f64, gap: f64) -> Result<ContactProblem, Error> {
     let [x, y, z] = axes;
-    let scene = json!({
+    scene(json!({
         "model": "space",
         "body": {"box": {"x": x, "y": y, "z": z, "element": "hex8"}},
         "material": {"young": 1e7, "poisson": 0.3},
@@ -34,8 +34,7 @@ fn built(axes: [Value; 3], held: &str, height: f64, gap: f64) -> Result<ContactP
         "obstacles": [{"boundary": "top", "approach": "+z", "rule": "approach",
                        "shape": {"sphere": {"apex": [0.5, 0.5, height], "radius": 2}}}],
         "gap": gap
-    });
-    Ok(Scene::from_json(&scene.to_string(), "kind")?.build()?.problem().clone())
+    }))
 }
 
 /// A thin slab, clamped at its left side, under a sphere.
@@ -52,4 +51,49 @@ pub fn block(cells: usize) -> Result<ContactProblem, Error> {
 pub fn graded_block(cells: usize, ratio: f64) -> Result<ContactProblem, Error> {
     let across = || graded(cells, ratio, 0.5);
     built([across(), across(), graded(cells, ratio, 1.0)], "bottom", 1.0, -0.01)
+}
+
+/// A slender bar of Hex8, clamped at one end, bent over a sphere at half its length.
+pub fn bar(cells: usize) -> Result<ContactProblem, Error> {
+    scene(json!({
+        "model": "space",
+        "body": {"box": {"x": even(16.0, cells), "y": even(1.0, 10), "z": even(1.0, 10), "element": "hex8"}},
+        "material": {"young": 1e7, "poisson": 0.2},
+        "supports": [{"on": {"boundary": "left"}, "x": 0, "y": 0, "z": 0}],
+        "loads": [{"body-force": [0, 0, 3e3]}],
+        "obstacles": [{"boundary": "top", "approach": "+z", "rule": "closest-point",
+                       "shape": {"sphere": {"apex": [8, 0.5, 1.02], "radius": 3}}}]
+    }))
+}
+
+/// A thin, nearly incompressible layer in the plane, of Q8, under a wide round punch.
+pub fn soft_layer(cells: usize) -> Result<ContactProblem, Error> {
+    scene(json!({
+        "model": "plane-strain",
+        "body": {"rectangle": {"x": even(4.0, cells), "y": even(0.2, cells / 20), "element": "q8"}},
+        "material": {"young": 1e6, "poisson": 0.49},
+        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}],
+        "obstacles": [{"boundary": "top", "approach": "+y", "shape": {"circle": {"apex": [2, 0.2], "radius": 20}}}],
+        "gap": -0.01
+    }))
+}
+
+/// A nearly incompressible cube of Hex8 on rollers, pressed down between two plates.
+pub fn jelly(cells: usize) -> Result<ContactProblem, Error> {
+    scene(json!({
+        "model": "space",
+        "body": {"box": {"x": even(1.0, cells), "y": even(1.0, cells), "z": even(1.0, cells), "element": "hex8"}},
+        "material": {"young": 1e6, "poisson": 0.48},
+        "supports": [{"on": {"boundary": "bottom"}, "z": 0}, {"on": {"boundary": "left"}, "x": 0},
+                     {"on": {"boundary": "front"}, "y": 0}],
+        "loads": [{"pressure": {"boundary": "top", "value": 1e5}}],
+        "obstacles": [{"boundary": "right", "approach": "+x",
+                       "shape": {"plane": {"point": [1.02, 0, 0], "normal": [1, 0, 0]}}},
+                      {"boundary": "back", "approach": "+y",
+                       "shape": {"plane": {"point": [0, 1.01, 0], "normal": [0, 1, 0]}}}]
+    }))
+}
+
+fn scene(scene: Value) -> Result<ContactProblem, Error> {
+    Ok(Scene::from_json(&scene.to_string(), "kind")?.build()?.problem().clone())
 }

@@ -1,5 +1,6 @@
 //! Seconds and iterations of every method on problems of other fields:
-//! `cargo run --release --example kinds [-- --only NAME,NAME] [--methods auto,mprgp] [--seconds N] [--peers]`.
+//! `cargo run --release --example kinds [-- --only NAME,NAME] [--methods auto,mprgp] [--seconds N] [--peers]`; with `--unseen` on
+//! kinds that nothing was fitted to, with `--scenes FOLDER` on the scenes of a folder, such as those of `reference/parts.py`.
 //!
 //! A line of `ratios` follows each kind: the time of `auto` over that of our fastest method, and, with `--peers` and petsc4py, over
 //! that of PETSc's fastest and of one linear solve there.
@@ -8,13 +9,16 @@ mod bodies;
 mod floors;
 mod peers;
 mod problems;
+mod unseen;
 
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use peers::{Interpreter, Peer};
-use problems::KINDS;
-use signorini::{ContactSet, Error, Method, Settings, Solution, solve};
+use problems::{KINDS, Kind};
+use signorini::{ContactProblem, ContactSet, Error, Method, Scene, Settings, Solution, solve};
+use unseen::UNSEEN;
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -22,60 +26,93 @@ fn main() -> ExitCode {
         let place = arguments.iter().position(|word| word == name);
         place.and_then(|place| arguments.get(place + 1)).map_or_else(|| otherwise.to_string(), String::clone)
     };
-    let only = option("--only", "");
+    let has = |name: &str| arguments.iter().any(|word| word == name);
+    let (only, names) = (option("--only", ""), option("--methods", "auto,mprgp,active-set"));
     let most: f64 = option("--seconds", "60").parse().unwrap_or(60.0);
-    let names = option("--methods", "auto,mprgp,active-set");
-    let methods = [Method::Auto, Method::Mprgp, Method::ActiveSet, Method::qp(), Method::penalty()];
-    let interpreter = if arguments.iter().any(|word| word == "--peers") { Interpreter::find() } else { None };
+    let interpreter = if has("--peers") { Interpreter::find() } else { None };
+    let tasks = match option("--scenes", "").as_str() {
+        "" if has("--unseen") => UNSEEN.into_iter().map(Task::from).collect(),
+        "" => KINDS.into_iter().map(Task::from).collect(),
+        folder => match scenes(Path::new(folder)) {
+            Ok(tasks) => tasks,
+            Err(error) => {
+                eprintln!("{folder}: {error}");
+                return ExitCode::FAILURE;
+            }
+        },
+    };
     println!(
-        "{:16} {:10} {:>8} {:>8}  {:22} {:>9} {:>9} {:>7} {:>7} {:>9}",
-        "kind", "method", "unknowns", "rows", "by", "s", "factor s", "its", "closed", "undecided"
+        "{:16} {:10} {:>8} {:>8}  {:22} {:>9} {:>9} {:>9} {:>7} {:>7} {:>9}",
+        "kind", "method", "unknowns", "rows", "by", "s", "factor s", "proof s", "its", "closed", "undecided"
     );
-    for kind in KINDS.iter().filter(|kind| only.is_empty() || only.split(',').any(|name| name == kind.name)) {
-        let problem = match (kind.make)() {
-            Ok(problem) => problem,
-            Err(error) => {
-                eprintln!("{}: {error}", kind.name);
-                return ExitCode::FAILURE;
-            }
-        };
-        let mut reference: Option<ContactSet> = None;
-        let mut certified: Vec<(Method, f64)> = Vec::new();
-        for method in methods.into_iter().filter(|method| names.split(',').any(|name| name == method.name())) {
-            for proof in [false, true] {
-                let mut settings = Settings::within(Duration::from_secs_f64(most));
-                settings.method = method;
-                settings.prove = proof;
-                let clock = Instant::now();
-                let found = solve(&problem, &settings);
-                let seconds = clock.elapsed().as_secs_f64();
-                let name = if proof { format!("{}+proof", method.name()) } else { method.name().to_string() };
-                let start = format!("{:16} {name:10}", kind.name);
-                match &found {
-                    Ok(solution) => {
-                        print_answer(&start, solution, seconds, "", &mut reference);
-                        if proof {
-                            certified.push((method, seconds));
-                        }
-                    }
-                    Err(Error::NotCertified { solution, condition, value, .. }) => {
-                        let remark = format!("NOT certified: {condition} {value:.1e}");
-                        print_answer(&start, solution, seconds, &remark, &mut reference);
-                    }
-                    Err(error) => println!("{start} {seconds:>9.3} {error}"),
-                }
-            }
+    for task in tasks.iter().filter(|task| only.is_empty() || only.split(',').any(|name| name == task.name)) {
+        if let Err(message) = measure(task, &names, most, interpreter.as_ref()) {
+            eprintln!("{}: {message}", task.name);
+            return ExitCode::FAILURE;
         }
-        let found = match interpreter.as_ref().map(|interpreter| peers::peers(interpreter, &problem)).transpose() {
-            Ok(found) => found.unwrap_or_default(),
-            Err(error) => {
-                eprintln!("{}: {error}", kind.name);
-                return ExitCode::FAILURE;
-            }
-        };
-        print_ratios(kind.name, &certified, &found);
     }
     ExitCode::SUCCESS
+}
+
+/// A problem that is made when its turn comes.
+struct Task {
+    name: String,
+    make: Box<dyn Fn() -> Result<ContactProblem, Error>>,
+}
+
+impl From<Kind> for Task {
+    fn from(kind: Kind) -> Self {
+        Task { name: kind.name.to_string(), make: Box::new(kind.make) }
+    }
+}
+
+/// The scenes of a folder, by name.
+fn scenes(folder: &Path) -> std::io::Result<Vec<Task>> {
+    let entries = std::fs::read_dir(folder)?.collect::<Result<Vec<_>, _>>()?;
+    let mut files: Vec<PathBuf> = entries.into_iter().map(|entry| entry.path()).collect();
+    files.retain(|file| file.extension().is_some_and(|extension| extension == "json"));
+    files.sort();
+    let task = |file: PathBuf| Task {
+        name: file.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default(),
+        make: Box::new(move || Ok(Scene::read(&file)?.build()?.problem().clone())),
+    };
+    Ok(files.into_iter().map(task).collect())
+}
+
+/// Solves a problem by each of the methods `names`, without and with the proof, and prints what was found.
+fn measure(task: &Task, names: &str, most: f64, interpreter: Option<&Interpreter>) -> Result<(), String> {
+    let problem = (task.make)().map_err(|error| error.to_string())?;
+    let mut reference: Option<ContactSet> = None;
+    let mut certified: Vec<(Method, f64)> = Vec::new();
+    let methods = [Method::Auto, Method::Mprgp, Method::ActiveSet, Method::qp(), Method::penalty()];
+    for method in methods.into_iter().filter(|method| names.split(',').any(|name| name == method.name())) {
+        for proof in [false, true] {
+            let mut settings = Settings::within(Duration::from_secs_f64(most));
+            settings.method = method;
+            settings.prove = proof;
+            let clock = Instant::now();
+            let found = solve(&problem, &settings);
+            let seconds = clock.elapsed().as_secs_f64();
+            let name = if proof { format!("{}+proof", method.name()) } else { method.name().to_string() };
+            let start = format!("{:16} {name:10}", task.name);
+            match &found {
+                Ok(solution) => {
+                    print_answer(&start, solution, seconds, "", &mut reference);
+                    if proof {
+                        certified.push((method, seconds));
+                    }
+                }
+                Err(Error::NotCertified { solution, condition, value, .. }) => {
+                    let remark = format!("NOT certified: {condition} {value:.1e}");
+                    print_answer(&start, solution, seconds, &remark, &mut reference);
+                }
+                Err(error) => println!("{start} {seconds:>9.3} {error}"),
+            }
+        }
+    }
+    let found = interpreter.map(|interpreter| peers::peers(interpreter, &problem)).transpose();
+    print_ratios(&task.name, &certified, &found.map_err(|error| error.to_string())?.unwrap_or_default());
+    Ok(())
 }
 
 /// The seconds of PETSc, and the time of `auto`, certified and proven, over that of others.

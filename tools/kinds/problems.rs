@@ -5,6 +5,7 @@ use super::floors::{bounds, membrane, plate, problem};
 use signorini::{ContactProblem, Error};
 
 /// A problem with its name.
+#[derive(Clone, Copy)]
 pub struct Kind {
     pub name: &'static str,
     pub make: fn() -> Result<ContactProblem, Error>,
@@ -78,7 +79,7 @@ fn torsion(n: usize) -> Result<ContactProblem, Error> {
 }
 
 /// Numbers in [0, 1) that look random, always the same.
-fn noise(index: usize) -> f64 {
+pub fn noise(index: usize) -> f64 {
     let mut x = (index as u64).wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
