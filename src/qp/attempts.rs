@@ -5,7 +5,7 @@ use std::time::Instant;
 use super::cost::Estimate;
 use super::engine::Prepared;
 use super::judged::{out_of_time, with_solution};
-use super::plan::{Choice, Tried, safer};
+use super::plan::{Choice, Tried, safer, starts_by_multigrid};
 use super::problem::ContactProblem;
 use super::settings::{Method, Settings};
 use crate::error::Error;
@@ -44,7 +44,7 @@ impl Attempts {
     fn choose(&mut self, problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
         let estimate = Estimate::of(problem);
         let (allowed, watch) = (settings.memory.unwrap_or(f64::INFINITY), &settings.watch);
-        let (mut refused, mut most_cycles) = (None, settings.max_iterations);
+        let (mut refused, mut worth_cycles) = (None, usize::MAX);
         let reason = match estimate.choose(allowed)? {
             Choice::Factor => match self.with_factor(problem, settings) {
                 Err(Error::TooLarge { bytes, .. }) => {
@@ -59,14 +59,15 @@ impl Attempts {
                 }
                 decided => return decided,
             },
-            Choice::Speed { reason, most_cycles: expected } => {
-                most_cycles = expected.min(most_cycles);
+            Choice::Speed { reason, most_cycles } => {
+                worth_cycles = most_cycles;
                 reason
             }
             Choice::Room { reason } => reason,
         };
         let clock = Instant::now();
-        let expected = Settings { max_iterations: most_cycles, ..settings.clone() };
+        let max_iterations = worth_cycles.min(settings.max_iterations);
+        let expected = Settings { max_iterations, worth_cycles, ..settings.clone() };
         let answered =
             with_solution(by_multigrid(problem, &expected), |solution| Solution { reason: Some(reason), ..solution });
         let fell_short = match answered {
@@ -102,7 +103,7 @@ impl Attempts {
     /// The answer with a factor; where a shortcut falls short, by the active set in double precision, and where a condensed
     /// problem does, on all dofs.
     fn with_factor(&mut self, problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
-        self.with_factor_from(Start::default(), problem, settings)
+        self.with_factor_from(start(problem, settings), problem, settings)
     }
 
     /// The same, the active-set steps starting from `start`.
@@ -113,7 +114,7 @@ impl Attempts {
         settings: &Settings,
     ) -> Result<Solution, Error> {
         let clock = Instant::now();
-        let prepared = Prepared::new(problem, settings)?.starting_from(start);
+        let prepared = Prepared::by_method(problem, settings)?.starting_from(start);
         let fell_short = match solved_with(&prepared, problem) {
             Err(error @ (Error::NotCertified { .. } | Error::Numerical { .. })) => error,
             decided => return decided,
@@ -159,6 +160,16 @@ impl Attempts {
     }
 }
 
+/// Where the direct path starts: where contact is everywhere, from what a few cycles of a hierarchy find, since a front of closed
+/// rows moves by one row of nodes with every set.
+fn start(problem: &ContactProblem, settings: &Settings) -> Start {
+    if !starts_by_multigrid(problem, settings) {
+        return Start::default();
+    }
+    let settings = Settings { method: Method::Mprgp, ..settings.clone() };
+    Prepared::by_method(problem, &settings).ok().and_then(|prepared| prepared.near()).unwrap_or_default()
+}
+
 /// Is what an attempt `before` left better than the `error` of the safer one?
 fn is_better(before: &Error, error: &Error) -> bool {
     match (before, error) {
@@ -183,10 +194,10 @@ fn ending(error: &Error) -> String {
 /// The answer without a factor.
 ///
 /// # Errors
-/// As [`Prepared::new`] and [`Prepared::solve`].
+/// As [`Prepared::by_method`] and [`Prepared::solve`].
 fn by_multigrid(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
     let settings = Settings { method: Method::Mprgp, ..settings.clone() };
-    solved_with(&Prepared::new(problem, &settings)?, problem)
+    solved_with(&Prepared::by_method(problem, &settings)?, problem)
 }
 
 /// The answer at the gaps of `problem`, whose time is that of its preparation too.

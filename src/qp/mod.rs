@@ -33,7 +33,6 @@ pub use method::Start;
 pub use method::interior_point::InteriorPoint;
 pub use method::parametric::Event;
 pub use method::penalty::Penalty;
-pub(crate) use plan::method_for;
 pub use problem::ContactProblem;
 pub use settings::{Condense, Method, Precision, Settings};
 

@@ -16,7 +16,7 @@ use std::sync::LazyLock;
 use serde::Deserialize;
 
 use super::certificate::EnergyNorm;
-use super::cost::{Estimate, FACTORS, Kept, bytes, check_memory, check_time, seconds};
+use super::cost::{Estimate, FACTORS, Kept, Smooth, bytes, check_memory, check_time, seconds};
 use super::linear::Analysis;
 use super::method::Start;
 use super::method::interior_point::InteriorPoint;
@@ -27,12 +27,8 @@ use super::transform::{Condensation, Scaling};
 use crate::error::{Error, memory as written};
 use crate::solution::Certificate;
 
-/// The direct path is exact and its bound proven: it is left only if it takes so many times as long. In space that is
-/// beyond some 20,000 dofs.
-const CLEARLY: f64 = 3.0;
-
-/// Cycles that the estimate of multigrid stands for, about.
-const EXPECTED_CYCLES: f64 = 30.0;
+/// The direct path is exact and its bound proven: it is left only if it takes this many times as long.
+const CLEARLY: f64 = 1.25;
 
 /// An estimate may be so many times too large.
 const UNSURE: f64 = 2.0;
@@ -62,10 +58,10 @@ impl Estimate {
         let ratio = self.direct_seconds / self.multigrid_seconds;
         let fits = self.direct_bytes <= most_bytes;
         // Constants alone make a poor hierarchy of a body.
-        if ratio > CLEARLY && self.suits_multigrid && self.multigrid_bytes <= most_bytes {
+        if ratio > CLEARLY && self.smooth != Smooth::Unknown && self.multigrid_bytes <= most_bytes {
             let reason = format!("by multigrid: a factorisation would take about {ratio:.0} times as long");
             // After so many cycles a factorisation would have been as fast.
-            let most_cycles = if fits { (EXPECTED_CYCLES * ratio) as usize } else { usize::MAX };
+            let most_cycles = if fits { (self.cycles * ratio) as usize } else { usize::MAX };
             return Ok(Choice::Speed { reason, most_cycles });
         }
         if self.direct_bytes > UNSURE * most_bytes {
@@ -74,10 +70,14 @@ impl Estimate {
         Ok(Choice::Factor)
     }
 
-    /// The same for many gaps: where a solve takes one factor, all share it.
+    /// The same for each of many gaps, which share the first factor, and the hierarchy.
     fn of_many(self, gaps: usize) -> Self {
-        let shared = if self.factors > 1.0 { 1.0 } else { gaps.max(1) as f64 };
-        Estimate { direct_seconds: self.direct_seconds / shared, ..self }
+        let rest = 1.0 - 1.0 / gaps.max(1) as f64;
+        Estimate {
+            direct_seconds: self.direct_seconds - rest * self.shared_seconds,
+            multigrid_seconds: self.multigrid_seconds - rest * self.hierarchy_seconds,
+            ..self
+        }
     }
 
     /// Why multigrid is taken where a solve with a factor takes `factor` bytes, and that is too much.
@@ -97,12 +97,19 @@ impl Estimate {
 }
 
 /// The method that so many gaps of `problem` are prepared for, where it is left to the program.
-pub(crate) fn method_for(problem: &ContactProblem, gaps: usize, settings: &Settings) -> Method {
+pub(super) fn method_for(problem: &ContactProblem, gaps: usize, settings: &Settings) -> Method {
     let choice = Estimate::of(problem).of_many(gaps).choose(settings.memory.unwrap_or(f64::INFINITY));
     match (settings.method, choice) {
         (Method::Auto, Ok(Choice::Speed { .. } | Choice::Room { .. })) => Method::Mprgp,
         (method, _) => method,
     }
+}
+
+/// Is the direct path started from a few cycles of multigrid? They cost less than the first factor.
+pub(super) fn starts_by_multigrid(problem: &ContactProblem, settings: &Settings) -> bool {
+    let estimate = Estimate::of(problem);
+    let by_sets = matches!(settings.method, Method::Auto | Method::ActiveSet);
+    by_sets && estimate.is_everywhere && estimate.smooth.starts_sets()
 }
 
 /// The rules that `cargo run --release --example fit_rules` writes.

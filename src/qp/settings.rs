@@ -141,6 +141,8 @@ pub struct Settings {
     pub watch: Watch,
     /// Most iterations of a loop; the cycles of MPRGP.
     pub max_iterations: usize,
+    /// Cycles of MPRGP after which another method would have been as fast.
+    pub(crate) worth_cycles: usize,
 }
 
 impl Default for Settings {
@@ -157,6 +159,7 @@ impl Default for Settings {
             memory: None,
             watch: Watch::default(),
             max_iterations: 20_000,
+            worth_cycles: usize::MAX,
         }
     }
 }

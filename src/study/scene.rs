@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::{ModelSize, Summary};
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
-use crate::qp::{Event, Prepared, Settings, Start, method_for, solve};
+use crate::qp::{Event, Method, Prepared, Settings, Start, solve};
 use crate::scene::{Answer, Model};
 use crate::solution::{ContactSet, Goal, Solution};
 
@@ -124,8 +124,9 @@ pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, 
         return Ok(Sweep { points: Vec::new(), events: Vec::new(), corners: Vec::new() });
     };
     let at_first = model.with_gap(first)?;
-    let chosen = Settings { method: method_for(at_first.problem(), gaps.len(), settings), ..settings.clone() };
-    let prepared = Prepared::new(at_first.problem(), &chosen).map_err(|error| at_first.explain(error))?;
+    let prepared =
+        Prepared::for_gaps(at_first.problem(), gaps.len(), settings).map_err(|error| at_first.explain(error))?;
+    let is_by_choice = settings.method == Method::Auto && prepared.hierarchy().is_some();
     let mut points: Vec<SweepPoint> = Vec::new();
     for (index, &gap) in gaps.iter().enumerate() {
         settings.watch.part("gap", index + 1, gaps.len());
@@ -139,8 +140,7 @@ pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, 
             false => solve(model.problem(), settings),
         };
         let solved = match solved {
-            // The method was not asked for.
-            Err(Error::NotCertified { .. }) if chosen.method != settings.method => solve(model.problem(), settings),
+            Err(Error::NotCertified { .. }) if is_by_choice => solve(model.problem(), settings),
             solved => solved,
         };
         let solution = match solved {
@@ -184,7 +184,8 @@ fn between(
             .zip(to)
             .zip(at_middle.problem().gap())
             .all(|((from, to), middle)| ((from + to) / 2.0 - middle).abs() <= STRAIGHT * (from.abs() + to.abs()));
-    if first == last || !is_straight {
+    // Without a factor there is no path.
+    if first == last || !is_straight || prepared.hierarchy().is_some() {
         return Ok((Vec::new(), Vec::new()));
     }
     let Ok(path) = prepared.path(from, to) else { return Ok((Vec::new(), Vec::new())) };

@@ -7,7 +7,7 @@ use crate::bodies::{built, clamped_block};
 use serde_json::json;
 use signorini::internals::Estimate;
 use signorini::study::{ModelSize, Summary};
-use signorini::{ContactProblem, Error, Method, Settings, solve};
+use signorini::{ContactProblem, Error, Method, Prepared, Settings, solve};
 
 fn within(memory: f64) -> Settings {
     let mut settings = Settings::default();
@@ -75,4 +75,18 @@ fn a_problem_that_fits_neither_way_is_refused_with_both_estimates() {
     let mut named = within(0.5 * estimate.multigrid_bytes);
     named.method = Method::ActiveSet;
     assert!(matches!(solve(&problem, &named), Err(Error::TooLarge { .. })));
+}
+
+/// `auto`, a `Prepared` that does not know its gaps, and one that knows that they are many.
+#[test]
+fn a_preparation_weighs_its_gaps() {
+    let problem = built(&clamped_block(22, -0.01)).problem().clone();
+    let by_auto = solve(&problem, &Settings::default()).unwrap();
+    assert_eq!(by_auto.method, "mprgp");
+    let of = |prepared: Prepared| prepared.solve(problem.gap()).unwrap();
+    let once = of(Prepared::for_gaps(&problem, 1, &Settings::default()).unwrap());
+    let many = of(Prepared::for_gaps(&problem, 1000, &Settings::default()).unwrap());
+    let unknown = of(Prepared::new(&problem, &Settings::default()).unwrap());
+    assert_eq!([once.method.as_str(), &many.method, &unknown.method], ["mprgp", "active-set", "active-set"]);
+    assert_eq!([&once.contact_set, &many.contact_set], [&by_auto.contact_set; 2]);
 }

@@ -140,7 +140,9 @@ impl ContactProblem {
         let is_open: Vec<bool> = self
             .distances(answer)
             .zip(reach)
-            .map(|(distance, reach)| distance > 0.0 && (distance.is_infinite() || distance > reach * error))
+            .map(|(distance, reach)| {
+                distance > 0.0 && (distance.is_infinite() || error == 0.0 || distance > reach * error)
+            })
             .collect();
         is_open.into_iter().collect()
     }

@@ -3,15 +3,16 @@
 pub mod bytes;
 pub(in crate::qp) mod seconds;
 
-use super::linear::SymmetricMatrix;
+use super::linear::{SparseMatrix, SymmetricMatrix, largest};
 use super::problem::ContactProblem;
 use super::settings::Settings;
+use super::transform::Condensation;
 use crate::error::Error;
 use crate::watch::Watch;
 use seconds::factor_seconds;
 
 /// Rigid-body modes of a body in space: its factor grows faster than that of a plane body.
-const MOTIONS_IN_SPACE: usize = 6;
+const MODES_IN_SPACE: usize = 6;
 
 /// Values of the factor of a bar for an unknown, about.
 const ALONG_A_LINE: f64 = 4.0;
@@ -19,24 +20,108 @@ const ALONG_A_LINE: f64 = 4.0;
 /// Entries of the contact rows for a dof beyond which the contact boundary is most of the body.
 const MANY: f64 = 0.25;
 
-/// Sets of closed rows, each with a factor, until one is settled where contact is everywhere.
-const SETS: f64 = 10.0;
+/// Sets of closed rows, each with a factor, until one is settled: where contact is everywhere, and where it is not condensed.
+const SETS: [f64; 2] = [10.0, 5.0];
+
+/// The sets of a condensed problem take so many times the seconds of making it, about.
+const DENSE_STEPS: f64 = 3.0;
+
+/// Rows that are bounds only after turning take more cycles by this factor.
+const TURNED: f64 = 1.6;
+
+/// Cycles of the start of the direct path.
+pub(in crate::qp) const NEAR_CYCLES: f64 = 8.0;
+
+/// A stiffness that is singular takes so many times the seconds: factors for the start and for what the rows hold.
+const SINGULAR: f64 = 2.5;
+
+/// Forces of a mode below this share of their terms are rounding.
+const FREE: f64 = 1e-9;
 
 /// Row sums of a stiffness may be negative by this share of the diagonal: rounding.
 const ROW_SUM_ROUNDING: f64 = 1e-9;
 
-/// Returns `true` for a stiffness like that of a scalar diffusion: no positive entry off the diagonal, no negative row sum. Its
-/// smooth displacements are the constants.
-fn is_diffusion(stiffness: &SymmetricMatrix) -> bool {
-    let mut sums = stiffness.diagonal();
-    for (row, column, value) in stiffness.lower().triplets().filter(|entry| entry.0 != entry.1) {
-        if value > 0.0 {
-            return false;
+/// Neighbours of a dof of a diffusion whose ties differ by more than this slow multigrid down, if most dofs have such.
+const UNEVEN: f64 = 1e3;
+
+/// Factor values for which a dense matrix on the contact dofs is small: see [`Condensation`](super::transform::Condensation).
+const FEW_VALUES: f64 = 1e6;
+
+/// Dense matrices of a condensation.
+const DENSE_MATRICES: f64 = 5.0;
+
+/// Returns `true` if a row has several entries, so that it is a bound only after turning.
+fn is_turned(contact: &SparseMatrix) -> bool {
+    contact.entries() > contact.rows()
+}
+
+/// Returns `true` if the contact boundary is most of the body, so that a front of closed rows has far to move.
+fn is_everywhere(problem: &ContactProblem) -> bool {
+    problem.contact().entries() as f64 > MANY * problem.dofs() as f64
+}
+
+/// Returns `true` if one of the rigid-body modes costs no energy.
+fn has_free_mode(problem: &ContactProblem) -> bool {
+    let stiffness = problem.stiffness();
+    let is_free = |mode: &Vec<f64>| largest(&stiffness.mul(mode)) <= FREE * largest(&stiffness.mul_abs(mode));
+    problem.near_null().is_some_and(|modes| modes.vectors().iter().any(is_free))
+}
+
+/// What a hierarchy is told of the displacements that cost next to no energy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::qp) enum Smooth {
+    /// The rigid-body modes are given.
+    Given,
+    /// Those of a scalar diffusion, the constants.
+    Constants,
+    /// The same, of one whose ties to neighbours differ by orders of magnitude nearly everywhere.
+    Uneven,
+    /// Nothing: constants make a poor hierarchy of a body.
+    Unknown,
+}
+
+impl Smooth {
+    fn of(problem: &ContactProblem) -> Self {
+        match problem.near_null() {
+            Some(_) => Smooth::Given,
+            None => Self::of_stiffness(problem.stiffness()),
         }
-        sums[row] += value;
-        sums[column] += value;
     }
-    sums.iter().zip(stiffness.diagonal()).all(|(&sum, own)| sum >= -ROW_SUM_ROUNDING * own)
+
+    /// A stiffness is that of a scalar diffusion if it has no positive entry off the diagonal and no negative row sum.
+    fn of_stiffness(stiffness: &SymmetricMatrix) -> Self {
+        let diagonal = stiffness.diagonal();
+        let mut sums = diagonal.clone();
+        let mut ties = vec![(f64::INFINITY, 0.0_f64); diagonal.len()];
+        for (row, column, value) in stiffness.lower().triplets().filter(|entry| entry.0 != entry.1 && entry.2 != 0.0) {
+            if value > 0.0 {
+                return Smooth::Unknown;
+            }
+            for dof in [row, column] {
+                sums[dof] += value;
+                ties[dof] = (ties[dof].0.min(-value), ties[dof].1.max(-value));
+            }
+        }
+        if sums.iter().zip(&diagonal).any(|(&sum, own)| sum < -ROW_SUM_ROUNDING * own) {
+            return Smooth::Unknown;
+        }
+        let uneven = ties.iter().filter(|(weakest, strongest)| *strongest > UNEVEN * weakest).count();
+        if 2 * uneven > ties.len() { Smooth::Uneven } else { Smooth::Constants }
+    }
+
+    /// Do a few cycles tell the direct path where to start?
+    pub fn starts_sets(self) -> bool {
+        matches!(self, Smooth::Given | Smooth::Constants)
+    }
+
+    /// Cycles of an answer by multigrid.
+    fn cycles(self) -> f64 {
+        match self {
+            Smooth::Given => 25.0,
+            Smooth::Constants => 12.0,
+            Smooth::Uneven | Smooth::Unknown => 40.0,
+        }
+    }
 }
 
 /// Estimated time and memory of the two paths.
@@ -57,10 +142,14 @@ pub struct Estimate {
     pub multigrid_seconds: f64,
     /// Seconds of the hierarchy alone.
     pub hierarchy_seconds: f64,
-    /// Factorisations of one solve: the first serves all gaps, the others are those of its contact sets.
-    pub(super) factors: f64,
-    /// Does a hierarchy know what costs next to no energy: are the rigid-body modes given, or do constants suffice?
-    pub(super) suits_multigrid: bool,
+    /// Seconds of what serves all gaps on the direct path: the first factorisation, with its order.
+    pub(super) shared_seconds: f64,
+    /// Whether the contact boundary is most of the body.
+    pub(super) is_everywhere: bool,
+    /// What a hierarchy knows.
+    pub(super) smooth: Smooth,
+    /// Cycles that the seconds of multigrid stand for.
+    pub(super) cycles: f64,
 }
 
 impl Estimate {
@@ -68,26 +157,61 @@ impl Estimate {
     pub fn of(problem: &ContactProblem) -> Self {
         let dofs = problem.dofs() as f64;
         let entries = problem.stiffness().lower().entries() as f64;
-        let motions = problem.near_null().map(|near_null| near_null.count());
-        let (factor, seconds) = match motions {
+        let both = 2.0 * entries - dofs;
+        let smooth = Smooth::of(problem);
+        let hierarchy_seconds = seconds::hierarchy(dofs, entries);
+        let turned = if is_turned(problem.contact()) { TURNED } else { 1.0 };
+        let cycles = turned * smooth.cycles();
+        let multigrid_seconds = hierarchy_seconds + cycles * seconds::cycle(dofs, entries);
+        let direct = Direct::of(problem, smooth);
+        // Whether K is singular is looked at where it matters.
+        let matters = direct.seconds < multigrid_seconds && SINGULAR * direct.seconds > multigrid_seconds;
+        let times = if matters && has_free_mode(problem) { SINGULAR } else { 1.0 };
+        Estimate {
+            direct_bytes: bytes::START
+                + bytes::of_problem(dofs, both)
+                + bytes::of_factor(direct.factor_entries, size_of::<f64>()),
+            factor_entries: direct.factor_entries,
+            direct_seconds: times * direct.seconds,
+            multigrid_bytes: bytes::START + bytes::of_hierarchy(dofs, both),
+            multigrid_seconds,
+            hierarchy_seconds,
+            shared_seconds: times * direct.shared_seconds,
+            is_everywhere: is_everywhere(problem),
+            smooth,
+            cycles,
+        }
+    }
+}
+
+/// The direct path.
+struct Direct {
+    factor_entries: f64,
+    seconds: f64,
+    shared_seconds: f64,
+}
+
+impl Direct {
+    fn of(problem: &ContactProblem, smooth: Smooth) -> Self {
+        let dofs = problem.dofs() as f64;
+        let entries = problem.stiffness().lower().entries() as f64;
+        let (factor_entries, of_body) = match problem.near_null().map(|near_null| near_null.count()) {
             Some(1) => (ALONG_A_LINE * dofs, factor_seconds(0.0, (ALONG_A_LINE * dofs) as usize)[0]),
-            Some(MOTIONS_IN_SPACE..) => (23.0 * dofs.powf(4.0 / 3.0), 6.5e-10 * dofs.powi(2)),
+            Some(MODES_IN_SPACE..) => (23.0 * dofs.powf(4.0 / 3.0), 6.5e-10 * dofs.powi(2)),
             _ => (6.0 * dofs * dofs.max(2.0).log2(), 3.7e-9 * dofs.powf(1.5)),
         };
-        let both = 2.0 * entries - dofs;
-        // Where contact is everywhere, every set of closed rows has a factor of its own.
-        let share = problem.contact().entries() as f64 / dofs;
-        let factors = if share > MANY { SETS } else { 1.0 };
-        Estimate {
-            direct_bytes: bytes::START + bytes::of_problem(dofs, both) + bytes::of_factor(factor, size_of::<f64>()),
-            factor_entries: factor,
-            direct_seconds: factors * seconds,
-            multigrid_bytes: bytes::START + bytes::of_hierarchy(dofs, both),
-            multigrid_seconds: 1.3e-7 * entries,
-            hierarchy_seconds: 4e-8 * entries,
-            factors,
-            suits_multigrid: problem.near_null().is_some() || is_diffusion(problem.stiffness()),
-        }
+        let boundary = Condensation::contact_dofs(problem.contact()).len();
+        let dense = DENSE_MATRICES * (boundary as f64).powi(2);
+        let (factor, sets) = if is_everywhere(problem) {
+            let near = seconds::hierarchy(dofs, entries) + NEAR_CYCLES * seconds::cycle(dofs, entries) + of_body;
+            (of_body, if smooth.starts_sets() { near } else { SETS[0] * of_body })
+        } else {
+            let factor = of_body + seconds::last_block(boundary);
+            let is_condensed = dense <= FEW_VALUES.max(factor_entries);
+            (factor, if is_condensed { DENSE_STEPS * seconds::dense(boundary) } else { SETS[1] * factor })
+        };
+        let shared_seconds = seconds::ordering(problem) + factor;
+        Direct { factor_entries, seconds: shared_seconds + sets, shared_seconds }
     }
 }
 

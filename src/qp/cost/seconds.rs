@@ -37,7 +37,13 @@ impl Cost {
 }
 
 /// Seconds of ordering and analysis for an entry of the lower triangle, nested dissection included.
-const ORDERING: f64 = 4e-7;
+const ORDERING: f64 = 1.3e-7;
+
+/// Seconds of a hierarchy for an unknown, and for an entry of the lower triangle (`cargo run --release --example kinds`).
+const HIERARCHY: [f64; 2] = [5e-7, 5.3e-8];
+
+/// The same of an iteration with one cycle.
+const CYCLE: [f64; 2] = [2.3e-7, 2.9e-9];
 
 /// Seconds of certificate and report for an entry of the lower triangle.
 const CERTIFICATE: f64 = 1e-7;
@@ -65,6 +71,16 @@ pub(in crate::qp) fn ordering(problem: &ContactProblem) -> f64 {
     ORDERING * problem.stiffness().lower().entries() as f64
 }
 
+/// Seconds of a hierarchy of so many unknowns and entries of the lower triangle.
+pub(in crate::qp) fn hierarchy(dofs: f64, entries: f64) -> f64 {
+    HIERARCHY[0] * dofs + HIERARCHY[1] * entries
+}
+
+/// Seconds of an iteration with one cycle of that hierarchy.
+pub(in crate::qp) fn cycle(dofs: f64, entries: f64) -> f64 {
+    CYCLE[0] * dofs + CYCLE[1] * entries
+}
+
 /// Seconds of what follows the last step: the conditions of the certificate, which are summed with twice the working
 /// precision, and what a report adds up.
 pub(in crate::qp) fn certificate(problem: &ContactProblem) -> f64 {
@@ -84,6 +100,11 @@ pub(in crate::qp) fn interior_point(analysis: &Analysis) -> f64 {
 /// Seconds of the product of a dense triangle with its transpose, and of its use as a matrix.
 pub(in crate::qp) fn dense(size: usize) -> f64 {
     PLAIN * (size as f64).powi(3) / 3.0
+}
+
+/// Seconds that so many columns add to a factorisation in which they come last.
+pub(in crate::qp) fn last_block(size: usize) -> f64 {
+    FITTED.double.per_multiplication * (size as f64).powi(3) / 6.0
 }
 
 /// Seconds of sweeps through so many values.

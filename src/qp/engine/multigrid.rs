@@ -5,7 +5,7 @@ use std::time::Instant;
 use super::case::Case;
 use crate::error::Error;
 use crate::qp::certificate::Examined;
-use crate::qp::cost::{Estimate, Kept, check_memory, check_time, seconds};
+use crate::qp::cost::{Estimate, Kept, NEAR_CYCLES, check_memory, check_time, seconds};
 use crate::qp::judged::{answer, judged};
 use crate::qp::linear::multigrid::{Multigrid, NearNullSpace};
 use crate::qp::method::mprgp::{Limits, Mprgp};
@@ -27,6 +27,9 @@ const FIRST: f64 = 0.1;
 
 /// Where the bound is above the accuracy, the next one is aimed at this share of it.
 const AIM: f64 = 0.3;
+
+/// A start for another method ends at this imbalance of forces, relative.
+const NEAR: f64 = 1e-4;
 
 /// Forces out of balance by less than this, relative, are rounding.
 const IMBALANCE_ROUNDING: f64 = 1e-15;
@@ -80,6 +83,15 @@ impl Hierarchical {
         Seconds { factor: self.seconds, proof: 0.0, solve: self.seconds }
     }
 
+    /// A contact set near that of the answer; `None` if the method meets something that another one must look at.
+    pub fn near(&self, settings: &Settings) -> Option<Start> {
+        let most_cycles = NEAR_CYCLES as usize;
+        let limits = Limits { tolerance: NEAR, most_cycles, worth: usize::MAX, watch: &settings.watch };
+        let found =
+            Mprgp { problem: &self.problem, multigrid: &self.multigrid, limits }.solve(Start::default()).ok()?;
+        Some(found.contact_set.into())
+    }
+
     /// The whole answer, certified.
     ///
     /// # Errors
@@ -102,10 +114,10 @@ impl Hierarchical {
         let problem = self.problem.with(case.load.force().to_vec(), gap.to_vec())?;
         let goal = settings.goal();
         let mut tolerance = settings.accuracy.map_or(MARGIN * settings.tolerance, |accuracy| FIRST * accuracy);
-        let mut most_cycles = settings.max_iterations;
+        let (mut most_cycles, worth) = (settings.max_iterations, settings.worth_cycles);
         let multigrid = &self.multigrid;
         let solve = |tolerance, most_cycles, start| {
-            Mprgp { problem: &problem, multigrid, limits: Limits { tolerance, most_cycles, watch } }.solve(start)
+            Mprgp { problem: &problem, multigrid, limits: Limits { tolerance, most_cycles, worth, watch } }.solve(start)
         };
         let mut found = solve(tolerance, most_cycles, start.clone())?;
         let Examined { certificate, evidence } = loop {

@@ -9,6 +9,7 @@ use super::prepared::Prepared;
 use crate::error::Error;
 use crate::qp::linear::ldexp;
 use crate::qp::method::parametric::{Compliance, Event, Piece};
+use crate::qp::settings::{Method, Settings};
 use crate::solution::{ContactSet, Solution};
 
 /// The answers for all gaps `(1 - t) from + t to`, t from 0 to 1, as polylines.
@@ -130,6 +131,11 @@ impl Prepared {
         let settings = &self.settings.started()?;
         match self.factored() {
             Some(engine) => Path::walked(self, engine, &self.case(from, settings), to),
+            // A path takes a factor.
+            None if settings.method == Method::Auto => {
+                let with_factor = Settings { method: Method::ActiveSet, ..self.settings.clone() };
+                self.with_settings(&with_factor)?.path(from, to)
+            }
             None => Err(Error::NotCondensed { step: "the exact path" }),
         }
     }

@@ -10,7 +10,7 @@ use super::multigrid::Hierarchical;
 use crate::error::Error;
 use crate::qp::linear::multigrid::Multigrid;
 use crate::qp::method::Start;
-use crate::qp::plan::Tried;
+use crate::qp::plan::{Tried, method_for};
 use crate::qp::problem::{ContactProblem, check_load};
 use crate::qp::settings::{Method, Settings};
 use crate::solution::{Seconds, Solution};
@@ -44,6 +44,9 @@ pub struct Prepared {
     load: Arc<Load>,
     start: Start,
 }
+
+/// Gaps that a problem is prepared for where their number is not known.
+const MANY_GAPS: usize = 10;
 
 /// What was prepared.
 #[derive(Clone, Debug)]
@@ -82,7 +85,8 @@ impl Engine {
 }
 
 impl Prepared {
-    /// Prepares `problem` for the method of `settings`: a hierarchy for [`Method::Mprgp`], a factor for every other.
+    /// Prepares `problem` for the method of `settings`: a hierarchy for [`Method::Mprgp`], a factor for every other;
+    /// [`Method::Auto`] takes the one that serves ten gaps in less time, as [`Prepared::for_gaps`].
     ///
     /// # Errors
     /// * [`Error::Setting`] for a setting outside its range,
@@ -91,6 +95,24 @@ impl Prepared {
     /// * [`Error::OutOfTime`], [`Error::Interrupted`] and [`Error::TooLarge`] if there is not enough time or memory left,
     /// * [`Error::Numerical`] if the preparation fails for want of memory.
     pub fn new(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
+        Self::for_gaps(problem, MANY_GAPS, settings)
+    }
+
+    /// The same for about this number of gaps, which share a factor or a hierarchy.
+    ///
+    /// # Errors
+    /// As [`Prepared::new`].
+    pub fn for_gaps(problem: &ContactProblem, gaps: usize, settings: &Settings) -> Result<Self, Error> {
+        let method = method_for(problem, gaps, settings);
+        let prepared = Self::by_method(problem, &Settings { method, ..settings.clone() })?;
+        Ok(Prepared { settings: settings.clone(), ..prepared })
+    }
+
+    /// The same for the method of `settings`, with a factor where that leaves the choice.
+    ///
+    /// # Errors
+    /// As [`Prepared::new`].
+    pub(in crate::qp) fn by_method(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
         let (engine, load) = (Engine::of(problem, settings)?, Arc::new(Load::new(problem.load().to_vec())));
         Ok(Prepared { engine, settings: settings.clone(), load, start: Start::default() })
     }
@@ -213,6 +235,14 @@ impl Prepared {
         match &self.engine {
             Engine::Factored(engine) => engine.seconds(),
             Engine::Multigrid(engine) => engine.seconds(),
+        }
+    }
+
+    /// A start for another method, from a few cycles of the hierarchy; `None` without one.
+    pub(in crate::qp) fn near(&self) -> Option<Start> {
+        match &self.engine {
+            Engine::Factored(_) => None,
+            Engine::Multigrid(engine) => engine.near(&self.settings),
         }
     }
 

@@ -33,6 +33,9 @@ use nested::nested_start;
 /// face changes count only beyond one for each row.
 const PATIENCE: usize = 60;
 
+/// Cycles on one face after which their rate tells how many all will take, and by how much that may be wrong.
+const TRIAL: (usize, f64) = (16, 1.2);
+
 /// A residual in twice the precision that is above this share of the one before will not come down any more.
 const NO_GAIN: f64 = 0.5;
 
@@ -43,6 +46,8 @@ pub struct Limits<'a> {
     pub tolerance: f64,
     /// Most cycles of the hierarchy.
     pub most_cycles: usize,
+    /// The loop ends where its rate so far tells that it would take clearly more cycles than this.
+    pub worth: usize,
     /// Whether it must end before, with what it has.
     pub watch: &'a Watch,
 }
@@ -92,11 +97,15 @@ fn solve(problem: &ContactProblem, multigrid: &Multigrid, start: Start, limits: 
             continue;
         }
         progress.note(residual);
+        if progress.is_hopeless(steps.cycles, limits) {
+            break;
+        }
         let before = iterate.at.clone();
         steps.take_one(&mut iterate)?;
         if iterate.at != before {
             (steps.is_old, steps.last) = (true, None);
             progress.changes += 1;
+            progress.on_face = (steps.cycles, residual);
             history.push(iterate.step());
         }
     }
@@ -109,7 +118,9 @@ fn solve(problem: &ContactProblem, multigrid: &Multigrid, start: Start, limits: 
     bounds.turn_back(&mut displacement);
     let variant = match settled {
         true => "",
-        false if steps.cycles >= limits.most_cycles || is_late() => "-unsettled",
+        false if steps.cycles >= limits.most_cycles || is_late() || progress.is_hopeless(steps.cycles, limits) => {
+            "-unsettled"
+        }
         false => "-stagnated",
     };
     Ok(Outcome { displacement, multiplier, contact_set, iterations: steps.cycles, history, settled, variant })
@@ -118,13 +129,15 @@ fn solve(problem: &ContactProblem, multigrid: &Multigrid, start: Start, limits: 
 /// The start from the second level, if there is one with the values of nodes.
 fn nested(problem: &ContactProblem, bounds: &Bounds, multigrid: &Multigrid, limits: Limits) -> Option<Start> {
     let below = |problem: &ContactProblem, multigrid: &Multigrid, tolerance, most_cycles| {
-        solve(problem, multigrid, Start::default(), Limits { tolerance, most_cycles, ..limits })
+        solve(problem, multigrid, Start::default(), Limits { tolerance, most_cycles, worth: usize::MAX, ..limits })
     };
     nested_start(problem, bounds, multigrid, below).map(Start::near)
 }
 
 /// How far the iteration has come.
 struct Progress {
+    /// Cycles before the last change of the face, and the residual then.
+    on_face: (usize, f64),
     best: f64,
     since_best: usize,
     /// Changes of the face since then.
@@ -137,7 +150,7 @@ struct Progress {
 impl Default for Progress {
     fn default() -> Self {
         let best = f64::INFINITY;
-        Progress { best, since_best: 0, changes: 0, is_fresh: true, last_checked: f64::INFINITY }
+        Progress { on_face: (0, best), best, since_best: 0, changes: 0, is_fresh: true, last_checked: f64::INFINITY }
     }
 }
 
@@ -153,6 +166,15 @@ impl Progress {
         if residual < 0.5 * self.best {
             (self.best, self.since_best, self.changes) = (residual, 0, 0);
         }
+    }
+
+    /// Returns `true` if the rate on the last face leads to the tolerance only after clearly more `cycles` than they are worth.
+    fn is_hopeless(&self, cycles: usize, limits: Limits) -> bool {
+        let ((trial, unsure), (before, first)) = (TRIAL, self.on_face);
+        let gained = (first / self.best).ln();
+        let needed = (self.best / limits.tolerance).ln();
+        let taken = cycles - before;
+        taken >= trial && cycles as f64 + taken as f64 * needed / gained.max(0.0) > unsure * limits.worth as f64
     }
 
     /// Checks what the steps have carried along before it is believed. Returns `true` if rounding of the displacement is all
