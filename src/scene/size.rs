@@ -11,7 +11,8 @@ const DENSE_SHARE: f64 = 0.4;
 /// Dense values that are not worth counting.
 const FEW_VALUES: f64 = 1e6;
 
-/// The size of a scene, estimated from its divisions: within a factor of 2 of the memory that `solve` takes.
+/// The size of a scene, estimated from its divisions: within a factor of 2 of the memory that `solve` takes with a
+/// factor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Size {
     /// Nodes.

@@ -4,7 +4,7 @@
 //! free in both sets take the earlier factor for their inverse, and those that became free their own diagonal: a few steps
 //! cost less than a factorisation.
 
-use super::active_set::Equilibrium;
+use super::equilibrium::Equilibrium;
 use crate::qp::linear::{Analysis, Cholesky, SparseMatrix, dot, subtract};
 use crate::qp::problem::ContactProblem;
 use crate::solution::ContactSet;
@@ -185,12 +185,12 @@ impl Task<'_> {
 mod tests {
     use super::*;
     use crate::qp::linear::{AugmentedMatrix, SymmetricMatrix, largest};
-    use crate::qp::method::active_set::{WEIGHT, equilibrium};
+    use crate::qp::method::equilibrium::{WEIGHT, equilibrium};
 
     const SIDE: usize = 12;
 
     /// Seven points on a cube under a load, with a row `-2 u_i <= g_i` for every dof.
-    fn poisson() -> ContactProblem {
+    fn lattice() -> ContactProblem {
         let at = |i: usize, j: usize, k: usize| (k * SIDE + j) * SIDE + i;
         let dofs = SIDE.pow(3);
         let mut entries: Vec<_> = (0..dofs).map(|dof| (dof, dof, 6.0)).collect();
@@ -215,7 +215,7 @@ mod tests {
 
     #[test]
     fn rows_that_change_sides_are_balanced_as_by_a_factor_of_their_own() {
-        let problem = poisson();
+        let problem = lattice();
         let bounded = BoundedDofs::of(problem.contact()).unwrap();
         let first = ContactSet::from_fn(problem.rows(), |row| row % 7 == 0);
         let by_first = equilibrium(&problem, &factor(&problem, &first), &first);
@@ -235,7 +235,7 @@ mod tests {
 
     #[test]
     fn what_would_take_many_steps_or_holds_a_dof_twice_is_left_to_a_factor() {
-        let problem = poisson();
+        let problem = lattice();
         let bounded = BoundedDofs::of(problem.contact()).unwrap();
         let none = ContactSet::open(problem.rows());
         let free = equilibrium(&problem, &factor(&problem, &none), &none);

@@ -6,6 +6,7 @@ pub mod active_set;
 mod bounds;
 pub mod dual_active_set;
 mod earlier_factor;
+mod equilibrium;
 mod holding;
 pub mod interior_point;
 pub mod mprgp;
