@@ -62,7 +62,8 @@ impl Surface for Circle {
         if along.abs() <= tolerance {
             return Ok(Some(Foot { normal: [0.0, 1.0], distance: -towards }));
         }
-        if rest <= 0.0 {
+        // A node level with the centre has a closest point; rounding must not take it away.
+        if rest < -tolerance {
             return Err("lies deeper in the circle than its centre");
         }
         // (s^2 + q^2 - 2 R q)/(d + R) is d - R without the cancellation.
