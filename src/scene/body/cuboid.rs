@@ -8,7 +8,7 @@ use super::shape::{About, Block, BodyShape, Site};
 use crate::error::Error;
 use crate::fem::mesh::{Boundary, ElementKind, Mesh, check_lines, fail};
 use crate::fem::{Axis, Integration};
-use crate::scene::schema::SolidElementSpec;
+use crate::scene::schema::cells::SolidElementSpec;
 use crate::scene::schema::json::{object, word};
 
 /// The corners of a cell, in steps along x, y and z, in the order of a brick.

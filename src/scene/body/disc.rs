@@ -9,7 +9,7 @@ use super::shape::{About, Block, BodyShape, Sides, Site};
 use crate::error::Error;
 use crate::fem::Integration;
 use crate::fem::mesh::{Boundary, ElementKind, Mesh, Zone, fail};
-use crate::scene::schema::ElementSpec;
+use crate::scene::schema::cells::ElementSpec;
 use crate::scene::schema::json::{object, word};
 
 /// A disc, graded towards its lowest and its highest point.

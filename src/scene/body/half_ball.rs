@@ -10,7 +10,7 @@ use crate::fem::Integration;
 use crate::fem::mesh::lattice::Lattice;
 use crate::fem::mesh::round::{Grading, mirrored};
 use crate::fem::mesh::{ElementKind, MAX_NODES, Mesh, Zone, fail};
-use crate::scene::schema::HalfSpec;
+use crate::scene::schema::cells::HalfSpec;
 use crate::scene::schema::json::{object, word, words};
 
 /// Corners of a face of the core, in steps along its two directions, counterclockwise seen from outside.

@@ -10,8 +10,8 @@ use crate::fem::Integration;
 use crate::fem::mesh::lattice::{Lattice, half_steps};
 use crate::fem::mesh::round::{Grading, mirrored};
 use crate::fem::mesh::{ElementKind, MAX_NODES, Mesh, Zone, fail};
+use crate::scene::schema::cells::{ElementSpec, HalfSpec};
 use crate::scene::schema::json::{object, word};
-use crate::scene::schema::{ElementSpec, HalfSpec};
 
 /// Half of a disc, the lower one where not said otherwise.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::fem::mesh::lattice::half_steps;
 use crate::fem::mesh::{Boundary, ElementKind, Mesh, check_lines, fail};
 use crate::fem::{Axis, Integration};
-use crate::scene::schema::ElementSpec;
+use crate::scene::schema::cells::ElementSpec;
 use crate::scene::schema::json::{object, word};
 
 /// No node stands here: the middle of a quadratic quadrilateral.

@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::fem::mesh::lattice::{Lattice, half_steps};
 use crate::fem::mesh::{ElementKind, Mesh, check_lines, fail};
 use crate::fem::{Axis, Integration};
-use crate::scene::schema::ElementSpec;
+use crate::scene::schema::cells::ElementSpec;
 use crate::scene::schema::json::{object, word};
 
 /// A ring or a sector of it: the product of a radial axis and an angle.

@@ -7,7 +7,7 @@ use crate::fem::Integration;
 use crate::fem::element::LatticeCounts;
 use crate::fem::mesh::{Axis, ElementKind, MAX_NODES, Mesh, Zone};
 use crate::scene::entry::wrong;
-use crate::scene::schema::ModelSpec;
+use crate::scene::schema::model::ModelSpec;
 
 /// The corner to corner part of a round body's radius that is not core, about.
 const SHELLS: f64 = 0.6;

@@ -10,7 +10,7 @@ use crate::fem::body::ElasticBody;
 use crate::fem::geometry::{dot, length, minus, unit};
 use crate::fem::mesh::Boundary;
 use crate::scene::entry::{PLACE_TOLERANCE, boundary, point, wrong};
-use crate::scene::schema::Rule;
+use crate::scene::schema::approach::Rule;
 
 /// A partner may be aside by this times its distance: at the end of a curved boundary the facets on one side only give
 /// the normal, half the angle of a facet off.

@@ -1,6 +1,6 @@
 //! The frame of an obstacle: one axis across the approach direction, one along it.
 
-use crate::scene::schema::Approach;
+use crate::scene::schema::approach::Approach;
 
 /// Coordinates `[along, towards]`: along the surface, and towards the obstacle.
 pub(in crate::scene) type Local = [f64; 2];

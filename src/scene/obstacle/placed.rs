@@ -9,7 +9,7 @@ use crate::fem::assembly::tributary_areas;
 use crate::fem::body::ElasticBody;
 use crate::fem::geometry::length;
 use crate::scene::entry::{boundary, number, wrong};
-use crate::scene::schema::ObstacleSpec;
+use crate::scene::schema::obstacle::ObstacleSpec;
 
 /// A component of a unit normal below this is rounding of the geometry, not a direction.
 const NO_COMPONENT: f64 = 1e-14;

@@ -12,7 +12,7 @@ use super::surface::{Foot, Surface};
 use crate::error::Error;
 use crate::fem::geometry::{dot, length, minus};
 use crate::scene::entry::{point, vector, wrong};
-use crate::scene::schema::Rule;
+use crate::scene::schema::approach::Rule;
 
 /// A plane.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

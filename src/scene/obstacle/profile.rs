@@ -6,7 +6,7 @@ use super::frame::{Frame, Local};
 use super::row::{Obstacle, ObstacleRow};
 use super::shape::Site;
 use super::surface::{Foot, Surface};
-use crate::scene::schema::Rule;
+use crate::scene::schema::approach::Rule;
 
 /// The pictured surface goes beyond the body by this part of the body's extent on either side.
 const OUTLINE_MARGIN: f64 = 0.3;

@@ -8,7 +8,7 @@ use super::row::Obstacle;
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::scene::entry::{ROUNDING, finite, number, vector, wrong};
-use crate::scene::schema::{Approach, Rule};
+use crate::scene::schema::approach::{Approach, Rule};
 
 /// What an obstacle shape is called, and where it belongs.
 #[derive(Clone, Copy, Debug)]

@@ -7,7 +7,7 @@ use super::row::{Obstacle, ObstacleRow};
 use super::shape::Site;
 use super::surface::Surface;
 use crate::fem::geometry::{cross, dot};
-use crate::scene::schema::{Approach, Rule};
+use crate::scene::schema::approach::{Approach, Rule};
 
 /// A surface in space, in its frame.
 #[derive(Clone, Debug)]

@@ -3,18 +3,17 @@
 use serde::{Deserialize, Serialize};
 
 mod analysis;
-mod approach;
+pub(super) mod approach;
 mod body;
-mod cells;
+pub(super) mod cells;
 mod condition;
 pub(super) mod json;
-mod model;
-mod obstacle;
+pub(super) mod model;
+pub(super) mod obstacle;
 
 pub use analysis::{AnalysisSpec, DynamicSpec, FactorSpec, FieldSpec, LoadInTimeSpec, MassSpec, PenetrationSpec};
-pub use approach::{Approach, Rule};
+pub use approach::Rule;
 pub use body::{FurtherBodySpec, MaterialSpec};
-pub use cells::{ElementSpec, HalfSpec, SolidElementSpec};
 pub use condition::{LoadSpec, Place, SupportSpec};
 pub use model::ModelSpec;
 pub use obstacle::ObstacleSpec;

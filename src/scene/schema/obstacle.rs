@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::approach::{Approach, Rule};
 use super::json::{choice, word};
-use super::{Approach, Rule};
 use crate::scene::obstacle::ShapeSpec;
 
 /// A frictionless obstacle and the boundary that may touch it.
