@@ -61,11 +61,20 @@ pub(super) fn out_of_time(problem: &ContactProblem, needed: f64, left: f64) -> R
     Ok(Error::NotCertified { solution: Box::new(at_rest(problem)?), condition, value: needed, tolerance: left })
 }
 
-/// The ending where a claim about the problem could not be rechecked: the body at rest, and the claim as the reason.
+/// The error to return if a claim cannot be rechecked: an answer that is not certified stays as it is; a claim becomes
+/// the body at rest, which is not certified either, with the claim as the reason.
 ///
 /// # Errors
 /// Those of the certificate.
-pub(super) fn not_rechecked(problem: &ContactProblem, claim: &Error) -> Result<Error, Error> {
+pub(super) fn not_decided(problem: &ContactProblem, before: Error) -> Result<Error, Error> {
+    match before {
+        before @ Error::NotCertified { .. } => Ok(before),
+        claim => not_rechecked(problem, &claim),
+    }
+}
+
+/// The error for a claim about the problem that could not be rechecked.
+fn not_rechecked(problem: &ContactProblem, claim: &Error) -> Result<Error, Error> {
     let solution = Box::new(Solution { reason: Some(format!("not rechecked: {claim}")), ..at_rest(problem)? });
     let condition = "a claim that could not be rechecked";
     Ok(Error::NotCertified { solution, condition, value: 0.0, tolerance: 0.0 })

@@ -1,5 +1,5 @@
-//! Which file of `src/` takes names from which: its `use` declarations, followed through re-exports to the file that defines
-//! the name.
+//! Which file of `src/` takes names from which: its `use` declarations and the paths in its code (`crate::a::b(..)`,
+//! `super::c`), followed through re-exports to the file that defines the name.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -14,9 +14,11 @@ pub struct Source {
     pub path: PathBuf,
     /// Its text.
     pub text: String,
-    /// The paths that it imports, from the crate root.
-    imports: Vec<Module>,
-    /// The names that it exports under its own path, and where they come from.
+    /// The paths that it names, from the crate root; those that it re-exports to every user are left out.
+    imports: BTreeSet<Module>,
+    /// The names that `use` declarations bring into it, and where they come from.
+    names: BTreeMap<String, Module>,
+    /// Those of them that it exports to every user.
     pub exports: BTreeMap<String, Module>,
 }
 
@@ -44,17 +46,27 @@ impl House {
         }
         let known: BTreeSet<Module> = texts.keys().cloned().collect();
         let read = |(module, (path, text)): (Module, (PathBuf, String))| {
-            let (mut imports, mut exports) = (Vec::new(), BTreeMap::new());
-            for (is_public, import) in declarations(&text)
-                .into_iter()
-                .filter_map(|(is_public, tree)| from_root(&tree, &module, &known).map(|import| (is_public, import)))
-            {
-                match (is_public, import.last()) {
-                    (true, Some(name)) => drop(exports.insert(name.clone(), import)),
-                    _ => imports.push(import),
+            let (declarations, paths) = named(&text);
+            let mut source =
+                Source { path, text, imports: BTreeSet::new(), names: BTreeMap::new(), exports: BTreeMap::new() };
+            for (is_public, name, tree) in declarations {
+                let Some(import) = from_root(&tree, &module, &known) else { continue };
+                source.names.insert(name.clone(), import.clone());
+                if is_public {
+                    source.exports.insert(name, import);
+                } else {
+                    source.imports.insert(import);
                 }
             }
-            (module, Source { path, text, imports, exports })
+            for path in paths {
+                // The first name of a path may be one that a declaration brought in.
+                let import = match source.names.get(&path[0]) {
+                    Some(import) => Some([import.as_slice(), &path[1..]].concat()),
+                    None => from_root(&path, &module, &known),
+                };
+                source.imports.extend(import);
+            }
+            (module, source)
         };
         House { files: texts.into_iter().map(read).collect() }
     }
@@ -74,7 +86,7 @@ impl House {
             length -= 1;
         }
         let (module, rest) = (path[..length].to_vec(), &path[length..]);
-        let origin = rest.first().and_then(|name| self.files[&module].exports.get(name));
+        let origin = rest.first().and_then(|name| self.files[&module].names.get(name));
         match origin {
             Some(origin) if origin != path && followed < 9 => {
                 self.defining(&[origin.as_slice(), &rest[1..]].concat(), followed + 1)
@@ -93,48 +105,121 @@ fn module_of(path: &Path) -> Module {
     names
 }
 
-/// Every imported path with its visibility, braces taken apart; comments and unit tests left out.
-fn declarations(text: &str) -> Vec<(bool, Module)> {
-    let code: String =
-        text.lines().map(|line| line.split("//").next().unwrap_or_default()).collect::<Vec<_>>().join("\n");
-    let code = code.split("#[cfg(test)]\nmod").next().unwrap_or_default().to_string();
-    let mut found = Vec::new();
-    for statement in code.split(';') {
-        let line = statement.rfind("\nuse ").or_else(|| statement.rfind("\npub use ")).or_else(|| {
-            let start = statement.trim_start();
-            (start.starts_with("use ") || start.starts_with("pub use ")).then(|| statement.len() - start.len())
-        });
-        let Some(start) = line else { continue };
-        let declaration = statement[start..].trim();
-        let is_public = declaration.starts_with("pub ");
-        let tree = declaration.trim_start_matches("pub ").trim_start_matches("use ");
-        found.extend(taken_apart(tree).into_iter().map(|path| (is_public, path)));
+/// What the code of a file names: its `use` declarations, taken apart into public or not, name and path; its other paths.
+type Named = (Vec<(bool, String, Module)>, Vec<Module>);
+
+fn named(text: &str) -> Named {
+    let words = words(text.split("#[cfg(test)]\nmod").next().unwrap_or_default());
+    let word = |at: usize| words.get(at).map_or("", String::as_str);
+    let (mut declarations, mut paths) = (Vec::new(), Vec::new());
+    let mut at = 0;
+    while at < words.len() {
+        if word(at) == "use" {
+            let is_public = at > 0 && word(at - 1) == "pub";
+            let end = (at..words.len()).find(|&end| word(end) == ";").unwrap_or(words.len());
+            let taken = taken_apart(&words[at + 1..end]);
+            declarations.extend(taken.into_iter().map(|(name, path)| (is_public, name, path)));
+            at = end;
+        } else if word(at + 1) == "::" && is_name(word(at)) && begins_path(&words[..at]) {
+            let mut path = vec![word(at).to_string()];
+            while word(at + 1) == "::" && is_name(word(at + 2)) {
+                at += 2;
+                path.push(word(at).to_string());
+            }
+            paths.push(path);
+        }
+        at += 1;
     }
-    found
+    (declarations, paths)
 }
 
-/// `a::{b, c::d}` as `a::b` and `a::c::d`.
-fn taken_apart(tree: &str) -> Vec<Module> {
-    let tree = tree.trim();
-    let Some((before, inside)) = tree.split_once('{') else {
-        let path = tree.split(" as ").next().unwrap_or_default();
-        return vec![path.split("::").map(|name| name.trim().to_string()).filter(|name| !name.is_empty()).collect()];
+/// Returns `true` if a path that follows these words begins there, and is not the scope of `pub(in ..)`.
+fn begins_path(before: &[String]) -> bool {
+    !before.ends_with(&["::".to_string()]) && !before.ends_with(&["pub", "(", "in"].map(str::to_string))
+}
+
+fn is_name(word: &str) -> bool {
+    word.starts_with(|first: char| first.is_alphabetic() || first == '_')
+}
+
+/// The words of a code: names and numbers, `::`, and each other sign; comments and what stands in quotes are left out.
+fn words(text: &str) -> Vec<String> {
+    let signs: Vec<char> = text.chars().collect();
+    let sign = |at: usize| signs.get(at).copied().unwrap_or('\n');
+    let is_part = |c: char| c.is_alphanumeric() || c == '_';
+    let mut words: Vec<String> = Vec::new();
+    let mut at = 0;
+    while at < signs.len() {
+        let start = at;
+        at += 1;
+        match signs[start] {
+            '/' if sign(at) == '/' => at = (at..signs.len()).find(|&end| sign(end) == '\n').unwrap_or(signs.len()),
+            '"' => {
+                // A raw text ends at a quote with as many `#` as it began with.
+                let hashes = (0..start).rev().take_while(|&before| sign(before) == '#').count();
+                let is_raw = start > hashes && sign(start - hashes - 1) == 'r';
+                while at < signs.len()
+                    && !(sign(at) == '"' && (!is_raw || (1..=hashes).all(|after| sign(at + after) == '#')))
+                {
+                    at += if sign(at) == '\\' && !is_raw { 2 } else { 1 };
+                }
+                at += 1;
+            }
+            // A character; a lifetime has no quote behind it.
+            '\'' if sign(at) == '\\' => {
+                at += 2;
+                while sign(at) != '\'' {
+                    at += 1;
+                }
+                at += 1;
+            }
+            '\'' if sign(at + 1) == '\'' => at += 2,
+            ':' if sign(at) == ':' => {
+                at += 1;
+                words.push("::".to_string());
+            }
+            c if is_part(c) => {
+                while is_part(sign(at)) {
+                    at += 1;
+                }
+                words.push(signs[start..at].iter().collect());
+            }
+            c if c.is_whitespace() => {}
+            c => words.push(c.to_string()),
+        }
+    }
+    words
+}
+
+/// `a::{b, c::d as e}` as `b` from `a::b` and `e` from `a::c::d`.
+fn taken_apart(tree: &[String]) -> Vec<(String, Module)> {
+    let Some(open) = tree.iter().position(|word| word == "{") else {
+        let mut path: Module = tree.iter().filter(|word| *word != "::").cloned().collect();
+        let renamed = path
+            .iter()
+            .position(|word| word == "as")
+            .map(|at| path.split_off(at))
+            .and_then(|mut as_name| as_name.pop());
+        let own = path.last().cloned();
+        return renamed.or(own).map(|name| (name, path)).into_iter().collect();
     };
-    let prefix: Module =
-        before.split("::").map(|name| name.trim().to_string()).filter(|name| !name.is_empty()).collect();
-    let (mut items, mut depth, mut item) = (Vec::new(), 0, String::new());
-    for character in inside.trim_end().trim_end_matches('}').chars() {
-        match character {
-            ',' if depth == 0 => items.push(std::mem::take(&mut item)),
+    let prefix: Module = tree[..open].iter().filter(|word| *word != "::").cloned().collect();
+    let (mut items, mut depth) = (vec![Vec::new()], 0);
+    for word in &tree[open + 1..tree.len() - 1] {
+        match word.as_str() {
+            "," if depth == 0 => items.push(Vec::new()),
             _ => {
-                depth += i32::from(character == '{') - i32::from(character == '}');
-                item.push(character);
+                depth += i32::from(word == "{") - i32::from(word == "}");
+                items.last_mut().unwrap().push(word.clone());
             }
         }
     }
-    items.push(item);
-    let items = items.iter().filter(|item| !item.trim().is_empty());
-    items.flat_map(|item| taken_apart(item)).map(|rest| [prefix.clone(), rest].concat()).collect()
+    let whole = |(name, rest): (String, Module)| {
+        // `a::{self}` brings in `a`.
+        let name = if name == "self" { prefix.last().cloned().unwrap_or_default() } else { name };
+        (name, [prefix.clone(), rest].concat())
+    };
+    items.iter().filter(|item| !item.is_empty()).flat_map(|item| taken_apart(item)).map(whole).collect()
 }
 
 /// The path from the crate root, if it stays in the crate.
@@ -158,4 +243,21 @@ fn from_root(path: &Module, module: &Module, known: &BTreeSet<Module>) -> Option
     }
     let whole: Module = [here.as_slice(), rest].concat();
     Some(whole.into_iter().filter(|name| name != "self").collect())
+}
+
+#[test]
+fn declarations_and_paths_are_read_and_comments_and_texts_are_not() {
+    let (declarations, paths) = named(
+        r#"
+        use crate::a::{self, b::c as d}; // use crate::comment;
+        pub(crate) use super::e;
+        pub(in crate::scene) fn f<'a>(g: &'a super::h::I) -> char { crate::j::k("crate::text", '"'); '\'' }
+        pub use l::M;
+        "#,
+    );
+    let named_by = |path: &str| path.split("::").map(str::to_string).collect::<Module>();
+    let expected =
+        [(false, "a", "crate::a::self"), (false, "d", "crate::a::b::c"), (false, "e", "super::e"), (true, "M", "l::M")];
+    assert_eq!(declarations, expected.map(|(is_public, name, path)| (is_public, name.to_string(), named_by(path))));
+    assert_eq!(paths, ["super::h::I", "crate::j::k"].map(named_by));
 }

@@ -10,7 +10,7 @@ pub use region::Region;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
-use crate::fem::element::{Cell, ElementKind, MAX_NODES, PerNode, Rule, Tabulated};
+use crate::fem::element::{Cell, ElementKind, MAX_NODES, PerNode, Rule, Tabulated, TabulatedPoint};
 use crate::fem::formulation::Formulation;
 use crate::fem::material::{Lame, Material};
 use crate::fem::mesh::Mesh;
@@ -203,6 +203,42 @@ impl ElasticBody {
         values
     }
 
+    /// The point of an element at a tabulated point.
+    #[inline]
+    pub fn point(&self, cell: &Cell, at: &TabulatedPoint) -> LocalPoint {
+        let map = cell.map(&at.derivative);
+        let mut hoop = [0.0; MAX_NODES];
+        let mut radius = 0.0;
+        if self.formulation().is_axisymmetric() {
+            radius = cell.place(&at.shape)[0];
+            let per_radius = cell.unit() / radius;
+            hoop = at.shape.map(|value| value * per_radius);
+        }
+        LocalPoint {
+            gradients: map.gradients,
+            hoop,
+            weight: map.determinant * at.weight * self.formulation().measure(radius),
+        }
+    }
+
+    /// The mean dilatation of an element where its integration asks for it, per length; `None` where it does not.
+    pub(crate) fn mean_dilatation(
+        &self,
+        cell: &Cell,
+        table: &Tabulated,
+        displacement: &PerNode<[f64; 3]>,
+    ) -> Option<f64> {
+        if self.integration() != Integration::MeanDilatation {
+            return None;
+        }
+        let (mut integral, mut volume) = (0.0, 0.0);
+        for at in &table.points {
+            let point = self.point(cell, at);
+            integral += point.weight * trace(&point.strain(displacement, cell.unit()));
+            volume += point.weight;
+        }
+        Some(integral / volume)
+    }
     /// The stress of a strain in a material; `dilatation` stands for its trace, which a mean over the element may
     /// replace.
     pub fn stress(&self, Lame { lambda, mu }: Lame, strain: &Symmetric, dilatation: f64) -> Symmetric {

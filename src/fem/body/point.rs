@@ -1,7 +1,6 @@
 //! A point in an element: gradients, hoop terms, weight; strains there.
 
-use super::{ElasticBody, Integration};
-use crate::fem::element::{Cell, MAX_NODES, PerNode, Tabulated, TabulatedPoint};
+use crate::fem::element::{MAX_NODES, PerNode};
 
 /// A symmetric tensor `[xx, yy, zz, xy, yz, zx]`; in a body of revolution zz is the hoop component.
 ///
@@ -18,45 +17,6 @@ pub struct LocalPoint {
     pub hoop: PerNode<f64>,
     /// Quadrature weight times determinant times area, thickness or circumference; the determinant in units.
     pub weight: f64,
-}
-
-impl ElasticBody {
-    /// The point of an element at a tabulated point.
-    #[inline]
-    pub fn point(&self, cell: &Cell, at: &TabulatedPoint) -> LocalPoint {
-        let map = cell.map(&at.derivative);
-        let mut hoop = [0.0; MAX_NODES];
-        let mut radius = 0.0;
-        if self.formulation().is_axisymmetric() {
-            radius = cell.place(&at.shape)[0];
-            let per_radius = cell.unit() / radius;
-            hoop = at.shape.map(|value| value * per_radius);
-        }
-        LocalPoint {
-            gradients: map.gradients,
-            hoop,
-            weight: map.determinant * at.weight * self.formulation().measure(radius),
-        }
-    }
-
-    /// The mean dilatation of an element where its integration asks for it, per length; `None` where it does not.
-    pub(crate) fn mean_dilatation(
-        &self,
-        cell: &Cell,
-        table: &Tabulated,
-        displacement: &PerNode<[f64; 3]>,
-    ) -> Option<f64> {
-        if self.integration() != Integration::MeanDilatation {
-            return None;
-        }
-        let (mut integral, mut volume) = (0.0, 0.0);
-        for at in &table.points {
-            let point = self.point(cell, at);
-            integral += point.weight * trace(&point.strain(displacement, cell.unit()));
-            volume += point.weight;
-        }
-        Some(integral / volume)
-    }
 }
 
 impl LocalPoint {

@@ -18,7 +18,7 @@ mod steps;
 use cone::{Cone, Face, Row};
 
 use super::cost::{Kept, check_memory, check_time, seconds};
-use super::judged::{judged, not_rechecked};
+use super::judged::{judged, not_decided};
 use super::settings::Settings;
 use crate::error::Error;
 use crate::qp::certificate::{Motion, Rounding};
@@ -133,14 +133,6 @@ fn is_doubtful(error: &Error, settings: &Settings) -> bool {
             !solution.certificate.has_bound() && is_open
         }
         _ => false,
-    }
-}
-
-/// The ending of a claim that cannot be rechecked: no answer, and why.
-fn not_decided(problem: &ContactProblem, before: Error) -> Result<Error, Error> {
-    match before {
-        before @ Error::NotCertified { .. } => Ok(before),
-        claim => not_rechecked(problem, &claim),
     }
 }
 

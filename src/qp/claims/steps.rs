@@ -1,8 +1,8 @@
 //! An answer where the stiffness is singular, by steps with a stiffness that is not.
 
-use super::not_decided;
 use crate::error::Error;
 use crate::qp::attempts;
+use crate::qp::judged::not_decided;
 use crate::qp::linear::{SparseMatrix, SymmetricMatrix, ldexp};
 use crate::qp::problem::ContactProblem;
 use crate::qp::settings::{Method, Precision, Settings};

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use super::cells::CellType;
-use super::{Element, GmshFile};
+use super::file::{Element, GmshFile};
 use crate::error::Error;
 use crate::fem::element::{Cell, ElementKind, MAX_NODES, Rule, Tabulated};
 use crate::fem::mesh::{Mesh, fail};

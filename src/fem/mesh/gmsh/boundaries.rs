@@ -3,10 +3,18 @@
 use std::collections::HashSet;
 
 use super::body::Numbers;
-use super::{Element, GmshFile, OffBody};
+use super::file::{Element, GmshFile};
 use crate::error::Error;
 use crate::fem::mesh::outline::chained;
 use crate::fem::mesh::{Boundary, Mesh};
+
+/// What becomes of facets of a group that are no faces of the body.
+pub(super) enum OffBody {
+    /// They are a fault of the file.
+    Refused,
+    /// They are left out: the body is a part of the file.
+    LeftOut,
+}
 
 /// The boundaries of `mesh`, in the order of the file.
 pub(super) fn of(file: &GmshFile, mesh: &Mesh, numbers: &Numbers, off_body: &OffBody) -> Result<Vec<Boundary>, Error> {

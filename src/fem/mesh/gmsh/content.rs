@@ -5,8 +5,8 @@ use std::collections::hash_map::Entry;
 use std::path::Path;
 
 use super::cells::cell_type;
+use super::file::{Block, GmshFile, PhysicalGroup};
 use super::lines::Fields;
-use super::{Block, GmshFile, PhysicalGroup};
 use crate::error::Error;
 use crate::fem::mesh::MAX_NODES;
 

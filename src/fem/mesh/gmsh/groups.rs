@@ -2,21 +2,9 @@
 
 use std::collections::HashSet;
 
-use super::GmshFile;
+use super::file::{GmshFile, PhysicalGroup};
 use super::lines::{Fields, Lines};
 use crate::error::Error;
-
-/// A physical group with a name.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct PhysicalGroup {
-    /// Dimension of its elements, 0 to 3.
-    pub dimension: usize,
-    /// Its number among the groups of this dimension.
-    pub tag: u64,
-    /// Its name.
-    pub name: String,
-    pub(super) line: usize,
-}
 
 /// The section `$PhysicalNames`: a count, then `dimension tag "name"`.
 pub(super) fn names(lines: &mut Lines, groups: &mut Vec<PhysicalGroup>) -> Result<(), Error> {

@@ -38,62 +38,21 @@ mod body;
 mod boundaries;
 mod cells;
 mod content;
+mod file;
 mod groups;
 mod lines;
 mod sections;
 mod version2;
 mod version4;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use cells::CellType;
-pub use groups::PhysicalGroup;
+use boundaries::OffBody;
+pub use file::{GmshFile, PhysicalGroup};
 
 use super::Mesh;
 use crate::error::Error;
 use crate::file::{MOST_OF_TABLE, read_capped};
-
-/// What stands in a file: nodes, elements of any type, physical groups.
-#[derive(Clone, Debug)]
-pub struct GmshFile {
-    file: PathBuf,
-    /// In the order of the file, with their tags and lines.
-    nodes: Vec<[f64; 3]>,
-    node_tags: Vec<usize>,
-    node_lines: Vec<usize>,
-    blocks: Vec<Block>,
-    groups: Vec<PhysicalGroup>,
-    last_line: usize,
-}
-
-/// Elements of one type in the same physical groups.
-#[derive(Clone, Debug)]
-struct Block {
-    cell: &'static CellType,
-    groups: Vec<u64>,
-    tags: Vec<usize>,
-    /// Where each element stands in the file.
-    lines: Vec<usize>,
-    /// The nodes of element 0, then of element 1, ...: tags while the file is read, then places in `nodes`.
-    nodes: Vec<usize>,
-}
-
-/// One element of a block.
-#[derive(Clone, Copy, Debug)]
-struct Element<'a> {
-    cell: &'static CellType,
-    tag: usize,
-    line: usize,
-    nodes: &'a [usize],
-}
-
-/// What becomes of facets of a group that are no faces of the body.
-enum OffBody {
-    /// They are a fault of the file.
-    Refused,
-    /// They are left out: the body is a part of the file.
-    LeftOut,
-}
 
 impl GmshFile {
     /// Reads a file.
@@ -145,19 +104,5 @@ impl GmshFile {
         let off_body = if domain.is_some() { OffBody::LeftOut } else { OffBody::Refused };
         mesh.boundaries = boundaries::of(self, &mesh, &numbers, &off_body)?;
         Ok(mesh)
-    }
-
-    fn elements_of<'a>(&'a self, block: &'a Block) -> impl Iterator<Item = Element<'a>> + 'a {
-        let nodes = block.nodes.chunks_exact(block.cell.nodes);
-        block.tags.iter().zip(&block.lines).zip(nodes).map(|((&tag, &line), nodes)| Element {
-            cell: block.cell,
-            tag,
-            line,
-            nodes,
-        })
-    }
-
-    fn fault(&self, line: usize, message: impl Into<String>) -> Error {
-        lines::fault(&self.file, line, message)
     }
 }

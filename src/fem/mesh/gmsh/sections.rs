@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use super::content::Content;
+use super::file::GmshFile;
 use super::lines::{Lines, shortened};
-use super::{GmshFile, groups, version2, version4};
+use super::{groups, version2, version4};
 use crate::error::Error;
 
 /// The versions of the format that are read.

@@ -32,9 +32,7 @@ use crate::solution::{ContactSet, Iteration};
 use basis::Basis;
 use pass::{Ending, Pass, Pressures};
 use polyhedron::Polyhedron;
-
-/// The suffix that the method leaves behind a name; more follows where it is not settled.
-pub const VARIANT: &str = "-dual";
+pub(super) use polyhedron::VARIANT;
 
 /// Passes: the second mends what the rounding of the first hides where dofs are of very different scale.
 const MOST_PASSES: usize = 10;
