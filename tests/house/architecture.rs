@@ -112,6 +112,17 @@ fn bodies_know_no_contact_problem() {
 }
 
 #[test]
+fn only_judged_constructs_the_error_of_an_answer_that_is_not_certified() {
+    let name = "Error::NotCertified {";
+    let constructs = |text: &str| {
+        // A pattern leaves out what it does not need by `..`; a construction names all fields.
+        text.match_indices(name).any(|(at, _)| !text[at..].split('}').next().unwrap().contains(".."))
+    };
+    let files = House::read().files.into_values().filter(|source| constructs(&source.text));
+    assert_eq!(files.map(|source| source.path).collect::<Vec<_>>(), [Path::new("qp/judged.rs")]);
+}
+
+#[test]
 fn every_room_of_the_house_exists() {
     let rooms: BTreeSet<String> = sources().into_iter().map(|(room, _, _)| room).collect();
     for room in FLOORS.concat() {
