@@ -8,7 +8,8 @@ use super::parts::Parts;
 use super::rows::ContactRow;
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
-use unit::{NAMED, Sense, UnitMotions, dot};
+use crate::qp::linear::dot;
+use unit::{NAMED, Sense, UnitMotions};
 
 /// A motion is held where the singular value that belongs to it exceeds this times the largest; exact geometry gives
 /// zero to rounding, 1e-16, and any support or normal that a scene means is far above.

@@ -6,6 +6,7 @@ use nalgebra::DMatrix;
 
 use crate::fem::body::{ElasticBody, Region};
 use crate::fem::mesh::extent;
+use crate::qp::linear::dot;
 use crate::scene::entry::point;
 
 /// A part of a motion below this, relative to the whole, does not enter its name.
@@ -144,9 +145,4 @@ fn direction(vector: &[f64]) -> String {
 /// Rounded to six significant digits: a pole is a computed place.
 fn six_digits(value: f64) -> f64 {
     format!("{value:.5e}").parse().unwrap_or(value)
-}
-
-/// The scalar product of amplitudes, or of motions.
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
