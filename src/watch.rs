@@ -56,7 +56,7 @@ impl fmt::Debug for Observer {
 const FINISHING: f64 = 0.1;
 
 /// Work that takes less tells nothing of the pace.
-const TELLING: f64 = 1e-3;
+const TELLING_SECONDS: f64 = 1e-3;
 
 /// What is being done.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -198,7 +198,7 @@ impl Watch {
     pub fn timed<T>(&self, estimate: f64, work: impl FnOnce() -> T) -> T {
         let clock = Instant::now();
         let done = work();
-        if estimate >= TELLING {
+        if estimate >= TELLING_SECONDS {
             self.learn(clock.elapsed().as_secs_f64() / estimate);
         }
         done

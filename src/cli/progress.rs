@@ -19,7 +19,7 @@ const QUIET: Duration = Duration::from_secs(1);
 const BAR: usize = 20;
 
 /// Fewer parts say little of those to come.
-const TELLING: usize = 5;
+const TELLING_PARTS: usize = 5;
 
 /// Longer lines would be broken by narrow terminals, and could not be erased.
 const WIDTH: usize = 79;
@@ -89,7 +89,7 @@ impl Pace {
             self.0 = Some((Instant::now(), part.clone()));
         }
         let (start, first) = self.0.as_ref()?;
-        let done = part.number.checked_sub(first.number).filter(|&done| done >= TELLING)?;
+        let done = part.number.checked_sub(first.number).filter(|&done| done >= TELLING_PARTS)?;
         Some(start.elapsed().mul_f64((part.of + 1).saturating_sub(part.number) as f64 / done as f64))
     }
 }

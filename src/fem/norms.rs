@@ -24,10 +24,10 @@ pub struct ErrorNorms {
 }
 
 /// A part of a cell is halved again until that changes the whole by less than this.
-const SHARE: f64 = 1e-5;
+const DIVISION_SHARE: f64 = 1e-5;
 
 /// Relative errors below this are rounding: no cell is divided for them.
-const ROUNDING: f64 = 1e-12;
+const ERROR_ROUNDING: f64 = 1e-12;
 
 /// The most halvings of a cell: where the strain is as sharp as at the tip of a crack, the last part holds 2^-12 of it.
 const HALVINGS: usize = 12;
@@ -119,7 +119,7 @@ impl Sums {
 
     /// What a part may be off by in the squares of the error: in energy and in L2.
     fn allowed(&self) -> [f64; 2] {
-        [self.energy, self.l2].map(|[error, exact]| SHARE * error + ROUNDING * ROUNDING * exact)
+        [self.energy, self.l2].map(|[error, exact]| DIVISION_SHARE * error + ERROR_ROUNDING * ERROR_ROUNDING * exact)
     }
 
     fn away(&self, other: &Sums, allowed: [f64; 2]) -> bool {

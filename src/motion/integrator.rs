@@ -12,7 +12,7 @@ use crate::solution::ContactSet;
 use crate::watch::Watch;
 
 /// Rounding of the displacement and the gaps, relative to the largest of them: no penetration at the start.
-const ROUNDING: f64 = 1e-12;
+const GAP_ROUNDING: f64 = 1e-12;
 
 /// A motion with its scheme and its step.
 ///
@@ -43,7 +43,7 @@ impl Integrator {
         let reach = largest(problem.displacement())
             .max(problem.statics().gap().iter().filter(|gap| gap.is_finite()).fold(0.0, |max, gap| gap.abs().max(max)));
         let penetration = problem.penetration(problem.displacement());
-        if penetration > ROUNDING * reach {
+        if penetration > GAP_ROUNDING * reach {
             let allowed = "zero: no contact row may be violated at the start";
             return Err(Error::Setting { name: "initial penetration", value: penetration, allowed });
         }
@@ -72,7 +72,7 @@ impl Integrator {
             elastic: problem.statics().stiffness().mul(problem.displacement()),
             momentum: problem.mass().mul(problem.velocity()),
             multiplier: vec![0.0; rows],
-            contact_set: ContactSet::from_fn(rows, |row| violation[row] >= -ROUNDING * reach),
+            contact_set: ContactSet::from_fn(rows, |row| violation[row] >= -GAP_ROUNDING * reach),
         };
         let state = prepared.start(&problem, step, state)?;
         if watch.is_over() {

@@ -5,7 +5,7 @@ use super::{Drawing, Plot, Quantity, Scale, Series, line_plots};
 use crate::study::{Tradeoff, TradeoffMesh, TradeoffPoint};
 
 /// An error of nothing is shown as this on a logarithmic axis: below it doubles do not tell answers apart.
-const ROUNDING: f64 = 1e-16;
+const LEAST_SHOWN_ERROR: f64 = 1e-16;
 
 /// The columns of the table.
 const HEADING: [&str; 10] = [
@@ -135,7 +135,7 @@ pub fn tradeoff_csv(tradeoff: &Tradeoff) -> String {
 pub fn tradeoff_plot(title: &str, tradeoff: &Tradeoff) -> Drawing {
     let panel = |(index, mesh): (usize, &TradeoffMesh)| {
         let of_mesh = || tradeoff.points.iter().filter(move |point| point.mesh == index);
-        let place = |point: &TradeoffPoint| [point.seconds, point.energy_error.max(ROUNDING)];
+        let place = |point: &TradeoffPoint| [point.seconds, point.energy_error.max(LEAST_SHOWN_ERROR)];
         let mut series: Vec<Series> = Vec::new();
         for point in of_mesh() {
             let mixed = if point.mixed { ", mixed" } else { "" };

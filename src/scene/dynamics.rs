@@ -1,6 +1,6 @@
 //! The motion that a scene asks for: mass, scheme, step, initial state, loads in time.
 
-use super::entry::{ROUNDING, located, number, point, vector, wrong};
+use super::entry::{COORDINATE_ROUNDING, located, number, point, vector, wrong};
 use super::schema::{AnalysisSpec, DynamicSpec, FieldSpec, MassSpec, PenetrationSpec, Scene};
 use super::{Model, Warning};
 use crate::error::Error;
@@ -13,6 +13,9 @@ use crate::qp::{Method, Settings, solve};
 
 /// Where the fields stand in a scene.
 const PATH: &str = "analysis.dynamic";
+
+/// Steps and durations that differ by less than this, relative, differ by rounding.
+const STEP_ROUNDING: f64 = 1e-12;
 
 /// Steps that no run would see the end of.
 const MOST_STEPS: f64 = 1e9;
@@ -199,16 +202,16 @@ impl DynamicSpec {
                 if !(step.is_finite() && step > 0.0) {
                     return Err(not_positive("step", step));
                 }
-                if let Some(stable) = stable.filter(|stable| step > stable * (1.0 + ROUNDING)) {
+                if let Some(stable) = stable.filter(|stable| step > stable * (1.0 + STEP_ROUNDING)) {
                     let (step, stable) = (number(step), number(stable));
                     let message = format!("{step} is beyond {stable}, the largest stable step of central differences");
                     return Err(wrong(format!("{PATH}.step"), message));
                 }
-                if step > self.duration * (1.0 + ROUNDING) {
+                if step > self.duration * (1.0 + STEP_ROUNDING) {
                     let message = format!("{} is longer than the duration {}", number(step), number(self.duration));
                     return Err(wrong(format!("{PATH}.step"), message));
                 }
-                counted(step, (self.duration / step * (1.0 - ROUNDING)).ceil())
+                counted(step, (self.duration / step * (1.0 - STEP_ROUNDING)).ceil())
             }
             (None, courant) => {
                 let courant = courant.unwrap_or(COURANT[usize::from(scheme.is_explicit())]);
@@ -222,7 +225,7 @@ impl DynamicSpec {
                 let unit = stable.unwrap_or_else(|| wave_time(body));
                 // Whatever the duration: a run can then go on to a longer one.
                 let step = (courant * unit).min(self.duration);
-                counted(step, (self.duration / step * (1.0 - ROUNDING)).ceil())
+                counted(step, (self.duration / step * (1.0 - STEP_ROUNDING)).ceil())
             }
         }
     }
@@ -317,7 +320,7 @@ fn wave_time(body: &ElasticBody) -> f64 {
 fn deepest(model: &Model, displacement: &[f64]) -> Option<Error> {
     let violation = model.problem().violation(displacement);
     let (row, depth) = violation.into_iter().enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
-    if depth <= ROUNDING * model.mesh().size() {
+    if depth <= COORDINATE_ROUNDING * model.mesh().size() {
         return None;
     }
     let row = model.rows()[row];

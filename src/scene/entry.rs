@@ -8,7 +8,7 @@ use crate::fem::mesh::{Boundary, Mesh};
 pub(super) const PLACE_TOLERANCE: f64 = 1e-9;
 
 /// Lengths below this times the body's size are rounding of coordinates.
-pub(super) const ROUNDING: f64 = 1e-12;
+pub(super) const COORDINATE_ROUNDING: f64 = 1e-12;
 
 pub(super) fn wrong(path: impl Into<String>, message: impl Into<String>) -> Error {
     Error::Scene { path: path.into(), message: message.into() }

@@ -9,7 +9,7 @@ use crate::fem::geometry::dot;
 use crate::fem::mesh::Mesh;
 
 /// A normal that leans by less than this out of those before it depends on them: the rounding of written components.
-const DEPENDENT: f64 = 1e-9;
+const DEPENDENT_NORMAL: f64 = 1e-9;
 
 /// Dependent normals must agree in their values to within this, relative to the largest of them.
 const AGREEING: f64 = 1e-9;
@@ -112,7 +112,7 @@ impl Span {
         for (index, component) in components.iter().enumerate() {
             let implied = span.along(component.direction);
             let rest = perpendicular(component.direction, &span.axes);
-            if dot(rest, rest).sqrt() > DEPENDENT {
+            if dot(rest, rest).sqrt() > DEPENDENT_NORMAL {
                 span.extend(component, implied, rest);
                 continue;
             }
@@ -150,7 +150,7 @@ fn coordinate_of(vector: [f64; 3]) -> Option<usize> {
 fn contradiction(component: &Component, implied: f64, before: &[Component]) -> String {
     let parallel = |other: &&Component| {
         let rest = perpendicular(component.direction, &[other.direction]);
-        dot(rest, rest).sqrt() <= DEPENDENT
+        dot(rest, rest).sqrt() <= DEPENDENT_NORMAL
     };
     let prescribing: Vec<&Component> = match before.iter().find(parallel) {
         Some(other) => vec![other],

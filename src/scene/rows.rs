@@ -1,7 +1,7 @@
 //! Contact rows: B u <= g in the free dofs, from the candidates of every obstacle.
 
 use super::Warning;
-use super::entry::{ROUNDING, finite, point, wrong};
+use super::entry::{COORDINATE_ROUNDING, finite, point, wrong};
 use super::parts::Parts;
 use crate::error::Error;
 use crate::qp::linear::SparseMatrix;
@@ -49,7 +49,7 @@ pub(super) fn build(parts: &Parts, scene_gap: f64) -> Result<Rows, Error> {
     finite("gap", scene_gap)?;
     let (mesh, dofs) = (parts.body.mesh(), &parts.dofs);
     let dimension = parts.body.dimension();
-    let rounding = ROUNDING * mesh.size();
+    let rounding = COORDINATE_ROUNDING * mesh.size();
     let (mut rows, mut gap, mut entries, mut warnings) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (index, obstacle) in parts.obstacles.iter().enumerate() {
         let mut reached = false;

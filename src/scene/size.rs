@@ -118,7 +118,7 @@ fn filled(lattice: &[f64], around: f64) -> f64 {
     /// A part of so few nodes is dense.
     const DENSE: f64 = 8.0;
     /// The share of the neighbours around a part that a node of it meets.
-    const MET: f64 = 0.7;
+    const NEIGHBOURS_MET: f64 = 0.7;
     /// Half a part has about this share of the neighbours of the whole.
     const HALF: f64 = 0.55;
     let count: f64 = lattice.iter().product();
@@ -127,7 +127,7 @@ fn filled(lattice: &[f64], around: f64) -> f64 {
         return f64::INFINITY;
     }
     if count <= DENSE || longest < 2.0 {
-        return count * count / 2.0 + count * around * MET;
+        return count * count / 2.0 + count * around * NEIGHBOURS_MET;
     }
     let separator = count / longest;
     let mut half = lattice.to_vec();

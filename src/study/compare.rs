@@ -16,7 +16,7 @@ pub const DISPLACEMENT_AGREEMENT: f64 = 1e-8;
 pub const MULTIPLIER_AGREEMENT: f64 = 1e-7;
 
 /// Rows whose multiplier and distance are both below this, relative, are weakly active: they may be in the set or not.
-pub const WEAK: f64 = 1e-9;
+pub const WEAKLY_ACTIVE: f64 = 1e-9;
 
 /// Rounding of an energy norm that is recomputed.
 const NORM_ROUNDING: f64 = 1e-12;
@@ -114,7 +114,8 @@ fn difference(problem: &ContactProblem, answer: &Solution, reference: &Solution)
     let moved = minus(&answer.displacement, u);
     let violation = problem.violation(u);
     let (reach, strongest) = (largest(&problem.contact().mul(u)), largest(lambda));
-    let is_weak = |row: usize| lambda[row].abs() <= WEAK * strongest && violation[row].abs() <= WEAK * reach;
+    let is_weak =
+        |row: usize| lambda[row].abs() <= WEAKLY_ACTIVE * strongest && violation[row].abs() <= WEAKLY_ACTIVE * reach;
     let differs = |row: usize| answer.contact_set.contains(row) != reference.contact_set.contains(row);
     Difference {
         displacement: relative(largest(&moved), largest(u)),

@@ -13,7 +13,7 @@ use crate::scene::{Answer, Model};
 use crate::solution::{ContactSet, Goal, Solution};
 
 /// Gaps half way that differ by this from the mean of the ends, relative, are not on a straight line.
-const STRAIGHT: f64 = 1e-12;
+const STRAIGHT_LINE: f64 = 1e-12;
 
 /// The numbers of `solution`, whose `answer` to a scene this is: with pressures, the width of the contact, and the balance of all forces.
 ///
@@ -177,13 +177,12 @@ fn between(
     let (at_last, at_middle) = (at_first.with_gap(last)?, at_first.with_gap((first + last) / 2.0)?);
     let rows = at_first.problem().contact();
     let (from, to) = (at_first.problem().gap(), at_last.problem().gap());
-    let is_straight = rows == at_last.problem().contact()
-        && rows == at_middle.problem().contact()
-        && from
-            .iter()
-            .zip(to)
-            .zip(at_middle.problem().gap())
-            .all(|((from, to), middle)| ((from + to) / 2.0 - middle).abs() <= STRAIGHT * (from.abs() + to.abs()));
+    let is_straight =
+        rows == at_last.problem().contact()
+            && rows == at_middle.problem().contact()
+            && from.iter().zip(to).zip(at_middle.problem().gap()).all(|((from, to), middle)| {
+                ((from + to) / 2.0 - middle).abs() <= STRAIGHT_LINE * (from.abs() + to.abs())
+            });
     // Without a factor there is no path.
     if first == last || !is_straight || prepared.hierarchy().is_some() {
         return Ok((Vec::new(), Vec::new()));

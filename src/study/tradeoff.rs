@@ -28,7 +28,7 @@ const USUAL_TOLERANCE: f64 = 1e-8;
 const HURRY: f64 = 0.1;
 
 /// Errors below this are those of rounding, and one is as good as another.
-const ROUNDING: f64 = 1e-12;
+const ERROR_ROUNDING: f64 = 1e-12;
 
 /// The QP whose contact set is settled by active-set steps.
 const POLISHED: &str = "qp, polished";
@@ -279,7 +279,7 @@ fn errors(model: &Model, solution: &Solution, exact: &Solution) -> Result<Tradeo
 
 impl TradeoffPoint {
     fn error_above_rounding(&self) -> f64 {
-        self.energy_error.max(ROUNDING)
+        self.energy_error.max(ERROR_ROUNDING)
     }
 }
 

@@ -8,7 +8,7 @@ use crate::fem::body::{ElasticBody, Region};
 use crate::fem::element::MAX_NODES;
 
 /// Mass and centre are kept to within this, relative to the mass and the size of the body.
-const KEPT: f64 = 1e-10;
+const MASS_TOLERANCE: f64 = 1e-10;
 
 /// A factor on the density of an element below this is no small correction: the mesh is too coarse.
 const LEAST_FACTOR: f64 = 0.1;
@@ -113,7 +113,7 @@ impl Redistribution {
                     .into(),
         };
         let correction = matrix.clone().svd(true, true).solve(&missing, 1e-12).map_err(|_| too_coarse())?;
-        if (&matrix * &correction - missing).amax() > KEPT * total {
+        if (&matrix * &correction - missing).amax() > MASS_TOLERANCE * total {
             return Err(too_coarse());
         }
         for (element, middle) in region.elements().zip(middles) {

@@ -30,10 +30,10 @@ use crate::solution::ContactSet;
 const TOLERATED: f64 = 1e-5;
 
 /// What a corrected step may be off by.
-const KEPT: f64 = 1e-7;
+const CORRECTION_TOLERANCE: f64 = 1e-7;
 
 /// A contact force below this, relative to the largest, is none.
-const ROUNDING: f64 = 1e-9;
+const NEGLIGIBLE_FORCE: f64 = 1e-9;
 
 /// Shares of the correction that are tried.
 const TRIALS: usize = 8;
@@ -209,7 +209,7 @@ impl Midpoint {
         let at = |share: f64| -> Result<(State, f64), Error> {
             let mut multiplier = plus(&found.multiplier, share, &of_rows);
             // Open rows feel no more than the rounding of a balance of forces.
-            let rounding = ROUNDING * largest(&multiplier);
+            let rounding = NEGLIGIBLE_FORCE * largest(&multiplier);
             multiplier.iter_mut().filter(|lambda| **lambda > -rounding).for_each(|lambda| *lambda = 0.0);
             let contact_set = ContactSet::from_fn(multiplier.len(), |row| multiplier[row] < 0.0);
             let corrected = Found { change: plus(&found.change, share, &response), multiplier, contact_set };
@@ -217,7 +217,7 @@ impl Midpoint {
             let off = imbalance(state, &end, &load);
             Ok((end, off))
         };
-        regula_falsi(first, KEPT * scale, at)
+        regula_falsi(first, CORRECTION_TOLERANCE * scale, at)
     }
 }
 

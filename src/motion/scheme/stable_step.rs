@@ -8,7 +8,7 @@ use crate::qp::linear::largest;
 const STEPS: usize = 60;
 
 /// The limit may be met but for rounding.
-const ROUNDING: f64 = 1e-12;
+const LIMIT_ROUNDING: f64 = 1e-12;
 
 /// A step, in time, up to which central differences with the diagonal mass of `problem` are stable:
 /// `2/omega (sqrt(1 + xi^2) - xi)` with a bound from above of the largest frequency omega, its damping ratio xi.
@@ -58,7 +58,7 @@ pub fn stable_step(problem: &DynamicProblem) -> Result<f64, Error> {
 /// [`Error::Numerical`] with the largest step where it is not; as [`stable_step`].
 pub(super) fn check_step(problem: &DynamicProblem, step: f64) -> Result<(), Error> {
     let most = stable_step(problem)?;
-    if step <= most * (1.0 + ROUNDING) {
+    if step <= most * (1.0 + LIMIT_ROUNDING) {
         return Ok(());
     }
     let reason = format!("the step {step:e} is beyond the largest stable one, {most:e}; take a smaller step");

@@ -17,7 +17,7 @@ const TIP: f64 = 1e-8;
 const TOUCHED: f64 = 1e-8;
 
 /// Coordinates below this share of the largest are what a solve in doubles leaves of zero.
-const ROUNDING: f64 = 1e-10;
+const SOLVE_ROUNDING: f64 = 1e-10;
 
 /// Turns in which a vector is made orthogonal to others: the second takes out what rounding of the first has left.
 const TURNS: usize = 2;
@@ -109,7 +109,7 @@ impl Cone<'_> {
             Err(_) => return None,
         };
         let distance = largest(&nearest);
-        let kept = |value: &f64| if value.abs() > ROUNDING * distance { *value } else { 0.0 };
+        let kept = |value: &f64| if value.abs() > SOLVE_ROUNDING * distance { *value } else { 0.0 };
         (distance > TIP).then(|| nearest.iter().map(kept).collect())
     }
 }

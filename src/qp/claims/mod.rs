@@ -35,7 +35,7 @@ const PRESSED: f64 = 1e-13;
 
 /// Where an answer leaves forces out of balance that may move a row by more than this share of its displacement and gap, it does
 /// not show which rows touch.
-const SETTLED: f64 = 1e-4;
+const SETTLED_FORCES: f64 = 1e-4;
 
 /// A row that is open by less than this share of its displacement and gap may touch.
 const TOUCHING: f64 = 1e-8;
@@ -50,7 +50,7 @@ const SETTLED_TO: f64 = 1e-11;
 const BENDS: f64 = 1e3;
 
 /// An answer shows which rows press only if its conditions hold to this, however little is asked for.
-const SURE: f64 = 1e-9;
+const SURE_CONDITIONS: f64 = 1e-9;
 
 /// The ending of a solve, with every claim rechecked; where an ending left no answer, the one that is found here.
 ///
@@ -92,7 +92,7 @@ pub(super) fn rechecked(
     if let Some(motion) = looked.escape() {
         return Err(Error::Unbounded { motion: motion.in_words(), direction: looked.expanded(&motion) });
     }
-    let tolerance = settings.tolerance.min(SURE);
+    let tolerance = settings.tolerance.min(SURE_CONDITIONS);
     let holds = |solution: &Solution| solution.certificate.conditions_hold(tolerance);
     let solution = match before {
         Error::NotCertified { solution, .. } if holds(&solution) => *solution,
@@ -199,7 +199,8 @@ impl<'a> Looked<'a> {
             .map(|(row, &force)| if presses(row) { force } else { 0.0 })
             .collect();
         let unbalanced = moved_by_residual(problem, u, &pressing);
-        let sure = |row: usize| unbalanced[row] <= SETTLED * (sizes[row] + problem.gap()[row].abs()) + strained[row];
+        let sure =
+            |row: usize| unbalanced[row] <= SETTLED_FORCES * (sizes[row] + problem.gap()[row].abs()) + strained[row];
         if !(self.rows.iter().all(|&(row, _)| sure(row)) && self.is_carried_by(&self.scaling.multiplier(&pressing, 0)))
         {
             return None;

@@ -22,7 +22,7 @@ const MOST_CORRECTIONS: usize = 20;
 const EXACT: f64 = 1e-26;
 
 /// Beside the largest entry of a vector in twice the working precision, less than this is what its corrections leave of zero.
-const NOTHING: f64 = 1e-24;
+const NO_ENTRY: f64 = 1e-24;
 
 /// A change of every entry of A by this much of itself makes `A v` vanish: A may be a singular matrix whose entries were
 /// rounded, several times where it was assembled.
@@ -216,7 +216,10 @@ impl SymmetricMatrix {
 /// A vector without the entries that are nothing beside the largest.
 pub fn without_noise(mut vector: Vec<Twice>) -> Vec<Twice> {
     let largest = vector.iter().fold(0.0, |largest: f64, value| largest.max(value.rounded().abs()));
-    vector.iter_mut().filter(|value| value.rounded().abs() <= NOTHING * largest).for_each(|value| *value = Twice::ZERO);
+    vector
+        .iter_mut()
+        .filter(|value| value.rounded().abs() <= NO_ENTRY * largest)
+        .for_each(|value| *value = Twice::ZERO);
     vector
 }
 

@@ -3,7 +3,7 @@
 use super::{UpperTriangle, dot, norm, take_out};
 
 /// What is left of a vector across the others is rounding where it is below this share of the terms that cancel.
-const CANCELLED: f64 = 64.0 * f64::EPSILON;
+const CANCELLED_VECTOR: f64 = 64.0 * f64::EPSILON;
 
 /// `sqrt((Z'Z)^-1_ii)`, one over the distance of column i of Z from the span of the others, for independent columns. It is
 /// infinite for columns with a share in what rounding cannot tell from a dependence. `None` where it `is_over` before.
@@ -73,7 +73,7 @@ impl Ordered {
     fn close(&mut self, index: usize, above: Vec<f64>, length: f64) {
         let weights = self.triangle.solve_upper(above.clone());
         let terms = weights.iter().fold(1.0, |sum, weight| sum + weight.abs());
-        self.triangle.push(above, length, length > CANCELLED * terms);
+        self.triangle.push(above, length, length > CANCELLED_VECTOR * terms);
         self.order.push(index);
     }
 
@@ -93,7 +93,7 @@ impl Ordered {
                 continue;
             }
             let terms: f64 = above.iter().zip(&x).map(|(r, x)| (r * x).abs()).sum();
-            if share.abs() > CANCELLED * terms {
+            if share.abs() > CANCELLED_VECTOR * terms {
                 return f64::INFINITY;
             }
             x.push(0.0);

@@ -22,7 +22,7 @@ use crate::solution::ContactSet;
 use crate::watch::Watch;
 
 /// A row whose compliance is this small, relative, once the rows before it are held, depends on them.
-const DEPENDENT: f64 = 1e-10;
+const DEPENDENT_COMPLIANCE: f64 = 1e-10;
 
 /// A path may change this many rows for each row there is before it is given up.
 const CHANGES_PER_ROW: usize = 50;
@@ -90,7 +90,7 @@ impl Compliance {
             }
             let whole = self.matrix[(row, row)];
             let pivot = whole - entries.iter().map(|entry| entry * entry).sum::<f64>();
-            if pivot > DEPENDENT * whole {
+            if pivot > DEPENDENT_COMPLIANCE * whole {
                 entries.push(pivot.sqrt());
                 kept.push((row, entries));
             }
@@ -106,7 +106,7 @@ impl Compliance {
         let block = DMatrix::from_fn(list.len(), list.len(), |i, j| self.matrix[(list[i], list[j])]);
         let is_independent = |factor: &Cholesky<f64, Dyn>| {
             let pivots = factor.l_dirty().diagonal();
-            list.iter().zip(pivots.iter()).all(|(&row, l)| l * l > DEPENDENT * self.matrix[(row, row)])
+            list.iter().zip(pivots.iter()).all(|(&row, l)| l * l > DEPENDENT_COMPLIANCE * self.matrix[(row, row)])
         };
         let factor = Cholesky::new(block).filter(is_independent).ok_or_else(|| Error::Numerical {
             step: "the exact path",

@@ -7,7 +7,7 @@ use super::diagonal::Diagonal;
 use crate::qp::linear::{Forest, SparseMatrix, SymmetricMatrix};
 
 /// A coupling below this share of `sqrt(K_ii K_jj)` does not make two dofs one part.
-const WEAK: f64 = 1e-6;
+const WEAK_COUPLING: f64 = 1e-6;
 
 /// The connected components of K and B: dofs that a coupling of K or a row with an obstacle joins.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,7 +24,7 @@ impl Parts {
         let mut forest = Forest::new(roots.len());
         for (column, &own) in roots.iter().enumerate() {
             for (row, value) in stiffness.lower().column(column) {
-                if row != column && value.abs() > WEAK * own * roots[row] {
+                if row != column && value.abs() > WEAK_COUPLING * own * roots[row] {
                     forest.join(column, row);
                 }
             }

@@ -7,7 +7,7 @@ use super::pairs::Pair;
 use super::row::Obstacle;
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
-use crate::scene::entry::{ROUNDING, finite, number, vector, wrong};
+use crate::scene::entry::{COORDINATE_ROUNDING, finite, number, vector, wrong};
 use crate::scene::schema::approach::{Approach, Rule};
 
 /// What an obstacle shape is called, and where it belongs.
@@ -81,7 +81,7 @@ impl Site<'_> {
 
     /// Lengths below this are rounding of coordinates.
     pub fn rounding(&self) -> f64 {
-        ROUNDING * self.body.mesh().size()
+        COORDINATE_ROUNDING * self.body.mesh().size()
     }
 
     /// A field that is a point.

@@ -1,7 +1,7 @@
 //! The smoother: Chebyshev polynomials of the fourth kind in D^-1 A, D the diagonal blocks.
 
 use super::blocks::BlockMatrix;
-use super::coarsest::GONE;
+use super::coarsest::LOST_DIAGONAL;
 use super::operator::Operator;
 use super::real::Real;
 
@@ -15,7 +15,7 @@ const SAFETY: f64 = 1.1;
 const CHANGED: f64 = 1.15;
 
 /// A pivot of a diagonal block below this share of its entry is rounding: such a direction is not smoothed.
-const SINGULAR: f64 = 1e-6;
+const SINGULAR_PIVOT: f64 = 1e-6;
 
 /// A symmetric smoother of a fixed degree.
 ///
@@ -97,7 +97,7 @@ impl<T: Real> Chebyshev<T> {
             }
             for i in 0..size {
                 let whole = matrix.block(own)[i * size + i].double();
-                if work[i * size + i] <= GONE * T::EPSILON * whole {
+                if work[i * size + i] <= LOST_DIAGONAL * T::EPSILON * whole {
                     (0..size).for_each(|j| (work[i * size + j], work[j * size + i]) = (0.0, 0.0));
                 }
             }
@@ -158,7 +158,7 @@ fn invert(work: &mut [f64], size: usize, result: &mut [f64]) {
     }
     for k in 0..size {
         let pivot = work[k * size + k];
-        if pivot.is_nan() || pivot <= SINGULAR * diagonal[k] || pivot <= 0.0 {
+        if pivot.is_nan() || pivot <= SINGULAR_PIVOT * diagonal[k] || pivot <= 0.0 {
             kept[k] = false;
             continue;
         }

@@ -10,7 +10,7 @@ const LEAST_PIVOT: f64 = 1000.0;
 
 /// A diagonal entry of which less than so many units in the last place are left in a face has lost its digits to rounding of what
 /// was taken off on this level and those above.
-pub(super) const GONE: f64 = 3000.0;
+pub(super) const LOST_DIAGONAL: f64 = 3000.0;
 
 /// What then holds it, on a diagonal of order one: its contact will, about as stiffly as a coarse cell.
 const SHIFT: f64 = 1e-3;
@@ -64,7 +64,7 @@ impl Coarsest {
         let is_gone: Vec<bool> = diagonal_of(&rest)
             .iter()
             .zip(diagonal_of(matrix))
-            .map(|(rest, whole)| *rest <= GONE * T::EPSILON * whole)
+            .map(|(rest, whole)| *rest <= LOST_DIAGONAL * T::EPSILON * whole)
             .collect();
         if is_gone.contains(&true) {
             for node in 0..rest.rows() {

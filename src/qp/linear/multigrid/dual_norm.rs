@@ -23,10 +23,10 @@ use crate::watch::Watch;
 const SAFETY: f64 = 0.5;
 
 /// The rest is bounded, not known: it ends as this share of the whole.
-const SHARE: f64 = 0.1;
+const REST_SHARE: f64 = 0.1;
 
 /// The Ritz value has settled where one step more takes no more than this share of it.
-const SETTLED: f64 = 0.15;
+const SETTLED_RITZ: f64 = 0.15;
 
 /// A hierarchy that needs more cycles than this is none to bound by.
 const MOST_CYCLES: usize = 60;
@@ -174,7 +174,7 @@ impl Iteration {
         let ritz = least_eigenvalue(&self.lengths, &self.shares);
         self.ritz = Some(ritz);
         let unknown = in_cycle / (SAFETY * ritz);
-        if unknown <= SHARE * known && ritz >= (1.0 - SETTLED) * earlier {
+        if unknown <= REST_SHARE * known && ritz >= (1.0 - SETTLED_RITZ) * earlier {
             let norm = |square: f64| square.max(0.0).sqrt();
             self.found = Some(DualNorm { least: norm(known), most: norm(known + unknown), ritz, cycles });
         }

@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::qp::linear::{SymmetricMatrix, dot, largest};
 
 /// A vector of which less than this is left after those before it are taken off follows from them.
-const DEPENDENT: f64 = 1e-8;
+const DEPENDENT_VECTOR: f64 = 1e-8;
 
 /// The near-null space of a stiffness: for a body its rigid-body modes, for a scalar problem the constants.
 ///
@@ -99,7 +99,7 @@ fn first_dependent(vectors: &[Vec<f64>]) -> Option<usize> {
             rest.iter_mut().zip(known).for_each(|(rest, known)| *rest -= along * known);
         }
         let length = dot(&rest, &rest).sqrt();
-        if length <= DEPENDENT * whole {
+        if length <= DEPENDENT_VECTOR * whole {
             return Some(index);
         }
         rest.iter_mut().for_each(|value| *value /= length);

@@ -6,7 +6,7 @@ use super::threads::in_block_chunks;
 
 /// A near-null vector of which less than this is left within an aggregate, after those before it are taken off, is no
 /// motion of its own there: two nodes do not turn about the line through them.
-const DEPENDENT: f64 = 1e-8;
+const DEPENDENT_IN_AGGREGATE: f64 = 1e-8;
 
 /// The near-null space on a level: `count` values for each place, place by place.
 #[derive(Clone, Debug)]
@@ -71,7 +71,7 @@ fn orthonormalise(local: &mut [f64], count: usize, triangle: &mut [f64]) {
             }
         }
         let rest = length(local);
-        let scale = if rest > DEPENDENT * whole { 1.0 / rest } else { 0.0 };
+        let scale = if rest > DEPENDENT_IN_AGGREGATE * whole { 1.0 / rest } else { 0.0 };
         local.chunks_exact_mut(count).for_each(|row| row[column] *= scale);
         triangle[column * count + column] = if scale == 0.0 { 0.0 } else { rest };
     }

@@ -11,10 +11,10 @@ use crate::qp::linear::{UpperTriangle, dot, largest, norm, subtract, turned};
 
 /// What is left of a row below this share of it, times the size of its weights, is rounding: the row depends on the
 /// closed ones. Any value between 1e-15 and 1e-5 gives the same sets on several thousand random problems.
-pub(super) const DEPENDENT: f64 = 64.0 * f64::EPSILON;
+pub(super) const DEPENDENT_ROW: f64 = 64.0 * f64::EPSILON;
 
 /// A remainder that keeps this share of its length is orthogonal to Q to working precision.
-const KEPT: f64 = 0.5;
+const ORTHOGONAL_SHARE: f64 = 0.5;
 
 /// Orthogonalisations of one row: two suffice unless the row depends on the others.
 const MOST_TURNS: usize = 3;
@@ -57,12 +57,12 @@ impl Basis {
             along.iter_mut().zip(&turn).for_each(|(sum, part)| *sum += part);
             let before = left;
             left = norm(&across);
-            if left >= KEPT * before {
+            if left >= ORTHOGONAL_SHARE * before {
                 break;
             }
         }
         let weights = self.triangle.solve_upper(along.clone());
-        let depends = left <= DEPENDENT * (1.0 + largest(&weights)) * length;
+        let depends = left <= DEPENDENT_ROW * (1.0 + largest(&weights)) * length;
         Split { along, across, weights, depends }
     }
 

@@ -48,13 +48,13 @@ const MOST_CORRECTIONS: usize = 30;
 const SHRINKS: f64 = 0.5;
 
 /// A change below this share of the free point is nothing, even where the answer is zero.
-const NOTHING: f64 = f64::EPSILON * f64::EPSILON;
+const NO_CHANGE: f64 = f64::EPSILON * f64::EPSILON;
 
 /// A set whose last correction is above this share of the answer holds no answer.
 const CONVERGED: f64 = 1e-10;
 
 /// Units in the last place of its terms to which a row is met.
-const MET: f64 = 4.0 * f64::EPSILON;
+const ROW_MET: f64 = 4.0 * f64::EPSILON;
 
 /// The dual active-set method on a scaled problem, whose polyhedron it has factorised.
 pub struct DualActiveSet<'a> {
@@ -180,7 +180,7 @@ impl Search<'_> {
                 self.rests[row] = change - (self.pressures[row] - before);
             }
             last = step;
-            if step <= NOTHING * self.polyhedron.reach {
+            if step <= NO_CHANGE * self.polyhedron.reach {
                 break;
             }
         }
@@ -197,6 +197,6 @@ impl Search<'_> {
         let explained = problem.contact().mul(&self.polyhedron.displacement(&to_closed));
         let terms = problem.contact().mul_abs(&self.displacement);
         let violation = |row: usize| explained[row] - distances[row];
-        (0..distances.len()).any(|row| violation(row) > MET * (terms[row] + problem.gap()[row].abs()))
+        (0..distances.len()).any(|row| violation(row) > ROW_MET * (terms[row] + problem.gap()[row].abs()))
     }
 }

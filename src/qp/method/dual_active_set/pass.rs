@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use super::basis::{Basis, DEPENDENT};
+use super::basis::{Basis, DEPENDENT_ROW};
 use super::polyhedron::Polyhedron;
 use crate::error::Error;
 use crate::qp::linear::{dot, largest, norm};
@@ -15,7 +15,7 @@ const VIOLATED: f64 = 16.0 * f64::EPSILON;
 
 /// A contradiction counts where a point that meets the rows would lie this many times farther off than the rows and the
 /// free point do. Rows that depend on each other but for the rounding of their entries are met 1e16 times as far.
-const FAR: f64 = 1e22;
+const FAR_MEETING: f64 = 1e22;
 
 /// Corrected weights below this share of the largest are zero but for rounding.
 const NO_WEIGHT: f64 = 1e-24;
@@ -180,7 +180,7 @@ impl<'a> Pass<'a> {
 
     /// How far the new pressure may grow until that of a closed row comes to an end, and the place of that row.
     fn blocking(&self, weights: &[f64]) -> (f64, Option<usize>) {
-        let rounding = DEPENDENT * (1.0 + largest(weights));
+        let rounding = DEPENDENT_ROW * (1.0 + largest(weights));
         let mut first = (f64::INFINITY, None);
         for (place, (&row, &weight)) in self.basis.rows().iter().zip(weights).enumerate() {
             let step = self.pressures.rounded[row].max(0.0) / weight;
@@ -226,7 +226,7 @@ impl<'a> Pass<'a> {
         // The largest weight is the unit of the overlap.
         let overlap = problem.overlap(&rows, &weights).map_or(0.0, |overlap| overlap * largest(&weights));
         let nearest = rows.iter().map(|&row| problem.gap()[row].abs() / lengths[row]).fold(0.0, f64::max);
-        let far = FAR * (reach + nearest + self.base + norm(&self.point));
+        let far = FAR_MEETING * (reach + nearest + self.base + norm(&self.point));
         if overlap > 0.0 && overlap > left * far {
             return Err(self.polyhedron.contradiction(rows, &weights));
         }
