@@ -81,6 +81,7 @@ pub use watch::Watch;
 #[doc(hidden)]
 pub mod internals {
     pub use crate::fem::element::{Cell, MAX_NODES, QuadraturePoint, Rule, Tabulated};
+    pub use crate::fem::norms::error_norms_by;
     #[cfg(feature = "pictures")]
     pub use crate::output::body::{ContactPicture, ObstacleLine, common_limits, common_window};
     #[cfg(feature = "pictures")]
@@ -93,10 +94,4 @@ pub mod internals {
     pub use crate::qp::method::{Outcome, ScaledProblem, Solver};
     pub use crate::scene::body::BodySpec;
     pub use crate::scene::schema::AnalysisSpec;
-    pub use crate::study::manufactured::{NodalPressure, SolvedBlock, solve_block};
-
-    /// Exact solutions that the tests hold answers against.
-    pub mod closed_forms {
-        pub use crate::fem::closed_forms::*;
-    }
 }

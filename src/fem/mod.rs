@@ -1,9 +1,8 @@
 //! Linear elastic bodies by finite elements: meshes, elements, materials, assembly of K and f, recovery of stresses, error
-//! norms, closed forms. It knows no contact problem and no solver.
+//! norms. It knows no contact problem and no solver.
 
 pub(crate) mod assembly;
 pub(crate) mod body;
-pub(crate) mod closed_forms;
 pub(crate) mod element;
 pub(crate) mod formulation;
 pub(crate) mod geometry;

@@ -1,7 +1,6 @@
 //! What is learnt from more than one solve, and the numbers that a report shows.
 
 mod compare;
-pub(crate) mod manufactured;
 mod motion;
 mod motion_tradeoff;
 mod scene;

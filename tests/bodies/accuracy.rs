@@ -1,12 +1,10 @@
 //! What is known of an answer's accuracy: the estimated error of the mesh.
 
+use crate::exact_solutions::manufactured::{ContactSolution, GenericEdge, HertzBlock, PlaneElasticity, Smooth};
+use crate::solved_block::solve_block;
 use serde_json::json;
 use signorini::fem::ElementKind::{Q4, Q8, T3, T6};
 use signorini::fem::Integration;
-use signorini::internals::closed_forms::manufactured::{
-    ContactSolution, GenericEdge, HertzBlock, PlaneElasticity, Smooth,
-};
-use signorini::internals::solve_block;
 use signorini::scene::Answer;
 use signorini::{Scene, solve_qp};
 

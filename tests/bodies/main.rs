@@ -2,6 +2,10 @@
 
 #[path = "../support/bodies.rs"]
 mod bodies;
+#[path = "../support/closed_forms/mod.rs"]
+mod exact_solutions;
+#[path = "../support/manufactured.rs"]
+mod solved_block;
 
 mod accuracy;
 mod closed_forms;

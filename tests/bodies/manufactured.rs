@@ -9,13 +9,11 @@
 #[path = "../../tools/verification/reference_errors.rs"]
 mod reference_errors;
 
+use crate::exact_solutions::manufactured::{ContactSolution, GenericEdge, HertzBlock, PlaneElasticity, Smooth};
+use crate::solved_block::{SolvedBlock, solve_block};
 use reference_errors::{REFERENCE, reference_rule};
 use signorini::fem::ElementKind::{self, Q4, Q8, T3, T6};
 use signorini::fem::Integration;
-use signorini::internals::closed_forms::manufactured::{
-    ContactSolution, GenericEdge, HertzBlock, PlaneElasticity, Smooth,
-};
-use signorini::internals::{SolvedBlock, solve_block};
 
 /// Half a unit of the last digit of the energy errors, and a tenth of it for rounding, as a share of the first digit.
 const FOUR_DIGITS: f64 = 0.55e-3;

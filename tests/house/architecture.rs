@@ -11,7 +11,7 @@ use crate::imports::House;
 const FLOORS: [&[&str]; 18] = [
     &["solution", "watch"],
     &["error"],
-    &["file", "qp/barrier", "fem/formulation", "fem/geometry", "fem/closed_forms"],
+    &["file", "qp/barrier", "fem/formulation", "fem/geometry"],
     &["qp/linear", "fem/element", "fem/material"],
     &["qp/problem", "fem/mesh"],
     &["qp/certificate", "qp/transform", "qp/method", "fem/body"],

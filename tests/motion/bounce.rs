@@ -4,8 +4,8 @@
 //! contact is the sum of the impact wave and of the bar that is put on the wall at once (K. F. Graff, *Wave Motion in
 //! Elastic Solids*, Oxford, 1975, section 2.4).
 
+use crate::exact_solutions::ImpactingBar;
 use serde_json::{Value, json};
-use signorini::internals::closed_forms::ImpactingBar;
 use signorini::motion::{Integrator, Observation};
 use signorini::{Scene, Settings};
 

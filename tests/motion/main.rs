@@ -1,5 +1,7 @@
 //! Motion: schemes against closed forms, the command, what is refused.
 
+#[path = "../support/closed_forms/mod.rs"]
+mod exact_solutions;
 #[path = "../support/program.rs"]
 mod program;
 

@@ -4,6 +4,8 @@
 mod draws;
 #[path = "../support/oracles/exact/mod.rs"]
 mod exact;
+#[path = "../support/closed_forms/mod.rs"]
+mod exact_solutions;
 #[path = "../support/oracles/mod.rs"]
 mod oracles;
 #[path = "../support/program.rs"]

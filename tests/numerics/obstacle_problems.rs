@@ -5,8 +5,8 @@
 
 use std::f64::consts::PI;
 
+use crate::exact_solutions::{DiscMembrane, ObstacleString};
 use crate::oracles::Draws;
-use signorini::internals::closed_forms::{DiscMembrane, ObstacleString};
 use signorini::{ContactProblem, Method, Prepared, Settings, SparseMatrix, SymmetricMatrix, solve};
 
 const METHODS: [Method; 2] = [Method::qp(), Method::ActiveSet];

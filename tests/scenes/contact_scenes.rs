@@ -5,8 +5,8 @@
 
 use std::path::PathBuf;
 
+use crate::exact_solutions::{Bar, ContactPatch, Sides};
 use serde_json::{Value, json};
-use signorini::internals::closed_forms::{Bar, ContactPatch, Sides};
 use signorini::study::compare;
 use signorini::{Error, Method, Model, Scene, Settings, Solution, solve, solve_qp};
 

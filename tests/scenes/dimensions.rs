@@ -1,8 +1,8 @@
 //! GOAL: contact scenes on a line, about an axis and in space, against closed forms; what is refused there.
 
 use crate::bodies::{built, largest};
+use crate::exact_solutions::Bar;
 use serde_json::{Value, json};
-use signorini::internals::closed_forms::Bar;
 use signorini::scene::Warning;
 use signorini::{Error, Model, Scene, solve_qp};
 

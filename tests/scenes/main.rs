@@ -2,6 +2,8 @@
 
 #[path = "../support/bodies.rs"]
 mod bodies;
+#[path = "../support/closed_forms/mod.rs"]
+mod exact_solutions;
 #[path = "../support/oracles/mod.rs"]
 mod oracles;
 #[path = "../support/program.rs"]

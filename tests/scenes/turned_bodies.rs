@@ -3,10 +3,10 @@
 
 use std::fmt::Write;
 
+use crate::exact_solutions::{Bar, ContactPatch, Sides};
 use crate::program::Desk;
 use serde_json::{Value, json};
 use signorini::fem::{ElementKind, Mesh};
-use signorini::internals::closed_forms::{Bar, ContactPatch, Sides};
 use signorini::qp::read_vector;
 use signorini::scene::{cuboid, rectangle};
 use signorini::{Model, Scene, Solution, solve_qp};

@@ -1,7 +1,7 @@
 //! Two elastic bodies, node to node, against their rigid equivalent, closed forms and Hertz.
 
+use crate::exact_solutions::LineContact;
 use serde_json::{Value, json};
-use signorini::internals::closed_forms::LineContact;
 use signorini::{Error, Model, Scene, Solution, solve_qp};
 
 /// Two solves of one problem in other unknowns differ by rounding, which the condition of these meshes multiplies.

@@ -1,7 +1,7 @@
 //! Every answer of `cargo run --release --example verification` lies as near the exact one as is said here.
 //!
 //! GOAL        classical contact problems by the scenes of the command itself
-//! REFERENCE   closed forms of `signorini::internals::closed_forms`
+//! REFERENCE   closed forms of `tests/support/closed_forms`
 
 #[allow(dead_code)]
 #[path = "../../tools/verification/answer.rs"]
@@ -16,11 +16,11 @@ mod punches;
 #[path = "../../tools/verification/round_bodies.rs"]
 mod round_bodies;
 
+use crate::exact_solutions::PointContact;
 use answer::{Answer, Solved};
 use contact_patch::{VARIANTS, contact_patch};
 use round_bodies::{half_ball_about_the_axis, quarter_ball};
 use serde_json::json;
-use signorini::internals::closed_forms::PointContact;
 
 /// Elements are exact; the condition number of the stiffness, below 1e4, enlarges rounding.
 const EXACT: f64 = 1e-12;

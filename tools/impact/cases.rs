@@ -1,6 +1,6 @@
 //! The two bars.
 
-use signorini::internals::closed_forms::{BouncingBar, ImpactingBar};
+use crate::exact_solutions::{BouncingBar, ImpactingBar};
 
 use super::measure::Case;
 

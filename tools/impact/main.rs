@@ -4,6 +4,8 @@
 //! time.
 
 mod cases;
+#[path = "../../tests/support/closed_forms/mod.rs"]
+mod exact_solutions;
 mod measure;
 mod table;
 

@@ -1,13 +1,11 @@
 //! Blocks whose displacement is known at every point: errors in norms, their rates, plots over the cell size.
 
+use crate::exact_solutions::manufactured::{ContactSolution, GenericEdge, HertzBlock, PlaneElasticity, Smooth};
+use crate::solved_block::solve_block;
 use signorini::Error;
 use signorini::fem::ElementKind;
 use signorini::fem::ErrorNorms;
 use signorini::fem::Integration;
-use signorini::internals::closed_forms::manufactured::{
-    ContactSolution, GenericEdge, HertzBlock, PlaneElasticity, Smooth,
-};
-use signorini::internals::solve_block;
 use signorini::output::{Drawing, Plot, Quantity, Scale, Series, line_plots};
 
 use super::answer::Answer;

@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::time::Instant;
 
+use crate::exact_solutions::{Bar, DiscMembrane, ObstacleString};
 use serde_json::{Value, json};
-use signorini::internals::closed_forms::{Bar, DiscMembrane, ObstacleString};
 use signorini::{ContactProblem, Error, Scene, SparseMatrix, SymmetricMatrix, solve_qp};
 
 use super::answer::{Answer, Solved};

@@ -10,9 +10,13 @@ mod blocks;
 mod bodies;
 mod closed_forms;
 mod contact_patch;
+#[path = "../../tests/support/closed_forms/mod.rs"]
+mod exact_solutions;
 mod punches;
 mod reference_errors;
 mod round_bodies;
+#[path = "../../tests/support/manufactured.rs"]
+mod solved_block;
 
 use std::path::Path;
 use std::time::Instant;

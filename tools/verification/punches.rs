@@ -3,9 +3,9 @@
 //! The block reaches 500 contact radii, 0.1, in each direction. In the plane pressures are compared at the force that
 //! was found, because the approach depends on the body.
 
+use crate::exact_solutions::{Cone, FlatDisc, FlatStrip, LineContact, PointContact, Wedge};
 use serde_json::{Value, json};
 use signorini::Error;
-use signorini::internals::closed_forms::{Cone, FlatDisc, FlatStrip, LineContact, PointContact, Wedge};
 
 use super::answer::{Answer, Solved};
 

@@ -1,8 +1,8 @@
 //! Elastic half cylinders and half balls on a rigid plane, against Hertz; the ball about its axis and in space.
 
+use crate::exact_solutions::{LineContact, PointContact};
 use serde_json::{Value, json};
 use signorini::Error;
-use signorini::internals::closed_forms::{LineContact, PointContact};
 
 use super::answer::{Answer, Solved};
 

@@ -13,11 +13,6 @@ pub struct Bar {
 
 impl Bar {
     /// The force of the wall on the bar, `>= 0`, under an end force F: `R = max(0, F - EA g/L)`.
-    ///
-    /// ```
-    /// let bar = signorini::internals::closed_forms::Bar { length: 2.0, axial_stiffness: 10.0, gap: 0.1 };
-    /// assert_eq!(bar.reaction_to_end_force(1.5), 1.0);
-    /// ```
     pub fn reaction_to_end_force(&self, force: f64) -> f64 {
         (force - self.axial_stiffness * self.gap / self.length).max(0.0)
     }

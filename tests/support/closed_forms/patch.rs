@@ -24,12 +24,6 @@ pub struct ContactPatch {
 
 impl ContactPatch {
     /// The modulus E' in `eps_yy = -p/E'`: E/(1-nu^2), E, or E(1-nu)/((1+nu)(1-2nu)).
-    ///
-    /// ```
-    /// use signorini::internals::closed_forms::{ContactPatch, Sides};
-    /// let patch = ContactPatch { young: 3.0, poisson: 0.5, sides: Sides::PlaneStrain };
-    /// assert_eq!(patch.modulus(), 4.0);
-    /// ```
     pub fn modulus(&self) -> f64 {
         let (e, nu) = (self.young, self.poisson);
         match self.sides {

@@ -7,15 +7,6 @@ use super::{ContactSolution, PlaneElasticity};
 ///
 /// The pressure is beta, the gap that opens is alpha. `k >= 3` for a body force without jumps but in
 /// the highest derivative.
-///
-/// ```
-/// use signorini::internals::closed_forms::manufactured::{ContactSolution, PlaneElasticity, Smooth};
-/// let elasticity = PlaneElasticity::plane_strain(1.0, 0.3);
-/// let smooth = Smooth { elasticity, opening: 2.0, pressure: 4.0, edge: 0.5, power: 3 };
-/// assert_eq!(smooth.pressure(0.0), 0.5);
-/// assert!((smooth.stress([0.0, 0.0])[1] + 0.5).abs() < 1e-15);
-/// assert_eq!(smooth.displacement([1.0, 0.0]), [0.0, 0.25]);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Smooth {
     /// The elastic constants.

@@ -7,16 +7,6 @@ use super::{ContactSolution, PlaneElasticity};
 /// Contact with the plane y = 0 up to x = x0: `p = 1.5 p0 sqrt(x0 - x)`, without body force.
 ///
 /// `Zbar = -p0 zeta^1.5` with `zeta = (x0 - x) + i y`.
-///
-/// ```
-/// use signorini::internals::closed_forms::manufactured::{ContactSolution, GenericEdge, PlaneElasticity};
-/// let elasticity = PlaneElasticity::plane_strain(1.0, 0.3);
-/// let edge = GenericEdge { elasticity, edge: 0.53, pressure: 1.0 };
-/// assert!((edge.pressure(0.28) - 0.75).abs() < 1e-15);
-/// assert!((edge.stress([0.28, 0.0])[1] + 0.75).abs() < 1e-14);
-/// // (kappa + 1)/(4 mu) p0 (x - x0)^1.5 = 2/E* 0.25^1.5
-/// assert!((edge.displacement([0.78, 0.0])[1] - 0.91 * 0.25).abs() < 1e-15);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GenericEdge {
     /// The elastic constants.

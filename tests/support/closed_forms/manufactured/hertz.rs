@@ -8,17 +8,6 @@ use super::{ContactSolution, PlaneElasticity};
 ///
 /// `Z = -(p0/a)(s + i z)` and `Zbar = -(p0/a)(z s/2 + (a^2/2) asin(z/a) + i z^2/2)` with `z = x + i y`,
 /// `s = sqrt(a - z) sqrt(a + z)`. The obstacle is `u_y >= -x^2/(2R)`, `R = a E*/(2 p0)`.
-///
-/// ```
-/// use signorini::internals::closed_forms::manufactured::{ContactSolution, HertzBlock, PlaneElasticity};
-/// let elasticity = PlaneElasticity::plane_strain(1.0, 0.3);
-/// let hertz = HertzBlock { elasticity, half_width: 0.5, peak_pressure: 1.0 };
-/// assert!((hertz.pressure(0.3) - 0.8).abs() < 1e-15);
-/// assert!((hertz.stress([0.3, 0.0])[1] + 0.8).abs() < 1e-14);
-/// assert!((hertz.displacement([0.3, 0.0])[1] + hertz.gap(0.3)).abs() < 1e-15);
-/// // p0/(E* a) x^2
-/// assert!((hertz.gap(0.3) - 0.91 * 2.0 * 0.09).abs() < 1e-15);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HertzBlock {
     /// The elastic constants.
