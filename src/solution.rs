@@ -121,7 +121,7 @@ impl fmt::Debug for ContactSet {
 /// |---|---|
 /// | `stationarity` | `abs(r_i) / sqrt(K_ii) / F_p` |
 /// | `stationarity_excess` | the same where rounding u and lambda to double precision does not explain it |
-/// | `penetration` | `(B u - g)_i+ / max(|B_i| |u|, |g_i|, b_i N_p)` |
+/// | `penetration` | `(B u - g)_i+ / max(abs(B_i) abs(u), abs(g_i), b_i N_p)` |
 /// | `adhesion` | `(lambda_i)_+ b_i / F_p` |
 /// | `complementarity` | `abs(lambda_i (B u - g)_i) / E_p`, where rounding u does not explain the distance |
 /// | `duality_gap` | `abs(u'Ku - f'u - lambda'g)_p / E_p`, as far as it exceeds rounding |
@@ -203,11 +203,6 @@ impl Certificate {
     /// or explained by rounding the displacement to double precision?
     pub fn meets(&self, tolerance: f64) -> bool {
         self.conditions_hold(tolerance) && self.has_bound() && self.energy_error_excess <= tolerance
-    }
-
-    /// Does the answer meet `tolerance` only because rounding the displacement to double precision explains its bound?
-    pub fn is_rounded(&self, tolerance: f64) -> bool {
-        self.meets(tolerance) && self.part_error_bound > tolerance
     }
 }
 

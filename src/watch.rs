@@ -210,7 +210,7 @@ impl Watch {
     }
 
     /// Seconds that work takes for each that is estimated; none before anything was timed.
-    pub fn pace(&self) -> Option<f64> {
+    pub(crate) fn pace(&self) -> Option<f64> {
         *self.shared.pace.lock().unwrap_or_else(PoisonError::into_inner)
     }
 

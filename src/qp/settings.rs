@@ -200,6 +200,11 @@ impl Settings {
         Settings { memory: Some(bytes), ..self }
     }
 
+    /// The same with a limit of iterations of a loop, or of cycles of MPRGP.
+    pub fn with_max_iterations(self, max_iterations: usize) -> Self {
+        Settings { max_iterations, ..self }
+    }
+
     /// The same with a number of threads.
     pub fn with_threads(self, threads: usize) -> Self {
         Settings { threads, ..self }

@@ -42,7 +42,7 @@ fn provoked() -> Result<BTreeMap<&'static str, (&'static str, Error)>, Error> {
     let oblique =
         Dense::new(&[&[1.0, 0.0], &[0.0, 1.0]], &[2.0, 0.0], &[&[1.0, 0.0], &[1.0, 1.0]], &[0.5; 2]).problem()?;
     let still = unprepared.path(&[0.5], &[0.4]);
-    let hasty = Prepared::new(&spring_and_wall, &settings(|settings| settings.time = Some(Duration::ZERO)));
+    let hasty = Prepared::new(&spring_and_wall, &Settings::default().with_time(Duration::ZERO));
     let stopped = Settings::default();
     stopped.watch.stop();
     let never = Settings::with_method(Method::Penalty(Penalty { last: 1.0, ..Penalty::default() }));
@@ -60,10 +60,7 @@ fn provoked() -> Result<BTreeMap<&'static str, (&'static str, Error)>, Error> {
         ("OutOfTime", ("out-of-time", hasty.map(drop).unwrap_err())),
         ("NotCertified", ("not-certified", solve(&spring_and_wall, &never).unwrap_err())),
         ("Interrupted", ("interrupted", solve(&spring_and_wall, &stopped).unwrap_err())),
-        (
-            "NoRoom",
-            ("too-large", solve(&spring_and_wall, &settings(|settings| settings.memory = Some(1.0))).unwrap_err()),
-        ),
+        ("NoRoom", ("too-large", solve(&spring_and_wall, &Settings::default().with_memory(1.0)).unwrap_err())),
         ("Setting", ("setting", solve(&spring_and_wall, &settings(|settings| settings.threads = 0)).unwrap_err())),
         ("NotCondensed", ("not-condensed", still.map(drop).unwrap_err())),
         ("TooLarge", ("too-large", scene(("[4]", "[4000]"))?.check_size(1e3).unwrap_err())),

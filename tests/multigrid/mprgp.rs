@@ -260,13 +260,11 @@ fn a_stiffness_with_a_negative_eigenvalue_on_the_free_face_is_refused() {
 #[test]
 fn too_few_cycles_end_with_the_best_answer_not_certified() {
     let problem = built(&clamped_block(8, -0.01)).problem().clone();
-    let mut settings = mprgp();
-    settings.max_iterations = 3;
+    let settings = mprgp().with_max_iterations(3);
     let Err(Error::NotCertified { solution, .. }) = solve(&problem, &settings) else { panic!("three cycles suffice?") };
     assert_eq!((solution.iterations, solution.method.as_str()), (3, "mprgp-unsettled"));
     assert!(solution.contact_set.count() > 0);
-    settings.max_iterations = 20_000;
-    settings.tolerance = 1e-15;
+    let settings = mprgp().with_tolerance(1e-15);
     // Where only rounding is left the loop ends by itself.
     let solution = match solve(&problem, &settings) {
         Ok(solution) => solution,
@@ -274,7 +272,7 @@ fn too_few_cycles_end_with_the_best_answer_not_certified() {
         Err(error) => panic!("{error}"),
     };
     assert!(solution.iterations < 60 && solution.certificate.meets(1e-12), "{:?}", solution.certificate);
-    settings.time = Some(std::time::Duration::ZERO);
+    let settings = settings.with_time(std::time::Duration::ZERO);
     let Err(Error::NotCertified { solution, .. }) = solve(&problem, &settings) else { panic!("in no time?") };
     assert_eq!((solution.iterations, solution.method.as_str()), (0, "none"), "no time to begin");
 }

@@ -26,11 +26,6 @@ impl LineContact {
     pub fn pressure(&self, force: f64, x: f64) -> f64 {
         self.peak_pressure(force) * (1.0 - (x / self.half_width(force)).powi(2)).max(0.0).sqrt()
     }
-
-    /// How far the cut of an elastic half cylinder moves onto a rigid plane: `F/(pi E*) (2 ln(4R/a) - 1)`.
-    pub fn approach_of_half_cylinder(&self, force: f64) -> f64 {
-        force / (PI * self.modulus) * (2.0 * (4.0 * self.radius / self.half_width(force)).ln() - 1.0)
-    }
 }
 
 /// A rigid sphere of radius R on an elastic half space: `p = p0 sqrt(1 - r^2/a^2)`.
