@@ -54,6 +54,15 @@ pub struct Bounds {
     rows: usize,
 }
 
+/// The order in which reflections are applied.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Order {
+    /// That of the product H.
+    Forward,
+    /// The opposite one, that of H'.
+    Backward,
+}
+
 impl Bounds {
     /// The bounds that rows B (m x n) and gaps g make. Rows without entries or with an infinite gap make none.
     ///
@@ -67,7 +76,7 @@ impl Bounds {
         for row in (0..gap.len()).filter(|&row| gap[row].is_finite()) {
             let entries: Vec<(usize, f64)> = by_row.column(row).filter(|entry| entry.1 != 0.0).collect();
             let length = entries.iter().fold(0.0, |length: f64, entry| length.hypot(entry.1));
-            let turned = all.reflected(entries.iter().map(|&(place, b)| (place, b / length)).collect(), false);
+            let turned = all.reflected(entries.iter().map(|&(place, b)| (place, b / length)).collect(), Order::Forward);
             let Some(&(first, _)) = turned.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())) else { continue };
             let taken: Vec<usize> = turned.iter().filter_map(|entry| bound_of[entry.0]).collect();
             let index = match (taken[..].first(), turned.len()) {
@@ -94,20 +103,28 @@ impl Bounds {
         Ok(all)
     }
 
-    /// A unit vector after those reflections that touch it, in their order, or `back` in the opposite one.
-    fn reflected(&self, vector: Direction, back: bool) -> Direction {
+    /// A unit vector after those reflections that touch it.
+    fn reflected(&self, vector: Direction, order: Order) -> Direction {
         if vector.len() == 1 && vector.iter().all(|entry| !self.touching.contains_key(&entry.0)) {
             return vector;
         }
         let mut entries: HashMap<usize, f64> = vector.into_iter().collect();
         let of_place = |place: &usize| self.touching.get(place).into_iter().flatten().copied();
         let mut waiting: BTreeSet<usize> = entries.keys().flat_map(of_place).collect();
-        while let Some(next) = if back { waiting.pop_last() } else { waiting.pop_first() } {
+        let first = |waiting: &mut BTreeSet<usize>| match order {
+            Order::Forward => waiting.pop_first(),
+            Order::Backward => waiting.pop_last(),
+        };
+        let follows = |other: usize, next: usize| match order {
+            Order::Forward => other > next,
+            Order::Backward => other < next,
+        };
+        while let Some(next) = first(&mut waiting) {
             let reflection = &self.reflections[next].vector;
             let along: f64 = reflection.iter().map(|&(p, w)| w * entries.get(&p).copied().unwrap_or(0.0)).sum();
             for &(place, w) in reflection {
                 *entries.entry(place).or_insert(0.0) -= 2.0 * along * w;
-                waiting.extend(of_place(&place).filter(|&other| if back { other < next } else { other > next }));
+                waiting.extend(of_place(&place).filter(|&other| follows(other, next)));
             }
         }
         let mut reflected: Direction = entries.into_iter().filter(|entry| entry.1.abs() > TURNING_ROUNDING).collect();
@@ -153,7 +170,7 @@ impl Bounds {
 
     /// The unit vector along which the unknown of a bound moves: its column of H'.
     pub fn direction(&self, bound: &Bound) -> Direction {
-        self.reflected(vec![(bound.unknown, 1.0)], true)
+        self.reflected(vec![(bound.unknown, 1.0)], Order::Backward)
     }
 
     /// The multipliers of the rows where the forces on the unknowns with bounds are `force` (those that are out of

@@ -17,6 +17,15 @@ const CHANGED: f64 = 1.15;
 /// A pivot of a diagonal block below this share of its entry is rounding: such a direction is not smoothed.
 const SINGULAR_PIVOT: f64 = 1e-6;
 
+/// What the smoother leaves in the residual.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rest {
+    /// The residual of the improved vector.
+    Updated,
+    /// A residual that is not used any more: one product is saved.
+    Stale,
+}
+
 /// A symmetric smoother of a fixed degree.
 ///
 /// # Source
@@ -45,8 +54,8 @@ impl<T: Real> Chebyshev<T> {
         size_of_val(&self.inverse[..])
     }
 
-    /// Improves `x` where `rest` is b - A x, and leaves `rest` the new one where `keep_rest` says so.
-    pub fn smooth(&self, operator: &Operator<T>, x: &mut [T], rest: &mut [T], keep_rest: bool) {
+    /// Improves `x`, whose residual b - A x is `rest`; `after` tells what `rest` is afterwards.
+    pub fn smooth(&self, operator: &Operator<T>, x: &mut [T], rest: &mut [T], after: Rest) {
         let (mut step, mut moved) = (vec![T::default(); x.len()], vec![T::default(); x.len()]);
         for k in 1..=self.degree {
             let k_real = k as f64;
@@ -59,7 +68,7 @@ impl<T: Real> Chebyshev<T> {
                     *x += *step;
                 }
             });
-            if k < self.degree || keep_rest {
+            if k < self.degree || after == Rest::Updated {
                 operator.mul_into(&step, &mut moved);
                 operator.subtract(&moved, rest);
             }
