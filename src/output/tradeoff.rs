@@ -4,13 +4,13 @@ use super::report::{columns, number, plural, printable};
 use super::{Drawing, Plot, Quantity, Scale, Series, line_plots};
 use crate::study::{Tradeoff, TradeoffMesh, TradeoffPoint};
 
-/// An error of nothing is shown as this on a logarithmic axis: below it doubles do not tell answers apart.
+/// Errors below this are shown as this on a logarithmic axis: they are below the resolution of doubles.
 const LEAST_SHOWN_ERROR: f64 = 1e-16;
 
 /// The columns of the table.
 const HEADING: [&str; 10] = [
     "method",
-    "told",
+    "setting",
     "unknowns",
     "precision",
     "seconds",
@@ -18,10 +18,10 @@ const HEADING: [&str; 10] = [
     "bound",
     "force error",
     "pressure error",
-    "rows wrong",
+    "misclassified rows",
 ];
 
-/// The tables of a trade-off, mesh by mesh, and what to choose. A star marks what no other way beats.
+/// The tables of a trade-off, mesh by mesh, and what to choose. A star marks the Pareto front.
 pub fn tradeoff_text(title: &str, tradeoff: &Tradeoff) -> String {
     let mut text = format!("{}\n", printable(title));
     for (index, mesh) in tradeoff.meshes.iter().enumerate() {
@@ -87,15 +87,17 @@ fn advice(tradeoff: &Tradeoff) -> String {
     for advice in &tradeoff.advice {
         let wanted = match (advice.accuracy, advice.seconds) {
             (Some(accuracy), _) => format!("energy error {accuracy:.0e}"),
-            (None, seconds) => format!("within {:.5} s, a tenth of the usual way", seconds.unwrap_or(0.0)),
+            (None, seconds) => {
+                format!("within {:.5} s, a tenth of the reference method's time", seconds.unwrap_or(0.0))
+            }
         };
         let choice = match advice.point.and_then(|index| tradeoff.points.get(index)) {
             Some(point) => format!("{}: {:.5} s, energy error {:.1e}", way(point), point.seconds, point.energy_error),
-            None => "nothing measured is so good".to_string(),
+            None => "no measured method reaches it".to_string(),
         };
         let useless = advice.accuracy.is_some_and(|accuracy| accuracy < 1e-2 * off);
         lines
-            .push(format!("  {wanted:<46}{choice}{}", if useless { " (far below the error of the mesh)" } else { "" }));
+            .push(format!("  {wanted:<58}{choice}{}", if useless { " (far below the error of the mesh)" } else { "" }));
     }
     lines.join("\n") + "\n"
 }
@@ -147,7 +149,7 @@ pub fn tradeoff_plot(title: &str, tradeoff: &Tradeoff) -> Drawing {
         }
         let mut front: Vec<[f64; 2]> = of_mesh().filter(|point| point.best).map(place).collect();
         front.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        series.push(Series::new("no other is better", front));
+        series.push(Series::new("Pareto front", front));
         let (x, y) = (Quantity::new("time", "s"), Quantity::new("relative energy error of the algebra", ""));
         let title = format!("{} dofs, {}", mesh.dofs, plural(mesh.contact_rows, "contact row"));
         Plot { title, scales: [Scale::Logarithmic; 2], ..Plot::new(x, y, series) }
