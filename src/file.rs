@@ -43,8 +43,8 @@ fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     if bytes.len() as u64 > most { Err(too_long()) } else { Ok(bytes) }
 }
 
-/// Is it a pipe that has a name? To open one waits for a writer. What a shell has already connected, as /dev/stdin, has no
-/// name of its own.
+/// Returns `true` for a named pipe, which would wait for a writer when it is opened. A pipe that a shell has already connected,
+/// as /dev/stdin, has no name.
 #[cfg(unix)]
 fn is_named_pipe(path: &Path) -> bool {
     use std::os::unix::fs::FileTypeExt;

@@ -50,7 +50,7 @@ impl ContactSet {
         self.bits.iter().map(|word| word.count_ones() as usize).sum()
     }
 
-    /// Is row `row` closed? Rows beyond the last are open.
+    /// Returns `true` if row `row` is closed. Rows beyond the last are open.
     pub fn contains(&self, row: usize) -> bool {
         row < self.rows && self.bits[row / 64] >> (row % 64) & 1 == 1
     }
@@ -73,7 +73,7 @@ impl ContactSet {
     }
 }
 
-/// One flag for each row: is it closed?
+/// One flag for each row: `true` if it is closed.
 impl FromIterator<bool> for ContactSet {
     fn from_iter<I: IntoIterator<Item = bool>>(closed: I) -> Self {
         let mut set = Self::default();
@@ -150,8 +150,8 @@ pub struct Certificate {
     pub energy_error_excess: f64,
     /// Number of parts.
     pub parts: usize,
-    /// Does the bound rest on a measured eigenvalue, because K was not factorised? It is the least Ritz value of K with its
-    /// multigrid cycle, of which half is taken.
+    /// `true` if the bound uses a measured eigenvalue, because K was not factorised: half the least Ritz value of K with its
+    /// multigrid cycle.
     #[serde(skip_serializing_if = "Not::not")]
     pub bound_is_measured: bool,
 }
@@ -189,18 +189,18 @@ impl Certificate {
         }
     }
 
-    /// Is an upper bound on the error known?
+    /// Returns `true` if an upper bound on the error is known.
     pub fn has_bound(&self) -> bool {
         !self.energy_error_bound.is_infinite()
     }
 
-    /// Do all conditions hold to `tolerance`? This says nothing about the error of the displacement.
+    /// Returns `true` if all conditions hold to `tolerance`. This says nothing about the error of the displacement.
     pub fn conditions_hold(&self, tolerance: f64) -> bool {
         self.conditions().iter().all(|&(_, value)| value <= tolerance)
     }
 
-    /// Do all conditions hold to `tolerance`, and is the energy bound at most `tolerance`, for the whole and for every part,
-    /// or explained by rounding the displacement to double precision?
+    /// Returns `true` if all conditions hold to `tolerance`, and the energy bound, for the whole and for every part, is at most
+    /// `tolerance` or explained by rounding the displacement to double precision.
     pub fn meets(&self, tolerance: f64) -> bool {
         self.conditions_hold(tolerance) && self.has_bound() && self.energy_error_excess <= tolerance
     }
@@ -229,7 +229,7 @@ impl Goal {
         self.accuracy.filter(|_| !certificate.energy_error_bound.is_infinite())
     }
 
-    /// Does an answer with this certificate reach the goal?
+    /// Returns `true` if an answer with this certificate reaches the goal.
     pub fn is_met_by(&self, certificate: &Certificate) -> bool {
         match self.accuracy_for(certificate) {
             Some(accuracy) => certificate.part_error_bound <= accuracy,

@@ -1,14 +1,14 @@
-//! What the one who waits shares with the work: a request to end, a deadline, and what is being done.
+//! State shared by a solve and its caller: a request to stop, a deadline, the current step.
 
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Work that may be asked to end, from any thread, and asked what it is doing.
+/// A handle on running work: any thread can ask it to stop and read its current step.
 ///
-/// Clones share the request, the activity and the observer; only the deadline is each one's own. A solve looks between
-/// factorisations, iterations and steps, and ends with the best answer that it has.
+/// Clones share the request, the activity and the observer; each clone has its own deadline. A solve checks the watch between
+/// factorisations, iterations and steps, and ends with the best answer so far.
 ///
 /// ```
 /// use signorini::{Error, Settings, solve};
@@ -26,7 +26,7 @@ use std::time::{Duration, Instant};
 #[derive(Clone, Debug, Default)]
 pub struct Watch {
     deadline: Option<Instant>,
-    /// The time that there was when the deadline was set.
+    /// The time until the deadline when it was set.
     span: Duration,
     shared: Arc<Shared>,
 }
@@ -42,7 +42,7 @@ struct Shared {
 
 type Call = dyn Fn(&Watch) + Send + Sync;
 
-/// What is called whenever something begins.
+/// The function that is called whenever a part, a step or an iteration begins.
 #[derive(Default)]
 struct Observer(Option<Box<Call>>);
 
@@ -52,31 +52,31 @@ impl fmt::Debug for Observer {
     }
 }
 
-/// What makes an answer of what was found may take this share of the time beyond the deadline.
+/// Finishing an answer, as its certificate, may take this share of the time beyond the deadline.
 const FINISHING: f64 = 0.1;
 
-/// Work that takes less tells nothing of the pace.
+/// Work that takes less is too short to measure the pace.
 const TELLING_SECONDS: f64 = 1e-3;
 
-/// What is being done.
+/// The current part, step and iteration.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Activity {
-    /// The part of the work, where there are several, as a gap of a sweep.
+    /// The part of the work if there are several, as a gap of a sweep.
     pub part: Option<Part>,
     /// The step of it, as `factorisation`; empty before the first.
     pub step: &'static str,
-    /// Which iteration of the step, from 1; 0 where it has none.
+    /// The iteration of the step, from 1; 0 if the step has no iterations.
     pub iteration: usize,
 }
 
-/// One of several parts of a work.
+/// One of several parts of the work.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Part {
     /// What the parts are, as `gap`.
     pub name: &'static str,
-    /// Which one, from 1.
+    /// Number of this part, from 1.
     pub number: usize,
-    /// How many there are.
+    /// Number of parts.
     pub of: usize,
 }
 
@@ -128,7 +128,7 @@ impl Watch {
         self.shared.stopped.store(true, Ordering::SeqCst);
     }
 
-    /// Was the work asked to end? It is the work that asks this, and then ends.
+    /// Returns `true` if the work was asked to stop. The work itself calls this, and then ends.
     pub fn is_stopped(&self) -> bool {
         let stopped = self.shared.stopped.load(Ordering::SeqCst);
         if stopped {
@@ -137,17 +137,17 @@ impl Watch {
         stopped
     }
 
-    /// Has the work noticed that it was asked to end? While it factorises, for one, it does not.
+    /// Returns `true` if the work has noticed the request to stop. During a factorisation, for example, it does not.
     pub fn is_noticed(&self) -> bool {
         self.shared.noticed.load(Ordering::SeqCst)
     }
 
-    /// What is being done now.
+    /// The current activity.
     pub fn activity(&self) -> Activity {
         self.shared.activity.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// The same, with a deadline so many `seconds` from now unless its own is sooner.
+    /// The same watch with a deadline `seconds` from now, or with its own deadline if that is sooner.
     pub fn within(&self, seconds: f64) -> Watch {
         let time = Duration::try_from_secs_f64(seconds).ok();
         let deadline = time.and_then(|time| Some((Instant::now().checked_add(time)?, time)));
@@ -159,12 +159,12 @@ impl Watch {
         }
     }
 
-    /// The same, without a deadline.
+    /// The same watch without a deadline.
     pub fn unhurried(&self) -> Watch {
         Watch { deadline: None, span: Duration::ZERO, shared: self.shared.clone() }
     }
 
-    /// The same for what makes an answer of what was found, as its certificate: it may take a little of the time more.
+    /// The same watch for finishing an answer, as its certificate: its deadline is later by a share of the time.
     pub(crate) fn finishing(&self) -> Watch {
         let deadline = self.deadline.and_then(|deadline| deadline.checked_add(self.span.mul_f64(FINISHING)));
         Watch { deadline, ..self.clone() }
@@ -175,18 +175,18 @@ impl Watch {
         self.deadline.map(|deadline| deadline.saturating_duration_since(Instant::now()).as_secs_f64())
     }
 
-    /// Seconds that work takes here which is estimated to take so many: at the pace of what was [timed](Self::timed) last.
+    /// Seconds that work needs on this machine: `estimate` times the pace of the work that was [timed](Self::timed) last.
     pub fn needed(&self, estimate: f64) -> f64 {
         estimate * self.pace().unwrap_or(1.0)
     }
 
-    /// Is there time left for work that is estimated to take so many seconds?
+    /// Returns `true` if there is time left for work that is estimated to take `estimate` seconds.
     pub fn allows(&self, estimate: f64) -> bool {
         self.time_left().is_none_or(|left| self.needed(estimate) < left)
     }
 
-    /// The same, with the deadline sooner by what is estimated to take so many seconds: whoever asks between two steps that
-    /// take as long is told that it is over while there still is time for none of them.
+    /// The same watch with the deadline sooner by the time that work of `estimate` seconds needs. A loop whose steps take that
+    /// long then ends before a step that would not finish in time.
     pub fn keeping(&self, estimate: f64) -> Watch {
         match self.time_left() {
             Some(left) => self.within(left - self.needed(estimate).min(left)),
@@ -194,7 +194,7 @@ impl Watch {
         }
     }
 
-    /// Does work that is estimated to take so many seconds, and learns the pace of this machine from it.
+    /// Runs `work`, which is estimated to take `estimate` seconds, and measures the pace of this machine by it.
     pub fn timed<T>(&self, estimate: f64, work: impl FnOnce() -> T) -> T {
         let clock = Instant::now();
         let done = work();
@@ -204,27 +204,27 @@ impl Watch {
         done
     }
 
-    /// Takes work to last so many times as long as it is estimated to.
+    /// Sets the pace: from now on work is expected to take `pace` times its estimate.
     pub fn learn(&self, pace: f64) {
         *self.shared.pace.lock().unwrap_or_else(PoisonError::into_inner) = Some(pace);
     }
 
-    /// Seconds that work takes for each that is estimated; none before anything was timed.
+    /// Measured seconds per estimated second; `None` before anything was timed.
     pub(crate) fn pace(&self) -> Option<f64> {
         *self.shared.pace.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Must the work end, because it was asked to or because its deadline has passed?
+    /// Returns `true` if the work must end: it was asked to stop, or its deadline has passed.
     pub fn is_over(&self) -> bool {
         self.is_stopped() || self.time_left() == Some(0.0)
     }
 
-    /// Tells which part of the work begins, from 1, `of` how many.
+    /// Reports that part `number`, from 1, of `of` parts begins.
     pub fn part(&self, name: &'static str, number: usize, of: usize) {
         self.tell(Activity { part: Some(Part { name, number, of }), ..Activity::default() });
     }
 
-    /// Tells which step of the work begins, and its iteration from 1, or 0 where it has none.
+    /// Reports that a step of the work begins, with its iteration from 1, or 0 if it has none.
     pub fn step(&self, step: &'static str, iteration: usize) {
         let part = self.activity().part;
         self.tell(Activity { part, step, iteration });

@@ -60,7 +60,7 @@ impl Input {
         }
     }
 
-    /// The model of a scene at rest, which was read in so many seconds.
+    /// The model of a static scene that was read in `read_seconds`.
     pub fn of_scene(scene: &Scene, path: &Path, read_seconds: f64) -> Result<Self, Error> {
         let clock = Instant::now();
         let model = build(scene, path)?;

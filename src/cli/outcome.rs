@@ -25,7 +25,7 @@ pub(super) struct Outcome {
     pub pictures: Option<Pictures>,
 }
 
-/// Fields and pictures take their time, and nobody should have to wait for numbers because of them.
+/// Fields and pictures are written after the report, because they take longer.
 pub(super) type Pictures = Box<dyn FnOnce() -> Result<(), Error>>;
 
 /// Takes the line of a terminal that is being written back.

@@ -12,7 +12,7 @@ use crate::scene::Scene;
 use crate::solution::{Goal, Solution};
 use crate::watch::Watch;
 
-/// Assembly that takes so many seconds at the most is done without time too: the report then says what the rest needs.
+/// Assembly that takes at most this many seconds is done even if no time is left: the report then says what the rest needs.
 const AT_ONCE: f64 = 1e-3;
 
 /// A report adds up what was assembled: it takes this share of the time.

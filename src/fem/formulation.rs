@@ -68,7 +68,7 @@ impl Formulation {
         }
     }
 
-    /// Is it a body of revolution?
+    /// Returns `true` for a body of revolution.
     pub fn is_axisymmetric(&self) -> bool {
         matches!(self, Formulation::Axisymmetric)
     }
@@ -85,7 +85,7 @@ impl Formulation {
         }
     }
 
-    /// Can the material's volume be kept by force? Not where the body is free to move across.
+    /// Returns `true` if elements can lock near incompressibility. They cannot if the body is free to move across.
     pub fn can_lock(&self) -> bool {
         !matches!(self, Formulation::Bar { .. } | Formulation::PlaneStress { .. })
     }

@@ -78,7 +78,7 @@ pub fn error_norms(
     Ok(Sums::total(&fine).norms())
 }
 
-/// The same by one quadrature rule for every element, as other programs do: what the rule misses is missed.
+/// The same with one fixed quadrature rule per element; its integration error is not corrected.
 ///
 /// # Errors
 /// As [`error_norms`].

@@ -57,7 +57,7 @@ impl Integrator {
             settings.method = Method::ActiveSet;
         }
         if matches!(settings.method, Method::Penalty(_)) {
-            // Its answers are never exact; whoever chooses it takes them as they are.
+            // Penalty answers are never exact, so no tolerance is enforced.
             settings.tolerance = f64::MAX;
         }
         let watch = settings.watch.clone();
@@ -133,7 +133,7 @@ impl Integrator {
         Ok(())
     }
 
-    /// Time now: so many times the step.
+    /// The current time: the number of steps times the step.
     pub fn time(&self) -> f64 {
         self.state.steps as f64 * self.step
     }

@@ -33,7 +33,7 @@ pub enum TimeFunction {
 }
 
 impl TimeFunction {
-    /// Are its numbers finite, its times in order?
+    /// Checks that the numbers are finite and the times in order.
     ///
     /// # Errors
     /// [`Error::Setting`] for the first number that is not.

@@ -133,7 +133,7 @@ impl Drawing {
     }
 }
 
-/// Is a point finite and near enough to be drawn?
+/// Returns `true` if a point is finite and near enough to be drawn.
 fn drawable(point: [f64; 2]) -> bool {
     point.iter().all(|coordinate| coordinate.abs() <= FARTHEST)
 }

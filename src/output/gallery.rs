@@ -48,7 +48,7 @@ pub fn write_solve(folder: &Path, answer: &Answer, history: &[Iteration]) -> Res
     write_iterations(folder, model, history)
 }
 
-/// Has the model a picture in the plane?
+/// Returns `true` if the model has a picture in the plane.
 fn is_plane(model: &Model) -> bool {
     model.mesh().dimension() == 2
 }

@@ -29,7 +29,7 @@ const HISTORY: &str = "history.csv";
 const CHECKPOINT: &str = "checkpoint.json";
 const HEADING: &str = "time,force,closed,penetration,kinetic,strain,potential,energy\n";
 
-/// Lines of the history are written at every frame, and in between where they have come to so many bytes.
+/// Lines of the history are written at every frame, and in between if they exceed this many bytes.
 const MOST_BYTES: usize = 1 << 16;
 
 /// Points of a plot over time; of more steps some are left out.
@@ -257,7 +257,7 @@ impl MotionFolder {
         write_atomically(&self.folder.join("motion.png"), &animation)
     }
 
-    /// The rows of the history, of a long one every so many, each with the largest force since the last.
+    /// The rows of the history; of a long one only some, each with the largest force since the row before.
     fn read_history(&self) -> Result<Vec<[f64; 8]>, Error> {
         let path = self.folder.join(HISTORY);
         let fail = |source| Error::File { action: "read", path: path.clone(), source };
@@ -306,13 +306,13 @@ fn cut_history(path: &Path, bytes: u64) -> std::io::Result<()> {
     file.set_len(bytes.max(HEADING.len() as u64))
 }
 
-/// A file that does not have the form of what a run leaves; of its content nothing is told, it may be another's.
+/// Error for a file that is not the output of a run; it quotes no content, which may be private.
 fn not_ours(path: &Path, what: &str, error: &serde_json::Error) -> Error {
     let message = format!("it is no {what} (column {})", error.column());
     Error::FileSyntax { file: path.into(), line: error.line().max(1), message }
 }
 
-/// A scene without what may change while its motion goes on: how long it lasts and how many frames it shows.
+/// The scene without the fields that may differ when a run is resumed: duration and number of frames.
 fn undated(scene: &str) -> Option<serde_json::Value> {
     let mut scene: serde_json::Value = serde_json::from_str(scene).ok()?;
     let motion = scene.pointer_mut("/analysis/dynamic")?.as_object_mut()?;

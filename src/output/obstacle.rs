@@ -48,7 +48,7 @@ impl ObstacleLine<'_> {
         if length > 0.0 && length.is_finite() { into.map(|part| part / length) } else { [0.0; 2] }
     }
 
-    /// Does the edge pass through the frame?
+    /// Returns `true` if the edge passes through the frame.
     pub(crate) fn is_seen(&self, frame: &Frame) -> bool {
         let places: Vec<[f64; 2]> = self.points.iter().map(|&point| frame.place(point)).collect();
         let far = [0, 1].map(|axis| frame.corner[axis] + frame.size[axis]);

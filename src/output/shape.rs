@@ -26,7 +26,7 @@ pub(super) enum Shape {
     },
 }
 
-/// Does a line return to its first point?
+/// Whether a line returns to its first point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Line {
     Open,

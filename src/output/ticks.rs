@@ -38,7 +38,7 @@ pub enum Scale {
 }
 
 impl Scale {
-    /// Can `value` be shown on this scale? Numbers near the end of the floating-point range are not.
+    /// Returns `true` if `value` can be shown on this scale: it is not near the ends of the floating-point range.
     pub fn shows(self, value: f64) -> bool {
         value.abs() < 1e290 && (self == Scale::Linear || value > 1e-290)
     }
@@ -126,7 +126,7 @@ fn linear([from, to]: [f64; 2], count: usize) -> Ticks {
     let step = round_step(span / count as f64);
     // Half a percent of a step: a range that ends on a tick has that tick.
     let (first, last) = ((from / step - 0.005).ceil(), (to / step + 0.005).floor());
-    // More than a step for every count cannot be; less than that is a range beyond the resolution of the numbers.
+    // At most three ticks per requested one; otherwise the range is below the resolution of doubles.
     let number = (last - first + 1.0).clamp(0.0, 3.0 * count as f64) as usize;
     let positions: Vec<f64> =
         (0..number).map(|k| (first + k as f64) * step).filter(|p| *p >= from - span && *p <= to + span).collect();

@@ -1,4 +1,4 @@
-//! What a solve may be told.
+//! The settings of a solve.
 
 use std::time::Duration;
 
@@ -8,8 +8,8 @@ use crate::qp::method::penalty::{BEST_PENALTY, Penalty};
 use crate::solution::Goal;
 use crate::watch::Watch;
 
-/// The best penalty leaves a relative penetration of one over itself; parts of the body that are softer than the dofs of a row
-/// make it so many times larger.
+/// Factor by which soft parts of the body may enlarge the relative penetration of the best penalty, which is one over that
+/// penalty.
 const PENETRATION: f64 = 100.0;
 
 /// The method that finds the contact set, with its own options.
@@ -60,7 +60,7 @@ impl Method {
     }
 }
 
-/// Is the problem condensed onto the dofs of its contact rows?
+/// Whether the problem is condensed onto the dofs of its contact rows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Condense {
@@ -116,7 +116,7 @@ pub enum Precision {
 pub struct Settings {
     /// The method.
     pub method: Method,
-    /// Is the problem condensed onto its contact dofs?
+    /// Whether the problem is condensed onto its contact dofs.
     pub condense: Condense,
     /// Threads of the sparse factorisations and of multigrid, at least 1.
     pub threads: usize,
@@ -127,7 +127,7 @@ pub struct Settings {
     /// Relative error in the energy norm that is good enough: where a bound is known, `Ok` promises that it is below, and
     /// nothing else.
     pub accuracy: Option<f64>,
-    /// Are the rows named whose contact is beyond doubt?
+    /// Whether to prove which rows are open and which are closed.
     pub prove: bool,
     /// Wall-clock time after which the best answer so far is returned, as [`Error::NotCertified`] if it falls short;
     /// a factorisation that is under way is ended first, and the bound of the certificate may take a tenth of the time more:
@@ -245,7 +245,7 @@ impl Settings {
         Goal { tolerance: self.tolerance, accuracy: self.accuracy }
     }
 
-    /// Is the answer that is wanted as good as can be? An unpolished QP and a penalty are asked for as they are.
+    /// Returns `true` if the best possible answer is wanted. An unpolished QP and a penalty are returned as they are.
     pub(super) fn wants_best(&self) -> bool {
         match self.method {
             Method::Qp(InteriorPoint { polish, .. }) => polish,
@@ -254,8 +254,8 @@ impl Settings {
         }
     }
 
-    /// May the last resort replace an answer that misses the goal, in its worst condition, by `value`? Not that of an
-    /// unpolished QP or of a penalty that ends below its best value, which are asked for as they are, nor the penetration
+    /// Returns `true` if the last resort may replace an answer that misses the goal, in its worst condition, by `value`. The
+    /// answers of an unpolished QP and of a penalty below its best value stay as they are, and so does the penetration
     /// that the best penalty leaves.
     pub(super) fn allows_last_resort(&self, value: f64) -> bool {
         let is_best_penalty = matches!(self.method, Method::Penalty(ladder) if ladder.last >= BEST_PENALTY);

@@ -16,6 +16,6 @@ pub(super) struct Parts {
     pub load: Vec<f64>,
     pub obstacles: Vec<PlacedObstacle>,
     pub warnings: Vec<Warning>,
-    /// Is its motion asked for? Inertia then resists what nothing holds.
+    /// `true` if the analysis is dynamic: inertia then resists motions that no support holds.
     pub moves: bool,
 }

@@ -109,7 +109,7 @@ impl Scene {
     }
 }
 
-/// Pairs of nodes in the factor of a lattice with so many nodes along its axes, by nested dissection across the longest
+/// Pairs of nodes in the factor of a lattice with these numbers of nodes along its axes, by nested dissection across the longest
 /// axis: the separator meets itself and the nodes around the part that it divides, `around` of them.
 ///
 /// # Source

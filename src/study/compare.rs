@@ -1,4 +1,4 @@
-//! One problem by three methods: do they agree?
+//! One problem solved by three methods, and how far the answers agree.
 
 use serde::Serialize;
 
@@ -26,7 +26,7 @@ const NORM_ROUNDING: f64 = 1e-12;
 pub struct MethodAnswer {
     /// The answer, certified or not.
     pub solution: Solution,
-    /// Is it certified?
+    /// `true` if it is certified.
     pub certified: bool,
 }
 
@@ -43,12 +43,12 @@ pub struct Difference {
     pub energy: f64,
 }
 
-/// Do the methods agree?
+/// How far the methods agree.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Agreement {
     /// QP and active set: certified both, same contact set, displacement to 1e-8, multiplier to 1e-7.
     pub exact_methods: bool,
-    /// Is the penalty answer as close to the QP answer as its own certificate states?
+    /// `true` if the penalty answer is as close to the QP answer as its own certificate states.
     pub penalty_within_its_bound: bool,
     /// Active set against QP.
     pub active_set: Difference,

@@ -39,7 +39,7 @@ pub struct MotionPoint {
     pub energy_change: f64,
     /// Deepest penetration, in length.
     pub penetration: f64,
-    /// Is no other point both faster and more accurate?
+    /// `true` if the point is on the Pareto front: no other point is both faster and more accurate.
     pub best: bool,
 }
 
@@ -165,7 +165,7 @@ fn run(dynamics: Dynamics, settings: &Settings) -> Result<Run, Error> {
     })
 }
 
-/// The motion of the scene by a scheme with its own form of the mass: in so many steps, or in those of its default.
+/// The motion of the scene by a scheme with its own form of the mass, in this number of steps or in that of its default.
 fn with(scene: &Scene, model: &Model, scheme: SchemeSpec, steps: Option<usize>) -> Result<Dynamics, Error> {
     let mut scene = scene.clone();
     if let Some(AnalysisSpec::Dynamic(spec)) = &mut scene.analysis {

@@ -78,7 +78,7 @@ pub struct SweepEvent {
     pub row: usize,
     /// Its node.
     pub node: usize,
-    /// Does it touch? Otherwise it releases.
+    /// `true` if the node touches, `false` if it releases.
     pub touches: bool,
 }
 

@@ -1,4 +1,4 @@
-//! What a digit costs: every method at every accuracy that it can be told, timed, against the exact discrete answer.
+//! The cost of accuracy: every method at several tolerances, timed, and compared with the exact discrete answer.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -12,22 +12,22 @@ use crate::scene::{Answer, Model, Scene};
 use crate::solution::Solution;
 use crate::watch::Watch;
 
-/// Tolerances that the interior point is given.
+/// Tolerances of the interior point.
 const TOLERANCES: [f64; 6] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
 
-/// Last rungs that the penalty ladder is given, in multiples of the local stiffness; the best is 1e8.
+/// Last penalties of the penalty ladder, in multiples of the local stiffness; the best is 1e8.
 const PENALTIES: [f64; 9] = [1e0, 1e2, 1e4, 1e6, 1e7, 1e8, 1e10, 1e12, 1e14];
 
-/// Accuracies for which the cheapest way is told.
+/// Tolerances for which the report names the cheapest method.
 const WANTED: [f64; 3] = [1e-2, 1e-4, 1e-8];
 
-/// The usual way is the QP to this tolerance on all dofs, or condensed where all dofs are too many.
+/// Reference method: the QP to this tolerance, on all dofs unless there are too many.
 const USUAL_TOLERANCE: f64 = 1e-8;
 
-/// Share of the time of the usual way for which the most accurate one is told.
+/// Share of the reference method's time for which the report names the most accurate method.
 const HURRY: f64 = 0.1;
 
-/// Errors below this are those of rounding, and one is as good as another.
+/// Errors below this are rounding; they are not compared.
 const ERROR_ROUNDING: f64 = 1e-12;
 
 /// The QP whose contact set is settled by active-set steps.
@@ -36,9 +36,9 @@ const POLISHED: &str = "qp, polished";
 /// What is varied, and how well it is timed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TradeoffGrid {
-    /// Meshes: the scene's own, and so many whose cells are cut in two again and again.
+    /// Number of meshes beside the scene's own, each with half the cell size of the one before.
     pub refinements: usize,
-    /// Runs of each point, of which the fastest counts; at least 1.
+    /// Runs of each point, at least 1; the fastest counts.
     pub runs: usize,
     /// Points of more dofs than this are solved on the contact boundary only.
     pub most_full_dofs: usize,
@@ -53,7 +53,7 @@ impl Default for TradeoffGrid {
 /// One mesh of a trade-off.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TradeoffMesh {
-    /// Cells of the scene's mesh are cut into so many along each edge.
+    /// Number of parts into which each edge of the scene's mesh is divided.
     pub divided_by: usize,
     /// Unknown displacements.
     pub dofs: usize,
@@ -63,19 +63,19 @@ pub struct TradeoffMesh {
     pub discretisation_error: f64,
 }
 
-/// One way to an answer, what it cost, and how far it is from the exact answer of its mesh.
+/// One method with its settings: its time, and the errors against the exact answer of its mesh.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TradeoffPoint {
     /// Index of the mesh.
     pub mesh: usize,
     /// `qp`, `qp, polished`, `active-set` or `penalty`.
     pub method: &'static str,
-    /// Tolerance of the interior point, last penalty of the ladder, accuracy of the refinement; none where there is nothing
-    /// to tell.
+    /// Tolerance of the interior point, last penalty of the ladder, or accuracy of the refinement; `None` if the method has
+    /// no such setting.
     pub knob: Option<f64>,
-    /// Was the problem condensed onto its contact boundary?
+    /// `true` if the problem was condensed onto its contact boundary.
     pub condensed: bool,
-    /// Was the factor in single precision, and the answer refined?
+    /// `true` if the factor was in single precision and the answer refined.
     pub mixed: bool,
     /// The fastest run, in seconds, from the checked problem to the certificate.
     pub seconds: f64,
@@ -85,26 +85,26 @@ pub struct TradeoffPoint {
     pub force_error: f64,
     /// Error of the largest pressure, relative.
     pub pressure_error: f64,
-    /// Rows in one contact set and not in the other.
+    /// Misclassified rows: closed in one contact set and open in the other.
     pub rows_wrong: usize,
     /// Bound of the energy error by the certificate.
     pub energy_error_bound: f64,
-    /// Is no other point of this mesh both faster and more accurate?
+    /// `true` if the point is on the Pareto front of its mesh: no other point is both faster and more accurate.
     pub best: bool,
 }
 
 /// What to choose.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Advice {
-    /// The energy error that is wanted; none where the time is.
+    /// The energy error to reach; `None` if a time is given.
     pub accuracy: Option<f64>,
-    /// Seconds to spend; none where the accuracy is wanted.
+    /// Seconds to spend; `None` if an energy error is given.
     pub seconds: Option<f64>,
-    /// The point to choose, by its index; none where no point is good enough.
+    /// Index of the point to choose; `None` if no point is good enough.
     pub point: Option<usize>,
 }
 
-/// A scene in every way.
+/// A scene solved by all methods.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Tradeoff {
     /// The meshes, the scene's own first.
@@ -117,11 +117,11 @@ pub struct Tradeoff {
     pub runs: usize,
 }
 
-/// Solves a scene in every way of `grid`.
+/// Solves a scene by all methods on the meshes of `grid`.
 ///
 /// The exact answer of a mesh is that of the active set on the contact boundary, which ends with a linear solve.
 ///
-/// Where `watch` is asked to stop, the points are those that were measured until then.
+/// If `watch` is asked to stop, the result holds the points measured until then.
 ///
 /// # Errors
 /// As [`Scene::refined`], [`Scene::build`] and [`solve`]; an answer that is not certified is an answer here.
@@ -210,10 +210,10 @@ fn ways(condense: Condense, precision: Precision) -> Vec<Way> {
     ways
 }
 
-/// The answer of each way, certified or not, and the seconds of its fastest run. All ways run once before any runs
-/// again, so that what else the machine does meets them alike.
+/// The answer of each way, certified or not, and the seconds of its fastest run. All ways run once before any of them runs
+/// again, so that other work on the machine affects them equally.
 ///
-/// A way whose precision does not suffice has no answer, nor has one that was not run before `watch` was asked to stop.
+/// The answer is `None` if the precision does not suffice, or if `watch` was asked to stop before the way was run.
 fn timed(model: &Model, ways: &[Way], runs: usize, watch: &Watch) -> Result<Vec<Option<(Solution, f64)>>, Error> {
     let run = |number: usize, way: &Way| {
         if watch.is_stopped() {

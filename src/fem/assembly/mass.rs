@@ -87,7 +87,7 @@ fn element_masses(body: &ElasticBody) -> Result<Vec<ElementMass>, Error> {
     Ok(body.elements().zip(densities).map(of_element).collect())
 }
 
-/// The diagonal that stands for the mass of an element of so many nodes.
+/// The lumped mass of an element with this number of nodes.
 fn lumped(element: &ElementMass, nodes: usize) -> [f64; MAX_NODES] {
     let mut diagonal = element.map(|row| row.iter().sum());
     if diagonal[..nodes].iter().any(|&sum| sum <= 1e-12 * element[0][0].abs()) {

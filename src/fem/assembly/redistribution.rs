@@ -1,5 +1,5 @@
-//! Mass taken from contact nodes and given to their neighbours, the density of the body tilted by as little as keeps
-//! mass and centre.
+//! Moves the mass of contact nodes to their neighbours and applies the smallest linear correction of the density that
+//! preserves mass and centre of mass.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::fem::body::{ElasticBody, Region};
 use crate::fem::element::MAX_NODES;
 
-/// Mass and centre are kept to within this, relative to the mass and the size of the body.
+/// Largest change of mass and of the centre of mass, relative to the mass and the size of the body.
 const MASS_TOLERANCE: f64 = 1e-10;
 
 /// A factor on the density of an element below this is no small correction: the mesh is too coarse.
@@ -16,7 +16,7 @@ const LEAST_FACTOR: f64 = 0.1;
 /// The mass of one element, node by node.
 pub(super) type ElementMass = [[f64; MAX_NODES]; MAX_NODES];
 
-/// Who inherits the mass of each node, and the factor on the density of each element.
+/// The nodes that take over the mass of each contact node, and the factor on the density of each element.
 pub(super) struct Redistribution {
     /// Nodes with their shares, which add up to one; empty for a node that keeps its mass.
     heirs: Vec<Vec<(usize, f64)>>,
@@ -24,10 +24,10 @@ pub(super) struct Redistribution {
 }
 
 impl Redistribution {
-    /// Of the given masses of all elements, the nodes `massless` losing theirs.
+    /// Redistributes the given masses of all elements so that the nodes `massless` have none.
     ///
     /// # Errors
-    /// [`Error::Mesh`] for a mesh too coarse to keep mass and centre of a body.
+    /// [`Error::Mesh`] for a mesh too coarse to preserve mass and centre of mass of a body.
     pub fn of(body: &ElasticBody, elements: &[ElementMass], massless: &[usize]) -> Result<Self, Error> {
         let mut heirs = heirs(body, elements, massless)?;
         heirs.resize(body.mesh().nodes().len(), Vec::new());
@@ -64,7 +64,7 @@ impl Redistribution {
         [a, b].into_iter().find(|&node| !self.heirs[node].is_empty())
     }
 
-    /// Density factors `1 + c_0 + c . (x - centre)` that give a body its mass and its centre back.
+    /// Computes the density factors `1 + c_0 + c . (x - centre)` that restore mass and centre of mass of a body.
     fn tilt(&mut self, body: &ElasticBody, elements: &[ElementMass], region: &Region) -> Result<(), Error> {
         let (nodes, dimension) = (body.mesh().nodes(), body.dimension());
         let (low, high) = crate::fem::mesh::extent(&nodes[region.nodes()]);

@@ -21,7 +21,7 @@ impl Region {
         Region { name: String::new(), nodes, elements, material, lame }
     }
 
-    /// The same region called `name`, behind so many nodes and elements of others.
+    /// The same region called `name`, after `nodes` nodes and `elements` elements of other regions.
     pub(super) fn shifted(&self, name: &str, nodes: usize, elements: usize) -> Self {
         let behind = |range: &Range<usize>, count: usize| range.start + count..range.end + count;
         let (nodes, elements) = (behind(&self.nodes, nodes), behind(&self.elements, elements));

@@ -52,10 +52,10 @@ pub fn stable_step(problem: &DynamicProblem) -> Result<f64, Error> {
     Ok(2.0 / omega * (ratio.hypot(1.0) - ratio))
 }
 
-/// Is `step` stable?
+/// Checks that `step` is stable.
 ///
 /// # Errors
-/// [`Error::Numerical`] with the largest step where it is not; as [`stable_step`].
+/// [`Error::Numerical`] with the largest step if it is not; as [`stable_step`].
 pub(super) fn check_step(problem: &DynamicProblem, step: f64) -> Result<(), Error> {
     let most = stable_step(problem)?;
     if step <= most * (1.0 + LIMIT_ROUNDING) {

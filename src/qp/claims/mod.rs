@@ -46,7 +46,7 @@ const STRAINED: f64 = 1e-13;
 /// An answer is settled to this share of its largest displacement, in the units of equal stiffness.
 const SETTLED_TO: f64 = 1e-11;
 
-/// A body moves at most so many times as far as a dof that a force moves alone: soft enough for what is not slender.
+/// A body moves at most this many times as far as a dof that a force moves alone: enough for bodies that are not slender.
 const BENDS: f64 = 1e3;
 
 /// An answer shows which rows press only if its conditions hold to this, however little is asked for.
@@ -122,8 +122,8 @@ fn check_room(problem: &ContactProblem, settings: &Settings) -> Result<(), Error
     check_time(&settings.watch, seconds::factorisation(&analysis))
 }
 
-/// Does an ending make a claim, or leave open whether there is one? Without a bound it does where its answer holds its
-/// conditions, or where a factor has shown the stiffness to be singular and the answer was to be as good as can be.
+/// Returns `true` if an error makes a claim, or leaves open whether there is one. An answer without a bound leaves it open if
+/// its conditions hold, or if a factor has shown the stiffness to be singular and the best possible answer is wanted.
 fn is_doubtful(error: &Error, settings: &Settings) -> bool {
     match error {
         Error::NotConvex { .. } | Error::Unbounded { .. } | Error::UnderHeld { .. } => true,

@@ -76,7 +76,7 @@ impl AugmentedMatrix {
         Ok(Self { stiffness, row_starts, products, analysis })
     }
 
-    /// The same matrices, whose factorisations use so many threads.
+    /// The same matrices, whose factorisations use this number of threads.
     pub fn with_threads(self, threads: usize) -> Self {
         AugmentedMatrix { analysis: self.analysis.with_threads(threads), ..self }
     }

@@ -84,7 +84,7 @@ impl Analysis {
         Ok(Analysis { symbolic: Arc::new(symbolic), trailing: last.len(), threads: 1 })
     }
 
-    /// The same analysis, whose factorisations use so many threads.
+    /// The same analysis, whose factorisations use this number of threads.
     pub fn with_threads(self, threads: usize) -> Self {
         Analysis { threads, ..self }
     }
@@ -209,7 +209,7 @@ impl Cholesky {
         by_precision!(self.values, values => values.len())
     }
 
-    /// Are its values in single precision?
+    /// Returns `true` if its values are in single precision.
     pub fn is_single(&self) -> bool {
         matches!(self.values, Values::Single(_))
     }

@@ -1,4 +1,4 @@
-//! Is a matrix positive definite, or did rounding let a singular one pass its Cholesky factorisation?
+//! Tells a positive definite matrix from a singular one that passed its Cholesky factorisation by rounding.
 
 use super::{Cholesky, Equilibration, FactorError, SymmetricMatrix, largest};
 
@@ -11,18 +11,18 @@ pub(super) const NULL_ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// Steps of inverse iteration: each gains several digits, since eigenvalues differ by many orders of magnitude.
 const STEPS: usize = 5;
 
-/// On a diagonal of order one, a negative eigenvalue above this, or above so much for each column, is rounding of the entries
+/// On a diagonal of order one, a negative eigenvalue above this, or above this for each column, is rounding of the entries
 /// and of the factor.
 const LEAST_NEGATIVE: f64 = 1e-12;
 const NEGATIVE_BY_COLUMN: f64 = 8.0 * f64::EPSILON;
 
 impl Cholesky {
-    /// Is a matrix with a diagonal of order one definite beyond doubt, by the pivots of this factor alone?
+    /// Returns `true` if the pivots of this factor alone show that the matrix, with a diagonal of order one, is definite.
     pub fn is_safely_definite(&self) -> bool {
         self.smallest_pivot() > SAFE_PIVOT
     }
 
-    /// Is `matrix`, whose diagonal is of order one and whose factor this is, definite beyond rounding?
+    /// Returns `true` if `matrix`, whose diagonal is of order one and whose factor this is, is definite beyond rounding.
     pub fn is_definite(&self, matrix: &SymmetricMatrix) -> bool {
         if self.is_safely_definite() {
             return true;
@@ -46,7 +46,8 @@ impl Cholesky {
 }
 
 impl SymmetricMatrix {
-    /// Is the matrix positive semidefinite, to rounding? Its equilibrated form with a trace of the unit matrix must have a factor.
+    /// Returns `true` if the matrix is positive semidefinite, to rounding: its equilibrated form plus a small multiple of the unit
+    /// matrix has a factor.
     ///
     /// # Errors
     /// Those of the factorisation but [`FactorError::NotPositiveDefinite`].

@@ -125,7 +125,7 @@ pub(super) fn factorise<T: Real>(
     if finite { Ok((values, smallest_pivot)) } else { Err(FactorError::NotPositiveDefinite) }
 }
 
-/// The smallest pivot, and are all entries finite? Every entry enters the pivot of its row, which tells.
+/// The smallest pivot, and `true` if all entries are finite: every entry enters the pivot of its row.
 fn pivots<T: Real>(supernodes: &supernodal::SymbolicSupernodalCholesky<usize>, values: &[T]) -> (f64, bool) {
     let (mut smallest, mut finite) = (f64::INFINITY, true);
     let factor = supernodal::SupernodalLltRef::new(supernodes, values);

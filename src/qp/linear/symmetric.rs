@@ -137,7 +137,7 @@ impl SymmetricMatrix {
         self.product(x, |value| value)
     }
 
-    /// The product A x on so many threads. The sums run over parts of the columns that depend on the matrix alone, so that
+    /// The product A x on this number of threads. The sums run over parts of the columns that depend on the matrix alone, so that
     /// the result does not depend on the threads.
     pub fn mul_on(&self, threads: usize, x: &[f64]) -> Vec<f64> {
         let starts = self.lower.column_starts();

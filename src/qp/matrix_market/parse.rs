@@ -35,7 +35,7 @@ pub(super) enum Values {
     FiniteOrInfinite,
 }
 
-/// May an error repeat what stands in a file?
+/// Whether an error may quote the content of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quotes {
     Allowed,
@@ -203,7 +203,7 @@ impl<'a> Source<'a> {
 }
 
 impl Content {
-    /// Are there, for so many `lines` of a matrix, rows or columns, entries enough to believe in them?
+    /// Returns `true` if there are enough entries to make this number of rows or columns credible.
     pub fn believes(&self, lines: usize) -> bool {
         lines <= self.entries.len().saturating_add(MOST_EMPTY)
     }

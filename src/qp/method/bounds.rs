@@ -153,7 +153,7 @@ impl Bounds {
         &self.bounds
     }
 
-    /// Are all rows bounds as they stand?
+    /// Returns `true` if all rows are bounds as they stand.
     pub fn is_plain(&self) -> bool {
         self.reflections.is_empty()
     }
@@ -189,7 +189,7 @@ impl Bounds {
         (multiplier, closed)
     }
 
-    /// Is the row that makes the upper (`true`) or the lower bound in the set?
+    /// Returns `true` if the row of the upper (`true`) or the lower bound is in the set.
     pub fn is_closed(&self, index: usize, upper: bool, closed: &ContactSet) -> bool {
         self.bounds[index].sides[usize::from(upper)].is_some_and(|side| closed.contains(side.row))
     }

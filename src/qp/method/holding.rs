@@ -1,4 +1,5 @@
-//! Does a set of closed rows hold the body? If not: along which direction is it free, and does the load drive it?
+//! Checks whether a set of closed rows holds the body; if not, finds the direction along which it is free, and whether the
+//! load drives it.
 
 use super::ScaledProblem;
 use crate::error::Error;
@@ -41,7 +42,7 @@ pub enum Holding {
 pub struct FreeMotion {
     /// The direction, one entry per dof.
     pub direction: Vec<f64>,
-    /// Does the load do work on it? Then `f'd > 0`.
+    /// `true` if the load does work on it: `f'd > 0`.
     pub driven: bool,
 }
 
@@ -65,7 +66,7 @@ pub(super) fn where_largest(direction: &[f64]) -> String {
 }
 
 impl ScaledProblem<'_> {
-    /// Is K positive semidefinite to the largest of the shifts?
+    /// Checks that K is positive semidefinite to the largest of the shifts.
     ///
     /// # Errors
     /// [`Error::NotConvex`] if not, [`Error::Numerical`] for want of memory.
@@ -148,16 +149,16 @@ impl ScaledProblem<'_> {
         speed.iter().zip(&terms).map(|(&v, term)| if v.abs() > WORK_TOLERANCE * term { v } else { 0.0 }).collect()
     }
 
-    /// Does a motion, largest entry one, cost no energy: is `K d` rounding of its own terms at each dof, or of what moving
-    /// that dof alone would take?
+    /// Returns `true` if a motion with largest entry one costs no energy: at each dof `K d` is rounding of its own terms, or of
+    /// the force that moves this dof alone.
     pub(super) fn costs_nothing(&self, direction: &[f64]) -> bool {
         let stiffness = self.problem.stiffness();
         let (force, terms, alone) = (stiffness.mul(direction), stiffness.mul_abs(direction), stiffness.diagonal());
         (0..force.len()).all(|dof| force[dof].abs() <= WORK_TOLERANCE * terms[dof].max(alone[dof]))
     }
 
-    /// Is what an error claims of a motion true, in the terms of each dof and row? Sums of squares, which find the motion,
-    /// lose what is small beside others.
+    /// Returns `true` if an error's claim about a motion holds in the terms of each dof and row. Sums of squares, which find
+    /// the motion, lose terms that are small beside others.
     pub fn is_true(&self, claim: &Error) -> bool {
         let stops = |direction: &[f64], way: f64| self.approach(direction).iter().any(|&speed| speed * way > 0.0);
         match claim {
@@ -169,8 +170,8 @@ impl ScaledProblem<'_> {
         }
     }
 
-    /// Is a claim true at sight, because the motion opens every row? Then the rows can be met together, and none can
-    /// balance the load.
+    /// Returns `true` if a claim needs no further check because the motion opens every row: the rows can then be met together,
+    /// and none can balance the load.
     pub fn is_evident(&self, claim: &Error) -> bool {
         let (Error::UnderHeld { direction, .. } | Error::Unbounded { direction, .. }) = claim else { return false };
         let opens = |way: f64| self.approach(direction).iter().all(|&speed| speed * way < 0.0);

@@ -42,7 +42,7 @@ pub struct Event {
     pub at: f64,
     /// Which row.
     pub row: usize,
-    /// Does it touch? Otherwise it releases.
+    /// `true` if the row touches, `false` if it releases.
     pub touches: bool,
 }
 

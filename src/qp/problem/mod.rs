@@ -98,7 +98,7 @@ impl ContactProblem {
     /// rigid-body modes.
     ///
     /// # Errors
-    /// [`Error::Length`] where they are not those of so many dofs.
+    /// [`Error::Length`] if they are for another number of dofs.
     pub fn with_near_null(self, near_null: impl Into<Arc<NearNullSpace>>) -> Result<Self, Error> {
         let near_null = near_null.into();
         let (found, expected) = (near_null.dofs(), self.dofs());
@@ -204,7 +204,7 @@ impl ContactProblem {
     }
 }
 
-/// Is `load` one of so many dofs?
+/// Checks that `load` has the right length and allowed values.
 ///
 /// # Errors
 /// [`Error::Length`], [`Error::NotFinite`].
@@ -221,7 +221,7 @@ pub(crate) fn check_load(load: &[f64], dofs: usize) -> Result<(), Error> {
     }
 }
 
-/// Is `gap` one of so many rows?
+/// Checks that `gap` has the right length and allowed values.
 ///
 /// # Errors
 /// [`Error::Length`], [`Error::NotFinite`] for a gap that is NaN or minus infinity.

@@ -45,7 +45,7 @@ impl Condensation {
         (0..contact.columns()).filter(|&dof| contact.column(dof).any(|entry| entry.1 != 0.0)).collect()
     }
 
-    /// The analysis of `stiffness` with the contact dofs last, or `None` where condensing onto so many does not pay.
+    /// The analysis of `stiffness` with the contact dofs last, or `None` if condensing onto this number of dofs does not pay.
     ///
     /// # Errors
     /// As [`Analysis::with_last`].
@@ -113,7 +113,7 @@ impl Condensation {
         &self.contact_dofs
     }
 
-    /// Is the factor in single precision?
+    /// Returns `true` if the factor is in single precision.
     pub fn is_single(&self) -> bool {
         self.cholesky.is_single()
     }

@@ -118,8 +118,8 @@ impl RowSelection {
     }
 }
 
-/// Are two rows with entries in the same places multiples of each other, to the last bit? Quotients may be alike by
-/// rounding, and some displacement then meets both.
+/// Returns `true` if two rows with entries in the same places are multiples of each other, to the last bit. Quotients may be
+/// equal by rounding only; then some displacement meets both rows.
 fn are_parallel(by_row: &SparseMatrix, a: usize, b: usize) -> bool {
     let entries = |row: usize| by_row.column(row).filter(|entry| entry.1 != 0.0).map(|entry| entry.1);
     let (Some(first_a), Some(first_b)) = (entries(a).next(), entries(b).next()) else { return false };

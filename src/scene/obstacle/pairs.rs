@@ -1,4 +1,4 @@
-//! Pairs of nodes: what an obstacle that is another body comes to.
+//! Node pairs: the contact rows against another body.
 
 use super::row::ObstacleRow;
 use crate::fem::geometry::dot;

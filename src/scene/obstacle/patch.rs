@@ -1,7 +1,7 @@
 //! One bilinear cell of a height map: the points of it that are closest to a node.
 
 use crate::fem::geometry::dot;
-/// A cell is cut into so many strips to find the valleys of the distance over it: one cell has a handful at most.
+/// Number of strips of a cell in which local minima of the distance are sought; one cell has a handful of them at most.
 const STRIPS: usize = 16;
 
 /// Golden sections of a strip: they end at the square root of rounding, from where Newton's method goes on.

@@ -18,7 +18,7 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// a rotation is measured by the displacement that it gives at the distance `size` from the axis.
 pub(super) type Amplitudes = [f64; 6];
 
-/// Does the name of a motion tell which way it goes?
+/// Whether the name of a motion gives its sense.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Sense {
     Told,

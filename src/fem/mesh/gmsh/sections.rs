@@ -15,7 +15,7 @@ enum Version {
     V4,
 }
 
-/// What is said of a file before it has shown that it is a mesh: nothing of its content, which may be nobody's business.
+/// Error for a file without a mesh header; it quotes no content, which may be private.
 const NO_MESH: &str = "it is no mesh of Gmsh: a section `$MeshFormat` should begin here, which tells the version";
 
 /// Reads all sections; those that say nothing about nodes, elements and groups are passed over.

@@ -80,7 +80,7 @@ impl<T: Real> BlockMatrix<T> {
         });
     }
 
-    /// A matrix of blocks of so many rows and columns with no block in it.
+    /// A matrix without entries, of `rows` by `columns` blocks.
     pub fn empty(rows: usize, columns: usize, (height, width): (usize, usize)) -> Self {
         BlockMatrix { height, width, columns, starts: vec![0; rows + 1], indices: Vec::new(), values: Vec::new() }
     }

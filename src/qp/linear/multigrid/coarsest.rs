@@ -4,12 +4,12 @@ use super::blocks::BlockMatrix;
 use super::real::Real;
 use crate::qp::linear::{Cholesky, Equilibration, FactorError, SparseMatrix, SymmetricMatrix, ldexp};
 
-/// Pivots of the coarsest matrix, whose diagonal is of order one, below so many units in the last place are rounding: a
-/// body that nothing holds.
+/// Pivots of the coarsest matrix below this many units in the last place are rounding: the body is not supported. The
+/// diagonal of the matrix is of order one.
 const LEAST_PIVOT: f64 = 1000.0;
 
-/// A diagonal entry of which less than so many units in the last place are left in a face has lost its digits to rounding of what
-/// was taken off on this level and those above.
+/// A diagonal entry reduced below this many units in the last place has lost its digits: the face takes from it on this level
+/// and on those above.
 pub(super) const LOST_DIAGONAL: f64 = 3000.0;
 
 /// What then holds it, on a diagonal of order one: its contact will, about as stiffly as a coarse cell.
@@ -87,7 +87,7 @@ impl Coarsest {
         self.cholesky.entries()
     }
 
-    /// Was it singular to the precision of its entries, so that it had to be held?
+    /// Returns `true` if the matrix was singular to the precision of its entries, so that it was shifted.
     pub fn is_shifted(&self) -> bool {
         self.is_shifted
     }

@@ -145,7 +145,7 @@ impl<T: Real> Hierarchy<T> {
         self.levels.iter().map(of_level).sum::<usize>() + size_of::<f64>() * self.coarsest.entries()
     }
 
-    /// Did the coarsest matrix have to be held, as that of a body without supports?
+    /// Returns `true` if the coarsest matrix was shifted, as that of a body without supports.
     pub fn is_shifted(&self) -> bool {
         self.coarsest.is_shifted()
     }

@@ -151,7 +151,7 @@ impl Multigrid {
         }
     }
 
-    /// Was the matrix singular to the precision of its levels, so that the coarsest had to be held?
+    /// Returns `true` if the matrix was singular to the precision of its levels, so that the coarsest one was shifted.
     pub fn is_shifted(&self) -> bool {
         match &self.levels {
             Levels::Single(hierarchy) => hierarchy.is_shifted(),
@@ -181,7 +181,8 @@ impl Face<'_> {
         }
     }
 
-    /// Is the matrix in the face singular to the precision of its levels, so that the coarsest had to be held?
+    /// Returns `true` if the matrix in the face is singular to the precision of its levels, so that the coarsest one was
+    /// shifted.
     pub fn is_shifted(&self) -> bool {
         match &self.levels {
             LevelsInFace::Single(_, face) => face.coarsest.is_shifted(),

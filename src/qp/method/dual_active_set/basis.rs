@@ -37,7 +37,7 @@ pub(super) struct Split {
     pub across: Vec<f64>,
     /// The weights r of the closed rows for which `C_A' r` is the rest.
     pub weights: Vec<f64>,
-    /// Is `across` rounding?
+    /// `true` if `across` is rounding.
     pub depends: bool,
 }
 

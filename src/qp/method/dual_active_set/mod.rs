@@ -163,7 +163,7 @@ impl Search<'_> {
         self.basis.nearest(imbalance, &on_closed)
     }
 
-    /// Corrects the answer on its set until that gains nothing more. Does it converge?
+    /// Corrects the answer on its set until that gains nothing more. Returns `true` if it converges.
     fn correct(&mut self) -> bool {
         let mut last = f64::INFINITY;
         for turn in 0..MOST_CORRECTIONS {
@@ -187,8 +187,8 @@ impl Search<'_> {
         last <= CONVERGED * norm(&self.point)
     }
 
-    /// Is an open row violated beyond rounding? What the rounding of the closed rows explains does not count: two rows
-    /// that are one but for their scale would be exchanged for ever.
+    /// Returns `true` if an open row is violated beyond rounding. A violation that the rounding of the closed rows explains
+    /// does not count: otherwise two rows that differ by their scale only would be exchanged for ever.
     fn violates(&self) -> bool {
         let problem = &self.polyhedron.problem;
         let distances = self.polyhedron.distances(&self.displacement);

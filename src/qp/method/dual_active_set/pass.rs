@@ -198,13 +198,13 @@ impl<'a> Pass<'a> {
         self.balance();
     }
 
-    /// Does `row` contradict the closed rows? Under the weights y (1 for it, -r for them) the rows would have to overlap,
-    /// `-g'y > 0`, and what is left of them, `delta = |L^-1 B'y|`, be so small that a point which meets them is absurdly
-    /// far away. Rows that depend on each other but for the rounding of their entries are met far away, and are no
-    /// contradiction: the weights have twice the working precision, to tell them from rows that do depend.
+    /// Checks that `row` does not contradict the closed rows. It does if, under the weights y (1 for it, -r for them), the rows
+    /// overlap, `-g'y > 0`, and their combination, `delta = |L^-1 B'y|`, is so small that a point which meets all of them is
+    /// absurdly far away. Rows that depend on each other but for the rounding of their entries are met far away, and do not
+    /// contradict each other: weights in twice the working precision tell them from rows that do.
     ///
     /// # Errors
-    /// [`Error::Infeasible`] if so.
+    /// [`Error::Infeasible`] if it does.
     fn check_contradiction(&self, row: usize, shares: &[f64]) -> Result<(), Error> {
         let Polyhedron { problem, lengths, reach, .. } = self.polyhedron;
         let mut weights = vec![0.0; problem.rows()];
