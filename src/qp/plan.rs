@@ -28,7 +28,10 @@ use crate::error::{Error, memory as written};
 use crate::solution::Certificate;
 
 /// The direct path is exact and its bound proven: it is left only if it takes this many times as long.
-const CLEARLY: f64 = 1.25;
+const CLEARLY: f64 = 1.15;
+
+/// Cycles beyond those that a factorisation is worth: an answer may be near.
+const MARGIN: usize = 10;
 
 /// An estimate may be so many times too large.
 const UNSURE: f64 = 2.0;
@@ -61,7 +64,7 @@ impl Estimate {
         if ratio > CLEARLY && self.smooth != Smooth::Unknown && self.multigrid_bytes <= most_bytes {
             let reason = format!("by multigrid: a factorisation would take about {ratio:.0} times as long");
             // After so many cycles a factorisation would have been as fast.
-            let most_cycles = if fits { (self.cycles * ratio) as usize } else { usize::MAX };
+            let most_cycles = if fits { MARGIN + (self.cycles * ratio) as usize } else { usize::MAX };
             return Ok(Choice::Speed { reason, most_cycles });
         }
         if self.direct_bytes > UNSURE * most_bytes {
@@ -107,9 +110,7 @@ pub(super) fn method_for(problem: &ContactProblem, gaps: usize, settings: &Setti
 
 /// Is the direct path started from a few cycles of multigrid? They cost less than the first factor.
 pub(super) fn starts_by_multigrid(problem: &ContactProblem, settings: &Settings) -> bool {
-    let estimate = Estimate::of(problem);
-    let by_sets = matches!(settings.method, Method::Auto | Method::ActiveSet);
-    by_sets && estimate.is_everywhere && estimate.smooth.starts_sets()
+    matches!(settings.method, Method::Auto | Method::ActiveSet) && Estimate::of(problem).starts_near
 }
 
 /// The rules that `cargo run --release --example fit_rules` writes.
@@ -157,6 +158,13 @@ struct Step {
 /// The interior point is told this share of the accuracy that is asked for.
 const INTERIOR_POINT_SHARE: f64 = 0.1;
 
+/// With fewer multiplications for each row a factor is that of a chain. Along a chain of more than [`LONG`] rows a front of closed
+/// rows takes hundreds of sets; the interior point takes some twenty steps.
+const CHAIN: f64 = 200.0;
+
+/// Rows of a long chain.
+const LONG: usize = 1000;
+
 /// The one rung of a ladder that is expected to reach an accuracy is this over it.
 const PENALTY_OVER_ACCURACY: f64 = 100.0;
 
@@ -171,7 +179,11 @@ impl Way {
         let size = if condensed { multiplications } else { multiplications / rows.max(1) as f64 };
         let rule = rule.max_by(|a, b| a.accuracy.total_cmp(&b.accuracy));
         let step = rule.and_then(|rule| rule.steps.iter().find(|step| step.up_to.is_none_or(|most| size <= most)));
-        let way = step.map_or(Way::ActiveSet, |step| step.way);
+        let is_long_chain = !condensed && rows > LONG && size < CHAIN;
+        let way = match step.map_or(Way::ActiveSet, |step| step.way) {
+            Way::ActiveSet if is_long_chain => Way::Qp,
+            way => way,
+        };
         Some(match (way, settings.precision) {
             (Way::ActiveSetMixed, Precision::Double) => Way::ActiveSet,
             (Way::ActiveSet, Precision::Mixed) => Way::ActiveSetMixed,

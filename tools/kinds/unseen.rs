@@ -81,7 +81,7 @@ fn beam_on_soil(nodes: usize) -> Result<ContactProblem, Error> {
         let element = (0..4).flat_map(|i| (0..=i).map(move |j| (2 * node + i, 2 * node + j, beam[i][j])));
         entries.extend(element);
     }
-    let load = |dof: usize| if dof % 2 == 0 { 1e-4 * (noise(dof / 40) - 0.6) } else { 0.0 };
+    let load = |dof: usize| if dof.is_multiple_of(2) { 1e-4 * (noise(dof / 40) - 0.6) } else { 0.0 };
     let lower: Vec<_> = (0..nodes).map(|node| (2 * node, -0.1)).collect();
     problem(dofs, &entries, (0..dofs).map(load).collect(), bounds(dofs, &lower, &[])?)
 }

@@ -60,6 +60,11 @@ fn is_everywhere(problem: &ContactProblem) -> bool {
     problem.contact().entries() as f64 > MANY * problem.dofs() as f64
 }
 
+/// Seconds of a factor in the plane; each part has its own.
+fn in_the_plane(problem: &ContactProblem) -> f64 {
+    3.7e-9 * problem.parts().sums(|_| 1.0).into_iter().map(|dofs| dofs.powf(1.5)).sum::<f64>()
+}
+
 /// Returns `true` if one of the rigid-body modes costs no energy.
 fn has_free_mode(problem: &ContactProblem) -> bool {
     let stiffness = problem.stiffness();
@@ -118,7 +123,7 @@ impl Smooth {
     fn cycles(self) -> f64 {
         match self {
             Smooth::Given => 25.0,
-            Smooth::Constants => 12.0,
+            Smooth::Constants => 10.0,
             Smooth::Uneven | Smooth::Unknown => 40.0,
         }
     }
@@ -144,8 +149,8 @@ pub struct Estimate {
     pub hierarchy_seconds: f64,
     /// Seconds of what serves all gaps on the direct path: the first factorisation, with its order.
     pub(super) shared_seconds: f64,
-    /// Whether the contact boundary is most of the body.
-    pub(super) is_everywhere: bool,
+    /// Whether a few cycles of multigrid, which find a set near the last one, cost less than the sets on the way there.
+    pub(super) starts_near: bool,
     /// What a hierarchy knows.
     pub(super) smooth: Smooth,
     /// Cycles that the seconds of multigrid stand for.
@@ -165,7 +170,8 @@ impl Estimate {
         let multigrid_seconds = hierarchy_seconds + cycles * seconds::cycle(dofs, entries);
         let direct = Direct::of(problem, smooth);
         // Whether K is singular is looked at where it matters.
-        let matters = direct.seconds < multigrid_seconds && SINGULAR * direct.seconds > multigrid_seconds;
+        let times_multigrid = direct.seconds / multigrid_seconds;
+        let matters = times_multigrid < SINGULAR && times_multigrid * SINGULAR > 1.0;
         let times = if matters && has_free_mode(problem) { SINGULAR } else { 1.0 };
         Estimate {
             direct_bytes: bytes::START
@@ -177,7 +183,7 @@ impl Estimate {
             multigrid_seconds,
             hierarchy_seconds,
             shared_seconds: times * direct.shared_seconds,
-            is_everywhere: is_everywhere(problem),
+            starts_near: direct.starts_near,
             smooth,
             cycles,
         }
@@ -189,6 +195,7 @@ struct Direct {
     factor_entries: f64,
     seconds: f64,
     shared_seconds: f64,
+    starts_near: bool,
 }
 
 impl Direct {
@@ -198,20 +205,23 @@ impl Direct {
         let (factor_entries, of_body) = match problem.near_null().map(|near_null| near_null.count()) {
             Some(1) => (ALONG_A_LINE * dofs, factor_seconds(0.0, (ALONG_A_LINE * dofs) as usize)[0]),
             Some(MODES_IN_SPACE..) => (23.0 * dofs.powf(4.0 / 3.0), 6.5e-10 * dofs.powi(2)),
-            _ => (6.0 * dofs * dofs.max(2.0).log2(), 3.7e-9 * dofs.powf(1.5)),
+            _ => (6.0 * dofs * dofs.max(2.0).log2(), in_the_plane(problem)),
         };
         let boundary = Condensation::contact_dofs(problem.contact()).len();
         let dense = DENSE_MATRICES * (boundary as f64).powi(2);
+        let mut starts_near = false;
         let (factor, sets) = if is_everywhere(problem) {
             let near = seconds::hierarchy(dofs, entries) + NEAR_CYCLES * seconds::cycle(dofs, entries) + of_body;
-            (of_body, if smooth.starts_sets() { near } else { SETS[0] * of_body })
+            let from_nothing = SETS[0] * of_body;
+            starts_near = smooth.starts_sets() && near < from_nothing;
+            (of_body, if starts_near { near } else { from_nothing })
         } else {
             let factor = of_body + seconds::last_block(boundary);
             let is_condensed = dense <= FEW_VALUES.max(factor_entries);
             (factor, if is_condensed { DENSE_STEPS * seconds::dense(boundary) } else { SETS[1] * factor })
         };
         let shared_seconds = seconds::ordering(problem) + factor;
-        Direct { factor_entries, seconds: shared_seconds + sets, shared_seconds }
+        Direct { factor_entries, seconds: shared_seconds + sets, shared_seconds, starts_near }
     }
 }
 
