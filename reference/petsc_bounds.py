@@ -1,11 +1,12 @@
 """Seconds of PETSc on a problem with bounds: `python3 reference/petsc_bounds.py DIRECTORY`.
 
-The directory holds K.mtx, f.mtx, B.mtx and g.mtx, each row of B with one entry. Prints a line for each solver that solves
-it: the name, seconds with all set-up, iterations and the number of dofs at a bound; `linear` solves K u = f without bounds.
+The directory holds K.mtx, f.mtx, B.mtx and g.mtx, each row of B with one entry. Prints a line for each solver that
+solves it: the name, seconds with all set-up, iterations and the number of dofs at a bound; `linear` solves K u = f
+without bounds.
 Exits with 2 if there is no petsc4py (Debian: python3-petsc4py), with 1 for rows that are no bounds.
 
-TAO's TRON runs as in PETSc's own obstacle problem (`jbearing2`): conjugate gradients with an incomplete Cholesky factor. All solvers
-end at 1e-9 of the first residual.
+TAO's TRON runs as in PETSc's own obstacle problem (`jbearing2`): conjugate gradients with an incomplete Cholesky
+factor. All solvers end at 1e-9 of the first residual.
 """
 
 import signal
@@ -24,7 +25,7 @@ except ImportError:
 TOLERANCE = 1e-9
 
 MOST_SECONDS = 60
-"""Of one solver. TAO's GPCG, which searched a line for ever on a membrane of 65,025 dofs, is left out."""
+"""Of one solver. TAO's GPCG is left out: its line search did not end on a membrane of 65,025 dofs."""
 
 
 def numbers(file: Path) -> tuple[list[int], np.ndarray]:

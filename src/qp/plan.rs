@@ -2,13 +2,14 @@
 //!
 //! What [`Method::Auto`] does, in this order:
 //!
-//! 1. **Factor or multigrid** (`Estimate::choose`; for many gaps [`method_for`]): multigrid where a factorisation would take [`CLEARLY`] times as long, or
-//!    does not fit into the memory; else the direct path. Where that turns out to be too large or too slow, multigrid;
-//!    where multigrid falls short, or takes as long as a factor would, the direct path if it fits.
-//! 2. **The layout of the factor** ([`Layout::within`]): condensed onto the contact dofs where that pays; else all dofs with the
+//! 1. **Factor or multigrid** (`Estimate::choose`; for many gaps [`method_for`]): multigrid if the direct path is estimated to take
+//!    [`CLEARLY`] times as long, or does not fit into the memory; else the direct path. If that turns out to be too large or
+//!    too slow, multigrid; if multigrid falls short, or takes as long as a factor would, the direct path if it fits.
+//! 2. **The layout of the factor** ([`Layout::within`]): condensed onto the contact dofs if that pays; else all dofs with the
 //!    contact boundary last, which makes bounds and proofs cheap; else all dofs. The first that fits into memory and time.
 //! 3. **The way on that layout** ([`Way::chosen`]): method and precision, by rules that were fitted to measured times.
-//! 4. **What follows an answer that falls short** ([`safer`]): a shortcut is left for the active set in double precision, a
+//! 4. **The first contact set** ([`starts_by_multigrid`]): from a few cycles of multigrid if contact is everywhere, else none.
+//! 5. **What follows an answer that falls short** ([`safer`]): a shortcut is left for the active set in double precision, a
 //!    condensed problem for all dofs.
 
 use std::sync::LazyLock;
