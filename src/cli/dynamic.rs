@@ -11,7 +11,6 @@ use super::settings::settings;
 use crate::error::Error;
 use crate::motion::Integrator;
 use crate::output::{MotionFolder, MotionReport, compact_json};
-use crate::qp::Method;
 use crate::scene::{Dynamics, Model, Scene};
 use crate::study::{MotionSummary, RunSeconds};
 use crate::watch::Watch;
@@ -28,10 +27,7 @@ pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outco
     let assemble = clock.elapsed().as_secs_f64();
 
     let clock = Instant::now();
-    let mut settings = settings(options.method, &options.common, watch);
-    if settings.method == Method::Auto {
-        settings.method = Method::ActiveSet;
-    }
+    let settings = settings(options.method, &options.common, watch).exactly();
     let explained = |error| model.explain(error);
     let integrator =
         Integrator::new(dynamics.problem.clone(), dynamics.scheme, dynamics.step, &settings).map_err(explained)?;

@@ -42,7 +42,7 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
     settings.prove = !options.no_proof;
     match options.accuracy {
         Some(Accuracy::Within(accuracy)) => settings.accuracy = Some(accuracy),
-        Some(Accuracy::Exact) if settings.method == Method::Auto => settings.method = Method::ActiveSet,
+        Some(Accuracy::Exact) if settings.method == Method::Auto => settings = settings.exactly(),
         Some(Accuracy::Exact) => {
             let method = settings.method.name();
             warn(&format!(

@@ -51,11 +51,7 @@ impl Integrator {
             let allowed = "positive: dofs without mass are for the midpoint rule";
             return Err(Error::Setting { name: "mass of a dof", value: 0.0, allowed });
         }
-        // What is not asked for in a step: the interior point has no warm start.
-        let mut settings = settings.started()?;
-        if settings.method == Method::Auto {
-            settings.method = Method::ActiveSet;
-        }
+        let mut settings = settings.started()?.exactly();
         if matches!(settings.method, Method::Penalty(_)) {
             // Penalty answers are never exact, so no tolerance is enforced.
             settings.tolerance = f64::MAX;

@@ -11,6 +11,9 @@
 //! 4. **The first contact set** ([`starts_by_multigrid`]): from a few cycles of multigrid if contact is everywhere, else none.
 //! 5. **What follows an answer that falls short** ([`safer`]): a shortcut is left for the active set in double precision, a
 //!    condensed problem for all dofs.
+//!
+//! Within a method two fallbacks are fixed, and decide nothing by cost: sets that do not settle go on from a penalty ladder, then
+//! by the dual active-set method (`run`); an answer with a factor that falls short is corrected and repaired (`engine/answer`).
 
 use std::sync::LazyLock;
 

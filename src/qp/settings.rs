@@ -230,6 +230,13 @@ impl Settings {
         Settings { watch: watch.clone(), ..self }
     }
 
+    /// The same with the active set if the method is left to the program: answers are those of a settled linear solve, and each
+    /// step of a motion starts from the set before.
+    pub fn exactly(self) -> Self {
+        let method = if self.method == Method::Auto { Method::ActiveSet } else { self.method };
+        Settings { method, ..self }
+    }
+
     /// The same with the time counted from now, as the deadline of the watch.
     ///
     /// # Errors

@@ -2,11 +2,14 @@
 //! `cargo run --release --example kinds [-- --only NAME,NAME] [--methods auto,mprgp] [--seconds N] [--peers]`; with `--unseen` on
 //! kinds that nothing was fitted to, with `--scenes FOLDER` on the scenes of a folder, such as those of `reference/parts.py`.
 //!
+//! `--plot FOLDER` draws the seconds over the unknowns of the membranes, `membrane.svg` and `membrane.png`.
+//!
 //! A line of `ratios` follows each kind: the time of `auto` over that of our fastest method, and, with `--peers` and petsc4py, over
 //! that of PETSc's fastest and of one linear solve there.
 
 mod bodies;
 mod floors;
+mod growth;
 mod peers;
 mod problems;
 mod unseen;
@@ -15,8 +18,10 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
+use growth::Times;
 use peers::{Interpreter, Peer};
 use problems::{KINDS, Kind};
+use signorini::output::write_picture;
 use signorini::{ContactProblem, ContactSet, Error, Method, Scene, Settings, Solution, solve};
 use unseen::UNSEEN;
 
@@ -45,13 +50,27 @@ fn main() -> ExitCode {
         "{:16} {:10} {:>8} {:>8}  {:22} {:>9} {:>9} {:>9} {:>7} {:>7} {:>9}",
         "kind", "method", "unknowns", "rows", "by", "s", "factor s", "proof s", "its", "closed", "undecided"
     );
+    let mut times = Vec::new();
     for task in tasks.iter().filter(|task| only.is_empty() || only.split(',').any(|name| name == task.name)) {
-        if let Err(message) = measure(task, &names, most, interpreter.as_ref()) {
-            eprintln!("{}: {message}", task.name);
-            return ExitCode::FAILURE;
+        match measure(task, &names, most, interpreter.as_ref()) {
+            Ok(found) => times.push(found),
+            Err(message) => {
+                eprintln!("{}: {message}", task.name);
+                return ExitCode::FAILURE;
+            }
         }
     }
-    ExitCode::SUCCESS
+    let folder = option("--plot", "");
+    match folder.as_str() {
+        "" => ExitCode::SUCCESS,
+        folder => match write_picture(Path::new(folder), "membrane", &growth::plot("membrane", &times)) {
+            Ok(_) => ExitCode::SUCCESS,
+            Err(error) => {
+                eprintln!("{error}");
+                ExitCode::FAILURE
+            }
+        },
+    }
 }
 
 /// A problem that is made when its turn comes.
@@ -80,7 +99,7 @@ fn scenes(folder: &Path) -> std::io::Result<Vec<Task>> {
 }
 
 /// Solves a problem by each of the methods `names`, without and with the proof, and prints what was found.
-fn measure(task: &Task, names: &str, most: f64, interpreter: Option<&Interpreter>) -> Result<(), String> {
+fn measure(task: &Task, names: &str, most: f64, interpreter: Option<&Interpreter>) -> Result<Times, String> {
     let problem = (task.make)().map_err(|error| error.to_string())?;
     let mut reference: Option<ContactSet> = None;
     let mut certified: Vec<(Method, f64)> = Vec::new();
@@ -111,8 +130,12 @@ fn measure(task: &Task, names: &str, most: f64, interpreter: Option<&Interpreter
         }
     }
     let found = interpreter.map(|interpreter| peers::peers(interpreter, &problem)).transpose();
-    print_ratios(&task.name, &certified, &found.map_err(|error| error.to_string())?.unwrap_or_default());
-    Ok(())
+    let found = found.map_err(|error| error.to_string())?.unwrap_or_default();
+    print_ratios(&task.name, &certified, &found);
+    let of_methods = certified.iter().map(|(method, seconds)| (method.name().to_string(), *seconds));
+    let of_peers = found.iter().map(|peer| (format!("PETSc {}", peer.name), peer.seconds));
+    let of_solvers = of_methods.chain(of_peers).collect();
+    Ok(Times { kind: task.name.clone(), unknowns: problem.dofs(), of_solvers })
 }
 
 /// The seconds of PETSc, and the time of `auto`, certified and proven, over that of others.
