@@ -9,7 +9,7 @@ use super::prepared::Prepared;
 use crate::error::Error;
 use crate::qp::linear::ldexp;
 use crate::qp::method::parametric::{Compliance, Event, Piece};
-use crate::qp::settings::{Method, Settings};
+use crate::qp::settings::Method;
 use crate::solution::{ContactSet, Solution};
 
 /// The answers for all gaps `(1 - t) from + t to`, t from 0 to 1, as polylines.
@@ -133,8 +133,7 @@ impl Prepared {
             Some(engine) => Path::walked(self, engine, &self.case(from, settings), to),
             // A path takes a factor.
             None if settings.method == Method::Auto => {
-                let with_factor = Settings { method: Method::ActiveSet, ..self.settings.clone() };
-                self.with_settings(&with_factor)?.path(from, to)
+                self.with_settings(&self.settings.clone().exactly())?.path(from, to)
             }
             None => Err(Error::NotCondensed { step: "the exact path" }),
         }

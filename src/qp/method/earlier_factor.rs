@@ -21,7 +21,7 @@ pub const TRIAL: usize = 4;
 /// Energy of what is left, over that of the displacement, at which the residual is computed anew.
 const ENOUGH: f64 = 1e-28;
 
-/// The same, at which a balance is as good as that of a factor of its own.
+/// The same of each part, at which a balance is as good as that of a factor of its own.
 const ACCEPTED: f64 = 1e-24;
 
 /// A residual that is computed anew and keeps this share of the energy before is rounding.
@@ -100,7 +100,7 @@ impl EarlierFactor {
             let direction = task.preconditioned(&residual);
             let left = dot(&residual, &direction);
             if left <= ENOUGH * energy || left > NO_GAIN * last {
-                break if left <= ACCEPTED * energy { force } else { return None };
+                break if task.is_balanced(&u, &residual, &direction) { force } else { return None };
             }
             last = left;
             task.descend(&mut u, residual, direction, ENOUGH * energy, &mut steps)?;
@@ -127,6 +127,14 @@ impl Task<'_> {
     /// f - K u, on all dofs.
     fn force(&self, u: &[f64]) -> Vec<f64> {
         self.problem.stiffness().mul(u).iter().zip(self.problem.load()).map(|(elastic, load)| load - elastic).collect()
+    }
+
+    /// Returns `true` if next to no energy is left in any part: that of a soft part does not show beside that of a stiff one.
+    fn is_balanced(&self, u: &[f64], residual: &[f64], direction: &[f64]) -> bool {
+        let (parts, elastic) = (self.problem.parts(), self.problem.stiffness().mul(u));
+        let left = parts.sums(|dof| residual[dof] * direction[dof]);
+        let energy = parts.sums(|dof| u[dof] * elastic[dof]);
+        left.iter().zip(&energy).all(|(left, energy)| *left <= ACCEPTED * energy)
     }
 
     fn on_free(&self, force: &[f64]) -> Vec<f64> {
@@ -230,6 +238,39 @@ mod tests {
                 // 1e-11: the energy to 1e-12, and the condition number of the lattice, 60.
                 assert!(largest(&off) < 1e-11 * largest(exact), "{changes}: {:e}", largest(&off));
             }
+        }
+    }
+
+    /// The lattice twice, the second one softer by 2^-60, which is exact.
+    #[test]
+    fn a_soft_part_beside_a_stiff_one_is_balanced_or_left_to_a_factor() {
+        let one = lattice();
+        let (dofs, soft) = (one.dofs(), 2.0_f64.powi(-60));
+        let twice = |entries: Vec<(usize, usize, f64)>, scale: f64| {
+            let second: Vec<_> = entries.iter().map(|&(i, j, value)| (i + dofs, j + dofs, scale * value)).collect();
+            SparseMatrix::from_triplets(2 * dofs, 2 * dofs, &[entries, second].concat()).unwrap()
+        };
+        let stiffness = SymmetricMatrix::from_lower(twice(one.stiffness().lower().triplets().collect(), soft)).unwrap();
+        let load = one.load().iter().copied().chain(one.load().iter().map(|f| soft * f)).collect();
+        let contact = twice(one.contact().triplets().collect(), 1.0);
+        let both = ContactProblem::new(stiffness, load, contact, one.gap().repeat(2)).unwrap();
+        let closed = |changed: bool| {
+            ContactSet::from_fn(2 * dofs, |row| (row % dofs % 7 == 0) != (changed && row % dofs % 97 == 21))
+        };
+        let bounded = BoundedDofs::of(both.contact()).unwrap();
+        let first = equilibrium(&both, &factor(&both, &closed(false)), &closed(false));
+        let earlier = EarlierFactor::new(factor(&both, &closed(false)), &bounded, &closed(false));
+        if let Some(found) = earlier.balance(&both, (&bounded, &closed(true)), &first.displacement, 25) {
+            let off = (0..dofs).map(|dof| found.displacement[dof] - found.displacement[dofs + dof]).collect::<Vec<_>>();
+            assert!(largest(&off) < 1e-11 * largest(&found.displacement), "{:e}", largest(&off));
+        }
+        // One that is settled in the stiff part alone is none.
+        let stiff_only = ContactSet::from_fn(2 * dofs, |row| row % dofs % 7 == 0 && (row < dofs || row % 2 == 0));
+        let found = earlier.balance(&both, (&bounded, &stiff_only), &first.displacement, 25);
+        let exact = equilibrium(&both, &factor(&both, &stiff_only), &stiff_only);
+        if let Some(found) = found {
+            let off: Vec<f64> = found.displacement.iter().zip(&exact.displacement).map(|(a, b)| a - b).collect();
+            assert!(largest(&off) < 1e-11 * largest(&exact.displacement), "{:e}", largest(&off));
         }
     }
 
