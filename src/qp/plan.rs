@@ -20,7 +20,7 @@ use std::sync::LazyLock;
 use serde::Deserialize;
 
 use super::certificate::EnergyNorm;
-use super::cost::{Estimate, FACTORS, Kept, Smooth, bytes, check_memory, check_time, seconds};
+use super::cost::{Estimate, FACTORS, Kept, Smooth, bytes, check_memory, check_time, seconds, starts_near};
 use super::linear::Analysis;
 use super::method::Start;
 use super::method::interior_point::InteriorPoint;
@@ -112,9 +112,9 @@ pub(super) fn method_for(problem: &ContactProblem, gaps: usize, settings: &Setti
     }
 }
 
-/// Is the direct path started from a few cycles of multigrid? They cost less than the first factor.
+/// Returns `true` if the direct path starts from a few cycles of multigrid.
 pub(super) fn starts_by_multigrid(problem: &ContactProblem, settings: &Settings) -> bool {
-    matches!(settings.method, Method::Auto | Method::ActiveSet) && Estimate::of(problem).starts_near
+    matches!(settings.method, Method::Auto | Method::ActiveSet) && starts_near(problem)
 }
 
 /// The rules that `cargo run --release --example fit_rules` writes.

@@ -44,12 +44,6 @@ const ROW_SUM_ROUNDING: f64 = 1e-9;
 /// Neighbours of a dof of a diffusion whose ties differ by more than this slow multigrid down, if most dofs have such.
 const UNEVEN: f64 = 1e3;
 
-/// Factor values for which a dense matrix on the contact dofs is small: see [`Condensation`](super::transform::Condensation).
-const FEW_VALUES: f64 = 1e6;
-
-/// Dense matrices of a condensation.
-const DENSE_MATRICES: f64 = 5.0;
-
 /// Returns `true` if a row has several entries, so that it is a bound only after turning.
 fn is_turned(contact: &SparseMatrix) -> bool {
     contact.entries() > contact.rows()
@@ -114,7 +108,7 @@ impl Smooth {
         if 2 * uneven > ties.len() { Smooth::Uneven } else { Smooth::Constants }
     }
 
-    /// Do a few cycles tell the direct path where to start?
+    /// Returns `true` if a few cycles tell the direct path where to start.
     pub fn starts_sets(self) -> bool {
         matches!(self, Smooth::Given | Smooth::Constants)
     }
@@ -149,8 +143,6 @@ pub struct Estimate {
     pub hierarchy_seconds: f64,
     /// Seconds of what serves all gaps on the direct path: the first factorisation, with its order.
     pub(super) shared_seconds: f64,
-    /// Whether a few cycles of multigrid, which find a set near the last one, cost less than the sets on the way there.
-    pub(super) starts_near: bool,
     /// What a hierarchy knows.
     pub(super) smooth: Smooth,
     /// Cycles that the seconds of multigrid stand for.
@@ -183,7 +175,6 @@ impl Estimate {
             multigrid_seconds,
             hierarchy_seconds,
             shared_seconds: times * direct.shared_seconds,
-            starts_near: direct.starts_near,
             smooth,
             cycles,
         }
@@ -195,7 +186,13 @@ struct Direct {
     factor_entries: f64,
     seconds: f64,
     shared_seconds: f64,
+    /// Whether a few cycles of multigrid, which find a set near the last one, cost less than the sets on the way there.
     starts_near: bool,
+}
+
+/// Returns `true` if the direct path starts from a few cycles of multigrid, which cost less than the sets on the way there.
+pub(in crate::qp) fn starts_near(problem: &ContactProblem) -> bool {
+    is_everywhere(problem) && Direct::of(problem, Smooth::of(problem)).starts_near
 }
 
 impl Direct {
@@ -208,7 +205,6 @@ impl Direct {
             _ => (6.0 * dofs * dofs.max(2.0).log2(), in_the_plane(problem)),
         };
         let boundary = Condensation::contact_dofs(problem.contact()).len();
-        let dense = DENSE_MATRICES * (boundary as f64).powi(2);
         let mut starts_near = false;
         let (factor, sets) = if is_everywhere(problem) {
             let near = seconds::hierarchy(dofs, entries) + NEAR_CYCLES * seconds::cycle(dofs, entries) + of_body;
@@ -217,7 +213,7 @@ impl Direct {
             (of_body, if starts_near { near } else { from_nothing })
         } else {
             let factor = of_body + seconds::last_block(boundary);
-            let is_condensed = dense <= FEW_VALUES.max(factor_entries);
+            let is_condensed = Condensation::is_small(boundary, factor_entries);
             (factor, if is_condensed { DENSE_STEPS * seconds::dense(boundary) } else { SETS[1] * factor })
         };
         let shared_seconds = seconds::ordering(problem) + factor;

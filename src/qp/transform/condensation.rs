@@ -59,8 +59,13 @@ impl Condensation {
         let interior_entries = (analysis.factor_entries() as f64 - count * count / 2.0).max(0.0);
         let interior_work = interior_entries * interior_entries / (dim - count);
         let quick = count.powi(3) / 3.0 <= DENSE_WORK * interior_work;
-        let small = DENSE_MATRICES * count * count <= FEW_VALUES.max(analysis.factor_entries() as f64);
+        let small = Self::is_small(contact_dofs.len(), analysis.factor_entries() as f64);
         Ok((quick && small).then_some(analysis))
+    }
+
+    /// Returns `true` if the dense matrices on this number of contact dofs take no more than the values of the factor.
+    pub fn is_small(contact_dofs: usize, factor_entries: f64) -> bool {
+        DENSE_MATRICES * (contact_dofs as f64).powi(2) <= FEW_VALUES.max(factor_entries)
     }
 
     /// Condenses with a factorisation of K (`shifted` false) or K + B'B (`shifted` true) that put `contact_dofs` last.
