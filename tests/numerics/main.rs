@@ -29,4 +29,5 @@ mod obstacle_problems;
 mod penalty_ladder;
 mod precision;
 mod proven_set;
+mod separate_parts;
 mod watch;

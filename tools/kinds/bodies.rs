@@ -1,7 +1,9 @@
 //! Elastic bodies in space, as scenes: slabs and blocks of Hex8, even and graded.
 
+use super::problems::noise;
 use serde_json::{Value, json};
-use signorini::{ContactProblem, Error, Scene};
+use signorini::qp::NearNullSpace;
+use signorini::{ContactProblem, Error, Scene, SparseMatrix, SymmetricMatrix};
 
 /// An axis with even cells.
 fn even(length: f64, cells: usize) -> Value {
@@ -45,6 +47,29 @@ pub fn slab(cells: usize, gap: f64) -> Result<ContactProblem, Error> {
 /// A cube of equal cells, clamped below, under a sphere.
 pub fn block(cells: usize) -> Result<ContactProblem, Error> {
     built([even(1.0, cells), even(1.0, cells), even(1.0, cells)], "bottom", 1.0, -0.01)
+}
+
+/// Copies of a cube under a sphere that touch nothing of each other, over four decades of stiffness.
+pub fn blocks_apart(count: usize, cells: usize) -> Result<ContactProblem, Error> {
+    let one = block(cells)?;
+    let (dofs, rows) = (one.dofs(), one.rows());
+    let scales: Vec<f64> = (0..count).map(|body| 10.0_f64.powf(4.0 * noise(body))).collect();
+    let copies = |matrix: &SparseMatrix, rows: usize, scales: &[f64]| -> Vec<(usize, usize, f64)> {
+        let copy = |(body, &scale): (usize, &f64)| {
+            matrix.triplets().map(move |(row, column, value)| (body * rows + row, body * dofs + column, scale * value))
+        };
+        scales.iter().enumerate().flat_map(copy).collect()
+    };
+    let stiffness = copies(one.stiffness().lower(), dofs, &scales);
+    let stiffness = SparseMatrix::from_triplets(count * dofs, count * dofs, &stiffness)?;
+    let contact = copies(one.contact(), rows, &vec![1.0; count]);
+    let contact = SparseMatrix::from_triplets(count * rows, count * dofs, &contact)?;
+    let load = scales.iter().flat_map(|&scale| one.load().iter().map(move |force| scale * force)).collect();
+    let gap = (0..count).flat_map(|body| one.gap().iter().map(move |gap| gap + 0.004 * noise(7 * body))).collect();
+    let modes = one.near_null().map_or(&[][..], |modes| modes.vectors());
+    let modes = modes.iter().map(|mode| mode.repeat(count)).collect();
+    let problem = ContactProblem::new(SymmetricMatrix::from_lower(stiffness)?, load, contact, gap)?;
+    problem.with_near_null(NearNullSpace::new(modes, count * dofs)?)
 }
 
 /// A cube whose cells shrink towards the place of contact, clamped below, under a sphere.

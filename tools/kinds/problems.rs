@@ -1,6 +1,6 @@
 //! Problems of other fields, as matrices: many rows, two-sided bounds, separate parts, rotations.
 
-use super::bodies::{block, graded_block, slab};
+use super::bodies::{block, blocks_apart, graded_block, slab};
 use super::floors::{bounds, membrane, plate, problem};
 use signorini::{ContactProblem, Error};
 
@@ -12,7 +12,7 @@ pub struct Kind {
 }
 
 /// All kinds, small ones first within a kind.
-pub const KINDS: [Kind; 18] = [
+pub const KINDS: [Kind; 19] = [
     Kind { name: "membrane 127", make: || membrane(127) },
     Kind { name: "membrane 255", make: || membrane(255) },
     Kind { name: "membrane 511", make: || membrane(511) },
@@ -22,6 +22,7 @@ pub const KINDS: [Kind; 18] = [
     Kind { name: "image graph", make: || image_graph(100) },
     Kind { name: "journal bearing", make: || journal_bearing(198) },
     Kind { name: "separate bodies", make: || separate_bodies(1000) },
+    Kind { name: "blocks apart", make: || blocks_apart(40, 10) },
     Kind { name: "frame", make: || frame(100) },
     Kind { name: "plate", make: || plate(100) },
     Kind { name: "Poisson 40^3", make: || poisson(40) },

@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::qp::linear::Accumulator;
 use crate::qp::linear::multigrid::Multigrid;
 use crate::qp::problem::ContactProblem;
-use crate::solution::Certificate;
+use crate::solution::{Certificate, Solution};
 use crate::watch::Watch;
 
 /// Rounding moves an entry of u or lambda by half a unit in the last place; what a sum of such errors may be is excused
@@ -139,6 +139,46 @@ impl ContactProblem {
         Ok(self.recomputed(Some(Bounding::Cycles(multigrid, watch)), displacement, multiplier))
     }
 
+    /// The certificate of an answer that was put together from the answers of pieces that nothing couples: the conditions
+    /// recomputed, the bounds those of the pieces, with an upper bound on `|u - u*|_K` of each in `errors`.
+    ///
+    /// # Errors
+    /// [`Error::Length`] for vectors that do not fit.
+    pub(crate) fn certify_pieces(
+        &self,
+        pieces: &[Certificate],
+        errors: &[f64],
+        displacement: &[f64],
+        multiplier: &[f64],
+    ) -> Result<Certificate, Error> {
+        let certificate = self.certify_in(None, displacement, multiplier)?;
+        let largest = |of: fn(&Certificate) -> f64| worst(pieces.iter().map(of));
+        let whole = errors.iter().map(|error| error * error).sum::<f64>().sqrt();
+        let energy_error_bound = relative(whole, self.size_of(displacement, multiplier));
+        Ok(Certificate {
+            energy_error_bound,
+            part_error_bound: larger(energy_error_bound, largest(|piece| piece.part_error_bound)),
+            energy_error_excess: largest(|piece| piece.energy_error_excess),
+            bound_is_measured: pieces.iter().any(|piece| piece.bound_is_measured),
+            ..certificate
+        })
+    }
+
+    /// The upper bound on `|u - u*|_K` that an answer has with its certificate.
+    pub(crate) fn error_of(&self, answer: &Solution) -> f64 {
+        let bound = answer.certificate.energy_error_bound;
+        if bound == 0.0 { 0.0 } else { bound * self.size_of(&answer.displacement, &answer.multiplier) }
+    }
+
+    /// What the bound of an answer is relative to.
+    fn size_of(&self, displacement: &[f64], multiplier: &[f64]) -> f64 {
+        let Balance { strain, terms, .. } = self.accurate_balance(displacement, &[multiplier]);
+        let contact = self.contact.mul_transposed(multiplier);
+        let scales = Scales::of(self, self.parts(), &Forces { displacement, multiplier, contact: &contact, strain });
+        let sum = displacement.iter().zip(&terms).map(|(u, terms)| u.abs() * terms).sum();
+        sure_size(&scales, strain, sum)
+    }
+
     fn recomputed(&self, bounding: Option<Bounding>, u: &[f64], lambda: &[f64]) -> Examined {
         let parts = self.parts();
         let contact = self.contact.mul_transposed(lambda);
@@ -266,6 +306,12 @@ impl ContactProblem {
     }
 }
 
+/// The energy norm that is sure: a body that moves far and does not bend has no energy but rounding of `sum`, that of
+/// `|u_i| (|K| |u|)_i`.
+fn sure_size(scales: &Scales, strain: f64, sum: f64) -> f64 {
+    scales.size_of_whole((strain - OF_ENERGY * sum).max(0.0))
+}
+
 impl Certificate {
     /// Takes in a bound on the error: of the whole and of each part, relative to its own energy norm. An error that rounding
     /// explains, with `rounding` the sum of `|u_i| (|K| |u|)_i` of each part, is no excess.
@@ -273,9 +319,8 @@ impl Certificate {
         let explained = |sum: f64| ENTRY_ROUNDING * sum.sqrt();
         let unexplained =
             |error: f64, size: f64, sum: f64| if error <= explained(sum) { 0.0 } else { relative(error, size) };
-        // A body that moves far and does not bend has no energy but rounding of this sum; a bound is relative to what is sure of it.
         let sum = rounding.iter().sum::<f64>();
-        let whole = scales.size_of_whole((strain - OF_ENERGY * sum).max(0.0));
+        let whole = sure_size(scales, strain, sum);
         let of_whole = bound.whole + LEAST * sum.sqrt();
         self.energy_error_bound = relative(of_whole, whole);
         (self.part_error_bound, self.energy_error_excess) =

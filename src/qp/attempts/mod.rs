@@ -1,11 +1,13 @@
 //! One way after another until an answer is certified: which are tried, and what is told of those that were.
 
+mod pieces;
+
 use std::time::Instant;
 
 use super::cost::Estimate;
 use super::engine::Prepared;
-use super::judged::{out_of_time, with_solution};
-use super::plan::{Choice, Tried, safer, starts_by_multigrid};
+use super::judged::{judged, out_of_time, with_solution};
+use super::plan::{Choice, Tried, pieces_of, safer, starts_by_multigrid};
 use super::problem::ContactProblem;
 use super::settings::{Method, Settings};
 use crate::error::Error;
@@ -18,6 +20,31 @@ use crate::solution::{Attempt, Seconds, Solution};
 /// As [`solve`](super::solve()); a claim about the problem is not rechecked.
 pub(super) fn solved(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
     let settings = &settings.started()?;
+    let Some(pieces) = pieces_of(problem, settings) else { return in_one_piece(problem, settings) };
+    let clock = Instant::now();
+    // A motion that nothing stops is rechecked like any other; what else a piece ends with is told in terms of the whole.
+    let fell_short = match pieces::solved(problem, &pieces, settings, in_one_piece) {
+        Ok(solution) => match judged(solution, settings.goal()) {
+            Err(error) if !settings.watch.is_over() => error,
+            decided => return decided,
+        },
+        Err(error @ (Error::Unbounded { .. } | Error::UnderHeld { .. } | Error::Interrupted)) => return Err(error),
+        Err(error) => error,
+    };
+    let attempt = Attempt {
+        method: format!("{} pieces", pieces.count()),
+        seconds: clock.elapsed().as_secs_f64(),
+        reason: ending(&fell_short),
+    };
+    with_solution(in_one_piece(problem, settings), |mut solution| {
+        solution.seconds.solve = clock.elapsed().as_secs_f64();
+        solution.attempts.insert(0, attempt);
+        solution
+    })
+}
+
+/// The same, of all parts together.
+fn in_one_piece(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
     let mut attempts = Attempts { clock: Instant::now(), made: Vec::new(), factor_seconds: 0.0 };
     let found = match settings.method {
         Method::Auto => attempts.choose(problem, settings),

@@ -1,0 +1,96 @@
+//! The answers of the pieces of a problem as one answer.
+
+use std::time::Instant;
+
+use crate::error::Error;
+use crate::qp::cost::bytes;
+use crate::qp::problem::ContactProblem;
+use crate::qp::settings::Settings;
+use crate::qp::transform::Pieces;
+use crate::solution::{Attempt, ContactSet, Iteration, ProvenSet, Seconds, Solution};
+
+/// The answer whose pieces are each found by `solve`, not judged yet.
+///
+/// # Errors
+/// What the first piece without an answer ends with; a motion that nothing stops is one of the whole, all else is in terms of the
+/// piece.
+pub(super) fn solved(
+    problem: &ContactProblem,
+    pieces: &Pieces,
+    settings: &Settings,
+    solve: impl Fn(&ContactProblem, &Settings) -> Result<Solution, Error>,
+) -> Result<Solution, Error> {
+    let clock = Instant::now();
+    // The whole problem stays in memory beside the piece.
+    let entries = 2 * problem.stiffness().lower().entries() - problem.dofs();
+    let of_whole = bytes::of_problem(problem.dofs() as f64, entries as f64);
+    let settings = &Settings { memory: settings.memory.map(|most| most - of_whole), ..settings.clone() };
+    let mut answers = Vec::with_capacity(pieces.count());
+    let mut errors = Vec::with_capacity(pieces.count());
+    for piece in 0..pieces.count() {
+        let own = pieces.problem(problem, piece)?;
+        let in_whole = |direction: Vec<f64>| pieces.join_dofs((0..piece).map(|_| &[][..]).chain([&direction[..]]));
+        let answer = match solve(&own, settings) {
+            Err(Error::NotCertified { solution, .. }) => *solution,
+            Err(Error::Unbounded { motion, direction }) => {
+                return Err(Error::Unbounded { motion, direction: in_whole(direction) });
+            }
+            Err(Error::UnderHeld { motion, direction }) => {
+                return Err(Error::UnderHeld { motion, direction: in_whole(direction) });
+            }
+            ended => ended?,
+        };
+        errors.push(own.error_of(&answer));
+        answers.push(answer);
+    }
+    let displacement = pieces.join_dofs(answers.iter().map(|answer| &answer.displacement[..]));
+    let multiplier = pieces.join_rows(answers.iter().map(|answer| &answer.multiplier[..]));
+    let certificates: Vec<_> = answers.iter().map(|answer| answer.certificate).collect();
+    let certificate = problem.certify_pieces(&certificates, &errors, &displacement, &multiplier)?;
+    let mut names: Vec<&str> = answers.iter().map(|answer| answer.method.as_str()).collect();
+    names.sort_unstable();
+    names.dedup();
+    let sum = |of: fn(&Seconds) -> f64| answers.iter().map(|answer| of(&answer.seconds)).sum();
+    let attempts: Vec<Attempt> = answers.iter().flat_map(|answer| answer.attempts.clone()).collect();
+    Ok(Solution {
+        contact_set: pieces.join_sets(answers.iter().map(|answer| Some(&answer.contact_set))),
+        method: names.join(" + "),
+        iterations: answers.iter().map(|answer| answer.iterations).max().unwrap_or(0),
+        history: history(pieces, &answers),
+        proven: proven(pieces, &answers),
+        refinements: answers.iter().filter_map(|answer| answer.refinements).max(),
+        reason: answers.iter().find_map(|answer| answer.reason.clone()),
+        lost_pivot: answers.iter().filter_map(|answer| answer.lost_pivot).min_by(f64::total_cmp),
+        condensed_dofs: answers.iter().map(|answer| answer.condensed_dofs).sum(),
+        seconds: Seconds {
+            factor: sum(|seconds| seconds.factor),
+            proof: sum(|seconds| seconds.proof),
+            solve: clock.elapsed().as_secs_f64(),
+        },
+        displacement,
+        multiplier,
+        certificate,
+        attempts,
+    })
+}
+
+/// The sets of all pieces side by side, iteration by iteration; a piece that needed fewer stays at its last.
+fn history(pieces: &Pieces, answers: &[Solution]) -> Vec<Iteration> {
+    let most = answers.iter().map(|answer| answer.history.len()).max().unwrap_or(0);
+    let at = |number: usize| {
+        let steps = || answers.iter().map(move |answer| answer.history.get(number).or(answer.history.last()));
+        let penalty = steps().flatten().map(|step| step.penalty).fold(0.0, f64::max);
+        Iteration { contact_set: pieces.join_sets(steps().map(|step| step.map(|step| &step.contact_set))), penalty }
+    };
+    (0..most).map(at).collect()
+}
+
+/// The rows that the pieces prove; `None` if none of them has a proof.
+fn proven(pieces: &Pieces, answers: &[Solution]) -> Option<ProvenSet> {
+    answers.iter().any(|answer| answer.proven.is_some()).then(|| {
+        let of = |set: fn(&ProvenSet) -> &ContactSet| {
+            pieces.join_sets(answers.iter().map(|answer| answer.proven.as_ref().map(set)))
+        };
+        ProvenSet { open: of(|proven| &proven.open), closed: of(|proven| &proven.closed) }
+    })
+}
