@@ -3,10 +3,12 @@
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
-use super::case::Case;
+use super::boundary::BoundarySolution;
+use super::case::{Case, Engine, FactorSize};
 use super::found::Found;
 use super::loading::{Load, Loading};
 use super::reduction::Reduction;
+use super::walk::Walk;
 use crate::error::Error;
 use crate::qp::certificate::EnergyNorm;
 use crate::qp::cost::{check_time, seconds};
@@ -43,34 +45,20 @@ pub(super) struct Factored {
     pub(super) seconds: Seconds,
 }
 
-impl Factored {
-    /// The problem as it came.
-    pub fn problem(&self) -> &ContactProblem {
+impl Engine for Factored {
+    fn problem(&self) -> &ContactProblem {
         &self.problem
     }
 
-    /// Number of unknowns that the methods work on.
-    pub fn condensed_dofs(&self) -> usize {
-        self.reduction.condensation.as_ref().map_or(self.problem.dofs(), |condensed| condensed.stiffness().dim())
+    fn serves(&self, method: Method) -> bool {
+        method != Method::Mprgp
     }
 
-    /// Number of values of the factor of the stiffness; zero where the methods factorise by themselves.
-    pub fn factor_entries(&self) -> usize {
-        self.reduction.condensation.as_ref().map_or(0, Condensation::factor_entries)
+    fn seconds(&self) -> Seconds {
+        self.seconds
     }
 
-    /// Multiplications of the factorisation of the stiffness.
-    pub fn multiplications(&self) -> f64 {
-        self.multiplications
-    }
-
-    /// Do the methods work on the contact dofs alone?
-    pub(super) fn is_condensed(&self) -> bool {
-        self.reduction.condensation.is_some()
-    }
-
-    /// What a solve with `settings` tries here.
-    pub fn tried(&self, settings: &Settings) -> Tried {
+    fn tried(&self, settings: &Settings) -> Tried {
         Tried {
             method: self.resolved(settings).method,
             condensed_dofs: self.is_condensed().then(|| self.condensed_dofs()),
@@ -78,17 +66,53 @@ impl Factored {
         }
     }
 
-    /// What the preparation cost.
-    pub fn seconds(&self) -> Seconds {
-        self.seconds
+    fn solve(&self, case: &Case) -> Result<Solution, Error> {
+        self.best(self.find(case)?, case.settings).map(|best| best.1)
     }
 
-    /// The whole answer, certified.
-    ///
-    /// # Errors
-    /// As [`Prepared::solve`](super::Prepared::solve).
-    pub fn solve(&self, case: &Case) -> Result<Solution, Error> {
-        self.best(self.find(case)?, case.settings).map(|best| best.1)
+    fn boundary(self: Arc<Self>, case: &Case) -> Result<BoundarySolution, Error> {
+        self.boundary_at(case)
+    }
+
+    fn settled(&self, case: &Case) -> Result<Option<Vec<f64>>, Error> {
+        let found = self.find(case)?;
+        Ok(found.outcome.settled.then(|| self.displacement(&found)))
+    }
+
+    fn response(&self, load: &Load) -> Option<Vec<f64>> {
+        let norm = self.reduction.norm()?;
+        let no_gap = vec![0.0; self.reduction.selection.kept().len()];
+        let loading = load.swept(&self.reduction, &no_gap);
+        let moved = match &self.reduction.condensation {
+            Some(condensed) => condensed.free_displacement(&loading.sweep),
+            None => norm.scaled_displacement(&loading.scaled(loading.unit)),
+        };
+        Some(self.expand(&loading, loading.unit, &moved))
+    }
+
+    fn walk(self: Arc<Self>, from: &Case, to: &[f64]) -> Result<Walk, Error> {
+        self.walk_to(from, to)
+    }
+
+    fn factor(&self) -> Option<FactorSize> {
+        Some(FactorSize {
+            unknowns: self.condensed_dofs(),
+            entries: self.reduction.condensation.as_ref().map_or(0, Condensation::factor_entries),
+            multiplications: self.multiplications,
+            is_single: self.is_single(),
+        })
+    }
+}
+
+impl Factored {
+    /// Number of unknowns that the methods work on.
+    pub fn condensed_dofs(&self) -> usize {
+        self.reduction.condensation.as_ref().map_or(self.problem.dofs(), |condensed| condensed.stiffness().dim())
+    }
+
+    /// Do the methods work on the contact dofs alone?
+    pub(super) fn is_condensed(&self) -> bool {
+        self.reduction.condensation.is_some()
     }
 
     pub(super) fn expand_multiplier(&self, multiplier: &[f64], unit: i32) -> Vec<f64> {
@@ -223,18 +247,6 @@ impl Factored {
             .unwrap_or((0, &f64::NAN));
         let allowed = "infinite in the same rows as when the problem was prepared";
         Err(Error::NotFinite { name: "gap vector", at: format!("entry {row}"), value, allowed })
-    }
-
-    /// The displacement that a load causes if no row is closed, in the precision of the factor; `None` if K is not definite.
-    pub fn response(&self, load: &Load) -> Option<Vec<f64>> {
-        let norm = self.reduction.norm()?;
-        let no_gap = vec![0.0; self.reduction.selection.kept().len()];
-        let loading = load.swept(&self.reduction, &no_gap);
-        let moved = match &self.reduction.condensation {
-            Some(condensed) => condensed.free_displacement(&loading.sweep),
-            None => norm.scaled_displacement(&loading.scaled(loading.unit)),
-        };
-        Some(self.expand(&loading, loading.unit, &moved))
     }
 
     /// The problem that the methods work on, and the exponent of its reference displacement.

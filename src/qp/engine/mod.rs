@@ -1,5 +1,5 @@
 //! Engines: a problem prepared once, and solved for many gaps, loads and starts. One has a factor of the stiffness, the other a
-//! multigrid hierarchy; [`Prepared`] is the door to both.
+//! multigrid hierarchy; [`Prepared`] is the door to both, and knows of them only what `case::Engine` says.
 
 mod answer;
 mod boundary;
@@ -9,11 +9,13 @@ mod factored;
 mod found;
 mod loading;
 mod multigrid;
+mod on_boundary;
 mod path;
 mod preparation;
 mod prepared;
 mod reduction;
 mod refinement;
+mod walk;
 
 pub use boundary::BoundarySolution;
 pub use path::Path;

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::case::Case;
+use super::case::{Case, Engine};
 use crate::error::Error;
 use crate::qp::certificate::Examined;
 use crate::qp::cost::{Estimate, Kept, NEAR_CYCLES, check_memory, check_time, seconds};
@@ -10,6 +10,7 @@ use crate::qp::judged::{answer, judged};
 use crate::qp::linear::multigrid::{Multigrid, NearNullSpace};
 use crate::qp::method::mprgp::{Limits, Mprgp};
 use crate::qp::method::{Outcome, Solver, Start};
+use crate::qp::plan::Tried;
 use crate::qp::problem::{ContactProblem, check_gap};
 use crate::qp::settings::{Method, Settings};
 use crate::qp::transform::RowSelection;
@@ -68,28 +69,28 @@ impl Hierarchical {
         Ok(Hierarchical { problem: problem.clone(), multigrid, seconds: clock.elapsed().as_secs_f64() })
     }
 
-    /// The problem as it came.
-    pub fn problem(&self) -> &ContactProblem {
+    /// What was found for `problem`, examined, with the bound that there is time for.
+    fn examine(&self, problem: &ContactProblem, found: &Outcome, watch: &Watch) -> Result<Examined, Error> {
+        watch.step("certificate", 0);
+        problem.examine_by_cycles(&self.multigrid, &watch.finishing(), &found.displacement, &found.multiplier)
+    }
+}
+
+impl Engine for Hierarchical {
+    fn problem(&self) -> &ContactProblem {
         &self.problem
     }
 
-    /// The hierarchy.
-    pub fn multigrid(&self) -> &Multigrid {
-        &self.multigrid
+    fn serves(&self, method: Method) -> bool {
+        matches!(method, Method::Mprgp | Method::Auto)
     }
 
-    /// What the hierarchy cost.
-    pub fn seconds(&self) -> Seconds {
+    fn seconds(&self) -> Seconds {
         Seconds { factor: self.seconds, proof: 0.0, solve: self.seconds }
     }
 
-    /// A contact set near that of the answer; `None` if the method meets something that another one must look at.
-    pub fn near(&self, settings: &Settings) -> Option<Start> {
-        let most_cycles = NEAR_CYCLES as usize;
-        let limits = Limits { tolerance: NEAR, most_cycles, worth: usize::MAX, watch: &settings.watch };
-        let found =
-            Mprgp { problem: &self.problem, multigrid: &self.multigrid, limits }.solve(Start::default()).ok()?;
-        Some(found.contact_set.into())
+    fn tried(&self, _: &Settings) -> Tried {
+        Tried::on_all_dofs(Method::Mprgp)
     }
 
     /// The whole answer, certified.
@@ -101,7 +102,7 @@ impl Hierarchical {
     /// * [`Error::Unbounded`] and [`Error::UnderHeld`] for a motion that nothing stops, where the method meets one,
     /// * [`Error::NotConvex`] for a direction of negative energy,
     /// * [`Error::NotCertified`] with the best answer, where the method stagnates above the tolerance.
-    pub fn solve(&self, case: &Case) -> Result<Solution, Error> {
+    fn solve(&self, case: &Case) -> Result<Solution, Error> {
         let Case { gap, start, settings, .. } = *case;
         // Once the loop ends, its answer is still to be certified.
         let watch = &settings.watch.keeping(seconds::certificate(&self.problem));
@@ -150,9 +151,16 @@ impl Hierarchical {
         judged(solution, goal)
     }
 
-    /// What was found for `problem`, examined, with the bound that there is time for.
-    fn examine(&self, problem: &ContactProblem, found: &Outcome, watch: &Watch) -> Result<Examined, Error> {
-        watch.step("certificate", 0);
-        problem.examine_by_cycles(&self.multigrid, &watch.finishing(), &found.displacement, &found.multiplier)
+    /// A contact set near that of the answer; `None` if the method meets something that another one must look at.
+    fn near(&self, settings: &Settings) -> Option<Start> {
+        let most_cycles = NEAR_CYCLES as usize;
+        let limits = Limits { tolerance: NEAR, most_cycles, worth: usize::MAX, watch: &settings.watch };
+        let found =
+            Mprgp { problem: &self.problem, multigrid: &self.multigrid, limits }.solve(Start::default()).ok()?;
+        Some(found.contact_set.into())
+    }
+
+    fn hierarchy(&self) -> Option<&Multigrid> {
+        Some(&self.multigrid)
     }
 }

@@ -1,14 +1,9 @@
 //! The exact path between two sets of gaps: every gap at which a row touches or releases, and every answer between.
 
-use std::sync::Arc;
-
-use super::case::Case;
-use super::factored::Factored;
-use super::found::Found;
 use super::prepared::Prepared;
+use super::walk::Walk;
 use crate::error::Error;
-use crate::qp::linear::ldexp;
-use crate::qp::method::parametric::{Compliance, Event, Piece};
+use crate::qp::method::parametric::{Event, Piece};
 use crate::qp::settings::Method;
 use crate::solution::{ContactSet, Solution};
 
@@ -33,40 +28,37 @@ use crate::solution::{ContactSet, Solution};
 #[derive(Clone, Debug)]
 pub struct Path {
     prepared: Prepared,
-    engine: Arc<Factored>,
     from: Vec<f64>,
     to: Vec<f64>,
-    unit: i32,
-    pieces: Vec<Piece>,
-    events: Vec<Event>,
+    walk: Walk,
 }
 
 impl Path {
     /// The rows that touch or release on the way, in order.
     pub fn events(&self) -> &[Event] {
-        &self.events
+        &self.walk.events
     }
 
     /// The corners of all polylines: the beginning, every event, the end.
     pub fn corners(&self) -> Vec<f64> {
-        let mut corners: Vec<f64> = self.pieces.iter().map(|piece| piece.from).collect();
-        corners.extend(self.pieces.last().map(|piece| piece.to));
+        let mut corners: Vec<f64> = self.walk.pieces.iter().map(|piece| piece.from).collect();
+        corners.extend(self.walk.pieces.last().map(|piece| piece.to));
         corners
     }
 
     /// The stretches on which the contact set does not change.
     pub(crate) fn pieces(&self) -> &[Piece] {
-        &self.pieces
+        &self.walk.pieces
     }
 
     /// The multipliers at `t` as they are on `piece`: at a corner the pieces on both sides agree but for rounding.
     pub(crate) fn multiplier_on(&self, piece: &Piece, t: f64) -> Vec<f64> {
-        self.engine.expand_multiplier(&piece.multiplier(t), self.unit)
+        self.walk.to_rows.multiplier(&piece.multiplier(t))
     }
 
     /// The closed rows on `piece`.
     pub(crate) fn contact_set_on(&self, piece: &Piece) -> ContactSet {
-        self.engine.expand_set(&piece.contact_set)
+        self.walk.to_rows.contact_set(&piece.contact_set)
     }
 
     /// The gaps at `t`, length m.
@@ -94,30 +86,8 @@ impl Path {
     }
 
     fn piece(&self, t: f64) -> Option<&Piece> {
-        let index = self.pieces.partition_point(|piece| piece.to < t);
-        self.pieces.get(index).or(self.pieces.last())
-    }
-
-    /// The path from the gaps of `from` to the gaps `to`, on the problem `prepared` with this `engine`.
-    fn walked(prepared: &Prepared, engine: &Arc<Factored>, from: &Case, to: &[f64]) -> Result<Self, Error> {
-        let reduction = &engine.reduction;
-        let is_walkable = reduction.is_definite() && !engine.is_single();
-        let Some(condensed) = reduction.condensation.as_ref().filter(|_| is_walkable) else {
-            return Err(Error::NotCondensed { step: "the exact path" });
-        };
-        engine.check_gap(to)?;
-        let (found, _) = engine.on_boundary(engine.find(from)?, from.settings, true)?;
-        let Found { loading, unit, problem, outcome, .. } = &found;
-        let free = condensed.contact().mul(&condensed.free_displacement(&loading.sweep));
-        let at_end = reduction.scaling.gap(&reduction.selection.gap(to), *unit);
-        let constant =
-            free.iter().zip(problem.gap()).map(|(&free, gap)| ldexp(free, loading.unit - unit) - gap).collect();
-        let slope = problem.gap().iter().zip(&at_end).map(|(first, last)| first - last).collect();
-        let compliance = Compliance::new(condensed.compliance(), constant, slope);
-        let (pieces, mut events) = compliance.walk(&outcome.contact_set, &from.settings.watch)?;
-        events.iter_mut().for_each(|event| event.row = reduction.selection.kept()[event.row]);
-        let (prepared, engine) = (prepared.clone(), engine.clone());
-        Ok(Path { prepared, engine, from: from.gap.to_vec(), to: to.to_vec(), unit: *unit, pieces, events })
+        let index = self.walk.pieces.partition_point(|piece| piece.to < t);
+        self.walk.pieces.get(index).or(self.walk.pieces.last())
     }
 }
 
@@ -129,13 +99,11 @@ impl Prepared {
     /// condensed or whose stiffness is not definite by itself.
     pub fn path(&self, from: &[f64], to: &[f64]) -> Result<Path, Error> {
         let settings = &self.settings.started()?;
-        match self.factored() {
-            Some(engine) => Path::walked(self, engine, &self.case(from, settings), to),
-            // A path takes a factor.
-            None if settings.method == Method::Auto => {
-                self.with_settings(&self.settings.clone().exactly())?.path(from, to)
-            }
-            None => Err(Error::NotCondensed { step: "the exact path" }),
+        // A path takes a factor.
+        if self.engine.factor().is_none() && settings.method == Method::Auto {
+            return self.with_settings(&self.settings.clone().exactly())?.path(from, to);
         }
+        let walk = self.engine.clone().walk(&self.case(from, settings), to)?;
+        Ok(Path { prepared: self.clone(), from: from.to_vec(), to: to.to_vec(), walk })
     }
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::boundary::BoundarySolution;
-use super::case::Case;
+use super::case::{Case, Engine};
 use super::factored::Factored;
 use super::loading::Load;
 use super::multigrid::Hierarchical;
@@ -39,7 +39,7 @@ use crate::solution::{Seconds, Solution};
 /// ```
 #[derive(Clone, Debug)]
 pub struct Prepared {
-    engine: Engine,
+    pub(super) engine: Arc<dyn Engine>,
     pub(super) settings: Settings,
     load: Arc<Load>,
     start: Start,
@@ -48,40 +48,16 @@ pub struct Prepared {
 /// Gaps that a problem is prepared for where their number is not known.
 const MANY_GAPS: usize = 10;
 
-/// What was prepared.
-#[derive(Clone, Debug)]
-enum Engine {
-    Factored(Arc<Factored>),
-    Multigrid(Arc<Hierarchical>),
-}
-
-impl Engine {
-    /// MPRGP works on a hierarchy, every other method on a factor.
-    ///
-    /// # Errors
-    /// Those of the engine.
-    fn of(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
-        let settings = &settings.started()?;
-        Ok(match settings.method {
-            Method::Mprgp => Engine::Multigrid(Arc::new(Hierarchical::new(problem, settings)?)),
-            _ => Engine::Factored(Arc::new(Factored::new(problem, settings)?)),
-        })
-    }
-
-    /// Returns `true` if `method` works on what was prepared.
-    fn serves(&self, method: Method) -> bool {
-        match self {
-            Engine::Factored(_) => method != Method::Mprgp,
-            Engine::Multigrid(_) => matches!(method, Method::Mprgp | Method::Auto),
-        }
-    }
-
-    fn problem(&self) -> &ContactProblem {
-        match self {
-            Engine::Factored(engine) => engine.problem(),
-            Engine::Multigrid(engine) => engine.problem(),
-        }
-    }
+/// The engine for the method of `settings`: MPRGP works on a hierarchy, every other method on a factor.
+///
+/// # Errors
+/// Those of the engine.
+fn engine_of(problem: &ContactProblem, settings: &Settings) -> Result<Arc<dyn Engine>, Error> {
+    let settings = &settings.started()?;
+    Ok(match settings.method {
+        Method::Mprgp => Arc::new(Hierarchical::new(problem, settings)?),
+        _ => Arc::new(Factored::new(problem, settings)?),
+    })
 }
 
 impl Prepared {
@@ -113,7 +89,7 @@ impl Prepared {
     /// # Errors
     /// As [`Prepared::new`].
     pub(in crate::qp) fn by_method(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
-        let (engine, load) = (Engine::of(problem, settings)?, Arc::new(Load::new(problem.load().to_vec())));
+        let (engine, load) = (engine_of(problem, settings)?, Arc::new(Load::new(problem.load().to_vec())));
         Ok(Prepared { engine, settings: settings.clone(), load, start: Start::default() })
     }
 
@@ -127,7 +103,7 @@ impl Prepared {
         if self.engine.serves(settings.method) {
             return Ok(Prepared { settings, start, engine: self.engine.clone(), load: self.load.clone() });
         }
-        let engine = Engine::of(self.engine.problem(), &settings)?;
+        let engine = engine_of(self.engine.problem(), &settings)?;
         Ok(Prepared { engine, settings, start, load: Arc::new(Load::new(self.load.force().to_vec())) })
     }
 
@@ -153,10 +129,7 @@ impl Prepared {
     /// first factorisation.
     pub fn solve(&self, gap: &[f64]) -> Result<Solution, Error> {
         let settings = &self.settings.started()?;
-        match &self.engine {
-            Engine::Factored(engine) => engine.solve(&self.case(gap, settings)),
-            Engine::Multigrid(engine) => engine.solve(&self.case(gap, settings)),
-        }
+        self.engine.solve(&self.case(gap, settings))
     }
 
     /// Solves with another load, length n, in N, and the gaps of the problem that was prepared.
@@ -174,19 +147,12 @@ impl Prepared {
     /// As [`Prepared::solve`]; the tolerance is held against the certificate of the condensed problem.
     pub fn boundary(&self, gap: &[f64]) -> Result<BoundarySolution, Error> {
         let settings = &self.settings.started()?;
-        match &self.engine {
-            Engine::Factored(engine) => {
-                let found = engine.find(&self.case(gap, settings))?;
-                let on_boundary = engine.on_boundary(found, settings, true)?;
-                Ok(BoundarySolution::on(engine.clone(), on_boundary, &self.settings))
-            }
-            Engine::Multigrid(engine) => Ok(engine.solve(&self.case(gap, settings))?.into()),
-        }
+        self.engine.clone().boundary(&self.case(gap, settings))
     }
 
     /// What an engine is asked for at these gaps.
     pub(super) fn case<'a>(&'a self, gap: &'a [f64], settings: &'a Settings) -> Case<'a> {
-        Case { load: &self.load, gap, start: &self.start, settings }
+        Case { load: &self.load, gap, start: &self.start, settings, is_bounded: true }
     }
 }
 
@@ -198,12 +164,12 @@ impl Prepared {
 
     /// Number of unknowns that the methods work on.
     pub fn condensed_dofs(&self) -> usize {
-        self.factored().map_or(self.dofs(), |engine| engine.condensed_dofs())
+        self.engine.factor().map_or(self.dofs(), |factor| factor.unknowns)
     }
 
     /// Number of values of the factor of the stiffness; zero if the methods factorise by themselves or not at all.
     pub fn factor_entries(&self) -> usize {
-        self.factored().map_or(0, |engine| engine.factor_entries())
+        self.engine.factor().map_or(0, |factor| factor.entries)
     }
 
     /// Bytes of these values.
@@ -213,50 +179,33 @@ impl Prepared {
 
     /// Multiplications of the factorisation of the stiffness; zero without one.
     pub fn multiplications(&self) -> f64 {
-        self.factored().map_or(0.0, |engine| engine.multiplications())
+        self.engine.factor().map_or(0.0, |factor| factor.multiplications)
     }
 
     /// Returns `true` if the factor is in single precision.
     pub fn is_single(&self) -> bool {
-        self.factored().is_some_and(|engine| engine.is_single())
+        self.engine.factor().is_some_and(|factor| factor.is_single)
     }
 
     /// The multigrid hierarchy; `None` if the stiffness was factorised.
     #[doc(hidden)]
     pub fn hierarchy(&self) -> Option<&Multigrid> {
-        match &self.engine {
-            Engine::Factored(_) => None,
-            Engine::Multigrid(engine) => Some(engine.multigrid()),
-        }
+        self.engine.hierarchy()
     }
 
     /// What the preparation cost.
     pub fn seconds(&self) -> Seconds {
-        match &self.engine {
-            Engine::Factored(engine) => engine.seconds(),
-            Engine::Multigrid(engine) => engine.seconds(),
-        }
+        self.engine.seconds()
     }
 
-    /// A start for another method, from a few cycles of the hierarchy; `None` without one.
+    /// A start for another method, at a small part of the cost of an answer; `None` if the engine finds none.
     pub(in crate::qp) fn near(&self) -> Option<Start> {
-        match &self.engine {
-            Engine::Factored(_) => None,
-            Engine::Multigrid(engine) => engine.near(&self.settings),
-        }
+        self.engine.near(&self.settings)
     }
 
     /// What a solve tries here.
     pub(in crate::qp) fn tried(&self) -> Tried {
-        self.factored().map_or(Tried::on_all_dofs(Method::Mprgp), |engine| engine.tried(&self.settings))
-    }
-
-    /// The engine with a factor, if that was prepared.
-    pub(super) fn factored(&self) -> Option<&Arc<Factored>> {
-        match &self.engine {
-            Engine::Factored(engine) => Some(engine),
-            Engine::Multigrid(_) => None,
-        }
+        self.engine.tried(&self.settings)
     }
 }
 
@@ -268,11 +217,9 @@ impl Prepared {
     /// # Errors
     /// As [`Prepared::boundary`].
     pub(crate) fn step(&self, gap: &[f64]) -> Result<BoundarySolution, Error> {
-        let Engine::Factored(engine) = &self.engine else { return self.boundary(gap) };
         let settings = &self.settings.started()?;
-        let found = engine.find(&self.case(gap, settings))?;
-        let on_boundary = engine.on_boundary(found, settings, settings.accuracy.is_some())?;
-        Ok(BoundarySolution::on(engine.clone(), on_boundary, &self.settings))
+        let case = Case { is_bounded: settings.accuracy.is_some(), ..self.case(gap, settings) };
+        self.engine.clone().boundary(&case)
     }
 
     /// The displacement at these gaps without a certificate; `None` if the method did not settle on a set, or only a certified
@@ -281,14 +228,12 @@ impl Prepared {
     /// # Errors
     /// As [`Prepared::boundary`].
     pub(crate) fn settled(&self, gap: &[f64]) -> Result<Option<Vec<f64>>, Error> {
-        let Engine::Factored(engine) = &self.engine else { return Ok(None) };
         let settings = &self.settings.started()?;
-        let found = engine.find(&self.case(gap, settings))?;
-        Ok(found.outcome.settled.then(|| engine.displacement(&found)))
+        self.engine.settled(&self.case(gap, settings))
     }
 
     /// The displacement that the load causes if no row is closed, in the precision of the factor; `None` without one.
     pub(crate) fn response(&self) -> Option<Vec<f64>> {
-        self.factored()?.response(&self.load)
+        self.engine.response(&self.load)
     }
 }
