@@ -95,18 +95,18 @@ pub enum Error {
         overlap: f64,
     },
     /// The load moves the body away without end.
-    #[error("unbounded: the load drives a motion that neither supports nor obstacle stop: {motion}")]
+    #[error("unbounded: the load drives a motion that neither supports nor obstacle stop: {mode}")]
     Unbounded {
-        /// The motion in words.
-        motion: String,
+        /// The mode in words.
+        mode: String,
         /// The escape direction d, one entry per dof: `K d = 0`, `B d <= 0`, `f'd > 0`.
         direction: Vec<f64>,
     },
-    /// A motion that nothing resists and no load drives: the answer is not unique.
-    #[error("a rigid-body motion is held by neither supports nor obstacle: {motion}")]
+    /// A mode that nothing resists and no load drives: the answer is not unique.
+    #[error("a rigid-body motion is held by neither supports nor obstacle: {mode}")]
     UnderHeld {
-        /// The motion in words.
-        motion: String,
+        /// The mode in words.
+        mode: String,
         /// The free direction, one entry per dof.
         direction: Vec<f64>,
     },

@@ -58,8 +58,8 @@ use crate::solution::{ContactSet, Solution};
 /// # Errors
 /// * [`Error::Setting`] for a setting outside its range,
 /// * [`Error::Infeasible`] for contact rows that contradict each other,
-/// * [`Error::Unbounded`] for a load that drives a motion which nothing stops,
-/// * [`Error::UnderHeld`] for a motion that nothing resists: the answer would not be unique,
+/// * [`Error::Unbounded`] for a load that drives a rigid-body mode which nothing stops,
+/// * [`Error::UnderHeld`] for a rigid-body mode that nothing resists: the answer would not be unique,
 /// * [`Error::NotConvex`] for a stiffness with a negative eigenvalue,
 /// * [`Error::NotCertified`] with the best answer, where it does not meet the tolerance,
 /// * [`Error::NoRoom`] where no way within `settings.memory` leads to a certified answer, [`Error::TooLarge`] where the one

@@ -15,13 +15,13 @@ impl Model {
     /// coordinates and obstacles.
     pub fn explain(&self, error: Error) -> Error {
         match error {
-            Error::Unbounded { motion, direction } => {
-                let motion = self.name_of(&direction).unwrap_or(motion);
-                Error::Unbounded { motion, direction }
+            Error::Unbounded { mode, direction } => {
+                let mode = self.name_of(&direction).unwrap_or(mode);
+                Error::Unbounded { mode, direction }
             }
-            Error::UnderHeld { motion, direction } => {
+            Error::UnderHeld { mode, direction } => {
                 let named = self.name_of(&direction).map(|name| format!("{name}: {}", advice(self.rows())));
-                Error::UnderHeld { motion: named.unwrap_or(motion), direction }
+                Error::UnderHeld { mode: named.unwrap_or(mode), direction }
             }
             Error::Infeasible { reason, rows, weights, overlap } => {
                 let length = &self.units().length;
@@ -36,8 +36,8 @@ impl Model {
 
     fn name_of(&self, direction: &[f64]) -> Option<String> {
         let parts = self.parts();
-        let motion = parts.dofs.expand_motion(direction).ok()?;
-        RigidBodyModes::of(&parts.body).name_of(parts.body.mesh().nodes(), &motion)
+        let mode = parts.dofs.expand_motion(direction).ok()?;
+        RigidBodyModes::of(&parts.body).name_of(parts.body.mesh().nodes(), &mode)
     }
 
     fn describe_rows(&self, rows: &[usize]) -> Option<String> {

@@ -59,7 +59,7 @@ impl Model {
             other => other,
         })?;
         let load = free_load(&parts.body, &parts.dofs, &parts.load)?;
-        let near_null = NearNullSpace::of_motions(rigid_body_modes(&parts.body, &parts.dofs)).map(Arc::new);
+        let near_null = NearNullSpace::of_modes(rigid_body_modes(&parts.body, &parts.dofs)).map(Arc::new);
         Self::with_rows(Arc::new(parts), gap, built, (stiffness, load, near_null))
     }
 

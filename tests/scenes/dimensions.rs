@@ -190,7 +190,7 @@ fn free_motions_are_named_in_every_dimension() {
         (pinned, "rotation about z through (0, 0, 0.3): add a support"),
     ] {
         match refused(&scene) {
-            Error::UnderHeld { motion: found, direction } => {
+            Error::UnderHeld { mode: found, direction } => {
                 assert!(found.starts_with(motion), "{found}");
                 assert!(largest(&direction) > 0.1);
             }

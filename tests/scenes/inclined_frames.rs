@@ -112,7 +112,7 @@ fn supports_that_contradict_each_other_are_refused_by_name_and_place() {
 
 fn under_held(scene: &Value) -> (String, Vec<f64>) {
     match Scene::from_json(&scene.to_string(), "scene").unwrap().build() {
-        Err(Error::UnderHeld { motion, direction }) => (motion, direction),
+        Err(Error::UnderHeld { mode, direction }) => (mode, direction),
         other => panic!("{other:?}"),
     }
 }
@@ -127,8 +127,8 @@ fn rigid_body_modes_along_rollers_are_found_and_named() {
         scene
     };
     // Two parallel rollers: the body slides along both; unit length at each of its 20 nodes.
-    let (motion, direction) = under_held(&rollers(&[([0.0, 0.0], [3.0, 4.0]), ([1.0, 0.0], [-3.0, -4.0])]));
-    assert!(motion.contains("translation along") && motion.contains("0.800") && motion.contains("0.600"), "{motion}");
+    let (mode, direction) = under_held(&rollers(&[([0.0, 0.0], [3.0, 4.0]), ([1.0, 0.0], [-3.0, -4.0])]));
+    assert!(mode.contains("translation along") && mode.contains("0.800") && mode.contains("0.600"), "{mode}");
     assert!((dot(&direction, &direction) - 20.0).abs() < 1e-9, "{direction:?}");
     // Two others: the body turns about the point where the normals meet, (0.5, 0.5); so do three through one point.
     let cross = [([0.0, 0.0], [1.0, 1.0]), ([1.0, 0.0], [-1.0, 1.0]), ([0.5, 0.0], [0.0, 1.0])];
@@ -155,8 +155,8 @@ fn an_escape_along_rollers_is_named() {
     scene["loads"] = json!([{"body-force": [-1, 0]}]);
     let model = built(&scene);
     let error = model.explain(solve_qp(model.problem()).unwrap_err());
-    let Error::Unbounded { motion, .. } = &error else { panic!("{error}") };
-    assert_eq!(motion, "translation along (-0.800, 0.600)");
+    let Error::Unbounded { mode, .. } = &error else { panic!("{error}") };
+    assert_eq!(mode, "translation along (-0.800, 0.600)");
     scene["loads"] = json!([{"body-force": [1, 0]}]);
     check(&scene);
 }

@@ -207,7 +207,7 @@ fn bodies_that_are_not_held_are_caught_and_named_and_no_other_is() {
         let built = Scene::from_json(&text, "scene").unwrap().build();
         let named = format!("{model} {} floor {on_floor}", json!(supports));
         match (built, motion) {
-            (Err(Error::UnderHeld { motion: found, direction }), Some(motion)) => {
+            (Err(Error::UnderHeld { mode: found, direction }), Some(motion)) => {
                 caught += 1;
                 // A floor under supported nodes alone has no rows, and holds nothing.
                 let guided = on_floor && found.contains("a frictionless obstacle does not hold it, add a guide");

@@ -187,7 +187,7 @@ fn lengths_that_do_not_fit_are_refused() {
 
 fn under_held(scene: &Value) -> (String, Vec<f64>) {
     match Scene::from_json(&scene.to_string(), "scene").unwrap().build() {
-        Err(Error::UnderHeld { motion, direction }) => (motion, direction),
+        Err(Error::UnderHeld { mode, direction }) => (mode, direction),
         Err(other) => panic!("{other}"),
         Ok(_) => panic!("the body is said to be held"),
     }
@@ -258,9 +258,8 @@ fn unbounded_motions_are_explained_in_words() {
         let nodal: Vec<f64> = nodes.iter().flat_map(|&[x, y, _]| field([x, y])).collect();
         model.dofs().restrict(&nodal).unwrap()
     };
-    let explained = |direction: Vec<f64>| match model.explain(Error::Unbounded { motion: "column 3".into(), direction })
-    {
-        Error::Unbounded { motion, .. } => motion,
+    let explained = |direction: Vec<f64>| match model.explain(Error::Unbounded { mode: "column 3".into(), direction }) {
+        Error::Unbounded { mode, .. } => mode,
         other => other.to_string(),
     };
     assert_eq!(explained(restricted(&|_| [0.0, -3.0])), "translation along -y");
@@ -268,19 +267,19 @@ fn unbounded_motions_are_explained_in_words() {
     assert_eq!(explained(vec![1.0]), "column 3", "a direction of the wrong length");
     assert_eq!(explained(vec![f64::NAN; model.problem().dofs()]), "column 3");
     let free_of_supports = |field: &dyn Fn([f64; 2]) -> [f64; 2]| {
-        // Rows at the supports do not count: a scene held at one point far from the motion's pole.
+        // Rows at the supports do not count: a scene held at one point far from the mode's pole.
         let mut scene = plane_above(0.0);
         scene["supports"] = json!([{"on": {"point": [0.25, 0]}, "x": 0, "y": 0}]);
         let model = built(&scene);
         let nodal: Vec<f64> = model.mesh().nodes().iter().flat_map(|&[x, y, _]| field([x, y])).collect();
         let direction = model.dofs().restrict(&nodal).unwrap();
-        match model.explain(Error::UnderHeld { motion: "?".into(), direction }) {
-            Error::UnderHeld { motion, .. } => motion,
+        match model.explain(Error::UnderHeld { mode: "?".into(), direction }) {
+            Error::UnderHeld { mode, .. } => mode,
             other => other.to_string(),
         }
     };
-    let motion = free_of_supports(&|[x, y]| [-y, x - 0.25]);
-    assert_eq!(motion, "rotation about z through (0.25, 0): a frictionless obstacle does not hold it, add a guide");
+    let mode = free_of_supports(&|[x, y]| [-y, x - 0.25]);
+    assert_eq!(mode, "rotation about z through (0.25, 0): a frictionless obstacle does not hold it, add a guide");
 }
 
 #[test]

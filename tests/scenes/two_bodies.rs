@@ -242,8 +242,8 @@ fn an_under_held_body_is_named() {
         let mut scene = value.clone();
         scene["supports"] = Value::Array(without(missing));
         let built = Scene::from_json(&scene.to_string(), "scene").unwrap().build();
-        let Err(Error::UnderHeld { motion, .. }) = built else { panic!("{built:?}") };
-        assert!(motion.starts_with(named), "{motion}");
+        let Err(Error::UnderHeld { mode, .. }) = built else { panic!("{built:?}") };
+        assert!(mode.starts_with(named), "{mode}");
     }
     // Resting on the base, pressed by a load, the upper body needs a guide only.
     let mut scene = value.clone();
@@ -257,8 +257,8 @@ fn an_under_held_body_is_named() {
     scene["loads"] = json!([{"traction": {"boundary": "top", "value": [0, 0.01]}}]);
     let model = self::model(&scene);
     let error = model.explain(solve_qp(model.problem()).unwrap_err());
-    let Error::Unbounded { motion, .. } = &error else { panic!("{error:?}") };
-    assert_eq!(motion, "translation along y of the first body");
+    let Error::Unbounded { mode, .. } = &error else { panic!("{error:?}") };
+    assert_eq!(mode, "translation along y of the first body");
 }
 
 #[test]

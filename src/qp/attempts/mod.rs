@@ -22,7 +22,7 @@ pub(super) fn solved(problem: &ContactProblem, settings: &Settings) -> Result<So
     let settings = &settings.started()?;
     let Some(pieces) = pieces_of(problem, settings) else { return in_one_piece(problem, settings) };
     let clock = Instant::now();
-    // A motion that nothing stops is rechecked like any other; what else a piece ends with is told in terms of the whole.
+    // A mode that nothing stops is rechecked like any other; what else a piece ends with is told in terms of the whole.
     let fell_short = match pieces::solved(problem, &pieces, settings, in_one_piece) {
         Ok(solution) => match judged(solution, settings.goal()) {
             Err(error) if !settings.watch.is_over() => error,

@@ -12,7 +12,7 @@ use crate::solution::{Attempt, ContactSet, Iteration, ProvenSet, Seconds, Soluti
 /// The answer whose pieces are each found by `solve`, not judged yet.
 ///
 /// # Errors
-/// What the first piece without an answer ends with; a motion that nothing stops is one of the whole, all else is in terms of the
+/// What the first piece without an answer ends with; a mode that nothing stops is one of the whole, all else is in terms of the
 /// piece.
 pub(super) fn solved(
     problem: &ContactProblem,
@@ -32,11 +32,11 @@ pub(super) fn solved(
         let in_whole = |direction: Vec<f64>| pieces.join_dofs((0..piece).map(|_| &[][..]).chain([&direction[..]]));
         let answer = match solve(&own, settings) {
             Err(Error::NotCertified { solution, .. }) => *solution,
-            Err(Error::Unbounded { motion, direction }) => {
-                return Err(Error::Unbounded { motion, direction: in_whole(direction) });
+            Err(Error::Unbounded { mode, direction }) => {
+                return Err(Error::Unbounded { mode, direction: in_whole(direction) });
             }
-            Err(Error::UnderHeld { motion, direction }) => {
-                return Err(Error::UnderHeld { motion, direction: in_whole(direction) });
+            Err(Error::UnderHeld { mode, direction }) => {
+                return Err(Error::UnderHeld { mode, direction: in_whole(direction) });
             }
             ended => ended?,
         };

@@ -1,13 +1,13 @@
 //! The certificate of an answer, recomputed from the problem by code that shares nothing with the methods.
 //!
 //! The conditions of the solution, a bound on the error in energy, the rows that it proves open or closed; and, of a problem
-//! without a unique answer, the rows that contradict each other and the motions that nothing holds.
+//! without a unique answer, the rows that contradict each other and the modes that nothing holds.
 
 mod bound;
 mod conditions;
 mod energy_norm;
 mod infeasible;
-mod motion;
+mod mode;
 mod proof;
 mod reach;
 mod scales;
@@ -16,4 +16,4 @@ mod units;
 
 pub(crate) use conditions::Examined;
 pub(crate) use energy_norm::EnergyNorm;
-pub(crate) use motion::{Motion, Rounding};
+pub(crate) use mode::{NullMode, Rounding};

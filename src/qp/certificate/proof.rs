@@ -3,9 +3,9 @@
 //! With `|u - u*|_K <= E` and the compliance `G = B K^-1 B'` of the rows:
 //!
 //! * `|B_i (u - u*)| <= sqrt(G_ii) E`: a row whose distance is larger is open in the exact answer too.
-//! * Let C be all other rows, `r = f + B_C' lambda_C - K u`, and w a motion with `B_i w = 1` that no other row of C feels.
+//! * Let C be all other rows, `r = f + B_C' lambda_C - K u`, and w a shift with `B_i w = 1` that no other row of C feels.
 //!   From `B_C' (lambda - lambda*)_C = r + K (u - u*)`: `|lambda_i - lambda*_i| <= |w|_K (|r|_{K^-1} + E)`. A row whose
-//!   force is larger is closed in the exact answer too. The cheapest such motion has `|w|_K^2 = (G_CC^-1)_ii`.
+//!   force is larger is closed in the exact answer too. The cheapest such shift has `|w|_K^2 = (G_CC^-1)_ii`.
 
 use super::EnergyNorm;
 use super::bound::Answer;
@@ -172,7 +172,7 @@ impl ContactProblem {
         closed
     }
 
-    /// `|w|_K` of the motion of a single dof that only this one of `rows` feels; infinite where there is none.
+    /// `|w|_K` of the shift of a single dof that only this one of `rows` feels; infinite where there is none.
     fn moved_alone(&self, rows: &[usize]) -> Vec<f64> {
         let mut place = vec![usize::MAX; self.rows()];
         rows.iter().enumerate().for_each(|(index, &row)| place[row] = index);
@@ -195,7 +195,7 @@ struct Closed {
 }
 
 impl Closed {
-    /// Is a row with this force closed, if a motion that it alone feels has this length?
+    /// Is a row with this force closed, if a shift that it alone feels has this length?
     fn prove(&mut self, row: usize, force: f64, length: f64) {
         self.set.set(row, self.set.contains(row) || force > length * self.imbalance);
     }

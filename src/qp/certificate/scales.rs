@@ -12,7 +12,7 @@ pub(super) struct Scales {
     /// `1 / sqrt(K_ii)` of each dof; infinite for a dof without stiffness.
     softness: Vec<f64>,
     /// `max |b_ij| / sqrt(K_jj)` of each row, over the dofs with stiffness: the force of the row in units of energy norm, and
-    /// how far a motion of unit energy norm of a single dof moves it.
+    /// how far a shift of unit energy norm of a single dof moves it.
     pub reach: Vec<f64>,
     /// Does the part have stiffness? Where it has none, its error has no energy, and rows alone judge it.
     pub is_stiff: Vec<bool>,

@@ -1,4 +1,4 @@
-//! Cones in the few coordinates of the motions without energy.
+//! Cones in the few coordinates of the modes without energy.
 //!
 //! A point of a cone is found in doubles and decided in twice the working precision: rows that stop it are made to slide along
 //! it exactly, one after the other, so that rows which are parallel but for their last bits leave no more than they do as they

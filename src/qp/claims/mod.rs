@@ -21,13 +21,13 @@ use super::cost::{Kept, check_memory, check_time, seconds};
 use super::judged::{judged, not_decided};
 use super::settings::Settings;
 use crate::error::Error;
-use crate::qp::certificate::{Motion, Rounding};
+use crate::qp::certificate::{NullMode, Rounding};
 use crate::qp::linear::{Analysis, FactorError, NullSpace, Twice, generic, largest, twice};
 use crate::qp::problem::ContactProblem;
 use crate::qp::transform::Scaling;
 use crate::solution::Solution;
 
-/// The forces of the rows hold the load if no motion is left with more than this share of them.
+/// The forces of the rows hold the load if no mode is left with more than this share of them.
 const BALANCED: f64 = 1e-9;
 
 /// A row presses if its force on a dof is beyond this share of the forces that are in balance there: less is their rounding.
@@ -89,8 +89,8 @@ pub(super) fn rechecked(
     };
     let Some(null) = null else { return Err(not_decided(problem, before)?) };
     let looked = Looked::of(&scaled, &scaling, null);
-    if let Some(motion) = looked.escape() {
-        return Err(Error::Unbounded { motion: motion.in_words(), direction: looked.expanded(&motion) });
+    if let Some(mode) = looked.escape() {
+        return Err(Error::Unbounded { mode: mode.in_words(), direction: looked.expanded(&mode) });
     }
     let tolerance = settings.tolerance.min(SURE_CONDITIONS);
     let holds = |solution: &Solution| solution.certificate.conditions_hold(tolerance);
@@ -98,13 +98,13 @@ pub(super) fn rechecked(
         Error::NotCertified { solution, .. } if holds(&solution) => *solution,
         before => steps::answer(problem, &scaling, settings, before)?,
     };
-    // A problem that has a place within its rows, and no motion that the load drives, has an answer.
-    let motion = match solution.certificate.penetration <= tolerance {
+    // A problem that has a place within its rows, and no mode that the load drives, has an answer.
+    let mode = match solution.certificate.penetration <= tolerance {
         true => looked.drift(),
         false => None,
     };
-    if let Some(motion) = motion.or_else(|| looked.freedom(problem, &solution).filter(|_| holds(&solution))) {
-        return Err(Error::UnderHeld { motion: motion.in_words(), direction: looked.expanded(&motion) });
+    if let Some(mode) = mode.or_else(|| looked.freedom(problem, &solution).filter(|_| holds(&solution))) {
+        return Err(Error::UnderHeld { mode: mode.in_words(), direction: looked.expanded(&mode) });
     }
     judged(solution, settings.goal())
 }
@@ -158,31 +158,31 @@ impl<'a> Looked<'a> {
     }
 
     /// The direction in the displacements of the problem itself, largest entry one.
-    fn expanded(&self, motion: &Motion) -> Vec<f64> {
-        let mut direction = self.scaling.expand_displacement(&motion.direction, 0);
+    fn expanded(&self, mode: &NullMode) -> Vec<f64> {
+        let mut direction = self.scaling.expand_displacement(&mode.direction, 0);
         let size = largest(&direction);
         direction.iter_mut().for_each(|value| *value /= size);
         direction
     }
 
-    /// A motion without energy that the load drives and no row stops.
-    fn escape(&self) -> Option<Motion> {
+    /// A mode without energy that the load drives and no row stops.
+    fn escape(&self) -> Option<NullMode> {
         let cone = self.cone(&|_| true, None);
         let along_load: Vec<f64> = self.against_load.values.iter().map(|value| -value.rounded()).collect();
-        self.motion(&cone.nearest(&along_load)?).filter(Motion::escapes)
+        self.mode(&cone.nearest(&along_load)?).filter(NullMode::escapes)
     }
 
-    /// A motion without energy on which the load does no work, and that no row stops, wherever it starts: of a problem that has
+    /// A mode without energy on which the load does no work, and that no row stops, wherever it starts: of a problem that has
     /// an answer, it has others.
-    fn drift(&self) -> Option<Motion> {
+    fn drift(&self) -> Option<NullMode> {
         self.idle(&|_| true)
     }
 
-    /// A motion without energy that leads from an answer to others.
+    /// A mode without energy that leads from an answer to others.
     ///
     /// A displacement that differs from u by a d with `K d = 0` and `f'd = 0` has the same energy, and meets the rows if d closes
     /// none of those that touch.
-    fn freedom(&self, problem: &ContactProblem, solution: &Solution) -> Option<Motion> {
+    fn freedom(&self, problem: &ContactProblem, solution: &Solution) -> Option<NullMode> {
         let u = &solution.displacement;
         let violation = problem.accurate_violation(u);
         let sizes = problem.contact().mul_abs(u);
@@ -209,11 +209,10 @@ impl<'a> Looked<'a> {
             let closed = TOUCHING * (sizes[row] + problem.gap()[row].abs()) + strained[row] + unbalanced[row];
             violation[row] >= -closed || solution.multiplier[row] != 0.0
         };
-        self.idle(&touches)
-            .filter(|motion| self.rows.iter().all(|&(row, _)| !presses(row) || motion.approach[row] == 0.0))
+        self.idle(&touches).filter(|mode| self.rows.iter().all(|&(row, _)| !presses(row) || mode.approach[row] == 0.0))
     }
 
-    /// Returns `true` if these forces of the rows hold the load on all motions without energy: they do so to the digits of doubles, in
+    /// Returns `true` if these forces of the rows hold the load on all modes without energy: they do so to the digits of doubles, in
     /// their own terms, and the rows that carry them can do so exactly. The last bit of the load may need another row.
     fn is_carried_by(&self, forces: &[f64]) -> bool {
         let (mut left, mut terms) = (self.against_load.values.clone(), Vec::new());
@@ -231,31 +230,31 @@ impl<'a> Looked<'a> {
         is_balanced && face.contains(&self.against_load, self.rounding.vanishes)
     }
 
-    /// A motion without energy on which the load does no work, and that closes none of these rows.
-    fn idle(&self, stops: &dyn Fn(usize) -> bool) -> Option<Motion> {
+    /// A mode without energy on which the load does no work, and that closes none of these rows.
+    fn idle(&self, stops: &dyn Fn(usize) -> bool) -> Option<NullMode> {
         let cone = self.cone(stops, Some(&self.against_load));
-        let stays = |motion: &Motion| {
-            motion.is_idle() && self.rows.iter().all(|&(row, _)| motion.approach[row] <= 0.0 || !stops(row))
+        let stays = |mode: &NullMode| {
+            mode.is_idle() && self.rows.iter().all(|&(row, _)| mode.approach[row] <= 0.0 || !stops(row))
         };
         // No direction of a cone leans towards c or towards -c only if all are at right angles to it.
         [1.0, -1.0].iter().find_map(|way| {
             let towards: Vec<f64> = generic(self.null.vectors.len(), 0).iter().map(|value| way * value).collect();
-            self.motion(&cone.nearest(&towards)?).filter(stays)
+            self.mode(&cone.nearest(&towards)?).filter(stays)
         })
     }
 
-    /// The cone of the motions that close none of these rows, without work of a load that is `fixed`.
+    /// The cone of the modes that close none of these rows, without work of a load that is `fixed`.
     fn cone<'b>(&'b self, stops: &dyn Fn(usize) -> bool, fixed: Option<&'b Row>) -> Cone<'b> {
         let rows = self.rows.iter().filter(|(row, _)| stops(*row)).map(|(_, row)| row).collect();
         Cone { rows, fixed, rounding: self.rounding.vanishes, is_exact: self.null.is_exact }
     }
 
-    fn motion(&self, coordinates: &[Twice]) -> Option<Motion> {
+    fn mode(&self, coordinates: &[Twice]) -> Option<NullMode> {
         let mut direction = vec![Twice::ZERO; self.scaled.dofs()];
         for (&a, vector) in coordinates.iter().zip(&self.null.vectors) {
             direction.iter_mut().zip(vector).for_each(|(d, &value)| *d = *d + a * value);
         }
-        self.scaled.motion_along(&direction, self.rounding)
+        self.scaled.mode_along(&direction, self.rounding)
     }
 }
 

@@ -11,7 +11,7 @@ impl Factored {
         let Ok(problem) = self.problem.with(load.to_vec(), gap.to_vec()) else { return error };
         let normalised = |direction: Vec<f64>| {
             let whole = match &self.reduction.condensation {
-                // A free motion moves the interior along without force.
+                // A free mode moves the interior along without force.
                 Some(condensed) => condensed.expand(&vec![0.0; self.problem.dofs()], &direction),
                 None => direction,
             };
@@ -21,15 +21,15 @@ impl Factored {
             direction
         };
         match error {
-            Error::Unbounded { motion, direction } => {
+            Error::Unbounded { mode, direction } => {
                 let direction = normalised(direction);
                 // Condensing leaves the rounding of a load in balance, which is all that drives the boundary then.
                 match problem.share_of_work(&direction) > WORK_TOLERANCE {
-                    true => Error::Unbounded { motion, direction },
-                    false => Error::UnderHeld { motion, direction },
+                    true => Error::Unbounded { mode, direction },
+                    false => Error::UnderHeld { mode, direction },
                 }
             }
-            Error::UnderHeld { motion, direction } => Error::UnderHeld { motion, direction: normalised(direction) },
+            Error::UnderHeld { mode, direction } => Error::UnderHeld { mode, direction: normalised(direction) },
             Error::Infeasible { rows, weights, .. } => {
                 let mut scaled = vec![0.0; self.reduction.selection.kept().len()];
                 rows.iter().zip(&weights).for_each(|(&row, &weight)| scaled[row] = weight);

@@ -99,7 +99,7 @@ impl Engine for Hierarchical {
     /// * [`Error::Length`] and [`Error::NotFinite`] for gaps or a start that do not fit,
     /// * [`Error::Infeasible`] for contact rows that contradict each other,
     /// * [`Error::Numerical`] for rows that no turning makes bounds of,
-    /// * [`Error::Unbounded`] and [`Error::UnderHeld`] for a motion that nothing stops, where the method meets one,
+    /// * [`Error::Unbounded`] and [`Error::UnderHeld`] for a mode that nothing stops, where the method meets one,
     /// * [`Error::NotConvex`] for a direction of negative energy,
     /// * [`Error::NotCertified`] with the best answer, where the method stagnates above the tolerance.
     fn solve(&self, case: &Case) -> Result<Solution, Error> {

@@ -166,17 +166,17 @@ impl UpperTriangle {
         }
     }
 
-    /// The length of each column of `R'^-1`: that of `Z x` for the shortest motion that moves one of the columns of Z by one and
+    /// The length of each column of `R'^-1`: that of `Z x` for the shortest shift that moves one of the columns of Z by one and
     /// leaves the others; zero on columns that follow from others.
     pub fn lengths_of_inverse(&self) -> Vec<f64> {
         let length = |place: usize| {
-            let mut motion = vec![0.0; self.size()];
-            motion[place] = 1.0;
+            let mut shift = vec![0.0; self.size()];
+            shift[place] = 1.0;
             for (i, column) in self.columns.iter().enumerate().skip(place) {
-                let known = dot(&column[place..i], &motion[place..i]);
-                motion[i] = if self.independent[i] { (motion[i] - known) / column[i] } else { 0.0 };
+                let known = dot(&column[place..i], &shift[place..i]);
+                shift[i] = if self.independent[i] { (shift[i] - known) / column[i] } else { 0.0 };
             }
-            norm(&motion)
+            norm(&shift)
         };
         (0..self.size()).map(length).collect()
     }

@@ -86,9 +86,9 @@ fn columns(content: Content) -> Vec<Vec<f64>> {
 /// Translations and rotations of nodes with the coordinates `axes`, node by node.
 fn rigid_body_modes(axes: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let (dimension, nodes) = (axes.len(), axes.first().map_or(0, Vec::len));
-    let mut motions = vec![vec![0.0; dimension * nodes]; dimension];
-    for (axis, motion) in motions.iter_mut().enumerate() {
-        (0..nodes).for_each(|node| motion[dimension * node + axis] = 1.0);
+    let mut modes = vec![vec![0.0; dimension * nodes]; dimension];
+    for (axis, mode) in modes.iter_mut().enumerate() {
+        (0..nodes).for_each(|node| mode[dimension * node + axis] = 1.0);
     }
     for first in 0..dimension {
         for second in first + 1..dimension {
@@ -98,10 +98,10 @@ fn rigid_body_modes(axes: &[Vec<f64>]) -> Vec<Vec<f64>> {
                 rotation[dimension * node + first] = middle[1] - axes[second][node];
                 rotation[dimension * node + second] = axes[first][node] - middle[0];
             }
-            motions.push(rotation);
+            modes.push(rotation);
         }
     }
-    motions
+    modes
 }
 
 /// Name and text of the file of a problem's near-null space, where it has one.

@@ -18,12 +18,12 @@ use std::collections::HashSet;
 
 use super::earlier_factor::{BoundedDofs, EarlierFactor, TRIAL, steps_for_a_factor};
 use super::equilibrium::{Equilibrium, WEIGHT, equilibrium, reach};
-use super::{FreeMotion, Holding, Outcome, SIGN_TOLERANCE, ScaledProblem, Solver, Start, multiplier_rounding};
+use super::{FreeMode, Holding, Outcome, SIGN_TOLERANCE, ScaledProblem, Solver, Start, multiplier_rounding};
 use crate::error::Error;
 use crate::qp::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
 
-/// Free motions that may be stopped, where there are fewer rows.
+/// Free modes that may be stopped, where there are fewer rows.
 const MOST_STOPS: usize = 100;
 
 /// Block exchanges that may fail to reduce the number of violations before a single pivot.
@@ -42,7 +42,7 @@ impl Solver for ActiveSet<'_> {
     /// Runs the loop from the contact set of `start`.
     ///
     /// # Errors
-    /// [`Error::Unbounded`] and [`Error::UnderHeld`] for a free motion that no row stops, [`Error::NotConvex`],
+    /// [`Error::Unbounded`] and [`Error::UnderHeld`] for a free mode that no row stops, [`Error::NotConvex`],
     /// [`Error::Numerical`].
     fn solve(&self, start: Start) -> Result<Outcome, Error> {
         let scaled = self.scaled;
@@ -60,15 +60,15 @@ impl Solver for ActiveSet<'_> {
             scaled.watch().step("active set", history.len() + 1);
             let balance = match balances.of(&closed, &displacement)? {
                 Balance::Held(balance) => balance,
-                Balance::Free(motion) => match scaled.stopping_rows(&motion, &displacement, &closed) {
-                    // A motion that rows stop again and again must not keep the loop alive.
+                Balance::Free(mode) => match scaled.stopping_rows(&mode, &displacement, &closed) {
+                    // A mode that rows stop again and again must not keep the loop alive.
                     Some(stopped) if stops < MOST_STOPS.max(rows) => {
                         stops += 1;
                         closed = stopped;
                         continue;
                     }
                     Some(_) => break,
-                    None => return Err(motion.into_error()),
+                    None => return Err(mode.into_error()),
                 },
             };
             history.push(Iteration { contact_set: closed.clone(), penalty: 0.0 });
@@ -105,10 +105,10 @@ struct Balances<'a> {
     earlier: Option<EarlierFactor>,
 }
 
-/// The balance of a set, or the motion that it leaves free.
+/// The balance of a set, or the mode that it leaves free.
 enum Balance {
     Held(Equilibrium),
-    Free(FreeMotion),
+    Free(FreeMode),
 }
 
 impl<'a> Balances<'a> {
@@ -138,7 +138,7 @@ impl<'a> Balances<'a> {
                 self.earlier = self.bounded.as_ref().map(|bounded| EarlierFactor::new(cholesky, bounded, closed));
                 Balance::Held(balance)
             }
-            Holding::Free(motion) => Balance::Free(motion),
+            Holding::Free(mode) => Balance::Free(mode),
         })
     }
 }
@@ -159,7 +159,7 @@ pub fn with_contact_set(scaled: &ScaledProblem, closed: &ContactSet) -> Result<E
                 Err(Error::Infeasible { reason, rows: closed.iter().collect(), weights: Vec::new(), overlap: 0.0 })
             }
         }
-        Holding::Free(motion) => Err(motion.into_error()),
+        Holding::Free(mode) => Err(mode.into_error()),
     }
 }
 

@@ -12,7 +12,7 @@ const SHIFTS: [f64; 3] = [1e-12, 1e-10, 1e-8];
 /// Projections of the load: each gains several digits, since eigenvalues differ by many orders of magnitude.
 const STEPS: usize = 5;
 
-/// Work of the load on a free motion, and other sums over one, are rounding below this share of their own terms.
+/// Work of the load on a free mode, and other sums over one, are rounding below this share of their own terms.
 pub(crate) const WORK_TOLERANCE: f64 = 1e-9;
 
 /// A row this close to the obstacle, on displacements of order one, has no play.
@@ -34,25 +34,25 @@ pub enum Holding {
     /// They do; the factorisation of K + w B_C'B_C.
     Held(Cholesky),
     /// They do not.
-    Free(FreeMotion),
+    Free(FreeMode),
 }
 
 /// A direction d with K d = 0 and B_C d = 0, largest entry one.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FreeMotion {
+pub struct FreeMode {
     /// The direction, one entry per dof.
     pub direction: Vec<f64>,
     /// `true` if the load does work on it: `f'd > 0`.
     pub driven: bool,
 }
 
-impl FreeMotion {
-    /// The error that this motion is when no row stops it.
+impl FreeMode {
+    /// The error that this mode is when no row stops it.
     pub fn into_error(self) -> Error {
-        let motion = where_largest(&self.direction);
+        let mode = where_largest(&self.direction);
         match self.driven {
-            true => Error::Unbounded { motion, direction: self.direction },
-            false => Error::UnderHeld { motion, direction: self.direction },
+            true => Error::Unbounded { mode, direction: self.direction },
+            false => Error::UnderHeld { mode, direction: self.direction },
         }
     }
 }
@@ -85,13 +85,13 @@ impl ScaledProblem<'_> {
         let looked_at = (!self.definite).then(|| matrix.clone());
         match self.factor(matrix) {
             Ok(cholesky) if looked_at.is_none_or(|matrix| cholesky.is_definite(&matrix)) => Ok(Holding::Held(cholesky)),
-            Ok(_) | Err(FactorError::NotPositiveDefinite) => self.free_motion(closed, weight).map(Holding::Free),
+            Ok(_) | Err(FactorError::NotPositiveDefinite) => self.free_mode(closed, weight).map(Holding::Free),
             Err(error) => Err(error.into()),
         }
     }
 
     /// The projection of the load onto the null space, or, where the load does no work there, any null vector.
-    fn free_motion(&self, closed: &ContactSet, weight: f64) -> Result<FreeMotion, Error> {
+    fn free_mode(&self, closed: &ContactSet, weight: f64) -> Result<FreeMode, Error> {
         // A weight changes nothing about null vectors, and a large one hides the shift in its rounding.
         let weight = weight.min(1.0);
         for shift in SHIFTS {
@@ -109,22 +109,22 @@ impl ScaledProblem<'_> {
             let still = self.matrix(closed, weight, 0.0).mul(&projected);
             let driven = largest(&still) <= NOISE && self.problem.share_of_work(&projected) > WORK_TOLERANCE;
             let direction = if driven { projected } else { normalised(cholesky.softest_vector()) };
-            return Ok(FreeMotion { direction, driven });
+            return Ok(FreeMode { direction, driven });
         }
         Err(Error::NotConvex { evidence: "a Cholesky pivot is negative".into() })
     }
 
-    /// The open rows that stop a motion first, when it starts from `displacement`; a motion that the load does not
+    /// The open rows that stop a mode first, when it starts from `displacement`; a mode that the load does not
     /// drive may go either way. `None` where no row stops it.
     pub(super) fn stopping_rows(
         &self,
-        motion: &FreeMotion,
+        mode: &FreeMode,
         displacement: &[f64],
         closed: &ContactSet,
     ) -> Option<ContactSet> {
-        let approach = self.approach(&motion.direction);
+        let approach = self.approach(&mode.direction);
         let violation = self.problem.violation(displacement);
-        let ways: &[f64] = if motion.driven { &[1.0] } else { &[1.0, -1.0] };
+        let ways: &[f64] = if mode.driven { &[1.0] } else { &[1.0, -1.0] };
         for way in ways {
             let time = |row: usize| match approach[row] * way {
                 speed if speed > 0.0 && !closed.contains(row) => Some((-violation[row]).max(0.0) / speed),
@@ -142,14 +142,14 @@ impl ScaledProblem<'_> {
         None
     }
 
-    /// How fast each row closes on a motion: B d, zero where that is rounding of its own terms.
+    /// How fast each row closes on a mode: B d, zero where that is rounding of its own terms.
     pub(super) fn approach(&self, direction: &[f64]) -> Vec<f64> {
         let terms = self.problem.contact().mul_abs(direction);
         let speed = self.problem.contact().mul(direction);
         speed.iter().zip(&terms).map(|(&v, term)| if v.abs() > WORK_TOLERANCE * term { v } else { 0.0 }).collect()
     }
 
-    /// Returns `true` if a motion with largest entry one costs no energy: at each dof `K d` is rounding of its own terms, or of
+    /// Returns `true` if a mode with largest entry one costs no energy: at each dof `K d` is rounding of its own terms, or of
     /// the force that moves this dof alone.
     pub(super) fn costs_nothing(&self, direction: &[f64]) -> bool {
         let stiffness = self.problem.stiffness();
@@ -157,8 +157,8 @@ impl ScaledProblem<'_> {
         (0..force.len()).all(|dof| force[dof].abs() <= WORK_TOLERANCE * terms[dof].max(alone[dof]))
     }
 
-    /// Returns `true` if an error's claim about a motion holds in the terms of each dof and row. Sums of squares, which find
-    /// the motion, lose terms that are small beside others.
+    /// Returns `true` if an error's claim about a mode holds in the terms of each dof and row. Sums of squares, which find
+    /// the mode, lose terms that are small beside others.
     pub fn is_true(&self, claim: &Error) -> bool {
         let stops = |direction: &[f64], way: f64| self.approach(direction).iter().any(|&speed| speed * way > 0.0);
         match claim {
@@ -170,7 +170,7 @@ impl ScaledProblem<'_> {
         }
     }
 
-    /// Returns `true` if a claim needs no further check because the motion opens every row: the rows can then be met together,
+    /// Returns `true` if a claim needs no further check because the mode opens every row: the rows can then be met together,
     /// and none can balance the load.
     pub fn is_evident(&self, claim: &Error) -> bool {
         let (Error::UnderHeld { direction, .. } | Error::Unbounded { direction, .. }) = claim else { return false };

@@ -70,7 +70,7 @@ impl Solver for Barrier<'_> {
     /// `iterations` counts the steps over all units that were tried.
     ///
     /// An ending without full accuracy is no error here: the set is settled and the answer certified later. A problem that
-    /// is reported as unbounded or infeasible returns with no closed row, for others to find the motion or the rows.
+    /// is reported as unbounded or infeasible returns with no closed row, for others to find the mode or the rows.
     ///
     /// # Errors
     /// [`Error::Numerical`] if the solver refuses its input.

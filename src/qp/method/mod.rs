@@ -18,7 +18,7 @@ use std::cell::Cell;
 use std::time::Instant;
 
 pub(crate) use holding::WORK_TOLERANCE;
-pub use holding::{FreeMotion, Holding};
+pub use holding::{FreeMode, Holding};
 pub use start::Start;
 
 use crate::error::Error;
@@ -92,7 +92,7 @@ impl<'a> ScaledProblem<'a> {
     /// body, and those in compression are closed.
     ///
     /// # Errors
-    /// [`Error::Unbounded`] and [`Error::UnderHeld`] for a motion that not even all rows together hold,
+    /// [`Error::Unbounded`] and [`Error::UnderHeld`] for a mode that not even all rows together hold,
     /// [`Error::NotConvex`].
     pub fn start(&self) -> Result<ContactSet, Error> {
         let rows = self.problem.rows();
@@ -107,15 +107,15 @@ impl<'a> ScaledProblem<'a> {
                 let violation = self.problem.violation(&cholesky.solve(&force));
                 Ok(ContactSet::from_fn(rows, |row| violation[row] > 0.0))
             }
-            Holding::Free(motion) => Err(motion.into_error()),
+            Holding::Free(mode) => Err(mode.into_error()),
         }
     }
 
-    /// Is the answer the only one? It is where K and the rows under pressure hold the body; where they leave a motion,
+    /// Is the answer the only one? It is where K and the rows under pressure hold the body; where they leave a mode,
     /// the open rows would have to stop it both ways without play.
     ///
     /// # Errors
-    /// [`Error::UnderHeld`] with a motion that changes neither force nor energy.
+    /// [`Error::UnderHeld`] with a mode that changes neither force nor energy.
     pub fn check_unique(&self, outcome: &Outcome) -> Result<(), Error> {
         if self.definite {
             return Ok(());
@@ -124,15 +124,15 @@ impl<'a> ScaledProblem<'a> {
         let pressed = ContactSet::from_fn(self.problem.rows(), |row| outcome.multiplier[row] < -rounding[row]);
         match self.hold(&pressed, 1.0)? {
             Holding::Held(_) => Ok(()),
-            Holding::Free(motion) if motion.driven => Ok(()),
-            Holding::Free(motion) => {
+            Holding::Free(mode) if mode.driven => Ok(()),
+            Holding::Free(mode) => {
                 let violation = self.problem.violation(&outcome.displacement);
-                let approach = self.approach(&motion.direction);
-                let is_free = self.costs_nothing(&motion.direction) && pressed.iter().all(|row| approach[row] == 0.0);
+                let approach = self.approach(&mode.direction);
+                let is_free = self.costs_nothing(&mode.direction) && pressed.iter().all(|row| approach[row] == 0.0);
                 let stopped = |way: f64| {
                     (0..self.problem.rows()).any(|row| approach[row] * way > 0.0 && violation[row] > -holding::PLAY)
                 };
-                if !is_free || stopped(1.0) && stopped(-1.0) { Ok(()) } else { Err(motion.into_error()) }
+                if !is_free || stopped(1.0) && stopped(-1.0) { Ok(()) } else { Err(mode.into_error()) }
             }
         }
     }

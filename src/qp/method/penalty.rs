@@ -88,7 +88,7 @@ impl Solver for PenaltyLoop<'_> {
     /// Climbs the ladder from the contact set of `start`.
     ///
     /// # Errors
-    /// [`Error::Unbounded`] and [`Error::UnderHeld`] for a free motion that no row stops, [`Error::NotConvex`],
+    /// [`Error::Unbounded`] and [`Error::UnderHeld`] for a free mode that no row stops, [`Error::NotConvex`],
     /// [`Error::Numerical`].
     fn solve(&self, start: Start) -> Result<Outcome, Error> {
         let PenaltyLoop { scaled, ladder, .. } = self;
@@ -140,16 +140,14 @@ impl PenaltyLoop<'_> {
             scaled.watch().step("penalty loop", climb.history.len() + 1);
             let cholesky = match scaled.hold(&climb.closed, penalty)? {
                 Holding::Held(cholesky) => cholesky,
-                Holding::Free(motion) => {
-                    match scaled.stopping_rows(&motion, &climb.state.displacement, &climb.closed) {
-                        Some(stopped) => {
-                            climb.stops += 1;
-                            climb.closed = stopped;
-                            continue;
-                        }
-                        None => return Err(motion.into_error()),
+                Holding::Free(mode) => match scaled.stopping_rows(&mode, &climb.state.displacement, &climb.closed) {
+                    Some(stopped) => {
+                        climb.stops += 1;
+                        climb.closed = stopped;
+                        continue;
                     }
-                }
+                    None => return Err(mode.into_error()),
+                },
             };
             climb.history.push(Iteration { contact_set: climb.closed.clone(), penalty });
             climb.state.advance(scaled, &cholesky, &climb.closed, penalty);
@@ -180,7 +178,7 @@ struct Climb {
     history: Vec<Iteration>,
     /// `true` if the last rung ended with the set that it began with.
     settled: bool,
-    /// Free motions that rows have stopped.
+    /// Free modes that rows have stopped.
     stops: usize,
 }
 
@@ -241,7 +239,7 @@ fn rung_below(scaled: &ScaledProblem, rung: &Rung) -> Result<Rung, Error> {
             (0..=FINAL_SOLVES).for_each(|_| state.advance(scaled, &cholesky, &rung.closed, penalty));
             Ok(Rung::new(&state, rung.closed.clone(), penalty))
         }
-        Holding::Free(motion) => Err(motion.into_error()),
+        Holding::Free(mode) => Err(mode.into_error()),
     }
 }
 

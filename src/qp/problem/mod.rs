@@ -195,11 +195,11 @@ impl ContactProblem {
 }
 
 impl ContactProblem {
-    /// The work f'd of the load on a motion d, as a share of its terms `|f|'|d|`, between -1 and 1.
-    pub(crate) fn share_of_work(&self, motion: &[f64]) -> f64 {
+    /// The work f'd of the load on a mode d, as a share of its terms `|f|'|d|`, between -1 and 1.
+    pub(crate) fn share_of_work(&self, mode: &[f64]) -> f64 {
         let mut work = Accumulator::new(&[0.0]);
-        self.load.iter().zip(motion).for_each(|(&f, &d)| work.add_product(0, f, d));
-        let terms: f64 = self.load.iter().zip(motion).map(|(f, d)| (f * d).abs()).sum();
+        self.load.iter().zip(mode).for_each(|(&f, &d)| work.add_product(0, f, d));
+        let terms: f64 = self.load.iter().zip(mode).map(|(f, d)| (f * d).abs()).sum();
         if terms > 0.0 { work.into_sums()[0] / terms } else { 0.0 }
     }
 }

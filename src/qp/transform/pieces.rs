@@ -61,7 +61,7 @@ impl Pieces {
         let Some(modes) = problem.near_null() else { return Ok(own) };
         let of_piece = |mode: &Vec<f64>| dofs.iter().map(|&dof| mode[dof]).collect::<Vec<f64>>();
         let moves = |mode: &Vec<f64>| mode.iter().any(|&value| value != 0.0);
-        match NearNullSpace::of_motions(modes.vectors().iter().map(of_piece).filter(moves).collect()) {
+        match NearNullSpace::of_modes(modes.vectors().iter().map(of_piece).filter(moves).collect()) {
             Some(modes) => own.with_near_null(modes),
             None => Ok(own),
         }

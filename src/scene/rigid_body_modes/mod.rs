@@ -73,7 +73,7 @@ impl RigidBodyModes {
         let Some(first) = free.first() else { return Ok(()) };
         let names: Vec<String> = free.iter().map(|motion| self.describe(motion, Sense::Either)).collect();
         let direction = parts.dofs.free().iter().map(|&dof| dot(&self.at_dof(parts, dof), first)).collect();
-        Err(Error::UnderHeld { motion: format!("{}: {}", names.join(", "), advice(rows)), direction })
+        Err(Error::UnderHeld { mode: format!("{}: {}", names.join(", "), advice(rows)), direction })
     }
 
     /// A basis of the motions that nothing resists: unit motions first.

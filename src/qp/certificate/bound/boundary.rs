@@ -5,7 +5,7 @@
 //!
 //! * v is the equilibrium of the rows that look closed. Where all of them push, v is the exact answer, and the bound is the
 //!   error itself;
-//! * the rows that look closed are put at their gaps by the smallest motion, and keep the forces of the answer.
+//! * the rows that look closed are put at their gaps by the smallest shift, and keep the forces of the answer.
 
 use super::super::energy_norm::Boundary;
 use super::repair::Repair;
@@ -24,7 +24,7 @@ const GAINS: f64 = 0.1;
 /// Forces that cancel each other do no harm where their rounding is below this share of the bound.
 const SMALL: f64 = 1e-3;
 
-/// With springs, a factor that loses more than this is not enough for the energy of a motion.
+/// With springs, a factor that loses more than this is not enough for the energy of a shift.
 const LOST_WITH_SPRINGS: f64 = 1e4;
 
 impl ContactProblem {
@@ -44,14 +44,14 @@ impl ContactProblem {
         let repair = Repair::new(self, norm, boundary, &first)?;
         let witness = repair.best_witness(closed)?;
         let bound = repair.bound(&witness);
-        // With springs the motion is large and bends little, which a factor that loses digits leaves to rounding.
+        // With springs the shift is large and bends little, which a factor that loses digits leaves to rounding.
         let is_precise = norm.springs().is_none() || norm.loss() <= LOST_WITH_SPRINGS;
         let is_exact = norm.widening() == 1.0 && !witness.has_dependent && is_precise;
         if is_exact && repair.cancelled(&witness) <= SMALL * bound.whole {
             return Some(bound);
         }
-        // Rows that follow from others: what is rounding of a large motion may be a large distance between them. Forces that
-        // cancel each other leave what the factor has rounded. The same again from the witness itself, whose motions, forces
+        // Rows that follow from others: what is rounding of a large shift may be a large distance between them. Forces that
+        // cancel each other leave what the factor has rounded. The same again from the witness itself, whose shifts, forces
         // and changes of force are small; how far the answer is from there needs no factor.
         let mut multipliers = vec![answer.multiplier.to_vec()];
         let mut next = (repair.answer(&witness), repair.expanded(&witness.change));

@@ -9,7 +9,7 @@
 //! so that `|u - u*|_K <= |u - v|_K + sqrt(r' K^-1 r + 2 mu' (B v - g))`. The pair (v, mu) is the answer repaired: the rows
 //! that look closed are put exactly at their gaps and no other row carries a force, so that the product vanishes.
 //!
-//! Where K is singular, the norm is that of `K_D = K + B_C' D B_C` with rows C that press, which stays the same on motions
+//! Where K is singular, the norm is that of `K_D = K + B_C' D B_C` with rows C that press, which stays the same on shifts
 //! that these rows do not feel. With s = g - B u* on C and a = |r| in the dual norm of K_D,
 //!
 //! ```text
@@ -171,7 +171,7 @@ impl ContactProblem {
         of_rows
     }
 
-    /// An upper bound on `|b / b'b|_K` of each row b: the motion along the row that it feels as one.
+    /// An upper bound on `|b / b'b|_K` of each row b: the shift along the row that it feels as one.
     pub(super) fn lengths_along_rows(&self) -> Vec<f64> {
         let (mut sums, mut squares) = (vec![0.0; self.rows()], vec![0.0; self.rows()]);
         for (dof, &root) in self.diagonal().roots.iter().enumerate() {
@@ -183,15 +183,15 @@ impl ContactProblem {
         sums.iter().zip(&squares).map(|(sum, square)| if *square > 0.0 { sum / square } else { 0.0 }).collect()
     }
 
-    /// The energy norm of a motion.
-    fn length(&self, motion: &[f64]) -> f64 {
-        let forces = self.unrounded_product(|column| self.stiffness.lower().column(column), motion);
-        forces.products_by(motion, |_| 0, 1)[0].max(0.0).sqrt()
+    /// The energy norm of a shift.
+    fn length(&self, shift: &[f64]) -> f64 {
+        let forces = self.unrounded_product(|column| self.stiffness.lower().column(column), shift);
+        forces.products_by(shift, |_| 0, 1)[0].max(0.0).sqrt()
     }
 
-    /// The energy norms of a motion by parts, added to `sizes`.
-    fn add_sizes(&self, parts: &Parts, motion: &[f64], sizes: &mut [f64]) {
-        let energies = self.energies(parts, motion);
+    /// The energy norms of a shift by parts, added to `sizes`.
+    fn add_sizes(&self, parts: &Parts, shift: &[f64], sizes: &mut [f64]) {
+        let energies = self.energies(parts, shift);
         sizes.iter_mut().zip(energies).for_each(|(size, energy)| *size += energy.max(0.0).sqrt());
     }
 }

@@ -1,4 +1,4 @@
-//! An answer repaired on the contact boundary: its motions, forces and bound.
+//! An answer repaired on the contact boundary: its shifts, forces and bound.
 
 use std::cell::OnceCell;
 
@@ -10,7 +10,7 @@ use crate::qp::problem::ContactProblem;
 /// Rounding of a sum of forces, in units of its terms; a factor multiplies it by its [loss](EnergyNorm::loss).
 const CANCELLED: f64 = 4.0 * f64::EPSILON;
 
-/// The way of rows to their gaps counts as motion of the answer, as the residual that this makes, and once for the rounding of
+/// The way of rows to their gaps counts as shift of the answer, as the residual that this makes, and once for the rounding of
 /// its length.
 const COUNTS: f64 = 3.0;
 
@@ -48,7 +48,7 @@ pub(super) struct Witness {
     pub multiplier: Vec<f64>,
     pub change: Vec<f64>,
     pub closed: Vec<bool>,
-    /// For each closed row an upper bound on the energy norm of the motion that puts it exactly at its gap, and leaves the others
+    /// For each closed row an upper bound on the energy norm of the shift that puts it exactly at its gap, and leaves the others
     /// there.
     pub rest: Vec<f64>,
     /// Does a closed row follow from others?
@@ -121,13 +121,13 @@ impl<'a> Repair<'a> {
         sweep
     }
 
-    /// The energy norm of the motion that a force causes.
+    /// The energy norm of the shift that a force causes.
     fn length(&self, force: &Force) -> f64 {
         let sweep = self.sweep(force);
         ldexp(force.alpha * force.alpha * self.interior + dot(&sweep, &sweep), self.norm.factor()).sqrt()
     }
 
-    /// The energy norm of the motion that a unit force along a row causes.
+    /// The energy norm of the shift that a unit force along a row causes.
     fn reach(&self, row: usize) -> f64 {
         if self.norm.is_over() {
             return f64::INFINITY;
@@ -136,8 +136,8 @@ impl<'a> Repair<'a> {
         ldexp(dot(half, half), self.norm.factor()).sqrt()
     }
 
-    /// The motion of the whole body that a force causes, length n.
-    fn motion(&self, force: &Force) -> Vec<f64> {
+    /// The shift of the whole body that a force causes, length n.
+    fn shift(&self, force: &Force) -> Vec<f64> {
         let rows: Vec<f64> = force.rows.iter().zip(&self.shift).map(|(&x, &shift)| ldexp(x, shift)).collect();
         let contact = self.problem.contact.mul_transposed(&rows);
         let total: Vec<f64> = self.answer.residual.iter().zip(contact).map(|(r, b)| force.alpha * r + b).collect();
@@ -146,8 +146,8 @@ impl<'a> Repair<'a> {
 
     /// The displacements and multipliers of a witness, in the units of the problem.
     pub fn answer(&self, witness: &Witness) -> (Vec<f64>, Vec<f64>) {
-        let motion = self.motion(&witness.error);
-        let moved = self.answer.displacement.iter().zip(motion).map(|(u, d)| u + d).collect();
+        let shift = self.shift(&witness.error);
+        let moved = self.answer.displacement.iter().zip(shift).map(|(u, d)| u + d).collect();
         (moved, self.expanded(&witness.multiplier))
     }
 
@@ -163,7 +163,7 @@ impl<'a> Repair<'a> {
         let put: Vec<f64> = (0..rest.len()).map(|row| COUNTS * rest[row] + self.cancelled_on(witness, row)).collect();
         let of_error = match springs {
             // The springs' own energy is no error, but rounding knows them.
-            Some(_) => self.problem.length(&self.motion(error)) + (self.norm.rounding() - 1.0) * self.length(error),
+            Some(_) => self.problem.length(&self.shift(error)) + (self.norm.rounding() - 1.0) * self.length(error),
             None => self.length(error),
         };
         let whole = of_error + of_left + put.iter().sum::<f64>();
@@ -171,7 +171,7 @@ impl<'a> Repair<'a> {
         let of_parts = (parts.count() > 1).then(|| {
             let mut sizes = vec![0.0; parts.count()];
             self.problem.parts_of_rows(parts).iter().zip(&put).for_each(|(&part, put)| sizes[part] += put);
-            [error, left].iter().for_each(|force| self.problem.add_sizes(parts, &self.motion(force), &mut sizes));
+            [error, left].iter().for_each(|force| self.problem.add_sizes(parts, &self.shift(force), &mut sizes));
             sizes
         });
         ErrorBound { whole, of_parts }

@@ -13,7 +13,7 @@ const REPAIR_SWEEPS: usize = 50;
 /// Steps in which the rest of the body follows rows that were put at their gaps; each costs a product with K.
 const RELAXATIONS: usize = 20;
 
-/// Motions of a sweep below this share of those of all sweeps are followed by no more than all of them together.
+/// Modes of a sweep below this share of those of all sweeps are followed by no more than all of them together.
 const LAST: f64 = 0.01;
 
 /// Where a row must be for a bound.
@@ -85,7 +85,7 @@ impl ContactProblem {
     }
 
     /// The bound of a repaired answer: u moved by `repair`, with `residual` and `multiplier` there. Rows that are still off
-    /// their gaps by rounding are put there along themselves, at the cost of those motions.
+    /// their gaps by rounding are put there along themselves, at the cost of those shifts.
     fn with_slack(
         &self,
         norm: &EnergyNorm,
@@ -138,7 +138,7 @@ impl ContactProblem {
         ErrorBound { whole, of_parts }
     }
 
-    /// An upper bound on the energy norm of the motions that put rows where they aim, row by row: each moves the others,
+    /// An upper bound on the energy norm of the shifts that put rows where they aim, row by row: each moves the others,
     /// so that they follow each other until what is left of them is small beside the sum; `None` where it stays large.
     fn put_along_rows(&self, by_row: &SparseMatrix, start: &Start) -> Option<Vec<f64>> {
         let lengths = self.lengths_along_rows();

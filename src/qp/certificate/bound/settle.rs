@@ -13,7 +13,7 @@ const CORRECTIONS: usize = 4;
 /// Rows that others follow from are off by their own rounding after a fit, and by that of their distances.
 const FOLLOWS: f64 = 2.0;
 
-/// Rounding of a row's distance after a motion, in units of its terms.
+/// Rounding of a row's distance after a shift, in units of its terms.
 const DISTANCE_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 impl Repair<'_> {
@@ -108,17 +108,17 @@ impl Repair<'_> {
         Witness { error, left, multiplier, change, closed, rest, has_dependent: false }
     }
 
-    /// For each row an upper bound on the energy norm of the motion that puts it exactly at its gap, from where a fit has left it, and
+    /// For each row an upper bound on the energy norm of the shift that puts it exactly at its gap, from where a fit has left it, and
     /// does not move the others of the set; zero for rows that follow from others.
     ///
-    /// The motions of all rows together put every row at its gap, so that their lengths, added up, bound the way to such a point,
+    /// The shifts of all rows together put every row at its gap, so that their lengths, added up, bound the way to such a point,
     /// whatever the signs of what rounding left of the distances. A row that the triangle keeps stands 64 units in the last place
     /// across those before it: rounding of its column changes the lengths by a small share.
     fn rest(&self, set: &[usize], fitted: &Fitted) -> Vec<f64> {
         let mut rest = vec![0.0; self.rows.len()];
         for (&row, length) in set.iter().zip(fitted.triangle.lengths_of_inverse()) {
-            let motion = (fitted.distance[row].abs() + fitted.tolerance[row]) * length;
-            rest[row] = ldexp(motion * motion, self.norm.factor()).sqrt();
+            let shift = (fitted.distance[row].abs() + fitted.tolerance[row]) * length;
+            rest[row] = ldexp(shift * shift, self.norm.factor()).sqrt();
         }
         rest
     }
@@ -153,7 +153,7 @@ impl Repair<'_> {
             let mut added = vec![0.0; self.rows.len()];
             set.iter().zip(step).for_each(|(&row, step)| added[row] = step);
             change.iter_mut().zip(&added).for_each(|(sum, step)| *sum += step);
-            // The motions are those of the forces but for the rounding of each step, however much the steps take from each other.
+            // The shifts are those of the forces but for the rounding of each step, however much the steps take from each other.
             steps.iter_mut().zip(&added).for_each(|(sum, step)| *sum += step.abs());
             moved.iter_mut().zip(self.boundary.backward(self.spread(&added))).for_each(|(sum, step)| *sum += step);
         }

@@ -2,7 +2,7 @@
 //!
 //! Bilinear elements connect nodes across such lines too, up to half as strongly as along them, although the smoother leaves
 //! what varies across. Aggregates that reach across do not help it; and a prolongator that is smoothed across makes the next
-//! matrices dense. Here both stay on the line: what a weak neighbour moves is taken as the motion of the node's own aggregate,
+//! matrices dense. Here both stay on the line: what a weak neighbour moves is taken as the mode of the node's own aggregate,
 //! continued to that neighbour, so that the near-null vectors stay exact.
 
 use super::aggregation::{Graph, aggregate, strong_connections};
@@ -84,7 +84,7 @@ impl Lines {
     }
 }
 
-/// The motions of an aggregate, continued to a node outside: X with `X R = B`, where B are the near-null vectors at the node, R those
+/// The modes of an aggregate, continued to a node outside: X with `X R = B`, where B are the near-null vectors at the node, R those
 /// in the columns of the aggregate. Returns `false` where it does not feel one of them.
 fn continued(
     fine: &Candidates,

@@ -9,7 +9,7 @@ const DEPENDENT_VECTOR: f64 = 1e-8;
 
 /// The near-null space of a stiffness: for a body its rigid-body modes, for a scalar problem the constants.
 ///
-/// One vector for each motion, one entry per free dof, linearly independent. Bodies that share no dof are carried by the
+/// One vector for each mode, one entry per free dof, linearly independent. Bodies that share no dof are carried by the
 /// same vectors, as rigid-body modes of all space.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NearNullSpace {
@@ -51,9 +51,9 @@ impl NearNullSpace {
         }
     }
 
-    /// From vectors that are known to be finite; one that follows from others, as a motion of which supports leave nothing,
+    /// From vectors that are known to be finite; one that follows from others, as a mode of which supports leave nothing,
     /// does no harm. `None` without vectors.
-    pub(crate) fn of_motions(vectors: Vec<Vec<f64>>) -> Option<Self> {
+    pub(crate) fn of_modes(vectors: Vec<Vec<f64>>) -> Option<Self> {
         let dofs = vectors.first().map_or(0, Vec::len);
         (dofs > 0 && vectors.iter().all(|vector| vector.len() == dofs)).then_some(NearNullSpace { vectors })
     }

@@ -5,7 +5,7 @@ use super::real::Real;
 use super::threads::in_block_chunks;
 
 /// A near-null vector of which less than this is left within an aggregate, after those before it are taken off, is no
-/// motion of its own there: two nodes do not turn about the line through them.
+/// mode of its own there: two nodes do not turn about the line through them.
 const DEPENDENT_IN_AGGREGATE: f64 = 1e-8;
 
 /// The near-null space on a level: `count` values for each place, place by place.

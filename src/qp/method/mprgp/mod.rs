@@ -75,7 +75,7 @@ impl Solver for Mprgp<'_> {
 ///
 /// # Errors
 /// [`Error::Numerical`] for rows that no turning makes bounds of, [`Error::NotConvex`] for a direction of negative energy
-/// in a face, [`Error::Unbounded`] for a load that drives a motion which no row stops, [`Error::UnderHeld`] for a motion
+/// in a face, [`Error::Unbounded`] for a load that drives a mode which no row stops, [`Error::UnderHeld`] for a mode
 /// that the rows under pressure leave free.
 fn solve(problem: &ContactProblem, multigrid: &Multigrid, start: Start, limits: Limits) -> Result<Outcome, Error> {
     let bounds = Bounds::of(problem.contact(), problem.gap())?;
@@ -220,7 +220,7 @@ impl Steps<'_> {
         self.limits.watch.step("MPRGP", self.cycles);
         let direction = Conjugate::of(step, self.last.take(), &gradient, iterate);
         if direction.is_free {
-            return Err(iterate.free_motion(direction.p));
+            return Err(iterate.free_mode(direction.p));
         }
         if direction.energy < 0.0 {
             return Err(iterate.negative_energy(direction));

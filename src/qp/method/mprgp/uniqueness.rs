@@ -1,4 +1,4 @@
-//! Motions without energy. Without a factor the cycles must tell: they leave such a motion as it is, and nothing else.
+//! Modes without energy. Without a factor the cycles must tell: they leave such a mode as it is, and nothing else.
 
 use super::iterate::{At, Iterate};
 use crate::error::Error;
@@ -6,22 +6,22 @@ use crate::qp::linear::multigrid::Multigrid;
 use crate::qp::linear::{dot, largest};
 use crate::qp::method::SIGN_TOLERANCE;
 use crate::qp::method::bounds::Bound;
-use crate::qp::method::holding::{FreeMotion, PLAY, WORK_TOLERANCE};
+use crate::qp::method::holding::{FreeMode, PLAY, WORK_TOLERANCE};
 
-/// Cycles in which all motions that cost energy die away; where they have not, the body counts as held.
+/// Cycles in which all modes that cost energy die away; where they have not, the body counts as held.
 const CYCLES: usize = 60;
 
-/// What is left of a motion that had only parts with energy.
+/// What is left of a mode that had only parts with energy.
 const GONE: f64 = 1e-8;
 
 /// Energy that falls by less than this factor in a cycle has come down to rounding.
 const LAST_FALL: f64 = 0.25;
 
 impl Iterate<'_> {
-    /// Do K and the rows under pressure hold every motion, or the open rows both ways without play?
+    /// Do K and the rows under pressure hold every mode, or the open rows both ways without play?
     ///
     /// # Errors
-    /// [`Error::UnderHeld`] with a motion that changes neither force nor energy, and those of the face.
+    /// [`Error::UnderHeld`] with a mode that changes neither force nor energy, and those of the face.
     pub fn check_unique(&self, multigrid: &Multigrid) -> Result<(), Error> {
         let strongest = (0..self.at.len()).map(|index| self.held_gradient(index).abs()).fold(0.0, f64::max);
         let is_pressed =
@@ -29,27 +29,27 @@ impl Iterate<'_> {
         let golden = 0.618_033_988_749_895;
         let every = (0..self.x.len()).map(|i| (i as f64 * golden).fract() - 0.5).collect();
         match self.without_energy(multigrid, every, is_pressed)? {
-            Some(motion) if !self.is_stopped_both_ways(&motion) => Err(self.free_motion(motion)),
+            Some(mode) if !self.is_stopped_both_ways(&mode) => Err(self.free_mode(mode)),
             _ => Ok(()),
         }
     }
 
-    /// Does the load drive a motion without energy that no row stops? Asked of the rows that are closed, and of none: a
+    /// Does the load drive a mode without energy that no row stops? Asked of the rows that are closed, and of none: a
     /// displacement that has run away closes any.
     ///
     /// # Errors
-    /// [`Error::Unbounded`] with that motion, and those of the face.
+    /// [`Error::Unbounded`] with that mode, and those of the face.
     pub fn check_bounded(&self, multigrid: &Multigrid) -> Result<(), Error> {
         for any_held in [false, true] {
             let is_held = |index: usize| any_held && self.at[index] != At::Free;
-            let Some(motion) = self.without_energy(multigrid, self.load.clone(), is_held)? else { continue };
-            let way = dot(&self.load, &motion).signum();
+            let Some(mode) = self.without_energy(multigrid, self.load.clone(), is_held)? else { continue };
+            let way = dot(&self.load, &mode).signum();
             let stops = |bound: &Bound| {
-                let speed = way * motion[bound.unknown];
+                let speed = way * mode[bound.unknown];
                 (speed > WORK_TOLERANCE && bound.upper.is_finite())
                     || (speed < -WORK_TOLERANCE && bound.lower.is_finite())
             };
-            let error = self.free_motion(motion.clone());
+            let error = self.free_mode(mode.clone());
             if matches!(error, Error::Unbounded { .. }) && !self.bounds.bounds().iter().any(stops) {
                 return Err(error);
             }
@@ -57,12 +57,12 @@ impl Iterate<'_> {
         Ok(())
     }
 
-    /// What cycles leave of `motion` where nothing moves that `is_held`: a motion without energy, largest entry one; `None`
+    /// What cycles leave of `mode` where nothing moves that `is_held`: a mode without energy, largest entry one; `None`
     /// where they leave nothing. Asked only where the coarsest matrix is singular to its precision.
     fn without_energy(
         &self,
         multigrid: &Multigrid,
-        mut motion: Vec<f64>,
+        mut mode: Vec<f64>,
         is_held: impl Fn(usize) -> bool,
     ) -> Result<Option<Vec<f64>>, Error> {
         if !multigrid.is_shifted() {
@@ -76,35 +76,35 @@ impl Iterate<'_> {
             return Ok(None);
         }
         let keep = |values: &mut [f64]| held.iter().for_each(|&index| values[bounds[index].unknown] = 0.0);
-        keep(&mut motion);
+        keep(&mut mode);
         // The smoothest part first: what a load of that form moves.
-        motion = self.cycled(&face, &motion);
-        keep(&mut motion);
-        let whole = largest(&motion);
+        mode = self.cycled(&face, &mode);
+        keep(&mut mode);
+        let whole = largest(&mode);
         let mut before = f64::INFINITY;
         for _ in 0..CYCLES {
-            let mut force = self.product(&motion);
-            let energy = dot(&motion, &force).abs();
-            if self.is_rounding(&motion, energy) && energy >= LAST_FALL * before {
-                let size = largest(&motion);
-                motion.iter_mut().for_each(|value| *value /= size);
-                return Ok((size > GONE * whole).then_some(motion));
+            let mut force = self.product(&mode);
+            let energy = dot(&mode, &force).abs();
+            if self.is_rounding(&mode, energy) && energy >= LAST_FALL * before {
+                let size = largest(&mode);
+                mode.iter_mut().for_each(|value| *value /= size);
+                return Ok((size > GONE * whole).then_some(mode));
             }
             before = energy;
             keep(&mut force);
             let mut step = self.cycled(&face, &force);
             keep(&mut step);
-            motion.iter_mut().zip(&step).for_each(|(motion, step)| *motion -= step);
+            mode.iter_mut().zip(&step).for_each(|(mode, step)| *mode -= step);
         }
         Ok(None)
     }
 
-    /// Do open rows without play stop the motion one way and the other?
-    fn is_stopped_both_ways(&self, motion: &[f64]) -> bool {
+    /// Do open rows without play stop the mode one way and the other?
+    fn is_stopped_both_ways(&self, mode: &[f64]) -> bool {
         let play = PLAY * largest(&self.x);
         let stops = |way: f64| {
             self.bounds.bounds().iter().any(|bound| {
-                let (value, speed) = (self.x[bound.unknown], way * motion[bound.unknown]);
+                let (value, speed) = (self.x[bound.unknown], way * mode[bound.unknown]);
                 let room = if speed > 0.0 { bound.upper - value } else { value - bound.lower };
                 speed.abs() > WORK_TOLERANCE && room <= play
             })
@@ -112,13 +112,13 @@ impl Iterate<'_> {
         stops(1.0) && stops(-1.0)
     }
 
-    /// The error that a motion without energy is, the way that the load drives it.
-    pub fn free_motion(&self, mut direction: Vec<f64>) -> Error {
+    /// The error that a mode without energy is, the way that the load drives it.
+    pub fn free_mode(&self, mut direction: Vec<f64>) -> Error {
         self.bounds.turn_back(&mut direction);
         let work = dot(self.problem.load(), &direction);
         let size = largest(&direction).copysign(work);
         direction.iter_mut().for_each(|value| *value /= size);
         let driven = work.abs() > WORK_TOLERANCE * size.abs() * largest(self.problem.load());
-        FreeMotion { direction, driven }.into_error()
+        FreeMode { direction, driven }.into_error()
     }
 }

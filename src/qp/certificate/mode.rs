@@ -4,7 +4,7 @@ use crate::error::Error;
 use crate::qp::linear::{NullSpace, Twice, largest, twice};
 use crate::qp::problem::ContactProblem;
 
-/// A load drives a motion if its work is beyond this share of its terms.
+/// A load drives a mode if its work is beyond this share of its terms.
 const DRIVES: f64 = 1e-9;
 
 /// The work of a load vanishes below this share of its terms, however the direction was found: a load that is out of balance by
@@ -41,10 +41,10 @@ const NEGATIVE: f64 = 1e-12;
 
 /// A direction without energy, and what the rows and the load say of it.
 #[derive(Clone, Debug)]
-pub(crate) struct Motion {
+pub(crate) struct NullMode {
     /// The direction d, one entry per dof, largest entry one.
     pub direction: Vec<f64>,
-    /// `B d` of each row, zero where it vanishes, positive where the motion closes the row.
+    /// `B d` of each row, zero where it vanishes, positive where the mode closes the row.
     pub approach: Vec<f64>,
     /// The share of its terms that is left of `f'd`, zero where that vanishes.
     pub work: f64,
@@ -52,18 +52,18 @@ pub(crate) struct Motion {
     resistance: f64,
 }
 
-impl Motion {
-    /// The error that it is, if the load drives the motion and no row stops it.
+impl NullMode {
+    /// The error that it is, if the load drives the mode and no row stops it.
     pub fn escapes(&self) -> bool {
         self.work > DRIVES && self.approach.iter().all(|&speed| speed <= 0.0)
     }
 
-    /// Returns `true` if the load does exactly no work on the motion.
+    /// Returns `true` if the load does exactly no work on the mode.
     pub fn is_idle(&self) -> bool {
         self.work == 0.0
     }
 
-    /// How the motion was rechecked, and most of it.
+    /// How the mode was rechecked, and most of it.
     pub fn in_words(&self) -> String {
         let mut entries: Vec<(usize, f64)> = self.direction.iter().copied().enumerate().collect();
         entries.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
@@ -79,7 +79,7 @@ impl Motion {
 impl ContactProblem {
     /// A direction of which the stiffness resists nothing, if it is one: `K d` vanishes in every dof. A direction is none if it
     /// cannot tell whether it closes, opens or slides along a row.
-    pub(crate) fn motion_along(&self, direction: &[Twice], rounding: Rounding) -> Option<Motion> {
+    pub(crate) fn mode_along(&self, direction: &[Twice], rounding: Rounding) -> Option<NullMode> {
         let by_size = |a: &&Twice, b: &&Twice| a.rounded().abs().total_cmp(&b.rounded().abs());
         let size = direction.iter().max_by(by_size)?.abs();
         if !(size.rounded() > 0.0 && size.rounded().is_finite()) {
@@ -92,7 +92,7 @@ impl ContactProblem {
             let resists = |&(force, terms): &(f64, f64)| force.abs() > rounding.vanishes * terms;
             !self.stiffness.resistance(direction).iter().any(resists)
         };
-        // Small entries may be what is left of zero, or part of the motion.
+        // Small entries may be what is left of zero, or part of the mode.
         let direction = [cleaned, whole].into_iter().find(is_free)?;
         let by_row = self.contact.transposed();
         let mut approach = vec![0.0; self.rows()];
@@ -108,7 +108,7 @@ impl ContactProblem {
         let left = twice::sum(work(), IDLE).rounded();
         let work = if left == 0.0 { 0.0 } else { left / terms };
         let direction = direction.into_iter().map(Twice::rounded).collect();
-        Some(Motion { direction, approach, work, resistance: rounding.vanishes })
+        Some(NullMode { direction, approach, work, resistance: rounding.vanishes })
     }
 
     /// The error that a direction p of negative energy is, if `p'K p` is negative beyond rounding.
