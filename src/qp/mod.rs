@@ -21,7 +21,6 @@ pub(crate) mod matrix_market;
 pub(crate) mod method;
 mod plan;
 pub(crate) mod problem;
-mod run;
 mod settings;
 pub(crate) mod transform;
 

@@ -13,8 +13,9 @@
 //! 5. **What follows an answer that falls short** ([`safer`]): a shortcut is left for the active set in double precision, a
 //!    condensed problem for all dofs.
 //!
-//! Within a method two fallbacks are fixed, and decide nothing by cost: sets that do not settle go on from a penalty ladder, then
-//! by the dual active-set method (`run`); an answer with a factor that falls short is corrected and repaired (`engine/answer`).
+//! Within a method the fallbacks are fixed, and decide nothing by cost: sets that do not settle within [`PATIENCE`] go on from a
+//! penalty ladder, then by the dual active-set method ([`takes_last_resort`]); an answer with a factor that falls short is corrected
+//! and repaired (`engine/answer`).
 
 use std::sync::LazyLock;
 
@@ -387,6 +388,14 @@ fn least(before: Option<Error>, other: Error) -> Error {
         (Some(Error::TooLarge { bytes: few, .. }), Error::TooLarge { bytes: many, .. }) if few > *many => other,
         (before, _) => before.unwrap_or(other),
     }
+}
+
+/// Iterations of the active-set loop after which its start is taken for a poor one.
+pub(super) const PATIENCE: usize = 16;
+
+/// Returns `true` if a method that has or has not `settled` is followed by the last resort.
+pub(super) fn takes_last_resort(settled: bool, settings: &Settings) -> bool {
+    !settled && settings.allows_last_resort(f64::INFINITY)
 }
 
 /// What was tried: a method, and the unknowns that it worked on if they were fewer than all.

@@ -3,13 +3,11 @@
 use super::schema::Scene;
 use crate::error::Error;
 use crate::fem::mesh::MAX_NODES;
-use crate::qp::cost::bytes;
+use crate::qp::cost::{assembly_seconds, bytes};
+use crate::qp::transform::FEW_VALUES;
 
 /// Where a dense matrix would have more than this share of the values of the factor, nothing is condensed.
 const DENSE_SHARE: f64 = 0.4;
-
-/// Dense values that are not worth counting.
-const FEW_VALUES: f64 = 1e6;
 
 /// The size of a scene, estimated from its divisions: within a factor of 2 of the memory that `solve` takes with a
 /// factor.
@@ -29,13 +27,10 @@ pub struct Size {
     pub multigrid_bytes: f64,
 }
 
-/// Seconds of meshing and assembly for an entry of the stiffness, on one processor of 2024.
-const ASSEMBLY: f64 = 3e-8;
-
 impl Size {
     /// Seconds of meshing and assembly, estimated.
     pub fn assembly_seconds(&self) -> f64 {
-        ASSEMBLY * self.stiffness_entries
+        assembly_seconds(self.stiffness_entries)
     }
 }
 

@@ -16,7 +16,7 @@ const FLOORS: [&[&str]; 18] = [
     &["qp/problem", "fem/mesh"],
     &["qp/certificate", "qp/transform", "qp/method", "fem/body"],
     &["qp/settings", "qp/matrix_market", "fem/assembly", "fem/recovery", "fem/norms"],
-    &["qp/cost", "qp/judged", "qp/run"],
+    &["qp/cost", "qp/judged"],
     &["qp/plan"],
     &["qp/engine"],
     &["qp/attempts"],

@@ -9,6 +9,7 @@ use super::settings::Settings;
 use super::transform::Condensation;
 use crate::error::Error;
 use crate::watch::Watch;
+pub(crate) use seconds::assembly_seconds;
 use seconds::factor_seconds;
 
 /// Rigid-body modes of a body in space: its factor grows faster than that of a plane body.

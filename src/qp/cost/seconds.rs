@@ -36,6 +36,9 @@ impl Cost {
     }
 }
 
+/// Seconds of meshing and assembly for an entry of the stiffness, both triangles.
+const ASSEMBLY: f64 = 3e-8;
+
 /// Seconds of ordering and analysis for an entry of the lower triangle, nested dissection included.
 const ORDERING: f64 = 1.3e-7;
 
@@ -64,6 +67,11 @@ const LATTICE: usize = 64;
 /// where the rules were fitted.
 pub(in crate::qp) fn factor_seconds(multiplications: f64, values: usize) -> [f64; 2] {
     [FITTED.double, FITTED.single].map(|cost| cost.seconds(multiplications, values as f64))
+}
+
+/// Seconds of meshing a scene and assembling so many entries of its stiffness, both triangles.
+pub(crate) fn assembly_seconds(entries: f64) -> f64 {
+    ASSEMBLY * entries
 }
 
 /// Seconds of ordering and analysing the stiffness of `problem`.

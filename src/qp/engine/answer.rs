@@ -4,12 +4,12 @@ use std::time::Instant;
 
 use super::factored::Factored;
 use super::found::Found;
+use super::run::last_resort;
 use crate::error::Error;
 use crate::qp::certificate::{EnergyNorm, Examined};
 use crate::qp::judged::{answer, judged};
 use crate::qp::method::{Outcome, ScaledProblem};
 use crate::qp::problem::ContactProblem;
-use crate::qp::run::last_resort;
 use crate::qp::settings::Settings;
 use crate::solution::{Certificate, ContactSet, Iteration, Seconds, Solution};
 use crate::watch::Watch;

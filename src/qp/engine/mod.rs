@@ -15,6 +15,7 @@ mod preparation;
 mod prepared;
 mod reduction;
 mod refinement;
+mod run;
 mod walk;
 
 pub use boundary::BoundarySolution;

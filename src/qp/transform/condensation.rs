@@ -26,8 +26,8 @@ const DENSE_MATRICES: f64 = 5.0;
 /// A difference below this share of its terms is rounding: the factorisation of a large body loses a few digits.
 const LEFT_OVER: f64 = 1e-12;
 
-/// Values that are not worth counting.
-const FEW_VALUES: f64 = 1e6;
+/// Dense values that are not worth counting.
+pub(crate) const FEW_VALUES: f64 = 1e6;
 
 /// The condensed stiffness, with the way back to the whole body.
 #[derive(Clone, Debug)]

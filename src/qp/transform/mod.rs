@@ -6,6 +6,7 @@ mod rows;
 mod scaling;
 
 pub use condensation::Condensation;
+pub(crate) use condensation::FEW_VALUES;
 pub use pieces::Pieces;
 pub use rows::RowSelection;
 pub use scaling::Scaling;

@@ -1,16 +1,14 @@
 //! Runs a method on a scaled problem, and the last resort where that does not settle.
 
-use super::settings::{Method, Settings};
 use crate::error::Error;
 use crate::qp::method::active_set::ActiveSet;
 use crate::qp::method::dual_active_set::DualActiveSet;
 use crate::qp::method::interior_point::{Barrier, InteriorPoint};
 use crate::qp::method::penalty::{self, Penalty, PenaltyLoop};
 use crate::qp::method::{Outcome, ScaledProblem, Solver, Start};
+use crate::qp::plan::{PATIENCE, takes_last_resort};
+use crate::qp::settings::{Method, Settings};
 use crate::solution::ContactSet;
-
-/// Iterations of the active-set loop after which its start is taken for a poor one.
-const PATIENCE: usize = 16;
 
 /// Runs the method of `settings`, and the last resort where that does not settle; the active-set steps start from `start`
 /// where it is given.
@@ -23,8 +21,7 @@ pub(super) fn run(
     bound: &dyn Fn(&[f64], &[f64]) -> f64,
 ) -> Result<Outcome, Error> {
     let found = run_method(scaled, start, settings, bound).and_then(|outcome| {
-        let is_final = outcome.settled || !settings.allows_last_resort(f64::INFINITY);
-        if is_final { Ok(outcome) } else { last_resort(scaled, outcome) }
+        if takes_last_resort(outcome.settled, settings) { last_resort(scaled, outcome) } else { Ok(outcome) }
     });
     let unique = |outcome: Outcome| scaled.check_unique(&outcome).map(|()| outcome);
     match found.and_then(unique) {
