@@ -23,7 +23,7 @@ use serde::Deserialize;
 
 use super::certificate::EnergyNorm;
 use super::cost::{Estimate, FACTORS, Kept, Smooth, bytes, check_memory, check_time, seconds, starts_near};
-use super::linear::Analysis;
+use super::linear::{Analysis, Width};
 use super::method::Start;
 use super::method::interior_point::InteriorPoint;
 use super::method::penalty::Penalty;
@@ -252,8 +252,8 @@ pub(super) struct Layout {
     pub multiplications: f64,
     /// What was chosen, where the choice was left to the program.
     pub way: Option<Way>,
-    /// Is the factor in single precision?
-    pub is_single: bool,
+    /// The precision of the factor.
+    pub width: Width,
     /// Is the factor of the stiffness kept beside those of the contact sets? If not, it is made again for the certificate.
     pub keeps_norm: bool,
 }
@@ -311,23 +311,24 @@ impl Layout {
         let analysis = analysis.with_threads(settings.threads);
         let multiplications = analysis.multiplications();
         let way = Way::chosen(settings, is_condensed, multiplications, problem.rows());
-        let is_single = is_condensed && precision(way, settings) == Precision::Mixed;
+        let is_mixed = is_condensed && precision(way, settings) == Precision::Mixed;
+        let width = if is_mixed { Width::Single } else { Width::Double };
         let is_last_free = last.is_empty();
-        let mut layout = Layout { analysis, last, is_condensed, multiplications, way, is_single, keeps_norm: true };
-        let mut choices = vec![(way, is_single, true)];
+        let mut layout = Layout { analysis, last, is_condensed, multiplications, way, width, keeps_norm: true };
+        let mut choices = vec![(way, width, true)];
         // What the rules choose for its speed may take more memory, or time before its first step, than there is.
         if way.is_some() {
-            choices.push((Some(Way::ActiveSet), false, true));
+            choices.push((Some(Way::ActiveSet), Width::Double, true));
         }
         if way.is_some() && is_condensed && settings.precision != Precision::Double {
-            choices.push((Some(Way::ActiveSetMixed), true, true));
+            choices.push((Some(Way::ActiveSetMixed), Width::Single, true));
         }
         if !is_condensed && is_last_free && settings.method == Method::ActiveSet {
-            choices.push((way, false, false));
+            choices.push((way, Width::Double, false));
         }
         let mut refused: Option<Error> = None;
         for choice in choices {
-            (layout.way, layout.is_single, layout.keeps_norm) = choice;
+            (layout.way, layout.width, layout.keeps_norm) = choice;
             let fits = check_memory(problem, layout.kept(settings), settings)
                 .and_then(|()| check_time(&settings.watch, layout.seconds(settings)));
             match fits {
@@ -342,7 +343,7 @@ impl Layout {
         let (values, last) = (self.analysis.factor_entries(), self.last.len());
         let by_interior_point = self.by_interior_point(settings);
         match self.is_condensed {
-            true => Kept::Condensed { values, is_single: self.is_single, contact_dofs: last, by_interior_point },
+            true => Kept::Condensed { values, width: self.width, contact_dofs: last, by_interior_point },
             false if self.keeps_norm => Kept::Factors { values, last, by_interior_point },
             false => Kept::OneFactor { values },
         }
@@ -354,11 +355,11 @@ impl Layout {
 
     /// Seconds until the first set of contact rows is settled, or the first step of the interior point is done.
     fn seconds(&self, settings: &Settings) -> f64 {
-        let [double, single] = seconds::factor_seconds(self.multiplications, self.analysis.factor_entries());
-        let first = if self.is_single { single } else { double };
+        let of = |width| seconds::factor_seconds(self.multiplications, self.analysis.factor_entries(), width);
+        let first = of(self.width);
         match (self.is_condensed, self.by_interior_point(settings)) {
             (true, _) => first + seconds::dense(self.last.len()),
-            (false, false) => first + double,
+            (false, false) => first + of(Width::Double),
             (false, true) => first + 2.0 * seconds::interior_point(&self.analysis),
         }
     }

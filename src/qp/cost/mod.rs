@@ -3,7 +3,7 @@
 pub mod bytes;
 pub(in crate::qp) mod seconds;
 
-use super::linear::{SparseMatrix, SymmetricMatrix, largest};
+use super::linear::{SparseMatrix, SymmetricMatrix, Width, largest};
 use super::problem::ContactProblem;
 use super::settings::Settings;
 use super::transform::Condensation;
@@ -201,7 +201,7 @@ impl Direct {
         let dofs = problem.dofs() as f64;
         let entries = problem.stiffness().lower().entries() as f64;
         let (factor_entries, of_body) = match problem.near_null().map(|near_null| near_null.count()) {
-            Some(1) => (ALONG_A_LINE * dofs, factor_seconds(0.0, (ALONG_A_LINE * dofs) as usize)[0]),
+            Some(1) => (ALONG_A_LINE * dofs, factor_seconds(0.0, (ALONG_A_LINE * dofs) as usize, Width::Double)),
             Some(MODES_IN_SPACE..) => (23.0 * dofs.powf(4.0 / 3.0), 6.5e-10 * dofs.powi(2)),
             _ => (6.0 * dofs * dofs.max(2.0).log2(), in_the_plane(problem)),
         };
@@ -228,7 +228,7 @@ pub(in crate::qp) enum Kept {
     /// Nothing yet: the problem is being ordered.
     Nothing,
     /// The factor of the body, with so many values, and dense matrices on so many contact dofs.
-    Condensed { values: usize, is_single: bool, contact_dofs: usize, by_interior_point: bool },
+    Condensed { values: usize, width: Width, contact_dofs: usize, by_interior_point: bool },
     /// The factor of the body and those of two contact sets, with so many values each; so many contact dofs come last.
     Factors { values: usize, last: usize, by_interior_point: bool },
     /// The factor of one contact set, with so many values.
@@ -240,7 +240,7 @@ pub(in crate::qp) enum Kept {
 impl Kept {
     /// The least that a condensation onto so many contact dofs keeps.
     pub fn dense(contact_dofs: usize) -> Self {
-        Kept::Condensed { values: 0, is_single: true, contact_dofs, by_interior_point: false }
+        Kept::Condensed { values: 0, width: Width::Single, contact_dofs, by_interior_point: false }
     }
 
     /// The least that factors with so many contact dofs last keep.
@@ -263,11 +263,10 @@ pub(in crate::qp) fn check_memory(problem: &ContactProblem, kept: Kept, settings
     let of_interior_point = |values: f64, is_used| if is_used { bytes::of_interior_point(values) } else { 0.0 };
     let (factor_entries, beside) = match kept {
         Kept::Nothing => (0, 0.0),
-        Kept::Condensed { values, is_single, contact_dofs, by_interior_point } => {
-            let size = if is_single { size_of::<f32>() } else { size_of::<f64>() };
+        Kept::Condensed { values, width, contact_dofs, by_interior_point } => {
             let dense = contact_dofs as f64;
             let on_boundary = bytes::of_dense(dense) + of_interior_point(dense * dense / 2.0, by_interior_point);
-            (values, bytes::of_factor(values as f64, size) + on_boundary)
+            (values, bytes::of_factor(values as f64, width.bytes()) + on_boundary)
         }
         Kept::Factors { values, last, by_interior_point } => {
             let factors = FACTORS * bytes::of_factor(values as f64, size_of::<f64>());

@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use serde::Deserialize;
 
 use crate::qp::linear::selected_inverse::FACTORISATIONS;
-use crate::qp::linear::{Analysis, SparseMatrix, SymmetricMatrix};
+use crate::qp::linear::{Analysis, SparseMatrix, SymmetricMatrix, Width};
 use crate::qp::problem::ContactProblem;
 use crate::watch::Watch;
 
@@ -63,10 +63,10 @@ const MORE_FILL: f64 = 3.0;
 /// Cells along a side of the lattice whose matrix is factorised to learn the pace.
 const LATTICE: usize = 64;
 
-/// Seconds of a factorisation with so many multiplications and values, in double and in single precision, as they were
-/// where the rules were fitted.
-pub(in crate::qp) fn factor_seconds(multiplications: f64, values: usize) -> [f64; 2] {
-    [FITTED.double, FITTED.single].map(|cost| cost.seconds(multiplications, values as f64))
+/// Seconds of a factorisation with so many multiplications and values, as they were where the rules were fitted.
+pub(in crate::qp) fn factor_seconds(multiplications: f64, values: usize, width: Width) -> f64 {
+    let cost = if width == Width::Single { FITTED.single } else { FITTED.double };
+    cost.seconds(multiplications, values as f64)
 }
 
 /// Seconds of meshing a scene and assembling so many entries of its stiffness, both triangles.
@@ -97,7 +97,7 @@ pub(in crate::qp) fn certificate(problem: &ContactProblem) -> f64 {
 
 /// Seconds of one factorisation in double precision.
 pub(in crate::qp) fn factorisation(analysis: &Analysis) -> f64 {
-    factor_seconds(analysis.multiplications(), analysis.factor_entries())[0]
+    factor_seconds(analysis.multiplications(), analysis.factor_entries(), Width::Double)
 }
 
 /// Seconds of one step of the interior point on a matrix that is analysed so, with a row for each of its contact dofs.
@@ -147,11 +147,11 @@ pub(in crate::qp) fn learn(watch: &Watch) {
 
 #[cfg(test)]
 mod tests {
-    use super::factor_seconds;
+    use super::{Width, factor_seconds};
 
     #[test]
     fn the_fitted_costs_are_read() {
-        let [double, single] = factor_seconds(1e9, 1_000_000);
+        let [double, single] = [Width::Double, Width::Single].map(|width| factor_seconds(1e9, 1_000_000, width));
         assert!(single > 0.0 && double > single && double < 10.0, "{double} {single}");
     }
 }

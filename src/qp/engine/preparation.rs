@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::qp::certificate::EnergyNorm;
 use crate::qp::cost::seconds::factor_seconds;
 use crate::qp::cost::{Kept, check_memory, check_time, seconds};
-use crate::qp::linear::{Analysis, AugmentedMatrix, Cholesky, FactorError, largest};
+use crate::qp::linear::{Analysis, AugmentedMatrix, Cholesky, FactorError, Width, largest};
 use crate::qp::plan::{Layout, Way};
 use crate::qp::problem::ContactProblem;
 use crate::qp::settings::Settings;
@@ -37,7 +37,7 @@ impl Factored {
         let stiffest = largest(&problem.stiffness().diagonal());
         let factor_clock = Instant::now();
         let layout = Layout::within(problem, &scaling, settings)?;
-        let Layout { analysis, last, is_condensed, multiplications, mut way, is_single: single, keeps_norm } = layout;
+        let Layout { analysis, last, is_condensed, multiplications, mut way, width, keeps_norm } = layout;
         if watch.is_stopped() {
             return Err(Error::Interrupted);
         }
@@ -49,7 +49,7 @@ impl Factored {
         let proof_seconds = seconds::sweeps(problem.rows(), of_row).min(seconds::selected_inverse(&analysis));
         let norm_seconds = seconds::ordering(problem) + seconds::factorisation(&analysis);
         let mut factoring = Factoring { problem, scaling: &scaling, analysis: &analysis, settings, least_pivot: None };
-        let cholesky = factoring.definite(single, last.len())?;
+        let cholesky = factoring.definite(width, last.len())?;
         let least_pivot = factoring.least_pivot;
         // Without columns that come last the contact sets have the order of the stiffness.
         let analysis = last.is_empty().then_some(analysis);
@@ -100,34 +100,34 @@ impl Factoring<'_> {
     ///
     /// # Errors
     /// [`Error::TooLarge`] and [`Error::OutOfTime`] for a second factor, [`Error::Numerical`].
-    fn definite(&mut self, is_single: bool, contact_dofs: usize) -> Result<Option<Cholesky>, Error> {
+    fn definite(&mut self, width: Width, contact_dofs: usize) -> Result<Option<Cholesky>, Error> {
         if self.problem.stiffness().diagonal().contains(&0.0) {
             self.least_pivot = Some(0.0);
             return Ok(None);
         }
-        if is_single {
-            if let Some(cholesky) = self.factor(true)? {
+        if width == Width::Single {
+            if let Some(cholesky) = self.factor(width)? {
                 return Ok(Some(cholesky));
             }
             let values = self.analysis.factor_entries();
-            let kept = Kept::Condensed { values, is_single: false, contact_dofs, by_interior_point: false };
+            let kept = Kept::Condensed { values, width: Width::Double, contact_dofs, by_interior_point: false };
             check_memory(self.problem, kept, self.settings)?;
-            check_time(&self.settings.watch, self.seconds(false))?;
+            check_time(&self.settings.watch, self.seconds(Width::Double))?;
         }
-        self.factor(false)
+        self.factor(Width::Double)
     }
 
-    fn seconds(&self, is_single: bool) -> f64 {
-        factor_seconds(self.analysis.multiplications(), self.analysis.factor_entries())[usize::from(is_single)]
+    fn seconds(&self, width: Width) -> f64 {
+        factor_seconds(self.analysis.multiplications(), self.analysis.factor_entries(), width)
     }
 
-    fn factor(&mut self, is_single: bool) -> Result<Option<Cholesky>, Error> {
+    fn factor(&mut self, width: Width) -> Result<Option<Cholesky>, Error> {
         let scaled = self.scaling.equilibration();
-        let factor = || self.analysis.factor_equilibrated(self.problem.stiffness(), scaled, is_single);
-        match self.settings.watch.timed(self.seconds(is_single), factor) {
+        let factor = || self.analysis.factor_equilibrated(self.problem.stiffness(), scaled, width);
+        match self.settings.watch.timed(self.seconds(width), factor) {
             Ok(cholesky) => {
                 self.least_pivot = Some(cholesky.smallest_pivot());
-                let is_uncertain = is_single && cholesky.smallest_pivot() <= SINGLE_PIVOT;
+                let is_uncertain = width == Width::Single && cholesky.smallest_pivot() <= SINGLE_PIVOT;
                 let is_definite = || cholesky.is_safely_definite() || cholesky.is_definite(self.scaling.stiffness());
                 Ok((!is_uncertain && is_definite()).then_some(cholesky))
             }
@@ -154,7 +154,12 @@ fn condensed(
     };
     let Some(factor) = factor else { return Ok(None) };
     check_time(&settings.watch, seconds::dense(last.len()))?;
-    Condensation::new(factor, last.to_vec(), scaling.contact(), cholesky.is_none()).map(Some)
+    let last = last.to_vec();
+    match cholesky {
+        Some(_) => Condensation::new(factor, last, scaling.contact()),
+        None => Condensation::without_rows(factor, last, scaling.contact()),
+    }
+    .map(Some)
 }
 
 /// The matrices that the methods factorise, analysed; an `analysis` of the stiffness serves them too.

@@ -8,7 +8,7 @@ use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{self as fc, supernodal};
 use faer::{Par, Side};
 
-use super::factor::{self, FactorError, Real, call};
+use super::factor::{self, FactorError, Real, Width, call};
 use super::{Equilibration, LowerTriangle, SparseMatrix, SymmetricMatrix, dot, ldexp, ordering};
 
 /// Fill-reducing ordering and structure of the factor, for all matrices of one sparsity pattern.
@@ -126,7 +126,7 @@ impl Analysis {
     }
 
     /// Factorises the equilibrated `c D A D` of `matrix` without building it, in double precision or, with half the
-    /// memory and some seven digits of each entry, in `single`.
+    /// memory and some seven digits of each entry, if that is the `width`.
     ///
     /// # Errors
     /// As [`Analysis::factor`]; in single precision a pivot may also be lost to rounding.
@@ -134,11 +134,11 @@ impl Analysis {
         &self,
         matrix: &SymmetricMatrix,
         equilibration: &Equilibration,
-        single: bool,
+        width: Width,
     ) -> Result<Cholesky, FactorError> {
         let scale = &equilibration.diagonal;
         let entry = |row: usize, column: usize, value| ldexp(value, equilibration.factor + scale[row] + scale[column]);
-        let (values, smallest_pivot) = if single {
+        let (values, smallest_pivot) = if width == Width::Single {
             let rounded = |row: usize, column: usize, value| entry(row, column, value) as f32;
             let (values, pivot) = self.factorised(self.permuted(matrix.lower(), rounded))?;
             (Values::Single(Arc::new(values)), pivot)

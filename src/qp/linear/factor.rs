@@ -45,6 +45,25 @@ pub(super) fn call<T>(work: impl FnOnce() -> Result<T, FactorError>) -> Result<T
     guarded(work).map_err(FactorError::Failed)?
 }
 
+/// Precision of the values of a factor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Width {
+    /// Double.
+    Double,
+    /// Single: half the memory, some seven digits of each value.
+    Single,
+}
+
+impl Width {
+    /// Bytes of a value.
+    pub fn bytes(self) -> usize {
+        match self {
+            Width::Double => size_of::<f64>(),
+            Width::Single => size_of::<f32>(),
+        }
+    }
+}
+
 /// `f64` or `f32`.
 pub(super) trait Real: RealField + Copy + Into<f64> {
     /// The nearest value.

@@ -28,7 +28,7 @@ pub use augmented::AugmentedMatrix;
 pub use cholesky::{Analysis, Cholesky};
 pub use dense::{LowerTriangle, UpperTriangle, dot, largest, norm, subtract, take_out, turned};
 pub use dependence::Dependence;
-pub use factor::FactorError;
+pub use factor::{FactorError, Width};
 pub use forest::Forest;
 pub use null_space::{NullSpace, generic};
 pub use orthogonal::inverse_lengths;

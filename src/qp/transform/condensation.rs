@@ -68,43 +68,50 @@ impl Condensation {
         DENSE_MATRICES * (contact_dofs as f64).powi(2) <= FEW_VALUES.max(factor_entries)
     }
 
-    /// Condenses with a factorisation of K (`shifted` false) or K + B'B (`shifted` true) that put `contact_dofs` last.
+    /// Condenses with a factorisation of K that put `contact_dofs` last.
     ///
     /// # Errors
     /// Those of the sparse matrices, should the data leave the range of double precision.
-    pub fn new(
-        cholesky: Cholesky,
-        contact_dofs: Vec<usize>,
-        contact: &SparseMatrix,
-        shifted: bool,
-    ) -> Result<Self, Error> {
-        let size = contact_dofs.len();
+    pub fn new(cholesky: Cholesky, contact_dofs: Vec<usize>, contact: &SparseMatrix) -> Result<Self, Error> {
+        let contact = on_dofs(contact, &contact_dofs)?;
         let trailing = cholesky.trailing_block();
-        let entries: Vec<_> = contact_dofs
-            .iter()
-            .enumerate()
-            .flat_map(|(column, &dof)| contact.column(dof).map(move |(row, value)| (row, column, value)))
-            .collect();
-        let contact = SparseMatrix::from_triplets(contact.rows(), size, &entries)?;
+        let schur = trailing.times_transpose();
+        Self::of((cholesky, trailing), schur, contact_dofs, contact)
+    }
+
+    /// The same with a factorisation of K + B'B, whose rows are taken out of the Schur complement.
+    ///
+    /// # Errors
+    /// As [`Condensation::new`].
+    pub fn without_rows(cholesky: Cholesky, contact_dofs: Vec<usize>, contact: &SparseMatrix) -> Result<Self, Error> {
+        let contact = on_dofs(contact, &contact_dofs)?;
+        let (trailing, size) = (cholesky.trailing_block(), contact_dofs.len());
         let mut schur = trailing.times_transpose();
-        if shifted {
-            let before = schur.clone();
-            let by_row = contact.transposed();
-            for row in 0..by_row.columns() {
-                for (i, a) in by_row.column(row) {
-                    for (j, b) in by_row.column(row).filter(|entry| entry.0 <= i) {
-                        schur[j * size + i] -= a * b;
-                    }
-                }
-            }
-            // What is left of equal terms is rounding, and would hold a body that nothing holds.
-            for (entry, before) in schur.iter_mut().zip(&before) {
-                if entry.abs() <= LEFT_OVER * before.abs() {
-                    *entry = 0.0;
+        let before = schur.clone();
+        let by_row = contact.transposed();
+        for row in 0..by_row.columns() {
+            for (i, a) in by_row.column(row) {
+                for (j, b) in by_row.column(row).filter(|entry| entry.0 <= i) {
+                    schur[j * size + i] -= a * b;
                 }
             }
         }
-        let stiffness = SymmetricMatrix::from_lower(dense_triangle(schur, size)?)?;
+        // What is left of equal terms is rounding, and would hold a body that nothing holds.
+        for (entry, before) in schur.iter_mut().zip(&before) {
+            if entry.abs() <= LEFT_OVER * before.abs() {
+                *entry = 0.0;
+            }
+        }
+        Self::of((cholesky, trailing), schur, contact_dofs, contact)
+    }
+
+    fn of(
+        (cholesky, trailing): (Cholesky, LowerTriangle),
+        schur: Vec<f64>,
+        contact_dofs: Vec<usize>,
+        contact: SparseMatrix,
+    ) -> Result<Self, Error> {
+        let stiffness = SymmetricMatrix::from_lower(dense_triangle(schur, contact_dofs.len())?)?;
         Ok(Condensation { contact_dofs, cholesky, trailing, stiffness, contact })
     }
 
@@ -190,6 +197,13 @@ impl Condensation {
         self.contact_dofs.iter().zip(displacement).for_each(|(&dof, &u)| expanded[dof] = u);
         expanded
     }
+}
+
+/// The rows B in the contact dofs alone.
+fn on_dofs(contact: &SparseMatrix, contact_dofs: &[usize]) -> Result<SparseMatrix, Error> {
+    let column = |(column, &dof)| contact.column(dof).map(move |(row, value)| (row, column, value));
+    let entries: Vec<_> = contact_dofs.iter().enumerate().flat_map(column).collect();
+    SparseMatrix::from_triplets(contact.rows(), contact_dofs.len(), &entries)
 }
 
 /// The lower triangle of a dense matrix (n x n, column by column), with every entry of it.
