@@ -93,8 +93,7 @@ impl Attempts {
             Choice::Room { reason } => reason,
         };
         let clock = Instant::now();
-        let max_iterations = worth_cycles.min(settings.max_iterations);
-        let expected = Settings { max_iterations, worth_cycles, ..settings.clone() };
+        let expected = Settings { worth_cycles, ..settings.clone() };
         let answered =
             with_solution(by_multigrid(problem, &expected), |solution| Solution { reason: Some(reason), ..solution });
         let fell_short = match answered {

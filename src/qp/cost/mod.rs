@@ -202,7 +202,7 @@ impl Direct {
         let entries = problem.stiffness().lower().entries() as f64;
         let (factor_entries, of_body) = match problem.near_null().map(|near_null| near_null.count()) {
             Some(1) => (ALONG_A_LINE * dofs, factor_seconds(0.0, (ALONG_A_LINE * dofs) as usize, Width::Double)),
-            Some(MODES_IN_SPACE..) => (23.0 * dofs.powf(4.0 / 3.0), 6.5e-10 * dofs.powi(2)),
+            Some(MODES_IN_SPACE..) => (23.0 * dofs.powf(4.0 / 3.0), 7.7e-10 * dofs.powi(2)),
             _ => (6.0 * dofs * dofs.max(2.0).log2(), in_the_plane(problem)),
         };
         let boundary = Condensation::contact_dofs(problem.contact()).len();

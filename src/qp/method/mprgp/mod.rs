@@ -36,6 +36,10 @@ const PATIENCE: usize = 60;
 /// Cycles on one face after which their rate tells how many all will take, and by how much that may be wrong.
 const TRIAL: (usize, f64) = (16, 1.2);
 
+/// These cycles are at least one over this share of those that they are worth: conjugate gradients begin slowly on a stretched mesh,
+/// and little of the other way is lost by waiting. With that share left to go, an answer is near.
+const SHARE: usize = 8;
+
 /// A residual in twice the precision that is above this share of the one before will not come down any more.
 const NO_GAIN: f64 = 0.5;
 
@@ -46,7 +50,8 @@ pub struct Limits<'a> {
     pub tolerance: f64,
     /// Most cycles of the hierarchy.
     pub most_cycles: usize,
-    /// The loop ends where its rate so far tells that it would take clearly more cycles than this.
+    /// Cycles that the answer by another way is worth: the loop ends if its rate tells that clearly more are left, or after as many
+    /// unless few are left.
     pub worth: usize,
     /// Whether it must end before, with what it has.
     pub watch: &'a Watch,
@@ -168,13 +173,17 @@ impl Progress {
         }
     }
 
-    /// Returns `true` if the rate on the last face leads to the tolerance only after clearly more `cycles` than they are worth.
+    /// Returns `true` if the other way, which is worth so many cycles, is the shorter one from here.
     fn is_hopeless(&self, cycles: usize, limits: Limits) -> bool {
-        let ((trial, unsure), (before, first)) = (TRIAL, self.on_face);
+        let ((least, unsure), (before, first)) = (TRIAL, self.on_face);
         let gained = (first / self.best).ln();
         let needed = (self.best / limits.tolerance).ln();
         let taken = cycles - before;
-        taken >= trial && cycles as f64 + taken as f64 * needed / gained.max(0.0) > unsure * limits.worth as f64
+        let left = taken as f64 * needed / gained.max(0.0);
+        let worth = limits.worth as f64;
+        let is_told = taken >= least.max(limits.worth / SHARE);
+        let is_near = left <= worth / SHARE as f64;
+        (is_told && left > unsure * worth) || (cycles >= limits.worth && !is_near)
     }
 
     /// Checks what the steps have carried along before it is believed. Returns `true` if rounding of the displacement is all
