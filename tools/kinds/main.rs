@@ -4,8 +4,9 @@
 //!
 //! `--plot FOLDER` draws the seconds over the unknowns of the membranes, `membrane.svg` and `membrane.png`.
 //!
-//! A line of `ratios` follows each kind: the time of `auto` over that of our fastest method, and, with `--peers` and petsc4py, over
-//! that of PETSc's fastest and of one linear solve there.
+//! A line of `ratios` follows each kind: the time of `auto` over that of our fastest method and of one linear
+//! solve by our own factor (`linear` among the methods: no rows); with `--peers` and petsc4py over that of PETSc's fastest and of one
+//! linear solve there.
 
 mod bodies;
 mod floors;
@@ -22,7 +23,7 @@ use growth::Times;
 use peers::{Interpreter, Peer};
 use problems::{KINDS, Kind};
 use signorini::output::write_picture;
-use signorini::{ContactProblem, ContactSet, Error, Method, Scene, Settings, Solution, solve};
+use signorini::{ContactProblem, ContactSet, Error, Method, Scene, Settings, Solution, SparseMatrix, solve};
 use unseen::UNSEEN;
 
 fn main() -> ExitCode {
@@ -129,17 +130,31 @@ fn measure(task: &Task, names: &str, most: f64, interpreter: Option<&Interpreter
             }
         }
     }
+    let is_asked = names.split(',').any(|name| name == "linear");
+    let linear =
+        if is_asked { linear_solve(&problem, most) } else { Ok(f64::INFINITY) }.map_err(|error| error.to_string())?;
     let found = interpreter.map(|interpreter| peers::peers(interpreter, &problem)).transpose();
     let found = found.map_err(|error| error.to_string())?.unwrap_or_default();
-    print_ratios(&task.name, &certified, &found);
+    print_ratios(&task.name, &certified, linear, &found);
     let of_methods = certified.iter().map(|(method, seconds)| (method.name().to_string(), *seconds));
     let of_peers = found.iter().map(|peer| (format!("PETSc {}", peer.name), peer.seconds));
     let of_solvers = of_methods.chain(of_peers).collect();
     Ok(Times { kind: task.name.clone(), unknowns: problem.dofs(), of_solvers })
 }
 
+/// Seconds of the same body without contact rows, by a factor; infinite if it does not end in time.
+fn linear_solve(problem: &ContactProblem, most: f64) -> Result<f64, Error> {
+    let no_rows = SparseMatrix::from_triplets(0, problem.dofs(), &[])?;
+    let free = ContactProblem::new(problem.stiffness().clone(), problem.load().to_vec(), no_rows, Vec::new())?;
+    let mut settings = Settings::within(Duration::from_secs_f64(most));
+    settings.method = Method::ActiveSet;
+    let clock = Instant::now();
+    let is_solved = solve(&free, &settings).is_ok();
+    Ok(if is_solved { clock.elapsed().as_secs_f64() } else { f64::INFINITY })
+}
+
 /// The seconds of PETSc, and the time of `auto`, certified and proven, over that of others.
-fn print_ratios(kind: &str, certified: &[(Method, f64)], peers: &[Peer]) {
+fn print_ratios(kind: &str, certified: &[(Method, f64)], own_linear: f64, peers: &[Peer]) {
     for Peer { name, seconds, iterations, closed } in peers {
         println!("{kind:16} petsc {name:7} {:>31} {seconds:>19.3} {:>19} {iterations:>7} {closed:>7}", "", "");
     }
@@ -151,7 +166,8 @@ fn print_ratios(kind: &str, certified: &[(Method, f64)], peers: &[Peer]) {
     let own = if certified.len() > 1 { least(&mut certified.iter().map(|entry| entry.1)) } else { f64::INFINITY };
     let with_bounds = least(&mut peers.iter().filter(|peer| peer.name != "linear").map(|peer| peer.seconds));
     let linear = least(&mut peers.iter().filter(|peer| peer.name == "linear").map(|peer| peer.seconds));
-    let ratios = [ratio("best method", own), ratio("PETSc", with_bounds), ratio("PETSc linear", linear)].concat();
+    let ratios = [("best method", own), ("linear", own_linear), ("PETSc", with_bounds), ("PETSc linear", linear)];
+    let ratios: String = ratios.into_iter().map(|(of, seconds)| ratio(of, seconds)).collect();
     if !ratios.is_empty() {
         println!("{kind:16} ratios of auto to:{ratios}");
     }
