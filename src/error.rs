@@ -210,6 +210,14 @@ pub enum Error {
         /// What is wrong, and what is allowed.
         message: String,
     },
+    /// A scene that can be solved, whose answer would be to another question than was meant.
+    #[error("{message}")]
+    Refused {
+        /// The name of the kind of refusal, the same in every version.
+        code: &'static str,
+        /// What would go wrong, where, with numbers, and what to change.
+        message: String,
+    },
     /// A scene whose values do not describe a problem.
     #[error("scene, at `{path}`: {message}")]
     Scene {
@@ -287,6 +295,7 @@ impl Error {
             Error::TooLarge { .. } | Error::NoRoom { .. } => bad_input("too-large"),
             Error::Numerical { .. } => ("numerical", "failed", BadInput),
             Error::Mesh { .. } => bad_input("mesh"),
+            Error::Refused { code, .. } => bad_input(code),
             Error::SceneSyntax { .. } | Error::Scene { .. } => bad_input("scene"),
             Error::FileSyntax { .. } => bad_input("file-syntax"),
             Error::File { .. } => bad_input("file"),

@@ -92,7 +92,7 @@ pub(super) struct Solve {
     #[arg(long, value_name = "A", allow_negative_numbers = true, value_parser = parse_accuracy)]
     pub accuracy: Option<Accuracy>,
     /// Seconds after which the best answer so far is returned, or a motion ends
-    #[arg(long, visible_alias = "time-limit", value_name = "T", allow_negative_numbers = true, value_parser = parse_tolerance)]
+    #[arg(long, visible_alias = "time-limit", value_name = "T", allow_negative_numbers = true, value_parser = parse_seconds)]
     pub time: Option<f64>,
     /// Precision of the sparse factor
     #[arg(long, value_enum, default_value_t = Precision::Auto)]
@@ -162,10 +162,22 @@ fn parse_gaps(text: &str) -> Result<Gaps, String> {
     Ok(gaps)
 }
 
-fn parse_tolerance(text: &str) -> Result<f64, String> {
+fn parse_seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
-        _ => Err("it must be a positive number, as 1e-9".to_string()),
+        _ => Err("it must be a positive number of seconds, as 2.5".to_string()),
+    }
+}
+
+/// A relative error above this says nothing.
+const LARGEST_TOLERANCE: f64 = 0.1;
+
+fn parse_tolerance(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value <= LARGEST_TOLERANCE => Ok(value),
+        _ => {
+            Err(format!("it must be a number above 0 and at most {LARGEST_TOLERANCE}, as 1e-9: it is a relative error"))
+        }
     }
 }
 
@@ -183,7 +195,7 @@ fn parse_accuracy(text: &str) -> Result<Accuracy, String> {
         "exact" => Ok(Accuracy::Exact),
         number => parse_tolerance(number)
             .map(Accuracy::Within)
-            .map_err(|_| "it must be a positive number, as 1e-3, or `exact`".to_string()),
+            .map_err(|_| format!("it must be a number above 0 and at most {LARGEST_TOLERANCE}, as 1e-3, or `exact`")),
     }
 }
 

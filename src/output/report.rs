@@ -2,7 +2,7 @@
 
 use crate::scene::Units;
 use crate::solution::{Certificate, Goal, ProvenSet};
-use crate::study::{Agreement, Summary, Sweep, SweepEvent, SweepPoint, Verification};
+use crate::study::{Agreement, AnswerWarning, Summary, Sweep, SweepEvent, SweepPoint, Verification};
 
 /// Text on one line, without characters that would steer a terminal.
 pub fn printable(text: &str) -> String {
@@ -78,7 +78,7 @@ pub fn solve_text(title: &str, summary: &Summary, units: &Units) -> String {
         line("", format!("loads, reactions and contact forces balance to {balance:.1e}"));
     }
     text += &certificate_text(&solution.certificate, summary.goal);
-    text += &warnings_text(summary);
+    text += &warnings_text(&summary.warnings);
     text += &mesh_text(summary);
     text += &entry(
         "seconds",
@@ -111,12 +111,12 @@ fn proven_text(proven: &ProvenSet) -> String {
 }
 
 /// What may mislead, in full sentences.
-fn warnings_text(summary: &Summary) -> String {
+fn warnings_text(warnings: &[AnswerWarning]) -> String {
     let lines = |message: &str| {
         let lines = wrapped(&printable(message)).into_iter().enumerate();
         lines.map(|(number, line)| entry(if number == 0 { "warning" } else { "" }, &line)).collect::<String>()
     };
-    summary.warnings.iter().map(|warning| lines(&warning.message)).collect()
+    warnings.iter().map(|warning| lines(&warning.message)).collect()
 }
 
 /// What the mesh is worth, and whether the algebra is worth more.
@@ -126,7 +126,7 @@ fn mesh_text(summary: &Summary) -> String {
     let bound = summary.solution.certificate.energy_error_bound;
     if bound < of_mesh * FAR_BELOW {
         text += &entry("", "the solver is far below that: more of its digits buy nothing, a finer mesh does");
-    } else if bound > of_mesh {
+    } else if bound.is_finite() && bound > of_mesh {
         text += &entry("", "the solver may be further off: a tighter tolerance comes before a finer mesh");
     }
     text
@@ -187,7 +187,8 @@ pub fn verify_text(title: &str, verification: &Verification) -> String {
     let mut text = format!("{}\n", printable(title));
     text += &entry("model", &format!("{} dofs, {}", model.dofs, plural(model.contact_rows, "contact row")));
     text += &entry("contact", &format!("{} under force {:.6e}", plural(contact.count, "row"), contact.force));
-    text + &certificate_text(&verification.certificate, verification.tolerance.into())
+    text += &certificate_text(&verification.certificate, verification.tolerance.into());
+    text + &warnings_text(&verification.warnings)
 }
 
 /// Events of a sweep that its text shows; the rest is in the JSON form.

@@ -148,6 +148,11 @@ impl Model {
         &self.warnings
     }
 
+    /// Returns `true` if the supports alone hold all bodies; otherwise contact holds some rigid-body mode.
+    pub(crate) fn is_supported(&self) -> bool {
+        RigidBodyModes::of(&self.parts.body).are_supported(&self.parts)
+    }
+
     /// The contact problem in the free dofs.
     pub fn problem(&self) -> &ContactProblem {
         &self.problem

@@ -6,6 +6,7 @@ mod motion_tradeoff;
 mod scene;
 mod summary;
 mod tradeoff;
+mod warnings;
 
 pub use compare::{Agreement, Comparison, Difference, MethodAnswer, compare};
 pub use motion::MotionSummary;
@@ -13,5 +14,6 @@ pub use motion_tradeoff::{MotionPoint, MotionTradeoff, motion_tradeoff};
 pub use scene::{Sweep, SweepCorner, SweepEvent, SweepPoint, even_gaps, scene_summary, sweep};
 #[cfg(feature = "pictures")]
 pub(crate) use summary::status;
-pub use summary::{AnswerWarning, ContactSummary, ModelSize, RunSeconds, Summary, Verification};
+pub use summary::{ContactSummary, ModelSize, RunSeconds, Summary, Verification};
 pub use tradeoff::{Advice, Tradeoff, TradeoffGrid, TradeoffMesh, TradeoffPoint, tradeoff};
+pub use warnings::AnswerWarning;

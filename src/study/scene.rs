@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use serde::Serialize;
 
+use super::warnings::{check_approach, of_scene};
 use super::{ModelSize, Summary};
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
@@ -18,7 +19,7 @@ const STRAIGHT_LINE: f64 = 1e-12;
 /// The numbers of `solution`, whose `answer` to a scene this is: with pressures, the width of the contact, and the balance of all forces.
 ///
 /// # Errors
-/// As [`Model::reactions`].
+/// [`Error::Refused`] for an obstacle that pulls; as [`Model::reactions`].
 pub fn scene_summary(
     answer: &Answer,
     solution: Solution,
@@ -26,6 +27,8 @@ pub fn scene_summary(
     assemble_seconds: f64,
 ) -> Result<Summary, Error> {
     let (model, closed) = (answer.model(), answer.contact_set());
+    check_approach(model, &solution.multiplier)?;
+    let warnings = of_scene(answer, &solution);
     let mesh = model.mesh();
     let size = ModelSize {
         nodes: Some(mesh.nodes().len()),
@@ -33,6 +36,11 @@ pub fn scene_summary(
         ..ModelSize::of(model.problem())
     };
     let mut summary = Summary::new(solution, size, goal, assemble_seconds);
+    if summary.solution.lost_pivot.is_some() && !model.is_supported() {
+        // The pivot is that of a mode which contact alone holds: no digit is lost.
+        summary.warnings.clear();
+    }
+    summary.warnings.extend(warnings);
     let contact = &mut summary.contact;
     contact.pressure_max = Some(answer.pressure().iter().copied().fold(0.0, f64::max));
     contact.width = contact_width(model, closed);

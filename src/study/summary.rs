@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::warnings::{AnswerWarning, lost_digits, opposite_sign};
 use crate::qp::problem::ContactProblem;
 use crate::solution::{Certificate, Goal, Seconds, Solution};
 
@@ -28,15 +29,6 @@ pub struct Summary {
     pub model: ModelSize,
     /// What it cost.
     pub seconds: RunSeconds,
-}
-
-/// Something about an answer that its reader should know, certified or not.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct AnswerWarning {
-    /// The name of the kind of warning, the same in every version.
-    pub code: &'static str,
-    /// What it is, with numbers, its likely cause, and what helps.
-    pub message: String,
 }
 
 /// Closed rows and forces of an answer.
@@ -124,25 +116,6 @@ impl ModelSize {
     }
 }
 
-impl AnswerWarning {
-    /// That the entries of the stiffness determine few digits of the answer, however good its certificate.
-    fn lost_digits(solution: &Solution) -> Option<Self> {
-        let (digits, pivot) = (solution.digits_of_stiffness()?, solution.lost_pivot?);
-        let digits = match digits {
-            0 => "hardly a digit".to_string(),
-            1 => "only about 1 digit".to_string(),
-            digits => format!("only about {digits} digits"),
-        };
-        let message = format!(
-            "the entries of the stiffness are rounded to double precision, and determine {digits} of the displacement \
-             (smallest pivot {pivot:.0e} of the diagonal); the certificate takes them as exact. Likely causes: bending of \
-             slender bodies (take fewer elements along the thickness, quadratic elements, or a beam), or contrast of \
-             stiff parts on soft ones"
-        );
-        Some(AnswerWarning { code: "lost-digits", message })
-    }
-}
-
 /// The word of a report for an answer that meets its goal, or does not.
 pub(crate) fn status(is_certified: bool) -> &'static str {
     if is_certified { "certified" } else { "not_certified" }
@@ -155,7 +128,7 @@ impl Summary {
         Summary {
             status: status(goal.is_met_by(&solution.certificate)),
             goal,
-            warnings: AnswerWarning::lost_digits(&solution).into_iter().collect(),
+            warnings: lost_digits(&solution).into_iter().collect(),
             contact: ContactSummary {
                 count: solution.contact_set.count(),
                 force: solution.contact_force(),
@@ -187,15 +160,19 @@ pub struct Verification {
     pub certificate: Certificate,
     /// Sizes of the model.
     pub model: ModelSize,
+    /// What may mislead in these numbers.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<AnswerWarning>,
 }
 
 impl Verification {
     /// Judges `certificate` by `tolerance`.
     pub fn new(certificate: Certificate, multiplier: &[f64], model: ModelSize, tolerance: f64) -> Self {
+        let warnings = opposite_sign(&certificate, multiplier, tolerance).into_iter().collect();
         let force = -multiplier.iter().sum::<f64>();
         let count = multiplier.iter().filter(|&&lambda| lambda != 0.0).count();
         let contact = ContactSummary { count, force, ..ContactSummary::default() };
-        Verification { status: status(certificate.meets(tolerance)), tolerance, contact, certificate, model }
+        Verification { status: status(certificate.meets(tolerance)), tolerance, contact, certificate, model, warnings }
     }
 
     /// Returns `true` if the answer meets the tolerance.

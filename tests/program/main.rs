@@ -18,3 +18,4 @@ mod terminal;
 mod time;
 mod tradeoff;
 mod verify;
+mod warnings;

@@ -25,7 +25,7 @@ pub struct GmshSpec {
     /// What the coordinates of the file are multiplied by, positive.
     #[serde(default = "unchanged")]
     pub scale: f64,
-    /// The physical group that is the body; all elements of the highest dimension where left out.
+    /// The physical group that is the body; may be left out if no more than one has elements of the highest dimension.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub group: Option<String>,
     /// How the stiffness is integrated.
@@ -70,7 +70,19 @@ impl BodyShape for GmshSpec {
     }
 
     fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
-        let mesh = GmshFile::read(self.mesh_file(site)?)?.mesh(self.group.as_deref(), self.scale)?;
+        let file = GmshFile::read(self.mesh_file(site)?)?;
+        let bodies = file.bodies();
+        if self.group.is_none() && bodies.len() > 1 {
+            let names = bodies.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+            let message = format!(
+                "scene, at `{}.group`: the mesh has {} groups of elements, {names}; without `group` they would be one body of one \
+                 material: name the one that is meant",
+                site.path,
+                bodies.len()
+            );
+            return Err(Error::Refused { code: "several-groups", message });
+        }
+        let mesh = file.mesh(self.group.as_deref(), self.scale)?;
         let (found, model) = (mesh.dimension(), site.model.name());
         if found != site.model.dimension() {
             let body = ["a bar", "plane", "in space"][found - 1];

@@ -76,6 +76,11 @@ impl RigidBodyModes {
         Err(Error::UnderHeld { mode: format!("{}: {}", names.join(", "), advice(rows)), direction })
     }
 
+    /// Returns `true` if the supports alone hold all bodies.
+    pub fn are_supported(&self, parts: &Parts) -> bool {
+        self.free(parts, &[]).is_empty()
+    }
+
     /// A basis of the motions that nothing resists: unit motions first.
     fn free(&self, parts: &Parts, rows: &[ContactRow]) -> Vec<Vec<f64>> {
         let nodes = parts.body.mesh().nodes();

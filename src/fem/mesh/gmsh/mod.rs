@@ -82,6 +82,13 @@ impl GmshFile {
         &self.groups
     }
 
+    /// Names of the physical groups that have elements of the highest dimension: each may be a body.
+    pub fn bodies(&self) -> Vec<String> {
+        let names = self.names_in_use();
+        let highest = self.blocks.iter().map(|block| block.cell.dimension).max();
+        names.into_iter().filter(|(dimension, _)| Some(*dimension) == highest).map(|(_, name)| name).collect()
+    }
+
     /// The mesh of the body: of the elements in the physical group called `domain`, or else of all elements of the
     /// highest dimension. Coordinates are multiplied by `scale`.
     ///
