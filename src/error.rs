@@ -211,10 +211,14 @@ pub enum Error {
         message: String,
     },
     /// A scene that can be solved, whose answer would be to another question than was meant.
-    #[error("{message}")]
+    #[error("{place}at `{path}`: {message}")]
     Refused {
         /// The name of the kind of refusal, the same in every version.
         code: &'static str,
+        /// Where the scene stands: `scene, `, or its file with line and column.
+        place: String,
+        /// JSON path of the field that would change it, as `obstacles[0].approach`.
+        path: String,
         /// What would go wrong, where, with numbers, and what to change.
         message: String,
     },

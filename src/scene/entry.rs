@@ -14,6 +14,11 @@ pub(super) fn wrong(path: impl Into<String>, message: impl Into<String>) -> Erro
     Error::Scene { path: path.into(), message: message.into() }
 }
 
+/// The refusal of a scene whose answer would be to another question than was meant.
+pub(crate) fn refused(code: &'static str, path: impl Into<String>, message: String) -> Error {
+    Error::Refused { code, place: "scene, ".to_string(), path: path.into(), message }
+}
+
 pub(super) fn finite(path: impl Into<String>, value: f64) -> Result<(), Error> {
     if value.is_finite() { Ok(()) } else { Err(wrong(path, format!("{value} is not finite"))) }
 }

@@ -9,16 +9,22 @@ use crate::file::{MOST_OF_SCENE, read_text_capped};
 impl Scene {
     /// An error of a value at its line and column, where the scene was read from a file that can be read again.
     pub fn located(error: Error, file: &Path) -> Error {
-        let Error::Scene { path, message } = error else { return error };
-        let place = match read_text_capped(file, MOST_OF_SCENE) {
-            Ok(text) if file.is_file() => position(&text, &path),
+        let place_of = |path: &str| match read_text_capped(file, MOST_OF_SCENE) {
+            Ok(text) if file.is_file() => position(&text, path),
             _ => None,
         };
-        match place {
-            Some((line, column)) => {
-                Error::SceneSyntax { source_name: file.display().to_string(), line, column, path, message }
+        match error {
+            Error::Scene { path, message } => match place_of(&path) {
+                Some((line, column)) => {
+                    Error::SceneSyntax { source_name: file.display().to_string(), line, column, path, message }
+                }
+                None => Error::Scene { path, message },
+            },
+            Error::Refused { code, place, path, message } => {
+                let found = place_of(&path).map(|(line, column)| format!("{}:{line}:{column}: ", file.display()));
+                Error::Refused { code, place: found.unwrap_or(place), path, message }
             }
-            None => Error::Scene { path, message },
+            other => other,
         }
     }
 }

@@ -40,6 +40,7 @@ pub use crate::motion::SchemeSpec;
 pub use answer::{Answer, Forces};
 pub use body::{Sides, bar, cuboid, disc, half_ball, half_disc, rectangle, ring};
 pub use dynamics::Dynamics;
+pub(crate) use entry::refused;
 pub use model::Model;
 pub use obstacle::{Obstacle, ObstacleRow, PlacedObstacle};
 pub use rows::ContactRow;

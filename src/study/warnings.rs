@@ -6,7 +6,7 @@ use crate::error::Error;
 use crate::fem::assembly::node_normals;
 use crate::fem::body::{BodyElement, ElasticBody};
 use crate::fem::geometry::dot;
-use crate::scene::{Answer, Model};
+use crate::scene::{Answer, Model, refused};
 use crate::solution::{Certificate, Solution};
 
 /// Strains above this are beyond small strains, for which the equations hold.
@@ -131,12 +131,12 @@ pub(super) fn check_approach(model: &Model, multiplier: &[f64]) -> Result<(), Er
         if let Some((node, lean)) = worst {
             let angle = lean.clamp(-1.0, 1.0).acos().to_degrees();
             let message = format!(
-                "obstacles[{index}] pulls the body: at node {node} the direction into the obstacle and the outward normal of `{}` \
+                "the obstacle pulls the body: at node {node} the direction into the obstacle and the outward normal of `{}` \
                  make an angle of {angle:.0} degrees, and the node carries force; turn `approach` around, or name the boundary that \
                  faces the obstacle",
                 obstacle.boundary()
             );
-            return Err(Error::Refused { code: "approach-away", message });
+            return Err(refused("approach-away", format!("obstacles[{index}].approach"), message));
         }
     }
     Ok(())

@@ -40,7 +40,7 @@ fn an_obstacle_that_pulls_is_refused() {
     scene["loads"] = json!([]);
     let (run, code) = refused(&scene, &[]);
     assert_eq!(code, "\"approach-away\"");
-    run.fails_with(1, &["obstacles[0] pulls the body", "node ", "180 degrees", "turn `approach` around"]);
+    run.fails_with(1, &["`obstacles[0].approach`", "pulls the body", "node ", "180 degrees", "turn `approach` around"]);
     // The same obstacle from the other side.
     scene["obstacles"][0] =
         json!({"boundary": "top", "approach": "+y", "shape": {"plane": {"point": [0, 0.49], "normal": [0, 1]}}});

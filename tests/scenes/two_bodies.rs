@@ -22,7 +22,7 @@ fn solved(value: &Value) -> (Model, Solution) {
 fn refused(value: &Value, place: &str, phrases: &[&str]) {
     let built = Scene::from_json(&value.to_string(), "scene").and_then(|scene| scene.build());
     match built.unwrap_err() {
-        Error::Scene { path, message } => {
+        Error::Scene { path, message } | Error::Refused { path, message, .. } => {
             assert_eq!(path, place, "{message}");
             phrases.iter().for_each(|phrase| assert!(message.contains(phrase), "{message}"));
         }
@@ -259,6 +259,55 @@ fn an_under_held_body_is_named() {
     let error = model.explain(solve_qp(model.problem()).unwrap_err());
     let Error::Unbounded { mode, .. } = &error else { panic!("{error:?}") };
     assert_eq!(mode, "translation along y of the first body");
+}
+
+/// Two blocks on each other; the upper one has `cells` along each side, the lower one twice as many or half.
+fn blocks(model: &str, cells: usize, below: usize) -> Value {
+    let axis = |from: f64, to: f64, cells: usize| json!({"points": [from, to], "divisions": [cells]});
+    let body = |from: f64, cells: usize| match model {
+        "space" => {
+            json!({"box": {"x": axis(0.0, 1.0, cells), "y": axis(0.0, 1.0, cells), "z": axis(from, from + 1.0, 1)}})
+        }
+        _ => json!({"rectangle": {"x": axis(0.0, 1.0, cells), "y": axis(from, from + 1.0, 1)}}),
+    };
+    let down = if model == "space" { "-z" } else { "-y" };
+    let held = json!({"x": 0, "y": 0, "z": 0});
+    let hold = |boundary: &str| {
+        let mut support = held.clone();
+        if model != "space" {
+            support.as_object_mut().unwrap().remove("z");
+        }
+        support["on"] = json!({"boundary": boundary});
+        support
+    };
+    json!({
+        "model": model,
+        "body": body(1.0, cells),
+        "further-bodies": [{"name": "base", "body": body(0.0, below), "material": {"young": 1, "poisson": 0.3}}],
+        "material": {"young": 1, "poisson": 0.3},
+        "supports": [hold("top"), hold("base.bottom")],
+        "obstacles": [{"boundary": "bottom", "approach": down, "shape": {"body": {"boundary": "base.top"}}}],
+        "gap": -0.01
+    })
+}
+
+/// Whichever side is finer, its nodes between those of the other have no row and would go through.
+#[test]
+fn surfaces_of_different_meshes_are_refused_whichever_is_finer() {
+    for model in ["plane-strain", "space"] {
+        solved(&blocks(model, 3, 3));
+        for (cells, below) in [(2, 4), (4, 2), (3, 4)] {
+            let scene = blocks(model, cells, below);
+            let built = Scene::from_json(&scene.to_string(), "scene").and_then(|scene| scene.build());
+            let Error::Refused { code, message, .. } = built.unwrap_err() else { panic!("{scene}") };
+            assert_eq!(code, "unpaired-nodes");
+            assert!(message.contains("node ") && message.contains("pair up"), "{message}");
+        }
+    }
+    // A base that reaches beyond the body has nodes that face nothing.
+    let mut wide = blocks("plane-strain", 4, 4);
+    wide["further-bodies"][0]["body"]["rectangle"]["x"] = json!({"points": [-1, 0, 1, 2], "divisions": [3, 4, 3]});
+    solved(&wide);
 }
 
 #[test]

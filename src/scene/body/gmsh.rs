@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::fem::Integration;
 use crate::fem::mesh::gmsh::GmshFile;
 use crate::fem::mesh::{ElementKind, Mesh};
-use crate::scene::entry::wrong;
+use crate::scene::entry::{refused, wrong};
 use crate::scene::schema::json::word;
 
 /// Bytes of a mesh file for one node and the elements that belong to it, about.
@@ -75,12 +75,11 @@ impl BodyShape for GmshSpec {
         if self.group.is_none() && bodies.len() > 1 {
             let names = bodies.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
             let message = format!(
-                "scene, at `{}.group`: the mesh has {} groups of elements, {names}; without `group` they would be one body of one \
-                 material: name the one that is meant",
-                site.path,
+                "the mesh has {} groups of elements, {names}; without `group` they would be one body of one material: name the one \
+                 that is meant",
                 bodies.len()
             );
-            return Err(Error::Refused { code: "several-groups", message });
+            return Err(refused("several-groups", format!("{}.group", site.path), message));
         }
         let mesh = file.mesh(self.group.as_deref(), self.scale)?;
         let (found, model) = (mesh.dimension(), site.model.name());

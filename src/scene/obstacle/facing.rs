@@ -7,9 +7,9 @@ use super::shape::{About, Geometry, ObstacleShape, Site};
 use crate::error::Error;
 use crate::fem::assembly::node_normals;
 use crate::fem::body::ElasticBody;
-use crate::fem::geometry::{dot, length, minus, unit};
-use crate::fem::mesh::Boundary;
-use crate::scene::entry::{PLACE_TOLERANCE, boundary, point, wrong};
+use crate::fem::geometry::{cross, distance, dot, length, minus, unit};
+use crate::fem::mesh::{Boundary, FacetKind};
+use crate::scene::entry::{PLACE_TOLERANCE, boundary, point, refused, wrong};
 use crate::scene::schema::approach::Rule;
 
 /// A partner may be aside by this times its distance: at the end of a curved boundary the facets on one side only give
@@ -47,8 +47,14 @@ impl ObstacleShape for FacingSpec {
                 Ok(way.pair)
             })
             .collect();
-        Ok(Geometry::Pairs(pairs?))
+        let pairs = pairs?;
+        search.check_others(&pairs)?;
+        Ok(Geometry::Pairs(pairs))
     }
+}
+
+fn unpaired(site: &Site, message: String) -> Error {
+    refused("unpaired-nodes", site.field("boundary"), message)
 }
 
 /// Which of the bodies a boundary belongs to.
@@ -115,7 +121,7 @@ impl Search<'_> {
                  nodes of the two boundaries must pair up",
                 way.aside
             );
-            return Err(wrong(site.field("boundary"), message));
+            return Err(unpaired(site, message));
         }
         if dot(way.mean, way.pair.normal) <= 0.0 {
             let message = format!(
@@ -125,5 +131,87 @@ impl Search<'_> {
             return Err(wrong(format!("{}.approach", site.obstacle), message));
         }
         Ok(())
+    }
+
+    /// Checks that no node of the other boundary faces the inside of a facet: it has no row, and would go through.
+    fn check_others(&self, pairs: &[Pair]) -> Result<(), Error> {
+        let mesh = self.site.body.mesh();
+        let nodes = mesh.nodes();
+        let mut pair_of = vec![None; nodes.len()];
+        let mut is_paired = vec![false; nodes.len()];
+        for (&(node, _), pair) in self.site.candidates.iter().zip(pairs) {
+            pair_of[node] = Some(*pair);
+            is_paired[pair.partner] = true;
+        }
+        for &(partner, facing) in self.partners.iter().filter(|entry| !is_paired[entry.0]) {
+            for facet in self.own.facets() {
+                let across = Across::of(self.own.kind, facet, nodes, &pair_of, nodes[partner]);
+                let Some(across) = across.filter(|across| dot(across.normal, facing) < 0.0) else { continue };
+                let (own, other) = (&self.own.name, &self.other.name);
+                let place = point(&nodes[partner][..mesh.dimension()]);
+                let message = format!(
+                    "node {partner} of `{other}` at {place} has no node of `{own}` across it: it faces the inside of a facet at a \
+                     distance of {:.3e}, and would go through; the nodes of the two boundaries must pair up",
+                    across.distance
+                );
+                return Err(unpaired(self.site, message));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Nearer to an edge of a facet than this share of its length is on the edge.
+const ON_EDGE: f64 = 1e-6;
+
+/// A place across the inside of a facet.
+struct Across {
+    /// Unit vector from the facet to the other body.
+    normal: [f64; 3],
+    /// Along it, in length.
+    distance: f64,
+}
+
+impl Across {
+    /// The place `at` if it lies across the inside of `facet`, no further than its pairs do and the facet is long.
+    fn of(
+        kind: FacetKind,
+        facet: &[usize],
+        nodes: &[[f64; 3]],
+        pair_of: &[Option<Pair>],
+        at: [f64; 3],
+    ) -> Option<Self> {
+        let corners = match kind {
+            FacetKind::Point1 => return None,
+            FacetKind::Line2 | FacetKind::Line3 => &facet[..2],
+            FacetKind::T3 | FacetKind::Q4 => facet,
+        };
+        let pairs: Option<Vec<Pair>> = corners.iter().map(|&corner| pair_of[corner]).collect();
+        let pairs = pairs?;
+        let normal = unit(pairs.iter().fold([0.0; 3], |sum, pair| minus(sum, pair.normal.map(|component| -component))));
+        let first = nodes[corners[0]];
+        let way = dot(minus(at, first), normal);
+        let long = corners.iter().fold(0.0, |long: f64, &corner| long.max(distance(nodes[corner], first)));
+        let far = pairs.iter().fold(0.0, |far: f64, pair| far.max(pair.distance.abs()));
+        if way.abs() > far + long {
+            return None;
+        }
+        let is_inside = match *corners {
+            [a, b] => {
+                let along = minus(nodes[b], nodes[a]);
+                let share = dot(minus(at, nodes[a]), along) / dot(along, along);
+                share > ON_EDGE && share < 1.0 - ON_EDGE
+            }
+            _ => {
+                let turns = (0..corners.len()).map(|corner| {
+                    let (a, b) = (nodes[corners[corner]], nodes[corners[(corner + 1) % corners.len()]]);
+                    let edge = minus(b, a);
+                    dot(cross(edge, minus(at, a)), normal) / dot(edge, edge)
+                });
+                let turns: Vec<f64> = turns.collect();
+                turns.iter().all(|&turn| turn > ON_EDGE) || turns.iter().all(|&turn| turn < -ON_EDGE)
+            }
+        };
+        is_inside.then_some(Across { normal, distance: way })
     }
 }
