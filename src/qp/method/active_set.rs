@@ -18,7 +18,8 @@ use std::collections::HashSet;
 
 use super::earlier_factor::{BoundedDofs, EarlierFactor, TRIAL, steps_for_a_factor};
 use super::equilibrium::{Equilibrium, WEIGHT, equilibrium, reach};
-use super::{FreeMode, Holding, Outcome, SIGN_TOLERANCE, ScaledProblem, Solver, Start, multiplier_rounding};
+use super::scaled::multiplier_rounding;
+use super::{FreeMode, Holding, Outcome, SIGN_TOLERANCE, ScaledProblem, Solver, Start};
 use crate::error::Error;
 use crate::qp::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};

@@ -1,7 +1,7 @@
 //! Checks whether a set of closed rows holds the body; if not, finds the direction along which it is free, and whether the
 //! load drives it.
 
-use super::ScaledProblem;
+use super::scaled::{Outcome, ScaledProblem, multiplier_rounding};
 use crate::error::Error;
 use crate::qp::linear::{Cholesky, FactorError, largest};
 use crate::solution::ContactSet;
@@ -66,6 +66,54 @@ pub(super) fn where_largest(direction: &[f64]) -> String {
 }
 
 impl ScaledProblem<'_> {
+    /// Where a loop starts: from C = 0 where K is definite; otherwise all rows are taken for springs, which hold the
+    /// body, and those in compression are closed.
+    ///
+    /// # Errors
+    /// [`Error::Unbounded`] and [`Error::UnderHeld`] for a mode that not even all rows together hold,
+    /// [`Error::NotConvex`].
+    pub fn start(&self) -> Result<ContactSet, Error> {
+        let rows = self.problem.rows();
+        if self.definite {
+            return Ok(ContactSet::open(rows));
+        }
+        self.check_convex()?;
+        match self.hold(&ContactSet::closed(rows), 1.0)? {
+            Holding::Held(cholesky) => {
+                let pull = self.problem.contact().mul_transposed(self.problem.gap());
+                let force: Vec<f64> = self.problem.load().iter().zip(&pull).map(|(f, g)| f + g).collect();
+                let violation = self.problem.violation(&cholesky.solve(&force));
+                Ok(ContactSet::from_fn(rows, |row| violation[row] > 0.0))
+            }
+            Holding::Free(mode) => Err(mode.into_error()),
+        }
+    }
+
+    /// Is the answer the only one? It is where K and the rows under pressure hold the body; where they leave a mode,
+    /// the open rows would have to stop it both ways without play.
+    ///
+    /// # Errors
+    /// [`Error::UnderHeld`] with a mode that changes neither force nor energy.
+    pub fn check_unique(&self, outcome: &Outcome) -> Result<(), Error> {
+        if self.definite {
+            return Ok(());
+        }
+        let rounding = multiplier_rounding(self.problem, &outcome.displacement, &outcome.multiplier);
+        let pressed = ContactSet::from_fn(self.problem.rows(), |row| outcome.multiplier[row] < -rounding[row]);
+        match self.hold(&pressed, 1.0)? {
+            Holding::Held(_) => Ok(()),
+            Holding::Free(mode) if mode.driven => Ok(()),
+            Holding::Free(mode) => {
+                let violation = self.problem.violation(&outcome.displacement);
+                let approach = self.approach(&mode.direction);
+                let is_free = self.costs_nothing(&mode.direction) && pressed.iter().all(|row| approach[row] == 0.0);
+                let stopped =
+                    |way: f64| (0..self.problem.rows()).any(|row| approach[row] * way > 0.0 && violation[row] > -PLAY);
+                if !is_free || stopped(1.0) && stopped(-1.0) { Ok(()) } else { Err(mode.into_error()) }
+            }
+        }
+    }
+
     /// Checks that K is positive semidefinite to the largest of the shifts.
     ///
     /// # Errors

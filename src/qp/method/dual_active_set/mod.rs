@@ -32,7 +32,6 @@ use crate::solution::{ContactSet, Iteration};
 use basis::Basis;
 use pass::{Ending, Pass, Pressures};
 use polyhedron::Polyhedron;
-pub(super) use polyhedron::VARIANT;
 
 /// Passes: the second mends what the rounding of the first hides where dofs are of very different scale.
 const MOST_PASSES: usize = 10;

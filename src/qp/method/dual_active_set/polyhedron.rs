@@ -10,12 +10,9 @@ use crate::error::Error;
 use crate::qp::linear::{
     Accumulator, AugmentedMatrix, Cholesky, Equilibration, FactorError, SparseMatrix, exponent, ldexp, norm,
 };
-use crate::qp::method::{Outcome, ScaledProblem};
+use crate::qp::method::scaled::{LAST_RESORT, Outcome, ScaledProblem};
 use crate::qp::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
-
-/// The suffix that the method leaves behind a name; another stands in its place if it is not settled.
-pub const VARIANT: &str = "-dual";
 
 /// Weight of the proximal term `1/2 weight |u - u_k|^2` that makes a semidefinite K, with a diagonal between 1 and 4,
 /// definite. With 1e-6 as many problems are solved, with 1 about half of them.
@@ -179,7 +176,7 @@ impl Polyhedron {
             iterations: history.len(),
             history,
             settled,
-            variant: if settled { VARIANT } else { "-dual-unsettled" },
+            variant: if settled { LAST_RESORT } else { "-dual-unsettled" },
         }
     }
 }

@@ -1,0 +1,117 @@
+//! What every method works on, and what it leaves behind.
+
+use std::cell::Cell;
+use std::time::Instant;
+
+use super::start::Start;
+use crate::error::Error;
+use crate::qp::linear::{AugmentedMatrix, Cholesky, FactorError, SymmetricMatrix, largest};
+use crate::qp::problem::ContactProblem;
+use crate::solution::{ContactSet, Iteration};
+use crate::watch::Watch;
+
+/// Differences below this, relative to the largest displacement or multiplier, are rounding: the sign of a weakly
+/// active row is compared with it, or such a row would close and open for ever.
+pub(crate) const SIGN_TOLERANCE: f64 = 1e-12;
+
+/// Rounding of a multiplier, in units of the last place of the forces that balance it.
+const FORCE_ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// A method, together with the problem that it works on.
+pub trait Solver {
+    /// What the method finds from `start`.
+    ///
+    /// # Errors
+    /// What it meets in the problem: see the methods.
+    fn solve(&self, start: Start) -> Result<Outcome, Error>;
+}
+
+/// A scaled problem with its pattern analysed: what every method works on.
+#[derive(Debug)]
+pub struct ScaledProblem<'a> {
+    /// The data, dimensionless and of order one.
+    pub problem: &'a ContactProblem,
+    /// Is K positive definite by itself?
+    pub definite: bool,
+    pub(super) augmented: &'a AugmentedMatrix,
+    factor_seconds: Cell<f64>,
+    watch: Watch,
+}
+
+impl<'a> ScaledProblem<'a> {
+    /// The problem with the analysed pattern of its K + B'B.
+    pub fn new(problem: &'a ContactProblem, augmented: &'a AugmentedMatrix, definite: bool) -> Self {
+        ScaledProblem { problem, definite, augmented, factor_seconds: Cell::new(0.0), watch: Watch::default() }
+    }
+
+    /// The same problem, whose loops end with what they have when `watch` says so.
+    pub fn watched(self, watch: &Watch) -> Self {
+        ScaledProblem { watch: watch.clone(), ..self }
+    }
+
+    /// What the loops look at, and tell their iterations.
+    pub fn watch(&self) -> &Watch {
+        &self.watch
+    }
+
+    /// Seconds spent in factorisations so far.
+    pub fn factor_seconds(&self) -> f64 {
+        self.factor_seconds.get()
+    }
+
+    /// The matrix K + shift I + weight B_C' B_C of the closed rows C.
+    pub(super) fn matrix(&self, closed: &ContactSet, weight: f64, shift: f64) -> SymmetricMatrix {
+        self.augmented.matrix(|row| if closed.contains(row) { weight } else { 0.0 }, shift)
+    }
+
+    pub(super) fn factor(&self, matrix: SymmetricMatrix) -> Result<Cholesky, FactorError> {
+        let clock = Instant::now();
+        let factor = self.augmented.factor(matrix);
+        self.factor_seconds.set(self.factor_seconds.get() + clock.elapsed().as_secs_f64());
+        factor
+    }
+}
+
+/// The suffix that the dual active-set method leaves behind a name; another that begins so stands there if it is not settled.
+pub(super) const LAST_RESORT: &str = "-dual";
+
+/// Multipliers of either sign below this are rounding, row by row.
+pub(super) fn multiplier_rounding(problem: &ContactProblem, u: &[f64], multiplier: &[f64]) -> Vec<f64> {
+    let strongest = SIGN_TOLERANCE * largest(multiplier);
+    let mut forces = problem.stiffness().mul_abs(u);
+    forces.iter_mut().zip(problem.load()).for_each(|(sum, f)| *sum += f.abs());
+    let rounding = problem.contact().mul_abs(&forces);
+    rounding.iter().map(|rounding| strongest + FORCE_ROUNDING * rounding).collect()
+}
+
+/// What a method found, in scaled quantities.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// Displacement v, one entry per dof.
+    pub displacement: Vec<f64>,
+    /// Multiplier, one entry per row, `<= 0`.
+    pub multiplier: Vec<f64>,
+    /// The closed rows.
+    pub contact_set: ContactSet,
+    /// Iterations of the method.
+    pub iterations: usize,
+    /// The sets on the way.
+    pub history: Vec<Iteration>,
+    /// Did the loop end because the set was settled?
+    pub settled: bool,
+    /// Empty, or the variant that ended the loop, to be appended to the method's name.
+    pub variant: &'static str,
+}
+
+impl Outcome {
+    /// Returns `true` if the last resort, the dual active-set method, found it.
+    pub fn is_last_resort(&self) -> bool {
+        self.variant.starts_with(LAST_RESORT)
+    }
+
+    /// This outcome, found after another that fell short.
+    pub fn after(self, before: Outcome) -> Self {
+        let history = [before.history, self.history].concat();
+        Outcome { iterations: before.iterations + self.iterations, history, ..self }
+    }
+}
