@@ -95,6 +95,23 @@ fn strings_side_by_side_are_each_exact_at_their_nodes() {
     }
 }
 
+/// A loose answer has a bound far above rounding: that of the pieces is that of the whole, and no smaller than the error.
+#[test]
+fn a_loose_bound_of_the_pieces_is_that_of_the_whole() {
+    let problem = strings(|_| ());
+    let exact = solve(&problem, &Settings::default()).unwrap();
+    let mut settings = Settings::default();
+    settings.accuracy = Some(0.05);
+    let solution = solve(&problem, &settings).unwrap();
+    let whole = problem.certify(&solution.displacement, &solution.multiplier).unwrap().energy_error_bound;
+    let bound = solution.certificate.energy_error_bound;
+    // Both square and add the same errors of strings, which rounding leaves alone.
+    assert!(bound > 1e-4 && (bound / whole - 1.0).abs() < 1e-6, "{bound:e} by pieces, {whole:e} as a whole");
+    let moved: Vec<f64> = solution.displacement.iter().zip(&exact.displacement).map(|(u, exact)| u - exact).collect();
+    let energy = |v: &[f64]| v.iter().zip(problem.stiffness().mul(v)).map(|(v, force)| v * force).sum::<f64>().sqrt();
+    assert!(energy(&moved) <= bound * energy(&solution.displacement));
+}
+
 #[test]
 fn the_history_shows_the_sets_of_all_parts() {
     let solution = solve(&strings(|_| ()), &Settings::with_method(Method::ActiveSet)).unwrap();

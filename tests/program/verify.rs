@@ -3,7 +3,8 @@
 use crate::program::{Desk, Problem, Run, scene, vector};
 use crate::promised::{CERTIFICATE, has, vectors};
 
-fn verify(desk: &Desk, format: &str) -> Run {
+/// Judges the answer that stands beside the problem directory `p`.
+pub fn verify(desk: &Desk, format: &str) -> Run {
     let (u, lambda) = ("p/u.mtx", "p/lambda.mtx");
     desk.run(&["verify", "p", "--displacement", u, "--multiplier", lambda, "--format", format])
 }

@@ -1,6 +1,7 @@
 //! Questions that were not asked: each is refused, or warned of, with its code, its numbers and its remedy.
 
 use crate::program::{Desk, Run, examples, scene};
+use crate::verify::verify;
 use serde_json::{Value, json};
 
 /// The report of `solve` of a scene, which ends with exit code 0.
@@ -110,21 +111,17 @@ fn multipliers_of_the_opposite_sign_are_named() {
     desk.write("scene.json", scene().to_string());
     desk.run(&["export", "scene.json", "p"]).ends_with(0);
     desk.run(&["solve", "p", "--out", "p"]).ends_with(0);
-    let (u, lambda) = crate::promised::vectors(&desk, "p");
-    let write = |name: &str, values: &[f64]| {
+    let lambda = crate::promised::vectors(&desk, "p").1;
+    let write = |values: &[f64]| {
         let words: Vec<String> = values.iter().map(f64::to_string).collect();
-        desk.write(name, crate::program::vector(&words.iter().map(String::as_str).collect::<Vec<_>>()));
+        desk.write("p/lambda.mtx", crate::program::vector(&words.iter().map(String::as_str).collect::<Vec<_>>()));
     };
-    write("u.mtx", &u);
-    let verify = |format| {
-        desk.run(&["verify", "p", "--displacement", "u.mtx", "--multiplier", "lambda.mtx", "--format", format])
-    };
-    write("lambda.mtx", &lambda.iter().map(|value| -value).collect::<Vec<_>>());
-    let (report, text) = (verify("json").ends_with(4).json(), verify("text").ends_with(4).stdout);
+    write(&lambda.iter().map(|value| -value).collect::<Vec<_>>());
+    let (report, text) = (verify(&desk, "json").ends_with(4).json(), verify(&desk, "text").ends_with(4).stdout);
     let message = warned(&(report, text), "opposite-sign");
     assert!(message.contains("change the sign of lambda"), "{message}");
-    write("lambda.mtx", &lambda);
-    assert_eq!(verify("json").ends_with(0).json().get("warnings"), None);
+    write(&lambda);
+    assert_eq!(verify(&desk, "json").ends_with(0).json().get("warnings"), None);
 }
 
 #[test]

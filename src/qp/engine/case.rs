@@ -22,6 +22,8 @@ pub(super) struct Case<'a> {
     pub start: &'a Start,
     /// Settings whose clock runs.
     pub settings: &'a Settings,
+    /// The same as they were given: what is asked for later has the time anew.
+    pub given: &'a Settings,
     /// Whether an answer on the boundary needs a bound on its error; without one its conditions alone are held against the
     /// tolerance, which costs no triangular solve.
     pub is_bounded: bool,
@@ -34,7 +36,7 @@ pub(super) struct FactorSize {
     /// Values of the factor; zero if the methods factorise by themselves.
     pub entries: usize,
     pub multiplications: f64,
-    /// Returns `true` if its values are in single precision.
+    /// `true` if its values are in single precision.
     pub is_single: bool,
 }
 

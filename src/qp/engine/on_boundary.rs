@@ -90,7 +90,7 @@ impl Factored {
             contact_set: self.expand_set(&found.outcome.contact_set),
             iterations: found.outcome.iterations,
             condensed_certificate,
-            inside: Arc::new(Reduced { engine: self, found, settings: case.settings.clone() }),
+            inside: Arc::new(Reduced { engine: self, found, settings: case.given.clone() }),
         })
     }
 

@@ -152,7 +152,7 @@ impl Prepared {
 
     /// What an engine is asked for at these gaps.
     pub(super) fn case<'a>(&'a self, gap: &'a [f64], settings: &'a Settings) -> Case<'a> {
-        Case { load: &self.load, gap, start: &self.start, settings, is_bounded: true }
+        Case { load: &self.load, gap, start: &self.start, settings, given: &self.settings, is_bounded: true }
     }
 }
 
