@@ -15,7 +15,7 @@
 //! | g | initial gap of each row | `gap` | b / h | m | negative: the obstacle starts inside the body |
 //! | lambda | contact multiplier, `<= 0` | `multiplier` | -z | N | the force on the body along the row; compression is negative |
 //! | C | contact indicator (the set of closed rows) | `ContactSet` | | | |
-//! | p | contact pressure = -lambda / tributary area | `pressure` | | Pa | >= 0 |
+//! | p | contact pressure = -lambda / tributary area seen along the row | `pressure` | | Pa | >= 0 |
 //!
 //! Any consistent system of units. A scene file becomes a [`Model`] with its [`ContactProblem`]; a matrix becomes a
 //! [`ContactProblem`] directly. [`solve_qp`] answers with a [`Solution`]; `Ok` means that its [`Certificate`], recomputed
@@ -85,13 +85,16 @@ pub mod internals {
     #[cfg(feature = "pictures")]
     pub use crate::output::body::{ContactPicture, ObstacleLine, common_limits, common_window};
     #[cfg(feature = "pictures")]
+    pub use crate::output::file::write_atomically;
+    #[cfg(feature = "pictures")]
     pub use crate::output::ticks::{Ticks, brief, decimal, power_of_ten};
     pub use crate::qp::barrier::guarded;
     pub use crate::qp::cost::{Estimate, bytes};
     pub use crate::qp::linear::{AugmentedMatrix, Cholesky, dot, multigrid};
     pub use crate::qp::matrix_market::format_vector;
     pub use crate::qp::method::dual_active_set::DualActiveSet;
-    pub use crate::qp::method::{Outcome, ScaledProblem, Solver};
+    pub use crate::qp::method::{Definiteness, Outcome, ScaledProblem, Solver};
     pub use crate::scene::body::BodySpec;
     pub use crate::scene::schema::AnalysisSpec;
+    pub use crate::study::scene::even_gaps;
 }

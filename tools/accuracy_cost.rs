@@ -14,7 +14,7 @@ use signorini::{Error, Scene, Watch};
 const ACCURACIES: [(&str, f64); 4] = [("1e-2", 1e-2), ("1e-4", 1e-4), ("1e-8", 1e-8), ("exact", 1e-11)];
 
 /// Method, precision and unknowns, in the order of the table.
-const WAYS: [(&str, bool, bool); 9] = [
+const WAYS: [(&str, bool, bool); 11] = [
     ("active-set", true, false),
     ("active-set", true, true),
     ("qp, polished", true, false),
@@ -23,7 +23,9 @@ const WAYS: [(&str, bool, bool); 9] = [
     ("penalty", true, false),
     ("active-set", false, false),
     ("qp, polished", false, false),
+    ("qp", false, false),
     ("penalty", false, false),
+    ("mprgp", false, false),
 ];
 
 fn main() -> ExitCode {

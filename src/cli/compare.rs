@@ -30,10 +30,10 @@ pub(super) fn run(options: &Compare, watch: &Watch) -> Result<Outcome, Error> {
     let summaries = [of_qp, of_active_set, of_penalty];
     let text = compare_text(&input.title, &summaries, &agreement, &input.units);
     let report = Report::new(&json!({ "methods": summaries, "agreement": agreement }), text)?;
-    let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, agreement.exact_methods)) };
+    let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, agreement.status())) };
     gallery::write_answer(&folder, &summaries[0].solution)?;
     report.write(&folder)?;
-    let outcome = report.outcome(common.format, agreement.exact_methods);
+    let outcome = report.outcome(common.format, agreement.status());
     let (Some(qp), Some(active_set), Some(penalty)) = (qp, active_set, penalty) else { return Ok(outcome) };
     let answers = [qp, active_set, penalty];
     Ok(outcome.with_pictures(move || gallery::write_compare(&folder, &answers, &summaries)))

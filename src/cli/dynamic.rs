@@ -15,9 +15,6 @@ use crate::scene::{Dynamics, Model, Scene};
 use crate::study::{MotionSummary, RunSeconds};
 use crate::watch::Watch;
 
-/// Energy beyond this, relative to the largest of the motion, is told even of a scheme that should keep it.
-const GAIN: f64 = 0.01;
-
 pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outcome, Error> {
     let clock = Instant::now();
     let model = Arc::new(scene.build()?);
@@ -45,20 +42,17 @@ pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outco
         warn(&format!("out of time after step {} of {}\n", summary.steps, dynamics.steps));
     }
     watch.step("report", 0);
-    if summary.energy_gain() > GAIN {
-        let percent = 100.0 * summary.energy_gain();
-        warn(&format!("warning: the energy grew by {percent:.1} % of its largest: do not trust this motion\n"));
-    }
+    warn(&summary.warnings().iter().map(|warning| format!("warning: {}\n", warning.message)).collect::<String>());
     let seconds = RunSeconds::new(assemble, factor, clock.elapsed().as_secs_f64());
     let motion =
         MotionReport { model: &model, dynamics: &dynamics, method: settings.method, summary: &summary, seconds };
     let report = Report::new(&motion, motion.text(&scene_title(&model, &options.input)))?;
-    let (format, is_certified) = (options.common.format, motion.is_certified());
+    let (format, status) = (options.common.format, motion.status());
     let (Some(folder), Some(path)) = (folder, &options.common.out) else {
-        return Ok(report.outcome(format, is_certified));
+        return Ok(report.outcome(format, status));
     };
     report.write(path)?;
-    Ok(report.outcome(format, is_certified).with_pictures(move || folder.draw(&model)))
+    Ok(report.outcome(format, status).with_pictures(move || folder.draw(&model)))
 }
 
 /// The steps of a motion, and what they leave.
@@ -72,7 +66,7 @@ struct Run<'a> {
 
 impl<'a> Run<'a> {
     fn without_folder(model: &'a Arc<Model>, dynamics: &'a Dynamics, integrator: Integrator) -> Self {
-        let summary = MotionSummary::starting(&integrator.observe());
+        let summary = MotionSummary::starting(&integrator.observe(), dynamics.window, dynamics.step);
         Run { model, dynamics, integrator, summary, folder: None }
     }
 
@@ -85,7 +79,8 @@ impl<'a> Run<'a> {
         scene: String,
     ) -> Result<Self, Error> {
         let run = Run::without_folder(model, dynamics, integrator);
-        let mut folder = MotionFolder::new(path, scene, &run.integrator.observe())?;
+        let mut folder = MotionFolder::new(path, scene, model, &dynamics.watched)?;
+        folder.observe(model, &run.integrator.observe(), run.integrator.state())?;
         folder.frame(model, 0.0, run.integrator.state(), &run.summary)?;
         Ok(Run { folder: Some(folder), ..run })
     }
@@ -99,7 +94,7 @@ impl<'a> Run<'a> {
         scene: String,
     ) -> Result<Self, Error> {
         let wrong = |field: &str, message: String| Error::Scene { path: format!("analysis.dynamic.{field}"), message };
-        let (folder, state, summary) = MotionFolder::resume(path, scene)?;
+        let (folder, state, summary) = MotionFolder::resume(path, scene, model, &dynamics.watched)?;
         if state.steps > dynamics.steps {
             let message = format!("the run in the folder has gone on to step {} already, beyond it", state.steps);
             return Err(wrong("duration", message));
@@ -126,7 +121,7 @@ impl<'a> Run<'a> {
             self.summary.add(&seen, step);
             let state = self.integrator.state();
             if let Some(folder) = &mut self.folder {
-                folder.observe(&seen)?;
+                folder.observe(self.model, &seen, state)?;
                 if frames_until(state.steps) > frames_until(state.steps - 1) {
                     folder.frame(self.model, seen.time, state, &self.summary)?;
                 }

@@ -10,7 +10,8 @@ use crate::qp::matrix_market;
 use crate::qp::problem::ContactProblem;
 use crate::scene::{Answer, Model, Scene, Units};
 use crate::solution::{Goal, Solution};
-use crate::study::{ModelSize, Summary, scene_summary};
+use crate::study::scene::problem_summary;
+use crate::study::{Summary, scene_summary};
 
 /// What there is to solve.
 pub(super) struct Input {
@@ -93,7 +94,7 @@ impl Input {
     ) -> Result<Summary, Error> {
         match answer {
             Some(answer) => scene_summary(answer, solution, goal, self.assemble_seconds),
-            None => Ok(Summary::new(solution, ModelSize::of(self.problem()), goal, self.assemble_seconds)),
+            None => Ok(problem_summary(self.problem(), solution, goal, self.assemble_seconds)),
         }
     }
 

@@ -13,7 +13,7 @@ use crate::qp::{Method, Precision};
 #[command(name = "signorini", version, arg_required_else_help = true)]
 #[command(
     after_help = "Exit codes: 0 certified, 1 bad input or file, 2 usage, 3 infeasible, unbounded or under-held, \
-                        4 not certified, 130 interrupted, with what was found until then."
+                        4 not certified or an unstable motion, 130 interrupted, with what was found until then."
 )]
 pub(super) struct Arguments {
     /// Print each step on a line of standard error as it begins

@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::options::Format;
 use crate::error::Error;
 use crate::output::{report_json, write_files};
+use crate::study::Status;
 
 /// How a command ended, as an exit code; a usage error is 2, from the argument parser.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,9 +71,13 @@ impl Report {
         })
     }
 
-    /// The outcome of a command that prints the report in this form, certified or not.
-    pub fn outcome(self, format: Format, is_certified: bool) -> Outcome {
-        Outcome { ending: if is_certified { Ending::Certified } else { Ending::NotCertified }, ..self.printed(format) }
+    /// The outcome of a command that prints the report, whose answers have this status, in this form.
+    pub fn outcome(self, format: Format, status: Status) -> Outcome {
+        let ending = match status {
+            Status::Certified => Ending::Certified,
+            Status::NotCertified | Status::Unstable => Ending::NotCertified,
+        };
+        Outcome { ending, ..self.printed(format) }
     }
 }
 

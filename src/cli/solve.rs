@@ -104,11 +104,11 @@ fn reported(input: &Input, solution: Solution, goal: Goal, common: &Common, watc
         summary.discretisation_error = Some(answer.discretisation_error()?);
     }
     let report = Report::new(&summary, solve_text(&input.title, &summary, &input.units))?;
-    let is_certified = summary.is_certified();
-    let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, is_certified)) };
+    let status = summary.status;
+    let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, status)) };
     gallery::write_answer(&folder, &summary.solution)?;
     report.write(&folder)?;
-    let outcome = report.outcome(common.format, is_certified);
+    let outcome = report.outcome(common.format, status);
     if watch.is_over() && !watch.is_stopped() {
         warn("warning: no fields and no pictures: the time is over\n");
         return Ok(outcome);

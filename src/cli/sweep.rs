@@ -6,7 +6,8 @@ use super::outcome::{Outcome, Report, warn};
 use super::settings::settings;
 use crate::error::Error;
 use crate::output::{gallery, sweep_text};
-use crate::study::{even_gaps, sweep};
+use crate::study::scene::even_gaps;
+use crate::study::sweep;
 use crate::watch::Watch;
 
 pub(super) fn run(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
@@ -18,9 +19,9 @@ pub(super) fn run(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
     watch.step("report", 0);
     let text = sweep_text(&scene_title(&model, &options.scene), &swept, model.units());
     let report = Report::new(&swept, text)?;
-    let is_certified = swept.points.iter().all(|point| point.summary.is_certified());
-    let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, is_certified)) };
+    let status = swept.points.iter().map(|point| point.summary.status).collect();
+    let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, status)) };
     report.write(&folder)?;
-    let outcome = report.outcome(common.format, is_certified);
+    let outcome = report.outcome(common.format, status);
     Ok(outcome.with_pictures(move || gallery::write_sweep(&folder, &swept)))
 }

@@ -7,8 +7,8 @@ use super::options::Tradeoff;
 use super::outcome::{Outcome, Report, warn};
 use crate::error::Error;
 use crate::output::{
-    Drawing, motion_tradeoff_csv, motion_tradeoff_plot, motion_tradeoff_text, tradeoff_csv, tradeoff_plot,
-    tradeoff_text, write_files, write_picture,
+    Drawing, motion_tradeoff_csv, motion_tradeoff_plot, motion_tradeoff_text, total_error_plot, tradeoff_csv,
+    tradeoff_plot, tradeoff_text, write_files, write_picture,
 };
 use crate::qp::Settings;
 use crate::study::{TradeoffGrid, motion_tradeoff, tradeoff};
@@ -24,7 +24,8 @@ pub(super) fn run(options: &Tradeoff, watch: &Watch) -> Result<Outcome, Error> {
         let settings = Settings { watch: watch.clone(), ..Settings::default() };
         let measured = motion_tradeoff(&scene, &settings)?;
         let (text, csv) = (motion_tradeoff_text(title, &measured), motion_tradeoff_csv(&measured));
-        return reported(options, watch, &measured, text, &csv, || motion_tradeoff_plot(title, &measured));
+        let plots = || vec![("tradeoff", motion_tradeoff_plot(title, &measured))];
+        return reported(options, watch, &measured, text, &csv, plots);
     }
     let grid = TradeoffGrid {
         refinements: options.refinements.into(),
@@ -33,24 +34,28 @@ pub(super) fn run(options: &Tradeoff, watch: &Watch) -> Result<Outcome, Error> {
     };
     let measured = tradeoff(&scene, &grid, watch)?;
     let (text, csv) = (tradeoff_text(title, &measured), tradeoff_csv(&measured));
-    reported(options, watch, &measured, text, &csv, || tradeoff_plot(title, &measured))
+    let plots =
+        || vec![("tradeoff", tradeoff_plot(title, &measured)), ("total-error", total_error_plot(title, &measured))];
+    reported(options, watch, &measured, text, &csv, plots)
 }
 
-/// Reports what was measured, with its values and its picture in the folder of the options.
+/// Reports what was measured, with its values and its pictures in the folder of the options.
 fn reported(
     options: &Tradeoff,
     watch: &Watch,
     measured: &impl Serialize,
     text: String,
     csv: &str,
-    plot: impl Fn() -> Drawing,
+    plots: impl Fn() -> Vec<(&'static str, Drawing)>,
 ) -> Result<Outcome, Error> {
     watch.step("report", 0);
     let report = Report::new(measured, text)?;
     if let Some(folder) = &options.out {
         report.write_with_text(folder, "tradeoff.txt")?;
         write_files(folder, &[("tradeoff.csv", csv)])?;
-        write_picture(folder, "tradeoff", &plot())?;
+        for (stem, drawing) in plots() {
+            write_picture(folder, stem, &drawing)?;
+        }
     }
     Ok(report.printed(options.format))
 }

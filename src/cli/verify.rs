@@ -14,5 +14,5 @@ pub(super) fn run(options: &Verify) -> Result<Outcome, Error> {
     let certificate = problem.certify(&displacement, &multiplier)?;
     let verification = Verification::new(certificate, &multiplier, ModelSize::of(&problem), options.tolerance);
     let text = verify_text(&format!("Problem directory {}", options.directory.display()), &verification);
-    Ok(Report::new(&verification, text)?.outcome(options.format, verification.is_certified()))
+    Ok(Report::new(&verification, text)?.outcome(options.format, verification.status))
 }

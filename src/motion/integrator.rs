@@ -22,6 +22,8 @@ pub struct Integrator {
     problem: DynamicProblem,
     step: f64,
     scheme: Box<dyn Advance>,
+    /// Where in a step the scheme takes the loads, from 0 to 1.
+    load_times: &'static [f64],
     state: State,
     watch: Watch,
     /// Seconds of the longest step so far.
@@ -67,6 +69,8 @@ impl Integrator {
             acceleration: vec![0.0; problem.statics().dofs()],
             elastic: problem.statics().stiffness().mul(problem.displacement()),
             momentum: problem.mass().mul(problem.velocity()),
+            work: 0.0,
+            penalties: 0,
             multiplier: vec![0.0; rows],
             contact_set: ContactSet::from_fn(rows, |row| violation[row] >= -GAP_ROUNDING * reach),
         };
@@ -74,7 +78,8 @@ impl Integrator {
         if watch.is_over() {
             return Err(Error::Interrupted);
         }
-        Ok(Integrator { problem, step, scheme: prepared, state, watch, longest: 0.0 })
+        let load_times = scheme.load_times();
+        Ok(Integrator { problem, step, scheme: prepared, load_times, state, watch, longest: 0.0 })
     }
 
     /// One step further.
@@ -93,11 +98,13 @@ impl Integrator {
             // The solves of this step may have been cut short.
             return Err(Error::Interrupted);
         }
-        let next = next?;
+        let mut next = next?;
         if let Some(value) = next.displacement.iter().chain(&next.velocity).find(|value| !value.is_finite()) {
             let reason = format!("the motion has the value {value} after step {}", next.steps);
             return Err(Error::Numerical { step: "time integration", reason });
         }
+        let times = self.load_times.iter().map(|share| (self.state.steps as f64 + share) * self.step);
+        next.work += self.problem.work(times, &self.state.displacement, &next.displacement);
         self.state = next;
         Ok(&self.state)
     }
@@ -156,6 +163,8 @@ impl Integrator {
             kinetic: dot(velocity, momentum) / 2.0,
             strain,
             potential,
+            work: self.state.work,
+            penalties: self.state.penalties,
         }
     }
 }

@@ -33,6 +33,7 @@ mod time_function;
 
 pub use integrator::Integrator;
 pub use problem::DynamicProblem;
+pub(crate) use scheme::MOST_IN_CONTACT;
 pub use scheme::{Scheme, SchemeSpec, stable_step};
 pub use state::{Observation, State};
 pub use step::Parameter;

@@ -186,6 +186,14 @@ impl DynamicProblem {
         }
     }
 
+    /// Work of the loads on the way between two displacements: of the mean of their values at some times, without the part
+    /// that holds prescribed displacements.
+    pub(super) fn work(&self, times: impl ExactSizeIterator<Item = f64>, from: &[f64], to: &[f64]) -> f64 {
+        let count = times.len() as f64;
+        let moved: Vec<f64> = to.iter().zip(from).map(|(to, from)| to - from).collect();
+        times.map(|t| dot(&self.load_at(t), &moved)).sum::<f64>() / count - dot(&self.held.0, &moved)
+    }
+
     /// Strain energy of a displacement whose elastic forces K u are given, and the potential of the loads at time `t`.
     pub(super) fn energies(&self, displacement: &[f64], elastic: &[f64], t: f64) -> [f64; 2] {
         let (forces, energy) = &self.held;

@@ -20,6 +20,10 @@ pub struct State {
     pub elastic: Vec<f64>,
     /// Momentum M v, one entry per dof, in mass times length over time.
     pub momentum: Vec<f64>,
+    /// Work of the loads since the start, in energy; forces that hold prescribed displacements do none.
+    pub work: f64,
+    /// Penalties that the last step tried; 0 in schemes without a loop over penalties.
+    pub penalties: usize,
     /// Contact multiplier of the last step, one entry per contact row, in force, `<= 0`.
     pub multiplier: Vec<f64>,
     /// Rows that were closed in the last step: where the search of the next one starts. What writes a state lists them itself.
@@ -44,6 +48,10 @@ pub struct Observation {
     pub strain: f64,
     /// Potential of the loads, `-f'u`.
     pub potential: f64,
+    /// Work of the loads since the start.
+    pub work: f64,
+    /// Penalties that the last step tried; 0 in schemes without a loop over penalties.
+    pub penalties: usize,
 }
 
 impl Observation {

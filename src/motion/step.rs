@@ -24,6 +24,10 @@ pub(super) struct About {
     pub penetrates: bool,
     /// Its step is limited.
     pub is_explicit: bool,
+    /// Where in a step it takes the loads, from 0 to 1, each with equal weight: by these the work of the loads is measured.
+    pub load_times: &'static [f64],
+    /// The forms of the mass that let its energy grow wherever bodies touch.
+    pub unstable_in_contact: &'static [MassForm],
     /// Prepares a motion in steps of one length, with the value of the parameter.
     pub prepare: Prepare,
 }
@@ -75,10 +79,14 @@ impl Stepping {
 
     /// Factorises the matrix of `problem`; its load and gaps say nothing but which rows there are.
     pub fn new(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
-        let prepared = Prepared::new(problem, settings)?;
+        Stepping { prepared: Prepared::new(problem, settings)? }.under(settings)
+    }
+
+    /// The same matrix under other settings.
+    pub fn under(&self, settings: &Settings) -> Result<Self, Error> {
         // A step is done whole or not at all: there is no half of it to return.
         let unhurried = Settings { watch: settings.watch.unhurried(), time: None, ..settings.clone() };
-        Ok(Stepping { prepared: prepared.with_settings(&unhurried)? })
+        Ok(Stepping { prepared: self.prepared.with_settings(&unhurried)? })
     }
 
     /// Number of dofs.
@@ -120,6 +128,8 @@ pub(super) fn next(
         acceleration: before.acceleration.clone(),
         elastic: problem.statics().stiffness().mul(&displacement),
         momentum: problem.mass().mul(&velocity),
+        work: before.work,
+        penalties: 0,
         displacement,
         velocity,
         multiplier,

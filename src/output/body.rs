@@ -2,10 +2,10 @@
 
 use super::{
     axes::{Axis, Frame, LARGE, LINE, Labels, MARGIN, ROOM_BELOW, TITLE, draw_heading},
-    colour_bar::{self, ColourRange},
+    colour_bar::{self, ColourRange, Outside},
     drawing::{Anchor, Drawing},
     legend::{self, Entry},
-    mark::draw_dot,
+    mark::Candidate,
     obstacle::{self, Look},
     ticks::{Quantity, Scale, brief, common_exponent},
     typeface::{self, Weight},
@@ -130,8 +130,12 @@ impl ContactPicture<'_> {
         let [under_left, under_right] = [left, right].map(|frame| frame.corner[0] + 0.5 * frame.size[0]);
         let [low, high] = common_limits([self.field]);
         let slack = 1e-9 * (limits[1] - limits[0]).abs();
-        let beyond = [low < limits[0].min(limits[1]) - slack, high > limits[1].max(limits[0]) + slack];
-        range.draw(&mut drawing, [under_left - 0.5 * bar, below], bar, beyond, missing);
+        let outside = Outside {
+            below: low < limits[0].min(limits[1]) - slack,
+            above: high > limits[1].max(limits[0]) + slack,
+            missing,
+        };
+        range.draw(&mut drawing, [under_left - 0.5 * bar, below], bar, outside);
         legend::draw_rows(&mut drawing, &entries, [under_right, below - 4.0], frames.column);
         Ok(drawing)
     }
@@ -214,14 +218,15 @@ impl ContactPicture<'_> {
 
     fn legend(&self, frame: &Frame) -> Vec<Entry<'_>> {
         let closed = self.closed.iter().filter(|&&closed| closed).count();
-        let counts = [("closed nodes", closed, true), ("open candidates", self.closed.len() - closed, false)];
+        let open = self.closed.len() - closed;
+        let counts = [("closed nodes", closed, Candidate::Closed), ("open candidates", open, Candidate::Open)];
         let mut entries: Vec<Entry> = counts
             .into_iter()
             .filter(|&(_, count, _)| count > 0)
-            .map(|(name, count, closed)| Entry {
+            .map(|(name, count, mark)| Entry {
                 name: format!("{name} ({count})"),
                 key_width: 12.0,
-                key: Box::new(move |drawing, centre| draw_dot(drawing, centre, 5.0, closed)),
+                key: Box::new(move |drawing, centre| mark.draw(drawing, centre, 5.0)),
             })
             .collect();
         if !self.obstacles.is_empty() {

@@ -17,6 +17,14 @@ const GAP: f64 = 4.0;
 /// Room that a bar needs from its top to the end of its label.
 pub(crate) const ROOM: f64 = HEIGHT + TICK + GAP + SMALL * LINE + NORMAL * LINE;
 
+/// Are there values below and above a range, and some that are no numbers?
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Outside {
+    pub below: bool,
+    pub above: bool,
+    pub missing: bool,
+}
+
 /// A range of values with its bands of colour, whose edges include the ticks of the bar.
 pub(crate) struct ColourRange {
     axis: Axis,
@@ -55,9 +63,8 @@ impl ColourRange {
         std::iter::once(f64::NEG_INFINITY).chain(self.edges.iter().copied()).zip(colours).collect()
     }
 
-    /// Draws the bar with its left end at `corner`; `beyond` says whether values lie below and above the limits,
-    /// `missing` whether some are no numbers.
-    pub fn draw(&self, drawing: &mut Drawing, [x, y]: [f64; 2], length: f64, beyond: [bool; 2], missing: bool) {
+    /// Draws the bar with its left end at `corner`.
+    pub fn draw(&self, drawing: &mut Drawing, [x, y]: [f64; 2], length: f64, outside: Outside) {
         let range = self.axis.range;
         let at = |value: f64| x + length * Scale::Linear.fraction(value, range);
         let bands = self.bands();
@@ -67,13 +74,13 @@ impl ColourRange {
             drawing.rect([from, y], [x + length - from, HEIGHT], &Paint::fill(colour));
         }
         let mut outline = vec![[x, y], [x + length, y]];
-        if beyond[1] {
+        if outside.above {
             let tip = [[x + length, y], [x + length + 0.7 * HEIGHT, y + 0.5 * HEIGHT], [x + length, y + HEIGHT]];
             drawing.polygon(&tip, &Paint::fill(bands[bands.len() - 1].1));
             outline.push(tip[1]);
         }
         outline.extend([[x + length, y + HEIGHT], [x, y + HEIGHT]]);
-        if beyond[0] {
+        if outside.below {
             let tip = [[x, y], [x - 0.7 * HEIGHT, y + 0.5 * HEIGHT], [x, y + HEIGHT]];
             drawing.polygon(&tip, &Paint::fill(bands[0].1));
             outline.push(tip[1]);
@@ -84,7 +91,8 @@ impl ColourRange {
             drawing.line([at(position), bottom], [at(position), bottom + TICK], &Paint::stroke(INK, 1.2));
             drawing.text([at(position), bottom + TICK + GAP + 0.75 * SMALL], label, SMALL, Anchor::Middle);
         }
-        let label = if missing { format!("{}; grey: no value", self.axis.label) } else { self.axis.label.clone() };
+        let label =
+            if outside.missing { format!("{}; grey: no value", self.axis.label) } else { self.axis.label.clone() };
         let (label, size) = typeface::fitted(&label, NORMAL, Weight::Regular, length + 60.0);
         let baseline = bottom + TICK + GAP + SMALL * LINE + 0.8 * NORMAL;
         drawing.text([x + 0.5 * length, baseline], &label, size, Anchor::Middle);

@@ -38,7 +38,7 @@ pub fn write_answer(folder: &Path, solution: &Solution) -> Result<(), Error> {
 /// # Errors
 /// [`Error::File`], and those of the recovery of stresses.
 pub fn write_solve(folder: &Path, answer: &Answer, history: &[Iteration]) -> Result<(), Error> {
-    write_atomically(&folder.join("solution.vtu"), fields(answer)?.as_bytes())?;
+    write_atomically(&folder.join("solution.vtu"), fields(answer, None)?.as_bytes())?;
     let model = answer.model();
     if !is_plane(model) {
         return Ok(());
@@ -149,7 +149,7 @@ pub fn write_sweep(folder: &Path, sweep: &Sweep) -> Result<(), Error> {
         over_gap("contact area", &format!("{}²", units.length), &area, &|corner| corner.area)
     };
     let plots = [
-        over_gap("contact force F", &units.force, &|point| contact(point).force, &|corner| corner.force),
+        over_gap("sum of multipliers", &units.force, &|point| contact(point).force, &|corner| corner.force),
         extent,
         over_gap("peak pressure", &units.pressure(), &|p| contact(p).pressure_max.unwrap_or(0.0), &|c| c.pressure_max),
     ];
@@ -286,12 +286,13 @@ fn draw_series(folder: &Path, series: &[(String, Scene)]) -> Result<(), Error> {
 }
 
 /// The text of the `.vtu` file: displacement, stresses, and at the candidates gap, pressure and contact flag.
-pub(super) fn fields(answer: &Answer) -> Result<String, Error> {
+pub(super) fn fields(answer: &Answer, velocity: Option<&[f64]>) -> Result<String, Error> {
     let model = answer.model();
     let nodes = model.mesh().nodes();
     let elements: Vec<Vec<usize>> = model.mesh().elements().map(<[usize]>::to_vec).collect();
     let cell_types = vec![model.mesh().kind(); elements.len()];
     let displacement = in_space(answer.displacement(), model.mesh().dimension());
+    let force = in_space(&answer.forces()?.contact, model.mesh().dimension());
     let stress = answer.stress()?;
     // A node between two obstacles shows the sum of its pressures and the smaller of its gaps.
     let (mut pressure, mut gap) = (vec![0.0; nodes.len()], vec![0.0; nodes.len()]);
@@ -307,20 +308,24 @@ pub(super) fn fields(answer: &Answer) -> Result<String, Error> {
     let components: [fn(&Stress) -> f64; 4] = [|s| s.sigma_1, |s| s.sigma_2, |s| s.von_mises, |s| s.sigma_3];
     let of = |stresses: &[Stress]| components.map(|component| stresses.iter().map(component).collect::<Vec<f64>>());
     let (at_nodes, in_elements) = (of(&stress.nodes), of(&stress.elements));
+    let velocity = velocity.map(|nodal| in_space(nodal, model.mesh().dimension()));
+    let mut point_data = vec![Array::Vectors("u", &displacement)];
+    point_data.extend(velocity.as_deref().map(|vectors| Array::Vectors("velocity", vectors)));
+    point_data.extend([
+        Array::Scalars("sigma_1", &at_nodes[0]),
+        Array::Scalars("sigma_2", &at_nodes[1]),
+        Array::Scalars("sigma_3", &at_nodes[3]),
+        Array::Scalars("von_mises", &at_nodes[2]),
+        Array::Scalars("gap", &gap),
+        Array::Scalars("pressure", &pressure),
+        Array::Scalars("contact", &flag),
+        Array::Vectors("contact_force", &force),
+    ]);
     Unstructured {
         nodes,
         elements: &elements,
         cell_types: &cell_types,
-        point_data: &[
-            Array::Vectors("u", &displacement),
-            Array::Scalars("sigma_1", &at_nodes[0]),
-            Array::Scalars("sigma_2", &at_nodes[1]),
-            Array::Scalars("sigma_3", &at_nodes[3]),
-            Array::Scalars("von_mises", &at_nodes[2]),
-            Array::Scalars("gap", &gap),
-            Array::Scalars("pressure", &pressure),
-            Array::Scalars("contact", &flag),
-        ],
+        point_data: &point_data,
         cell_data: &[
             Array::Scalars("sigma_1", &in_elements[0]),
             Array::Scalars("sigma_2", &in_elements[1]),

@@ -17,6 +17,7 @@ pub(crate) fn compact_json(value: &impl Serialize) -> Result<String, Error> {
 ///
 /// # Errors
 /// [`Error::Numerical`] for a value that JSON cannot hold.
+#[cfg(feature = "cli")]
 pub fn report_json(value: &impl Serialize) -> Result<String, Error> {
     serde_json::to_value(value).map(|value| format!("{value:#}\n")).map_err(failed)
 }

@@ -9,10 +9,17 @@ const CLOSED: Colour = Colour(0xd5, 0x2b, 0x1e);
 const OPEN: Colour = Colour(0x5a, 0x64, 0x72);
 
 /// A candidate.
-pub(crate) fn draw_dot(drawing: &mut Drawing, place: [f64; 2], radius: f64, closed: bool) {
-    if closed {
-        drawing.circle(place, radius, &Paint::fill(CLOSED).with_stroke(WHITE, 0.8));
-    } else {
-        drawing.circle(place, 0.62 * radius, &Paint::fill(WHITE).with_stroke(OPEN, 1.1));
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Candidate {
+    Closed,
+    Open,
+}
+
+impl Candidate {
+    pub fn draw(self, drawing: &mut Drawing, place: [f64; 2], radius: f64) {
+        match self {
+            Candidate::Closed => drawing.circle(place, radius, &Paint::fill(CLOSED).with_stroke(WHITE, 0.8)),
+            Candidate::Open => drawing.circle(place, 0.62 * radius, &Paint::fill(WHITE).with_stroke(OPEN, 1.1)),
+        }
     }
 }

@@ -20,6 +20,7 @@ mod legend;
 mod mark;
 mod motion;
 mod motion_report;
+mod motion_table;
 mod motion_tradeoff;
 mod obstacle;
 mod paint;
@@ -37,10 +38,12 @@ pub(crate) mod vtu;
 
 pub(crate) use body::{ContactPicture, ObstacleLine, common_limits, common_window};
 pub use drawing::Drawing;
-pub use file::{write_atomically, write_files, write_picture};
+pub(crate) use file::write_atomically;
+pub use file::{write_files, write_picture};
 #[cfg(feature = "cli")]
 pub(crate) use json::compact_json;
-pub use json::report_json;
+#[cfg(feature = "cli")]
+pub(crate) use json::report_json;
 pub use motion::MotionFolder;
 pub use motion_report::MotionReport;
 pub use motion_tradeoff::{motion_tradeoff_csv, motion_tradeoff_plot, motion_tradeoff_text};
@@ -49,5 +52,7 @@ pub use plot::{Plot, Series, line_plots};
 pub(crate) use report::printable;
 pub use report::{compare_text, solve_text, sweep_text, verify_text};
 pub use ticks::{Quantity, Scale};
+#[cfg(feature = "cli")]
+pub(crate) use tradeoff::total_error_plot;
 pub use tradeoff::{tradeoff_csv, tradeoff_plot, tradeoff_text};
 pub use vtu::{Array, Unstructured};

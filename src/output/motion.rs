@@ -5,8 +5,7 @@
 //! Nothing that is kept grows with the number of steps.
 
 use std::fmt::Write as _;
-use std::fs::OpenOptions;
-use std::io::{BufRead, BufReader, Read, Write};
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -14,6 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use super::animation::animate;
 use super::gallery::{Scene, fields};
+use super::motion_table::MotionTable;
 use super::{
     ContactPicture, Plot, Quantity, Series, common_limits, common_window, json::compact_json, line_plots,
     write_atomically, write_picture,
@@ -21,16 +21,15 @@ use super::{
 use crate::error::Error;
 use crate::file::{MOST_OF_TABLE, read_text_capped};
 use crate::motion::{Observation, State};
-use crate::scene::{Answer, Model};
+use crate::scene::{Answer, Model, WatchedPoint};
 use crate::solution::ContactSet;
 use crate::study::MotionSummary;
 
 const HISTORY: &str = "history.csv";
+const WATCH: &str = "watch.csv";
+const RESULTANTS: &str = "resultants.csv";
 const CHECKPOINT: &str = "checkpoint.json";
 const HEADING: &str = "time,force,closed,penetration,kinetic,strain,potential,energy\n";
-
-/// Lines of the history are written at every frame, and in between if they exceed this many bytes.
-const MOST_BYTES: usize = 1 << 16;
 
 /// Points of a plot over time; of more steps some are left out.
 const MOST_POINTS: usize = 4000;
@@ -45,9 +44,11 @@ pub struct MotionFolder {
     folder: PathBuf,
     /// The scene in one line: a run goes on from its own checkpoint only.
     scene: String,
-    /// Lines that are not written yet.
-    lines: String,
-    written: u64,
+    history: MotionTable,
+    /// The resultant of each obstacle.
+    resultants: MotionTable,
+    /// Points that are watched, with their table; none if the scene asks for none.
+    watch: Option<(Vec<WatchedPoint>, MotionTable)>,
     /// Times of the frames so far.
     times: Vec<f64>,
 }
@@ -69,29 +70,35 @@ struct Checkpoint {
     state: State,
     closed: Vec<usize>,
     history_bytes: u64,
+    resultants_bytes: u64,
+    watch_bytes: u64,
     frame_times: Vec<f64>,
     summary: MotionSummary,
 }
 
 impl MotionFolder {
-    /// A new run of `scene` (its text) in `folder`; what an earlier one left there is overwritten.
+    /// A new run of `scene` (its text) in `folder`, with points of `model` that are watched; what an earlier one left there is
+    /// overwritten.
     ///
     /// # Errors
     /// [`Error::File`].
-    pub fn new(folder: &Path, scene: String, first: &Observation) -> Result<Self, Error> {
-        let mut run =
-            MotionFolder { folder: folder.into(), scene, lines: String::new(), written: 0, times: Vec::new() };
-        run.written = HEADING.len() as u64;
-        // A checkpoint of an earlier run would belong to another history.
-        match std::fs::remove_file(folder.join(CHECKPOINT)) {
-            Err(source) if source.kind() != std::io::ErrorKind::NotFound && folder.exists() => {
-                return Err(Error::File { action: "remove", path: folder.join(CHECKPOINT), source });
+    pub fn new(folder: &Path, scene: String, model: &Model, watched: &[WatchedPoint]) -> Result<Self, Error> {
+        // A checkpoint of an earlier run would belong to another history, and so would its table of points.
+        for name in [CHECKPOINT, WATCH] {
+            match std::fs::remove_file(folder.join(name)) {
+                Err(source) if source.kind() != std::io::ErrorKind::NotFound && folder.exists() => {
+                    return Err(Error::File { action: "remove", path: folder.join(name), source });
+                }
+                _ => {}
             }
-            _ => {}
         }
-        write_atomically(&folder.join(HISTORY), HEADING.as_bytes())?;
-        run.observe(first)?;
-        Ok(run)
+        let history = MotionTable::new(folder.join(HISTORY), HEADING)?;
+        let resultants = MotionTable::new(folder.join(RESULTANTS), &resultants_heading(model))?;
+        let watch = match watch_heading(model, watched) {
+            Some(heading) => Some((watched.to_vec(), MotionTable::new(folder.join(WATCH), &heading)?)),
+            None => None,
+        };
+        Ok(MotionFolder { folder: folder.into(), scene, history, resultants, watch, times: Vec::new() })
     }
 
     /// The run of `scene` that stands in `folder`, with its state and its numbers; lines behind its checkpoint are cut off.
@@ -100,7 +107,12 @@ impl MotionFolder {
     /// # Errors
     /// [`Error::File`] where there is none, [`Error::Scene`] for the run of another scene or a checkpoint that cannot be
     /// read.
-    pub fn resume(folder: &Path, scene: String) -> Result<(Self, State, MotionSummary), Error> {
+    pub fn resume(
+        folder: &Path,
+        scene: String,
+        model: &Model,
+        watched: &[WatchedPoint],
+    ) -> Result<(Self, State, MotionSummary), Error> {
         let path = folder.join(CHECKPOINT);
         let text = read_text_capped(&path, MOST_OF_TABLE).map_err(|error| match error {
             Error::File { path, source, .. } => Error::File { action: "resume from", path, source },
@@ -112,52 +124,62 @@ impl MotionFolder {
         if found.scene != scene && undated(&found.scene) != undated(&scene) {
             return Err(wrong("it belongs to another scene; take its own, or another folder".into()));
         }
-        let history = folder.join(HISTORY);
-        cut_history(&history, found.history_bytes).map_err(|source| Error::File {
-            action: "resume",
-            path: history,
-            source,
-        })?;
+        let history = MotionTable::resume(folder.join(HISTORY), HEADING, found.history_bytes)?;
+        let resultants = folder.join(RESULTANTS);
+        let resultants = MotionTable::resume(resultants, &resultants_heading(model), found.resultants_bytes)?;
+        let watch = match watch_heading(model, watched) {
+            Some(heading) => {
+                let table = MotionTable::resume(folder.join(WATCH), &heading, found.watch_bytes)?;
+                Some((watched.to_vec(), table))
+            }
+            None => None,
+        };
         let mut state = found.state;
         state.contact_set = closed_of(state.multiplier.len(), &found.closed);
-        let run = MotionFolder {
-            folder: folder.into(),
-            scene,
-            lines: String::new(),
-            written: found.history_bytes,
-            times: found.frame_times,
-        };
+        let run = MotionFolder { folder: folder.into(), scene, history, resultants, watch, times: found.frame_times };
         Ok((run, state, found.summary))
     }
 
-    /// One more line of the history.
+    /// One more line of the history, of the resultants, and of the points that are watched.
     ///
     /// # Errors
-    /// [`Error::File`].
-    pub fn observe(&mut self, seen: &Observation) -> Result<(), Error> {
-        let Observation { time, force, closed, penetration, kinetic, strain, potential } = seen;
+    /// [`Error::File`]; [`Error::Length`] for the state of another model.
+    pub fn observe(&mut self, model: &Model, seen: &Observation, state: &State) -> Result<(), Error> {
+        let Observation { time, force, closed, penetration, kinetic, strain, potential, .. } = seen;
         let energy = seen.energy();
-        let _ = writeln!(
-            self.lines,
+        self.history.add(&format!(
             "{time:e},{force:e},{closed},{penetration:e},{kinetic:e},{strain:e},{potential:e},{energy:e}"
-        );
-        if self.lines.len() > MOST_BYTES { self.write_lines() } else { Ok(()) }
+        ))?;
+        let mut resultants = format!("{time:e}");
+        for of in model.contact_resultants(&state.multiplier)? {
+            let centre = of.centre.map_or(vec![None; of.force.len()], |at| at.into_iter().map(Some).collect());
+            for value in of.force.into_iter().chain(of.moment).map(Some).chain(centre) {
+                // Without a force there is no centre.
+                let _ = match value {
+                    Some(value) => write!(resultants, ",{value:e}"),
+                    None => write!(resultants, ","),
+                };
+            }
+        }
+        self.resultants.add(&resultants)?;
+        let Some((watched, table)) = &mut self.watch else { return Ok(()) };
+        let nodal = [
+            model.nodal_displacement(&state.displacement)?,
+            model.dofs().expand_motion(&state.velocity)?,
+            model.contact_forces(&state.multiplier)?,
+        ];
+        let mut line = format!("{time:e}");
+        for value in
+            watched.iter().flat_map(|point| nodal.each_ref().map(|of| point.value(of, model.mesh().dimension())))
+        {
+            for component in value {
+                let _ = write!(line, ",{component:e}");
+            }
+        }
+        table.add(&line)
     }
 
-    /// Appends the lines that are not written yet.
-    fn write_lines(&mut self) -> Result<(), Error> {
-        let path = self.folder.join(HISTORY);
-        let appended = OpenOptions::new().append(true).open(&path).and_then(|mut file| {
-            file.write_all(self.lines.as_bytes())?;
-            file.sync_data()
-        });
-        appended.map_err(|source| Error::File { action: "write", path, source })?;
-        self.written += self.lines.len() as u64;
-        self.lines.clear();
-        Ok(())
-    }
-
-    /// Writes a frame of the series, the lines of the history up to it, and the checkpoint.
+    /// Writes a frame of the series with the velocities, the lines of the tables up to it, and the checkpoint.
     ///
     /// # Errors
     /// [`Error::File`], and those of the recovery of stresses.
@@ -168,9 +190,12 @@ impl MotionFolder {
         state: &State,
         summary: &MotionSummary,
     ) -> Result<(), Error> {
-        self.write_lines()?;
+        self.history.write()?;
+        self.resultants.write()?;
+        self.watch.as_mut().map_or(Ok(()), |(_, table)| table.write())?;
         let (number, closed) = (self.times.len(), state.contact_set.iter().collect::<Vec<usize>>());
-        let vtu = fields(&Answer::new(model.clone(), &state.displacement, &state.multiplier, &state.contact_set)?)?;
+        let answer = Answer::new(model.clone(), &state.displacement, &state.multiplier, &state.contact_set)?;
+        let vtu = fields(&answer, Some(&model.dofs().expand_motion(&state.velocity)?))?;
         write_atomically(&self.folder.join(vtu_name(number)), vtu.as_bytes())?;
         let frame = Frame {
             time,
@@ -185,7 +210,9 @@ impl MotionFolder {
             scene: self.scene.clone(),
             state: state.clone(),
             closed,
-            history_bytes: self.written,
+            history_bytes: self.history.bytes(),
+            resultants_bytes: self.resultants.bytes(),
+            watch_bytes: self.watch.as_ref().map_or(0, |(_, table)| table.bytes()),
             frame_times: self.times.clone(),
             summary: summary.clone(),
         };
@@ -283,27 +310,38 @@ impl MotionFolder {
 /// The set of `rows` rows in which the rows of `closed` are closed; a row beyond the last is left out.
 fn closed_of(rows: usize, closed: &[usize]) -> ContactSet {
     let mut set = ContactSet::open(rows);
-    closed.iter().for_each(|&row| set.set(row, true));
+    closed.iter().for_each(|&row| set.insert(row));
     set
 }
 
-/// Cuts a history off behind its first `bytes`; whatever is no history of a run in its own folder is left as it is.
-fn cut_history(path: &Path, bytes: u64) -> std::io::Result<()> {
-    let wrong = |message: &str| Err(std::io::Error::new(std::io::ErrorKind::InvalidData, message));
-    // To open a named pipe waits for a reader, and what is behind a link is not of this folder.
-    if !path.symlink_metadata()?.is_file() {
-        return wrong("it is no regular file");
+/// The columns of the resultants: force, moment and centre of each obstacle.
+fn resultants_heading(model: &Model) -> String {
+    let axes = &["x", "y", "z"][..model.mesh().dimension()];
+    let turns: &[&str] = match (axes.len(), model.body().formulation().is_axisymmetric()) {
+        (2, false) => &["z"],
+        (3, _) => axes,
+        _ => &[],
+    };
+    let mut heading = String::from("time");
+    for obstacle in model.obstacle_names() {
+        for (quantity, axes) in [("f", axes), ("m", turns), ("c", axes)] {
+            axes.iter().for_each(|axis| {
+                let _ = write!(heading, ",{obstacle} {quantity}_{axis}");
+            });
+        }
     }
-    let mut file = OpenOptions::new().read(true).write(true).open(path)?;
-    let mut heading = Vec::new();
-    (&mut file).take(HEADING.len() as u64).read_to_end(&mut heading)?;
-    if heading != HEADING.as_bytes() {
-        return wrong("it is no history of a motion");
-    }
-    if file.metadata()?.len() < bytes {
-        return wrong("it is shorter than its checkpoint says");
-    }
-    file.set_len(bytes.max(HEADING.len() as u64))
+    heading + "\n"
+}
+
+/// The heading of the table of points, `time` and then u, v and f of each along the axes; `None` without points.
+fn watch_heading(model: &Model, watched: &[WatchedPoint]) -> Option<String> {
+    let axes = &["x", "y", "z"][..model.mesh().dimension()];
+    let columns = |point: &WatchedPoint| -> String {
+        let of =
+            |quantity: &str| axes.iter().map(|axis| format!(",{} {quantity}_{axis}", point.name)).collect::<String>();
+        ["u", "v", "f"].map(of).concat()
+    };
+    (!watched.is_empty()).then(|| format!("time{}\n", watched.iter().map(columns).collect::<String>()))
 }
 
 /// Error for a file that is not the output of a run; it quotes no content, which may be private.

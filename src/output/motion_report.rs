@@ -3,10 +3,13 @@
 use serde::{Serialize, Serializer};
 use serde_json::json;
 
-use super::report::{entry, plural, printable, quantity};
+use super::report::{entry, plural, printable, quantity, warnings_text};
 use crate::qp::Method;
 use crate::scene::{Dynamics, Model};
-use crate::study::{MotionSummary, RunSeconds, status};
+use crate::study::{MotionSummary, RunSeconds, Status};
+
+/// What the force is averaged over.
+const WINDOW: &str = "a fifth of the time that a pressure wave takes through the body";
 
 /// What a run was asked for and what it has come to.
 #[derive(Debug)]
@@ -24,11 +27,17 @@ pub struct MotionReport<'a> {
 }
 
 impl MotionReport<'_> {
-    /// Returns `true` if the contact problems of all steps are certified: not where springs stand for closed rows, nor
-    /// where the motion was cut short.
-    pub fn is_certified(&self) -> bool {
+    /// Unstable if the energy grew more than its loads put in; certified if the contact problems of all steps are: not where
+    /// springs stand for closed rows, nor where the motion was cut short.
+    pub fn status(&self) -> Status {
+        if !self.summary.warnings().is_empty() {
+            return Status::Unstable;
+        }
         let is_whole = self.summary.steps >= self.dynamics.steps;
-        is_whole && !self.dynamics.scheme.penetrates() && !matches!(self.method, Method::Penalty(_))
+        match is_whole && !self.dynamics.scheme.penetrates() && !matches!(self.method, Method::Penalty(_)) {
+            true => Status::Certified,
+            false => Status::NotCertified,
+        }
     }
 
     /// The report in lines of at most 100 characters.
@@ -40,13 +49,22 @@ impl MotionReport<'_> {
         let (nodes, elements) = (model.mesh().nodes().len(), model.mesh().element_count());
         let (dofs, rows) = (model.problem().dofs(), plural(model.rows().len(), "contact row"));
         line("model", format!("{nodes} nodes, {elements} elements, {dofs} dofs, {rows}"));
+        line("status", self.status().words().into());
         let steps = plural(summary.steps, "step");
         line("motion", format!("{}, {steps} of {:.6e}", dynamics.scheme.name(), dynamics.step));
+        let [all, most] = summary.penalties;
+        if all > 0 {
+            line("", format!("{all} penalties, at most {most} in a step"));
+        }
         match (summary.first_contact, summary.last_contact) {
             (Some(first), Some(last)) => {
                 line("contact", format!("from {first:.6e} to {last:.6e}, for {:.6e} in all", summary.contact_time));
                 let force = quantity(summary.force_max, &units.force);
-                line("", format!("largest force {force}, impulse {:.6e}", summary.impulse));
+                line("", format!("impulse {:.6e}, largest force {force} in one step,", summary.impulse));
+                let mean = quantity(summary.force_mean_max(), &units.force);
+                let window = summary.window_steps() as f64 * dynamics.step;
+                line("", format!("{mean} on the mean over {window:.6e} ({}):", plural(summary.window_steps(), "step")));
+                line("", WINDOW.into());
             }
             _ => line("contact", "none".into()),
         }
@@ -56,10 +74,13 @@ impl MotionReport<'_> {
         };
         line("energy", format!("{} at the start", energies(summary.energy_first)));
         line("", format!("{} at the end", energies(summary.energy_last)));
+        if let Some([last, largest]) = summary.over_initial() {
+            line("", format!("kinetic and strain over those at the start: {last:.6} at the end, {largest:.6} at most"));
+        }
         line("", format!("change {:.2e}, largest gain {:.2e}", summary.energy_change(), summary.energy_gain()));
         let RunSeconds { assemble, factor, solve, .. } = self.seconds;
         line("seconds", format!("{assemble:.3} to assemble, {factor:.3} to factorise, {solve:.3} for the steps"));
-        text
+        text + &warnings_text(&summary.warnings())
     }
 }
 
@@ -68,8 +89,8 @@ impl Serialize for MotionReport<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let MotionReport { model, dynamics, summary, .. } = self;
         let energies = |[kinetic, strain, potential]: [f64; 3]| json!({"kinetic": kinetic, "strain": strain, "potential": potential, "total": kinetic + strain + potential});
-        let report = json!({
-            "status": status(self.is_certified()),
+        let mut report = json!({
+            "status": self.status(),
             "method": self.method.name(),
             "scheme": dynamics.scheme.name(),
             "gains_energy": dynamics.scheme.gains_energy(),
@@ -81,6 +102,12 @@ impl Serialize for MotionReport<'_> {
                 "last": summary.last_contact,
                 "duration": summary.contact_time,
                 "force_max": summary.force_max,
+                "force_mean_max": summary.force_mean_max(),
+                "force_window": {
+                    "of": WINDOW,
+                    "time": summary.window_steps() as f64 * dynamics.step,
+                    "steps": summary.window_steps(),
+                },
                 "impulse": summary.impulse,
                 "penetration_max": summary.penetration_max,
             },
@@ -89,6 +116,11 @@ impl Serialize for MotionReport<'_> {
                 "last": energies(summary.energy_last),
                 "change": summary.energy_change(),
                 "gain": summary.energy_gain(),
+                "initial": summary.initial_energy(),
+                "last_over_initial": summary.over_initial().map(|[last, _]| last),
+                "largest_over_initial": summary.over_initial().map(|[_, largest]| largest),
+                "work": summary.work,
+                "growth": summary.growth(),
             },
             "model": {
                 "nodes": model.mesh().nodes().len(),
@@ -98,6 +130,14 @@ impl Serialize for MotionReport<'_> {
             },
             "seconds": self.seconds,
         });
+        let [all, most] = summary.penalties;
+        if let Some(fields) = report.as_object_mut().filter(|_| all > 0) {
+            fields.insert("penalties".into(), json!({"all": all, "most_in_a_step": most}));
+        }
+        let warnings = summary.warnings();
+        if let Some(fields) = report.as_object_mut().filter(|_| !warnings.is_empty()) {
+            fields.insert("warnings".into(), json!(warnings));
+        }
         report.serialize(serializer)
     }
 }

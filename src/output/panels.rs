@@ -7,7 +7,7 @@ use super::{
     colour_bar::ColourRange,
     contour::Field,
     drawing::{Drawing, Paint},
-    mark::draw_dot,
+    mark::Candidate,
     ticks::Scale,
 };
 
@@ -62,14 +62,14 @@ impl ContactPicture<'_> {
         let seen =
             |place: [f64; 2]| (0..2).all(|axis| (0.0..=frame.size[axis]).contains(&(place[axis] - frame.corner[axis])));
         // Closed nodes last, so that no open one covers them.
-        for shown in [false, true] {
+        for (mark, shown) in [(Candidate::Open, false), (Candidate::Closed, true)] {
             for (&node, _) in self
                 .candidates
                 .iter()
                 .zip(self.closed)
                 .filter(|&(&node, &closed)| closed == shown && seen(places[node]))
             {
-                draw_dot(drawing, places[node], radius, shown);
+                mark.draw(drawing, places[node], radius);
             }
         }
     }

@@ -78,12 +78,16 @@ impl Plot {
         }
         let named = self.series.iter().enumerate().filter(|(_, series)| !series.name.trim().is_empty());
         let entry = |(index, series): (usize, &Series)| {
-            let style = Style::new(index, self.nested);
+            let style = self.style(index);
             let has_points = series.points.iter().any(|&point| self.shows(point));
             let name = if has_points { series.name.clone() } else { format!("{} (no data)", series.name) };
             Entry { name, key_width: style::KEY, key: Box::new(move |drawing, centre| style.key(drawing, centre)) }
         };
         named.map(entry).collect()
+    }
+
+    fn style(&self, index: usize) -> Style {
+        if self.nested { Style::nested(index) } else { Style::of(index) }
     }
 
     fn axes(&self, size: [f64; 2]) -> [Axis; 2] {
@@ -96,7 +100,7 @@ impl Plot {
         for (index, series) in self.series.iter().enumerate() {
             let places: Vec<[f64; 2]> = series.points.iter().map(|&point| frame.place(point)).collect();
             let every = (MARKER_DISTANCE * places.len() as f64 / frame.size[0]).ceil() as usize;
-            Style::new(index, self.nested).draw(drawing, &places, every);
+            self.style(index).draw(drawing, &places, every);
         }
         if self.is_empty() {
             let middle = [frame.corner[0] + 0.5 * frame.size[0], frame.corner[1] + 0.5 * frame.size[1]];

@@ -1,8 +1,8 @@
 //! Answers as text and as JSON.
 
-use crate::scene::Units;
+use crate::scene::{Resultant, Rule, Segment, Units};
 use crate::solution::{Certificate, Goal, ProvenSet};
-use crate::study::{Agreement, AnswerWarning, Summary, Sweep, SweepEvent, SweepPoint, Verification};
+use crate::study::{Agreement, AnswerWarning, ContactSummary, Summary, Sweep, SweepEvent, SweepPoint, Verification};
 
 /// Text on one line, without characters that would steer a terminal.
 pub fn printable(text: &str) -> String {
@@ -60,23 +60,20 @@ pub fn solve_text(title: &str, summary: &Summary, units: &Units) -> String {
     if let Some(penalty) = solution.history.last().map(|step| step.penalty).filter(|&penalty| penalty > 0.0) {
         line("", format!("the penalty went up to {penalty:.0e} times the local stiffness"));
     }
-    line(
-        "contact",
-        format!("{}, force {}", plural(contact.count, "closed row"), quantity(contact.force, &units.force)),
-    );
-    if let (Some(pressure), Some(area)) = (contact.pressure_max, contact.area) {
-        let extent = match contact.width {
-            Some(width) => format!("width {}", quantity(width, &units.length)),
-            None => format!("area {}", quantity(area, &format!("{}²", units.length))),
-        };
-        line("", format!("peak pressure {}, {extent}", quantity(pressure, &units.pressure())));
-    }
+    let (closed, force) = (plural(contact.count, "closed row"), quantity(contact.force, &units.force));
+    let basis = if summary.force_basis.is_empty() { String::new() } else { format!(" {}", summary.force_basis) };
+    let mut of_contact = wrapped(&format!("{closed}, sum of multipliers {force}{basis}"));
+    of_contact.extend(extent_lines(contact, units));
+    of_contact.into_iter().enumerate().for_each(|(number, sentence)| {
+        line(if number == 0 { "contact" } else { "" }, sentence);
+    });
     if let Some(proven) = &solution.proven {
         line("", proven_text(proven));
     }
     if let Some(balance) = contact.force_balance {
         line("", format!("loads, reactions and contact forces balance to {balance:.1e}"));
     }
+    text += &resultants_text(summary, units);
     text += &certificate_text(&solution.certificate, summary.goal);
     text += &warnings_text(&summary.warnings);
     text += &mesh_text(summary);
@@ -87,6 +84,98 @@ pub fn solve_text(title: &str, summary: &Summary, units: &Units) -> String {
             seconds.assemble, seconds.factor, seconds.solve, seconds.proof, seconds.total
         ),
     );
+    text
+}
+
+/// A number with what it may be off by, and its unit.
+fn within(value: f64, uncertainty: f64, unit: &str) -> String {
+    quantity(value, unit).replacen(' ', &format!(" ± {uncertainty:.1e} "), 1)
+}
+
+/// The largest pressure, and how far the contact reaches.
+fn extent_lines(contact: &ContactSummary, units: &Units) -> Vec<String> {
+    let (Some(pressure), Some(area)) = (contact.pressure_max, contact.area) else { return Vec::new() };
+    let square = format!("{}²", units.length);
+    let Some(estimate) = &contact.estimate else {
+        return vec![format!(
+            "peak pressure {}, area {}",
+            quantity(pressure, &units.pressure()),
+            quantity(area, &square)
+        )];
+    };
+    let extent = match (estimate.width, estimate.width_uncertainty) {
+        (Some(width), Some(off)) => format!("width {}", within(width, off, &units.length)),
+        _ => format!("area {}", within(estimate.area, estimate.area_uncertainty, &square)),
+    };
+    let peak = within(pressure, estimate.pressure_uncertainty, &units.pressure());
+    vec![format!("peak pressure {peak}"), format!("estimated {extent}")]
+}
+
+/// Components below this share of the largest one are rounding in a text.
+const SHOWN: f64 = 1e-11;
+
+/// Resultants and segments that are shown; the JSON report has all.
+const MOST_LINES: usize = 12;
+
+/// The resultants, one in a line, and the contact segments where there are several.
+fn resultants_text(summary: &Summary, units: &Units) -> String {
+    let largest = |of: fn(&Resultant) -> &[f64]| {
+        let values = summary.resultants.iter().flat_map(of);
+        values.fold(0.0, |largest: f64, value| largest.max(value.abs()))
+    };
+    let force_scale = largest(|resultant| &resultant.force);
+    let length_scale = largest(|resultant| resultant.centre.as_deref().unwrap_or_default());
+    // What is rounding beside the largest is shown as the zero that it stands for.
+    let rounded = |values: &[f64], scale: f64| {
+        let part = |&value: &f64| if value.abs() <= SHOWN * scale { "0".into() } else { format!("{value:.4e}") };
+        let parts: Vec<String> = values.iter().map(part).collect();
+        if parts.len() == 1 { parts.concat() } else { format!("({})", parts.join(", ")) }
+    };
+    let (force, place) = (|values: &[f64]| rounded(values, force_scale), |at: &[f64]| rounded(at, length_scale));
+    let moment_unit = format!("{} {}", units.force, units.length);
+    let resultant = |resultant: &Resultant| {
+        let on = resultant.on.as_ref().map_or_else(String::new, |on| format!(" on {}", printable(on)));
+        let rule = match resultant.rule {
+            Some(Rule::Approach) => " (rule approach)",
+            Some(Rule::ClosestPoint) => " (rule closest-point)",
+            None => "",
+        };
+        let mut text = format!("{}{on}{rule}: force {} {}", resultant.of, force(&resultant.force), units.force);
+        if !resultant.moment.is_empty() {
+            text += &format!(", moment {} {moment_unit}", rounded(&resultant.moment, force_scale * length_scale));
+        }
+        if let Some(centre) = &resultant.centre {
+            text += &format!(", centre {} {}", place(centre), units.length);
+        }
+        text.trim_end().to_string()
+    };
+    let segment = |segment: &Segment| {
+        let where_it_is = match (&segment.ends, &segment.centre) {
+            (Some([from, to]), _) => format!("from {} to {} {}", place(from), place(to), units.length),
+            (None, Some(centre)) => format!("around {} {}", place(centre), units.length),
+            (None, None) => String::new(),
+        };
+        let (count, force) = (plural(segment.nodes.len(), "node"), force(&segment.force));
+        format!("obstacles[{}]: {count}, force {force} {} {where_it_is}", segment.obstacle, units.force)
+            .trim_end()
+            .to_string()
+    };
+    let mut text = listed("resultants", summary.resultants.iter().map(resultant).collect());
+    if summary.segments.len() > 1 {
+        text += &listed("segments", summary.segments.iter().map(segment).collect());
+    }
+    text
+}
+
+/// Sentences beside a name, the first ones of many.
+fn listed(name: &str, sentences: Vec<String>) -> String {
+    let more = sentences.len().saturating_sub(MOST_LINES);
+    let shown = sentences.into_iter().take(MOST_LINES);
+    let more = (more > 0).then(|| format!("and {more} more in the JSON report"));
+    let mut text = String::new();
+    for line in shown.chain(more).flat_map(|sentence| wrapped(&sentence)) {
+        text += &entry(if text.is_empty() { name } else { "" }, &line);
+    }
     text
 }
 
@@ -111,7 +200,7 @@ fn proven_text(proven: &ProvenSet) -> String {
 }
 
 /// What may mislead, in full sentences.
-fn warnings_text(warnings: &[AnswerWarning]) -> String {
+pub(super) fn warnings_text(warnings: &[AnswerWarning]) -> String {
     let lines = |message: &str| {
         let lines = wrapped(&printable(message)).into_iter().enumerate();
         lines.map(|(number, line)| entry(if number == 0 { "warning" } else { "" }, &line)).collect::<String>()
@@ -124,6 +213,13 @@ fn mesh_text(summary: &Summary) -> String {
     let Some(of_mesh) = summary.discretisation_error else { return String::new() };
     let mut text = entry("mesh", &format!("about {of_mesh:.1e} of the energy norm off, by its stresses"));
     let bound = summary.solution.certificate.energy_error_bound;
+    if !of_mesh.is_finite() || !bound.is_finite() {
+        let reason = match bound.is_finite() {
+            false => "the answer has no error bound",
+            true => "the error of the mesh could not be estimated",
+        };
+        return text + &entry("", &format!("tolerance or mesh first? none: {reason}"));
+    }
     if bound < of_mesh * FAR_BELOW {
         text += &entry("", "the solver is far below that: more of its digits buy nothing, a finer mesh does");
     } else if bound.is_finite() && bound > of_mesh {
@@ -186,7 +282,7 @@ pub fn verify_text(title: &str, verification: &Verification) -> String {
     let Verification { model, contact, .. } = verification;
     let mut text = format!("{}\n", printable(title));
     text += &entry("model", &format!("{} dofs, {}", model.dofs, plural(model.contact_rows, "contact row")));
-    text += &entry("contact", &format!("{} under force {:.6e}", plural(contact.count, "row"), contact.force));
+    text += &entry("contact", &format!("{}, sum of multipliers {:.6e}", plural(contact.count, "row"), contact.force));
     text += &certificate_text(&verification.certificate, verification.tolerance.into());
     text + &warnings_text(&verification.warnings)
 }
@@ -200,7 +296,7 @@ pub fn sweep_text(title: &str, sweep: &Sweep, units: &Units) -> String {
         in_unit("gap", &units.length),
         "iterations".to_string(),
         "contact".to_string(),
-        in_unit("force", &units.force),
+        in_unit("-sum(lambda)", &units.force),
         in_unit("peak pressure", &units.pressure()),
         in_unit("width", &units.length),
         "energy error <=".to_string(),
@@ -216,7 +312,7 @@ pub fn sweep_text(title: &str, sweep: &Sweep, units: &Units) -> String {
             format!("{:.6e}", contact.pressure_max.unwrap_or(0.0)),
             contact.width.map_or_else(|| "-".to_string(), |width| format!("{width:.6}")),
             conditions(&solution.certificate)[5].2.clone(),
-            point.summary.status.replace('_', " "),
+            point.summary.status.words().to_owned(),
         ]
     };
     let table: Vec<Vec<String>> = std::iter::once(header.to_vec()).chain(sweep.points.iter().map(row)).collect();
@@ -269,7 +365,7 @@ pub fn compare_text(title: &str, summaries: &[Summary; 3], agreement: &Agreement
         "method".to_string(),
         "iterations".to_string(),
         "contact".to_string(),
-        in_unit("force", &units.force),
+        in_unit("-sum(lambda)", &units.force),
         in_unit("peak pressure", &units.pressure()),
         "max |du|".to_string(),
         "max |dlambda|".to_string(),

@@ -22,10 +22,15 @@ pub(crate) struct Style {
 }
 
 impl Style {
-    /// The look of the line with this index; `nested` lines become thinner one by one, so that lines that coincide
-    /// are seen through each other.
-    pub fn new(index: usize, nested: bool) -> Self {
-        Style { index, nested }
+    /// The look of the line with this index.
+    pub fn of(index: usize) -> Self {
+        Style { index, nested: false }
+    }
+
+    /// The look of the line with this index among lines that become thinner one by one, so that lines that coincide are seen
+    /// through each other.
+    pub fn nested(index: usize) -> Self {
+        Style { index, nested: true }
     }
 
     fn colour(self) -> Colour {

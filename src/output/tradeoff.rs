@@ -7,13 +7,25 @@ use crate::study::{Tradeoff, TradeoffMesh, TradeoffPoint};
 /// Errors below this are shown as this on a logarithmic axis: they are below the resolution of doubles.
 const LEAST_SHOWN_ERROR: f64 = 1e-16;
 
+/// The energy error of an answer that is called loose.
+const LOOSE: f64 = 1e-2;
+
+/// An answer counts as one of its mesh if its total error is at most this times that of the mesh.
+#[cfg(feature = "cli")]
+const NEARLY: f64 = 1.05;
+
+/// A relative error of the force below this is rounding.
+const LEAST_LOST: f64 = 1e-10;
+
 /// The columns of the table.
-const HEADING: [&str; 10] = [
+const HEADING: [&str; 12] = [
     "method",
     "setting",
     "unknowns",
     "precision",
     "seconds",
+    "certificate",
+    "proof",
     "energy error",
     "bound",
     "force error",
@@ -40,9 +52,16 @@ pub fn tradeoff_text(title: &str, tradeoff: &Tradeoff) -> String {
         text += &columns(&table);
     }
     text += &format!(
-        "\nEach time is the fastest of {}; a star: no other way is faster and as accurate.\n",
+        "\nEach time is the fastest of at least {}, to the answer at the setting; certificate and proof stand beside it.\n\
+         A setting is the tolerance of the interior point, the accuracy of multigrid or of a mixed factor, the last penalty over the \
+         local stiffness.\nA star: no other way is faster and as accurate.\n",
         plural(tradeoff.runs, "run")
     );
+    let unsettled = tradeoff.points.iter().filter(|point| !point.is_repeated).count();
+    if unsettled > 0 && tradeoff.runs > 1 {
+        let of = tradeoff.points.len();
+        text += &format!("Of {of} times {unsettled} were not met again to 3 %: other work runs on this machine.\n");
+    }
     text + &advice(tradeoff)
 }
 
@@ -54,6 +73,8 @@ fn row(point: &TradeoffPoint) -> Vec<String> {
         unknowns(point).to_string(),
         precision(point).to_string(),
         format!("{:.5}", point.seconds),
+        number(point.certificate_seconds),
+        number(point.proof_seconds),
         number(point.energy_error),
         if point.energy_error_bound.is_finite() { number(point.energy_error_bound) } else { "none".to_string() },
         number(point.force_error),
@@ -84,7 +105,7 @@ fn way(point: &TradeoffPoint) -> String {
 fn advice(tradeoff: &Tradeoff) -> String {
     let mut lines = vec!["\nWhat to choose on the mesh of the scene:".to_string()];
     let off = tradeoff.meshes.first().map_or(0.0, |mesh| mesh.discretisation_error);
-    for advice in &tradeoff.advice {
+    for advice in tradeoff.advice.iter().filter(|advice| !advice.chooses_mesh) {
         let wanted = match (advice.accuracy, advice.seconds) {
             (Some(accuracy), _) => format!("energy error {accuracy:.0e}"),
             (None, seconds) => {
@@ -99,19 +120,59 @@ fn advice(tradeoff: &Tradeoff) -> String {
         lines
             .push(format!("  {wanted:<58}{choice}{}", if useless { " (far below the error of the mesh)" } else { "" }));
     }
-    lines.join("\n") + "\n"
+    lines.join("\n") + "\n" + &losses(&tradeoff.points) + &advice_of_meshes(tradeoff)
+}
+
+/// Mesh and method for a total error and for a time, a sentence each.
+fn advice_of_meshes(tradeoff: &Tradeoff) -> String {
+    let mut text = "\nWhich mesh and which method, the error of the mesh estimated and included:\n".to_string();
+    for advice in tradeoff.advice.iter().filter(|advice| advice.chooses_mesh) {
+        let wanted = match (advice.total_error, advice.seconds) {
+            (Some(total), _) => format!("for {:.0} %", 100.0 * total),
+            (None, seconds) => format!("in {} s", seconds.unwrap_or(0.0)),
+        };
+        let chosen = advice.point.and_then(|index| tradeoff.points.get(index));
+        let choice = chosen.and_then(|point| Some((point, tradeoff.meshes.get(point.mesh)?))).map_or_else(
+            || "none of the measured meshes and methods".to_string(),
+            |(point, mesh)| {
+                let total = 100.0 * point.total_error;
+                format!("{} dofs by {}: {:.5} s, {total:.1} % off", mesh.dofs, way(point), point.seconds)
+            },
+        );
+        text += &format!("  {wanted:<10}{choice}\n");
+    }
+    text
+}
+
+/// What the cheapest answer of each method that is never exact loses, beside the active set.
+fn losses(points: &[TradeoffPoint]) -> String {
+    let cheapest = |method: &str| {
+        let own = points.iter().filter(|point| point.mesh == 0 && point.method == method);
+        let good = own.filter(|point| point.energy_error <= LOOSE);
+        good.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
+    };
+    let told = |point: &TradeoffPoint| {
+        let lost = match point.force_error {
+            error if error <= LEAST_LOST => "nothing".to_string(),
+            error => format!("{:.1e} % of the force", 100.0 * error),
+        };
+        format!("{} takes {:.5} s and loses {lost}", way(point), point.seconds)
+    };
+    let Some(exact) = cheapest("active-set") else { return String::new() };
+    let compared = |method| cheapest(method).map(|loose| format!("  {}; {}\n", told(loose), told(exact)));
+    ["penalty", "qp", "mprgp"].into_iter().filter_map(compared).collect()
 }
 
 /// The points as comma-separated values, a line each under a heading.
 pub fn tradeoff_csv(tradeoff: &Tradeoff) -> String {
     let mut text =
-        "mesh,divided_by,dofs,contact_rows,discretisation_error,method,knob,unknowns,precision,seconds,energy_error,\
-                    energy_error_bound,force_error,pressure_error,rows_wrong,best\n"
+        "mesh,divided_by,dofs,contact_rows,discretisation_error,method,knob,unknowns,precision,seconds,certificate_seconds,proof_seconds,energy_error,\
+                    total_error,energy_error_bound,force_error,pressure_error,rows_wrong,best\n"
             .to_string();
     for point in &tradeoff.points {
         let Some(mesh) = tradeoff.meshes.get(point.mesh) else { continue };
         text += &format!(
-            "{},{},{},{},{:e},\"{}\",{},{},{},{:e},{:e},{:e},{:e},{:e},{},{}\n",
+            "{},{},{},{},{:e},\"{}\",{},{},{},{:e},{:e},{:e},{:e},{:e},{:e},{:e},{:e},{},{}\n",
             point.mesh,
             mesh.divided_by,
             mesh.dofs,
@@ -122,7 +183,10 @@ pub fn tradeoff_csv(tradeoff: &Tradeoff) -> String {
             unknowns(point),
             precision(point),
             point.seconds,
+            point.certificate_seconds,
+            point.proof_seconds,
             point.energy_error,
+            point.total_error,
             point.energy_error_bound,
             point.force_error,
             point.pressure_error,
@@ -156,4 +220,33 @@ pub fn tradeoff_plot(title: &str, tradeoff: &Tradeoff) -> Drawing {
     };
     let plots: Vec<Plot> = tradeoff.meshes.iter().enumerate().map(panel).collect();
     line_plots(title, &plots)
+}
+
+/// Total error over time: a line a method, a point a mesh, of each the cheapest answer that is hardly further off than its mesh.
+#[cfg(feature = "cli")]
+pub(crate) fn total_error_plot(title: &str, tradeoff: &Tradeoff) -> Drawing {
+    let mut series: Vec<Series> = Vec::new();
+    for (index, mesh) in tradeoff.meshes.iter().enumerate() {
+        let mut cheapest: Vec<(String, &TradeoffPoint)> = Vec::new();
+        let near =
+            |point: &&TradeoffPoint| point.mesh == index && point.total_error <= NEARLY * mesh.discretisation_error;
+        for point in tradeoff.points.iter().filter(|point| !point.mixed).filter(near) {
+            let name = format!("{}, {} dofs", point.method, unknowns(point));
+            match cheapest.iter_mut().find(|entry| entry.0 == name) {
+                Some(entry) if entry.1.seconds <= point.seconds => {}
+                Some(entry) => entry.1 = point,
+                None => cheapest.push((name, point)),
+            }
+        }
+        for (name, point) in cheapest {
+            let place = [point.seconds, point.total_error];
+            match series.iter_mut().find(|series| series.name == name) {
+                Some(series) => series.points.push(place),
+                None => series.push(Series::new(name, vec![place])),
+            }
+        }
+    }
+    let (x, y) = (Quantity::new("time", "s"), Quantity::new("relative total error, mesh estimated", ""));
+    let subtitle = format!("a point for each of the {} meshes", tradeoff.meshes.len());
+    line_plots(title, &[Plot { scales: [Scale::Logarithmic; 2], title: subtitle, ..Plot::new(x, y, series) }])
 }

@@ -27,7 +27,7 @@ pub(crate) mod transform;
 pub use engine::{BoundarySolution, Path, Prepared};
 pub use linear::multigrid::NearNullSpace;
 pub use linear::{SparseMatrix, SymmetricMatrix};
-pub use matrix_market::{near_null_file, problem_files, read_problem, read_vector, solution_files};
+pub use matrix_market::{problem_files, read_problem, read_vector, solution_files};
 pub use method::Start;
 pub use method::interior_point::InteriorPoint;
 pub use method::parametric::Event;

@@ -200,11 +200,12 @@ const PENALTY_OVER_ACCURACY: f64 = 100.0;
 
 impl Way {
     /// The way for the method, accuracy and precision of `settings`; `None` where these leave no choice.
-    pub fn chosen(settings: &Settings, condensed: bool, multiplications: f64, rows: usize) -> Option<Way> {
+    pub fn chosen(settings: &Settings, unknowns: Unknowns, multiplications: f64, rows: usize) -> Option<Way> {
         if settings.method != Method::Auto {
             return None;
         }
         let accuracy = settings.accuracy.unwrap_or(0.0);
+        let condensed = unknowns == Unknowns::ContactDofs;
         let rule = FITTED.rules.iter().filter(|rule| rule.condensed == condensed && rule.accuracy <= accuracy);
         let size = if condensed { multiplications } else { multiplications / rows.max(1) as f64 };
         let rule = rule.max_by(|a, b| a.accuracy.total_cmp(&b.accuracy));
@@ -242,13 +243,20 @@ impl Way {
     }
 }
 
+/// What the methods work on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Unknowns {
+    /// The stiffness is condensed onto the contact dofs.
+    ContactDofs,
+    AllDofs,
+}
+
 /// An order of elimination with its structure, and what is kept of it.
 pub(super) struct Layout {
     pub analysis: Analysis,
     /// The dofs that are eliminated last.
     pub last: Vec<usize>,
-    /// Are they those of a condensation?
-    pub is_condensed: bool,
+    pub unknowns: Unknowns,
     pub multiplications: f64,
     /// What was chosen, where the choice was left to the program.
     pub way: Option<Way>,
@@ -285,7 +293,7 @@ impl Layout {
             };
             // What is dense on the boundary may be too large by itself: the analysis would take memory for nothing.
             if let Err(error) = check_memory(problem, dense, settings) {
-                refused = Some(least(refused, error));
+                keep_least(&mut refused, error);
                 continue;
             }
             let analysis = match number {
@@ -293,8 +301,9 @@ impl Layout {
                 _ => Some(Analysis::with_last(problem.stiffness(), &last)?),
             };
             let Some(analysis) = analysis else { continue };
-            match Self::of(problem, settings, (analysis, last), number == 0) {
-                Err(error @ Error::TooLarge { .. }) => refused = Some(least(refused, error)),
+            let unknowns = if number == 0 { Unknowns::ContactDofs } else { Unknowns::AllDofs };
+            match Self::of(problem, settings, (analysis, last), unknowns) {
+                Err(error @ Error::TooLarge { .. }) => keep_least(&mut refused, error),
                 decided => return decided,
             }
         }
@@ -306,15 +315,17 @@ impl Layout {
         problem: &ContactProblem,
         settings: &Settings,
         (analysis, last): (Analysis, Vec<usize>),
-        is_condensed: bool,
+        unknowns: Unknowns,
     ) -> Result<Self, Error> {
         let analysis = analysis.with_threads(settings.threads);
         let multiplications = analysis.multiplications();
-        let way = Way::chosen(settings, is_condensed, multiplications, problem.rows());
-        let is_mixed = is_condensed && precision(way, settings) == Precision::Mixed;
+        let way = Way::chosen(settings, unknowns, multiplications, problem.rows());
+        let is_condensed = unknowns == Unknowns::ContactDofs;
+        let precision = way.map_or(settings.precision, |way| way.settings(settings).precision);
+        let is_mixed = is_condensed && precision == Precision::Mixed;
         let width = if is_mixed { Width::Single } else { Width::Double };
         let is_last_free = last.is_empty();
-        let mut layout = Layout { analysis, last, is_condensed, multiplications, way, width, keeps_norm: true };
+        let mut layout = Layout { analysis, last, unknowns, multiplications, way, width, keeps_norm: true };
         let mut choices = vec![(way, width, true)];
         // What the rules choose for its speed may take more memory, or time before its first step, than there is.
         if way.is_some() {
@@ -333,7 +344,7 @@ impl Layout {
                 .and_then(|()| check_time(&settings.watch, layout.seconds(settings)));
             match fits {
                 Ok(()) => return Ok(layout),
-                Err(error) => refused = Some(least(refused, error)),
+                Err(error) => keep_least(&mut refused, error),
             }
         }
         Err(refused.unwrap_or(Error::Interrupted))
@@ -342,10 +353,12 @@ impl Layout {
     fn kept(&self, settings: &Settings) -> Kept {
         let (values, last) = (self.analysis.factor_entries(), self.last.len());
         let by_interior_point = self.by_interior_point(settings);
-        match self.is_condensed {
-            true => Kept::Condensed { values, width: self.width, contact_dofs: last, by_interior_point },
-            false if self.keeps_norm => Kept::Factors { values, last, by_interior_point },
-            false => Kept::OneFactor { values },
+        match self.unknowns {
+            Unknowns::ContactDofs => {
+                Kept::Condensed { values, width: self.width, contact_dofs: last, by_interior_point }
+            }
+            Unknowns::AllDofs if self.keeps_norm => Kept::Factors { values, last, by_interior_point },
+            Unknowns::AllDofs => Kept::OneFactor { values },
         }
     }
 
@@ -357,17 +370,12 @@ impl Layout {
     fn seconds(&self, settings: &Settings) -> f64 {
         let of = |width| seconds::factor_seconds(self.multiplications, self.analysis.factor_entries(), width);
         let first = of(self.width);
-        match (self.is_condensed, self.by_interior_point(settings)) {
-            (true, _) => first + seconds::dense(self.last.len()),
-            (false, false) => first + of(Width::Double),
-            (false, true) => first + 2.0 * seconds::interior_point(&self.analysis),
+        match (self.unknowns, self.by_interior_point(settings)) {
+            (Unknowns::ContactDofs, _) => first + seconds::dense(self.last.len()),
+            (Unknowns::AllDofs, false) => first + of(Width::Double),
+            (Unknowns::AllDofs, true) => first + 2.0 * seconds::interior_point(&self.analysis),
         }
     }
-}
-
-/// The precision of `settings` with a way.
-pub(super) fn precision(way: Option<Way>, settings: &Settings) -> Precision {
-    way.map_or(settings.precision, |way| way.settings(settings).precision)
 }
 
 /// Refuses a problem that is too large to be ordered, with what its factor would take, roughly.
@@ -383,20 +391,22 @@ fn check_room_to_order(problem: &ContactProblem, settings: &Settings) -> Result<
     }
 }
 
-/// Of the refusals so far and another one the refusal that asks for the least memory.
-fn least(before: Option<Error>, other: Error) -> Error {
-    match (before, &other) {
-        (Some(Error::TooLarge { bytes: few, .. }), Error::TooLarge { bytes: many, .. }) if few > *many => other,
-        (before, _) => before.unwrap_or(other),
+/// Keeps of the refusals so far and another one the refusal that asks for the least memory.
+fn keep_least(refused: &mut Option<Error>, other: Error) {
+    match (refused.as_ref(), &other) {
+        (Some(Error::TooLarge { bytes: few, .. }), Error::TooLarge { bytes: many, .. }) if few > many => {}
+        (Some(_), _) => return,
+        (None, _) => {}
     }
+    *refused = Some(other);
 }
 
 /// Iterations of the active-set loop after which its start is taken for a poor one.
 pub(super) const PATIENCE: usize = 16;
 
-/// Returns `true` if a method that has or has not `settled` is followed by the last resort.
-pub(super) fn takes_last_resort(settled: bool, settings: &Settings) -> bool {
-    !settled && settings.allows_last_resort(f64::INFINITY)
+/// Returns `true` if a method that has not settled is followed by the last resort.
+pub(super) fn takes_last_resort(settings: &Settings) -> bool {
+    settings.allows_last_resort(f64::INFINITY)
 }
 
 /// What was tried: a method, and the unknowns that it worked on if they were fewer than all.

@@ -3,6 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use super::Model;
+use super::resultants::{Resultant, without_rounding};
 use super::rigid_body_modes::RigidBodyModes;
 use crate::error::Error;
 use crate::fem::assembly::internal_force;
@@ -20,6 +21,7 @@ pub struct Answer {
     pressure: Vec<f64>,
     stress: OnceLock<StressField>,
     forces: OnceLock<Forces>,
+    resultants: OnceLock<Vec<Resultant>>,
 }
 
 /// The forces on the nodes of a model, in force, length `dim * n_nodes` each.
@@ -64,6 +66,7 @@ impl Answer {
             contact_set: contact_set.clone(),
             stress: OnceLock::new(),
             forces: OnceLock::new(),
+            resultants: OnceLock::new(),
             model,
         })
     }
@@ -76,6 +79,11 @@ impl Answer {
     /// Nodal displacements, length `dim * n_nodes`, order `[u_x0, u_y0, u_x1, ...]`, in length.
     pub fn displacement(&self) -> &[f64] {
         &self.displacement
+    }
+
+    /// The multiplier of each row, in force, `<= 0`.
+    pub fn multiplier(&self) -> &[f64] {
+        &self.multiplier
     }
 
     /// The closed rows.
@@ -102,6 +110,20 @@ impl Answer {
     /// As [`Model::reactions`].
     pub fn forces(&self) -> Result<&Forces, Error> {
         once(&self.forces, || self.model.forces(&self.displacement, &self.multiplier))
+    }
+
+    /// The resultants of contact forces, support reactions and loads: obstacle by obstacle, support by support.
+    ///
+    /// # Errors
+    /// As [`Answer::forces`].
+    pub fn resultants(&self) -> Result<&[Resultant], Error> {
+        let found = once(&self.resultants, || {
+            let mut all = self.model.contact_resultants(&self.multiplier)?;
+            all.extend(self.model.other_resultants(&self.forces()?.reactions));
+            without_rounding(&mut all);
+            Ok(all)
+        });
+        found.map(Vec::as_slice)
     }
 
     /// The error of the mesh, relative in energy, estimated from the stress.

@@ -27,7 +27,9 @@ impl Scene {
     /// not of unit length or leads out of the model.
     pub fn build_with(&self, further: &[(&str, Arc<dyn Obstacle>)]) -> Result<Model, Error> {
         let body = self.elastic_body()?;
-        let dofs = self.dofs(&body)?;
+        let held = self.held(&body)?;
+        let dofs = held.dofs(body.mesh())?;
+        let (supports, is_part) = (self.supports.len(), self.may_be_part(&body)?);
         let load = self.load(&body)?;
         let path = |index: usize| format!("obstacles[{index}]");
         let mut obstacles = Vec::with_capacity(self.obstacles.len() + further.len());
@@ -38,9 +40,13 @@ impl Scene {
             let path = path(obstacles.len());
             obstacles.push(PlacedObstacle::of_user(boundary, obstacle.clone(), &path, &body)?);
         }
-        let warnings = locking(&body).into_iter().collect();
+        let mut warnings: Vec<_> = locking(&body).into_iter().collect();
+        warnings.extend(self.suspect(&body, &dofs)?);
         let (title, units) = (self.title.clone(), self.units.clone());
         let moves = self.analysis.is_some();
-        Model::new(Parts { title, units, body, dofs, load, obstacles, warnings, moves }, self.gap)
+        Model::new(
+            Parts { title, units, body, dofs, held, supports, is_part, load, obstacles, warnings, moves },
+            self.gap,
+        )
     }
 }

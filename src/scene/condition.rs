@@ -4,16 +4,20 @@ use super::entry::{PLACE_TOLERANCE, boundary, finite, point, vector, wrong};
 use super::held::{COORDINATES, Component, Held, Holder, unit_normal};
 use super::schema::{LoadSpec, Place, Scene, SupportSpec};
 use crate::error::Error;
-use crate::fem::assembly::{DofMap, add_body_force, add_pressure, add_traction};
+use crate::fem::assembly::{add_body_force, add_pressure, add_traction, node_normals};
 use crate::fem::body::ElasticBody;
-use crate::fem::geometry::distance;
+use crate::fem::geometry::{distance, dot};
 use crate::fem::mesh::Mesh;
 
 /// Radii below this times the body's size lie on the axis of revolution.
 const ON_THE_AXIS: f64 = 1e-12;
 
+/// The normals of a flat boundary are one direction but for the rounding of coordinates: one less the cosine of their angle.
+const FLAT: f64 = 1e-9;
+
 impl Scene {
-    pub(super) fn dofs(&self, body: &ElasticBody) -> Result<DofMap, Error> {
+    /// What holds the nodes.
+    pub(super) fn held(&self, body: &ElasticBody) -> Result<Held, Error> {
         let mesh = body.mesh();
         let mut held = Held::default();
         if body.formulation().is_axisymmetric() {
@@ -33,7 +37,25 @@ impl Scene {
                 nodes.iter().for_each(|&node| held.prescribe(node, component));
             }
         }
-        held.dofs(mesh)
+        Ok(held)
+    }
+
+    /// Does a support let a flat boundary slide along itself, and nothing else? That may be a plane of symmetry.
+    pub(super) fn may_be_part(&self, body: &ElasticBody) -> Result<bool, Error> {
+        if body.dimension() == 1 {
+            return Ok(false);
+        }
+        for (index, support) in self.supports.iter().enumerate() {
+            let (Place::Boundary(name), [only]) = (&support.on, &self.components(index, support)?[..]) else {
+                continue;
+            };
+            let boundary = boundary(body.mesh(), name, &format!("supports[{index}].on.boundary"))?;
+            let slides = |(_, normal): &(usize, [f64; 3])| dot(*normal, only.direction).abs() > 1.0 - FLAT;
+            if only.value == 0.0 && node_normals(body, boundary).iter().all(slides) {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 
     /// The components that support number `index` prescribes.

@@ -62,12 +62,12 @@ impl Held {
     ///
     /// # Errors
     /// [`Error::Scene`] for components of a node that contradict each other.
-    pub fn dofs(self, mesh: &Mesh) -> Result<DofMap, Error> {
+    pub fn dofs(&self, mesh: &Mesh) -> Result<DofMap, Error> {
         let dimension = mesh.dimension();
         let mut prescribed = vec![None; dimension * mesh.nodes().len()];
         let mut frames = BTreeMap::new();
-        for (node, components) in self.nodes {
-            let span = Span::of(components).map_err(|(by, message)| {
+        for (&node, components) in &self.nodes {
+            let span = Span::of(components.clone()).map_err(|(by, message)| {
                 let path = match by {
                     Holder::Axis => "supports".into(),
                     Holder::Support { index, field } => format!("supports[{index}].{field}"),
@@ -90,6 +90,36 @@ impl Held {
         }
         DofMap::with_frames(prescribed, dimension, frames)
     }
+}
+
+impl Held {
+    /// The force at each held node, shared among those who hold it: each along its own direction, the first of those who hold the
+    /// same one.
+    pub fn shares(&self, force: impl Fn(usize) -> [f64; 3]) -> impl Iterator<Item = (usize, Vec<(Holder, [f64; 3])>)> {
+        self.nodes.iter().map(move |(&node, components)| (node, shared(components, force(node))))
+    }
+}
+
+/// A force in the space of the directions of some components, as a sum of forces along these.
+fn shared(components: &[Component], force: [f64; 3]) -> Vec<(Holder, [f64; 3])> {
+    let mut independent: Vec<(Component, [f64; 3])> = Vec::new();
+    for component in components {
+        let axes: Vec<[f64; 3]> = independent.iter().map(|entry| entry.1).collect();
+        let rest = perpendicular(component.direction, &axes);
+        if let Some(axis) = unit_normal(rest).filter(|_| dot(rest, rest).sqrt() > DEPENDENT_NORMAL) {
+            independent.push((*component, axis));
+        }
+    }
+    // The last direction alone has a part along its own axis.
+    let mut left = force;
+    let mut shares = Vec::with_capacity(independent.len());
+    for (component, axis) in independent.iter().rev() {
+        let amount = dot(left, *axis) / dot(component.direction, *axis);
+        let share = component.direction.map(|part| amount * part);
+        left = [0, 1, 2].map(|place| left[place] - share[place]);
+        shares.push((component.by, share));
+    }
+    shares
 }
 
 /// The unit vector of a normal; one along a coordinate axis is exactly that axis, or its opposite. `None` for zero.

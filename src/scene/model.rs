@@ -7,6 +7,7 @@ use super::obstacle::PlacedObstacle;
 use super::parts::Parts;
 use super::rigid_body_modes::RigidBodyModes;
 use super::rows::{self, ContactRow};
+use super::suspect::suspect_rows;
 use super::{Units, Warning};
 use crate::error::Error;
 use crate::fem::assembly::{DofMap, free_load, rigid_body_modes, stiffness};
@@ -73,7 +74,8 @@ impl Model {
         if let Some(near_null) = near_null {
             problem = problem.with_near_null(near_null)?;
         }
-        let warnings = parts.warnings.iter().cloned().chain(built.warnings).collect();
+        let suspect = suspect_rows(&parts, &built.rows);
+        let warnings = parts.warnings.iter().cloned().chain(built.warnings).chain(suspect).collect();
         Ok(Model { parts, gap, rows: built.rows, warnings, problem })
     }
 
@@ -166,7 +168,8 @@ impl Model {
         self.parts.dofs.expand(displacement)
     }
 
-    /// Contact pressure of each row, `-lambda / tributary area`, in force per area, `>= 0` in compression.
+    /// Contact pressure of each row, `-lambda` over the tributary area as it is seen along the row, in force per area, `>= 0` in
+    /// compression.
     ///
     /// The end of a quadratic edge on an axis of revolution has no tributary area, or next to none where the edge is
     /// curved; it shows the pressure of the candidate next to it.
@@ -182,7 +185,7 @@ impl Model {
         let has_area = |row: &ContactRow| {
             row.tributary_area > NO_AREA * largest && !(ends_on_axis && nodes[row.node][0].abs() <= reach)
         };
-        let of_row = |index: usize| -multiplier[index] / self.rows[index].tributary_area;
+        let of_row = |index: usize| -multiplier[index] / self.rows[index].projected_area();
         let pressure = |(index, row): (usize, &ContactRow)| {
             if has_area(row) {
                 return of_row(index);
@@ -217,7 +220,7 @@ impl Model {
         &self.parts.load
     }
 
-    fn check_multiplier(&self, multiplier: &[f64]) -> Result<(), Error> {
+    pub(super) fn check_multiplier(&self, multiplier: &[f64]) -> Result<(), Error> {
         let (found, expected) = (multiplier.len(), self.rows.len());
         if found != expected {
             return Err(Error::Length { name: "multiplier", found, expected, of: "contact rows" });

@@ -1,5 +1,6 @@
 //! What a model consists of before its contact rows.
 
+use super::held::Held;
 use super::obstacle::PlacedObstacle;
 use super::{Units, Warning};
 use crate::fem::assembly::DofMap;
@@ -12,6 +13,12 @@ pub(super) struct Parts {
     pub units: Units,
     pub body: ElasticBody,
     pub dofs: DofMap,
+    /// What holds the nodes.
+    pub held: Held,
+    /// Number of supports in the scene.
+    pub supports: usize,
+    /// `true` if a support may stand for the other half of a symmetric body.
+    pub is_part: bool,
     /// External load at all nodes, length `dim * n_nodes`.
     pub load: Vec<f64>,
     pub obstacles: Vec<PlacedObstacle>,

@@ -4,6 +4,7 @@ use super::Warning;
 use super::entry::{COORDINATE_ROUNDING, finite, point, wrong};
 use super::parts::Parts;
 use crate::error::Error;
+use crate::fem::geometry::dot;
 use crate::qp::linear::SparseMatrix;
 
 /// One contact row: `normal . u <= gap` at a node, or `normal . (u - u_partner) <= gap` between two.
@@ -24,9 +25,18 @@ pub struct ContactRow {
     /// Integral of the node's shape function over the candidate boundary, in area: thickness, cross-section or
     /// circumference included.
     pub tributary_area: f64,
+    /// Outward unit normal [x, y, z] of the body at the node: the mean over the facets around it; zero where these cancel.
+    pub outward: [f64; 3],
 }
 
 impl ContactRow {
+    /// The tributary area as it is seen along `normal`: what a pressure on it times this is the force of the row. The area
+    /// itself where the boundary faces away from the obstacle, which carries no force.
+    pub fn projected_area(&self) -> f64 {
+        let facing = dot(self.normal, self.outward);
+        if facing > 0.0 { self.tributary_area * facing.min(1.0) } else { self.tributary_area }
+    }
+
     /// The nodes that the row ties: its own with the sign 1, and the partner with -1.
     pub fn ends(&self) -> impl Iterator<Item = (usize, f64)> {
         [(Some(self.node), 1.0), (self.partner, -1.0)].into_iter().filter_map(|(node, sign)| Some((node?, sign)))
@@ -68,6 +78,7 @@ pub(super) fn build(parts: &Parts, scene_gap: f64) -> Result<Rows, Error> {
                 normal: found.normal,
                 gap: found.gap,
                 tributary_area,
+                outward: obstacle.outward(candidate),
             };
             let (mut remaining, mut free) = (row.gap, Vec::new());
             for (node, sign) in row.ends() {

@@ -28,6 +28,69 @@ pub enum Warning {
         /// Which obstacle, from 0.
         obstacle: usize,
     },
+    /// Most candidates of an obstacle are held by supports.
+    #[error(
+        "{held} of {of} nodes that may touch obstacles[{obstacle}] are held in all directions by supports: the obstacle cannot press on \
+         them; free that boundary, or name another one"
+    )]
+    HeldCandidates {
+        /// Which obstacle, from 0.
+        obstacle: usize,
+        /// Candidates that are held.
+        held: usize,
+        /// All of them.
+        of: usize,
+    },
+    /// Two obstacles make the same rows.
+    #[error(
+        "obstacles[{first}] and obstacles[{second}] make the same rows: how their force is shared among the two says nothing; leave one \
+         of them out"
+    )]
+    DoubledObstacle {
+        /// Which obstacle, from 0.
+        first: usize,
+        /// The one behind it.
+        second: usize,
+    },
+    /// A load acts on supported dofs alone.
+    #[error(
+        "loads[{load}] acts where supports hold the body: it goes into them and moves nothing; load another boundary"
+    )]
+    LoadOnSupport {
+        /// Which load, from 0.
+        load: usize,
+    },
+    /// A force acts on a single node of a body in the plane or in space.
+    #[error(
+        "loads[{load}] is a force on a single node: displacement and stress there grow with every refinement; spread it over a boundary \
+         as a traction if they matter"
+    )]
+    PointLoad {
+        /// Which load, from 0.
+        load: usize,
+    },
+    /// A body is cut at a plane of symmetry that nothing holds.
+    #[error(
+        "no support holds the boundary `{boundary}`: the body is free at its cut, and not half of a symmetric one; hold the component \
+         across it"
+    )]
+    FreeSymmetry {
+        /// The boundary.
+        boundary: String,
+    },
+    /// Nodes of one body stand at the same place.
+    #[error(
+        "{count} nodes of the mesh stand where others do, as nodes {first} and {second}: its parts are not joined there; merge them in \
+         the mesher, unless a slit is meant"
+    )]
+    CoincidentNodes {
+        /// A node.
+        first: usize,
+        /// Another one at its place.
+        second: usize,
+        /// How many such nodes there are.
+        count: usize,
+    },
     /// The scheme can gain energy.
     #[error(
         "the scheme `{scheme}` can gain energy at every blow: it is there for comparison; take `midpoint` or \
@@ -37,4 +100,21 @@ pub enum Warning {
         /// The scheme, as `trapezoidal`.
         scheme: &'static str,
     },
+}
+
+impl Warning {
+    /// The name of the kind of warning, the same in every version.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Warning::NearlyIncompressible { .. } => "nearly-incompressible",
+            Warning::NoContactRow { .. } => "no-contact-row",
+            Warning::HeldCandidates { .. } => "held-candidates",
+            Warning::DoubledObstacle { .. } => "doubled-obstacle",
+            Warning::LoadOnSupport { .. } => "load-on-support",
+            Warning::PointLoad { .. } => "point-load",
+            Warning::FreeSymmetry { .. } => "free-symmetry",
+            Warning::CoincidentNodes { .. } => "coincident-nodes",
+            Warning::GainsEnergy { .. } => "gains-energy",
+        }
+    }
 }

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::summary::Status;
 use crate::error::Error;
 use crate::qp::linear::{dot, largest};
 use crate::qp::problem::ContactProblem;
@@ -54,6 +55,13 @@ pub struct Agreement {
     pub active_set: Difference,
     /// Penalty against QP.
     pub penalty: Difference,
+}
+
+impl Agreement {
+    /// Certified if the exact methods agree.
+    pub fn status(&self) -> Status {
+        if self.exact_methods { Status::Certified } else { Status::NotCertified }
+    }
 }
 
 /// Answers of the QP, the active-set loop and the penalty loop, in this order, and their agreement.

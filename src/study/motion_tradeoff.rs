@@ -6,9 +6,10 @@ use serde::Serialize;
 
 use crate::error::Error;
 use crate::motion::Integrator;
+use crate::motion::SchemeSpec;
 use crate::qp::Settings;
 use crate::scene::schema::AnalysisSpec;
-use crate::scene::{Dynamics, Model, Scene, SchemeSpec};
+use crate::scene::{Dynamics, Model, Scene};
 
 /// Times at which displacements are compared.
 const SAMPLES: usize = 20;
@@ -143,10 +144,10 @@ fn relative(value: f64, scale: f64) -> f64 {
 
 fn run(dynamics: Dynamics, settings: &Settings) -> Result<Run, Error> {
     let clock = Instant::now();
-    let Dynamics { problem, scheme, step, steps, .. } = dynamics;
+    let Dynamics { problem, scheme, step, steps, window, .. } = dynamics;
     let first = problem.displacement().to_vec();
     let mut integrator = Integrator::new(problem, scheme, step, settings)?;
-    let mut summary = super::MotionSummary::starting(&integrator.observe());
+    let mut summary = super::MotionSummary::starting(&integrator.observe(), window, step);
     let mut samples = Vec::with_capacity(SAMPLES);
     for number in 1..=steps {
         integrator.advance()?;

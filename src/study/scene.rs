@@ -5,12 +5,16 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::warnings::{check_approach, of_scene};
+#[cfg(feature = "cli")]
+use super::warnings::untouched;
+use super::warnings::{check_approach, of_scene, point_support};
 use super::{ModelSize, Summary};
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
+#[cfg(feature = "cli")]
+use crate::qp::problem::ContactProblem;
 use crate::qp::{Event, Method, Prepared, Settings, Start, solve};
-use crate::scene::{Answer, Model};
+use crate::scene::{Answer, ContactExtent, Model};
 use crate::solution::{ContactSet, Goal, Solution};
 
 /// Gaps half way that differ by this from the mean of the ends, relative, are not on a straight line.
@@ -28,7 +32,8 @@ pub fn scene_summary(
 ) -> Result<Summary, Error> {
     let (model, closed) = (answer.model(), answer.contact_set());
     check_approach(model, &solution.multiplier)?;
-    let warnings = of_scene(answer, &solution);
+    let segments = answer.segments();
+    let warnings = of_scene(answer, &solution, &segments);
     let mesh = model.mesh();
     let size = ModelSize {
         nodes: Some(mesh.nodes().len()),
@@ -46,7 +51,28 @@ pub fn scene_summary(
     contact.width = contact_width(model, closed);
     contact.area = Some(contact_area(model, closed));
     contact.force_balance = Some(answer.forces()?.balance);
+    if mesh.dimension() > 1 {
+        contact.estimate = ContactExtent::of(&segments);
+    }
+    summary.resultants = answer.resultants()?.to_vec();
+    summary.warnings.extend(point_support(mesh.dimension(), &summary.resultants));
+    summary.force_basis = model.basis_of_forces();
+    summary.segments = segments;
     Ok(summary)
+}
+
+/// The numbers of `solution` to a problem without a scene.
+#[cfg(feature = "cli")]
+pub fn problem_summary(
+    problem: &ContactProblem,
+    solution: Solution,
+    goal: impl Into<Goal>,
+    assemble_seconds: f64,
+) -> Summary {
+    let warning = untouched(problem, &solution);
+    let mut summary = Summary::new(solution, ModelSize::of(problem), goal, assemble_seconds);
+    summary.warnings.extend(warning);
+    summary
 }
 
 /// Area of the boundary that the closed rows stand for; thickness, cross-section or circumference included.

@@ -4,13 +4,44 @@ use serde::Serialize;
 
 use super::warnings::{AnswerWarning, lost_digits, opposite_sign};
 use crate::qp::problem::ContactProblem;
+use crate::scene::{ContactExtent, Resultant, Segment};
 use crate::solution::{Certificate, Goal, Seconds, Solution};
+
+/// How an answer was judged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Status {
+    /// It meets its goal.
+    Certified,
+    /// It does not.
+    NotCertified,
+    /// A motion whose energy grew more than its loads put in: not to be trusted, however good its single steps.
+    Unstable,
+}
+
+impl Status {
+    /// As a report says it in text.
+    pub fn words(self) -> &'static str {
+        match self {
+            Status::Certified => "certified",
+            Status::NotCertified => "not certified",
+            Status::Unstable => "unstable: do not trust this motion",
+        }
+    }
+}
+
+/// Certified if all are.
+impl FromIterator<Status> for Status {
+    fn from_iter<I: IntoIterator<Item = Status>>(all: I) -> Self {
+        all.into_iter().find(|&status| status != Status::Certified).unwrap_or(Status::Certified)
+    }
+}
 
 /// An answer, judged, with the numbers that its model adds to it.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
-    /// `certified` or `not_certified`.
-    pub status: &'static str,
+    /// Does it meet its goal?
+    pub status: Status,
     /// What the certificate was held against.
     #[serde(flatten)]
     pub goal: Goal,
@@ -22,6 +53,15 @@ pub struct Summary {
     pub warnings: Vec<AnswerWarning>,
     /// Closed rows and forces.
     pub contact: ContactSummary,
+    /// Forces, moments and centres of obstacles, supports and loads; only in a scene.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub resultants: Vec<Resultant>,
+    /// What is closed, piece by piece; only in a scene.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub segments: Vec<Segment>,
+    /// What all forces are those of, as `per metre`; left out if they are those of the whole body.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub force_basis: String,
     /// The error of the mesh, estimated, relative in energy; only in a scene, where it was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub discretisation_error: Option<f64>,
@@ -47,6 +87,9 @@ pub struct ContactSummary {
     /// Area of the boundary that closed rows stand for; only in a scene.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub area: Option<f64>,
+    /// Estimates between the nodes; only in a scene whose contact has an extent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub estimate: Option<ContactExtent>,
     /// Imbalance of loads, reactions and contact forces, relative; only in a scene.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub force_balance: Option<f64>,
@@ -78,8 +121,10 @@ pub struct RunSeconds {
     pub assemble: f64,
     /// Factorisations, the analysis of the pattern included; of a motion those before its first step.
     pub factor: f64,
-    /// The solve without its factorisations and its proof; of a motion all steps, writing included.
+    /// The solve without its factorisations and its proof, the certificate included; of a motion all steps, writing included.
     pub solve: f64,
+    /// What of that the certificate took.
+    pub certificate: f64,
     /// Proving which rows are open and closed.
     pub proof: f64,
     /// All of it.
@@ -89,13 +134,14 @@ pub struct RunSeconds {
 impl RunSeconds {
     /// The seconds of an answer whose model took `assemble` seconds.
     pub fn of(assemble: f64, solution: Seconds) -> Self {
-        let Seconds { factor, proof, solve } = solution;
-        RunSeconds { proof, ..RunSeconds::new(assemble, factor, (solve - factor - proof).max(0.0)) }.summed()
+        let Seconds { factor, certificate, proof, solve } = solution;
+        RunSeconds { certificate, proof, ..RunSeconds::new(assemble, factor, (solve - factor - proof).max(0.0)) }
+            .summed()
     }
 
     /// The seconds of the three stages of what is not proven, with their sum.
     pub fn new(assemble: f64, factor: f64, solve: f64) -> Self {
-        RunSeconds { assemble, factor, solve, proof: 0.0, total: 0.0 }.summed()
+        RunSeconds { assemble, factor, solve, ..RunSeconds::default() }.summed()
     }
 
     fn summed(self) -> Self {
@@ -116,17 +162,13 @@ impl ModelSize {
     }
 }
 
-/// The word of a report for an answer that meets its goal, or does not.
-pub(crate) fn status(is_certified: bool) -> &'static str {
-    if is_certified { "certified" } else { "not_certified" }
-}
-
 impl Summary {
     /// The report of `solution` to a raw problem; a scene adds what it knows to `contact` and `model`.
     pub fn new(solution: Solution, model: ModelSize, goal: impl Into<Goal>, assemble_seconds: f64) -> Self {
         let goal = goal.into();
+        let is_met = goal.is_met_by(&solution.certificate);
         Summary {
-            status: status(goal.is_met_by(&solution.certificate)),
+            status: if is_met { Status::Certified } else { Status::NotCertified },
             goal,
             warnings: lost_digits(&solution).into_iter().collect(),
             contact: ContactSummary {
@@ -134,6 +176,9 @@ impl Summary {
                 force: solution.contact_force(),
                 ..ContactSummary::default()
             },
+            resultants: Vec::new(),
+            segments: Vec::new(),
+            force_basis: String::new(),
             discretisation_error: None,
             model: ModelSize { condensed_dofs: solution.condensed_dofs, ..model },
             seconds: RunSeconds::of(assemble_seconds, solution.seconds),
@@ -143,15 +188,15 @@ impl Summary {
 
     /// Returns `true` if the answer meets its goal.
     pub fn is_certified(&self) -> bool {
-        self.goal.is_met_by(&self.solution.certificate)
+        self.status == Status::Certified
     }
 }
 
 /// The certificate of an answer that came from elsewhere.
 #[derive(Clone, Debug, Serialize)]
 pub struct Verification {
-    /// `certified` or `not_certified`.
-    pub status: &'static str,
+    /// Does it meet its goal?
+    pub status: Status,
     /// Relative tolerance that the certificate was held against.
     pub tolerance: f64,
     /// The total force; a row counts as closed where its multiplier is not zero.
@@ -172,11 +217,12 @@ impl Verification {
         let force = -multiplier.iter().sum::<f64>();
         let count = multiplier.iter().filter(|&&lambda| lambda != 0.0).count();
         let contact = ContactSummary { count, force, ..ContactSummary::default() };
-        Verification { status: status(certificate.meets(tolerance)), tolerance, contact, certificate, model, warnings }
+        let status = if certificate.meets(tolerance) { Status::Certified } else { Status::NotCertified };
+        Verification { status, tolerance, contact, certificate, model, warnings }
     }
 
     /// Returns `true` if the answer meets the tolerance.
     pub fn is_certified(&self) -> bool {
-        self.certificate.meets(self.tolerance)
+        self.status == Status::Certified
     }
 }

@@ -15,11 +15,24 @@ use crate::watch::Watch;
 /// Tolerances of the interior point.
 const TOLERANCES: [f64; 6] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
 
+/// Accuracies of the multigrid method, whose knob is the error bound that it reaches.
+const ACCURACIES: [f64; 5] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10];
+
+/// The two fastest runs of a point differ by less than this share, or there are [`MOST_RUNS`] times as many as were asked for.
+const REPEATED: f64 = 0.03;
+
+/// See [`REPEATED`].
+const MOST_RUNS: usize = 4;
+
 /// Last penalties of the penalty ladder, in multiples of the local stiffness; the best is 1e8.
 const PENALTIES: [f64; 9] = [1e0, 1e2, 1e4, 1e6, 1e7, 1e8, 1e10, 1e12, 1e14];
 
 /// Tolerances for which the report names the cheapest method.
 const WANTED: [f64; 3] = [1e-2, 1e-4, 1e-8];
+
+/// Total errors and seconds for which the report names the best mesh and method.
+const TOTAL_ERRORS: [f64; 3] = [0.1, 0.03, 0.01];
+const BUDGETS: [f64; 3] = [0.1, 1.0, 10.0];
 
 /// Reference method: the QP to this tolerance, on all dofs unless there are too many.
 const USUAL_TOLERANCE: f64 = 1e-8;
@@ -38,7 +51,7 @@ const POLISHED: &str = "qp, polished";
 pub struct TradeoffGrid {
     /// Number of meshes beside the scene's own, each with half the cell size of the one before.
     pub refinements: usize,
-    /// Runs of each point, at least 1; the fastest counts.
+    /// Runs of each point, at least 1, and up to four times as many until the two fastest differ by less than 3 %; the fastest counts.
     pub runs: usize,
     /// Points of more dofs than this are solved on the contact boundary only.
     pub most_full_dofs: usize,
@@ -68,19 +81,28 @@ pub struct TradeoffMesh {
 pub struct TradeoffPoint {
     /// Index of the mesh.
     pub mesh: usize,
-    /// `qp`, `qp, polished`, `active-set` or `penalty`.
+    /// `qp`, `qp, polished`, `active-set`, `mprgp` or `penalty`.
     pub method: &'static str,
-    /// Tolerance of the interior point, last penalty of the ladder, or accuracy of the refinement; `None` if the method has
-    /// no such setting.
+    /// Tolerance of the interior point, last penalty of the ladder over the local stiffness, or accuracy of the refinement or of
+    /// the cycles; `None` if the method has no such setting.
     pub knob: Option<f64>,
     /// `true` if the problem was condensed onto its contact boundary.
     pub condensed: bool,
     /// `true` if the factor was in single precision and the answer refined.
     pub mixed: bool,
-    /// The fastest run, in seconds, from the checked problem to the certificate.
+    /// The fastest run, in seconds, from the checked problem to the answer at the tolerance of the method.
     pub seconds: f64,
+    /// What its certificate took, in seconds.
+    pub certificate_seconds: f64,
+    /// What its proof of the contact set took, in seconds.
+    pub proof_seconds: f64,
+    /// Are the two fastest runs within 3 % of each other?
+    pub is_repeated: bool,
     /// Energy norm of the error of the displacement over that of the displacement, as the bound has it.
     pub energy_error: f64,
+    /// Error against the exact answer of the scene, relative in energy: that of the algebra and the estimated one of the mesh, which
+    /// are nearly at right angles, together.
+    pub total_error: f64,
     /// Error of the contact force, relative.
     pub force_error: f64,
     /// Error of the largest pressure, relative.
@@ -94,12 +116,16 @@ pub struct TradeoffPoint {
 }
 
 /// What to choose.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Advice {
-    /// The energy error to reach; `None` if a time is given.
+    /// The energy error to reach on the scene's own mesh.
     pub accuracy: Option<f64>,
-    /// Seconds to spend; `None` if an energy error is given.
+    /// The total error to reach, on any of the meshes.
+    pub total_error: Option<f64>,
+    /// Seconds to spend: for the least energy error on the scene's own mesh, or for the least total error on any mesh.
     pub seconds: Option<f64>,
+    /// `true` if a mesh is chosen, too.
+    pub chooses_mesh: bool,
     /// Index of the point to choose; `None` if no point is good enough.
     pub point: Option<usize>,
 }
@@ -111,7 +137,7 @@ pub struct Tradeoff {
     pub meshes: Vec<TradeoffMesh>,
     /// The points, mesh by mesh.
     pub points: Vec<TradeoffPoint>,
-    /// What to choose on the scene's own mesh.
+    /// What to choose on the scene's own mesh, then on any of the meshes.
     pub advice: Vec<Advice>,
     /// Runs of each point.
     pub runs: usize,
@@ -143,9 +169,10 @@ pub fn tradeoff(scene: &Scene, grid: &TradeoffGrid, watch: &Watch) -> Result<Tra
         if full {
             ways.extend(self::ways(Condense::Never, Precision::Double));
         }
+        ways.extend(multigrid_ways());
         ways.iter_mut().for_each(|way| way.settings = watched(way.settings.clone()));
         for (way, timed) in ways.iter().zip(timed(&model, &ways, result.runs, watch).map_err(explained)?) {
-            let Some((solution, seconds)) = timed else { continue };
+            let Some(Timed { solution, seconds, second }) = timed else { continue };
             result.points.push(TradeoffPoint {
                 mesh: refinement,
                 mixed: way.settings.precision == Precision::Mixed,
@@ -153,6 +180,9 @@ pub fn tradeoff(scene: &Scene, grid: &TradeoffGrid, watch: &Watch) -> Result<Tra
                 knob: way.knob,
                 condensed: way.settings.condense == Condense::Auto,
                 seconds,
+                certificate_seconds: solution.seconds.certificate,
+                proof_seconds: solution.seconds.proof,
+                is_repeated: second < (1.0 + REPEATED) * seconds,
                 ..errors(&model, &solution, &exact)?
             });
         }
@@ -169,8 +199,13 @@ pub fn tradeoff(scene: &Scene, grid: &TradeoffGrid, watch: &Watch) -> Result<Tra
     if result.points.is_empty() {
         return Err(Error::Interrupted);
     }
+    for point in &mut result.points {
+        let of_mesh = result.meshes.get(point.mesh).map_or(f64::INFINITY, |mesh| mesh.discretisation_error);
+        point.total_error = point.energy_error.hypot(of_mesh);
+    }
     mark_best(&mut result.points);
     result.advice = advice(&result.points);
+    result.advice.extend(advice_of_meshes(&result.points));
     Ok(result)
 }
 
@@ -194,6 +229,8 @@ fn ways(condense: Condense, precision: Precision) -> Vec<Way> {
     for (method, polish) in [("qp", false), (POLISHED, true)].into_iter().filter(|way| way.1 || !mixed) {
         for tolerance in TOLERANCES {
             let settings = base(Method::Qp(InteriorPoint { polish, tolerance }));
+            // A loose answer is not held against more than it was asked for: it would be looked at again, and pay for that.
+            let settings = if polish { settings } else { unjudged(settings) };
             ways.push(Way { method, knob: Some(tolerance), settings });
         }
     }
@@ -204,17 +241,44 @@ fn ways(condense: Condense, precision: Precision) -> Vec<Way> {
     }
     for last in PENALTIES {
         let ladder = Penalty { last, penetration_threshold: 0.0, ..Penalty::default() };
-        let settings = base(Method::Penalty(ladder));
+        let settings = unjudged(base(Method::Penalty(ladder)));
         ways.push(Way { method: "penalty", knob: Some(last), settings });
     }
     ways
 }
 
-/// The answer of each way, certified or not, and the seconds of its fastest run. All ways run once before any of them runs
+/// The same settings, whose answers no tolerance judges.
+fn unjudged(settings: Settings) -> Settings {
+    Settings { tolerance: f64::MAX, ..settings }
+}
+
+/// Multigrid to its accuracies, on all dofs.
+fn multigrid_ways() -> Vec<Way> {
+    let way = |accuracy| Way {
+        method: Method::Mprgp.name(),
+        knob: Some(accuracy),
+        settings: Settings {
+            accuracy: Some(accuracy),
+            condense: Condense::Never,
+            ..Settings::with_method(Method::Mprgp)
+        },
+    };
+    ACCURACIES.into_iter().map(way).collect()
+}
+
+/// An answer with the seconds of its two fastest runs, without certificate and proof.
+struct Timed {
+    solution: Solution,
+    seconds: f64,
+    second: f64,
+}
+
+/// The answer of each way, certified or not, and the seconds of its fastest runs. All ways run once before any of them runs
 /// again, so that other work on the machine affects them equally.
 ///
-/// The answer is `None` if the precision does not suffice, or if `watch` was asked to stop before the way was run.
-fn timed(model: &Model, ways: &[Way], runs: usize, watch: &Watch) -> Result<Vec<Option<(Solution, f64)>>, Error> {
+/// The answer is `None` if the precision does not suffice, if multigrid cannot solve the problem, or if `watch` was asked to stop
+/// before the way was run.
+fn timed(model: &Model, ways: &[Way], runs: usize, watch: &Watch) -> Result<Vec<Option<Timed>>, Error> {
     let run = |number: usize, way: &Way| {
         if watch.is_stopped() {
             return Ok(None);
@@ -229,22 +293,30 @@ fn timed(model: &Model, ways: &[Way], runs: usize, watch: &Watch) -> Result<Vec<
             return Ok(None);
         }
         let mixed = way.settings.precision == Precision::Mixed;
-        match solved {
-            Ok(solution) => Ok((solution.refinements.is_some() == mixed).then_some((solution, seconds))),
-            Err(Error::NotCertified { solution, .. }) => {
-                Ok((solution.refinements.is_some() == mixed).then_some((*solution, seconds)))
-            }
-            Err(Error::Numerical { .. }) if mixed => Ok(None),
-            Err(error) => Err(error),
-        }
+        let by_cycles = way.settings.method == Method::Mprgp;
+        let solution = match solved {
+            Ok(solution) => solution,
+            Err(Error::NotCertified { solution, .. }) => *solution,
+            Err(Error::Numerical { .. }) if mixed => return Ok(None),
+            Err(_) if by_cycles => return Ok(None),
+            Err(error) => return Err(error),
+        };
+        let of_method = seconds - solution.seconds.certificate - solution.seconds.proof;
+        let timed = Timed { solution, seconds: of_method, second: f64::INFINITY };
+        Ok((by_cycles || timed.solution.refinements.is_some() == mixed).then_some(timed))
     };
     let mut fastest = ways.iter().enumerate().map(|(index, way)| run(index, way)).collect::<Result<Vec<_>, Error>>()?;
-    for round in 1..runs {
+    for round in 1..MOST_RUNS * runs {
         for (index, (way, fastest)) in ways.iter().zip(&mut fastest).enumerate() {
-            if let Some((_, least)) = fastest
-                && let Some((_, seconds)) = run(round * ways.len() + index, way)?
+            let wants = |timed: &Timed| round < runs || (runs > 1 && timed.second >= (1.0 + REPEATED) * timed.seconds);
+            if let Some(fastest) = fastest.as_mut().filter(|timed| wants(timed))
+                && let Some(again) = run((round % runs) * ways.len() + index, way)?
             {
-                *least = least.min(seconds);
+                let slower = fastest.seconds.max(again.seconds);
+                fastest.second = fastest.second.min(slower);
+                if again.seconds < fastest.seconds {
+                    *fastest = Timed { second: fastest.second, ..again };
+                }
             }
         }
     }
@@ -268,7 +340,11 @@ fn errors(model: &Model, solution: &Solution, exact: &Solution) -> Result<Tradeo
         condensed: false,
         mixed: false,
         seconds: 0.0,
+        certificate_seconds: 0.0,
+        proof_seconds: 0.0,
+        is_repeated: false,
         energy_error: relative(norm(&away), norm(&solution.displacement)),
+        total_error: f64::INFINITY,
         force_error: relative(solution.contact_force() - force, force),
         pressure_error: relative(peak(solution)? - pressure, pressure),
         rows_wrong: (0..model.rows().len()).filter(differs).count(),
@@ -302,7 +378,7 @@ fn advice(points: &[TradeoffPoint]) -> Vec<Advice> {
     };
     let mut advice: Vec<Advice> = WANTED
         .iter()
-        .map(|&accuracy| Advice { accuracy: Some(accuracy), seconds: None, point: cheapest(accuracy) })
+        .map(|&accuracy| Advice { accuracy: Some(accuracy), point: cheapest(accuracy), ..Advice::default() })
         .collect();
     let usual = own().rfind(|(_, point)| point.method == POLISHED && point.knob == Some(USUAL_TOLERANCE));
     if let Some((_, usual)) = usual {
@@ -312,7 +388,34 @@ fn advice(points: &[TradeoffPoint]) -> Vec<Advice> {
             a.error_above_rounding().total_cmp(&b.error_above_rounding()).then(a.seconds.total_cmp(&b.seconds))
         });
         let point = point.map(|(index, _)| index);
-        advice.push(Advice { accuracy: None, seconds: Some(seconds), point });
+        advice.push(Advice { seconds: Some(seconds), point, ..Advice::default() });
     }
     advice
+}
+
+/// Which mesh and which method reach a total error soonest, and come nearest in a time.
+fn advice_of_meshes(points: &[TradeoffPoint]) -> Vec<Advice> {
+    let by = |measure: fn(&TradeoffPoint) -> [f64; 2], is_allowed: &dyn Fn(&TradeoffPoint) -> bool| {
+        let allowed = points.iter().enumerate().filter(|(_, point)| is_allowed(point));
+        let least = allowed.min_by(|(_, a), (_, b)| {
+            let ([a, first], [b, second]) = (measure(a), measure(b));
+            a.total_cmp(&b).then(first.total_cmp(&second))
+        });
+        least.map(|(index, _)| index)
+    };
+    let of_errors = TOTAL_ERRORS.iter().map(|&total| Advice {
+        total_error: Some(total),
+        point: by(|point| [point.seconds, point.total_error], &|point| point.total_error <= total),
+        chooses_mesh: true,
+        ..Advice::default()
+    });
+    // Of errors that differ by a hundredth the one that is found sooner.
+    let rounded = |point: &TradeoffPoint| [(100.0 * point.total_error.ln()).round(), point.seconds];
+    let of_budgets = BUDGETS.iter().map(|&seconds| Advice {
+        seconds: Some(seconds),
+        point: by(rounded, &|point| point.seconds <= seconds && point.total_error.is_finite()),
+        chooses_mesh: true,
+        ..Advice::default()
+    });
+    of_errors.chain(of_budgets).collect()
 }

@@ -1,22 +1,49 @@
 //! What may mislead in an answer, with its numbers: warnings, and the refusal of a scene that asks for something else than was meant.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::fem::assembly::node_normals;
 use crate::fem::body::{BodyElement, ElasticBody};
 use crate::fem::geometry::dot;
-use crate::scene::{Answer, Model, refused};
+use crate::qp::problem::ContactProblem;
+use crate::scene::{Answer, ContactRow, Model, Resultant, Rule, Segment, refused, straight_cells};
 use crate::solution::{Certificate, Solution};
 
 /// Strains above this are beyond small strains, for which the equations hold.
 const LARGE_STRAIN: f64 = 0.1;
 
-/// Forces of a row below this share of the largest are rounding.
+/// Forces of a row below this share of the largest of its obstacle are rounding.
 const NO_FORCE: f64 = 1e-9;
+
+/// Forces of a row below this share of the largest of all obstacles are rounding of the solve.
+const ROUNDING: f64 = 1e-13;
 
 /// A direction may lean on the wrong side of a surface by this sine: rounding of the geometry.
 const SIDEWAYS: f64 = 1e-9;
+
+/// Surfaces that lean by more degrees than this from the direction of their rows make another force: the cosine is 1.5 % off.
+const LEANING: f64 = 10.0;
+
+/// A force of a support above this share of the largest is felt.
+const FELT: f64 = 1e-6;
+
+/// A boundary that faces away from its obstacle by more than the angle of this cosine, 60 degrees, is hardly the one that was meant.
+const ASIDE: f64 = 0.5;
+
+/// Between its nodes a body may go into an obstacle by this share of how far the contact moves it: with two cells to each half of a
+/// smooth contact it is a sixteenth.
+const BETWEEN: f64 = 0.25;
+
+/// Beside a corner of a surface, in units of the size of the mesh: above rounding, below every cell.
+const BESIDE: f64 = 1e-6;
+
+/// A contact of so few nodes has no shape that could be seen.
+const FEW_NODES: usize = 2;
+
+/// A peak that half of the difference to the mean around it makes uncertain by more than this is that of the mesh.
+const SCATTER: f64 = 0.2;
 
 /// Something about an answer that its reader should know, certified or not.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -60,23 +87,222 @@ pub(super) fn opposite_sign(certificate: &Certificate, multiplier: &[f64], toler
 }
 
 /// What may mislead in an answer to a scene.
-pub(super) fn of_scene(answer: &Answer, solution: &Solution) -> Vec<AnswerWarning> {
-    let warnings = [nothing_touches(answer.model(), solution), large_strain(answer)];
-    warnings.into_iter().flatten().collect()
+pub(super) fn of_scene(answer: &Answer, solution: &Solution, segments: &[Segment]) -> Vec<AnswerWarning> {
+    let model = answer.model();
+    let of_model =
+        model.warnings().iter().map(|warning| AnswerWarning { code: warning.code(), message: warning.to_string() });
+    let of_answer = [
+        nothing_touches(model, solution),
+        large_strain(answer),
+        leaning_normals(answer),
+        across_approach(answer),
+        mesh_dependent(model, segments),
+        between_nodes(answer),
+    ];
+    of_model.chain(of_answer.into_iter().flatten()).collect()
+}
+
+/// That a support on a single node carries a force.
+pub(super) fn point_support(dimension: usize, resultants: &[Resultant]) -> Option<AnswerWarning> {
+    let size = |one: &Resultant| one.force.iter().fold(0.0, |size: f64, part| size.hypot(*part));
+    let largest = resultants.iter().map(size).fold(0.0, f64::max);
+    let is_point = |one: &&Resultant| one.of.starts_with("supports") && one.nodes == 1 && size(one) > FELT * largest;
+    let found = resultants.iter().find(is_point).filter(|_| dimension > 1)?;
+    let message = format!(
+        "{} holds a single node with a force of {:.3e}: displacement and stress there grow with every refinement; hold a boundary",
+        found.of,
+        size(found)
+    );
+    Some(AnswerWarning { code: "point-support", message })
+}
+
+/// The rows that carry force.
+fn loaded_rows<'a>(model: &'a Model, multiplier: &[f64]) -> Vec<&'a ContactRow> {
+    let mut largest = vec![0.0_f64; model.obstacles().len()];
+    let rows = || model.rows().iter().zip(multiplier);
+    rows().for_each(|(row, lambda)| largest[row.obstacle] = largest[row.obstacle].max(-lambda));
+    let of_all = largest.iter().copied().fold(0.0, f64::max);
+    let least = |row: &ContactRow| (NO_FORCE * largest[row.obstacle]).max(ROUNDING * of_all);
+    rows().filter(|(row, lambda)| -**lambda > least(row)).map(|(row, _)| row).collect()
+}
+
+/// That rows with force lie aside of the boundary's normals.
+fn across_approach(answer: &Answer) -> Option<AnswerWarning> {
+    let loaded = loaded_rows(answer.model(), answer.multiplier());
+    let lean = |row: &ContactRow| dot(row.normal, row.outward);
+    let row = loaded.into_iter().min_by(|a, b| lean(a).total_cmp(&lean(b))).filter(|row| lean(row) < ASIDE)?;
+    let message = format!(
+        "at node {} the direction into obstacles[{}] and the outward normal of the body make an angle of {:.0} degrees, and the node carries \
+         force: the obstacle drags the boundary along itself; name the boundary that faces the obstacle, or turn `approach`",
+        row.node,
+        row.obstacle,
+        lean(row).clamp(-1.0, 1.0).acos().to_degrees()
+    );
+    Some(AnswerWarning { code: "across-approach", message })
+}
+
+/// That the body goes into an obstacle between its nodes, where no row is.
+fn between_nodes(answer: &Answer) -> Option<AnswerWarning> {
+    let model = answer.model();
+    let (nodes, dimension) = (model.mesh().nodes(), model.mesh().dimension());
+    let moved = |node: usize| {
+        let of_node = &answer.displacement()[dimension * node..dimension * (node + 1)];
+        [0, 1, 2].map(|axis| of_node.get(axis).copied().unwrap_or(0.0))
+    };
+    let closed = answer.contact_set().iter().map(|row| &model.rows()[row]);
+    let depth = closed.map(|row| dot(row.normal, moved(row.node)).abs()).fold(0.0, f64::max);
+    let mut worst: Option<(f64, usize, [f64; 3])> = None;
+    for (index, obstacle) in model.obstacles().iter().enumerate() {
+        let (Some(rigid), Some(boundary)) = (obstacle.rigid(), model.mesh().boundary(obstacle.boundary())) else {
+            continue;
+        };
+        for cell in boundary.facets().flat_map(|facet| straight_cells(boundary.kind, facet)) {
+            let mean = |of: &dyn Fn(usize) -> [f64; 3]| {
+                let sum = cell.iter().fold([0.0; 3], |sum, &node| [0, 1, 2].map(|axis| sum[axis] + of(node)[axis]));
+                sum.map(|part| part / cell.len() as f64)
+            };
+            let at = mean(&|node| nodes[node]);
+            let Ok(Some(row)) = rigid.shifted_row(at, model.gap()) else { continue };
+            let deep = dot(row.normal, mean(&moved)) - row.gap;
+            if deep > worst.map_or(BETWEEN * depth, |worst| worst.0) {
+                worst = Some((deep, index, at));
+            }
+        }
+    }
+    let (deep, index, at) = worst.filter(|_| dimension > 1 && depth > 0.0)?;
+    let (place, unit) = (&at[..dimension], &model.units().length);
+    let message = format!(
+        "between its nodes the body goes {deep:.2e} {unit} into obstacles[{index}], near {place:?}, {:.0} % of how far the contact moves \
+         it: the obstacle is smaller than the cells; refine the mesh there",
+        100.0 * deep / depth
+    );
+    Some(AnswerWarning { code: "between-nodes", message })
+}
+
+/// That no row of a problem without a scene is closed and none carries a force, with the nearest one.
+#[cfg(feature = "cli")]
+pub(super) fn untouched(problem: &ContactProblem, solution: &Solution) -> Option<AnswerWarning> {
+    if is_touched(solution) {
+        return None;
+    }
+    let message = match nearest(problem, solution) {
+        Some((row, gap)) => format!("no row is closed; the smallest remaining gap is {} at row {row}", written(gap)),
+        None if problem.rows() == 0 => "no row is closed: the problem has none".to_string(),
+        None => "no row is closed: every gap is infinite".to_string(),
+    };
+    Some(AnswerWarning { code: "nothing-touches", message })
+}
+
+fn is_touched(solution: &Solution) -> bool {
+    solution.contact_set.count() > 0 || solution.multiplier.iter().any(|&lambda| lambda != 0.0)
+}
+
+/// The row with the smallest remaining gap.
+fn nearest(problem: &ContactProblem, solution: &Solution) -> Option<(usize, f64)> {
+    let left = problem.violation(&solution.displacement).into_iter().map(|violation| -violation);
+    left.enumerate().filter(|(_, gap)| gap.is_finite()).min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// A gap as one would write it.
+fn written(gap: f64) -> String {
+    if gap < 1e-3 {
+        format!("{gap:.1e}")
+    } else {
+        format!("{gap:.4}").trim_end_matches('0').trim_end_matches('.').to_string()
+    }
+}
+
+/// That rows along the approach direction carry force where the surface leans: the force of a frictionless contact is along its
+/// normal.
+fn leaning_normals(answer: &Answer) -> Option<AnswerWarning> {
+    let model = answer.model();
+    let nodes = model.mesh().nodes();
+    let loaded = loaded_rows(model, answer.multiplier());
+    let beside = BESIDE * model.mesh().size();
+    let mut shifts = vec![[0.0; 3]];
+    for axis in 0..model.mesh().dimension() {
+        shifts.extend([beside, -beside].map(|step| {
+            let mut shift = [0.0; 3];
+            shift[axis] = step;
+            shift
+        }));
+    }
+    let mut worst: Option<(f64, usize, usize)> = None;
+    for (index, obstacle) in model.obstacles().iter().enumerate().filter(|entry| entry.1.rule() == Some(Rule::Approach))
+    {
+        let place: BTreeMap<usize, usize> =
+            (0..).zip(obstacle.candidates()).map(|(at, &(node, _))| (node, at)).collect();
+        for row in loaded.iter().filter(|row| row.obstacle == index) {
+            // At a corner of the surface every normal between those beside it will do.
+            let beside = shifts.iter().map(|shift| [0, 1, 2].map(|axis| nodes[row.node][axis] + shift[axis]));
+            let normals = beside.filter_map(|at| obstacle.surface_normal(place[&row.node], at, model.gap()));
+            let Some(lean) = normals.map(|surface| dot(surface, row.normal)).reduce(f64::max) else { continue };
+            let angle = lean.clamp(-1.0, 1.0).acos().to_degrees();
+            if worst.is_none_or(|(most, ..)| angle > most) {
+                worst = Some((angle, row.node, index));
+            }
+        }
+    }
+    let (angle, node, index) = worst.filter(|(angle, ..)| *angle > LEANING)?;
+    let message = format!(
+        "the surface of obstacles[{index}] leans by {angle:.0} degrees from the approach direction at node {node}, which carries force; rule \
+         `approach` takes that force along the approach direction, and keeps the node from sliding along the surface. Take rule \
+         `closest-point`, whose rows follow the normals"
+    );
+    Some(AnswerWarning { code: "leaning-normals", message })
+}
+
+/// That the mesh is too coarse for what is said of the contact: segments of one or two nodes, a peak that its neighbours do not share.
+fn mesh_dependent(model: &Model, segments: &[Segment]) -> Option<AnswerWarning> {
+    if model.mesh().dimension() == 1 {
+        return None;
+    }
+    let is_small = |segment: &&Segment| {
+        let candidates = model.obstacles()[segment.obstacle].candidates().len();
+        segment.nodes.len() <= FEW_NODES && candidates > segment.nodes.len()
+    };
+    let mut reasons = Vec::new();
+    let small = segments.iter().filter(is_small).count();
+    if let Some(first) = segments.iter().find(is_small) {
+        let nodes: Vec<String> = first.nodes.iter().map(usize::to_string).collect();
+        let (word, nodes) = (if nodes.len() == 1 { "node" } else { "nodes" }, nodes.join(" and "));
+        reasons.push(match small {
+            1 => format!("a contact of obstacles[{}] closes only {word} {nodes}", first.obstacle),
+            _ => format!(
+                "{small} contacts close one or two nodes each, as {word} {nodes} of obstacles[{}]",
+                first.obstacle
+            ),
+        });
+    }
+    let peak = segments.iter().max_by(|a, b| a.pressure_max.total_cmp(&b.pressure_max))?;
+    let spread = peak.extent.pressure_uncertainty / peak.pressure_max;
+    if spread > SCATTER {
+        let percent = 200.0 * spread;
+        reasons.push(format!(
+            "the peak pressure differs by {percent:.0} % from the mean of its node and the closed ones around"
+        ));
+    }
+    if let Some(node) = peak.edge_peak {
+        reasons.push(format!(
+            "the peak pressure stands at the edge of the contact, node {node}: at an edge of the obstacle it grows with every refinement"
+        ));
+    }
+    let (first, others) = reasons.split_first()?;
+    let reasons = others.iter().fold(first.clone(), |all, other| format!("{all}; {other}"));
+    let message =
+        format!("{reasons}. Peak pressure and extent depend on the mesh there: refine it near the contact and compare");
+    Some(AnswerWarning { code: "mesh-dependent", message })
 }
 
 /// That no row is closed and none carries a force, with the nearest one.
 fn nothing_touches(model: &Model, solution: &Solution) -> Option<AnswerWarning> {
-    if solution.contact_set.count() > 0 || solution.multiplier.iter().any(|&lambda| lambda != 0.0) {
+    if is_touched(solution) {
         return None;
     }
-    let left = model.problem().violation(&solution.displacement).into_iter().map(|violation| -violation);
-    let nearest = left.enumerate().filter(|(_, gap)| gap.is_finite()).min_by(|a, b| a.1.total_cmp(&b.1));
-    let message = match nearest {
+    let message = match nearest(model.problem(), solution) {
         Some((row, gap)) => {
             let (node, unit) = (model.rows()[row].node, &model.units().length);
-            let gap =
-                if gap < 1e-3 { format!("{gap:.1e}") } else { format!("{gap:.4}").trim_end_matches('0').to_string() };
+            let gap = written(gap);
             format!("nothing touches; the smallest remaining gap is {gap} {unit} at node {node}").replace("  ", " ")
         }
         None if model.obstacles().is_empty() => "nothing touches: the scene has no obstacle".to_string(),
@@ -116,28 +342,15 @@ fn largest_strain(body: &ElasticBody, displacement: &[f64]) -> Option<(usize, f6
 /// # Errors
 /// [`Error::Refused`] with the code `approach-away`.
 pub(super) fn check_approach(model: &Model, multiplier: &[f64]) -> Result<(), Error> {
-    let largest = multiplier.iter().fold(0.0, |largest: f64, lambda| largest.max(-lambda));
-    let mesh = model.mesh();
-    for (index, obstacle) in model.obstacles().iter().enumerate() {
-        let Some(boundary) = mesh.boundary(obstacle.boundary()) else { continue };
-        let mut outward = vec![[0.0; 3]; mesh.nodes().len()];
-        node_normals(model.body(), boundary).into_iter().for_each(|(node, normal)| outward[node] = normal);
-        let pulls = |(row, lambda): (usize, &f64)| {
-            let row = &model.rows()[row];
-            let lean = dot(row.normal, outward[row.node]);
-            (row.obstacle == index && -lambda > NO_FORCE * largest && lean < -SIDEWAYS).then_some((row.node, lean))
-        };
-        let worst = multiplier.iter().enumerate().filter_map(pulls).min_by(|a, b| a.1.total_cmp(&b.1));
-        if let Some((node, lean)) = worst {
-            let angle = lean.clamp(-1.0, 1.0).acos().to_degrees();
-            let message = format!(
-                "the obstacle pulls the body: at node {node} the direction into the obstacle and the outward normal of `{}` \
-                 make an angle of {angle:.0} degrees, and the node carries force; turn `approach` around, or name the boundary that \
-                 faces the obstacle",
-                obstacle.boundary()
-            );
-            return Err(refused("approach-away", format!("obstacles[{index}].approach"), message));
-        }
-    }
-    Ok(())
+    let lean = |row: &ContactRow| dot(row.normal, row.outward);
+    let worst = loaded_rows(model, multiplier).into_iter().min_by(|a, b| lean(a).total_cmp(&lean(b)));
+    let Some(row) = worst.filter(|row| lean(row) < -SIDEWAYS) else { return Ok(()) };
+    let message = format!(
+        "the obstacle pulls the body: at node {} the direction into the obstacle and the outward normal of `{}` make an angle of {:.0} \
+         degrees, and the node carries force; turn `approach` around, or name the boundary that faces the obstacle",
+        row.node,
+        model.obstacles()[row.obstacle].boundary(),
+        lean(row).clamp(-1.0, 1.0).acos().to_degrees()
+    );
+    Err(refused("approach-away", format!("obstacles[{}].approach", row.obstacle), message))
 }

@@ -76,6 +76,13 @@ fn solve_leaves_answer_fields_pictures_and_report() {
     assert!(steps >= 2);
     let report: Value = serde_json::from_slice(&fs::read(desk.path("a/b/report.json")).unwrap()).unwrap();
     assert_eq!(report, run.json(), "the report in the folder is the one that is printed");
+    // The nodal contact forces add up to the resultant.
+    let fields = fs::read_to_string(desk.path("a/b/solution.vtu")).unwrap();
+    let (_, forces) = fields.split_once("Name=\"contact_force\"").expect("contact forces");
+    let numbers = forces.lines().skip(1).take_while(|line| !line.starts_with('<'));
+    let along_y: f64 = numbers.map(|line| line.split_whitespace().nth(1).unwrap().parse::<f64>().unwrap()).sum();
+    let resultant = report["resultants"][0]["force"][1].as_f64().unwrap();
+    assert!(along_y < 0.0 && (along_y - resultant).abs() < 1e-12 * along_y.abs(), "{along_y} and {resultant}");
 }
 
 #[test]

@@ -7,7 +7,8 @@ use resvg::usvg::roxmltree::Document;
 use signorini::{
     Error,
     fem::ElementKind,
-    output::{Array, Drawing, Unstructured, write_atomically, write_picture},
+    internals::write_atomically,
+    output::{Array, Drawing, Unstructured, write_picture},
 };
 
 fn numbers(document: &Document, name: &str) -> Vec<f64> {

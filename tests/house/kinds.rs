@@ -113,6 +113,7 @@ fn a_time_scheme_stands_in_two_files() {
         ("ContactStabilised", "contact_stabilised"),
         ("Hht", "hht"),
         ("Penalty", "penalty"),
+        ("PenaltyLoop", "penalty_loop"),
         ("CentralDifference", "central_difference"),
     ] {
         let of_enums = ["Scheme", "SchemeSpec"].map(|kinds| format!("{kinds}::{scheme}"));

@@ -3,10 +3,10 @@
 //! REFERENCE: waves in bars (`analytical::ImpactingBar`, `analytical::BouncingBar`).
 
 #[path = "../../tools/impact/cases.rs"]
-mod cases;
+pub mod cases;
 #[allow(dead_code)]
 #[path = "../../tools/impact/measure.rs"]
-mod measure;
+pub mod measure;
 
 use cases::cases;
 use measure::run;
@@ -131,6 +131,7 @@ fn every_scheme_is_of_second_order_where_nothing_touches() {
         Scheme::ContactStabilised,
         Scheme::Hht { alpha: -0.1 },
         Scheme::Penalty { penalty: 10.0 },
+        Scheme::PenaltyLoop { threshold: 1e-6 },
     ] {
         let error = |steps| {
             let problem = oscillator(0.0).with_damping(mass, stiffness).unwrap();

@@ -9,3 +9,7 @@ mod bounce;
 mod impact;
 mod impact_command;
 mod impact_errors;
+mod peaks;
+mod penalty_loop;
+mod trust;
+mod watch;

@@ -213,16 +213,83 @@ fn string(load: f64, gap_of_nothing: f64) -> ContactProblem {
 
 #[test]
 fn bound_without_a_dense_boundary_is_that_of_a_uniform_penetration() {
-    const DEPTH: f64 = 1e-6;
     let problem = string(3.0, 1.0);
     let mut lambda: Vec<f64> = problem.stiffness().mul(&[1.0; 400]).iter().map(|force| force - 3.0).collect();
     lambda.push(0.0);
     assert!(problem.certify(&[1.0; 400], &lambda).unwrap().meets(TOLERANCE));
     // The energy of a uniform displacement is in the two springs at the ends, and the error is one.
-    let bound = problem.certify(&[1.0 + DEPTH; 400], &lambda).unwrap().energy_error_bound;
-    assert!((DEPTH * (1.0 - 2.0 * DEPTH)..3.0 * DEPTH).contains(&bound), "{bound:e}");
+    for depth in [1e-6, 1e-10] {
+        let bound = problem.certify(&[1.0 + depth; 400], &lambda).unwrap().energy_error_bound;
+        assert!((depth * (1.0 - 2e-6)..3.0 * depth).contains(&bound), "{depth:e}: {bound:e}");
+    }
     let proven = problem.prove(&[1.0; 400], &lambda).unwrap().unwrap();
     assert_eq!((proven.closed.count(), proven.open.count()), (400, 1));
+}
+
+/// A string of 401 nodes on a ground of stiffness 1/2, pressed against a wall at its middle; other walls are far. The body that
+/// follows a node to its wall, and the force of that wall, keep the bound near the error.
+#[test]
+fn bound_of_a_string_that_is_pressed_into_a_wall_at_its_middle_is_the_error() {
+    const NODES: usize = 401;
+    const DEPTH: f64 = 1e-6;
+    /// The steps in which the body follows leave a few hundredths.
+    const LOOSE: f64 = 1.05;
+    let middle = NODES / 2;
+    let springs: Vec<_> =
+        (0..NODES).map(|node| (node, node, 2.5)).chain((1..NODES).map(|j| (j, j - 1, -1.0))).collect();
+    let rows: Vec<_> = (0..NODES).map(|node| (node, node, 1.0)).collect();
+    let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(NODES, NODES, &springs).unwrap()).unwrap();
+    let contact = SparseMatrix::from_triplets(NODES, NODES, &rows).unwrap();
+    let at_middle = |value: f64, elsewhere: f64| -> Vec<f64> {
+        (0..NODES).map(|node| if node == middle { value } else { elsewhere }).collect()
+    };
+    // The ground halves a displacement from node to node: 5/2 - 2/2 at the middle, and nothing elsewhere.
+    let problem = ContactProblem::new(stiffness, at_middle(4.5, 0.0), contact, at_middle(1.0, 10.0)).unwrap();
+    let pressed = |depth: f64| -> Vec<f64> {
+        (0..NODES).map(|node| (1.0 + depth) * 0.5_f64.powi(node.abs_diff(middle) as i32)).collect()
+    };
+    let lambda = at_middle(-3.0, 0.0);
+    assert!(problem.certify(&pressed(0.0), &lambda).unwrap().meets(TOLERANCE));
+    // A force that is off is no error of the displacement: the wall takes what is out of balance.
+    for (depth, force) in [(DEPTH, -3.0), (-DEPTH, -3.0), (DEPTH, -3.001), (DEPTH, -2.999)] {
+        let lambda = at_middle(force, 0.0);
+        let bound = problem.certify(&pressed(depth), &lambda).unwrap().energy_error_bound / DEPTH;
+        assert!((1.0 - 2.0 * DEPTH..LOOSE).contains(&bound), "{depth:e}, {force}: {bound}");
+    }
+}
+
+#[test]
+fn a_string_that_only_its_walls_hold_has_a_bound() {
+    // Free at both ends: every displacement of all nodes together has no energy.
+    const NODES: usize = 400;
+    let end = |node: usize| if node == 0 || node == NODES - 1 { 1.0 } else { 2.0 };
+    let springs: Vec<_> =
+        (0..NODES).map(|node| (node, node, end(node))).chain((1..NODES).map(|j| (j, j - 1, -1.0))).collect();
+    let rows: Vec<_> = (0..NODES).map(|node| (node, node, 1.0)).collect();
+    let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(NODES, NODES, &springs).unwrap()).unwrap();
+    let contact = SparseMatrix::from_triplets(NODES, NODES, &rows).unwrap();
+    let problem = ContactProblem::new(stiffness, vec![3.0; NODES], contact, vec![1.0; NODES]).unwrap();
+    let certificate = problem.certify(&[1.0; NODES], &[-3.0; NODES]).unwrap();
+    assert!(certificate.meets(TOLERANCE), "{certificate:?}");
+}
+
+#[test]
+fn rows_of_two_nodes_that_rounding_leaves_off_their_gaps_have_a_bound() {
+    const NODES: usize = 400;
+    const DEPTH: f64 = 1e-6;
+    const GAP: f64 = 0.123;
+    let springs: Vec<_> =
+        (0..NODES).map(|node| (node, node, 2.0)).chain((1..NODES).map(|j| (j, j - 1, -1.0))).collect();
+    let rows: Vec<_> = (0..NODES - 1).flat_map(|row| [(row, row, 0.7), (row, row + 1, 0.3)]).collect();
+    let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(NODES, NODES, &springs).unwrap()).unwrap();
+    let contact = SparseMatrix::from_triplets(NODES - 1, NODES, &rows).unwrap();
+    // The load under which all rows press by three at a uniform displacement.
+    let forces = contact.mul_transposed(&[3.0; NODES - 1]);
+    let load = stiffness.mul(&[GAP; NODES]).iter().zip(forces).map(|(elastic, force)| elastic + force).collect();
+    let problem = ContactProblem::new(stiffness, load, contact, vec![GAP; NODES - 1]).unwrap();
+    let bound = problem.certify(&[GAP + DEPTH; NODES], &[-3.0; NODES - 1]).unwrap().energy_error_bound;
+    // All energy is in the springs at the ends, as that of the error.
+    assert!(bound.is_finite() && bound >= DEPTH / (GAP + DEPTH) * (1.0 - 1e-6), "{bound:e}");
 }
 
 #[test]

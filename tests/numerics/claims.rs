@@ -69,6 +69,29 @@ fn a_load_in_balance_is_not_unbounded_but_leaves_the_body_under_held() {
 }
 
 #[test]
+fn a_body_that_slides_between_two_walls_it_does_not_touch_is_under_held() {
+    // Nothing but a floor carries the load of 3, and two walls at a distance of 5 let the body slide.
+    let rows: [&[f64]; 3] = [&[0.0, 1.0], &[1.0, 0.0], &[-1.0, 0.0]];
+    let problem = problem(&[], &[0.0, 3.0], &rows, &[0.0, 5.0, 5.0]);
+    for (method, ending) in endings(&problem) {
+        let Err(Error::UnderHeld { direction, .. }) = ending else { panic!("{method}: {ending:?}") };
+        assert_eq!((direction[0].abs(), direction[1]), (1.0, 0.0), "{method}");
+    }
+}
+
+#[test]
+fn a_dof_that_nothing_holds_is_named_beside_a_load_that_needs_a_force_of_one_bit() {
+    // The load on the last dof is larger by its last bit than that on the second: the second row carries that bit, which is too
+    // little to show that it presses. The first dof drifts wherever the others are.
+    let rows: [&[f64]; 2] = [&[0.0, 1.0, 1.0], &[0.0, 0.0, 1.0]];
+    let problem = problem(&[], &[0.0, 1.0, 1.0 + f64::EPSILON], &rows, &[0.0, 0.0]);
+    for (method, ending) in endings(&problem) {
+        let Err(Error::UnderHeld { direction, .. }) = ending else { panic!("{method}: {ending:?}") };
+        assert_eq!((direction[0].abs(), direction[1], direction[2]), (1.0, 0.0, 0.0), "{method}");
+    }
+}
+
+#[test]
 fn rows_that_stop_a_motion_both_ways_without_play_hold_it() {
     let problem = problem(&SPRING, &[0.25, -0.25], &[&[1.0, 0.0], &[-1.0, 0.0]], &[1.0, -1.0]);
     for (method, ending) in endings(&problem) {

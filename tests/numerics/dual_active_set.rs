@@ -5,13 +5,13 @@ use crate::oracles::{Dense, Draws, random};
 use nalgebra::{DMatrix, DVector};
 use signorini::Start;
 use signorini::internals::AugmentedMatrix;
-use signorini::internals::{DualActiveSet, Outcome, ScaledProblem, Solver};
+use signorini::internals::{Definiteness, DualActiveSet, Outcome, ScaledProblem, Solver};
 use signorini::{ContactProblem, Error, Method, Settings, SparseMatrix, SymmetricMatrix, solve};
 
-/// Runs the method on a problem as it stands; `definite` is what is known of its stiffness.
-fn run(problem: &ContactProblem, definite: bool) -> Result<Outcome, Error> {
+/// Runs the method on a problem as it stands; with what is known of its stiffness.
+fn run(problem: &ContactProblem, definiteness: Definiteness) -> Result<Outcome, Error> {
     let augmented = AugmentedMatrix::new(problem.stiffness(), problem.contact()).unwrap();
-    let scaled = ScaledProblem::new(problem, &augmented, definite);
+    let scaled = ScaledProblem::new(problem, &augmented, definiteness);
     DualActiveSet::of(&scaled)?.expect("small enough").solve(Start::default())
 }
 
@@ -76,7 +76,7 @@ fn random_problems_have_the_answer_of_the_best_of_all_contact_sets() {
     for case in 0..1000 {
         let (n, m) = (1 + draws.below(6), 1 + draws.below(9));
         let dense = random(&mut draws, n, m);
-        let outcome = run(&dense.problem().unwrap(), true).unwrap();
+        let outcome = run(&dense.problem().unwrap(), Definiteness::Definite).unwrap();
         let error = energy_error(&dense, &outcome.displacement, &dense.enumerate().displacement);
         assert!(outcome.settled && error <= 1e-11, "case {case}: {error:e}");
     }
@@ -90,7 +90,7 @@ fn equal_and_dependent_rows_in_other_units_leave_the_answer_as_it_is() {
         let (n, m) = (1 + draws.below(6), 1 + draws.below(9));
         let mut dense = random(&mut draws, n, m);
         make_dependent(&mut draws, &mut dense);
-        let outcome = run(&dense.problem().unwrap(), true).unwrap();
+        let outcome = run(&dense.problem().unwrap(), Definiteness::Definite).unwrap();
         let found = conditions(&dense, &outcome);
         assert!(outcome.settled && found.iter().all(|&value| value <= ROUNDED), "case {case}: {found:?}");
     }
@@ -128,7 +128,7 @@ fn networks_with_a_weakly_held_part_are_solved_to_rounding() {
     for case in 0..1000 {
         let n = 6 + draws.below(55);
         let dense = network(&mut draws, n);
-        let outcome = run(&dense.problem().unwrap(), true).unwrap();
+        let outcome = run(&dense.problem().unwrap(), Definiteness::Definite).unwrap();
         let found = conditions(&dense, &outcome);
         assert!(outcome.settled && found.iter().all(|&value| value <= ROUNDED), "case {case}: {found:?}");
     }
@@ -139,7 +139,7 @@ fn networks_with_a_weakly_held_part_are_solved_to_rounding() {
 fn a_network_of_600_dofs_is_solved_to_rounding() {
     let mut draws = Draws::new(4);
     let dense = network(&mut draws, 600);
-    let outcome = run(&dense.problem().unwrap(), true).unwrap();
+    let outcome = run(&dense.problem().unwrap(), Definiteness::Definite).unwrap();
     let found = conditions(&dense, &outcome);
     assert!(outcome.settled && found.iter().all(|&value| value <= ROUNDED), "{found:?}");
     assert!(outcome.contact_set.count() > 200, "{}", outcome.contact_set.count());
@@ -163,7 +163,7 @@ fn bodies_that_only_their_rows_hold_are_solved_to_rounding() {
         }
         let push = dense.contact.transpose() * DVector::from_fn(m, |_, _| draws.uniform());
         dense.load = &dense.stiffness * DVector::from_fn(n, |_, _| draws.signed()) + push;
-        let outcome = run(&dense.problem().unwrap(), false).unwrap();
+        let outcome = run(&dense.problem().unwrap(), Definiteness::Semidefinite).unwrap();
         let found = conditions(&dense, &outcome);
         settled += usize::from(outcome.settled);
         assert!(!outcome.settled || found.iter().all(|&value| value <= ROUNDED), "case {case}: {found:?}");
@@ -199,7 +199,7 @@ fn contradicting_rows_are_found_with_weights_that_the_problem_verifies() {
         let overlap = 2.0_f64.powi(-(draws.below(20) as i32));
         let dense = contradicting(&mut draws, overlap);
         let problem = dense.problem().unwrap();
-        let Err(Error::Infeasible { rows, weights, .. }) = run(&problem, true) else {
+        let Err(Error::Infeasible { rows, weights, .. }) = run(&problem, Definiteness::Definite) else {
             panic!("case {case}: an overlap of {overlap:e} is not found");
         };
         assert!(problem.overlap(&rows, &weights).is_some(), "case {case}: {rows:?} {weights:?}");
@@ -220,7 +220,7 @@ fn rows_that_contradict_each_other_but_for_rounding_are_not_called_infeasible() 
         dense.contact = dense.contact.insert_column(n, 0.0);
         dense.contact[(last, n)] = dense.contact.row(last).amax() * f64::EPSILON;
         dense.load = dense.load.insert_row(n, 0.0);
-        let found = run(&dense.problem().unwrap(), true);
+        let found = run(&dense.problem().unwrap(), Definiteness::Definite);
         assert!(!matches!(found, Err(Error::Infeasible { .. })), "case {case}: {found:?}");
     }
 }
@@ -256,7 +256,7 @@ fn two_rows_that_share_a_soft_dof_are_both_closed_exactly() {
 fn an_apex_of_more_rows_than_dofs_has_the_multipliers_of_the_rows_that_push() {
     let rows: [&[f64]; 5] = [&[1.0, 0.0], &[0.0, 1.0], &[-1.0, 1e-3], &[-1.0, -1.0], &[1e-3, -1.0]];
     let dense = Dense::new(&[&[1.0, 0.0], &[0.0, 1.0]], &[1.0, 2.0], &rows, &[0.0; 5]);
-    let found = run(&dense.problem().unwrap(), true).unwrap();
+    let found = run(&dense.problem().unwrap(), Definiteness::Definite).unwrap();
     assert!(found.settled && found.displacement.iter().all(|u| u.abs() <= 1e-15), "{found:?}");
     let force = dense.contact.transpose() * DVector::from_column_slice(&found.multiplier);
     assert!((force + dense.load).amax() <= 1e-15, "{found:?}");

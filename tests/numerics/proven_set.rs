@@ -123,6 +123,27 @@ fn a_grazing_row_is_undecided() {
 }
 
 #[test]
+fn a_row_that_touches_without_force_is_undecided_in_an_answer_without_any_error() {
+    let one = |value| SparseMatrix::from_triplets(1, 1, &[(0, 0, value)]).unwrap();
+    let problem =
+        ContactProblem::new(SymmetricMatrix::from_lower(one(2.0)).unwrap(), vec![0.0], one(1.0), vec![0.0]).unwrap();
+    assert_eq!(problem.certify(&[0.0], &[0.0]).unwrap().energy_error_bound, 0.0);
+    assert_eq!(problem.prove(&[0.0], &[0.0]).unwrap().unwrap().undecided().collect::<Vec<_>>(), [0]);
+}
+
+#[test]
+fn two_rows_that_share_both_their_dofs_are_proven_closed_by_a_shift_of_both() {
+    // No dof feels one of them alone. With K = 1 and B = (1, 1/2; 1/2, 1) forces of one at u = (1, 1) balance a load of 5/2.
+    let unit = [(0, 0, 1.0), (1, 1, 1.0)];
+    let rows = [(0, 0, 1.0), (0, 1, 0.5), (1, 0, 0.5), (1, 1, 1.0)];
+    let matrix = |entries: &[(usize, usize, f64)]| SparseMatrix::from_triplets(2, 2, entries).unwrap();
+    let stiffness = SymmetricMatrix::from_lower(matrix(&unit)).unwrap();
+    let problem = ContactProblem::new(stiffness, vec![2.5; 2], matrix(&rows), vec![1.5; 2]).unwrap();
+    let proven = problem.prove(&[1.0; 2], &[-1.0; 2]).unwrap().unwrap();
+    assert_eq!((proven.closed.count(), proven.open.count()), (2, 0));
+}
+
+#[test]
 fn of_two_equal_rows_neither_force_is_proven() {
     let rows = SparseMatrix::from_triplets(2, 1, &[(0, 0, 1.0), (1, 0, 1.0)]).unwrap();
     let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(1, 1, &[(0, 0, 2.0)]).unwrap()).unwrap();

@@ -3,8 +3,9 @@
 use crate::program::scene;
 use serde_json::{Value, json};
 use signorini::InteriorPoint;
+use signorini::internals::even_gaps;
 use signorini::motion::Integrator;
-use signorini::study::{TradeoffGrid, compare, even_gaps, motion_tradeoff, sweep, tradeoff};
+use signorini::study::{TradeoffGrid, compare, motion_tradeoff, sweep, tradeoff};
 use signorini::{Condense, Error, Method, Prepared, Scene, Settings, Solution, Watch, solve};
 
 /// A block of so many by so many cells under a parabola.

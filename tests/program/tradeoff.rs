@@ -2,6 +2,7 @@
 
 use crate::program::{Desk, scene};
 use serde_json::{Value, json};
+use signorini::output::tradeoff_text;
 use signorini::study::{Tradeoff, TradeoffGrid, TradeoffPoint, tradeoff};
 use signorini::{Scene, Watch};
 
@@ -51,6 +52,53 @@ fn errors_fall_with_what_the_methods_are_told() {
     }
 }
 
+/// Certificate and proof have seconds of their own, multigrid is one of the methods, and the text compares what a loose answer loses.
+#[test]
+fn what_a_loose_answer_costs_and_loses_stands_beside_the_exact_one() {
+    let result = measured(&scene());
+    assert!(result.points.iter().all(|point| point.certificate_seconds > 0.0 && point.proof_seconds >= 0.0));
+    let cycles: Vec<&TradeoffPoint> = result.points.iter().filter(|point| point.method == "mprgp").collect();
+    assert_eq!(cycles.len(), 10, "five accuracies on two meshes");
+    assert!(cycles.iter().all(|point| point.energy_error_bound <= point.knob.unwrap()), "{cycles:?}");
+    let text = tradeoff_text("block", &result);
+    assert!(text.contains("the last penalty over the local stiffness"), "{text}");
+    for method in ["penalty", "qp", "mprgp"] {
+        let line = text.lines().find(|line| line.starts_with(&format!("  {method} ")) && line.contains(" and loses "));
+        assert!(
+            line.is_some_and(|line| line.contains("; active-set on ") && line.ends_with(" s and loses nothing")),
+            "{text}"
+        );
+    }
+    // A penalty of a hundred times the stiffness loses a share of the force that is no rounding.
+    let lost = text.lines().find(|line| line.starts_with("  penalty") && line.contains(" % of the force"));
+    assert!(lost.is_some(), "{text}");
+}
+
+/// The total error is that of algebra and mesh, and the choice of mesh and method the best of all points.
+#[test]
+fn a_total_error_or_a_time_chooses_mesh_and_method() {
+    let result = measured(&scene());
+    for point in &result.points {
+        let of_mesh = result.meshes[point.mesh].discretisation_error;
+        assert!(point.total_error >= of_mesh.max(point.energy_error), "{point:?}");
+        assert!(point.total_error <= of_mesh + point.energy_error, "{point:?}");
+    }
+    let chosen: Vec<_> = result.advice.iter().filter(|advice| advice.chooses_mesh).collect();
+    let wanted: Vec<_> = chosen.iter().map(|advice| (advice.total_error, advice.seconds)).collect();
+    let (error, time) = (|total| (Some(total), None), |seconds| (None, Some(seconds)));
+    assert_eq!(wanted, [error(0.1), error(0.03), error(0.01), time(0.1), time(1.0), time(10.0)]);
+    for advice in &chosen[..3] {
+        let good = |point: &&TradeoffPoint| point.total_error <= advice.total_error.unwrap();
+        let soonest = result.points.iter().filter(good).map(|point| point.seconds).fold(f64::INFINITY, f64::min);
+        assert_eq!(advice.point.map_or(f64::INFINITY, |index| result.points[index].seconds), soonest);
+    }
+    // In ten seconds everything of this small scene is done: the finer mesh is nearer.
+    let best = &result.points[chosen[5].point.unwrap()];
+    assert!(best.mesh == 1 && best.total_error < 1.02 * result.meshes[1].discretisation_error, "{best:?}");
+    let text = tradeoff_text("block", &result);
+    assert!(text.contains("  in 10 s") && text.contains("72 dofs by "), "{text}");
+}
+
 /// Errors below this are those of rounding, and one is as good as another.
 const ROUNDING: f64 = 1e-12;
 
@@ -69,7 +117,7 @@ fn the_front_is_what_no_other_point_beats_and_the_advice_lies_on_it() {
     assert!(result.points.iter().filter(|point| point.best).all(|point| !beaten(point)));
     let wanted: Vec<f64> = result.advice.iter().filter_map(|advice| advice.accuracy).collect();
     assert_eq!(wanted, [1e-2, 1e-4, 1e-8]);
-    for advice in &result.advice {
+    for advice in result.advice.iter().filter(|advice| !advice.chooses_mesh) {
         let Some(index) = advice.point else { continue };
         let chosen = &result.points[index];
         assert!(!beaten(chosen), "{chosen:?}");
@@ -146,6 +194,7 @@ fn the_program_prints_the_table_and_leaves_its_values() {
     assert_eq!(csv.lines().count(), points + 1);
     // The one field in quotation marks may hold a comma.
     assert!(csv.lines().skip(1).all(|line| line.replace(", ", " ").split(',').count() == columns));
+    assert!(desk.path("out/total-error.png").exists());
     assert!(desk.path("out/tradeoff.png").exists() && desk.path("out/tradeoff.txt").exists());
     desk.run(&["tradeoff", "missing.json"]).fails_with(1, &["missing.json"]);
     desk.run(&["tradeoff", "scene.json", "--runs", "0"]).ends_with(2);

@@ -1,6 +1,6 @@
 //! Questions that were not asked: each is refused, or warned of, with its code, its numbers and its remedy.
 
-use crate::program::{Desk, Run, examples, scene};
+use crate::program::{Desk, Problem, Run, examples, scene, vector};
 use crate::verify::verify;
 use serde_json::{Value, json};
 
@@ -66,7 +66,69 @@ fn a_body_pressed_together_by_half_is_told_its_strain() {
     let message = warned(&solved(&scene), "large-strain");
     assert!(message.contains("the largest strain is ") && message.contains(" %, in element "), "{message}");
     scene["gap"] = json!(-0.01);
-    assert_eq!(solved(&scene).0.get("warnings"), None);
+    let others = solved(&scene).0;
+    assert!(!others.to_string().contains("large-strain"), "{others}");
+}
+
+/// A half disc in a cup of its own radius: the surface leans by up to 45 degrees from the approach direction.
+fn cup(rule: &str) -> Value {
+    let mut points: Vec<[f64; 2]> = (-10..=10)
+        .map(|step| {
+            let angle = f64::from(step) * std::f64::consts::FRAC_PI_4 / 10.0;
+            [angle.sin(), -angle.cos()]
+        })
+        .collect();
+    // Its rim is level.
+    points.insert(0, [-2.0, points[0][1]]);
+    points.push([2.0, points[0][1]]);
+    json!({
+        "body": {"half-disc": {"radius": 1, "zone": {"width": 0.7, "divisions": 8}}},
+        "material": {"young": 1e4, "poisson": 0.3},
+        "supports": [{"on": {"boundary": "cut"}, "x": 0, "y": -0.02}],
+        "obstacles": [{"boundary": "arc", "approach": "-y", "rule": rule, "shape": {"table": {"points": points}}}]
+    })
+}
+
+#[test]
+fn rows_that_leave_the_normals_of_their_surface_are_warned_of() {
+    let along_approach = solved(&cup("approach"));
+    let message = warned(&along_approach, "leaning-normals");
+    assert!(message.starts_with("the surface of obstacles[0] leans by 3"), "{message}");
+    assert!(message.contains("Take rule `closest-point`"), "{message}");
+    let along_normals = solved(&cup("closest-point"));
+    let others = along_normals.0["warnings"].to_string();
+    assert!(!others.contains("leaning-normals"), "{others}");
+    // The report always names the rule.
+    for ((report, text), rule) in [(&along_approach, "approach"), (&along_normals, "closest-point")] {
+        assert_eq!(report["resultants"][0]["rule"], rule);
+        assert!(text.contains(&format!("obstacles[0] (rule {rule}): force")), "{text}");
+    }
+}
+
+#[test]
+fn a_contact_of_one_node_is_said_to_depend_on_the_mesh() {
+    let mut scene = scene();
+    let top = 0.5;
+    scene["obstacles"][0] =
+        json!({"boundary": "top", "approach": "+y", "shape": {"wedge": {"apex": [0.5, top], "slope": 1}}});
+    scene["gap"] = json!(-0.001);
+    scene["loads"] = json!([]);
+    let message = warned(&solved(&scene), "mesh-dependent");
+    assert!(message.starts_with("a contact of obstacles[0] closes only node "), "{message}");
+    assert!(message.contains("refine it near the contact and compare"), "{message}");
+}
+
+/// A flat punch on a wider block: the pressure at its edges has no limit.
+#[test]
+fn a_peak_at_the_edge_of_a_punch_is_said_to_grow() {
+    let mut scene = scene();
+    scene["body"]["rectangle"]["x"]["divisions"] = json!([20]);
+    scene["body"]["rectangle"]["y"]["divisions"] = json!([10]);
+    scene["obstacles"][0]["shape"] =
+        json!({"table": {"points": [[0.0, 1.0], [0.299, 1.0], [0.3, 0.5], [0.7, 0.5], [0.701, 1.0], [1.0, 1.0]]}});
+    scene["loads"] = json!([]);
+    let message = warned(&solved(&scene), "mesh-dependent");
+    assert!(message.contains("the peak pressure stands at the edge of the contact, node "), "{message}");
 }
 
 /// Two triangles, each in a volume group of its own.
@@ -131,4 +193,137 @@ fn no_example_is_warned_of() {
         let report = desk.run(&["solve", &crate::program::example(&name), "--format", "json"]).ends_with(0).json();
         assert_eq!(report.get("warnings"), None, "{name}");
     }
+}
+
+/// The small block, clamped at its bottom and pressed on a plane, with a change.
+fn pressed(change: impl Fn(&mut Value)) -> Value {
+    let mut scene = scene();
+    scene["loads"] = json!([]);
+    scene["obstacles"][0]["shape"] = json!({"plane": {"point": [0, 0.5], "normal": [0, 1]}});
+    change(&mut scene);
+    scene
+}
+
+#[test]
+fn the_block_that_the_mistakes_below_begin_with_is_not_warned_of() {
+    assert_eq!(solved(&pressed(|_| {})).0.get("warnings"), None);
+}
+
+#[test]
+fn an_obstacle_on_a_clamped_boundary_is_warned_of() {
+    let held = pressed(|scene| {
+        scene["supports"] = json!([{"on": {"boundary": "top"}, "x": 0, "y": -0.02}]);
+        scene["obstacles"].as_array_mut().unwrap().push(
+            json!({"boundary": "bottom", "approach": "-y", "shape": {"plane": {"point": [0, 0], "normal": [0, -1]}}}),
+        );
+    });
+    let message = warned(&solved(&held), "held-candidates");
+    assert!(message.starts_with("5 of 5 nodes that may touch obstacles[0] are held in all directions"), "{message}");
+}
+
+#[test]
+fn a_load_that_goes_into_a_support_is_warned_of() {
+    let loaded = pressed(|scene| scene["loads"] = json!([{"traction": {"boundary": "bottom", "value": [0, 5]}}]));
+    let message = warned(&solved(&loaded), "load-on-support");
+    assert!(message.starts_with("loads[0] acts where supports hold the body"), "{message}");
+}
+
+#[test]
+fn forces_and_supports_on_a_single_node_are_warned_of() {
+    let loaded = pressed(|scene| scene["loads"] = json!([{"force": {"at": [1, 0.25], "value": [10, 0]}}]));
+    let message = warned(&solved(&loaded), "point-load");
+    assert!(message.starts_with("loads[0] is a force on a single node"), "{message}");
+    let supports = |x: f64| json!([{"on": {"boundary": "bottom"}, "y": 0}, {"on": {"point": [0, 0]}, "x": x}]);
+    let pulled = pressed(|scene| {
+        scene["supports"] = supports(0.0);
+        scene["loads"] = json!([{"traction": {"boundary": "right", "value": [1e4, 0]}}]);
+    });
+    let message = warned(&solved(&pulled), "point-support");
+    assert!(message.starts_with("supports[1] holds a single node with a force of 5"), "{message}");
+    // A node that only keeps the body in its place carries nothing.
+    let kept = pressed(|scene| scene["supports"] = supports(0.0));
+    assert_eq!(solved(&kept).0.get("warnings"), None);
+}
+
+#[test]
+fn an_obstacle_that_stands_there_twice_is_warned_of() {
+    let doubled = pressed(|scene| {
+        let first = scene["obstacles"][0].clone();
+        scene["obstacles"].as_array_mut().unwrap().push(first);
+    });
+    let message = warned(&solved(&doubled), "doubled-obstacle");
+    assert!(message.starts_with("obstacles[0] and obstacles[1] make the same rows"), "{message}");
+}
+
+/// Two triangles whose common edge has two nodes at each end: one is held, the other by the obstacle alone.
+const SLIT: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n1 1 \"base\"\n1 2 \"lid\"\n2 3 \"steel\"\n$EndPhysicalNames\n\
+     $Nodes\n6\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 0\n6 1 1 0\n$EndNodes\n\
+     $Elements\n4\n1 1 2 1 1 1 2\n2 1 2 2 2 4 6\n3 2 2 3 1 1 2 3\n4 2 2 3 1 5 6 4\n$EndElements\n";
+
+#[test]
+fn nodes_that_were_not_merged_are_warned_of() {
+    let mut scene = scene();
+    scene["body"] = json!({"gmsh": {"file": "slit.msh", "group": "steel"}});
+    scene["loads"] = json!([]);
+    scene["supports"] =
+        json!([{"on": {"boundary": "base"}, "x": 0, "y": 0}, {"on": {"boundary": "lid"}, "x": 0, "y": -0.01}]);
+    scene["obstacles"] = json!([]);
+    let desk = Desk::new();
+    desk.write("slit.msh", SLIT);
+    desk.write("scene.json", scene.to_string());
+    let report = desk.run(&["solve", "scene.json", "--format", "json"]).ends_with(0).json();
+    let text = desk.run(&["solve", "scene.json"]).ends_with(0).stdout;
+    let message = warned(&(report, text), "coincident-nodes");
+    assert!(message.starts_with("2 nodes of the mesh stand where others do, as nodes 0 and 4"), "{message}");
+}
+
+#[test]
+fn half_a_body_that_is_free_at_its_cut_is_warned_of() {
+    let half = |supports: Value| {
+        json!({
+            "body": {"half-disc": {"radius": 1, "symmetric": true, "zone": {"width": 0.2, "divisions": 6}}},
+            "material": {"young": 1e6, "poisson": 0.3},
+            "supports": supports,
+            "obstacles": [{"boundary": "arc", "approach": "-y", "shape": {"plane": {"point": [0, -0.99], "normal": [0, -1]}}}]
+        })
+    };
+    let free = half(json!([{"on": {"boundary": "cut"}, "x": 0, "y": 0}]));
+    let message = warned(&solved(&free), "free-symmetry");
+    assert!(message.starts_with("no support holds the boundary `symmetry-x`"), "{message}");
+    let held = half(json!([{"on": {"boundary": "cut"}, "x": 0, "y": 0}, {"on": {"boundary": "symmetry-x"}, "x": 0}]));
+    assert!(!solved(&held).0.to_string().contains("free-symmetry"));
+}
+
+/// The side of the block, and an obstacle that is said to come from above.
+#[test]
+fn an_obstacle_that_drags_a_boundary_along_itself_is_warned_of() {
+    let aside = pressed(|scene| scene["obstacles"][0]["boundary"] = json!("right"));
+    let message = warned(&solved(&aside), "across-approach");
+    assert!(message.contains("make an angle of 90 degrees"), "{message}");
+}
+
+/// The edge of a wedge between two nodes: no row sees it.
+#[test]
+fn an_edge_between_two_nodes_is_warned_of() {
+    let sharp = pressed(|scene| {
+        scene["obstacles"][0]["shape"] = json!({"wedge": {"apex": [0.625, 0.5], "slope": 0.1}});
+        scene["gap"] = json!(-0.015);
+    });
+    let message = warned(&solved(&sharp), "between-nodes");
+    assert!(
+        message.starts_with("between its nodes the body goes 1.") && message.contains("near [0.625, 0.5]"),
+        "{message}"
+    );
+}
+
+/// A gap with the wrong sign in a problem directory: nothing touches, and the answer is that of a free body.
+#[test]
+fn a_problem_without_closed_rows_is_told_so() {
+    let desk = Desk::new();
+    // Both dofs move by 1.
+    desk.problem("problem", &Problem { g: vector(&["10"]), ..Problem::right() });
+    let report = desk.run(&["solve", "problem", "--format", "json"]).ends_with(0).json();
+    let text = desk.run(&["solve", "problem"]).ends_with(0).stdout;
+    let message = warned(&(report, text), "nothing-touches");
+    assert_eq!(message, "no row is closed; the smallest remaining gap is 9 at row 0");
 }

@@ -14,7 +14,7 @@ mod contact_patch;
 #[path = "../../tools/verification/punches.rs"]
 mod punches;
 #[path = "../../tools/verification/round_bodies.rs"]
-mod round_bodies;
+pub mod round_bodies;
 
 use crate::exact_solutions::PointContact;
 use answer::{Answer, Solved};

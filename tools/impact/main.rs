@@ -14,8 +14,8 @@ use std::path::Path;
 use cases::cases;
 use measure::{Run, run};
 use signorini::Error;
+use signorini::motion::SchemeSpec;
 use signorini::output::{write_files, write_picture};
-use signorini::scene::SchemeSpec;
 
 /// Time steps in the time of a wave through a cell.
 const COURANT: [f64; 3] = [0.5, 1.0, 1.5];

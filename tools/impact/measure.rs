@@ -1,8 +1,9 @@
 //! One run of one scheme, held against a closed form.
 
 use signorini::internals::{AnalysisSpec, BodySpec};
+use signorini::motion::SchemeSpec;
 use signorini::motion::{Integrator, Observation, Scheme};
-use signorini::scene::SchemeSpec;
+use signorini::study::MotionSummary;
 use signorini::{Error, Scene, Settings};
 
 /// A bar whose motion is known.
@@ -41,11 +42,26 @@ pub struct Run {
     /// Energy at the end over energy at the start, and the largest on the way.
     pub energy: [f64; 2],
     pub penetration: f64,
+    /// Largest force of a step, and the largest on the mean over the window of the motion.
+    pub peaks: [f64; 2],
+    /// That window, in time.
+    pub window: f64,
     pub history: Vec<Observation>,
 }
 
 /// Runs `case` on `cells` cells with time steps of `courant` times the time of a wave through a cell.
 pub fn run(case: &Case, scheme: SchemeSpec, courant: f64, cells: usize) -> Result<Run, Error> {
+    with_value(case, scheme, None, courant, cells)
+}
+
+/// The same with a value of the parameter of the scheme, or its default.
+pub fn with_value(
+    case: &Case,
+    scheme: SchemeSpec,
+    value: Option<f64>,
+    courant: f64,
+    cells: usize,
+) -> Result<Run, Error> {
     let path = format!("{}/tools/impact/{}.json", env!("CARGO_MANIFEST_DIR"), case.scene);
     let mut scene = Scene::read(path)?;
     if let BodySpec::Bar(bar) = &mut scene.body {
@@ -58,10 +74,16 @@ pub fn run(case: &Case, scheme: SchemeSpec, courant: f64, cells: usize) -> Resul
     let Some(dynamics) = scene.dynamics(&model)? else {
         return Err(Error::Setting { name: "analysis", value: 0.0, allowed: "dynamic" });
     };
-    let mut integrator = Integrator::new(dynamics.problem, dynamics.scheme, dynamics.step, &Settings::default())?;
+    let mut integrator = Integrator::new(
+        dynamics.problem,
+        value.map_or(dynamics.scheme, |_| scheme.with(value)),
+        dynamics.step,
+        &Settings::default(),
+    )?;
     let [begin, end] = case.contact;
     let after = end + (end - begin) / 2.0;
     let first = integrator.observe();
+    let mut summary = MotionSummary::starting(&first, dynamics.window, dynamics.step);
     let (mut history, mut squares, mut speed) = (vec![first], 0.0, 0.0);
     let ones = vec![1.0; integrator.problem().statics().dofs()];
     let inertia = integrator.problem().mass().mul(&ones);
@@ -75,7 +97,9 @@ pub fn run(case: &Case, scheme: SchemeSpec, courant: f64, cells: usize) -> Resul
             let momentum: f64 = inertia.iter().zip(&state.velocity).map(|(m, v)| m * v).sum();
             speed = -momentum / inertia.iter().sum::<f64>();
         }
-        history.push(integrator.observe());
+        let seen = integrator.observe();
+        summary.add(&seen, dynamics.step);
+        history.push(seen);
     }
     let step = dynamics.step;
     // The force of a step is that of its middle.
@@ -102,6 +126,8 @@ pub fn run(case: &Case, scheme: SchemeSpec, courant: f64, cells: usize) -> Resul
             history.iter().map(Observation::energy).fold(0.0, f64::max) / first.energy(),
         ],
         penetration: history.iter().map(|seen| seen.penetration).fold(0.0, f64::max),
+        peaks: [summary.force_max, summary.force_mean_max()],
+        window: summary.window_steps() as f64 * step,
         history,
     })
 }

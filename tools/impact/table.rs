@@ -4,15 +4,16 @@ use signorini::output::{Drawing, Plot, Quantity, Series, line_plots};
 
 use crate::measure::{Case, Run};
 
-const HEADING: &str = "| scheme | CFL | displacement error | contact time | pressure | spread | impulse | rebound | energy at the end | largest energy | penetration |\n\
-                       | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
+const HEADING: &str = "| scheme | CFL | displacement error | contact time | pressure | spread | largest force | on the mean | impulse | rebound | energy at the end | largest energy | penetration |\n\
+                       | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
 
 fn row(case: &Case, name: &str, courant: &str, run: &Run) -> String {
     let rebound = case.rebound.map_or("-".to_string(), |_| format!("{:.5}", run.rebound));
     let [mean, spread] = run.pressure;
     let [end, most] = run.energy;
+    let [largest, averaged] = run.peaks;
     format!(
-        "| {name} | {courant} | {:.2e} | {:.4} | {mean:.5} | {spread:.1e} | {:.5} | {rebound} | {end:.5} | {most:.5} | {:.1e} |\n",
+        "| {name} | {courant} | {:.2e} | {:.4} | {mean:.5} | {spread:.1e} | {largest:.1} | {averaged:.1} | {:.5} | {rebound} | {end:.5} | {most:.5} | {:.1e} |\n",
         run.displacement_error, run.duration, run.impulse, run.penetration
     )
 }
@@ -21,16 +22,21 @@ fn row(case: &Case, name: &str, courant: &str, run: &Run) -> String {
 pub fn of_runs(case: &Case, runs: &[Run]) -> String {
     let [begin, end] = case.contact;
     let rebound = case.rebound.map_or("-".to_string(), |speed| format!("{speed:.5}"));
-    let mut text = format!("{}, 100 cells\n\n{HEADING}", case.name);
+    let window = runs.first().map_or(0.0, |run| run.window);
+    let mut text = format!("{}, 100 cells; the mean is over {window:.4}\n\n{HEADING}", case.name);
     text += &format!(
-        "| exact | | 0 | {:.4} | {:.5} | 0 | {:.5} | {rebound} | 1 | 1 | 0 |\n",
+        "| exact | | 0 | {:.4} | {:.5} | 0 | {:.1} | {:.1} | {:.5} | {rebound} | 1 | 1 | 0 |\n",
         end - begin,
+        case.pressure,
+        case.pressure,
         case.pressure,
         case.pressure * (end - begin)
     );
     for run in runs {
+        let penalties = run.history.iter().map(|seen| seen.penalties).max().unwrap_or_default();
+        let penalties = if penalties > 0 { format!(", up to {penalties} penalties a step") } else { String::new() };
         let gains = if run.scheme.gains_energy() { ", gains energy" } else { "" };
-        text += &row(case, &format!("{}{gains}", run.scheme.name()), &format!("{:.1}", run.courant), run);
+        text += &row(case, &format!("{}{gains}{penalties}", run.scheme.name()), &format!("{:.1}", run.courant), run);
     }
     text + "\n"
 }

@@ -1,7 +1,7 @@
 //! One cell in place: x = sum N_a x_a, the Jacobian J = dx/dxi, gradients dN/dx, area vectors.
 
-use super::{MAX_NODES, PerNode, ReferenceElement, Tabulated};
-use crate::fem::geometry::cross;
+use super::{MAX_NODES, PerNode, ReferenceElement, Shape, Tabulated};
+use crate::fem::geometry::{cross, dot};
 
 /// The Jacobian of an element that is turned inside out or has no volume.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -16,6 +16,12 @@ pub struct NonPositiveJacobian {
 /// Determinants below this, relative to the element's size to the power of its dimension, are rounding: the element has
 /// no volume.
 const NO_VOLUME: f64 = 1e-14;
+
+/// Newton's steps towards the reference coordinates of a point: a straight cell takes one, a curved one a few.
+const LOCATING_STEPS: usize = 20;
+
+/// Reference coordinates that move by less than this are found.
+const LOCATED: f64 = 1e-14;
 
 /// A reference cell with the coordinates of its nodes.
 ///
@@ -74,6 +80,38 @@ impl Cell {
             }
         }
         [0, 1, 2].map(|axis| self.origin[axis] + self.unit * at[axis])
+    }
+
+    /// The values of the shape functions at a point, one for each node; `None` if the point is outside the cell by more than
+    /// `tolerance`, in reference coordinates.
+    pub fn weights_at(&self, point: [f64; 3], tolerance: f64) -> Option<PerNode<f64>> {
+        let reference = self.reference;
+        let mut at = reference.centroid;
+        for _ in 0..LOCATING_STEPS {
+            let place = self.place(&(reference.shape)(at));
+            let away = [0, 1, 2].map(|axis| (point[axis] - place[axis]) / self.unit);
+            // The shape functions make every linear function, the reference coordinates too: their gradients invert the Jacobian.
+            let gradients = self.map(&(reference.derivative)(at)).gradients;
+            let mut change = [0.0; 3];
+            for (node, gradient) in reference.nodes.iter().zip(gradients) {
+                let along = dot(gradient, away);
+                (0..3).for_each(|axis| change[axis] += node[axis] * along);
+            }
+            (0..3).for_each(|axis| at[axis] += change[axis]);
+            if change.iter().all(|step| step.abs() <= LOCATED) {
+                break;
+            }
+        }
+        let weights = (reference.shape)(at);
+        let place = self.place(&weights);
+        // Off the line or the plane of the cell no reference coordinates lead to the point.
+        let is_met = (0..3).all(|axis| (point[axis] - place[axis]).abs() <= tolerance * self.unit);
+        let own = &at[..reference.dimension];
+        let is_inside = match reference.form {
+            Shape::Product => own.iter().all(|xi| xi.abs() <= 1.0 + tolerance),
+            Shape::Simplex => own.iter().all(|&xi| xi >= -tolerance) && own.iter().sum::<f64>() <= 1.0 + tolerance,
+        };
+        (is_met && is_inside).then_some(weights)
     }
 
     /// Checks that the determinant of the Jacobian is positive at the nodes and the quadrature points of `table`.

@@ -22,6 +22,8 @@ pub(super) static ABOUT: About = About {
     gains_energy: false,
     penetrates: false,
     is_explicit: false,
+    load_times: &[0.5],
+    unstable_in_contact: &[],
     prepare: |problem, step, _, settings| {
         // Twice the equation above.
         let matrix = problem.combination(4.0 / (step * step), 2.0 / step, 1.0)?;

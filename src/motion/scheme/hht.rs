@@ -15,5 +15,7 @@ pub(super) static ABOUT: About = About {
     gains_energy: true,
     penetrates: false,
     is_explicit: false,
+    load_times: &[0.0, 1.0],
+    unstable_in_contact: &[],
     prepare: |problem, step, alpha, settings| Ok(Box::new(Newmark::new(problem, step, alpha, settings, settings)?)),
 };

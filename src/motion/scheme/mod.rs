@@ -6,10 +6,12 @@ mod hht;
 mod midpoint;
 mod newmark;
 mod penalty;
+mod penalty_loop;
 mod projection;
 mod stable_step;
 mod trapezoidal;
 
+pub(crate) use stable_step::MOST_IN_CONTACT;
 pub use stable_step::stable_step;
 
 use serde::{Deserialize, Serialize};
@@ -34,18 +36,21 @@ pub enum SchemeSpec {
     Hht,
     /// Trapezoidal Newmark with penalty springs: penetrates, and gains energy where they are stiff. For comparison.
     Penalty,
+    /// Trapezoidal Newmark with the classical loop: the penalty grows by ten until nothing penetrates. For comparison.
+    PenaltyLoop,
     /// Explicit central differences with Moreau's impact law; steps are small and cheap.
     CentralDifference,
 }
 
 impl SchemeSpec {
     /// All schemes: the default first, those that are there for comparison behind those that answer, the explicit one last.
-    pub const ALL: [SchemeSpec; 6] = [
+    pub const ALL: [SchemeSpec; 7] = [
         SchemeSpec::Midpoint,
         SchemeSpec::ContactStabilised,
         SchemeSpec::Hht,
         SchemeSpec::Trapezoidal,
         SchemeSpec::Penalty,
+        SchemeSpec::PenaltyLoop,
         SchemeSpec::CentralDifference,
     ];
 
@@ -58,6 +63,7 @@ impl SchemeSpec {
             SchemeSpec::ContactStabilised => Scheme::ContactStabilised,
             SchemeSpec::Hht => Scheme::Hht { alpha: value },
             SchemeSpec::Penalty => Scheme::Penalty { penalty: value },
+            SchemeSpec::PenaltyLoop => Scheme::PenaltyLoop { threshold: value },
             SchemeSpec::CentralDifference => Scheme::CentralDifference { restitution: value },
         }
     }
@@ -84,6 +90,7 @@ impl SchemeSpec {
             SchemeSpec::ContactStabilised => &contact_stabilised::ABOUT,
             SchemeSpec::Hht => &hht::ABOUT,
             SchemeSpec::Penalty => &penalty::ABOUT,
+            SchemeSpec::PenaltyLoop => &penalty_loop::ABOUT,
             SchemeSpec::CentralDifference => &central_difference::ABOUT,
         }
     }
@@ -98,6 +105,7 @@ impl SchemeSpec {
 /// | contact-stabilised | lost a little, never gained | smooth after some steps | none |
 /// | HHT-alpha | **gained**, less than by the trapezoidal rule | chatters, damped | none |
 /// | penalty | **gained** where the springs are stiff | chatters | force over penalty |
+/// | penalty-loop | **gained**, as by the trapezoidal rule | chatters | below a threshold |
 /// | central differences | lost a little: the mass of the contact nodes stops | smooth on lumped mass | none |
 ///
 /// Alone the midpoint rule takes the force of the middle of a step, where a node that closes in its second half does not
@@ -138,6 +146,14 @@ pub enum Scheme {
         /// Stiffness of the springs eps in multiples of the local stiffness of a step, positive.
         penalty: f64,
     },
+    /// The trapezoidal rule with the classical loop in every step: the penalty of [`Scheme::Penalty`] grows by ten, and C is
+    /// found anew, until norm\[C (u - g)\] is below a threshold.
+    ///
+    /// **Gains energy** as the trapezoidal rule does, because the last springs are stiff.
+    PenaltyLoop {
+        /// Largest norm of the penetration over the largest displacement of the body, positive and at most 0.1.
+        threshold: f64,
+    },
     /// Central differences: explicit; a node that would cross the obstacle gets an impulse, by Moreau's law.
     CentralDifference {
         /// Velocity after over before the blow of a node, from 0 to 1.
@@ -154,6 +170,7 @@ impl Scheme {
             Scheme::ContactStabilised => SchemeSpec::ContactStabilised,
             Scheme::Hht { .. } => SchemeSpec::Hht,
             Scheme::Penalty { .. } => SchemeSpec::Penalty,
+            Scheme::PenaltyLoop { .. } => SchemeSpec::PenaltyLoop,
             Scheme::CentralDifference { .. } => SchemeSpec::CentralDifference,
         }
     }
@@ -164,6 +181,7 @@ impl Scheme {
             Scheme::Midpoint | Scheme::Trapezoidal | Scheme::ContactStabilised => 0.0,
             Scheme::Hht { alpha: value }
             | Scheme::Penalty { penalty: value }
+            | Scheme::PenaltyLoop { threshold: value }
             | Scheme::CentralDifference { restitution: value } => value,
         }
     }
@@ -197,6 +215,16 @@ impl Scheme {
     /// Returns `true` if the step is limited.
     pub fn is_explicit(self) -> bool {
         self.spec().is_explicit()
+    }
+
+    /// Returns `true` if the energy grows wherever bodies touch, with a mass of this form.
+    pub fn is_unstable_in_contact(self, form: MassForm) -> bool {
+        self.spec().about().unstable_in_contact.contains(&form)
+    }
+
+    /// Where in a step the scheme takes the loads, from 0 to 1.
+    pub(super) fn load_times(self) -> &'static [f64] {
+        self.spec().about().load_times
     }
 
     /// Checks the range of the parameter.

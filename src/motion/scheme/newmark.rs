@@ -12,7 +12,7 @@
 use super::projection::MassProjection;
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
-use crate::motion::step::{Advance, Stepping, next, plus};
+use crate::motion::step::{Advance, Found, Stepping, next, plus};
 use crate::motion::{DynamicProblem, State};
 use crate::qp::Settings;
 
@@ -24,8 +24,17 @@ pub(super) struct Newmark {
     alpha: f64,
     beta: f64,
     gamma: f64,
-    stepping: Stepping,
+    pub stepping: Stepping,
     mass: MassProjection,
+}
+
+/// What a step starts from: displacement and velocity as they would be without its acceleration, and the contact problem of
+/// the change.
+pub(super) struct Predicted {
+    pub displacement: Vec<f64>,
+    velocity: Vec<f64>,
+    pub force: Vec<f64>,
+    pub gap: Vec<f64>,
 }
 
 impl Newmark {
@@ -45,6 +54,47 @@ impl Newmark {
         let stepping = Stepping::of(problem, matrix, settings)?;
         Ok(Newmark { alpha, beta, gamma, stepping, mass: MassProjection::new(problem, rigid)? })
     }
+
+    /// The contact problems of the steps on the same factor, under other settings.
+    pub fn under(&self, settings: &Settings) -> Result<Stepping, Error> {
+        self.stepping.under(settings)
+    }
+
+    /// The contact problem of the step from `state`.
+    pub fn predict(&self, problem: &DynamicProblem, step: f64, state: &State) -> Predicted {
+        let Newmark { alpha, beta, gamma, .. } = *self;
+        let time = |steps: usize| steps as f64 * step;
+        let coasting = plus(&state.displacement, step, &state.velocity);
+        let displacement = plus(&coasting, step * step * (0.5 - beta), &state.acceleration);
+        let velocity = plus(&state.velocity, step * (1.0 - gamma), &state.acceleration);
+        let elastic = problem.statics().stiffness().mul(&displacement);
+        let mut force = plus(&problem.load_at(time(state.steps + 1)), -1.0, &elastic);
+        problem.damp(1.0, &velocity, &mut force);
+        if alpha != 0.0 {
+            let mut before = plus(&problem.load_at(time(state.steps)), -1.0, &state.elastic);
+            problem.damp(1.0, &state.velocity, &mut before);
+            force.iter_mut().zip(before).for_each(|(f, before)| *f = (1.0 + alpha) * *f - alpha * before);
+        }
+        let gap = problem.remaining_gap(&displacement);
+        Predicted { displacement, velocity, force, gap }
+    }
+
+    /// The end of the step from `state` with the change that was found.
+    pub fn arrive(
+        &self,
+        problem: &DynamicProblem,
+        step: f64,
+        state: &State,
+        predicted: &Predicted,
+        found: Found,
+    ) -> State {
+        let Newmark { beta, gamma, .. } = *self;
+        let displacement = plus(&predicted.displacement, 1.0, &found.change);
+        let velocity = plus(&predicted.velocity, gamma / (beta * step), &found.change);
+        let acceleration = found.change.iter().map(|w| w / (beta * step * step)).collect();
+        let contact = (found.multiplier, found.contact_set);
+        State { acceleration, ..next(problem, state, [displacement, velocity], contact) }
+    }
 }
 
 impl Advance for Newmark {
@@ -60,25 +110,8 @@ impl Advance for Newmark {
     }
 
     fn advance(&self, problem: &DynamicProblem, step: f64, state: &State) -> Result<State, Error> {
-        let Newmark { alpha, beta, gamma, .. } = *self;
-        let time = |steps: usize| steps as f64 * step;
-        let coasting = plus(&state.displacement, step, &state.velocity);
-        let predicted = plus(&coasting, step * step * (0.5 - beta), &state.acceleration);
-        let predicted_velocity = plus(&state.velocity, step * (1.0 - gamma), &state.acceleration);
-        let elastic = problem.statics().stiffness().mul(&predicted);
-        let mut force = plus(&problem.load_at(time(state.steps + 1)), -1.0, &elastic);
-        problem.damp(1.0, &predicted_velocity, &mut force);
-        if alpha != 0.0 {
-            let mut before = plus(&problem.load_at(time(state.steps)), -1.0, &state.elastic);
-            problem.damp(1.0, &state.velocity, &mut before);
-            force.iter_mut().zip(before).for_each(|(f, before)| *f = (1.0 + alpha) * *f - alpha * before);
-        }
-        let gap = problem.remaining_gap(&predicted);
-        let found = self.stepping.solve(force, gap, &state.contact_set)?;
-        let displacement = plus(&predicted, 1.0, &found.change);
-        let velocity = plus(&predicted_velocity, gamma / (beta * step), &found.change);
-        let acceleration = found.change.iter().map(|w| w / (beta * step * step)).collect();
-        let contact = (found.multiplier, found.contact_set);
-        Ok(State { acceleration, ..next(problem, state, [displacement, velocity], contact) })
+        let predicted = self.predict(problem, step, state);
+        let found = self.stepping.solve(predicted.force.clone(), predicted.gap.clone(), &state.contact_set)?;
+        Ok(self.arrive(problem, step, state, &predicted, found))
     }
 }

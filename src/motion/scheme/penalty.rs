@@ -2,7 +2,7 @@
 
 use super::newmark::{MASSES, Newmark};
 use crate::motion::step::{About, Parameter};
-use crate::qp::{Method, Penalty};
+use crate::qp::{Method, Penalty, Settings};
 
 pub(super) static ABOUT: About = About {
     name: "penalty",
@@ -16,12 +16,16 @@ pub(super) static ABOUT: About = About {
     gains_energy: true,
     penetrates: true,
     is_explicit: false,
+    load_times: &[0.0, 1.0],
+    unstable_in_contact: &[],
     prepare: |problem, step, penalty, settings| {
-        let mut springs = settings.clone();
-        let one = Penalty { first: penalty, last: penalty, penetration_threshold: 0.0, ..Penalty::default() };
-        springs.method = Method::Penalty(one);
-        // Springs give; no certificate of rigid contact can be asked of them.
-        springs.tolerance = f64::MAX;
-        Ok(Box::new(Newmark::new(problem, step, 0.0, &springs, settings)?))
+        Ok(Box::new(Newmark::new(problem, step, 0.0, &springs(settings, penalty), settings)?))
     },
 };
+
+/// The settings with springs of one penalty, in multiples of the local stiffness, in place of closed rows.
+pub(super) fn springs(settings: &Settings, penalty: f64) -> Settings {
+    let one = Penalty { first: penalty, last: penalty, penetration_threshold: 0.0, ..Penalty::default() };
+    // Springs give; no certificate of rigid contact can be asked of them.
+    Settings { method: Method::Penalty(one), tolerance: f64::MAX, ..settings.clone() }
+}

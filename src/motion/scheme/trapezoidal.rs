@@ -10,5 +10,7 @@ pub(super) static ABOUT: About = About {
     gains_energy: true,
     penetrates: false,
     is_explicit: false,
+    load_times: &[0.0, 1.0],
+    unstable_in_contact: &[],
     prepare: |problem, step, _, settings| Ok(Box::new(Newmark::new(problem, step, 0.0, settings, settings)?)),
 };

@@ -64,6 +64,7 @@ pub(super) fn solved(
         condensed_dofs: answers.iter().map(|answer| answer.condensed_dofs).sum(),
         seconds: Seconds {
             factor: sum(|seconds| seconds.factor),
+            certificate: sum(|seconds| seconds.certificate),
             proof: sum(|seconds| seconds.proof),
             solve: clock.elapsed().as_secs_f64(),
         },

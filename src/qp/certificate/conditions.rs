@@ -23,8 +23,15 @@ const OF_ENERGY: f64 = 1e-31;
 /// What bounds the error in energy.
 #[derive(Clone, Copy)]
 enum Bounding<'a> {
+    Nothing,
     Factor(&'a EnergyNorm),
     Cycles(&'a Multigrid, &'a Watch),
+}
+
+impl<'a> Bounding<'a> {
+    fn by(norm: Option<&'a EnergyNorm>) -> Self {
+        norm.map_or(Bounding::Nothing, Bounding::Factor)
+    }
 }
 
 /// A certificate, and what it has found of the answer; not of an answer in far units.
@@ -107,10 +114,10 @@ impl ContactProblem {
     ) -> Result<Examined, Error> {
         self.check_answer(displacement, multiplier)?;
         let Some(units) = self.far_units(displacement) else {
-            return Ok(self.recomputed(norm.map(Bounding::Factor), displacement, multiplier));
+            return Ok(self.recomputed(Bounding::by(norm), displacement, multiplier));
         };
         let (norm, problem) = (norm.map(|norm| units.norm(norm)), self.in_units(&units)?);
-        let bounding = norm.as_ref().map(Bounding::Factor);
+        let bounding = Bounding::by(norm.as_ref());
         let in_units = problem.recomputed(bounding, &units.displacement(displacement), &units.force(multiplier));
         Ok(Examined::without_evidence(in_units.certificate))
     }
@@ -136,7 +143,7 @@ impl ContactProblem {
         if self.far_units(displacement).is_some() {
             return self.examine_in(None, displacement, multiplier);
         }
-        Ok(self.recomputed(Some(Bounding::Cycles(multigrid, watch)), displacement, multiplier))
+        Ok(self.recomputed(Bounding::Cycles(multigrid, watch), displacement, multiplier))
     }
 
     /// The certificate of an answer that was put together from the answers of pieces that nothing couples: the conditions
@@ -179,7 +186,7 @@ impl ContactProblem {
         sure_size(&scales, strain, sum)
     }
 
-    fn recomputed(&self, bounding: Option<Bounding>, u: &[f64], lambda: &[f64]) -> Examined {
+    fn recomputed(&self, bounding: Bounding, u: &[f64], lambda: &[f64]) -> Examined {
         let parts = self.parts();
         let contact = self.contact.mul_transposed(lambda);
         let Balance { residual, strain, terms } = self.accurate_balance(u, &[lambda]);
@@ -224,11 +231,11 @@ impl ContactProblem {
             part_error_bound: f64::INFINITY,
             energy_error_excess: f64::INFINITY,
             parts: parts.count(),
-            bound_is_measured: matches!(bounding, Some(Bounding::Cycles(..))),
+            bound_is_measured: matches!(bounding, Bounding::Cycles(..)),
         };
-        let Some(bounding) = bounding else { return Examined::without_evidence(certificate) };
         let answer = Answer { displacement: u, multiplier: lambda, residual, violation: &violation };
         let (bound, measured) = match bounding {
+            Bounding::Nothing => return Examined::without_evidence(certificate),
             Bounding::Factor(norm) => (self.energy_error_bound(norm, &answer), None),
             Bounding::Cycles(multigrid, watch) => self.energy_error_bound_by(multigrid, &answer, watch),
         };
@@ -332,5 +339,55 @@ impl Certificate {
                 self.energy_error_excess = larger(unexplained(error, size, rounding[part]), self.energy_error_excess);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
+    use crate::qp::settings::Settings;
+    use crate::qp::solve;
+
+    /// What the bound of an answer is above its error: the rounding that it is multiplied with.
+    const ROUNDED: f64 = 1e-5;
+
+    /// Two dofs of stiffness 4 and 16, each a part, under loads of 8 and 48, before walls at 1 and 2.
+    fn parts() -> ContactProblem {
+        let matrix = |entries: &[(usize, usize, f64)]| SparseMatrix::from_triplets(2, 2, entries).unwrap();
+        let stiffness = SymmetricMatrix::from_lower(matrix(&[(0, 0, 4.0), (1, 1, 16.0)])).unwrap();
+        ContactProblem::new(stiffness, vec![8.0, 48.0], matrix(&[(0, 0, 1.0), (1, 1, 1.0)]), vec![1.0, 2.0]).unwrap()
+    }
+
+    #[test]
+    fn the_error_of_an_answer_is_its_bound_in_the_unit_of_energy() {
+        let problem = parts();
+        let mut answer = solve(&problem, &Settings::default()).unwrap();
+        assert_eq!((&answer.displacement[..], &answer.multiplier[..]), (&[1.0, 2.0][..], &[-4.0, -16.0][..]));
+        assert!(problem.error_of(&answer) < ROUNDED);
+        // The first dof is off by 3e-3, of stiffness 4; the second by 2e-3, of stiffness 16.
+        answer.displacement = vec![1.003, 2.002];
+        answer.certificate = problem.certify(&answer.displacement, &answer.multiplier).unwrap();
+        assert!((problem.error_of(&answer) / 1e-2 - 1.0).abs() < ROUNDED, "{:e}", problem.error_of(&answer));
+        answer.certificate.energy_error_bound = 0.0;
+        assert_eq!(problem.error_of(&answer), 0.0);
+    }
+
+    #[test]
+    fn errors_of_pieces_add_up_as_squares_and_the_worst_part_stays_the_worst() {
+        let problem = parts();
+        let (u, lambda) = ([1.0, 2.0], [-4.0, -16.0]);
+        let mut pieces = [0; 2].map(|_| problem.certify(&u, &lambda).unwrap());
+        (pieces[0].part_error_bound, pieces[1].part_error_bound) = (0.25, 7.0);
+        (pieces[0].energy_error_excess, pieces[1].energy_error_excess) = (5.0, 0.5);
+        let whole = problem.certify_pieces(&pieces, &[3e-3, 4e-3], &u, &lambda).unwrap();
+        // The energy norm is sqrt(4 1^2 + 16 2^2).
+        let bound = 5e-3 / 68_f64.sqrt();
+        assert!((whole.energy_error_bound / bound - 1.0).abs() < ROUNDED, "{whole:?}");
+        assert_eq!((whole.part_error_bound, whole.energy_error_excess, whole.bound_is_measured), (7.0, 5.0, false));
+        pieces[1].bound_is_measured = true;
+        (pieces[0].part_error_bound, pieces[1].part_error_bound) = (0.0, 0.0);
+        let whole = problem.certify_pieces(&pieces, &[3e-3, 4e-3], &u, &lambda).unwrap();
+        assert!(whole.bound_is_measured && whole.part_error_bound == whole.energy_error_bound, "{whole:?}");
     }
 }

@@ -289,3 +289,54 @@ impl Boundary {
         self.block.backward(y)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two dofs of the same stiffness, and a share of it between them.
+    fn pair(stiffness: f64, coupling: f64) -> SymmetricMatrix {
+        let entries = [(0, 0, stiffness), (1, 0, -coupling * stiffness), (1, 1, stiffness)];
+        SymmetricMatrix::from_lower(SparseMatrix::from_triplets(2, 2, &entries).unwrap()).unwrap()
+    }
+
+    fn norm(stiffness: &SymmetricMatrix) -> EnergyNorm {
+        EnergyNorm::of(stiffness, &SparseMatrix::from_triplets(0, 2, &[]).unwrap()).unwrap().unwrap()
+    }
+
+    #[test]
+    fn the_contraction_of_a_factor_is_measured_and_widens_the_bounds_tenfold() {
+        let stiffness = pair(4.0, 0.5);
+        assert!(norm(&stiffness).contraction(&stiffness) < 1e-15);
+        // I - K~^-1 K is one half for K~ = 2 K, and -1 for K~ = K / 2.
+        for (other, contraction) in [(8.0, 0.5), (2.0, 1.0)] {
+            let found = norm(&pair(other, 0.5)).contraction(&stiffness);
+            assert!((found - contraction).abs() < 1e-14, "{other}: {found}");
+        }
+        // For K~ = K + diag(e) on the diagonal only e / (4 + e) of the softest motion is missing at most.
+        let found = norm(&pair(4.0 / 0.9, 0.45)).contraction(&stiffness);
+        let (soft, stiff) = (1.0 - 2.0 / (4.0 / 0.9 * 0.55), 1.0 - 6.0 / (4.0 / 0.9 * 1.45));
+        assert!(found <= soft * (1.0 + 1e-12) && found >= stiff, "{found} {soft} {stiff}");
+        assert_eq!(norm(&stiffness).off_by(0.25).widening(), 1.0 + MEASURED * 0.25);
+        assert_eq!(norm(&stiffness).widening(), 1.0);
+    }
+
+    #[test]
+    fn a_small_pivot_is_a_loss_of_digits_that_widens_the_bound() {
+        assert_eq!(norm(&pair(4.0, 0.0)).loss(), 1.0);
+        for slack in [1e-3, 1e-6] {
+            // The second pivot of (1, -c; -c, 1) is 1 - c^2.
+            let (loss, exact) = (norm(&pair(4.0, 1.0 - slack)).loss(), 1.0 / (slack * (2.0 - slack)));
+            assert!((loss / exact - 1.0).abs() < 1e-8, "{loss} {exact}");
+            let rounding = norm(&pair(4.0, 1.0 - slack)).rounding();
+            assert!((rounding - ROUNDED_BOUND - SWEEP_ROUNDING * exact).abs() < 1e-8 * rounding, "{rounding}");
+        }
+    }
+
+    #[test]
+    fn a_norm_ends_with_its_watch() {
+        let norm = norm(&pair(4.0, 0.5));
+        assert!(!norm.is_over());
+        assert!(norm.watched(&Watch::default().within(0.0)).is_over());
+    }
+}

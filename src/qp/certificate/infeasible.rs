@@ -39,3 +39,58 @@ impl ContactProblem {
         (overlap > doubt).then_some(overlap)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
+
+    /// A dof between two rows: `u <= g_0` and `-b u <= g_1`.
+    fn between(b: f64, gap: [f64; 2]) -> ContactProblem {
+        let stiffness =
+            SymmetricMatrix::from_lower(SparseMatrix::from_triplets(1, 1, &[(0, 0, 1.0)]).unwrap()).unwrap();
+        let contact = SparseMatrix::from_triplets(2, 1, &[(0, 0, 1.0), (1, 0, -b)]).unwrap();
+        ContactProblem::new(stiffness, vec![0.0], contact, gap.to_vec()).unwrap()
+    }
+
+    #[test]
+    fn two_walls_overlap_by_the_length_that_is_missing_between_them() {
+        // u <= -1 and u >= -1/2.
+        let problem = between(1.0, [-1.0, 0.5]);
+        for weights in [[1.0, 1.0], [3.0, 3.0]] {
+            assert_eq!(problem.overlap(&[0, 1], &weights), Some(0.5));
+            assert_eq!(problem.overlap(&[1, 0], &weights), Some(0.5));
+        }
+        // Half the weights on the same row twice.
+        assert_eq!(problem.overlap(&[0, 1, 1], &[1.0, 0.5, 0.5]), Some(0.5));
+        assert_eq!(between(1.0, [1.0, -0.5]).overlap(&[0, 1], &[1.0, 1.0]), None);
+    }
+
+    #[test]
+    fn weights_that_do_not_cancel_or_are_none_prove_nothing() {
+        let problem = between(1.0, [-1.0, 0.5]);
+        for weights in [[1.0, 0.5], [1.0, -1.0], [0.0, 0.0], [f64::NAN, 1.0], [f64::INFINITY, f64::INFINITY]] {
+            assert_eq!(problem.overlap(&[0, 1], &weights), None, "{weights:?}");
+        }
+        assert_eq!(problem.overlap(&[0, 2], &[1.0, 1.0]), None);
+        assert_eq!(problem.overlap(&[0], &[1.0, 1.0]), None);
+    }
+
+    #[test]
+    fn rows_must_overlap_by_more_than_rounding_of_their_gaps() {
+        // The gaps are 1 and the next numbers below -1; four units in the last place of both together are 8.
+        for (units, proven) in [(7.0, false), (9.0, true)] {
+            let gap = -1.0 - units * f64::EPSILON;
+            assert_eq!(between(1.0, [1.0, gap]).overlap(&[0, 1], &[1.0, 1.0]).is_some(), proven, "{units}");
+        }
+    }
+
+    #[test]
+    fn rows_that_cancel_to_a_billionth_contradict_each_other_unless_a_far_displacement_meets_both() {
+        // 1 - b of the terms 1 + b are left, a share of 5e-10. A displacement 1e8 times the gaps would need 5 % of them.
+        for (gap, proven) in [([-1.0, 0.92], false), ([-1.0, 0.89], true)] {
+            let found = between(1.0 - 1e-9, gap).overlap(&[0, 1], &[1.0, 1.0]);
+            assert_eq!(found.is_some(), proven, "{gap:?}: {found:?}");
+        }
+    }
+}

@@ -68,8 +68,8 @@ impl ContactProblem {
         // One solve is worth it if it saves sweeps.
         let may_solve = rows > FEW_ROWS && !norm.is_over();
         let at_once = || halves.reach_at_once().or_else(|| self.monotone_reach(|s| Some(norm.displacement(s))));
-        let reach = if may_solve { at_once() } else { None };
-        let mut open = self.open_by(&answer, wide_error, reach);
+        let reach = if may_solve { at_once() } else { None }.unwrap_or_else(|| self.any_reach());
+        let mut open = self.open_by(&answer, wide_error, &reach);
         let least = self.least_reach();
         let doubtful: Vec<(usize, f64)> = self
             .distances(&answer)
@@ -77,7 +77,7 @@ impl ContactProblem {
             .map(|(row, distance)| (row, distance / wide_error))
             .filter(|&(row, limit)| limit > least[row] && !open.contains(row))
             .collect();
-        self.within_reach(norm, &halves, &doubtful).into_iter().for_each(|row| open.set(row, true));
+        self.within_reach(norm, &halves, &doubtful).into_iter().for_each(|row| open.insert(row));
         let of_force = |force: &[f64]| Some(ROUNDED_BOUND * norm.widening() * norm.of_force(force));
         let mut closed = self.closed_by(&answer, &open, error, norm.widening(), |_, force| of_force(force));
         let in_question: Vec<usize> = (0..rows).filter(|&row| !open.contains(row)).collect();
@@ -119,7 +119,8 @@ impl ContactProblem {
         });
         let least = || measured.map(|measured| measured.ritz);
         let reach = reach.or_else(|| self.measured_reach(multigrid, displacement, least()?, watch));
-        let open = self.open_by(&answer, error, reach);
+        let reach = reach.unwrap_or_else(|| self.any_reach());
+        let open = self.open_by(&answer, error, &reach);
         let of_force = |is_residual: bool, force: &[f64]| match measured {
             Some(measured) if is_residual => Some(measured.of_residual),
             _ => dual_norm_within(&self.stiffness, multigrid, force, watch).map(|norm| ROUNDED_BOUND * norm.most),
@@ -128,19 +129,23 @@ impl ContactProblem {
         Some(ProvenSet { open, closed: closed.set })
     }
 
+    /// Bounds on the reach of the rows where nothing is known of it.
+    fn any_reach(&self) -> Vec<f64> {
+        vec![f64::INFINITY; self.rows()]
+    }
+
     /// The distance `g - B u` of each row, less what it may be off by rounding u; infinite without obstacle.
     fn distances(&self, answer: &Answer) -> impl Iterator<Item = f64> {
         let distances = answer.violation.iter().zip(self.negligible(answer.displacement));
         distances.map(|(violation, negligible)| -violation - negligible).collect::<Vec<_>>().into_iter()
     }
 
-    /// The rows that are open beyond an error of `error` in the energy norm, with bounds on their reach if there are any.
-    fn open_by(&self, answer: &Answer, error: f64, reach: Option<Vec<f64>>) -> ContactSet {
-        let reach = reach.unwrap_or_else(|| vec![f64::INFINITY; self.rows()]);
+    /// The rows that are open beyond an error of `error` in the energy norm; `reach` bounds how far it moves each of them.
+    fn open_by(&self, answer: &Answer, error: f64, reach: &[f64]) -> ContactSet {
         let is_open: Vec<bool> = self
             .distances(answer)
             .zip(reach)
-            .map(|(distance, reach)| {
+            .map(|(distance, &reach)| {
                 distance > 0.0 && (distance.is_infinite() || error == 0.0 || distance > reach * error)
             })
             .collect();
@@ -197,7 +202,9 @@ struct Closed {
 impl Closed {
     /// Is a row with this force closed, if a shift that it alone feels has this length?
     fn prove(&mut self, row: usize, force: f64, length: f64) {
-        self.set.set(row, self.set.contains(row) || force > length * self.imbalance);
+        if force > length * self.imbalance {
+            self.set.insert(row);
+        }
     }
 }
 
@@ -306,6 +313,33 @@ mod tests {
         for (row, &bound) in at_once.iter().enumerate() {
             let exact = halves.reach(row);
             assert!(bound >= exact && bound < 10.0 * exact, "row {row}: {bound} {exact}");
+        }
+    }
+
+    #[test]
+    fn a_row_has_the_same_reach_on_the_boundary_and_in_the_whole_body() {
+        // With K = tridiag(-1, 3, -1) and B = 2 the compliance is 4 K^-1, and its inverse K / 4.
+        for (dofs, on_boundary) in [(30, true), (400, false)] {
+            let diagonal = (0..dofs).map(|i| (i, i, 3.0));
+            let entries: Vec<_> = diagonal.chain((1..dofs).map(|i| (i, i - 1, -1.0))).collect();
+            let matrix = SparseMatrix::from_triplets(dofs, dofs, &entries).unwrap();
+            let rows: Vec<_> = (0..dofs).map(|row| (row, row, 2.0)).collect();
+            let contact = SparseMatrix::from_triplets(dofs, dofs, &rows).unwrap();
+            let stiffness = SymmetricMatrix::from_lower(matrix).unwrap();
+            let problem = ContactProblem::new(stiffness, vec![1.0; dofs], contact, vec![1.0; dofs]).unwrap();
+            let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
+            assert_eq!(norm.boundary().is_some(), on_boundary);
+            let halves = Halves::of(&problem, &norm);
+            for row in [0, 1, dofs / 2, dofs - 1] {
+                let mut force = vec![0.0; dofs];
+                force[row] = 2.0;
+                let exact = (2.0 * norm.displacement(&force)[row]).sqrt();
+                assert!((halves.reach(row) / exact - 1.0).abs() < 1e-14, "row {row} of {dofs}");
+            }
+            let all: Vec<usize> = (0..dofs).collect();
+            for length in halves.moved_together(problem.contact(), &all) {
+                assert!((length / (0.75_f64).sqrt() - 1.0).abs() < 1e-13, "{length} of {dofs}");
+            }
         }
     }
 }

@@ -205,6 +205,13 @@ mod tests {
             let reach = lattice.measured_reach(&multigrid, &smooth, least, &Watch::default()).unwrap();
             let exact = exact(&lattice, &norm);
             assert!(reach.iter().zip(&exact).all(|(reach, exact)| reach >= exact && *reach < 100.0 * exact));
+            // Every row has the coefficient 2 and the stiffness d. The first step of the power iteration is at the smooth
+            // displacement itself, which is close to the softest motion: the others add little.
+            let d = 4.0 + 2.0 * twist;
+            let force: Vec<f64> = smooth.iter().map(|value| d * value).collect();
+            let quotient = dot(&force, &multigrid.cycle(&force)) / dot(&force, &smooth);
+            let share = reach[0] * reach[0] * least * d / (4.0 * SAFETY * quotient);
+            assert!((1.0 - 1e-9..1.1).contains(&share), "{share}");
         }
     }
 

@@ -154,3 +154,24 @@ fn product(a: &[Twice], b: &[Twice]) -> Twice {
 fn size(vector: &[Twice]) -> f64 {
     vector.iter().fold(0.0, |size: f64, value| size.max(value.rounded().abs()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(values: [f64; 2]) -> Row {
+        Row { values: values.map(Twice::from).to_vec(), terms: values.iter().map(|value| value.abs()).sum() }
+    }
+
+    #[test]
+    fn rows_that_differ_by_a_billionth_leave_a_point_between_them_if_they_are_exact() {
+        // x <= 0 and x + 1e-9 y <= 0: nearest to (1, -1) is (0, -1), which the second row lets move by 1e-9.
+        let rows = [row([1.0, 0.0]), row([1.0, 1e-9])];
+        let cone = Cone { rows: rows.iter().collect(), fixed: None, rounding: 1e-28, is_exact: true };
+        let nearest: Vec<f64> = cone.nearest(&[1.0, -1.0]).unwrap().into_iter().map(Twice::rounded).collect();
+        // A solve in doubles says how far the point is out; that it is on the first row is exact.
+        assert!(nearest[0] == 0.0 && (nearest[1] + 1.0).abs() < TIP, "{nearest:?}");
+        // Rows that are rounded themselves are touched both, and hold it.
+        assert!(Cone { is_exact: false, ..cone }.nearest(&[1.0, -1.0]).is_none());
+    }
+}

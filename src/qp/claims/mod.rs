@@ -167,7 +167,7 @@ impl<'a> Looked<'a> {
 
     /// A mode without energy that the load drives and no row stops.
     fn escape(&self) -> Option<NullMode> {
-        let cone = self.cone(&|_| true, None);
+        let cone = self.cone(&|_| true);
         let along_load: Vec<f64> = self.against_load.values.iter().map(|value| -value.rounded()).collect();
         self.mode(&cone.nearest(&along_load)?).filter(NullMode::escapes)
     }
@@ -232,7 +232,7 @@ impl<'a> Looked<'a> {
 
     /// A mode without energy on which the load does no work, and that closes none of these rows.
     fn idle(&self, stops: &dyn Fn(usize) -> bool) -> Option<NullMode> {
-        let cone = self.cone(stops, Some(&self.against_load));
+        let cone = Cone { fixed: Some(&self.against_load), ..self.cone(stops) };
         let stays = |mode: &NullMode| {
             mode.is_idle() && self.rows.iter().all(|&(row, _)| mode.approach[row] <= 0.0 || !stops(row))
         };
@@ -243,10 +243,10 @@ impl<'a> Looked<'a> {
         })
     }
 
-    /// The cone of the modes that close none of these rows, without work of a load that is `fixed`.
-    fn cone<'b>(&'b self, stops: &dyn Fn(usize) -> bool, fixed: Option<&'b Row>) -> Cone<'b> {
+    /// The cone of the modes that close none of these rows.
+    fn cone<'b>(&'b self, stops: &dyn Fn(usize) -> bool) -> Cone<'b> {
         let rows = self.rows.iter().filter(|(row, _)| stops(*row)).map(|(_, row)| row).collect();
-        Cone { rows, fixed, rounding: self.rounding.vanishes, is_exact: self.null.is_exact }
+        Cone { rows, fixed: None, rounding: self.rounding.vanishes, is_exact: self.null.is_exact }
     }
 
     fn mode(&self, coordinates: &[Twice]) -> Option<NullMode> {
@@ -290,4 +290,56 @@ fn shares_of_forces(problem: &ContactProblem, solution: &Solution) -> Vec<f64> {
         shares[row] = shares[row].max(b.abs() * lambda[row] / terms(dof));
     }
     shares
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
+    use crate::qp::solve;
+
+    /// A dof of stiffness 2 under a force of 4 before a wall at 1, with that dof alone or with a second one that nothing but a wall
+    /// at 5 holds.
+    fn before_a_wall(dofs: usize) -> ContactProblem {
+        let diagonal = SparseMatrix::from_triplets(dofs, dofs, &[(0, 0, 2.0)]).unwrap();
+        let entries: Vec<_> = (0..dofs).map(|dof| (dof, dof, 1.0)).collect();
+        let contact = SparseMatrix::from_triplets(dofs, dofs, &entries).unwrap();
+        let stiffness = SymmetricMatrix::from_lower(diagonal).unwrap();
+        ContactProblem::new(stiffness, [4.0, 0.0][..dofs].to_vec(), contact, [1.0, 5.0][..dofs].to_vec()).unwrap()
+    }
+
+    /// What `freedom` says of this displacement of the first dof and the force of its wall; the second dof is at rest.
+    fn is_free(displacement: f64, force: f64) -> bool {
+        let (problem, alone) = (before_a_wall(2), before_a_wall(1));
+        let scaling = Scaling::of(problem.stiffness(), problem.contact()).unwrap();
+        let scaled = ContactProblem::new(
+            scaling.stiffness().clone(),
+            scaling.load(problem.load(), 0),
+            scaling.contact().clone(),
+            scaling.gap(problem.gap(), 0),
+        );
+        let scaled = scaled.unwrap();
+        let null = scaled.stiffness().null_space().unwrap().unwrap();
+        let mut solution = solve(&alone, &Settings::default()).unwrap();
+        (solution.displacement, solution.multiplier) = (vec![displacement, 0.0], vec![-force, 0.0]);
+        Looked::of(&scaled, &scaling, null).freedom(&problem, &solution).is_some()
+    }
+
+    #[test]
+    fn an_answer_out_of_balance_shows_no_freedom() {
+        assert!(is_free(1.0, 2.0));
+        // Out of balance by e the dof may move by 1e3 e / 2, of which 1e-4 of displacement and gap, 2, are allowed.
+        assert!(is_free(1.0, 2.0 + 3e-7) && is_free(1.0, 2.0 - 3e-7));
+        assert!(!is_free(1.0, 2.0 + 5e-7) && !is_free(1.0, 2.0 - 5e-7));
+    }
+
+    #[test]
+    fn a_force_out_of_balance_moves_a_row_a_thousand_times_as_far_as_its_dof_alone() {
+        let stiffness = SparseMatrix::from_triplets(3, 3, &[(0, 0, 2.0), (1, 1, 8.0)]).unwrap();
+        let rows = SparseMatrix::from_triplets(2, 3, &[(0, 0, -3.0), (0, 1, 1.0), (1, 2, 1.0)]).unwrap();
+        let stiffness = SymmetricMatrix::from_lower(stiffness).unwrap();
+        let problem = ContactProblem::new(stiffness, vec![4.0, 16.0, 1.0], rows, vec![1.0, 1.0]).unwrap();
+        // 4 / 2 through a coefficient of three, and 16 / 8; the third dof has no stiffness, and moves nothing.
+        assert_eq!(moved_by_residual(&problem, &[0.0; 3], &[0.0; 2]), [BENDS * (3.0 * 2.0 + 2.0), 0.0]);
+    }
 }

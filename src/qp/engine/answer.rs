@@ -52,11 +52,20 @@ impl Factored {
             return Ok(None);
         }
         let task =
-            ScaledProblem::new(&found.problem, &self.augmented, self.reduction.is_definite()).watched(&settings.watch);
+            ScaledProblem::new(&found.problem, &self.augmented, self.reduction.definiteness()).watched(&settings.watch);
         let outcome = last_resort(&task, found.outcome.clone())
             .map_err(|error| self.expand_error(error, &found.loading.load, &found.gap))?;
         let seconds = Seconds { solve: found.seconds.solve + clock.elapsed().as_secs_f64(), ..found.seconds };
         Ok(outcome.is_last_resort().then(|| Found { outcome, seconds, ..found.clone() }))
+    }
+
+    /// The energy norm for a certificate; a factor in single precision is off by its contraction.
+    fn norm_of(&self, found: &Found, settings: &Settings) -> Option<EnergyNorm> {
+        let norm = self.norm_within(&settings.watch.finishing())?;
+        Some(match &found.refined {
+            Some(refined) => norm.off_by(refined.contraction.max(norm.contraction(self.problem.stiffness()))),
+            None => norm,
+        })
     }
 
     /// The whole answer with its certificate.
@@ -66,14 +75,8 @@ impl Factored {
         let displacement = self.displacement(found);
         let method = self.resolved(settings).method;
         let Found { loading, gap, unit, outcome, seconds, refined, .. } = found;
-        let finishing = settings.watch.finishing();
-        let norm = self.norm_within(&finishing);
-        let norm = match refined {
-            Some(refined) => {
-                norm.map(|norm| norm.off_by(refined.contraction.max(norm.contraction(self.problem.stiffness()))))
-            }
-            None => norm,
-        };
+        let before_certificate = Instant::now();
+        let norm = self.norm_of(found, settings);
         let multiplier = self.expand_multiplier(&outcome.multiplier, *unit);
         let problem = self.problem.with(loading.load.clone(), gap.clone())?;
         let Examined { certificate, evidence } = match &norm {
@@ -82,6 +85,7 @@ impl Factored {
                 Examined::without_evidence(self.certificate(&problem, &displacement, &multiplier, &settings.watch)?)
             }
         };
+        let judging = before_certificate.elapsed().as_secs_f64();
         // A factor that was made for the certificate alone makes room for those of a refinement.
         let norm = norm.filter(|_| self.reduction.is_norm_at_hand());
         let expand_iteration = |step: &Iteration| Iteration {
@@ -100,7 +104,7 @@ impl Factored {
             refinements,
             lost_pivot: self.lost_pivot,
             condensed_dofs: self.condensed_dofs(),
-            seconds: Seconds { solve: seconds.solve + clock.elapsed().as_secs_f64(), ..*seconds },
+            seconds: Seconds { certificate: judging, solve: seconds.solve + clock.elapsed().as_secs_f64(), ..*seconds },
             ..answer(whole, method.name(), certificate)
         };
         if !self.is_single() && self.resolved(settings).wants_best() {

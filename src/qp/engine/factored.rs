@@ -151,7 +151,7 @@ impl Factored {
         let clock = Instant::now();
         let watch = self.watch_of_loop(settings)?;
         let (problem, unit) = self.scaled(&loading, &gap)?;
-        let task = ScaledProblem::new(&problem, &self.augmented, self.reduction.is_definite()).watched(&watch);
+        let task = ScaledProblem::new(&problem, &self.augmented, self.reduction.definiteness()).watched(&watch);
         let start = start.map(|set| self.reduction.selection.restrict_set(set));
         let bound = |displacement: &[f64], multiplier: &[f64]| {
             let certificate = match self.condensed_norm(&problem) {
@@ -166,7 +166,8 @@ impl Factored {
         };
         let outcome =
             run(&task, start, settings, &bound).map_err(|error| self.expand_error(error, &loading.load, &gap))?;
-        let seconds = Seconds { factor: task.factor_seconds(), proof: 0.0, solve: clock.elapsed().as_secs_f64() };
+        let seconds =
+            Seconds { factor: task.factor_seconds(), solve: clock.elapsed().as_secs_f64(), ..Seconds::default() };
         Ok(Found { loading, gap, problem, unit, outcome, seconds, refined: None })
     }
 
@@ -216,7 +217,7 @@ impl Factored {
         let gap = self.reduction.selection.gap(self.problem.gap());
         let loading = Loading::of(&self.reduction, self.problem.load().to_vec(), &gap);
         let (problem, unit) = self.scaled(&loading, self.problem.gap())?;
-        let task = ScaledProblem::new(&problem, &self.augmented, self.reduction.is_definite());
+        let task = ScaledProblem::new(&problem, &self.augmented, self.reduction.definiteness());
         let held = active_set::with_contact_set(&task, &self.reduction.selection.restrict_set(closed))
             .map_err(|error| self.expand_error(error, self.problem.load(), self.problem.gap()))?;
         Ok((self.expand(&loading, unit, &held.displacement), self.expand_multiplier(&held.multiplier, unit)))

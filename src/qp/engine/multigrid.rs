@@ -86,7 +86,7 @@ impl Engine for Hierarchical {
     }
 
     fn seconds(&self) -> Seconds {
-        Seconds { factor: self.seconds, proof: 0.0, solve: self.seconds }
+        Seconds { factor: self.seconds, solve: self.seconds, ..Seconds::default() }
     }
 
     fn tried(&self, _: &Settings) -> Tried {
@@ -121,8 +121,11 @@ impl Engine for Hierarchical {
             Mprgp { problem: &problem, multigrid, limits: Limits { tolerance, most_cycles, worth, watch } }.solve(start)
         };
         let mut found = solve(tolerance, most_cycles, start.clone())?;
+        let mut judging = 0.0;
         let Examined { certificate, evidence } = loop {
+            let before = Instant::now();
             let examined = self.examine(&problem, &found, &settings.watch)?;
+            judging += before.elapsed().as_secs_f64();
             let certificate = &examined.certificate;
             most_cycles = settings.max_iterations.saturating_sub(found.iterations);
             let bound = certificate.energy_error_bound;
@@ -146,7 +149,7 @@ impl Engine for Hierarchical {
         let prove = || problem.prove_by_cycles(multigrid, &settings.watch, u, lambda, evidence);
         let proven = if may_prove { prove() } else { None };
         let proof = if may_prove { before_proof.elapsed().as_secs_f64() } else { 0.0 };
-        let seconds = Seconds { factor: 0.0, proof, solve: clock.elapsed().as_secs_f64() };
+        let seconds = Seconds { factor: 0.0, certificate: judging, proof, solve: clock.elapsed().as_secs_f64() };
         let solution = Solution { seconds, proven, ..answer(found, Method::Mprgp.name(), certificate) };
         judged(solution, goal)
     }

@@ -10,7 +10,7 @@ use crate::qp::certificate::EnergyNorm;
 use crate::qp::cost::seconds::factor_seconds;
 use crate::qp::cost::{Kept, check_memory, check_time, seconds};
 use crate::qp::linear::{Analysis, AugmentedMatrix, Cholesky, FactorError, Width, largest};
-use crate::qp::plan::{Layout, Way};
+use crate::qp::plan::{Layout, Unknowns, Way};
 use crate::qp::problem::ContactProblem;
 use crate::qp::settings::Settings;
 use crate::qp::transform::{Condensation, RowSelection, Scaling};
@@ -37,7 +37,7 @@ impl Factored {
         let stiffest = largest(&problem.stiffness().diagonal());
         let factor_clock = Instant::now();
         let layout = Layout::within(problem, &scaling, settings)?;
-        let Layout { analysis, last, is_condensed, multiplications, mut way, width, keeps_norm } = layout;
+        let Layout { analysis, last, unknowns, multiplications, mut way, width, keeps_norm } = layout;
         if watch.is_stopped() {
             return Err(Error::Interrupted);
         }
@@ -56,11 +56,11 @@ impl Factored {
         if cholesky.is_none() {
             // Without a bound no accuracy can be held: what is exact is left.
             let exact = Settings { accuracy: None, ..settings.clone() };
-            way = Way::chosen(&exact, is_condensed, multiplications, problem.rows());
+            way = Way::chosen(&exact, unknowns, multiplications, problem.rows());
         }
-        let condensation = match is_condensed {
-            true => condensed(cholesky.as_ref(), &scaling, &last, settings)?,
-            false => None,
+        let condensation = match unknowns {
+            Unknowns::ContactDofs => condensed(cholesky.as_ref(), &scaling, &last, settings)?,
+            Unknowns::AllDofs => None,
         };
         let norm = match (cholesky, &analysis) {
             (None, _) => Norm::Missing,
@@ -79,7 +79,7 @@ impl Factored {
             proof_seconds,
             norm_seconds,
             condensed_norm: OnceLock::new(),
-            seconds: Seconds { factor, proof: 0.0, solve: clock.elapsed().as_secs_f64() },
+            seconds: Seconds { factor, solve: clock.elapsed().as_secs_f64(), ..Seconds::default() },
         })
     }
 }

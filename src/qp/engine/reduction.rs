@@ -2,6 +2,7 @@
 
 use crate::qp::certificate::EnergyNorm;
 use crate::qp::linear::Analysis;
+use crate::qp::method::Definiteness;
 use crate::qp::transform::{Condensation, RowSelection, Scaling};
 
 /// Rows selected, data scaled, the stiffness factorised and condensed where that pays; load and gaps play no part in it.
@@ -26,9 +27,17 @@ pub(super) enum Norm {
 }
 
 impl Reduction {
+    /// Is the stiffness definite by itself?
+    pub fn definiteness(&self) -> Definiteness {
+        match self.norm {
+            Norm::Missing => Definiteness::Semidefinite,
+            Norm::Kept(_) | Norm::Again(_) => Definiteness::Definite,
+        }
+    }
+
     /// Returns `true` if the stiffness is definite by itself.
     pub fn is_definite(&self) -> bool {
-        !matches!(self.norm, Norm::Missing)
+        self.definiteness() == Definiteness::Definite
     }
 
     /// Returns `true` if the energy norm costs no factorisation.

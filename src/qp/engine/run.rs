@@ -21,7 +21,7 @@ pub(super) fn run(
     bound: &dyn Fn(&[f64], &[f64]) -> f64,
 ) -> Result<Outcome, Error> {
     let found = run_method(scaled, start, settings, bound).and_then(|outcome| {
-        if takes_last_resort(outcome.settled, settings) { last_resort(scaled, outcome) } else { Ok(outcome) }
+        if !outcome.settled && takes_last_resort(settings) { last_resort(scaled, outcome) } else { Ok(outcome) }
     });
     let unique = |outcome: Outcome| scaled.check_unique(&outcome).map(|()| outcome);
     match found.and_then(unique) {

@@ -142,11 +142,17 @@ impl UpperTriangle {
         &self.independent
     }
 
-    /// Appends the column with these entries above its diagonal entry.
-    pub fn push(&mut self, mut above: Vec<f64>, diagonal: f64, is_independent: bool) {
+    /// Appends the column with these entries above its diagonal entry, which does not follow from those before it.
+    pub fn push(&mut self, mut above: Vec<f64>, diagonal: f64) {
         above.push(diagonal);
         self.columns.push(above);
-        self.independent.push(is_independent);
+        self.independent.push(true);
+    }
+
+    /// The same for a column that follows from those before it.
+    pub fn push_dependent(&mut self, above: Vec<f64>, diagonal: f64) {
+        self.push(above, diagonal);
+        self.independent[self.columns.len() - 1] = false;
     }
 
     /// Takes out the column at `place`. What the columns after it then have below their diagonal is rotated away, and
@@ -233,9 +239,9 @@ mod tests {
     #[test]
     fn an_upper_triangle_leaves_out_columns_that_follow_from_others() {
         let mut r = UpperTriangle::default();
-        r.push(vec![], 2.0, true);
-        r.push(vec![4.0], 0.0, false);
-        r.push(vec![1.0, 5.0], 4.0, true);
+        r.push(vec![], 2.0);
+        r.push_dependent(vec![4.0], 0.0);
+        r.push(vec![1.0, 5.0], 4.0);
         assert_eq!(r.solve_upper(vec![4.0, 7.0, 8.0]), [1.0, 0.0, 2.0]);
         assert_eq!(r.solve_lower(vec![2.0, 7.0, 9.0]), [1.0, 0.0, 2.0]);
     }
@@ -243,9 +249,9 @@ mod tests {
     #[test]
     fn a_column_that_is_taken_out_leaves_a_triangle_with_the_same_products() {
         let mut r = UpperTriangle::default();
-        r.push(vec![], 3.0, true);
-        r.push(vec![1.0], 3.0, true);
-        r.push(vec![1.0, 4.0], 2.0, true);
+        r.push(vec![], 3.0);
+        r.push(vec![1.0], 3.0);
+        r.push(vec![1.0, 4.0], 2.0);
         let mut turns = Vec::new();
         r.remove(1, |first, cosine, sine| turns.push((first, cosine, sine)));
         // (4, 2) becomes (sqrt(20), 0).

@@ -73,7 +73,11 @@ impl Ordered {
     fn close(&mut self, index: usize, above: Vec<f64>, length: f64) {
         let weights = self.triangle.solve_upper(above.clone());
         let terms = weights.iter().fold(1.0, |sum, weight| sum + weight.abs());
-        self.triangle.push(above, length, length > CANCELLED_VECTOR * terms);
+        if length > CANCELLED_VECTOR * terms {
+            self.triangle.push(above, length);
+        } else {
+            self.triangle.push_dependent(above, length);
+        }
         self.order.push(index);
     }
 

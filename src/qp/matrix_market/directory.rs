@@ -1,5 +1,6 @@
 //! Problem directories: which file holds what.
 
+#[cfg(feature = "cli")]
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -105,6 +106,7 @@ fn rigid_body_modes(axes: &[Vec<f64>]) -> Vec<Vec<f64>> {
 }
 
 /// Name and text of the file of a problem's near-null space, where it has one.
+#[cfg(feature = "cli")]
 pub fn near_null_file(problem: &ContactProblem) -> Option<(&'static str, String)> {
     let vectors = problem.near_null()?.vectors();
     let mut text = format!("%%MatrixMarket matrix array real general\n{} {}\n", problem.dofs(), vectors.len());

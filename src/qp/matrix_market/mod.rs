@@ -10,7 +10,9 @@
 mod directory;
 mod parse;
 
-pub use directory::{near_null_file, problem_files, read_problem, read_vector, solution_files};
+#[cfg(feature = "cli")]
+pub use directory::near_null_file;
+pub use directory::{problem_files, read_problem, read_vector, solution_files};
 
 use std::fmt::Write;
 

@@ -88,11 +88,11 @@ impl Solver for ActiveSet<'_> {
                     }
                     rule = rule.pivoting(wrong.len());
                 }
-                rule.choose(&wrong).iter().for_each(|&row| closed.set(row, !closed.contains(row)));
+                rule.choose(&wrong).iter().for_each(|&row| closed.toggle(row));
             }
         }
         multiplier.iter_mut().for_each(|value| *value = value.min(0.0));
-        let (iterations, variant) = (history.len(), rule.variant(settled));
+        let (iterations, variant) = (history.len(), if settled { rule.variant() } else { "-unsettled" });
         Ok(Outcome { displacement, multiplier, contact_set: closed, iterations, history, settled, variant })
     }
 }
@@ -115,7 +115,7 @@ enum Balance {
 impl<'a> Balances<'a> {
     fn of_sets(scaled: &'a ScaledProblem<'a>) -> Self {
         let most_steps = steps_for_a_factor(scaled.augmented.analysis());
-        let pays = scaled.definite && most_steps >= TRIAL;
+        let pays = scaled.is_definite() && most_steps >= TRIAL;
         let bounded = pays.then(|| BoundedDofs::of(scaled.problem.contact())).flatten();
         Balances { scaled, most_steps, bounded, earlier: None }
     }
@@ -181,13 +181,12 @@ impl Rule {
         }
     }
 
-    /// The variant that ended the loop.
-    fn variant(self, settled: bool) -> &'static str {
-        match (settled, self) {
-            (false, _) => "-unsettled",
-            (true, Rule::Exchange) => "",
-            (true, Rule::Pivoting { single: false, .. }) => "-block-pivoting",
-            (true, Rule::Pivoting { single: true, .. }) => "-single-pivoting",
+    /// The suffix of a loop that this rule settled.
+    fn variant(self) -> &'static str {
+        match self {
+            Rule::Exchange => "",
+            Rule::Pivoting { single: false, .. } => "-block-pivoting",
+            Rule::Pivoting { single: true, .. } => "-single-pivoting",
         }
     }
 

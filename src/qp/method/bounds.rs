@@ -183,19 +183,21 @@ impl Bounds {
             let side = bound.sides[usize::from(force < 0.0)];
             if let Some(side) = side.filter(|_| force != 0.0) {
                 multiplier[side.row] = force / side.coefficient;
-                closed.set(side.row, true);
+                closed.insert(side.row);
             }
         }
         (multiplier, closed)
     }
-
-    /// Returns `true` if the row of the upper (`true`) or the lower bound is in the set.
-    pub fn is_closed(&self, index: usize, upper: bool, closed: &ContactSet) -> bool {
-        self.bounds[index].sides[usize::from(upper)].is_some_and(|side| closed.contains(side.row))
-    }
 }
 
 impl Bound {
+    /// The value of a bound whose row is in the set, of the upper one if both are.
+    pub fn closed_at(&self, closed: &ContactSet) -> Option<f64> {
+        let is_closed = |side: &Option<Side>| side.is_some_and(|side| closed.contains(side.row));
+        let [lower, upper] = &self.sides;
+        if is_closed(upper) { Some(self.upper) } else { is_closed(lower).then_some(self.lower) }
+    }
+
     fn take(&mut self, side: Side) {
         let upper = side.coefficient > 0.0;
         let place = &mut self.sides[usize::from(upper)];

@@ -74,7 +74,7 @@ impl ScaledProblem<'_> {
     /// [`Error::NotConvex`].
     pub fn start(&self) -> Result<ContactSet, Error> {
         let rows = self.problem.rows();
-        if self.definite {
+        if self.is_definite() {
             return Ok(ContactSet::open(rows));
         }
         self.check_convex()?;
@@ -95,7 +95,7 @@ impl ScaledProblem<'_> {
     /// # Errors
     /// [`Error::UnderHeld`] with a mode that changes neither force nor energy.
     pub fn check_unique(&self, outcome: &Outcome) -> Result<(), Error> {
-        if self.definite {
+        if self.is_definite() {
             return Ok(());
         }
         let rounding = multiplier_rounding(self.problem, &outcome.displacement, &outcome.multiplier);
@@ -130,7 +130,7 @@ impl ScaledProblem<'_> {
     pub fn hold(&self, closed: &ContactSet, weight: f64) -> Result<Holding, Error> {
         let matrix = self.matrix(closed, weight, 0.0);
         // Of a K that is definite by itself it is not looked at again.
-        let looked_at = (!self.definite).then(|| matrix.clone());
+        let looked_at = (!self.is_definite()).then(|| matrix.clone());
         match self.factor(matrix) {
             Ok(cholesky) if looked_at.is_none_or(|matrix| cholesky.is_definite(&matrix)) => Ok(Holding::Held(cholesky)),
             Ok(_) | Err(FactorError::NotPositiveDefinite) => self.free_mode(closed, weight).map(Holding::Free),
@@ -183,7 +183,7 @@ impl ScaledProblem<'_> {
                 let mut stopped = closed.clone();
                 (0..self.problem.rows())
                     .filter(|&row| time(row).is_some_and(|t| t <= first * (1.0 + WORK_TOLERANCE)))
-                    .for_each(|row| stopped.set(row, true));
+                    .for_each(|row| stopped.insert(row));
                 return Some(stopped);
             }
         }

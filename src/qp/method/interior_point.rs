@@ -176,7 +176,9 @@ fn read_off(problem: &ContactProblem, answer: &DefaultSolution<f64>, rows: &[usi
     for (near, &row) in rows.iter().enumerate() {
         let (z, s) = (answer.z[near], answer.s[near]);
         multiplier[row] = -ldexp(z.max(0.0), unit.force);
-        contact_set.set(row, z * s_scale > s * z_scale);
+        if z * s_scale > s * z_scale {
+            contact_set.insert(row);
+        }
     }
     let displacement = answer.x.iter().map(|&x| ldexp(x, unit.displacement)).collect::<Vec<_>>();
     match displacement.iter().chain(&multiplier).all(|value| value.is_finite()) {

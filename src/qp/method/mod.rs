@@ -18,5 +18,5 @@ mod start;
 pub(crate) use holding::WORK_TOLERANCE;
 pub use holding::{FreeMode, Holding};
 pub(crate) use scaled::SIGN_TOLERANCE;
-pub use scaled::{Outcome, ScaledProblem, Solver};
+pub use scaled::{Definiteness, Outcome, ScaledProblem, Solver};
 pub use start::Start;

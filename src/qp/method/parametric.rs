@@ -96,7 +96,7 @@ impl Compliance {
             }
         }
         let mut set = ContactSet::open(self.rows());
-        kept.iter().for_each(|(row, _)| set.set(*row, true));
+        kept.iter().for_each(|(row, _)| set.insert(*row));
         set
     }
 
@@ -186,7 +186,7 @@ impl Compliance {
         scales: &Scales,
     ) -> Result<ContactSet, Error> {
         let mut next = closed.clone();
-        next.set(first, !closed.contains(first));
+        next.toggle(first);
         let mut fewest = undecided.len() + 1;
         for _ in 0..CHANGES_PER_ROW * undecided.len() {
             let line = self.respond(&next)?;
@@ -203,7 +203,7 @@ impl Compliance {
             }
             let exchanged = if wrong.len() < fewest { &wrong[..] } else { &wrong[wrong.len() - 1..] };
             fewest = fewest.min(wrong.len());
-            exchanged.iter().for_each(|&row| next.set(row, !next.contains(row)));
+            exchanged.iter().for_each(|&row| next.toggle(row));
         }
         Ok(next)
     }

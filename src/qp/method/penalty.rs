@@ -99,7 +99,10 @@ impl Solver for PenaltyLoop<'_> {
         let answer = loop {
             self.settle(&mut climb, penalty)?;
             let rung = Rung::new(&climb.state, climb.closed.clone(), penalty);
-            let answer = self.extrapolated(&rung, rung_before.as_ref(), climb.settled)?;
+            let answer = match self.ladder.extrapolate && climb.settled {
+                true => self.extrapolated(&rung, rung_before.as_ref())?,
+                false => rung.clone(),
+            };
             if let Some(goal) = self.goal.filter(|_| climb.settled) {
                 let bound = (goal.bound)(&answer.displacement, &answer.multiplier);
                 if bound <= goal.accuracy || (bound > FLOOR * last_bound && bound.is_finite()) {
@@ -161,10 +164,9 @@ impl PenaltyLoop<'_> {
         Ok(())
     }
 
-    /// The answer of a rung: extrapolated if that is asked for and the set has settled.
-    fn extrapolated(&self, rung: &Rung, before: Option<&Rung>, settled: bool) -> Result<Rung, Error> {
+    /// The answer of a rung, extrapolated from the one `before`, or from one below it where they differ in their sets.
+    fn extrapolated(&self, rung: &Rung, before: Option<&Rung>) -> Result<Rung, Error> {
         Ok(match before {
-            _ if !(self.ladder.extrapolate && settled) => rung.clone(),
             Some(before) if before.closed == rung.closed => rung.extrapolated(before),
             _ => rung.extrapolated(&rung_below(self.scaled, rung)?),
         })

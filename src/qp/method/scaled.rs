@@ -26,13 +26,21 @@ pub trait Solver {
     fn solve(&self, start: Start) -> Result<Outcome, Error>;
 }
 
+/// What is known of a stiffness by itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Definiteness {
+    /// It is positive definite.
+    Definite,
+    /// It may have modes without energy.
+    Semidefinite,
+}
+
 /// A scaled problem with its pattern analysed: what every method works on.
 #[derive(Debug)]
 pub struct ScaledProblem<'a> {
     /// The data, dimensionless and of order one.
     pub problem: &'a ContactProblem,
-    /// Is K positive definite by itself?
-    pub definite: bool,
+    definiteness: Definiteness,
     pub(super) augmented: &'a AugmentedMatrix,
     factor_seconds: Cell<f64>,
     watch: Watch,
@@ -40,13 +48,18 @@ pub struct ScaledProblem<'a> {
 
 impl<'a> ScaledProblem<'a> {
     /// The problem with the analysed pattern of its K + B'B.
-    pub fn new(problem: &'a ContactProblem, augmented: &'a AugmentedMatrix, definite: bool) -> Self {
-        ScaledProblem { problem, definite, augmented, factor_seconds: Cell::new(0.0), watch: Watch::default() }
+    pub fn new(problem: &'a ContactProblem, augmented: &'a AugmentedMatrix, definiteness: Definiteness) -> Self {
+        ScaledProblem { problem, definiteness, augmented, factor_seconds: Cell::new(0.0), watch: Watch::default() }
     }
 
     /// The same problem, whose loops end with what they have when `watch` says so.
     pub fn watched(self, watch: &Watch) -> Self {
         ScaledProblem { watch: watch.clone(), ..self }
+    }
+
+    /// Returns `true` if K is positive definite by itself.
+    pub fn is_definite(&self) -> bool {
+        self.definiteness == Definiteness::Definite
     }
 
     /// What the loops look at, and tell their iterations.

@@ -108,7 +108,7 @@ impl RowSelection {
     /// The contact set in the original rows.
     pub fn expand_set(&self, set: &ContactSet) -> ContactSet {
         let mut all = ContactSet::open(self.by_row.columns());
-        set.iter().for_each(|row| all.set(self.kept[row], true));
+        set.iter().for_each(|row| all.insert(self.kept[row]));
         all
     }
 

@@ -61,7 +61,8 @@ impl BodyShape for HalfBallSpec {
 
     fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
         site.check_estimate(&self.block(None))?;
-        let sides = [SymmetrySpec::X, SymmetrySpec::Y].map(|axis| Sides::of(self.symmetric.contains(&axis)));
+        let sides = [SymmetrySpec::X, SymmetrySpec::Y]
+            .map(|axis| if self.symmetric.contains(&axis) { Sides::Beyond } else { Sides::Both });
         let lower = half_ball(self.centre, self.radius, &self.zone, sides)?;
         Ok(self.half.of(lower, 2, self.centre[2]))
     }

@@ -42,6 +42,12 @@ pub struct HalfDiscSpec {
 
 pub(super) const ABOUT: About = About { name: "half-disc", dimension: Some(2) };
 
+impl HalfDiscSpec {
+    fn sides(&self) -> Sides {
+        if self.symmetric { Sides::Beyond } else { Sides::Both }
+    }
+}
+
 impl BodyShape for HalfDiscSpec {
     fn integration(&self) -> Integration {
         self.integration
@@ -49,12 +55,12 @@ impl BodyShape for HalfDiscSpec {
 
     fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
         site.check_estimate(&self.block(None))?;
-        let lower = half_disc(self.centre, self.radius, &self.zone, Sides::of(self.symmetric), self.element.kind())?;
+        let lower = half_disc(self.centre, self.radius, &self.zone, self.sides(), self.element.kind())?;
         Ok(self.half.of(lower, 1, self.centre[1]))
     }
 
     fn block(&self, _: Option<&Path>) -> Block {
-        half_disc_block(&self.zone, self.radius, Sides::of(self.symmetric), self.element.kind())
+        half_disc_block(&self.zone, self.radius, self.sides(), self.element.kind())
     }
 
     fn refine(&mut self, times: usize) -> Result<(), Error> {

@@ -92,13 +92,6 @@ pub enum Sides {
     Beyond,
 }
 
-impl Sides {
-    /// What is meshed of a body that is cut at its plane of symmetry, or is not.
-    pub(super) fn of(is_cut: bool) -> Self {
-        if is_cut { Sides::Beyond } else { Sides::Both }
-    }
-}
-
 /// A block of cells that stands for the mesh of a body.
 pub(in crate::scene) struct Block {
     /// Cells along each axis.

@@ -78,8 +78,6 @@ struct Search<'a> {
 struct Way {
     /// Offset across the direction of the row, in length.
     aside: f64,
-    /// The mean of the two bodies' normals, from the candidate's into the other.
-    mean: [f64; 3],
     pair: Pair,
 }
 
@@ -92,7 +90,7 @@ impl Search<'_> {
             let normal = if rule == Rule::Approach { self.site.direction() } else { mean };
             let distance = dot(way, normal);
             let aside = length(minus(way, normal.map(|component| distance * component)));
-            Way { aside, mean, pair: Pair { partner, normal, distance } }
+            Way { aside, pair: Pair { partner, normal, mean, distance } }
         });
         let nearest = match rule {
             // Of the nodes straight across, the nearest; or else the one that is least aside.
@@ -123,7 +121,7 @@ impl Search<'_> {
             );
             return Err(unpaired(site, message));
         }
-        if dot(way.mean, way.pair.normal) <= 0.0 {
+        if dot(way.pair.mean, way.pair.normal) <= 0.0 {
             let message = format!(
                 "`{}` does not lead from `{own}` into `{other}` at node {node} at {place}; take the opposite direction",
                 site.approach.name()

@@ -9,6 +9,8 @@ pub(in crate::scene) struct Pair {
     pub partner: usize,
     /// Unit vector from the candidate's body into the other.
     pub normal: [f64; 3],
+    /// Half way between the normals of both surfaces, from the candidate's body into the other.
+    pub mean: [f64; 3],
     /// Along the normal from the candidate to its partner, in length.
     pub distance: f64,
 }

@@ -5,10 +5,11 @@ use std::sync::Arc;
 use super::row::{Obstacle, ObstacleRow};
 use super::shape::{Geometry, Site};
 use crate::error::Error;
-use crate::fem::assembly::tributary_areas;
+use crate::fem::assembly::{node_normals, tributary_areas};
 use crate::fem::body::ElasticBody;
 use crate::fem::geometry::length;
 use crate::scene::entry::{boundary, number, wrong};
+use crate::scene::schema::approach::Rule;
 use crate::scene::schema::obstacle::ObstacleSpec;
 
 /// A component of a unit normal below this is rounding of the geometry, not a direction.
@@ -22,15 +23,19 @@ const UNIT: f64 = 1e-9;
 pub struct PlacedObstacle {
     boundary: String,
     candidates: Vec<(usize, f64)>,
+    /// The outward normal of the body at each candidate.
+    outward: Vec<[f64; 3]>,
     approach: [f64; 3],
     dimension: usize,
     geometry: Geometry,
+    /// How its rows are made; none for an obstacle of a user's own.
+    rule: Option<Rule>,
 }
 
 impl PlacedObstacle {
     /// Checks the obstacle at JSON path `path`.
     pub(in crate::scene) fn of_scene(spec: &ObstacleSpec, path: &str, body: &ElasticBody) -> Result<Self, Error> {
-        let candidates = candidates(body, &spec.boundary, &format!("{path}.boundary"))?;
+        let (candidates, outward) = candidates(body, &spec.boundary, &format!("{path}.boundary"))?;
         let dimension = body.dimension();
         let (axis, _) = spec.approach.axis();
         if axis >= dimension {
@@ -52,7 +57,15 @@ impl PlacedObstacle {
             candidates: &candidates,
         };
         let (approach, geometry) = (site.direction(), shape.place(&site)?);
-        Ok(PlacedObstacle { boundary: spec.boundary.clone(), candidates, approach, dimension, geometry })
+        Ok(PlacedObstacle {
+            boundary: spec.boundary.clone(),
+            candidates,
+            outward,
+            approach,
+            dimension,
+            geometry,
+            rule: Some(spec.rule),
+        })
     }
 
     /// An obstacle of a user's own, number `path` of all.
@@ -62,13 +75,21 @@ impl PlacedObstacle {
         path: &str,
         body: &ElasticBody,
     ) -> Result<Self, Error> {
-        let candidates = candidates(body, boundary, &format!("{path}.boundary"))?;
+        let (candidates, outward) = candidates(body, boundary, &format!("{path}.boundary"))?;
         let (approach, dimension) = (obstacle.approach(), body.dimension());
         match check_direction(approach, dimension) {
             Err(reason) => Err(wrong(format!("{path}.approach"), format!("the approach direction {reason}"))),
             Ok(()) => {
                 let geometry = Geometry::Rigid(obstacle);
-                Ok(PlacedObstacle { boundary: boundary.into(), candidates, approach, dimension, geometry })
+                Ok(PlacedObstacle {
+                    boundary: boundary.into(),
+                    candidates,
+                    outward,
+                    approach,
+                    dimension,
+                    geometry,
+                    rule: None,
+                })
             }
         }
     }
@@ -84,6 +105,11 @@ impl PlacedObstacle {
             Geometry::Rigid(obstacle) => Some(obstacle.as_ref()),
             Geometry::Pairs(_) => None,
         }
+    }
+
+    /// How its rows are made; `None` for an obstacle of a user's own.
+    pub fn rule(&self) -> Option<Rule> {
+        self.rule
     }
 
     /// The approach direction [x, y, z], of length 1: from the body to the obstacle.
@@ -109,6 +135,20 @@ impl PlacedObstacle {
         match &self.geometry {
             Geometry::Pairs(pairs) => pairs.get(candidate).map(|pair| pair.partner),
             Geometry::Rigid(_) => None,
+        }
+    }
+
+    /// The outward normal of the body at the candidate of this index; zero where the facets around it cancel.
+    pub(in crate::scene) fn outward(&self, candidate: usize) -> [f64; 3] {
+        self.outward.get(candidate).copied().unwrap_or_default()
+    }
+
+    /// The unit normal of the surface, into the obstacle, where the row of the candidate of this index meets it; for another body
+    /// the mean of both. `None` if it is out of reach.
+    pub(crate) fn surface_normal(&self, candidate: usize, node: [f64; 3], gap: f64) -> Option<[f64; 3]> {
+        match &self.geometry {
+            Geometry::Rigid(obstacle) => obstacle.surface_normal(node, gap),
+            Geometry::Pairs(pairs) => pairs.get(candidate).map(|pair| pair.mean),
         }
     }
 
@@ -139,8 +179,12 @@ impl PlacedObstacle {
     }
 }
 
-fn candidates(body: &ElasticBody, name: &str, path: &str) -> Result<Vec<(usize, f64)>, Error> {
-    Ok(tributary_areas(body, boundary(body.mesh(), name, path)?))
+/// The nodes of a boundary with their tributary areas, and the outward normals there.
+#[allow(clippy::type_complexity)]
+fn candidates(body: &ElasticBody, name: &str, path: &str) -> Result<(Vec<(usize, f64)>, Vec<[f64; 3]>), Error> {
+    let boundary = boundary(body.mesh(), name, path)?;
+    let outward = node_normals(body, boundary).into_iter().map(|(_, normal)| normal).collect();
+    Ok((tributary_areas(body, boundary), outward))
 }
 
 /// What is wrong with a node, and what helps.

@@ -90,6 +90,18 @@ struct HalfSpace {
     rule: Rule,
 }
 
+impl HalfSpace {
+    /// The row by one of the rules, the surface moved by `shift`.
+    fn row_by(&self, rule: Rule, node: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
+        let to_plane = dot(self.normal, minus(self.point, node));
+        let lean = dot(self.normal, self.approach);
+        Ok(Some(match rule {
+            Rule::Approach => ObstacleRow { normal: self.approach, gap: to_plane / lean + shift },
+            Rule::ClosestPoint => ObstacleRow { normal: self.normal, gap: to_plane + shift * lean },
+        }))
+    }
+}
+
 impl Obstacle for HalfSpace {
     fn approach(&self) -> [f64; 3] {
         self.approach
@@ -99,12 +111,12 @@ impl Obstacle for HalfSpace {
         self.shifted_row(point, 0.0)
     }
 
-    fn shifted_row(&self, node: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
-        let to_plane = dot(self.normal, minus(self.point, node));
-        let lean = dot(self.normal, self.approach);
-        Ok(Some(match self.rule {
-            Rule::Approach => ObstacleRow { normal: self.approach, gap: to_plane / lean + shift },
-            Rule::ClosestPoint => ObstacleRow { normal: self.normal, gap: to_plane + shift * lean },
-        }))
+    fn shifted_row(&self, point: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
+        self.row_by(self.rule, point, shift)
+    }
+
+    fn surface_normal(&self, point: [f64; 3], shift: f64) -> Option<[f64; 3]> {
+        let row = self.shifted_row(point, shift).ok()??;
+        Some(self.row_by(Rule::ClosestPoint, row.foot(point), shift).ok()??.normal)
     }
 }

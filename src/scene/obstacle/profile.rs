@@ -37,6 +37,24 @@ impl Profile {
     }
 }
 
+impl Profile {
+    /// The row by one of the rules, the surface moved by `shift`.
+    fn row_by(&self, rule: Rule, [x, y, _]: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
+        let local = self.frame.local([x, y]);
+        let offset = [local[0] - self.origin[0], local[1] - self.origin[1] - shift];
+        let foot = match rule {
+            Rule::Approach => {
+                self.surface.height(offset[0]).map(|height| Foot { normal: [0.0, 1.0], distance: height - offset[1] })
+            }
+            Rule::ClosestPoint => self.surface.closest(offset, self.rounding)?,
+        };
+        Ok(foot.map(|foot| {
+            let [x, y] = self.frame.global(foot.normal);
+            ObstacleRow { normal: [x, y, 0.0], gap: foot.distance }
+        }))
+    }
+}
+
 impl Obstacle for Profile {
     fn approach(&self) -> [f64; 3] {
         let [x, y] = self.frame.global([0.0, 1.0]);
@@ -47,19 +65,13 @@ impl Obstacle for Profile {
         self.shifted_row(point, 0.0)
     }
 
-    fn shifted_row(&self, [x, y, _]: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
-        let local = self.frame.local([x, y]);
-        let offset = [local[0] - self.origin[0], local[1] - self.origin[1] - shift];
-        let foot = match self.rule {
-            Rule::Approach => {
-                self.surface.height(offset[0]).map(|height| Foot { normal: [0.0, 1.0], distance: height - offset[1] })
-            }
-            Rule::ClosestPoint => self.surface.closest(offset, self.rounding)?,
-        };
-        Ok(foot.map(|foot| {
-            let [x, y] = self.frame.global(foot.normal);
-            ObstacleRow { normal: [x, y, 0.0], gap: foot.distance }
-        }))
+    fn shifted_row(&self, point: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
+        self.row_by(self.rule, point, shift)
+    }
+
+    fn surface_normal(&self, point: [f64; 3], shift: f64) -> Option<[f64; 3]> {
+        let row = self.shifted_row(point, shift).ok()??;
+        Some(self.row_by(Rule::ClosestPoint, row.foot(point), shift).ok()??.normal)
     }
 
     fn outline(&self, shift: f64, segments: usize) -> Vec<[f64; 2]> {

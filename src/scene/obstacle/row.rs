@@ -11,6 +11,13 @@ pub struct ObstacleRow {
     pub gap: f64,
 }
 
+impl ObstacleRow {
+    /// Where the row of a node at `point` meets the obstacle.
+    pub(super) fn foot(&self, point: [f64; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|axis| point[axis] + self.gap * self.normal[axis])
+    }
+}
+
 /// A rigid obstacle: it gives the node at any point its contact row.
 ///
 /// All rigid shapes of a scene are obstacles. One of a user's own stands beside them by
@@ -69,6 +76,13 @@ pub trait Obstacle: Debug + Send + Sync {
     fn shifted_row(&self, point: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
         let approach = self.approach();
         self.row([0, 1, 2].map(|axis| point[axis] - shift * approach[axis]))
+    }
+
+    /// The unit normal of the surface, into the obstacle, where the row of a node at `point` meets it, the obstacle moved by `shift`.
+    /// It is that of the row, unless rows lie along the approach direction whatever the surface; `None` if the obstacle does not
+    /// reach there.
+    fn surface_normal(&self, point: [f64; 3], shift: f64) -> Option<[f64; 3]> {
+        Some(self.shifted_row(point, shift).ok()??.normal)
     }
 
     /// The surface in the plane as a polyline [x, y] for pictures, moved by `shift`, in `segments` pieces; empty if there

@@ -58,21 +58,14 @@ impl Solid {
     }
 }
 
-impl Obstacle for Solid {
-    fn approach(&self) -> [f64; 3] {
-        self.axes[2]
-    }
-
-    fn row(&self, point: [f64; 3]) -> Result<Option<ObstacleRow>, String> {
-        self.shifted_row(point, 0.0)
-    }
-
-    fn shifted_row(&self, node: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
+impl Solid {
+    /// The row by one of the rules, the surface moved by `shift`.
+    fn row_by(&self, rule: Rule, node: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
         let from_origin = [0, 1, 2].map(|axis| node[axis] - self.origin[axis]);
         let [t1, t2, towards] = self.axes.map(|axis| dot(axis, from_origin));
         let towards = towards - shift;
         let along_approach = |height: Option<f64>| height.map(|height| ([0.0, 0.0, 1.0], height - towards));
-        let way = match (&self.form, self.rule) {
+        let way = match (&self.form, rule) {
             (Form::Turned(curve), Rule::Approach) => along_approach(curve.height(t1.hypot(t2))),
             (Form::DrawnOut(curve), Rule::Approach) => along_approach(curve.height(t1)),
             (Form::Grid(map), Rule::Approach) => along_approach(map.height([t1, t2])),
@@ -96,6 +89,25 @@ impl Obstacle for Solid {
             let normal = [0, 1, 2].map(|i| (0..3).map(|axis| local[axis] * self.axes[axis][i]).sum());
             ObstacleRow { normal, gap }
         }))
+    }
+}
+
+impl Obstacle for Solid {
+    fn approach(&self) -> [f64; 3] {
+        self.axes[2]
+    }
+
+    fn row(&self, point: [f64; 3]) -> Result<Option<ObstacleRow>, String> {
+        self.shifted_row(point, 0.0)
+    }
+
+    fn shifted_row(&self, point: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
+        self.row_by(self.rule, point, shift)
+    }
+
+    fn surface_normal(&self, point: [f64; 3], shift: f64) -> Option<[f64; 3]> {
+        let row = self.shifted_row(point, shift).ok()??;
+        Some(self.row_by(Rule::ClosestPoint, row.foot(point), shift).ok()??.normal)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::json::{choice, given, object, objects, word};
+use super::json::{choice, choices, given, object, objects, word};
 use crate::motion::SchemeSpec;
 
 /// The analysis; a scene without one is static.
@@ -42,7 +42,12 @@ pub struct DynamicSpec {
     /// Stiffness of `penalty` in multiples of the local stiffness of a step, positive; 10 where it is left out.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     pub penalty: Option<f64>,
+    /// Penetration at which the loop of `penalty-loop` ends, as the norm over all closed rows, relative to the largest
+    /// displacement of the body; positive and at most 0.1, 1e-6 where it is left out.
+    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    pub threshold: Option<f64>,
     /// Velocity of a node after over before its blow in `central-difference`, from 0 to 1; 0 where it is left out.
+    /// Above 0 the energy of a mesh can grow, the less the smaller the step.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     pub restitution: Option<f64>,
     /// Rayleigh damping.
@@ -61,6 +66,20 @@ pub struct DynamicSpec {
     /// States of the body that are written and shown, evenly over the duration, beside the first; at most 10000.
     #[serde(default = "frames")]
     pub frames: usize,
+    /// Points whose time, displacement, velocity and contact force are written at every step, into `watch.csv` of `--out`.
+    #[serde(default, deserialize_with = "choices", skip_serializing_if = "Vec::is_empty")]
+    pub watch: Vec<WatchSpec>,
+}
+
+/// A point to be watched.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum WatchSpec {
+    /// A node of the mesh, from 0.
+    Node(usize),
+    /// A point of the undeformed body, one entry for each coordinate; values are interpolated in the element around it.
+    Point(Vec<f64>),
 }
 
 fn frames() -> usize {

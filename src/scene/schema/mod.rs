@@ -11,7 +11,9 @@ pub(super) mod json;
 pub(super) mod model;
 pub(super) mod obstacle;
 
-pub use analysis::{AnalysisSpec, DynamicSpec, FactorSpec, FieldSpec, LoadInTimeSpec, MassSpec, PenetrationSpec};
+pub use analysis::{
+    AnalysisSpec, DynamicSpec, FactorSpec, FieldSpec, LoadInTimeSpec, MassSpec, PenetrationSpec, WatchSpec,
+};
 pub use approach::Rule;
 pub use body::{FurtherBodySpec, MaterialSpec};
 pub use condition::{LoadSpec, Place, SupportSpec};

@@ -8,7 +8,7 @@
 //! * the rows that look closed are put at their gaps by the smallest shift, and keep the forces of the answer.
 
 use super::super::energy_norm::Boundary;
-use super::repair::Repair;
+use super::repair::{Multipliers, Repair};
 use super::{Answer, EnergyNorm, ErrorBound};
 use crate::qp::problem::ContactProblem;
 
@@ -95,7 +95,7 @@ impl ContactProblem {
         let residual = self.accurate_residual(u, lambda);
         let answer = Answer { displacement: u, multiplier: lambda, residual, violation: &violation };
         let repair = Repair::new(self, norm, norm.boundary()?, &answer)?;
-        let witness = repair.settle(&self.rows_that_look_closed(&answer), true)?;
+        let witness = repair.settle(&self.rows_that_look_closed(&answer), Multipliers::InEquilibrium)?;
         Some(repair.answer(&witness))
     }
 }

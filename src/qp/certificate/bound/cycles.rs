@@ -90,3 +90,49 @@ impl ContactProblem {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::qp::linear::SparseMatrix;
+    use crate::qp::linear::multigrid::NearNullSpace;
+
+    /// Points along a side of the square.
+    const SIDE: usize = 48;
+
+    #[test]
+    fn rows_that_press_over_an_open_gap_are_moved_to_it_at_the_cost_of_their_shifts() {
+        // Five points on a square, a wall before each at 1, and the load under which they press there by 1 - 0.1 K 1 or more.
+        let dofs = SIDE * SIDE;
+        let mut entries: Vec<_> = (0..dofs).map(|own| (own, own, 4.0)).collect();
+        entries.extend((0..dofs).filter(|own| own % SIDE + 1 < SIDE).map(|own| (own + 1, own, -1.0)));
+        entries.extend((0..dofs - SIDE).map(|own| (own + SIDE, own, -1.0)));
+        let stiffness =
+            SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &entries).unwrap()).unwrap();
+        let rows: Vec<_> = (0..dofs).map(|dof| (dof, dof, 1.0)).collect();
+        let contact = SparseMatrix::from_triplets(dofs, dofs, &rows).unwrap();
+        let load = stiffness.mul(&vec![0.9; dofs]).iter().map(|force| force + 1.0).collect();
+        let problem = ContactProblem::new(stiffness, load, contact, vec![1.0; dofs]).unwrap();
+        let near_null = NearNullSpace::constants(problem.stiffness()).unwrap();
+        let multigrid = Multigrid::new(problem.stiffness(), &near_null, 1).unwrap();
+        assert!(multigrid.unknowns().len() > 1);
+        // Forces of one balance u = 0.9, which is open by 0.1 everywhere.
+        let (u, lambda) = (vec![0.9; dofs], vec![-1.0; dofs]);
+        let violation = problem.accurate_violation(&u);
+        let residual = problem.accurate_residual(&u, &lambda);
+        let answer = Answer { displacement: &u, multiplier: &lambda, residual, violation: &violation };
+        let (bound, measured) = problem.energy_error_bound_by(&multigrid, &answer, &Watch::default());
+        // A shift of 0.1 against a stiffness of 4, once for the answer and once for its residual.
+        let of_rows = dofs as f64 * 0.1 * 2.0;
+        assert!((bound.whole / (2.0 * of_rows) - 1.0).abs() < 1e-5, "{bound:?}");
+        // The exact answer is one everywhere: K 1 is one at each edge, so that the error is 0.1 sqrt(1'K 1).
+        assert!(bound.whole > 0.1 * (4.0 * SIDE as f64).sqrt());
+        assert!(measured.unwrap().of_residual < 1e-10);
+        // A force that pulls is none, and is left as a residual.
+        let pulls = vec![1.0; dofs];
+        let residual = problem.accurate_residual(&u, &pulls);
+        let answer = Answer { displacement: &u, multiplier: &pulls, residual, violation: &violation };
+        let (bound, measured) = problem.energy_error_bound_by(&multigrid, &answer, &Watch::default());
+        assert!(measured.is_none() && bound.whole > 0.1 * (4.0 * SIDE as f64).sqrt(), "{bound:?}");
+    }
+}

@@ -90,6 +90,15 @@ impl ErrorBound {
     }
 }
 
+/// The rows that keep their forces in a repair.
+#[derive(Clone, Copy)]
+enum Keeping<'a> {
+    /// All rows, which are moved out of their obstacles only.
+    All,
+    /// The closed rows, which are moved to their gaps.
+    Closed(&'a [bool]),
+}
+
 /// Squares of what is below this share of another number underflow beside it.
 const LOST: f64 = 1e-140;
 
@@ -107,8 +116,8 @@ impl ContactProblem {
         // What was cut short is nothing.
         let on_boundary = on_boundary.filter(|bound| bound.whole.is_finite() || !norm.is_over());
         let bound = on_boundary.unwrap_or_else(|| {
-            let as_it_stands = self.bound_row_by_row(norm, answer, None);
-            self.bound_row_by_row(norm, answer, Some(&closed)).smaller(as_it_stands)
+            let as_it_stands = self.bound_row_by_row(norm, answer, Keeping::All);
+            self.bound_row_by_row(norm, answer, Keeping::Closed(&closed)).smaller(as_it_stands)
         });
         let (underflow, rounding) = (self.underflow(answer), self.rounding_of_residual(answer));
         let bound = bound.widened(norm.widening() * norm.rounding());
@@ -240,5 +249,77 @@ impl ContactProblem {
         Springs {
             stiffness: (0..self.rows()).map(|row| if multiplier[row] < 0.0 { spring(row) } else { 0.0 }).collect(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
+
+    /// Two dofs of stiffness 4 and 16 that nothing couples, and one without stiffness; a row `3 u_0 + 5 u_1 <= 1` and one of zeros.
+    fn apart() -> ContactProblem {
+        let stiffness = SparseMatrix::from_triplets(3, 3, &[(0, 0, 4.0), (1, 1, 16.0)]).unwrap();
+        let contact = SparseMatrix::from_triplets(2, 3, &[(0, 0, 3.0), (0, 1, 5.0)]).unwrap();
+        let stiffness = SymmetricMatrix::from_lower(stiffness).unwrap();
+        ContactProblem::new(stiffness, vec![8.0, 0.0, 7.0], contact, vec![1.0, 1.0]).unwrap()
+    }
+
+    fn answer<'a>(displacement: &'a [f64], multiplier: &'a [f64]) -> Answer<'a> {
+        Answer { displacement, multiplier, residual: vec![0.0; 3], violation: &[-1.0, -1.0] }
+    }
+
+    #[test]
+    fn lengths_along_rows_are_sums_of_single_shifts() {
+        // |b_0| sqrt(4) + |b_1| sqrt(16) over b'b, which is above sqrt(3^2 4 + 5^2 16) / 34.
+        assert_eq!(apart().lengths_along_rows(), [(3.0 * 2.0 + 5.0 * 4.0) / 34.0, 0.0]);
+    }
+
+    #[test]
+    fn rounding_of_a_residual_is_a_share_of_the_forces_on_each_dof() {
+        // On the first dof 8 + 3 * 2, over sqrt(4); on the second 5 * 2, over sqrt(16); the third has no stiffness.
+        let rounding: f64 = apart().rounding_of_residual(&answer(&[0.0; 3], &[-2.0, 0.0])).iter().sum();
+        assert_eq!(rounding / OF_SUMS, 7.0 + 2.5);
+    }
+
+    #[test]
+    fn every_displacement_that_underflows_counts_twice_the_least_length() {
+        // Without a multiplier only the first dof is loaded: a share LOST of 8 / sqrt(4).
+        let least = LOST * 4.0;
+        let underflow = |u: &[f64]| apart().underflow(&answer(u, &[0.0, 0.0])) / least;
+        for (u, lost) in [([0.0; 3], 0.0), ([1.0, 1.0, 1e-200], 0.0), ([1e-145, 1.0, 0.0], 2.0)] {
+            assert_eq!(underflow(&u), lost, "{u:?}");
+        }
+        assert_eq!(underflow(&[-1e-145, 1e-145, 0.0]), 4.0);
+        // Without any force it is what underflows by itself.
+        let free = apart().with_load(vec![0.0; 3]).unwrap();
+        assert_eq!(free.underflow(&answer(&[1e-150, 1.0, 0.0], &[0.0, 0.0])), 2.0 * LEAST);
+    }
+
+    #[test]
+    fn springs_stand_on_rows_that_press_and_are_as_stiff_as_these() {
+        // The compliance of the row is 9 / 4 + 25 / 16, the energy norm of u is 2.
+        let stiffness = 1.0 / (9.0 / 4.0 + 25.0 / 16.0);
+        let springs = |force: f64, u: f64| apart().springs(&[u, 0.0, 0.0], &[-force, 0.0]).stiffness;
+        assert_eq!(springs(10.0, 1.0), [stiffness, 0.0]);
+        assert_eq!(springs(-10.0, 1.0), [0.0, 0.0]);
+        // A force below the share that presses, and one that does not reach over the gap of a body at rest.
+        let least = PRESSING * stiffness.sqrt() * 2.0;
+        assert_eq!(springs(0.9 * least, 1.0), [0.0, 0.0]);
+        assert_eq!(springs(1.1 * least, 1.0), [stiffness, 0.0]);
+        assert_eq!(springs(0.9 * stiffness, 0.0), [0.0, 0.0]);
+        assert_eq!(springs(1.1 * stiffness, 0.0), [stiffness, 0.0]);
+    }
+
+    #[test]
+    fn rows_look_closed_if_their_force_reaches_over_their_distance() {
+        let stiff = 1.0 / (9.0 / 4.0 + 25.0 / 16.0);
+        for (share, looks) in [(0.9, false), (1.1, true)] {
+            // The distance of both rows is one; a row of zeros has no compliance.
+            let problem = apart();
+            assert_eq!(problem.rows_that_look_closed(&answer(&[0.0; 3], &[-share * stiff, -1.0])), [looks, false]);
+        }
+        let unbounded = apart().with_gap(vec![f64::INFINITY, 1.0]).unwrap();
+        assert_eq!(unbounded.rows_that_look_closed(&answer(&[0.0; 3], &[-9.0, 0.0])), [false, false]);
     }
 }

@@ -7,6 +7,15 @@ use super::{Answer, EnergyNorm, ErrorBound};
 use crate::qp::linear::{dot, exponent, ldexp};
 use crate::qp::problem::ContactProblem;
 
+/// The multipliers of a repair.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Multipliers {
+    /// Those that balance the closed rows at their gaps.
+    InEquilibrium,
+    /// Those of the answer.
+    OfTheAnswer,
+}
+
 /// Rounding of a sum of forces, in units of its terms; a factor multiplies it by its [loss](EnergyNorm::loss).
 const CANCELLED: f64 = 4.0 * f64::EPSILON;
 
@@ -194,5 +203,35 @@ impl<'a> Repair<'a> {
     /// Multipliers in the units of the problem.
     pub fn expanded(&self, multiplier: &[f64]) -> Vec<f64> {
         multiplier.iter().zip(&self.shift).map(|(&mu, &shift)| ldexp(mu, shift)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
+
+    /// Rounding of a handful of operations.
+    const ROUNDING: f64 = 1e-12;
+
+    #[test]
+    fn a_spring_behind_its_wall_is_repaired_by_its_penetration() {
+        // K = 4, f = 8, g = 1; u = 3/2 under a force of 3 leaves -1 out of balance. The repair is u = 1 under a force of 4.
+        let one = |value| SparseMatrix::from_triplets(1, 1, &[(0, 0, value)]).unwrap();
+        let stiffness = SymmetricMatrix::from_lower(one(4.0)).unwrap();
+        let problem = ContactProblem::new(stiffness, vec![8.0], one(1.0), vec![1.0]).unwrap();
+        let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
+        let answer = Answer { displacement: &[1.5], multiplier: &[-3.0], residual: vec![-1.0], violation: &[0.5] };
+        let repair = Repair::new(&problem, &norm, norm.boundary().unwrap(), &answer).unwrap();
+        let witness = repair.best_witness(&[true]).unwrap();
+        let (moved, multiplier) = repair.answer(&witness);
+        assert!((moved[0] - 1.0).abs() < ROUNDING, "{moved:?}");
+        let change = repair.expanded(&witness.change);
+        assert!((multiplier[0] + 3.0).abs() < ROUNDING || (multiplier[0] + 4.0).abs() < ROUNDING, "{multiplier:?}");
+        assert!((change[0] + 1.0).abs() < ROUNDING, "{change:?}");
+        // A way of 1/2 against a stiffness of 4.
+        assert!((repair.bound(&witness).whole - 1.0).abs() < ROUNDING, "{:?}", repair.bound(&witness));
+        // The residual and the change of the force, one each, move the spring by 1/2 in energy norm each.
+        assert!((repair.cancelled(&witness) / CANCELLED - 1.0).abs() < ROUNDING, "{:e}", repair.cancelled(&witness));
     }
 }

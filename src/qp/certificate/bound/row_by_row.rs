@@ -1,6 +1,6 @@
 //! The bound where the contact boundary is not known: rows are repaired one by one, each by its own dofs.
 
-use super::{Answer, EnergyNorm, ErrorBound};
+use super::{Answer, EnergyNorm, ErrorBound, Keeping};
 use crate::qp::linear::{SparseMatrix, dot};
 use crate::qp::problem::ContactProblem;
 
@@ -42,15 +42,19 @@ impl ContactProblem {
         self.contact.mul_abs(&magnitude)
     }
 
-    /// The bound from the displacement whose rows are moved one after the other, each by its own dofs: those of `closed`
-    /// to their gaps, all others out of their obstacles. Without `closed` every row keeps its force.
-    pub(super) fn bound_row_by_row(&self, norm: &EnergyNorm, answer: &Answer, closed: Option<&[bool]>) -> ErrorBound {
+    /// The bound from the displacement whose rows are moved one after the other, each by its own dofs: the closed ones
+    /// to their gaps, all others out of their obstacles.
+    pub(super) fn bound_row_by_row(&self, norm: &EnergyNorm, answer: &Answer, keeping: Keeping) -> ErrorBound {
         let by_row = self.contact.transposed();
-        let is_closed = |row: usize| closed.is_some_and(|closed| closed[row]);
+        let is_closed = |row: usize| match keeping {
+            Keeping::All => false,
+            Keeping::Closed(closed) => closed[row],
+        };
+        let keeps_all = matches!(keeping, Keeping::All);
         let Some(mut repair) = self.repair(&by_row, answer, is_closed) else { return ErrorBound::none() };
         let is_moved = repair.iter().any(|&change| change != 0.0);
         let mut multiplier: Vec<f64> = (0..self.rows())
-            .map(|row| if closed.is_none() || is_closed(row) { answer.multiplier[row].min(0.0) } else { 0.0 })
+            .map(|row| if keeps_all || is_closed(row) { answer.multiplier[row].min(0.0) } else { 0.0 })
             .collect();
         let dropped: Vec<f64> = multiplier.iter().zip(answer.multiplier).map(|(mu, lambda)| mu - lambda).collect();
         let mut residual = answer.residual.clone();
@@ -58,7 +62,7 @@ impl ContactProblem {
         if is_moved {
             residual.iter_mut().zip(self.stiffness.mul(&repair)).for_each(|(entry, force)| *entry -= force);
         }
-        if closed.is_some() && is_moved {
+        if !keeps_all && is_moved {
             let mut held = vec![false; self.dofs()];
             for row in (0..self.rows()).filter(|&row| is_closed(row)) {
                 by_row.column(row).filter(|entry| entry.1 != 0.0).for_each(|(dof, _)| held[dof] = true);
@@ -239,4 +243,38 @@ impl ContactProblem {
 /// A sum and the sum of magnitudes, with one term more.
 fn add_term((sum, magnitudes): (f64, f64), term: f64) -> (f64, f64) {
     (sum + term, magnitudes + term.abs())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::qp::linear::SymmetricMatrix;
+
+    #[test]
+    fn a_row_off_its_gap_is_put_there_along_itself_and_a_row_of_zeros_cannot_be() {
+        let stiffness = SparseMatrix::from_triplets(2, 2, &[(0, 0, 4.0), (1, 1, 16.0)]).unwrap();
+        let contact = SparseMatrix::from_triplets(2, 2, &[(0, 0, 3.0), (0, 1, 4.0)]).unwrap();
+        let stiffness = SymmetricMatrix::from_lower(stiffness).unwrap();
+        let problem = ContactProblem::new(stiffness, vec![0.0; 2], contact, vec![0.0; 2]).unwrap();
+        let put = |violation: [f64; 2], aims: [Aim; 2]| {
+            let (displacement, multiplier) = ([0.0; 2], [0.0; 2]);
+            let answer = Answer {
+                displacement: &displacement,
+                multiplier: &multiplier,
+                residual: vec![0.0; 2],
+                violation: &violation,
+            };
+            problem.put_along_rows(
+                &problem.contact.transposed(),
+                &Start { answer: &answer, moved_by: &[0.0; 2], aims: &aims },
+            )
+        };
+        // A distance of 25 moves the dofs by 3 and 4: against roots of stiffness of 2 and 4, 6 + 16 at most.
+        let at_gap = [Aim::AtGap, Aim::WithinGap];
+        assert_eq!(put([25.0, -1.0], at_gap), Some(vec![22.0, 0.0]));
+        assert_eq!(put([-25.0, -1.0], at_gap), Some(vec![22.0, 0.0]));
+        // Open rows stay where they are, unless they have to be at their gaps.
+        assert_eq!(put([-25.0, -1.0], [Aim::WithinGap; 2]), Some(vec![0.0, 0.0]));
+        assert_eq!(put([25.0, 1.0], at_gap), None);
+    }
 }

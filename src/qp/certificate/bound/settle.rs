@@ -1,6 +1,6 @@
 //! The repair itself: which rows are closed, and the forces that put them at their gaps.
 
-use super::repair::{Force, Repair, Witness};
+use super::repair::{Force, Multipliers, Repair, Witness};
 use super::triangle::{Triangle, triangle_of};
 use crate::qp::linear::{UpperTriangle, ldexp};
 
@@ -19,16 +19,28 @@ const DISTANCE_ROUNDING: f64 = 16.0 * f64::EPSILON;
 impl Repair<'_> {
     /// The equilibrium of the rows that look closed where all of them push, or else the better of both repairs.
     pub fn best_witness(&self, closed: &[bool]) -> Option<Witness> {
-        let settled = self.settle(closed, true);
+        let settled = self.settle(closed, Multipliers::InEquilibrium);
         if settled.as_ref().is_some_and(|witness| witness.left.is_none()) {
             return settled;
         }
         let size = |witness: &Witness| self.bound(witness).size();
-        [settled, self.settle(closed, false)].into_iter().flatten().min_by(|a, b| size(a).total_cmp(&size(b)))
+        [settled, self.settle(closed, Multipliers::OfTheAnswer)]
+            .into_iter()
+            .flatten()
+            .min_by(|a, b| size(a).total_cmp(&size(b)))
     }
 
-    /// A feasible point at which the closed rows are at their gaps: their equilibrium, or with the forces of the answer.
-    pub fn settle(&self, closed: &[bool], in_equilibrium: bool) -> Option<Witness> {
+    /// The force beside the change of the multipliers of closed rows; in equilibrium open rows lose theirs.
+    fn base(&self, closed: &[bool], multipliers: Multipliers) -> Force {
+        let dropped = |row: usize| if closed[row] { 0.0 } else { -self.multiplier[row] };
+        match multipliers {
+            Multipliers::InEquilibrium => Force::new(1.0, (0..closed.len()).map(dropped).collect()),
+            Multipliers::OfTheAnswer => Force::new(0.0, vec![0.0; closed.len()]),
+        }
+    }
+
+    /// A feasible point at which the closed rows are at their gaps, with these multipliers.
+    pub fn settle(&self, closed: &[bool], multipliers: Multipliers) -> Option<Witness> {
         let rows = self.rows.len();
         let mut closed = closed.to_vec();
         let mut first = vec![false; rows];
@@ -40,14 +52,7 @@ impl Repair<'_> {
                     .partial_cmp(&(first[a], self.violation[a]))
                     .unwrap_or(std::cmp::Ordering::Equal)
             });
-            let base = match in_equilibrium {
-                // Open rows lose their forces.
-                true => {
-                    let dropped = |row: usize| if closed[row] { 0.0 } else { -self.multiplier[row] };
-                    Force::new(1.0, (0..rows).map(dropped).collect())
-                }
-                false => Force::new(0.0, vec![0.0; rows]),
-            };
+            let base = self.base(&closed, multipliers);
             let fitted = self.fit(&set, &base)?;
             let Fitted { change, steps, distance, tolerance, triangle } = &fitted;
             let independent = triangle.independent();
@@ -61,9 +66,11 @@ impl Repair<'_> {
                 .map(|entry| *entry.0)
                 .collect();
             let (deeper, looser): (Vec<usize>, Vec<usize>) = follows.iter().partition(|&&row| distance[row] > 0.0);
-            let pulling: Vec<usize> = match in_equilibrium {
-                true => set.iter().copied().filter(|&row| self.multiplier[row] + change[row] > 0.0).collect(),
-                false => Vec::new(),
+            let pulling: Vec<usize> = match multipliers {
+                Multipliers::InEquilibrium => {
+                    set.iter().copied().filter(|&row| self.multiplier[row] + change[row] > 0.0).collect()
+                }
+                Multipliers::OfTheAnswer => Vec::new(),
             };
             let is_met = violated.is_empty() && deeper.is_empty() && looser.is_empty();
             if is_met && (pulling.is_empty() || exchange >= EXCHANGES) {
@@ -72,7 +79,7 @@ impl Repair<'_> {
                 return Some(Witness {
                     rest: self.rest(&set, &fitted),
                     has_dependent,
-                    ..self.witness(error, change, &closed, in_equilibrium)
+                    ..self.witness(error, change, &closed, multipliers)
                 });
             }
             if deeper.iter().any(|&row| first[row]) {
@@ -90,7 +97,8 @@ impl Repair<'_> {
     }
 
     /// The witness of rows that are at their gaps under the force `error`, a `change` of the multipliers included.
-    fn witness(&self, error: Force, change: &[f64], closed: &[bool], in_equilibrium: bool) -> Witness {
+    fn witness(&self, error: Force, change: &[f64], closed: &[bool], multipliers: Multipliers) -> Witness {
+        let in_equilibrium = multipliers == Multipliers::InEquilibrium;
         let balanced = |row: usize| self.multiplier[row] + if in_equilibrium { change[row] } else { 0.0 };
         // What pulls is no multiplier.
         let multiplier: Vec<f64> =

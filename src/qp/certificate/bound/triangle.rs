@@ -42,8 +42,11 @@ fn of_products(columns: &[&[f64]], is_over: &impl Fn() -> bool) -> Option<Triang
         }
         let pivot = dot(column, column) - dot(&entries, &entries);
         let (weights, terms) = found.combined(&entries, &lengths);
-        let is_independent = pivot > PARALLEL * terms * terms;
-        found.close(entries, pivot.max(0.0).sqrt(), (!is_independent).then_some(weights));
+        if pivot > PARALLEL * terms * terms {
+            found.push(entries, pivot.sqrt());
+        } else {
+            found.push_dependent(weights);
+        }
     }
     Some(found)
 }
@@ -64,8 +67,11 @@ fn of_columns(columns: &[&[f64]], is_over: &impl Fn() -> bool) -> Option<Triangl
         }
         let left = norm(&across);
         let (weights, terms) = found.combined(&entries, &lengths);
-        let is_independent = left > DEPENDENT * terms;
-        found.close(entries, left, (!is_independent).then_some(weights));
+        if left > DEPENDENT * terms {
+            found.push(entries, left);
+        } else {
+            found.push_dependent(weights);
+        }
         across.iter_mut().for_each(|entry| *entry /= left);
         directions.push(across);
     }
@@ -82,13 +88,44 @@ impl Triangle {
         (weights, terms)
     }
 
-    /// Appends a column of R with these entries above its diagonal entry, or one that follows from those before with some weights,
-    /// of which nothing else is kept.
-    fn close(&mut self, entries: Vec<f64>, diagonal: f64, follows: Option<Vec<f64>>) {
-        match follows {
-            None => self.r.push(entries, diagonal, true),
-            Some(_) => self.r.push(vec![0.0; entries.len()], 0.0, false),
+    /// Appends a column of R with these entries above its diagonal entry.
+    fn push(&mut self, entries: Vec<f64>, diagonal: f64) {
+        self.r.push(entries, diagonal);
+        self.weights.push(Vec::new());
+    }
+
+    /// Appends a column that follows from those before with these weights, of which nothing else is kept.
+    fn push_dependent(&mut self, weights: Vec<f64>) {
+        self.r.push_dependent(vec![0.0; self.r.size()], 0.0);
+        self.weights.push(weights);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rounding of a handful of operations on nearly orthogonal columns.
+    const ROUNDING: f64 = 1e-13;
+
+    #[test]
+    fn a_column_that_follows_from_others_is_left_out_with_its_weights_in_any_unit() {
+        for unit in [1e-40, 1.0, 1e40] {
+            let column = |entries: [f64; 3]| entries.map(|entry| unit * entry);
+            // The third is twice the first less three times the second.
+            let columns = [[1.0, 0.0, 2.0], [0.0, 1.0, -1.0], [2.0, -3.0, 7.0], [1.0, 1.0, 0.0]].map(column);
+            let columns: Vec<&[f64]> = columns.iter().map(|column| &column[..]).collect();
+            let Triangle { r, weights } = triangle_of(&columns, || false).unwrap();
+            assert_eq!(r.independent(), [true, true, false, true], "{unit:e}");
+            let off = weights[2].iter().zip([2.0, -3.0]).map(|(weight, exact)| (weight - exact).abs());
+            assert!(off.fold(0.0, f64::max) < ROUNDING, "{unit:e}: {weights:?}");
+            // R'R are the products of the columns that are kept.
+            for (a, b) in [(0, 0), (0, 1), (1, 1), (0, 3), (1, 3), (3, 3)] {
+                let product: f64 = (0..=a).map(|row| r.column(a)[row] * r.column(b)[row]).sum();
+                let exact = dot(columns[a], columns[b]);
+                assert!((product - exact).abs() < ROUNDING * unit * unit * 6.0, "{unit:e}, {a}, {b}");
+            }
+            assert!(triangle_of(&columns, || true).is_none());
         }
-        self.weights.push(follows.unwrap_or_default());
     }
 }

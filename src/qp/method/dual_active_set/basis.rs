@@ -73,7 +73,7 @@ impl Basis {
         across.iter_mut().for_each(|entry| *entry /= length);
         self.rows.push(row);
         self.directions.push(across);
-        self.triangle.push(along, length, true);
+        self.triangle.push(along, length);
     }
 
     /// Opens the row at `place` of [`rows`](Self::rows).

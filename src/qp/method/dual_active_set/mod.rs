@@ -104,7 +104,8 @@ impl Solver for DualActiveSet<'_> {
             }
         }
         let Search { basis, displacement, pressures, history, .. } = search;
-        Ok(self.polyhedron.expand(&displacement, &pressures, basis.rows(), history, settled))
+        let outcome = self.polyhedron.expand(&displacement, &pressures, basis.rows(), history);
+        Ok(if settled { outcome } else { Outcome { settled, variant: "-dual-unsettled", ..outcome } })
     }
 }
 
@@ -126,7 +127,7 @@ struct Search<'a> {
 impl Search<'_> {
     fn contact_set(&self) -> ContactSet {
         let mut closed = ContactSet::open(self.pressures.len());
-        self.basis.rows().iter().for_each(|&row| closed.set(row, true));
+        self.basis.rows().iter().for_each(|&row| closed.insert(row));
         closed
     }
 

@@ -91,7 +91,7 @@ impl<'a> Pass<'a> {
             self.watch.step("dual active set", self.history.len() + 1);
             if self.close(row, violation)? {
                 let mut closed = ContactSet::open(self.distances.len());
-                self.basis.rows().iter().for_each(|&row| closed.set(row, true));
+                self.basis.rows().iter().for_each(|&row| closed.insert(row));
                 self.history.push(Iteration { contact_set: closed.clone(), penalty: 0.0 });
                 if !seen.insert(closed) {
                     return Ok(Ending::Stopped);

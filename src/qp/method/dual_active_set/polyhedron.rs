@@ -58,7 +58,7 @@ impl Polyhedron {
             Err(FactorError::NotPositiveDefinite) => Ok(None),
             Err(error) => Err(Error::from(error)),
         };
-        let definite = if scaled.definite { factor_with(0.0)? } else { None };
+        let definite = if scaled.is_definite() { factor_with(0.0)? } else { None };
         let factor = match definite {
             Some(factor) => factor,
             None => match factor_with(PROXIMAL)? {
@@ -156,27 +156,26 @@ impl Polyhedron {
         Error::Infeasible { reason, rows, weights, overlap: 0.0 }
     }
 
-    /// The answer in the units of the problem that was scaled; `pressures` are `-lambda`.
+    /// The settled answer in the units of the problem that was scaled; `pressures` are `-lambda`.
     pub fn expand(
         &self,
         displacement: &[f64],
         pressures: &[f64],
         closed: &[usize],
         history: Vec<Iteration>,
-        settled: bool,
     ) -> Outcome {
         let displacement = displacement.iter().zip(&self.equilibration.diagonal).map(|(&v, &d)| ldexp(v, d)).collect();
         let of_row = |(&y, &scale): (&f64, &i32)| -ldexp(y.max(0.0), scale - self.equilibration.factor);
         let mut contact_set = ContactSet::open(pressures.len());
-        closed.iter().for_each(|&row| contact_set.set(row, true));
+        closed.iter().for_each(|&row| contact_set.insert(row));
         Outcome {
             displacement,
             multiplier: pressures.iter().zip(&self.scales).map(of_row).collect(),
             contact_set,
             iterations: history.len(),
             history,
-            settled,
-            variant: if settled { LAST_RESORT } else { "-dual-unsettled" },
+            settled: true,
+            variant: LAST_RESORT,
         }
     }
 }

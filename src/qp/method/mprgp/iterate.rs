@@ -83,13 +83,11 @@ impl<'a> Iterate<'a> {
         let diagonal = problem.stiffness().diagonal();
         let at = vec![At::Free; bounds.bounds().len()];
         let mut iterate = Iterate { problem, bounds, load, diagonal, x, gradient: Vec::new(), at, threads };
-        for (index, bound) in bounds.bounds().iter().enumerate() {
-            if let Some(closed) = &start.contact_set {
+        if let Some(closed) = &start.contact_set {
+            for bound in bounds.bounds() {
                 let value = &mut iterate.x[bound.unknown];
-                if bounds.is_closed(index, true, closed) {
-                    *value = bound.upper;
-                } else if bounds.is_closed(index, false, closed) {
-                    *value = bound.lower;
+                if let Some(held) = bound.closed_at(closed) {
+                    *value = held;
                 } else if *value >= bound.upper {
                     *value = bound.upper - INSIDE * bound.upper.abs();
                 } else if *value <= bound.lower {

@@ -1,0 +1,289 @@
+"""Do the tests see a fault in the certificate? `python reference/mutants.py [--count N] [--seed S]`.
+
+cargo-mutants (`cargo install cargo-mutants --locked`) lists the mutants of certificate, bound, proof, infeasibility and
+claims: an operator exchanged, a condition negated, a function that returns a constant. This command draws some of them,
+puts one at a time into a copy of the repository in `target/mutants`, builds it, and runs stages of fast tests until one
+fails. Survivors that are no faults stand in `tests/mutants.toml`, each with its reason. Exits with 1 if more than 2 %
+of the mutants that build survive without a reason. `--again` takes the killed ones of earlier runs as killed.
+"""
+
+import argparse
+import json
+import os
+import random
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import tomllib
+from collections import Counter
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+OWN = ROOT / "target" / "mutants"
+REASONS = ROOT / "tests" / "mutants.toml"
+
+FILES = ("src/qp/certificate/**", "src/qp/claims/**")
+"""What is mutated: conditions, bound, proof, infeasible rows, claims."""
+
+SEED = 20
+COUNT = 60
+"""So many take half an hour on two cores that have other work too: 10 to 20 s for one that is killed, a minute for one
+that survives. A larger draw of the same seed has the smaller one in it."""
+
+ALLOWED = 0.02
+"""The share of the mutants that build which may survive without a reason."""
+
+BUILD_SECONDS = 300
+TEST_SECONDS = 120
+"""A stage takes at most 20 s: a mutant that takes six times as long is in a loop, and counts as seen."""
+
+MEMORY = 6 << 30
+"""Address space of a test program in bytes: a loop that fills a vector ends there."""
+
+SLOW = (
+    "contact_sets_of_three_hundred_rows",
+    "a_loose_bound_of_the_pieces_is_that_of_the_whole",
+    "plain_loop_meets_cycles",
+    "every_example_scene_has_the_same_answer",
+)
+"""Tests of the modules below that take 4 s or more, and hold methods rather than the certificate."""
+
+
+@dataclass(frozen=True)
+class Stage:
+    """Test programs by the arguments that build them, and the tests that run."""
+
+    name: str
+    programs: tuple[str, ...]
+    tests: tuple[str, ...]
+
+
+STAGES = (
+    Stage(
+        "quick",
+        ("--test", "numerics"),
+        ("certificate::", "claims::", "hostile::", "exact_arithmetic::", "findings::"),
+    ),
+    Stage("unit", ("--lib",), ("qp::",)),
+    Stage(
+        "numerics",
+        ("--test", "numerics"),
+        ("degenerate::", "dual_active_set::", "energy_bound::", "exact_path::", "extremes::", "methods::")
+        + ("obstacle_problems::", "penalty_ladder::", "precision::", "proven_set::", "separate_parts::", "watch::"),
+    ),
+    Stage("multigrid", ("--test", "multigrid"), ("cycle_bound::", "mprgp::")),
+)
+"""Fast tests first; the rest runs only for what they leave alive."""
+
+WRAPPER = '#!/bin/sh\nexec "$@" -C lto=off\n'
+"""What calls the compiler for the crate itself: functions of other units are not inlined again, so that a build takes
+a sixth of the time."""
+
+MARK = re.compile(r" ?/\* ~ changed by cargo-mutants ~ \*/")
+PLACE = re.compile(r":\d+:\d+: ")
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """A change of one file: its name, with line and column, and the lines that it takes away and adds."""
+
+    name: str
+    file: str
+    diff: str
+
+    @property
+    def key(self) -> tuple[str, str]:
+        """What tells it from others wherever it stands: its name without the place, and its first new line."""
+        added = [line[1:] for line in self.diff.splitlines()[2:] if line.startswith("+")]
+        return PLACE.sub(": ", self.name, count=1), MARK.sub("", added[0]).strip() if added else ""
+
+    def applied(self, text: str) -> str:
+        """The text of the file with the change."""
+        lines, changed, at = text.splitlines(), [], 0
+        for line in self.diff.splitlines()[2:]:
+            if line.startswith("@@"):
+                start = int(re.match(r"@@ -(\d+)", line)[1]) - 1
+                changed += lines[at:start]
+                at = start
+            elif line.startswith("+"):
+                changed.append(line[1:])
+            elif line.startswith(("-", " ")):
+                if lines[at] != line[1:]:
+                    raise ValueError(f"{self.name}: line {at + 1} is not that of the list")
+                changed += [lines[at]] if line.startswith(" ") else []
+                at += 1
+        return "\n".join(changed + lines[at:]) + "\n"
+
+
+def listed(root: Path) -> list[Mutant]:
+    """All mutants of the stated files, in the order of the tool."""
+    chosen = [part for file in FILES for part in ("--file", file)]
+    command = ["cargo", "mutants", "--no-config", "--list", "--json", *chosen]
+    done = subprocess.run(command, cwd=root, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise SystemExit(f"cargo mutants: {done.stderr.strip()}\nIt comes with: cargo install cargo-mutants --locked")
+    return [Mutant(one["name"], one["file"], one["diff"]) for one in json.loads(done.stdout)]
+
+
+def drawn(mutants: list[Mutant], count: int, seed: int) -> list[Mutant]:
+    """`count` of the mutants, in the order of the list; the same for the same seed and list."""
+    draws, places = random.Random(seed), set()
+    while len(places) < min(count, len(mutants)):
+        places.add(draws.randrange(len(mutants)))
+    return [mutants[place] for place in sorted(places)]
+
+
+def reasons(file: Path) -> dict[tuple[str, str], str]:
+    """Why a mutant is no fault, by its key."""
+    entries = tomllib.loads(file.read_text())["survivor"] if file.exists() else []
+    for entry in entries:
+        if not entry["reason"].strip():
+            raise SystemExit(f"{file.name}: no reason for {entry['mutant']}")
+    return {(entry["mutant"], entry["line"]): entry["reason"] for entry in entries}
+
+
+def copied(root: Path, tree: Path) -> None:
+    """Makes `tree` a copy of the tracked files; those that are the same keep their times, so that little is built."""
+    tracked = subprocess.run(["git", "ls-files", "-z"], cwd=root, capture_output=True, check=True).stdout
+    names = [name for name in tracked.decode().split("\0") if name and (root / name).exists()]
+    for name in names:
+        source, target = root / name, tree / name
+        if not target.exists() or target.read_bytes() != source.read_bytes():
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(source, target)
+    for stale in {path for path in tree.rglob("*") if path.is_file()} - {tree / name for name in names}:
+        stale.unlink()
+
+
+def limited() -> None:
+    """Gives a test program its own limit of memory."""
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+
+
+def ended(command: list[str], tree: Path, seconds: float, limit=None) -> tuple[int | None, str]:
+    """Exit code and standard output of a command; no code if it takes longer. Its children end with it."""
+    environment = os.environ | {
+        "CARGO_TARGET_DIR": str(OWN / "build"),
+        "CARGO_PROFILE_DEV_DEBUG": "0",
+        "RUSTC_WORKSPACE_WRAPPER": str(OWN / "rustc"),
+    }
+    with subprocess.Popen(
+        command,
+        cwd=tree,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+        start_new_session=True,
+        preexec_fn=limit,
+    ) as process:
+        try:
+            output, _ = process.communicate(timeout=seconds)
+            return process.returncode, output
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            process.communicate()
+            return None, ""
+
+
+def programs(tree: Path, stage: Stage) -> list[str] | None:
+    """The built test programs of a stage; None if the tree does not build."""
+    command = ["cargo", "test", "--quiet", "--offline", "--no-run", "--message-format=json", *stage.programs]
+    code, output = ended(command, tree, BUILD_SECONDS)
+    if code != 0:
+        return None
+    messages = [json.loads(line) for line in output.splitlines() if line.startswith("{")]
+    built = [message for message in messages if message.get("profile", {}).get("test")]
+    return [message["executable"] for message in built if message["executable"]]
+
+
+def judged(tree: Path) -> tuple[str, str]:
+    """What becomes of the tree, and in which stage: unbuildable, timed out, killed or survived."""
+    for stage in STAGES:
+        found = programs(tree, stage)
+        if found is None:
+            return "unbuildable", stage.name
+        skipped = [part for name in SLOW for part in ("--skip", name)]
+        for program in found:
+            code, _ = ended([program, *stage.tests, *skipped], tree, TEST_SECONDS, limited)
+            if code is None:
+                return "timed out", stage.name
+            if code != 0:
+                return "killed", stage.name
+    return "survived", ""
+
+
+def tried(mutant: Mutant, tree: Path) -> tuple[str, str]:
+    """What becomes of a mutant in the copy, which is as before afterwards."""
+    file = tree / mutant.file
+    text = file.read_text()
+    try:
+        file.write_text(mutant.applied(text))
+        return judged(tree)
+    finally:
+        file.write_text(text)
+
+
+def summary(outcomes: list[tuple[Mutant, str]], known: dict[tuple[str, str], str]) -> tuple[str, bool]:
+    """The table of a run, with every survivor by name; and whether few enough survive without a reason."""
+    count = Counter(outcome for _, outcome in outcomes)
+    survivors = [mutant for mutant, outcome in outcomes if outcome == "survived"]
+    open_ones = [mutant for mutant in survivors if mutant.key not in known]
+    viable = len(outcomes) - count["unbuildable"]
+    share = lambda number: f"{100.0 * number / viable:.1f} %" if viable else "-"
+    rows = [
+        ("drawn", len(outcomes), ""),
+        ("unbuildable", count["unbuildable"], ""),
+        ("viable", viable, ""),
+        ("killed", count["killed"], share(count["killed"])),
+        ("timed out", count["timed out"], share(count["timed out"])),
+        ("survived", len(survivors), share(len(survivors))),
+        ("survived, with a reason", len(survivors) - len(open_ones), share(len(survivors) - len(open_ones))),
+        ("survived, without", len(open_ones), share(len(open_ones))),
+    ]
+    lines = [f"{name:<24}{number:>6}  {part:>7}".rstrip() for name, number, part in rows]
+    for mutant in survivors:
+        lines += ["", mutant.name, f"    {mutant.key[1]}", f"    {known.get(mutant.key, 'NO REASON')}"]
+    return "\n".join(lines), len(open_ones) <= ALLOWED * viable
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
+    parser.add_argument("--count", type=int, default=COUNT, metavar="N", help=f"mutants to draw; {COUNT} without it")
+    parser.add_argument("--seed", type=int, default=SEED, metavar="S", help=f"of the draw; {SEED} without it")
+    parser.add_argument("--again", action="store_true", help="try only what the last run did not kill")
+    options = parser.parse_args()
+    began, tree, kept = time.monotonic(), OWN / "tree", OWN / "outcomes.json"
+    known, mutants = reasons(REASONS), listed(ROOT)
+    chosen = drawn(mutants, options.count, options.seed)
+    print(f"{len(mutants)} mutants, {len(chosen)} drawn with seed {options.seed}", flush=True)
+    copied(ROOT, tree)
+    (OWN / "rustc").write_text(WRAPPER)
+    (OWN / "rustc").chmod(0o755)
+    first = judged(tree)
+    if first[0] != "survived":
+        print(f"without a mutant the tests end with: {' in stage '.join(first)}", file=sys.stderr)
+        return 1
+    print(f"the tests pass without a mutant, after {time.monotonic() - began:.0f} s", flush=True)
+    last = dict(json.loads(kept.read_text())) if options.again and kept.exists() else {}
+    outcomes = []
+    for mutant in chosen:
+        if last.get(mutant.name, "survived") == "survived":
+            outcome, stage = tried(mutant, tree)
+            print(f"{time.monotonic() - began:6.0f} s  {outcome:<12}{stage:<10}{mutant.name}", flush=True)
+        else:
+            outcome = last[mutant.name]
+        outcomes.append((mutant, outcome))
+        kept.write_text(json.dumps(last | {mutant.name: outcome for mutant, outcome in outcomes}, indent=1))
+    table, is_met = summary(outcomes, known)
+    print(f"\n{table}\n\n{time.monotonic() - began:.0f} s in all")
+    return 0 if is_met else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,132 @@
+"""Tests of the mutants' command without cargo: a change put in and out again, the draw, the stages, the table."""
+
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+from unittest import mock
+
+import mutants
+from mutants import Mutant, Stage
+
+TEXT = "fn least(a: f64, b: f64) -> f64 {\n    let less = a < b;\n    if less { a } else { b }\n}\n"
+
+MARK = "/* ~ changed by cargo-mutants ~ */"
+
+LESS = Mutant(
+    "src/least.rs:2:18: replace < with > in least",
+    "src/least.rs",
+    "--- src/least.rs\n+++ replace < with > in least\n@@ -1,4 +1,4 @@\n fn least(a: f64, b: f64) -> f64 {\n"
+    f"-    let less = a < b;\n+    let less = a > {MARK} b;\n     if less {{ a }} else {{ b }}\n }}\n",
+)
+
+BODY = Mutant(
+    "src/least.rs:2:5: replace least -> f64 with 0.0",
+    "src/least.rs",
+    "--- src/least.rs\n+++ replace least -> f64 with 0.0\n@@ -1,4 +1,3 @@\n fn least(a: f64, b: f64) -> f64 {\n"
+    f"-    let less = a < b;\n-    if less {{ a }} else {{ b }}\n+    0.0 {MARK}\n }}\n",
+)
+
+
+class Change(unittest.TestCase):
+    def test_a_mutant_changes_its_lines_and_no_other(self):
+        self.assertEqual(LESS.applied(TEXT).replace(f" {MARK}", ""), TEXT.replace("<", ">"))
+        self.assertEqual(BODY.applied(TEXT), f"fn least(a: f64, b: f64) -> f64 {{\n    0.0 {MARK}\n}}\n")
+
+    def test_a_change_of_another_text_is_refused(self):
+        with self.assertRaisesRegex(ValueError, "line 2"):
+            LESS.applied(TEXT.replace("less", "more"))
+
+    def test_the_key_does_not_depend_on_the_place(self):
+        self.assertEqual(LESS.key, ("src/least.rs: replace < with > in least", "let less = a > b;"))
+        lower = Mutant(LESS.name.replace(":2:", ":200:"), LESS.file, LESS.diff.replace("-1,4 +1,4", "-199,4 +199,4"))
+        self.assertEqual(lower.key, LESS.key)
+        self.assertNotEqual(BODY.key, LESS.key)
+
+    def test_the_file_is_as_before_however_the_tests_end(self):
+        for ending in (None, KeyboardInterrupt):
+            with tempfile.TemporaryDirectory() as folder, mock.patch.object(mutants, "judged") as judged:
+                file = Path(folder) / LESS.file
+                file.parent.mkdir()
+                file.write_text(TEXT)
+                judged.side_effect = lambda tree: (self.assertIn(">", file.read_text().split("\n")[1]), ending)[1]
+                if ending:
+                    judged.side_effect = ending
+                    with self.assertRaises(ending):
+                        mutants.tried(LESS, Path(folder))
+                else:
+                    mutants.tried(LESS, Path(folder))
+                self.assertEqual(file.read_text(), TEXT)
+
+
+class Draw(unittest.TestCase):
+    def test_a_draw_depends_on_its_seed_alone_and_keeps_the_order(self):
+        every = [Mutant(f"file.rs:{place}:1: change", "file.rs", "") for place in range(500)]
+        first = mutants.drawn(every, 100, 1)
+        self.assertEqual(first, mutants.drawn(every, 100, 1))
+        self.assertNotEqual(first, mutants.drawn(every, 100, 2))
+        self.assertEqual(first, sorted(first, key=every.index))
+        self.assertEqual(len(set(first)), 100)
+        self.assertEqual(mutants.drawn(every, 1000, 1), every)
+
+    def test_a_larger_draw_has_the_smaller_one_in_it(self):
+        every = [Mutant(f"file.rs:{place}:1: change", "file.rs", "") for place in range(1737)]
+        self.assertLess(set(mutants.drawn(every, 60, 20)), set(mutants.drawn(every, 1000, 20)))
+
+
+class Stages(unittest.TestCase):
+    """`judged` with a program of one stage that passes, fails, or does not end."""
+
+    def verdict(self, script: str, builds: bool = True) -> tuple[str, str]:
+        program = [sys.executable, "-c", script] if builds else None
+        stage = Stage("only", (), ())
+        run = mutants.ended
+        with (
+            mock.patch.object(mutants, "STAGES", (stage,)),
+            mock.patch.object(mutants, "TEST_SECONDS", 1.0),
+            mock.patch.object(mutants, "programs", lambda tree, stage: [program] if builds else None),
+            mock.patch.object(mutants, "ended", lambda command, *rest: run(command[0], *rest)),
+        ):
+            return mutants.judged(Path("."))
+
+    def test_each_ending_has_its_name(self):
+        self.assertEqual(self.verdict("pass"), ("survived", ""))
+        self.assertEqual(self.verdict("raise SystemExit(101)"), ("killed", "only"))
+        self.assertEqual(self.verdict("while True: pass"), ("timed out", "only"))
+        self.assertEqual(self.verdict("", builds=False), ("unbuildable", "only"))
+
+
+class Table(unittest.TestCase):
+    def outcomes(self, killed: int, survived: int, unbuildable: int = 0) -> list[tuple[Mutant, str]]:
+        kinds = ["killed"] * killed + ["survived"] * survived + ["unbuildable"] * unbuildable
+        return [(Mutant(f"f.rs:{at}:1: change {at}", "f.rs", f"a\nb\n+x{at}"), kind) for at, kind in enumerate(kinds)]
+
+    def test_two_of_a_hundred_may_survive_without_a_reason_and_no_more(self):
+        self.assertTrue(mutants.summary(self.outcomes(98, 2), {})[1])
+        self.assertFalse(mutants.summary(self.outcomes(97, 3), {})[1])
+        # Those that do not build are not among the hundred.
+        self.assertFalse(mutants.summary(self.outcomes(48, 2, 50), {})[1])
+
+    def test_a_reason_counts_for_its_own_mutant_only(self):
+        outcomes = self.outcomes(97, 3)
+        known = {outcomes[99][0].key: "it changes the speed only"}
+        table, is_met = mutants.summary(outcomes, known)
+        self.assertTrue(is_met)
+        self.assertIn("it changes the speed only", table)
+        self.assertEqual(table.count("NO REASON"), 2)
+        known = {("f.rs: change 99", "another line"): "of another line"}
+        self.assertFalse(mutants.summary(outcomes, known)[1])
+
+    def test_an_empty_reason_is_refused(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "mutants.toml"
+            self.assertEqual(mutants.reasons(file), {})
+            file.write_text('[[survivor]]\nmutant = "f.rs: change"\nline = "x"\nreason = "a tie"\n')
+            self.assertEqual(mutants.reasons(file), {("f.rs: change", "x"): "a tie"})
+            file.write_text('[[survivor]]\nmutant = "f.rs: change"\nline = "x"\nreason = " "\n')
+            with self.assertRaises(SystemExit):
+                mutants.reasons(file)
+
+
+if __name__ == "__main__":
+    unittest.main()

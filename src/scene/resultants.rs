@@ -1,0 +1,244 @@
+//! Resultants: the force, moment and centre of each obstacle, pair of bodies, support, and of the loads.
+
+use serde::Serialize;
+
+use super::Model;
+use super::held::Holder;
+use super::obstacle::PlacedObstacle;
+use super::schema::approach::Rule;
+use crate::error::Error;
+use crate::fem::formulation::Formulation;
+use crate::fem::geometry::{cross, dot, length, minus};
+
+/// Forces that cancel each other to this share of the sum of their magnitudes leave rounding, which has no line of action.
+const CANCELS: f64 = 1e-10;
+
+/// All forces of one kind on the body, in one.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Resultant {
+    /// What they come from: `obstacles[0]`; `pair[0]` for the first obstacle that is another body; `supports[0]`; `loads`.
+    pub of: String,
+    /// The body that they act on, where there are several; the first one is called `body`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub on: Option<String>,
+    /// How the rows of the obstacle are made; none for an obstacle of a user's own, and for supports and loads.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rule: Option<Rule>,
+    /// How many nodes they act on.
+    pub nodes: usize,
+    /// The force on the body, a component for each coordinate. In an axisymmetric model the radial one is summed around the
+    /// circle, where it cancels.
+    pub force: Vec<f64>,
+    /// The moment about the origin, in force times length, of the undeformed body: about z in the plane, three components in space,
+    /// none on a line and in an axisymmetric model.
+    pub moment: Vec<f64>,
+    /// A point on the line of action: with the force there the moment is what is given, but for a part along the force.
+    /// Of parallel forces it is their centre. None where the forces cancel.
+    pub centre: Option<Vec<f64>>,
+}
+
+/// Forces at points, added up.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Sum {
+    at: Vec<[f64; 3]>,
+    forces: Vec<[f64; 3]>,
+}
+
+impl Sum {
+    pub fn add(&mut self, at: [f64; 3], force: [f64; 3]) {
+        if force != [0.0; 3] {
+            self.at.push(at);
+            self.forces.push(force);
+        }
+    }
+
+    pub fn force(&self) -> [f64; 3] {
+        [0, 1, 2].map(|axis| self.forces.iter().fold(0.0, |sum, force| sum + force[axis]))
+    }
+
+    fn moment(&self) -> [f64; 3] {
+        let moments = || self.at.iter().zip(&self.forces).map(|(&at, &force)| cross(at, force));
+        [0, 1, 2].map(|axis| moments().fold(0.0, |sum, moment| sum + moment[axis]))
+    }
+
+    /// The centre of the forces along their resultant, moved across it onto the line of action where forces have moments: those of
+    /// an axisymmetric model have none.
+    pub fn centre(&self, formulation: &Formulation) -> Option<[f64; 3]> {
+        let (force, moment) = (self.force(), self.moment());
+        let magnitudes = self.forces.iter().fold(0.0, |sum, &force| sum + length(force));
+        let square = dot(force, force);
+        if square.sqrt() <= CANCELS * magnitudes {
+            return None;
+        }
+        // From the first point, so that a body far from the origin loses no digits.
+        let first = self.at.first().copied()?;
+        let weighted = self.at.iter().zip(&self.forces).fold([0.0; 3], |sum, (&at, &of)| {
+            let (away, weight) = (minus(at, first), dot(of, force) / square);
+            [0, 1, 2].map(|axis| sum[axis] + weight * away[axis])
+        });
+        let centre = [0, 1, 2].map(|axis| first[axis] + weighted[axis]);
+        if formulation.is_axisymmetric() {
+            return Some(centre);
+        }
+        let left = minus(moment, cross(centre, force));
+        let across = cross(force, left);
+        Some([0, 1, 2].map(|axis| centre[axis] + across[axis] / square))
+    }
+
+    fn resultant(&self, model: &Model, of: String) -> Resultant {
+        let dimension = model.body().dimension();
+        let formulation = model.body().formulation();
+        let moment = self.moment();
+        Resultant {
+            of,
+            on: None,
+            rule: None,
+            nodes: self.forces.len(),
+            force: self.force()[..dimension].to_vec(),
+            moment: match dimension {
+                2 if !formulation.is_axisymmetric() => vec![moment[2]],
+                3 => moment.to_vec(),
+                _ => Vec::new(),
+            },
+            centre: self.centre(formulation).map(|centre| centre[..dimension].to_vec()),
+        }
+    }
+}
+
+/// Takes the centre of each force that is rounding beside the largest one: it would be anywhere.
+pub(super) fn without_rounding(all: &mut [Resultant]) {
+    let size = |resultant: &Resultant| resultant.force.iter().fold(0.0, |size: f64, part| size.hypot(*part));
+    let largest = all.iter().map(size).fold(0.0, f64::max);
+    all.iter_mut()
+        .filter(|resultant| size(resultant) <= CANCELS * largest)
+        .for_each(|resultant| resultant.centre = None);
+}
+
+impl Model {
+    /// The resultants of the contact forces, obstacle by obstacle, of the multipliers of all rows.
+    ///
+    /// # Errors
+    /// [`Error::Length`] where `multiplier` does not have one entry per contact row.
+    pub fn contact_resultants(&self, multiplier: &[f64]) -> Result<Vec<Resultant>, Error> {
+        self.check_multiplier(multiplier)?;
+        let nodes = self.mesh().nodes();
+        let mut sums = vec![Sum::default(); self.obstacles().len()];
+        for (row, &lambda) in self.rows().iter().zip(multiplier) {
+            sums[row.obstacle].add(nodes[row.node], row.normal.map(|component| 0.0 + lambda * component));
+        }
+        let names = self.obstacle_names();
+        let resultant = |(index, sum): (usize, &Sum)| {
+            let (obstacle, of) = (&self.obstacles()[index], names[index].clone());
+            let first = obstacle.candidates().first().map(|&(node, _)| node);
+            Resultant { on: self.name_of_body(first), rule: obstacle.rule(), ..sum.resultant(self, of) }
+        };
+        Ok(sums.iter().enumerate().map(resultant).collect())
+    }
+
+    /// The names of the obstacles in reports: `obstacles[i]`, and `pair[k]` for the k-th one that is another body.
+    pub(crate) fn obstacle_names(&self) -> Vec<String> {
+        let mut pairs = 0..;
+        let name = |(index, obstacle): (usize, &PlacedObstacle)| match obstacle.rigid() {
+            Some(_) => format!("obstacles[{index}]"),
+            None => format!("pair[{}]", pairs.next().unwrap_or_default()),
+        };
+        self.obstacles().iter().enumerate().map(name).collect()
+    }
+
+    /// Those of the support reactions, support by support, and of the loads, if there are any; `reactions` are nodal forces, as
+    /// [`Model::reactions`].
+    pub(super) fn other_resultants(&self, reactions: &[f64]) -> Vec<Resultant> {
+        let (nodes, dimension) = (self.mesh().nodes(), self.body().dimension());
+        let at_node = |forces: &[f64], node: usize| {
+            let of_node = &forces[dimension * node..dimension * (node + 1)];
+            [0, 1, 2].map(|axis| of_node.get(axis).copied().unwrap_or(0.0))
+        };
+        let mut supports = vec![Sum::default(); self.parts().supports];
+        let mut held: Vec<Option<usize>> = vec![None; supports.len()];
+        for (node, shares) in self.parts().held.shares(|node| at_node(reactions, node)) {
+            for (by, force) in shares {
+                if let Holder::Support { index, .. } = by {
+                    held[index] = held[index].or(Some(node));
+                    supports[index].add(nodes[node], force);
+                }
+            }
+        }
+        let of_support = |(index, sum): (usize, &Sum)| Resultant {
+            on: self.name_of_body(held[index]),
+            ..sum.resultant(self, format!("supports[{index}]"))
+        };
+        let mut all: Vec<Resultant> = supports.iter().enumerate().map(of_support).collect();
+        let mut loads = Sum::default();
+        (0..nodes.len()).for_each(|node| loads.add(nodes[node], at_node(self.nodal_load(), node)));
+        if !loads.forces.is_empty() {
+            all.push(loads.resultant(self, "loads".into()));
+        }
+        all
+    }
+
+    /// The body of a node, where there are several.
+    fn name_of_body(&self, node: Option<usize>) -> Option<String> {
+        let regions = self.body().regions();
+        let region = regions.iter().find(|region| node.is_some_and(|node| region.nodes().contains(&node)))?;
+        (regions.len() > 1).then(|| if region.name().is_empty() { "body".into() } else { region.name().into() })
+    }
+
+    /// What the forces of a report are those of, as `per metre, of the modelled part`; empty if they are those of the whole body.
+    ///
+    /// A part is modelled if a support lets a flat boundary slide along itself and nothing else: that may be a plane of symmetry.
+    pub fn basis_of_forces(&self) -> String {
+        let unit = match self.units().length.as_str() {
+            "m" => "metre",
+            "mm" => "millimetre",
+            "" => "unit of length",
+            other => other,
+        };
+        let across = match *self.body().formulation() {
+            Formulation::PlaneStrain { thickness } | Formulation::PlaneStress { thickness } => match thickness == 1.0 {
+                true => Some(format!("per {unit}")),
+                false => Some(format!("of a thickness of {thickness} {}", self.units().length).trim_end().to_string()),
+            },
+            Formulation::Axisymmetric => Some("per full circle".to_string()),
+            Formulation::Bar { .. } | Formulation::Space => None,
+        };
+        let part = self.parts().is_part.then(|| "of the modelled part".to_string());
+        across.into_iter().chain(part).collect::<Vec<_>>().join(", ")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PLANE: Formulation = Formulation::PlaneStrain { thickness: 1.0 };
+
+    /// Parallel forces 1 and 3 at the ends of a rod of length 4: the centre stands at three quarters.
+    #[test]
+    fn the_centre_of_parallel_forces_is_their_weighted_mean() {
+        let mut sum = Sum::default();
+        sum.add([1.0, 2.0, 0.0], [0.0, -1.0, 0.0]);
+        sum.add([5.0, 2.0, 0.0], [0.0, -3.0, 0.0]);
+        assert_eq!(sum.force(), [0.0, -4.0, 0.0]);
+        assert_eq!(sum.moment(), [0.0, 0.0, -16.0]);
+        assert_eq!(sum.centre(&PLANE), Some([4.0, 2.0, 0.0]));
+    }
+
+    /// Forces that are not parallel: the moment of the resultant at its centre is that of the forces.
+    #[test]
+    fn the_resultant_at_its_centre_has_the_moment() {
+        let mut sum = Sum::default();
+        for (at, force) in [([0.0, 0.0, 0.0], [1.0, 0.0, 0.0]), ([2.0, 0.0, 0.0], [0.0, 3.0, 0.0])] {
+            sum.add(at, force);
+        }
+        let centre = sum.centre(&PLANE).unwrap();
+        assert!(length(minus(cross(centre, sum.force()), sum.moment())) < 1e-14, "{centre:?}");
+    }
+
+    #[test]
+    fn a_couple_has_no_centre() {
+        let mut sum = Sum::default();
+        sum.add([0.0, 0.0, 0.0], [0.0, 0.1, 0.0]);
+        sum.add([1.0, 0.0, 0.0], [0.0, -0.1, 0.0]);
+        assert_eq!((sum.force(), sum.centre(&PLANE)), ([0.0; 3], None));
+    }
+}

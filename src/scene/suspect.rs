@@ -1,0 +1,117 @@
+//! What is legal in a scene and seldom meant: supports, loads, obstacles and meshes that do not do what they seem to.
+
+use std::collections::BTreeMap;
+
+use super::Warning;
+use super::entry::COORDINATE_ROUNDING;
+use super::parts::Parts;
+use super::rows::ContactRow;
+use super::schema::{LoadSpec, Place, Scene};
+use crate::error::Error;
+use crate::fem::assembly::DofMap;
+use crate::fem::body::ElasticBody;
+use crate::fem::geometry::dot;
+
+/// What is left of a load on the free dofs is rounding below this share of it.
+const NOTHING: f64 = 1e-9;
+
+/// Two rows of a node are the same where the sine of their angle is below this: the rounding of written normals.
+const PARALLEL: f64 = 1e-9;
+
+/// The name of a cut at a plane of symmetry, in the meshes of the program, begins so.
+const SYMMETRY: &str = "symmetry-";
+
+impl Scene {
+    /// What is suspect in supports, loads and mesh.
+    ///
+    /// # Errors
+    /// As [`Scene::build`].
+    pub(super) fn suspect(&self, body: &ElasticBody, dofs: &DofMap) -> Result<Vec<Warning>, Error> {
+        let mut warnings = self.free_symmetries(body);
+        warnings.extend(coincident_nodes(body));
+        for index in 0..self.loads.len() {
+            let mut load = vec![0.0; body.nodal_dofs()];
+            self.add_load(body, index, &mut load)?;
+            let size = |values: &[f64]| values.iter().map(|value| value.abs()).sum::<f64>();
+            let (whole, free) = (size(&load), size(&dofs.restrict(&load)?));
+            if whole > 0.0 && free <= NOTHING * whole {
+                warnings.push(Warning::LoadOnSupport { load: index });
+            } else if matches!(self.loads[index], LoadSpec::Force(_)) && body.dimension() > 1 {
+                warnings.push(Warning::PointLoad { load: index });
+            }
+        }
+        Ok(warnings)
+    }
+
+    /// Cuts at planes of symmetry that no support holds.
+    fn free_symmetries(&self, body: &ElasticBody) -> Vec<Warning> {
+        let is_held = |name: &str| {
+            self.supports.iter().any(|support| matches!(&support.on, Place::Boundary(boundary) if boundary == name))
+        };
+        let names = body.mesh().boundaries().iter().map(|boundary| boundary.name.as_str());
+        let is_cut = |name: &&str| name.rsplit('.').next().is_some_and(|own| own.starts_with(SYMMETRY));
+        // In a section about its axis the axis holds itself.
+        let on_axis = |name: &&str| body.formulation().is_axisymmetric() && name.ends_with("symmetry-x");
+        let free = names.filter(is_cut).filter(|name| !is_held(name) && !on_axis(name));
+        free.map(|name| Warning::FreeSymmetry { boundary: name.to_string() }).collect()
+    }
+}
+
+/// Nodes of one body at the same place: a mesh that hangs together only where it is drawn.
+fn coincident_nodes(body: &ElasticBody) -> Option<Warning> {
+    let nodes = body.mesh().nodes();
+    let cell = COORDINATE_ROUNDING * body.mesh().size();
+    let mut found: Option<Warning> = None;
+    for region in body.regions() {
+        let mut at: BTreeMap<[i64; 3], usize> = BTreeMap::new();
+        for node in region.nodes() {
+            let key = nodes[node].map(|coordinate| (coordinate / cell).round() as i64);
+            let Some(&first) = at.get(&key) else {
+                at.insert(key, node);
+                continue;
+            };
+            found = Some(match found {
+                Some(Warning::CoincidentNodes { first, second, count }) => {
+                    Warning::CoincidentNodes { first, second, count: count + 1 }
+                }
+                _ => Warning::CoincidentNodes { first, second: node, count: 1 },
+            });
+        }
+    }
+    found
+}
+
+/// Obstacles whose candidates are mostly held by supports, and obstacles that make the same rows as one before them.
+pub(super) fn suspect_rows(parts: &Parts, rows: &[ContactRow]) -> Vec<Warning> {
+    let dimension = parts.body.dimension();
+    let mut warnings = Vec::new();
+    let is_held = |node: usize| (0..dimension).all(|axis| parts.dofs.number(dimension * node + axis).is_none());
+    for (index, obstacle) in parts.obstacles.iter().enumerate() {
+        let all = obstacle.candidates();
+        let held = all.iter().filter(|candidate| is_held(candidate.0)).count();
+        if dimension > 1 && 2 * held > all.len() {
+            warnings.push(Warning::HeldCandidates { obstacle: index, held, of: all.len() });
+        }
+    }
+    let rounding = COORDINATE_ROUNDING * parts.body.mesh().size();
+    let mut of_node: BTreeMap<usize, Vec<&ContactRow>> = BTreeMap::new();
+    rows.iter().for_each(|row| of_node.entry(row.node).or_default().push(row));
+    let mut same: BTreeMap<(usize, usize), usize> = BTreeMap::new();
+    for rows in of_node.values() {
+        for (place, second) in rows.iter().enumerate() {
+            let is_same = |first: &&&ContactRow| {
+                first.obstacle != second.obstacle
+                    && first.partner == second.partner
+                    && dot(first.normal, second.normal) > 1.0 - PARALLEL
+                    && (first.gap - second.gap).abs() <= rounding
+            };
+            for first in rows[..place].iter().filter(is_same) {
+                *same.entry((first.obstacle, second.obstacle)).or_default() += 1;
+            }
+        }
+    }
+    let count = |obstacle: usize| rows.iter().filter(|row| row.obstacle == obstacle).count();
+    let doubled = same.into_iter().filter(|&((_, second), rows)| 2 * rows > count(second));
+    warnings.extend(doubled.map(|((first, second), _)| Warning::DoubledObstacle { first, second }));
+    warnings
+}

@@ -1,0 +1,55 @@
+//! Points of a body that a motion is asked to tell of: nodes, or points within elements.
+
+use super::Model;
+use super::entry::{PLACE_TOLERANCE, number, point, vector, wrong};
+use super::schema::WatchSpec;
+use crate::error::Error;
+
+/// A point whose motion is written at every step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WatchedPoint {
+    /// What a table calls it, as `node 12` or `point (0.5 1)`.
+    pub name: String,
+    /// The nodes around it with their weights, which add up to one: the shape functions of its element; a node has itself.
+    pub nodes: Vec<(usize, f64)>,
+}
+
+impl WatchedPoint {
+    /// The value at the point of a nodal vector, length `dimension * n_nodes`, one entry for each coordinate.
+    pub fn value(&self, nodal: &[f64], dimension: usize) -> Vec<f64> {
+        let along =
+            |axis: usize| self.nodes.iter().map(|&(node, weight)| weight * nodal[dimension * node + axis]).sum();
+        (0..dimension).map(along).collect()
+    }
+
+    /// The point that `spec`, which stands at `path` in the scene, asks for.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for a node that does not exist or a point outside the body.
+    pub(super) fn new(model: &Model, spec: &WatchSpec, path: &str) -> Result<Self, Error> {
+        let (mesh, dimension) = (model.mesh(), model.mesh().dimension());
+        let at = match spec {
+            &WatchSpec::Node(node) => {
+                let count = mesh.nodes().len();
+                if node >= count {
+                    let message = format!("there is no node {node}: nodes have the numbers 0 to {}", count - 1);
+                    return Err(wrong(format!("{path}.node"), message));
+                }
+                return Ok(WatchedPoint { name: format!("node {node}"), nodes: vec![(node, 1.0)] });
+            }
+            WatchSpec::Point(entries) => vector(&format!("{path}.point"), entries, dimension)?,
+        };
+        let shown = point(&at[..dimension]);
+        for element in model.body().elements() {
+            let Some(weights) = element.cell.weights_at(at, PLACE_TOLERANCE) else { continue };
+            let nodes = element.nodes.iter().copied().zip(weights).filter(|&(_, weight)| weight != 0.0).collect();
+            // A comma would end a column of the table.
+            return Ok(WatchedPoint { name: format!("point {}", shown.replace(',', "")), nodes });
+        }
+        let nearest = mesh.nearest_node(at).map_or(String::new(), |(node, distance)| {
+            let place = point(&mesh.nodes()[node][..dimension]);
+            format!(": its distance to the nearest node, {node} at {place}, is {}", number(distance))
+        });
+        Err(wrong(format!("{path}.point"), format!("{shown} lies in no element of the body{nearest}")))
+    }
+}

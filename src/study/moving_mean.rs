@@ -1,0 +1,66 @@
+//! The largest mean of a force over any window of time: a peak without the ringing that is shorter than the window.
+
+use std::collections::VecDeque;
+
+use serde::{Deserialize, Serialize};
+
+/// Bins of a window: more steps than this are gathered, several in a bin. The window then moves by a 64th of itself, and its
+/// memory does not grow with the number of steps.
+const MOST_BINS: usize = 64;
+
+/// A mean over a window that moves with time, and the largest so far. Before the first step there is no force.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct MovingMean {
+    /// Steps of a bin.
+    per_bin: usize,
+    /// Bins of a window.
+    bins: usize,
+    /// Sums of the forces of whole bins, the oldest first; as many as are in the window.
+    sums: VecDeque<f64>,
+    /// Steps in the bin that is being filled, and the sum of their forces.
+    filling: (usize, f64),
+    /// The largest mean so far.
+    pub largest: f64,
+}
+
+impl MovingMean {
+    /// The mean over the whole number of steps that is nearest to this many, at least one.
+    pub fn over(steps: f64) -> Self {
+        let steps = (steps.round() as usize).max(1);
+        let per_bin = steps.div_ceil(MOST_BINS);
+        MovingMean { per_bin, bins: (steps / per_bin).max(1), ..MovingMean::default() }
+    }
+
+    /// The steps of the window.
+    pub fn steps(&self) -> usize {
+        self.per_bin * self.bins
+    }
+
+    /// The force of one more step.
+    pub fn add(&mut self, force: f64) {
+        let (count, sum) = (self.filling.0 + 1, self.filling.1 + force);
+        if count < self.per_bin {
+            self.filling = (count, sum);
+            return;
+        }
+        self.filling = (0, 0.0);
+        self.sums.push_back(sum);
+        if self.sums.len() > self.bins {
+            self.sums.pop_front();
+        }
+        self.largest = self.largest.max(self.sums.iter().sum::<f64>() / self.steps() as f64);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{MOST_BINS, MovingMean};
+
+    #[test]
+    fn a_window_of_many_steps_keeps_few_sums_and_the_mean_of_a_plateau() {
+        let mut mean = MovingMean::over(100_000.0);
+        (0..300_000).for_each(|step| mean.add(if step == 150_000 { 9e9 } else { 3.0 }));
+        assert!(mean.sums.len() <= MOST_BINS && mean.steps().abs_diff(100_000) <= 100_000 / MOST_BINS);
+        assert!((mean.largest - 3.0 - 9e9 / mean.steps() as f64).abs() < 1e-3, "{}", mean.largest);
+    }
+}

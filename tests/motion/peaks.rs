@@ -1,0 +1,41 @@
+//! GOAL: the peak of the contact force is told twice: of a single step, which rings, and on a mean that converges.
+//!
+//! REFERENCE: the constant force of a bar in impact (`analytical::ImpactingBar`, `analytical::BouncingBar`).
+
+use crate::impact::{cases::cases, measure::run};
+use signorini::motion::SchemeSpec;
+
+/// Meshes, each twice as fine as the one before.
+const CELLS: [usize; 4] = [50, 100, 200, 400];
+
+/// The ringing behind the front that comes back is this share of the force, on every mesh.
+const RINGING: f64 = 0.3;
+
+/// The mean over a fifth of the time of a wave through the bar is this far off on 400 cells.
+const CONVERGED: f64 = 0.03;
+
+#[test]
+fn the_averaged_peak_converges_to_the_exact_force_and_that_of_a_step_does_not() {
+    for case in &cases() {
+        for courant in [0.5, 1.0] {
+            let runs = CELLS.map(|cells| run(case, SchemeSpec::Midpoint, courant, cells).unwrap());
+            let [raw, averaged] = [0, 1].map(|peak| runs.each_ref().map(|run| run.peaks[peak] / case.pressure - 1.0));
+            eprintln!("{}, {courant}: {raw:?} {averaged:?}", case.name);
+            assert!(raw.iter().all(|&over| over > RINGING), "{}: {raw:?}", case.name);
+            assert!((0.0..CONVERGED).contains(&averaged[3]), "{}: {averaged:?}", case.name);
+            // The front is smeared over a time that falls with the power 2/3 of the cell, and so, more or less, does what the
+            // window leaves of it.
+            let rate = (averaged[0] / averaged[3]).log2() / 3.0;
+            assert!((0.4..1.3).contains(&rate), "{}: rate {rate} of {averaged:?}", case.name);
+        }
+    }
+}
+
+#[test]
+fn the_window_is_a_fifth_of_the_time_of_a_wave_through_the_bar() {
+    // 10 at the speed 30, and 1 at the speed 1; whole numbers of steps of half a cell.
+    for (case, expected) in cases().iter().zip([0.2 * 10.0 / 30.0, 0.2]) {
+        let found = run(case, SchemeSpec::Midpoint, 0.5, 50).unwrap().window;
+        assert!((found / expected - 1.0).abs() < 1e-9, "{found} for {expected}");
+    }
+}

@@ -1,0 +1,135 @@
+//! Motions that are not to be trusted: choices that are unstable are refused, and energy that comes from nowhere is told.
+
+use std::fs;
+
+use crate::impact_command::with;
+use crate::program::Desk;
+use serde_json::{Value, json};
+
+/// Energy that a motion may gain and still be certified.
+const MOST_GROWTH: f64 = 0.01;
+
+/// Rounding of energies that are sums over 240 steps.
+const ROUNDING: f64 = 1e-9;
+
+/// The bar by a scheme, with one more value.
+fn by(scheme: &str, key: &str, value: Value) -> Value {
+    let mut scene = with("scheme", json!(scheme));
+    scene["analysis"]["dynamic"][key] = value;
+    scene
+}
+
+fn solved(scene: &Value, exit: i32) -> Value {
+    let desk = Desk::new();
+    desk.write("scene.json", scene.to_string());
+    desk.run(&["solve", "scene.json", "--format", "json"]).ends_with(exit).json()
+}
+
+#[test]
+fn unstable_choices_are_refused_with_what_is_allowed() {
+    let explicit = |key: &str, value: f64| by("central-difference", key, json!(value));
+    for (scene, phrases) in [
+        (explicit("courant", 1.0), &["at `analysis.dynamic.courant`", "1 is not allowed", "at most 0.99"][..]),
+        (explicit("courant", 0.995), &["0.995 is not allowed", "at most 0.99"]),
+        (explicit("step", 0.0166), &["at `analysis.dynamic.step`", "0.0166 is beyond 0.0165", "0.99 times"]),
+        (with("mass", json!("lumped")), &["at `analysis.dynamic.mass`", "`lumped`", "only `redistributed` is allowed"]),
+        (with("mass", json!("consistent")), &["`consistent`", "`midpoint`", "`contact-stabilised`"]),
+    ] {
+        let desk = Desk::new();
+        desk.write("scene.json", scene.to_string());
+        let run = desk.run(&["solve", "scene.json", "--out", "out", "--format", "json"]).fails_with(1, phrases);
+        assert_eq!(run.json()["code"], "unstable");
+        assert!(!desk.path("out").exists());
+    }
+}
+
+#[test]
+fn what_the_limits_allow_keeps_its_energy() {
+    for scene in [
+        by("central-difference", "courant", json!(0.99)),
+        by("contact-stabilised", "mass", json!("lumped")),
+        with("mass", json!("redistributed")),
+    ] {
+        let report = solved(&scene, 0);
+        assert_eq!(report["status"], "certified");
+        assert!(report["contact"]["impulse"].as_f64() > Some(100.0), "{report}");
+        assert!(report["energy"]["growth"].as_f64().unwrap() <= MOST_GROWTH && report.get("warnings").is_none());
+    }
+    // Where nothing can touch, nothing feeds the shortest wave, and contact nodes are none.
+    for mut scene in [by("central-difference", "courant", json!(1)), with("mass", json!("consistent"))] {
+        scene["obstacles"] = json!([]);
+        assert!(solved(&scene, 0)["energy"]["growth"].as_f64().unwrap() <= ROUNDING);
+    }
+}
+
+#[test]
+fn a_motion_whose_energy_grew_is_unstable_and_says_by_how_much() {
+    let desk = Desk::new();
+    desk.write("scene.json", with("scheme", json!("trapezoidal")).to_string());
+    let run = desk.run(&["solve", "scene.json", "--out", "out", "--format", "json"]).ends_with(4);
+    let report = run.json();
+    assert_eq!(report["status"], "unstable");
+    let history = fs::read_to_string(desk.path("out/history.csv")).unwrap();
+    let energy = |line: &str| line.split(',').skip(4).take(2).map(|value| value.parse::<f64>().unwrap()).sum::<f64>();
+    let energies: Vec<f64> = history.lines().skip(1).map(energy).collect();
+    let most = energies.iter().fold(0.0_f64, |most, &energy| most.max(energy));
+    let growth = report["energy"]["growth"].as_f64().unwrap();
+    assert!(growth > 1.0 && (growth - (most / energies[0] - 1.0)).abs() < ROUNDING, "{growth} of {most}");
+    for (field, value) in [("largest_over_initial", most), ("last_over_initial", energies[energies.len() - 1])] {
+        assert!((report["energy"][field].as_f64().unwrap() * energies[0] / value - 1.0).abs() < ROUNDING, "{field}");
+    }
+    let warning = &report["warnings"][0];
+    let message = warning["message"].as_str().unwrap();
+    assert!(
+        warning["code"] == "unstable" && message.contains(&format!("grew by {:.1} %", 100.0 * growth)),
+        "{message}"
+    );
+    assert_eq!(
+        serde_json::from_str::<Value>(&fs::read_to_string(desk.path("out/report.json")).unwrap()).unwrap(),
+        report
+    );
+    let text = desk.run(&["solve", "scene.json"]).ends_with(4).stdout;
+    let one_line = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(one_line.contains(message) && one_line.contains("status unstable"), "{text}");
+    assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
+}
+
+#[test]
+fn a_choice_that_is_only_sometimes_unstable_is_allowed_and_judged_by_its_run() {
+    for (courant, exit, status) in [(0.3, 0, "certified"), (0.9, 4, "unstable")] {
+        let mut scene = by("central-difference", "courant", json!(courant));
+        scene["analysis"]["dynamic"]["restitution"] = json!(0.5);
+        scene["body"]["bar"]["x"]["divisions"] = json!([100]);
+        assert_eq!(solved(&scene, exit)["status"], status, "{courant}");
+    }
+}
+
+#[test]
+fn energy_that_loads_put_in_is_no_sign_of_instability() {
+    // From rest, by a load that swings once in 0.7, and by one that is constant until the bar meets the wall.
+    for scheme in ["midpoint", "trapezoidal", "contact-stabilised", "central-difference"] {
+        let mut driven = with("scheme", json!(scheme));
+        driven["analysis"]["dynamic"]["initial"] = json!([]);
+        driven["loads"] = json!([{"body-force": [10]}]);
+        driven["obstacles"][0]["shape"]["plane"]["point"] = json!([11]);
+        driven["analysis"]["dynamic"]["duration"] = json!(0.4);
+        let pushed = solved(&driven, 0);
+        driven["analysis"]["dynamic"]["loads-in-time"] = json!([{"load": 0, "factor": {"sine": {"frequency": 1.4}}}]);
+        for report in [pushed, solved(&driven, 0)] {
+            let energy = |field: &str| report["energy"][field].as_f64().unwrap();
+            assert_eq!(report["status"], "certified");
+            // What has no mass is in equilibrium with the load from the start; everything else is at rest.
+            assert!(energy("initial") < 0.01, "{scheme}: {report}");
+            assert_eq!(report["energy"]["last_over_initial"].is_null(), energy("initial") == 0.0);
+            let last = &report["energy"]["last"];
+            let now = last["kinetic"].as_f64().unwrap() + last["strain"].as_f64().unwrap();
+            assert!(energy("work") > 10.0 && (now / energy("work") - 1.0).abs() < MOST_GROWTH, "{scheme}: {report}");
+        }
+    }
+    // A bar that falls on the wall by its weight, and comes to bounce.
+    let mut falling = with("initial", json!([]));
+    falling["loads"] = json!([{"body-force": [20]}]);
+    falling["obstacles"][0]["shape"]["plane"]["point"] = json!([12]);
+    let report = solved(&falling, 0);
+    assert!(report["contact"]["impulse"].as_f64() > Some(100.0) && report["status"] == "certified", "{report}");
+}

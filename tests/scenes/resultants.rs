@@ -1,0 +1,302 @@
+//! Resultants and contact segments: equilibrium of forces and moments, symmetry, and the contact of Hertz within its uncertainty.
+
+use std::sync::Arc;
+
+use crate::exact_solutions::{LineContact, PointContact};
+use crate::verification::round_bodies::{half_cylinder, quarter_ball};
+use serde_json::{Value, json};
+use signorini::output::solve_text;
+use signorini::scene::{Answer, Resultant, Units};
+use signorini::study::{Summary, scene_summary};
+use signorini::{Scene, solve_qp};
+
+/// Rounding of the solves: forces that balance do so to about 1e-12 of the largest.
+const BALANCED: f64 = 1e-9;
+
+fn answer(scene: &Value) -> Answer {
+    let model = Arc::new(Scene::from_json(&scene.to_string(), "scene").unwrap().build().unwrap());
+    let solution = solve_qp(model.problem()).unwrap();
+    Answer::of(model, &solution).unwrap()
+}
+
+fn sum(all: &[Resultant], of: impl Fn(&Resultant) -> &[f64]) -> Vec<f64> {
+    let mut sum = vec![0.0; of(&all[0]).len()];
+    all.iter().for_each(|one| sum.iter_mut().zip(of(one)).for_each(|(sum, part)| *sum += part));
+    sum
+}
+
+fn size(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |size: f64, value| size.hypot(*value))
+}
+
+/// All resultants together vanish, force and moment, and each stands on its own line of action.
+#[track_caller]
+fn balance(all: &[Resultant]) {
+    let largest = all.iter().map(|one| size(&one.force)).fold(0.0, f64::max);
+    let moments = all.iter().map(|one| size(&one.moment)).fold(0.0, f64::max);
+    assert!(size(&sum(all, |one| &one.force)) < BALANCED * largest, "{all:?}");
+    assert!(size(&sum(all, |one| &one.moment)) <= BALANCED * moments.max(largest), "{all:?}");
+    for one in all {
+        let Some(centre) = &one.centre else { continue };
+        let moment = match (&centre[..], &one.force[..]) {
+            (&[x, y], &[fx, fy]) => vec![x * fy - y * fx],
+            (&[x, y, z], &[fx, fy, fz]) => vec![y * fz - z * fy, z * fx - x * fz, x * fy - y * fx],
+            _ => continue,
+        };
+        // In space a part along the force may be left over: a wrench.
+        let left: Vec<f64> = one.moment.iter().zip(&moment).map(|(given, at_centre)| given - at_centre).collect();
+        let along: f64 = left.iter().zip(&one.force).map(|(left, force)| left * force).sum::<f64>() / size(&one.force);
+        let across = (size(&left).powi(2) - if left.len() == 3 { along * along } else { 0.0 }).max(0.0).sqrt();
+        assert!(across <= 1e-7 * (moments + largest), "{one:?}: {across}");
+    }
+}
+
+fn block(obstacles: Value, loads: Value) -> Value {
+    json!({
+        "body": {"rectangle": {"x": {"points": [1, 3], "divisions": [8]}, "y": {"points": [0, 1], "divisions": [4]}}},
+        "material": {"young": 1e6, "poisson": 0.3},
+        "supports": [{"on": {"boundary": "bottom"}, "y": 0}, {"on": {"boundary": "left"}, "x": 0}],
+        "obstacles": obstacles, "loads": loads, "gap": -0.02
+    })
+}
+
+#[test]
+fn forces_and_moments_of_obstacles_supports_and_loads_balance() {
+    let plane = |x: f64| {
+        json!({"boundary": "top", "approach": "+y", "rule": "closest-point",
+               "shape": {"plane": {"point": [2, 1.0], "normal": [x, 1.0]}}})
+    };
+    let loads = json!([{"traction": {"boundary": "right", "value": [-3e3, 1e3]}}, {"force": {"at": [3, 0.5], "value": [0, 200]}}]);
+    for obstacles in [json!([plane(0.0)]), json!([plane(0.1)]), json!([plane(-0.05), plane(0.1)])] {
+        let answer = answer(&block(obstacles.clone(), loads.clone()));
+        let all = answer.resultants().unwrap();
+        let names: Vec<&str> = all.iter().map(|one| one.of.as_str()).collect();
+        assert_eq!(names[names.len() - 3..], ["supports[0]", "supports[1]", "loads"]);
+        assert_eq!(names.len(), 3 + obstacles.as_array().unwrap().len());
+        balance(all);
+        // The loads act at (3, 0.5): 3 x 1200 + 0.5 x 3000 about the origin, counterclockwise.
+        let loads = &all[names.len() - 1];
+        let exact = [-3000.0, 1200.0, 5100.0];
+        let ours = [loads.force[0], loads.force[1], loads.moment[0]];
+        assert!(ours.iter().zip(exact).all(|(ours, exact)| (ours / exact - 1.0).abs() < 1e-13), "{ours:?}");
+        // The corner is held by both supports, each along its own axis: rollers take no force along themselves.
+        assert_eq!((all[names.len() - 3].force[0], all[names.len() - 2].force[1]), (0.0, 0.0));
+    }
+}
+
+#[test]
+fn they_balance_in_space_and_between_two_bodies() {
+    let axis = |points: [f64; 2], n: usize| json!({"points": points, "divisions": [n]});
+    let space = json!({
+        "model": "space",
+        "body": {"box": {"x": axis([2.0, 3.0], 3), "y": axis([0.0, 1.0], 3), "z": axis([0.0, 1.0], 3)}},
+        "material": {"young": 1e6, "poisson": 0.3},
+        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0, "z": 0}],
+        "obstacles": [{"boundary": "top", "approach": "+z", "rule": "closest-point",
+                       "shape": {"sphere": {"apex": [2.3, 0.4, 0.9], "radius": 2}}}],
+        "loads": [{"force": {"at": [3, 1, 1], "value": [100, 20, -30]}}]
+    });
+    let answer_in_space = answer(&space);
+    assert!(answer_in_space.contact_set().count() > 2);
+    balance(answer_in_space.resultants().unwrap());
+    let two = std::fs::read_to_string("examples/two_cylinders.json").unwrap();
+    let two = answer(&serde_json::from_str(&two).unwrap());
+    let all = two.resultants().unwrap();
+    let bodies: Vec<_> = all.iter().map(|one| (one.of.as_str(), one.on.as_deref().unwrap())).collect();
+    assert_eq!(bodies, [("pair[0]", "body"), ("supports[0]", "body"), ("supports[1]", "base")]);
+    // On the upper body the pair and its support balance; the lower one has its support alone, and the pair's opposite.
+    let on = |body: &str| all.iter().filter(|one| one.on.as_deref() == Some(body)).map(|one| one.force[1]).sum::<f64>();
+    assert!(on("body").abs() < BALANCED * all[0].force[1], "{all:?}");
+    assert!((on("base") - all[0].force[1]).abs() < BALANCED * all[0].force[1], "{all:?}");
+}
+
+/// A ring of round section between two plates: each presses with the same force, and the sum of multipliers is twice that.
+#[test]
+fn a_ring_between_two_plates_feels_the_same_force_from_each() {
+    let plate = |sign: f64, approach: &str| {
+        let boundary = if sign > 0.0 { "upper" } else { "lower" };
+        json!({"boundary": boundary, "approach": approach,
+               "shape": {"plane": {"point": [10.0, sign * 0.9], "normal": [0, sign]}}})
+    };
+    let ring = json!({
+        "model": "axisymmetric", "units": {"length": "mm", "force": "N"},
+        "body": {"disc": {"centre": [10, 0], "radius": 1, "zone": {"width": 0.6, "divisions": 8}, "element": "q8"}},
+        "material": {"young": 5, "poisson": 0.45},
+        "supports": [],
+        "obstacles": [plate(1.0, "+y"), plate(-1.0, "-y")]
+    });
+    let answer = answer(&ring);
+    let all = answer.resultants().unwrap();
+    assert_eq!((all.len(), answer.model().basis_of_forces()), (2, "per full circle".to_string()));
+    let [upper, lower] = [all[0].force[1], all[1].force[1]];
+    assert!(upper < 0.0 && (upper + lower).abs() < 1e-7 * lower, "{upper} and {lower}");
+    let multipliers: f64 = answer.multiplier().iter().map(|lambda| -lambda).sum();
+    assert!((multipliers - 2.0 * lower).abs() < 1e-7 * lower, "{multipliers}");
+    assert!(
+        all.iter().all(|one| one.moment.is_empty() && (one.centre.as_ref().unwrap()[0] - 10.0).abs() < 0.5),
+        "{all:?}"
+    );
+}
+
+#[test]
+fn what_forces_are_those_of_is_said() {
+    let basis = |change: &dyn Fn(&mut Value)| {
+        let mut scene = block(json!([]), json!([]));
+        change(&mut scene);
+        Scene::from_json(&scene.to_string(), "scene").unwrap().build().unwrap().basis_of_forces()
+    };
+    let clamp = json!([{"on": {"boundary": "bottom"}, "x": 0, "y": 0}]);
+    assert_eq!(basis(&|scene| scene["supports"] = clamp.clone()), "per metre");
+    // Rollers on flat sides may be planes of symmetry.
+    assert_eq!(basis(&|_| {}), "per metre, of the modelled part");
+    assert_eq!(
+        basis(&|scene| (scene["supports"], scene["thickness"]) = (clamp.clone(), json!(0.1))),
+        "of a thickness of 0.1 m"
+    );
+    let model = Scene::read("examples/bar.json").unwrap().build().unwrap();
+    assert!(model.basis_of_forces().contains("of a thickness of 0.1 m"), "{}", model.basis_of_forces());
+}
+
+/// A table with two humps touches a strip twice: two segments, each with its own force, that add up to the whole.
+#[test]
+fn two_humps_make_two_segments() {
+    let obstacle = json!([{"boundary": "top", "approach": "+y",
+        "shape": {"table": {"points": [[1.0, 1.2], [1.5, 1.0], [2.0, 1.2], [2.5, 1.0], [3.0, 1.2]]}}}]);
+    let mut scene = block(obstacle, json!([]));
+    scene["body"]["rectangle"]["x"]["divisions"] = json!([40]);
+    let answer = answer(&scene);
+    let segments = answer.segments();
+    assert_eq!(segments.len(), 2, "{segments:?}");
+    let total = &answer.resultants().unwrap()[0].force;
+    let forces: f64 = segments.iter().map(|segment| segment.force[1]).sum();
+    assert!((forces - total[1]).abs() < 1e-12 * forces.abs(), "{forces}");
+    for (segment, middle) in segments.iter().zip([1.5, 2.5]) {
+        let [from, to] = segment.ends.clone().expect("two ends");
+        assert!((from[0].min(to[0])..from[0].max(to[0])).contains(&middle), "{segment:?}");
+        assert_eq!((from[1], to[1]), (1.0, 1.0));
+        let width = segment.extent.width.unwrap();
+        assert!((width - (from[0] - to[0]).abs()).abs() < 1e-12, "{segment:?}");
+        // The closed nodes lie within, the next ones do not.
+        assert!(segment.nodes.len() as f64 * 0.05 <= width + 0.05 && width < (segment.nodes.len() + 1) as f64 * 0.05);
+    }
+}
+
+/// The contact that closes a whole boundary ends where it ends: there is nothing to estimate.
+#[test]
+fn a_flat_contact_has_no_uncertainty() {
+    let plane = json!([{"boundary": "top", "approach": "+y", "shape": {"plane": {"point": [0, 1], "normal": [0, 1]}}}]);
+    let answer = answer(&block(plane, json!([])));
+    let segments = answer.segments();
+    assert_eq!(
+        (segments.len(), segments[0].extent.width, segments[0].extent.width_uncertainty),
+        (1, Some(2.0), Some(0.0))
+    );
+    assert_eq!(segments[0].nodes.len(), 9);
+}
+
+/// Half cylinders of Hertz, on meshes whose nodes stand differently to the edge: the width is within its uncertainty, and
+/// nearer than the sum of tributary lengths on the whole.
+#[test]
+fn the_width_of_hertz_lies_within_its_uncertainty() {
+    let (mut ours, mut tributary, mut meshes) = (0.0, 0.0, 0.0);
+    for element in ["t3", "q4", "t6", "q8"] {
+        for divisions in [5, 6, 7, 8, 11, 13] {
+            let mut scene = half_cylinder(element);
+            scene["body"]["half-disc"]["zone"]["divisions"] = json!(divisions);
+            let answer = answer(&scene);
+            let force = -answer.multiplier().iter().sum::<f64>();
+            let exact = 2.0 * LineContact { modulus: 1.0 / 0.91, radius: 1.0 }.half_width(force);
+            let segment = &answer.segments()[0];
+            let (width, off) = (segment.extent.width.unwrap(), segment.extent.width_uncertainty.unwrap());
+            let rows = answer.model().rows().iter().enumerate();
+            let whole: f64 =
+                rows.filter(|(row, _)| answer.contact_set().contains(*row)).map(|(_, row)| row.tributary_area).sum();
+            println!(
+                "{element} {divisions}: {:.4} ± {:.4}, tributary {:.4}",
+                width / exact,
+                off / exact,
+                whole / exact
+            );
+            // Hertz's body is a half space: that of this radius differs by 1 %.
+            assert!((width - exact).abs() <= off + 0.01 * exact, "{element}, {divisions}: {width} ± {off}, {exact}");
+            ours += (width / exact - 1.0).abs();
+            tributary += (whole / exact - 1.0).abs();
+            meshes += 1.0;
+        }
+    }
+    assert!(ours < tributary, "{} and {} on the mean", ours / meshes, tributary / meshes);
+}
+
+/// A quarter of a ball in space: its area within the uncertainty, nearer than the tributary areas.
+#[test]
+fn the_area_of_hertz_lies_within_its_uncertainty() {
+    let mut scene = quarter_ball(6, 2.0);
+    for depth in [1.6e-5, 2.0e-5, 2.5e-5] {
+        scene["supports"][0]["z"] = json!(-depth);
+        let answer = answer(&scene);
+        let force = -4.0 * answer.multiplier().iter().sum::<f64>();
+        let exact = PointContact { modulus: 1.0 / 0.91, radius: 1.0 }.contact_radius(force).powi(2)
+            * std::f64::consts::PI
+            / 4.0;
+        let segment = &answer.segments()[0];
+        let rows = answer.model().rows().iter().enumerate();
+        let whole: f64 =
+            rows.filter(|(row, _)| answer.contact_set().contains(*row)).map(|(_, row)| row.tributary_area).sum();
+        println!(
+            "{depth}: {:.4} ± {:.4}, tributary {:.4}",
+            segment.extent.area / exact,
+            segment.extent.area_uncertainty / exact,
+            whole / exact
+        );
+        assert!(
+            (segment.extent.area - exact).abs() <= segment.extent.area_uncertainty,
+            "{depth}: {segment:?}, {exact}"
+        );
+        assert!((segment.extent.area - exact).abs() < (whole - exact).abs());
+        assert_eq!((segment.extent.width, &segment.ends), (None, &None));
+    }
+}
+
+/// On a disc that rows press along y, a pressure acts on the area as it is seen along y: the cosine of the angle from the lowest point.
+#[test]
+fn a_pressure_acts_on_the_area_that_its_row_sees() {
+    let mut scene = half_cylinder("q4");
+    scene["obstacles"][0]["shape"] = json!({"table": {"points": [[-2, -0.5], [-0.5, -0.85], [0.5, -0.85], [2, -0.5]]}});
+    let answer = answer(&scene);
+    let mut steepest: f64 = 0.0;
+    for (row, (pressure, lambda)) in answer.model().rows().iter().zip(answer.pressure().iter().zip(answer.multiplier()))
+    {
+        let [x, y, _] = answer.model().mesh().nodes()[row.node];
+        let cosine = -y / x.hypot(y);
+        if *lambda < 0.0 {
+            // The normal at a node is the mean of the two facets there, which may differ in length.
+            assert!((pressure * row.tributary_area * cosine / -lambda - 1.0).abs() < 1e-2, "at {x}: {pressure}");
+            steepest = steepest.max(x.abs() / x.hypot(y));
+        }
+    }
+    assert!(steepest > 0.35, "{steepest}");
+}
+
+/// An estimate of the mesh without a bound of the answer, and the reverse: nothing is compared, and the reason stands there.
+#[test]
+fn advice_that_cannot_be_given_names_its_reason() {
+    let plane = json!([{"boundary": "top", "approach": "+y", "shape": {"plane": {"point": [0, 1], "normal": [0, 1]}}}]);
+    let model = Arc::new(Scene::from_json(&block(plane, json!([])).to_string(), "scene").unwrap().build().unwrap());
+    let solution = solve_qp(model.problem()).unwrap();
+    let answer = Answer::of(model, &solution).unwrap();
+    let mut summary = scene_summary(&answer, solution, 1e-9, 0.0).unwrap();
+    let advice = |summary: &Summary| solve_text("block", summary, &Units::default());
+    summary.discretisation_error = Some(0.1);
+    assert!(advice(&summary).contains("a finer mesh does"));
+    summary.solution.certificate.energy_error_bound = 0.5;
+    assert!(advice(&summary).contains("a tighter tolerance comes before a finer mesh"));
+    summary.solution.certificate.energy_error_bound = f64::INFINITY;
+    assert!(
+        advice(&summary).contains("tolerance or mesh first? none: the answer has no error bound"),
+        "{}",
+        advice(&summary)
+    );
+    summary.solution.certificate.energy_error_bound = 1e-12;
+    summary.discretisation_error = Some(f64::NAN);
+    assert!(advice(&summary).contains("none: the error of the mesh could not be estimated"), "{}", advice(&summary));
+}
