@@ -146,10 +146,9 @@ fn advice_of_meshes(tradeoff: &Tradeoff) -> String {
 
 /// What the cheapest answer of each method that is never exact loses, beside the active set.
 fn losses(points: &[TradeoffPoint]) -> String {
-    let cheapest = |method: &str| {
-        let own = points.iter().filter(|point| point.mesh == 0 && point.method == method);
-        let good = own.filter(|point| point.energy_error <= LOOSE);
-        good.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
+    let cheapest = |method: &str, good: &dyn Fn(&TradeoffPoint) -> bool| {
+        let own = points.iter().filter(|point| point.mesh == 0 && point.method == method && good(point));
+        own.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
     };
     let told = |point: &TradeoffPoint| {
         let lost = match point.force_error {
@@ -158,8 +157,9 @@ fn losses(points: &[TradeoffPoint]) -> String {
         };
         format!("{} takes {:.5} s and loses {lost}", way(point), point.seconds)
     };
-    let Some(exact) = cheapest("active-set") else { return String::new() };
-    let compared = |method| cheapest(method).map(|loose| format!("  {}; {}\n", told(loose), told(exact)));
+    let Some(exact) = cheapest("active-set", &|point| point.knob.is_none()) else { return String::new() };
+    let loose = |method| cheapest(method, &|point| point.energy_error <= LOOSE);
+    let compared = |method| loose(method).map(|loose| format!("  {}; {}\n", told(loose), told(exact)));
     ["penalty", "qp", "mprgp"].into_iter().filter_map(compared).collect()
 }
 

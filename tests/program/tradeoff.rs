@@ -60,7 +60,12 @@ fn what_a_loose_answer_costs_and_loses_stands_beside_the_exact_one() {
     let cycles: Vec<&TradeoffPoint> = result.points.iter().filter(|point| point.method == "mprgp").collect();
     assert_eq!(cycles.len(), 10, "five accuracies on two meshes");
     assert!(cycles.iter().all(|point| point.energy_error_bound <= point.knob.unwrap()), "{cycles:?}");
-    let text = tradeoff_text("block", &result);
+    // On a scene of twenty dofs chance decides which is the fastest: here a digit more takes a hundredth of the time more.
+    let mut timed = result.clone();
+    for point in &mut timed.points {
+        point.seconds = 1e-3 * (1.0 - 0.01 * point.energy_error.max(1e-16).log10());
+    }
+    let text = tradeoff_text("block", &timed);
     assert!(text.contains("the last penalty over the local stiffness"), "{text}");
     for method in ["penalty", "qp", "mprgp"] {
         let line = text.lines().find(|line| line.starts_with(&format!("  {method} ")) && line.contains(" and loses "));
