@@ -59,7 +59,7 @@ impl Scene {
     }
 
     /// The components that support number `index` prescribes.
-    fn components(&self, index: usize, support: &SupportSpec) -> Result<Vec<Component>, Error> {
+    pub(super) fn components(&self, index: usize, support: &SupportSpec) -> Result<Vec<Component>, Error> {
         let path = format!("supports[{index}]");
         let by = |field| Holder::Support { index, field };
         let dimension = self.model.dimension();

@@ -18,6 +18,7 @@ mod answer;
 pub(crate) mod body;
 mod build;
 mod condition;
+mod continuum;
 mod dynamics;
 mod elastic;
 mod entry;

@@ -6,6 +6,7 @@ mod motion_tradeoff;
 mod moving_mean;
 pub(crate) mod scene;
 mod summary;
+mod total_error;
 mod tradeoff;
 mod warnings;
 

@@ -52,6 +52,17 @@ impl Surface for Circle {
         (along.abs() <= self.radius).then(|| along * (along / (self.radius + rest.max(0.0).sqrt())))
     }
 
+    /// The remainder of an interpolation at both ends and in the middle of a stretch of half length k is at most `|h'''| k^3/(9 sqrt 3)`.
+    fn enclosed(&self, from: f64, to: f64) -> Option<([f64; 3], [f64; 2])> {
+        let heights = self.heights(from, to)?;
+        let (furthest, half) = (from.abs().max(to.abs()), (to - from).abs() / 2.0);
+        let rest = (self.radius - furthest) * (self.radius + furthest);
+        let third = 3.0 * self.radius.powi(2) * furthest / rest.max(0.0).powf(2.5);
+        let remainder = if half == 0.0 { 0.0 } else { third * half.powi(3) / (9.0 * 3.0_f64.sqrt()) };
+        // Heights lie between 0 and R, and so the quadratic function between -R and 2 R.
+        Some((heights, [remainder.min(2.0 * self.radius); 2]))
+    }
+
     /// Distance to the centre less the radius; a node behind the centre has no closest point on the facing half.
     fn closest(&self, [along, towards]: Local, tolerance: f64) -> Result<Option<Foot>, &'static str> {
         let (r, rest) = (self.radius, self.radius - towards);

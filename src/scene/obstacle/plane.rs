@@ -75,6 +75,10 @@ impl Surface for Line {
         Some(0.0 - self.normal[0] / self.normal[1] * along)
     }
 
+    fn enclosed(&self, from: f64, to: f64) -> Option<([f64; 3], [f64; 2])> {
+        Some((self.heights(from, to)?, [0.0; 2]))
+    }
+
     fn closest(&self, [along, towards]: Local, _: f64) -> Result<Option<Foot>, &'static str> {
         let distance = -(self.normal[0] * along + self.normal[1] * towards);
         Ok(Some(Foot { normal: self.normal, distance }))

@@ -75,6 +75,17 @@ impl Surface for Polyline {
         }
     }
 
+    /// The chord, and by how much the knots on the stretch lie off it.
+    fn enclosed(&self, from: f64, to: f64) -> Option<([f64; 3], [f64; 2])> {
+        let [first, _, last] = self.heights(from, to)?;
+        let mut off = [0.0_f64; 2];
+        for &[along, height] in self.knots.iter().filter(|knot| from.min(to) < knot[0] && knot[0] < from.max(to)) {
+            let chord = first + (last - first) * ((along - from) / (to - from));
+            off = [off[0].max(chord - height), off[1].max(height - chord)];
+        }
+        Some(([first, (first + last) / 2.0, last], off))
+    }
+
     fn closest(&self, node: Local, tolerance: f64) -> Result<Option<Foot>, &'static str> {
         let candidates: Vec<Candidate> = self
             .pieces()

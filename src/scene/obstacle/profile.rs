@@ -69,6 +69,27 @@ impl Obstacle for Profile {
         self.row_by(self.rule, point, shift)
     }
 
+    fn gap_along(&self, from: [f64; 3], to: [f64; 3], shift: f64) -> Option<([f64; 3], [f64; 2])> {
+        let local = |[x, y, _]: [f64; 3]| {
+            let [along, towards] = self.frame.local([x, y]);
+            [along - self.origin[0], towards - self.origin[1] - shift]
+        };
+        let ([from, low], [to, high]) = (local(from), local(to));
+        let (first, last) = self.surface.range();
+        let [start, end] = [from, to].map(|along| along.clamp(first, last));
+        if start == from && end == to {
+            let (heights, off) = self.surface.enclosed(from, to)?;
+            return Some(([heights[0] - low, heights[1] - (low + high) / 2.0, heights[2] - high], off));
+        }
+        if start == end {
+            return None;
+        }
+        // On a part of the way: nothing higher than the lowest height there.
+        let ([first, middle, last], [below, _]) = self.surface.enclosed(start, end)?;
+        let lowest = first.min(last).min(2.0 * middle - (first + last) / 2.0) - below;
+        Some(([lowest - low.max(high); 3], [0.0, f64::INFINITY]))
+    }
+
     fn surface_normal(&self, point: [f64; 3], shift: f64) -> Option<[f64; 3]> {
         let row = self.shifted_row(point, shift).ok()??;
         Some(self.row_by(Rule::ClosestPoint, row.foot(point), shift).ok()??.normal)

@@ -85,6 +85,14 @@ pub trait Obstacle: Debug + Send + Sync {
         Some(self.shifted_row(point, shift).ok()??.normal)
     }
 
+    /// The gap along the approach direction on the straight way between two points, the obstacle moved by `shift`: its values
+    /// `[from, middle, to]`, and by how much `[below, above]` it may leave the quadratic function through these, all in length;
+    /// infinitely far above if the obstacle ends on the way. The guaranteed bound of the total error asks for it; `None` if the obstacle
+    /// does not reach there, or cannot tell.
+    fn gap_along(&self, _from: [f64; 3], _to: [f64; 3], _shift: f64) -> Option<([f64; 3], [f64; 2])> {
+        None
+    }
+
     /// The surface in the plane as a polyline [x, y] for pictures, moved by `shift`, in `segments` pieces; empty if there
     /// is none to show.
     fn outline(&self, _shift: f64, _segments: usize) -> Vec<[f64; 2]> {

@@ -18,6 +18,10 @@ pub(in crate::scene) trait Surface: Debug + Send + Sync {
     /// The height towards the obstacle, or `None` beyond the surface's reach.
     fn height(&self, along: f64) -> Option<f64>;
 
+    /// The heights at both ends of a stretch within reach and in its middle, and by how much `[below, above]` the surface may leave the
+    /// quadratic function through these.
+    fn enclosed(&self, from: f64, to: f64) -> Option<([f64; 3], [f64; 2])>;
+
     /// The foot closest to `node`, or `None` where no part of the surface faces it; lengths below `tolerance` are
     /// rounding.
     ///
@@ -30,6 +34,11 @@ pub(in crate::scene) trait Surface: Debug + Send + Sync {
     /// The reach, along the surface.
     fn range(&self) -> (f64, f64) {
         (f64::NEG_INFINITY, f64::INFINITY)
+    }
+
+    /// The heights at both ends and in the middle.
+    fn heights(&self, from: f64, to: f64) -> Option<[f64; 3]> {
+        Some([self.height(from)?, self.height((from + to) / 2.0)?, self.height(to)?])
     }
 
     /// Where the surface has corners, along it.

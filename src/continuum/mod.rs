@@ -1,0 +1,14 @@
+//! The guaranteed error against the continuum, in the plane: a displacement that keeps off the obstacles between nodes too, a stress in
+//! balance, and what lies between their energies.
+
+mod bound;
+mod displacement;
+mod johnson_mercier;
+mod problem;
+mod stress;
+mod system;
+mod triangulation;
+
+pub use bound::Bracket;
+pub use problem::{Condition, Distance, Enclosure, Facing, PlaneProblem};
+pub use triangulation::{Point, Triangulation, twice_area};

@@ -1,0 +1,142 @@
+//! The contact problem of a body in the plane as it stands before any mesh: what holds on its outline.
+
+use std::fmt::Debug;
+use std::sync::Arc;
+
+use super::triangulation::Point;
+use crate::fem::material::Lame;
+
+/// Frictionless contact of an elastic body that fills a polygon, in plane strain or plane stress.
+#[derive(Clone, Debug)]
+pub struct PlaneProblem {
+    /// The Lamé constants in the plane, in force per area.
+    pub lame: Lame,
+    /// Depth across the plane, in length.
+    pub thickness: f64,
+    /// Force per volume, the same everywhere.
+    pub body_force: Point,
+    /// What holds on the sides of the outline.
+    pub conditions: Vec<Condition>,
+    /// The obstacles.
+    pub obstacles: Vec<Facing>,
+}
+
+/// What holds on a side of the outline, the same along it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Condition {
+    /// The prescribed component of the displacement along each axis, in length.
+    pub held: [Option<f64>; 2],
+    /// The traction along each axis, in force per area; along one that is held it does no work that matters, and is not used.
+    pub traction: Point,
+    /// The obstacles that it may touch.
+    pub obstacles: Vec<usize>,
+}
+
+/// A rigid obstacle whose rows lie along one axis.
+#[derive(Clone, Debug)]
+pub struct Facing {
+    /// The axis, 0 or 1.
+    pub axis: usize,
+    /// 1 if the obstacle lies towards larger coordinates, else -1.
+    pub sense: f64,
+    /// Its distance.
+    pub surface: Arc<dyn Distance>,
+}
+
+/// How far the obstacle is.
+pub trait Distance: Debug + Send + Sync {
+    /// The gap along the straight way between two points; `None` if the obstacle is out of reach on all of it.
+    fn gap(&self, from: Point, to: Point) -> Option<Enclosure>;
+}
+
+/// A function on an edge, held between two quadratic ones: `q - below <= g <= q + above`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Enclosure {
+    /// q at the beginning, in the middle and at the end.
+    pub values: [f64; 3],
+    /// How far below q the function may lie, `>= 0`.
+    pub below: f64,
+    /// How far above q it may lie, `>= 0`; infinite where nothing is there to be touched.
+    pub above: f64,
+}
+
+impl Enclosure {
+    /// The coefficients of q in the basis of Bernstein, `(1-s)^2, 2 s (1-s), s^2`.
+    fn bernstein(&self) -> [f64; 3] {
+        let [first, middle, last] = self.values;
+        [first, 2.0 * middle - (first + last) / 2.0, last]
+    }
+
+    /// Coefficients of Bernstein that a quadratic function must not exceed to stay below g everywhere.
+    pub fn lower(&self) -> [f64; 3] {
+        self.bernstein().map(|coefficient| coefficient - self.below)
+    }
+
+    /// Upper bounds on the means of g with the weights `2 (1-s)` and `2 s`.
+    pub fn upper_means(&self) -> [f64; 2] {
+        let [first, middle, last] = self.bernstein();
+        let mean = |near: f64, far: f64| near / 2.0 + middle / 3.0 + far / 6.0 + self.above;
+        [mean(first, last), mean(last, first)]
+    }
+}
+
+/// Symmetric tensors in the plane, `[xx, yy, xy]`.
+pub type Tensor = [f64; 3];
+
+impl PlaneProblem {
+    /// The strain of a stress.
+    pub fn compliance(&self, stress: Tensor) -> Tensor {
+        let Lame { lambda, mu } = self.lame;
+        let [half_difference, mean] = [(stress[0] - stress[1]) / 2.0, (stress[0] + stress[1]) / 2.0];
+        // The parts apart: near incompressibility their sum would lose digits.
+        let [shear, volume] = [half_difference / (2.0 * mu), mean / (2.0 * (lambda + mu))];
+        [volume + shear, volume - shear, stress[2] / (2.0 * mu)]
+    }
+
+    /// The stress of a strain.
+    pub fn stress(&self, strain: Tensor) -> Tensor {
+        let Lame { lambda, mu } = self.lame;
+        let [shear, volume] = [(strain[0] - strain[1]) / 2.0, (strain[0] + strain[1]) / 2.0];
+        let [half_difference, mean] = [2.0 * mu * shear, 2.0 * (lambda + mu) * volume];
+        [mean + half_difference, mean - half_difference, 2.0 * mu * strain[2]]
+    }
+}
+
+/// The product of a stress and a strain, `[xx, yy, xy]` each.
+pub fn work(stress: Tensor, strain: Tensor) -> f64 {
+    stress[0] * strain[0] + stress[1] * strain[1] + 2.0 * stress[2] * strain[2]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The bounds of an enclosure hold the function `s^2` itself, and one that leaves it by the margins.
+    #[test]
+    fn an_enclosure_bounds_means_and_coefficients() {
+        let square = Enclosure { values: [0.0, 0.25, 1.0], below: 0.0, above: 0.0 };
+        assert_eq!(square.lower(), [0.0, 0.0, 1.0]);
+        // The integrals of 2 (1-s) s^2 and 2 s s^2.
+        let [near, far] = square.upper_means();
+        assert!((near - 1.0 / 6.0).abs() < 1e-16 && (far - 0.5).abs() < 1e-16);
+        let wide = Enclosure { below: 0.5, above: 0.25, ..square };
+        assert_eq!(wide.lower(), [-0.5, -0.5, 0.5]);
+        assert!((wide.upper_means()[0] - near - 0.25).abs() < 1e-16);
+    }
+
+    #[test]
+    fn the_strain_of_the_stress_of_a_strain_is_that_strain() {
+        let material = PlaneProblem {
+            lame: Lame { lambda: 3.0, mu: 0.5 },
+            thickness: 1.0,
+            body_force: [0.0; 2],
+            conditions: Vec::new(),
+            obstacles: Vec::new(),
+        };
+        let strain = [0.25, -0.5, 0.125];
+        let back = material.compliance(material.stress(strain));
+        (0..3).for_each(|entry| assert!((back[entry] - strain[entry]).abs() < 1e-15, "{back:?}"));
+        // sigma = lambda tr(eps) I + 2 mu eps.
+        assert!((material.stress(strain)[0] - (3.0 * -0.25 + 0.25)).abs() < 1e-15);
+    }
+}
