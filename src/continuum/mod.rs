@@ -3,6 +3,7 @@
 
 mod bound;
 mod displacement;
+mod force;
 mod johnson_mercier;
 mod problem;
 mod stress;

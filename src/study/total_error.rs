@@ -33,9 +33,26 @@ pub fn experiment(scene: &Scene, goal: f64) -> Result<(), Error> {
         let bracket = Bracket::new(&problem, &mesh, &settings)?;
         println!(
             "{:8} + {:8}  bound {:.4e}  mean {:.4e}  contact {:.2} defect {:.1e}  |v|^2 {:.9e} J {:.9e} D {:.9e}  primal {:.3} dual {:.3} all {:.3}",
-            bracket.primal.unknowns.free(), bracket.dual.unknowns.free(), bracket.bound(), bracket.bound_of_mean(),
-            bracket.contact_share / bracket.distance(), bracket.defect, bracket.energy, bracket.energy_of_displacement(), bracket.energy_of_stress(),
-            bracket.primal.seconds, bracket.dual.seconds, clock.elapsed().as_secs_f64(),
+            bracket.primal.unknowns.free(),
+            bracket.dual.unknowns.free(),
+            bracket.bound(),
+            bracket.bound_of_mean(),
+            bracket.contact_share / bracket.distance(),
+            bracket.defect,
+            bracket.energy,
+            bracket.energy_of_displacement(),
+            bracket.energy_of_stress(),
+            bracket.primal.seconds,
+            bracket.dual.seconds,
+            clock.elapsed().as_secs_f64(),
+        );
+        let now = std::time::Instant::now();
+        let interval = bracket.force_interval(&settings)?;
+        println!(
+            "    force {:.9e} in {interval:?} half width {:?} in {:.3} s",
+            bracket.force(),
+            interval.map(|[l, h]| (h - l) / 2.0 / bracket.force()),
+            now.elapsed().as_secs_f64()
         );
         if bracket.bound() <= goal {
             return Ok(());
@@ -51,11 +68,11 @@ mod tests {
     #[test]
     fn classical() {
         for nu in ["0.3", "0.4999"] {
-        let text = r#"{"body": {"rectangle": {"x": {"points": [0, 1], "divisions": [8]}, "y": {"points": [0, 0.5], "divisions": [4]}}},
+            let text = r#"{"body": {"rectangle": {"x": {"points": [0, 1], "divisions": [8]}, "y": {"points": [0, 0.5], "divisions": [4]}}},
             "material": {"young": 1e7, "poisson": NU}, "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}],
             "obstacles": [{"boundary": "top", "approach": "+y", "shape": {"parabola": {"apex": [0.5, 0.49], "radius": 1}}}]}"#.replace("NU", nu);
-        let scene = Scene::from_json(&text, "scene").unwrap();
-        experiment(&scene, 1e-3).unwrap();
+            let scene = Scene::from_json(&text, "scene").unwrap();
+            experiment(&scene, 1e-3).unwrap();
         }
     }
 }

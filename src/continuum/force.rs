@@ -1,0 +1,243 @@
+//! The force of contact between guaranteed bounds, of second order in the error.
+//!
+//! Let z be a displacement that is -1 towards the obstacle where contact is found, `tau_z` a stress without load, free of tractions
+//! beside contact and with a pressure `p_z <= 0`, and `r = eps(z) - C^-1 tau_z`. The exact stress lies in a ball about the mean
+//! `tau_m` of both stresses, with `|sigma - tau_m|^2 + S = rho^2`. Then
+//!
+//! ```text
+//! F = (tau_m, r) + integral of p_z g + supports - l(z)
+//!   + (sigma - tau_m, r) + integral of (-p_z) (g - u_n) + integral of (-p) (1 + z_n)
+//! ```
+//!
+//! and the last two terms lie between 0 and `beta S`, if `1 + z_n <= beta (g - v_n)` and `-p_z <= beta (-p_tau)`, coefficient by
+//! coefficient, with `S = integral of (-p) (g - v_n) + (-p_tau) (g - u_n) >= 0`. z and `tau_z` solve the two problems with contact held.
+
+use std::collections::BTreeSet;
+
+use super::bound::{Bracket, minus};
+use super::johnson_mercier::{PartStress, at, mean_over_parts, traction};
+use super::problem::work;
+use super::system::Unknowns;
+use super::triangulation::outward;
+use crate::error::Error;
+use crate::qp::{Settings, solve};
+
+/// What is between 0 and -1 by less than this, or a pressure below this share of the largest, is rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// Caps of beta that are tried, over the one at which its term would reach that of the ball.
+const CAPS: [f64; 4] = [f64::INFINITY, 8.0, 2.0, 0.5];
+
+/// Rounds after which rows of the wrong sign are given up.
+const ROUNDS: usize = 12;
+
+/// A pair z, tau_z and what its rows are worth.
+struct Test {
+    displacement: Vec<f64>,
+    stress: Vec<PartStress>,
+    /// The force at each place of the bracket, `<= 0`.
+    pulls: Vec<f64>,
+    /// Over the slack of each row, and over the pressure of each place: the largest is beta.
+    ratios: [Vec<f64>; 2],
+    /// How far z goes below -1.
+    beyond: f64,
+}
+
+impl Bracket<'_> {
+    /// Bounds on the sum of the contact forces, in force; `None` if obstacles come from several directions, or no bound was found.
+    ///
+    /// # Errors
+    /// Those of [`solve`].
+    pub fn force_interval(&self, settings: &Settings) -> Result<Option<[f64; 2]>, Error> {
+        let directions: BTreeSet<_> = self
+            .places
+            .iter()
+            .map(|place| &self.problem.obstacles[place.obstacle])
+            .map(|o| (o.axis, o.sense > 0.0))
+            .collect();
+        let ends: BTreeSet<_> = self.places.iter().map(|place| (place.edge, place.end)).collect();
+        if directions.len() != 1 || ends.len() != self.places.len() || self.energy == 0.0 {
+            return Ok(None);
+        }
+        let closed = &self.primal.solution.contact_set;
+        let mut bonded: Vec<bool> = (0..self.primal.rows.len()).map(|row| closed.contains(row)).collect();
+        let mut pressed: Vec<bool> = (0..self.places.len()).map(|row| self.pull(row) < 0.0).collect();
+        let mut last: Option<Test> = None;
+        let (mut interval, mut scale): (Option<[f64; 2]>, f64) = (None, 0.0);
+        for cap in CAPS {
+            if let Some(test) = &last {
+                let most = cap * scale;
+                if test.ratios.iter().flatten().all(|&ratio| ratio <= most) {
+                    continue;
+                }
+                bonded.iter_mut().zip(&test.ratios[0]).for_each(|(bonded, &ratio)| *bonded |= ratio > most);
+                pressed.iter_mut().zip(&test.ratios[1]).for_each(|(pressed, &ratio)| *pressed &= ratio <= most);
+            }
+            let Some(test) = self.test(&mut bonded, &mut pressed, settings)? else { break };
+            let (found, natural) = self.interval(&test);
+            scale = if last.is_none() { natural } else { scale };
+            if found.iter().all(|bound| bound.is_finite()) {
+                let [low, high] = interval.unwrap_or([0.0, f64::INFINITY]);
+                interval = Some([low.max(found[0]), high.min(found[1])]);
+            }
+            last = Some(test);
+        }
+        Ok(interval)
+    }
+
+    /// The interval that a pair gives, and the beta at which its term would reach that of the ball.
+    fn interval(&self, test: &Test) -> ([f64; 2], f64) {
+        let (mut base, mut square) = (self.work_on_supports(&test.stress), 0.0);
+        for triangle in 0..self.mesh.triangles.len() {
+            let mean = |value: &dyn Fn(usize, [f64; 3]) -> f64| self.volume(triangle) * mean_over_parts(value);
+            let rest = |k: usize, weights: [f64; 3]| {
+                let strain = self.strain(&test.displacement, triangle, k, weights);
+                minus(strain, self.problem.compliance(at(&test.stress[triangle], k, weights)))
+            };
+            square += mean(&|k, weights| work(self.problem.stress(rest(k, weights)), rest(k, weights)));
+            base += mean(&|k, weights| {
+                let strain = self.problem.stress(self.strain(&self.primal.values, triangle, k, weights));
+                let stress = at(&self.stress[triangle], k, weights);
+                let middle = [0, 1, 2].map(|entry| (strain[entry] + stress[entry]) / 2.0);
+                work(middle, rest(k, weights))
+            });
+        }
+        let load = self.displacements.load();
+        base -= test.displacement.iter().zip(&load).map(|(value, load)| value * load).sum::<f64>();
+        let [mut low, mut high] = [base; 2];
+        for (place, (&pull, row)) in self.places.iter().zip(test.pulls.iter().zip(&self.dual.rows)) {
+            let [from, to] = self.mesh.edges[place.edge].map(|node| self.mesh.nodes[node]);
+            let gap = self.problem.obstacles[place.obstacle].surface.gap(from, to);
+            low += pull * row.gap;
+            high += pull * (row.gap - gap.map_or(0.0, |gap| gap.below + gap.above));
+        }
+        let (length, radius) = (square.sqrt(), self.square_of_radius().max(0.0).sqrt());
+        let beta = test.ratios.iter().flatten().fold(0.0, |beta: f64, &ratio| beta.max(ratio));
+        // The largest x |r| + beta (rho^2 - x^2).
+        let most = if length >= 2.0 * beta * radius {
+            radius * length
+        } else {
+            beta * radius * radius + length * length / (4.0 * beta)
+        };
+        ([(low - radius * length) / (1.0 + test.beyond), high + most], length / (2.0 * radius))
+    }
+
+    /// The pair for these rows held; rows of the wrong sign are bonded or released until there are none.
+    fn test(&self, bonded: &mut [bool], pressed: &mut [bool], settings: &Settings) -> Result<Option<Test>, Error> {
+        let Some(displacement) = self.bonded_displacement(bonded, settings)? else { return Ok(None) };
+        let Some((stress, pulls)) = self.bonded_stress(pressed, settings)? else { return Ok(None) };
+        let (primal, values) = (&self.primal, &self.primal.values);
+        let mut beyond: f64 = 0.0;
+        let mut of_rows: Vec<f64> = Vec::with_capacity(primal.rows.len());
+        for row in &primal.rows {
+            let open = 1.0 + row.sense * displacement[row.unknown];
+            beyond = beyond.max(-open);
+            of_rows.push(over(open, row.gap - row.sense * values[row.unknown]));
+        }
+        // Places that a support holds move with no test, and may be touched.
+        for (_, _, edge, condition) in self.mesh.outline() {
+            let [from, to] = self.mesh.edges[edge].map(|node| self.mesh.nodes[node]);
+            for &number in &self.problem.conditions[condition].obstacles {
+                let facing = &self.problem.obstacles[number];
+                let Some(gap) = facing.surface.gap(from, to) else { continue };
+                for (function, bound) in self.displacements.on_edge(edge, facing.axis).into_iter().zip(gap.lower()) {
+                    if let Some(held) = primal.unknowns.held[function] {
+                        of_rows.push(over(1.0, bound - facing.sense * held));
+                    }
+                }
+            }
+        }
+        let of_places =
+            pulls.iter().enumerate().map(|(row, &pull)| if pull < 0.0 { pull / self.pull(row) } else { 0.0 }).collect();
+        Ok(Some(Test { displacement, stress, pulls, ratios: [of_rows, of_places], beyond }))
+    }
+
+    /// The displacement -1 at bonded rows, without load; rows below -1 are bonded too.
+    fn bonded_displacement(&self, bonded: &mut [bool], settings: &Settings) -> Result<Option<Vec<f64>>, Error> {
+        for _ in 0..ROUNDS {
+            let mut held: Vec<Option<f64>> = self.primal.unknowns.held.iter().map(|held| held.map(|_| 0.0)).collect();
+            let rows = || self.primal.rows.iter().zip(bonded.iter());
+            rows().filter(|row| *row.1).for_each(|(row, _)| held[row.unknown] = Some(-row.sense));
+            let unknowns = Unknowns::new(held);
+            let blocks: Vec<_> = self.displacements.blocks().collect();
+            let load = vec![0.0; unknowns.held.len()];
+            let posed = unknowns.problem(blocks.iter().map(|(n, b)| (*n, b)), &load, &[])?;
+            let values = unknowns.expanded(&solve(&posed, settings)?.displacement);
+            let wrong: Vec<usize> = (0..bonded.len())
+                .filter(|&row| {
+                    let of_row = &self.primal.rows[row];
+                    1.0 + of_row.sense * values[of_row.unknown] < -ROUNDING && !bonded[row]
+                })
+                .collect();
+            if wrong.is_empty() {
+                return Ok(Some(values));
+            }
+            wrong.into_iter().for_each(|row| bonded[row] = true);
+        }
+        Ok(None)
+    }
+
+    /// The stress under edges held at -1 where pressed, and its forces there; places that pull are released.
+    fn bonded_stress(
+        &self,
+        pressed: &mut [bool],
+        settings: &Settings,
+    ) -> Result<Option<(Vec<PartStress>, Vec<f64>)>, Error> {
+        let nothing = self.stresses.stresses(&vec![0.0; self.dual.values.len()]);
+        for _ in 0..ROUNDS {
+            let mut held: Vec<Option<f64>> = self.dual.unknowns.held.iter().map(|held| held.map(|_| 0.0)).collect();
+            let rows = || self.dual.rows.iter().zip(pressed.iter());
+            rows().filter(|row| *row.1).for_each(|(row, _)| held[row.unknown] = Some(-row.sense));
+            let unknowns = Unknowns::new(held);
+            let blocks: Vec<_> = self.stresses.blocks().collect();
+            let load = vec![0.0; unknowns.held.len()];
+            let posed = unknowns.problem(blocks.iter().map(|(n, b)| (*n, b)), &load, &[])?;
+            let mut stress = self.stresses.stresses(&unknowns.expanded(&solve(&posed, settings)?.displacement));
+            // The difference of two answers under the same body force has none.
+            for (values, at_rest) in stress.iter_mut().flatten().flatten().zip(nothing.iter().flatten().flatten()) {
+                *values = minus(*values, *at_rest);
+            }
+            let mut pulls = self.pulls(&stress);
+            let largest = pulls.iter().fold(0.0, |largest: f64, pull| largest.max(pull.abs()));
+            let wrong: Vec<usize> =
+                (0..pressed.len()).filter(|&row| pressed[row] && pulls[row] > ROUNDING * largest).collect();
+            if wrong.is_empty() {
+                pulls
+                    .iter_mut()
+                    .zip(pressed.iter())
+                    .for_each(|(pull, pressed)| *pull = if *pressed { pull.min(0.0) } else { 0.0 });
+                return Ok(Some((stress, pulls)));
+            }
+            wrong.into_iter().for_each(|row| pressed[row] = false);
+        }
+        Ok(None)
+    }
+
+    /// The force of a stress at each place, along the obstacle.
+    fn pulls(&self, stress: &[PartStress]) -> Vec<f64> {
+        let mut at_ends = vec![[[0.0; 2]; 2]; self.mesh.edges.len()];
+        for (triangle, local, edge, _) in self.mesh.outline() {
+            let (normal, _) = outward(self.mesh.corners(triangle), local);
+            for end in 0..2 {
+                let node = self.mesh.triangles[triangle][(local + 1 + end) % 3];
+                let place = usize::from(self.mesh.edges[edge][0] != node);
+                at_ends[edge][place] = traction(stress[triangle][local][1 + end], normal);
+            }
+        }
+        let pull = |place: &super::stress::Place| {
+            let facing = &self.problem.obstacles[place.obstacle];
+            facing.sense * at_ends[place.edge][place.end][facing.axis] * self.stresses.half_area(place.edge)
+        };
+        self.places.iter().map(pull).collect()
+    }
+
+    /// The force of the displacement: the sum of its multipliers, `>= 0`.
+    pub fn force(&self) -> f64 {
+        -self.primal.solution.multiplier.iter().sum::<f64>()
+    }
+}
+
+/// A ratio of a displacement of order one, zero if that is rounding, infinite for something over nothing.
+fn over(value: f64, size: f64) -> f64 {
+    if value <= ROUNDING { 0.0 } else { value / size.max(0.0) }
+}
