@@ -56,6 +56,7 @@
 
 #[cfg(feature = "cli")]
 pub mod cli;
+#[cfg(feature = "cli")]
 mod continuum;
 mod error;
 pub mod fem;

@@ -13,6 +13,7 @@ mod progress;
 mod settings;
 mod solve;
 mod sweep;
+mod total_error;
 mod tradeoff;
 mod verify;
 

@@ -103,6 +103,12 @@ pub(super) struct Solve {
     /// Extrapolate the penalty answer to an infinite penalty
     #[arg(long)]
     pub extrapolate: bool,
+    /// Refine the mesh until the error against the continuum, relative in the energy norm, is guaranteed to be below (in the plane)
+    #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = parse_total_error)]
+    pub total_error: Option<f64>,
+    /// And until the contact force is guaranteed to be within this relative error
+    #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = parse_total_error, requires = "total_error")]
+    pub force_error: Option<f64>,
     /// Go on with the motion that stands in the folder of --out, to a longer duration if the scene now says so
     #[arg(long, requires = "out")]
     pub resume: bool,
@@ -178,6 +184,13 @@ fn parse_tolerance(text: &str) -> Result<f64, String> {
         _ => {
             Err(format!("it must be a number above 0 and at most {LARGEST_TOLERANCE}, as 1e-9: it is a relative error"))
         }
+    }
+}
+
+fn parse_total_error(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value < 1.0 => Ok(value),
+        _ => Err("it must be a number above 0 and below 1, as 1e-2: it is a relative error".to_string()),
     }
 }
 

@@ -5,11 +5,13 @@ use super::input::{Input, Source};
 use super::options::{Accuracy, Common, Solve};
 use super::outcome::{Outcome, Report, warn};
 use super::settings::settings;
+use super::total_error;
 use crate::error::Error;
 use crate::output::{gallery, solve_text};
 use crate::qp::{Method, Settings, solve};
 use crate::scene::Scene;
 use crate::solution::{Goal, Solution};
+use crate::study::total_error::TotalErrorGoal;
 use crate::watch::Watch;
 
 /// Assembly that takes at most this many seconds is done even if no time is left: the report then says what the rest needs.
@@ -28,6 +30,16 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
         if scene.analysis.is_some() {
             return dynamic::run(options, scene, watch);
         }
+    }
+    if let Some(bound) = options.total_error {
+        let Source::Scene(scene, _) = &source else {
+            let name = options.input.display();
+            let message =
+                format!("{name} is a problem directory: it has no continuum, so that its total error is unknown");
+            return Err(Error::Scene { path: "--total-error".into(), message });
+        };
+        let goal = TotalErrorGoal { total_error: bound, force_error: options.force_error };
+        return total_error::run(options, scene, goal, watch);
     }
     if options.resume {
         let path = "analysis".into();

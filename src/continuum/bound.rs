@@ -55,7 +55,6 @@ pub struct Bracket<'a> {
 pub struct Side {
     pub unknowns: Unknowns,
     pub rows: Vec<Row>,
-    pub problem: ContactProblem,
     pub solution: Solution,
     /// The values of all unknowns.
     pub values: Vec<f64>,
@@ -64,14 +63,14 @@ pub struct Side {
 }
 
 impl Side {
-    fn solved(unknowns: Unknowns, rows: Vec<Row>, problem: ContactProblem, settings: &Settings) -> Result<Self, Error> {
-        let solution = match solve(&problem, settings) {
+    fn solved(unknowns: Unknowns, rows: Vec<Row>, problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
+        let solution = match solve(problem, settings) {
             // The check of the bracket judges both answers.
             Err(Error::NotCertified { solution, .. }) => *solution,
             other => other?,
         };
         let values = unknowns.expanded(&solution.displacement);
-        Ok(Side { unknowns, rows, problem, solution, values, seconds: 0.0 })
+        Ok(Side { unknowns, rows, solution, values, seconds: 0.0 })
     }
 }
 
@@ -87,14 +86,14 @@ impl<'a> Bracket<'a> {
         let rows = displacements.rows(&unknowns)?;
         let blocks: Vec<_> = displacements.blocks().collect();
         let posed = unknowns.problem(blocks.iter().map(|(n, b)| (*n, b)), &displacements.load(), &rows)?;
-        let mut primal = Side::solved(unknowns, rows, posed, settings)?;
+        let mut primal = Side::solved(unknowns, rows, &posed, settings)?;
         primal.seconds = clock.elapsed().as_secs_f64();
         let stresses = Stresses::new(problem, mesh);
         let unknowns = stresses.unknowns();
         let (rows, places) = stresses.rows(&unknowns);
         let blocks: Vec<_> = stresses.blocks().collect();
         let posed = unknowns.problem(blocks.iter().map(|(n, b)| (*n, b)), &stresses.load(), &rows)?;
-        let mut dual = Side::solved(unknowns, rows, posed, settings)?;
+        let mut dual = Side::solved(unknowns, rows, &posed, settings)?;
         let stress = stresses.stresses(&dual.values);
         dual.seconds = clock.elapsed().as_secs_f64() - primal.seconds;
         let mut bracket = Bracket {

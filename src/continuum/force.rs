@@ -20,13 +20,15 @@ use super::problem::work;
 use super::system::Unknowns;
 use super::triangulation::outward;
 use crate::error::Error;
+use crate::qp::linear::Cholesky;
+use crate::qp::problem::ContactProblem;
 use crate::qp::{Settings, solve};
 
 /// What is between 0 and -1 by less than this, or a pressure below this share of the largest, is rounding.
 const ROUNDING: f64 = 1e-12;
 
 /// Caps of beta that are tried, over the one at which its term would reach that of the ball.
-const CAPS: [f64; 4] = [f64::INFINITY, 8.0, 2.0, 0.5];
+const CAPS: [f64; 2] = [f64::INFINITY, 2.0];
 
 /// Rounds after which rows of the wrong sign are given up.
 const ROUNDS: usize = 12;
@@ -162,7 +164,7 @@ impl Bracket<'_> {
             let blocks: Vec<_> = self.displacements.blocks().collect();
             let load = vec![0.0; unknowns.held.len()];
             let posed = unknowns.problem(blocks.iter().map(|(n, b)| (*n, b)), &load, &[])?;
-            let values = unknowns.expanded(&solve(&posed, settings)?.displacement);
+            let values = unknowns.expanded(&linear(&posed, settings)?);
             let wrong: Vec<usize> = (0..bonded.len())
                 .filter(|&row| {
                     let of_row = &self.primal.rows[row];
@@ -192,7 +194,7 @@ impl Bracket<'_> {
             let blocks: Vec<_> = self.stresses.blocks().collect();
             let load = vec![0.0; unknowns.held.len()];
             let posed = unknowns.problem(blocks.iter().map(|(n, b)| (*n, b)), &load, &[])?;
-            let mut stress = self.stresses.stresses(&unknowns.expanded(&solve(&posed, settings)?.displacement));
+            let mut stress = self.stresses.stresses(&unknowns.expanded(&linear(&posed, settings)?));
             // The difference of two answers under the same body force has none.
             for (values, at_rest) in stress.iter_mut().flatten().flatten().zip(nothing.iter().flatten().flatten()) {
                 *values = minus(*values, *at_rest);
@@ -235,6 +237,16 @@ impl Bracket<'_> {
     pub fn force(&self) -> f64 {
         -self.primal.solution.multiplier.iter().sum::<f64>()
     }
+}
+
+/// The displacement of a problem without rows, refined once; by the solver of all problems where the stiffness is not definite.
+fn linear(problem: &ContactProblem, settings: &Settings) -> Result<Vec<f64>, Error> {
+    let Ok(factor) = Cholesky::of(problem.stiffness()) else { return Ok(solve(problem, settings)?.displacement) };
+    let mut solution = factor.solve(problem.load());
+    let balanced = problem.stiffness().mul(&solution);
+    let left: Vec<f64> = problem.load().iter().zip(balanced).map(|(load, force)| load - force).collect();
+    solution.iter_mut().zip(factor.solve(&left)).for_each(|(value, step)| *value += step);
+    Ok(solution)
 }
 
 /// A ratio of a displacement of order one, zero if that is rounding, infinite for something over nothing.

@@ -1,6 +1,7 @@
 //! The guaranteed error against the continuum, in the plane: a displacement that keeps off the obstacles between nodes too, a stress in
 //! balance, and what lies between their energies.
 
+mod answer;
 mod bound;
 mod displacement;
 mod force;
@@ -10,6 +11,7 @@ mod stress;
 mod system;
 mod triangulation;
 
+pub use answer::PlaneAnswer;
 pub use bound::Bracket;
 pub use problem::{Condition, Distance, Enclosure, Facing, PlaneProblem};
 pub use triangulation::{Point, Triangulation, twice_area};

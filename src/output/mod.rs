@@ -32,6 +32,8 @@ mod shape;
 mod style;
 mod svg;
 pub(crate) mod ticks;
+#[cfg(feature = "cli")]
+mod total_error;
 mod tradeoff;
 mod typeface;
 pub(crate) mod vtu;
@@ -52,6 +54,8 @@ pub use plot::{Plot, Series, line_plots};
 pub(crate) use report::printable;
 pub use report::{compare_text, solve_text, sweep_text, verify_text};
 pub use ticks::{Quantity, Scale};
+#[cfg(feature = "cli")]
+pub(crate) use total_error::{total_error_text, write_total_error};
 #[cfg(feature = "cli")]
 pub(crate) use tradeoff::total_error_plot;
 pub use tradeoff::{tradeoff_csv, tradeoff_plot, tradeoff_text};

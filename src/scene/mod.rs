@@ -18,6 +18,7 @@ mod answer;
 pub(crate) mod body;
 mod build;
 mod condition;
+#[cfg(feature = "cli")]
 mod continuum;
 mod dynamics;
 mod elastic;

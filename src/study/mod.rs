@@ -6,7 +6,8 @@ mod motion_tradeoff;
 mod moving_mean;
 pub(crate) mod scene;
 mod summary;
-mod total_error;
+#[cfg(feature = "cli")]
+pub(crate) mod total_error;
 mod tradeoff;
 mod warnings;
 

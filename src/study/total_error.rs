@@ -1,15 +1,225 @@
 //! The total error: a mesh refined where the guaranteed bound is made, until it is small enough.
 
-use crate::continuum::{Bracket, Triangulation};
+use std::time::Instant;
+
+use serde::Serialize;
+
+use super::Status;
+use crate::continuum::{Bracket, PlaneAnswer, PlaneProblem, Triangulation};
 use crate::error::Error;
 use crate::qp::{Method, Settings};
-use crate::scene::Scene;
+use crate::scene::{Model, Scene};
 
-/// The share of J - D that the triangles together make which are refined: that of Doerfler.
+/// The share of J - D that the refined triangles make together.
+///
+/// # Source
+/// W. Doerfler, "A convergent adaptive algorithm for Poisson's equation", SIAM J. Numer. Anal. 33 (1996) 1106-1124.
 const MARKED: f64 = 0.5;
 
+/// The next mesh takes about as many times the seconds of this one.
+const GROWTH: f64 = 2.2;
+
+/// What is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(crate) struct TotalErrorGoal {
+    /// The most that |u - v| / |v| may be, in the energy norm.
+    pub total_error: f64,
+    /// The most that the force may be off, as half the width of its interval over the force.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub force_error: Option<f64>,
+}
+
+/// Why no finer mesh was made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Ended {
+    /// The goal is met.
+    Goal,
+    /// The next mesh would have taken more time than was left.
+    Time,
+    /// The next mesh would have taken more memory than there is.
+    Memory,
+}
+
+/// One mesh on the way.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct TotalErrorLevel {
+    /// Triangles.
+    pub triangles: usize,
+    /// Unknowns of the displacement.
+    pub dofs: usize,
+    /// Unknowns of the stress in balance.
+    pub stress_dofs: usize,
+    /// The bound on |u - v| / |v|.
+    pub bound: f64,
+    /// The bound on the error of the mean stress, over |v|.
+    pub mean_stress_bound: f64,
+    /// The force of contact of the displacement, in force.
+    pub contact_force: f64,
+    /// The force of contact lies between these, where that was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub force_interval: Option<[f64; 2]>,
+    /// Seconds since the start, the interval of the force included.
+    pub seconds: f64,
+    /// Those of the displacement on this mesh, and those of the stress.
+    pub displacement_seconds: f64,
+    pub stress_seconds: f64,
+}
+
+/// The bound in reports.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(crate) struct Bound {
+    /// At least |u - v| / |v|.
+    pub bound: f64,
+    /// Whether that is proven, and not estimated.
+    pub guaranteed: bool,
+}
+
+/// An answer with its guaranteed error against the continuum.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct TotalError {
+    pub status: Status,
+    pub goal: TotalErrorGoal,
+    pub ended: Ended,
+    /// |u - v| / |v| in the energy norm: u the exact displacement of the polygon, v the answer.
+    pub total_error: Bound,
+    /// |sigma - tau_m| / |v|: tau_m the mean of the stress of v and of the stress in balance.
+    pub mean_stress_error: Bound,
+    /// The sum of the contact forces of v.
+    pub contact_force: f64,
+    /// The exact contact force lies between these; none if obstacles come from several directions.
+    pub force_interval: Option<[f64; 2]>,
+    /// The largest defect that the check of balance, signs and distances found, relative: rounding.
+    pub defect: f64,
+    pub levels: Vec<TotalErrorLevel>,
+    /// Triangles of the next mesh, if it was not made.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub next_triangles: Option<usize>,
+    pub seconds: f64,
+    /// The displacement and the stresses.
+    #[serde(skip)]
+    pub answer: PlaneAnswer,
+    /// The meshes, from the first to the last.
+    #[serde(skip)]
+    pub meshes: Vec<Triangulation>,
+}
+
+/// Refines the mesh of a plane scene until its total error is as small as asked for, or time or memory end.
+///
+/// # Errors
+/// [`Error::Scene`] for what has no guaranteed bound; those of [`crate::solve`] on the first mesh.
+pub(crate) fn total_error(
+    scene: &Scene,
+    model: &Model,
+    goal: TotalErrorGoal,
+    settings: &Settings,
+) -> Result<TotalError, Error> {
+    let (problem, mesh) = scene.plane_problem(model)?;
+    // A stress in balance comes from a linear solve with a settled contact set, and from nothing less.
+    let method = if settings.method == Method::Auto { Method::ActiveSet } else { settings.method };
+    let search =
+        Search { problem: &problem, goal, settings: Settings { method, ..settings.clone() }, clock: Instant::now() };
+    search.run(mesh)
+}
+
+/// What stays the same from mesh to mesh.
+struct Search<'a> {
+    problem: &'a PlaneProblem,
+    goal: TotalErrorGoal,
+    settings: Settings,
+    clock: Instant,
+}
+
+impl Search<'_> {
+    fn run(&self, first: Triangulation) -> Result<TotalError, Error> {
+        let (mut meshes, mut levels) = (vec![first], Vec::<TotalErrorLevel>::new());
+        let mut best: Option<(PlaneAnswer, f64)> = None;
+        let (mut ended, mut next_triangles) = (Ended::Goal, None);
+        while let Some(mesh) = meshes.last() {
+            self.settings.watch.step("mesh", levels.len());
+            let bracket = match Bracket::new(self.problem, mesh, &self.settings) {
+                Err(error) if best.is_some() && shortage(&error).is_some() => {
+                    (ended, next_triangles) = (shortage(&error).unwrap_or(Ended::Time), Some(mesh.triangles.len()));
+                    meshes.pop();
+                    break;
+                }
+                other => other?,
+            };
+            let level = self.level(&bracket)?;
+            let taken = level.seconds - levels.last().map_or(0.0, |last| last.seconds);
+            let is_met = self.is_met(&level);
+            levels.push(level);
+            best = Some((bracket.answer(), bracket.defect));
+            if is_met {
+                break;
+            }
+            let finer = mesh.refined(&marked(&bracket.shares, MARKED));
+            if !self.settings.watch.allows(GROWTH * taken) {
+                (ended, next_triangles) = (Ended::Time, Some(finer.triangles.len()));
+                break;
+            }
+            meshes.push(finer);
+        }
+        let (Some((answer, defect)), Some(last)) = (best, levels.last()) else { return Err(Error::Interrupted) };
+        Ok(TotalError {
+            status: if ended == Ended::Goal { Status::Certified } else { Status::NotCertified },
+            goal: self.goal,
+            ended,
+            total_error: Bound { bound: last.bound, guaranteed: true },
+            mean_stress_error: Bound { bound: last.mean_stress_bound, guaranteed: true },
+            contact_force: last.contact_force,
+            force_interval: last.force_interval,
+            defect,
+            next_triangles,
+            seconds: self.clock.elapsed().as_secs_f64(),
+            levels,
+            answer,
+            meshes,
+        })
+    }
+
+    /// The numbers of a mesh; the interval of the force where it is asked for, or nothing else is.
+    fn level(&self, bracket: &Bracket) -> Result<TotalErrorLevel, Error> {
+        let is_near = bracket.bound() <= self.goal.total_error || self.goal.force_error.is_some();
+        let is_last = is_near || self.settings.watch.time_left().is_some();
+        let force_interval = if is_last { bracket.force_interval(&self.settings)? } else { None };
+        Ok(TotalErrorLevel {
+            triangles: bracket.mesh.triangles.len(),
+            dofs: bracket.primal.unknowns.free(),
+            stress_dofs: bracket.dual.unknowns.free(),
+            bound: bracket.bound(),
+            mean_stress_bound: bracket.bound_of_mean(),
+            contact_force: bracket.force(),
+            force_interval,
+            seconds: self.clock.elapsed().as_secs_f64(),
+            displacement_seconds: bracket.primal.seconds,
+            stress_seconds: bracket.dual.seconds,
+        })
+    }
+
+    fn is_met(&self, level: &TotalErrorLevel) -> bool {
+        let force_met = self.goal.force_error.is_none_or(|wanted| half_width(level).is_some_and(|half| half <= wanted));
+        level.bound <= self.goal.total_error && force_met
+    }
+}
+
+/// Half the width of the interval of the force, over the force; none without an interval.
+pub(crate) fn half_width(level: &TotalErrorLevel) -> Option<f64> {
+    let [low, high] = level.force_interval?;
+    Some(if high > low { (high - low) / 2.0 / level.contact_force.abs() } else { 0.0 })
+}
+
+/// What an error says is short.
+fn shortage(error: &Error) -> Option<Ended> {
+    match error {
+        Error::OutOfTime { .. } | Error::Interrupted => Some(Ended::Time),
+        Error::NoRoom { .. } | Error::TooLarge { .. } => Some(Ended::Memory),
+        _ => None,
+    }
+}
+
 /// The fewest triangles that make a share of the whole.
-pub fn marked(shares: &[f64], share: f64) -> Vec<bool> {
+fn marked(shares: &[f64], share: f64) -> Vec<bool> {
     let mut order: Vec<usize> = (0..shares.len()).collect();
     order.sort_by(|&a, &b| shares[b].total_cmp(&shares[a]));
     let wanted = share * shares.iter().sum::<f64>();
@@ -24,55 +234,14 @@ pub fn marked(shares: &[f64], share: f64) -> Vec<bool> {
     marked
 }
 
-pub fn experiment(scene: &Scene, goal: f64) -> Result<(), Error> {
-    let model = scene.build()?;
-    let (problem, mut mesh): (_, Triangulation) = scene.plane_problem(&model)?;
-    let settings = Settings::with_method(Method::ActiveSet);
-    let clock = std::time::Instant::now();
-    loop {
-        let bracket = Bracket::new(&problem, &mesh, &settings)?;
-        println!(
-            "{:8} + {:8}  bound {:.4e}  mean {:.4e}  contact {:.2} defect {:.1e}  |v|^2 {:.9e} J {:.9e} D {:.9e}  primal {:.3} dual {:.3} all {:.3}",
-            bracket.primal.unknowns.free(),
-            bracket.dual.unknowns.free(),
-            bracket.bound(),
-            bracket.bound_of_mean(),
-            bracket.contact_share / bracket.distance(),
-            bracket.defect,
-            bracket.energy,
-            bracket.energy_of_displacement(),
-            bracket.energy_of_stress(),
-            bracket.primal.seconds,
-            bracket.dual.seconds,
-            clock.elapsed().as_secs_f64(),
-        );
-        let now = std::time::Instant::now();
-        let interval = bracket.force_interval(&settings)?;
-        println!(
-            "    force {:.9e} in {interval:?} half width {:?} in {:.3} s",
-            bracket.force(),
-            interval.map(|[l, h]| (h - l) / 2.0 / bracket.force()),
-            now.elapsed().as_secs_f64()
-        );
-        if bracket.bound() <= goal {
-            return Ok(());
-        }
-        mesh = mesh.refined(&marked(&bracket.shares, MARKED));
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn classical() {
-        for nu in ["0.3", "0.4999"] {
-            let text = r#"{"body": {"rectangle": {"x": {"points": [0, 1], "divisions": [8]}, "y": {"points": [0, 0.5], "divisions": [4]}}},
-            "material": {"young": 1e7, "poisson": NU}, "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}],
-            "obstacles": [{"boundary": "top", "approach": "+y", "shape": {"parabola": {"apex": [0.5, 0.49], "radius": 1}}}]}"#.replace("NU", nu);
-            let scene = Scene::from_json(&text, "scene").unwrap();
-            experiment(&scene, 1e-3).unwrap();
-        }
+    fn the_fewest_triangles_make_half_of_the_whole() {
+        assert_eq!(marked(&[1.0, 4.0, 2.0, 1.0], 0.5), [false, true, false, false]);
+        assert_eq!(marked(&[1.0, 3.0, 2.0, 2.0], 0.6), [false, true, true, false]);
+        assert_eq!(marked(&[0.0, 0.0], 0.5), [false, false]);
     }
 }

@@ -1,0 +1,63 @@
+//! What is kept of a bracket: the displacement and the stresses as a picture or a file shows them.
+
+use super::bound::Bracket;
+use super::johnson_mercier::at;
+use super::problem::Tensor;
+use super::triangulation::Point;
+
+/// The middle of a part of a triangle.
+const CENTRE: [f64; 3] = [1.0 / 3.0; 3];
+
+/// The answer on a mesh of triangles of six nodes: the corners, then the middles of the edges.
+#[derive(Clone, Debug)]
+pub struct PlaneAnswer {
+    /// The corners of the mesh, then the middles of its edges.
+    pub nodes: Vec<Point>,
+    /// The nodes of each triangle: three corners, then the middles of the sides between the first two, the next two and the last and
+    /// the first.
+    pub triangles: Vec<[usize; 6]>,
+    /// The displacement of each node.
+    pub displacement: Vec<Point>,
+    /// The mean over each triangle of the stress of the displacement and of the stress in balance.
+    pub stress: Vec<Tensor>,
+    /// What each triangle adds to half the square of the bound, in force times length.
+    pub shares: Vec<f64>,
+}
+
+impl Bracket<'_> {
+    /// What there is to show.
+    pub fn answer(&self) -> PlaneAnswer {
+        let mesh = self.mesh;
+        let middle = |&[a, b]: &[usize; 2]| [0, 1].map(|axis| (mesh.nodes[a][axis] + mesh.nodes[b][axis]) / 2.0);
+        let values = &self.primal.values;
+        let of = |function: usize| [values[2 * function], values[2 * function + 1]];
+        let corners = (0..mesh.nodes.len()).map(of);
+        let middles = mesh.edges.iter().enumerate().map(|(edge, &[a, b])| {
+            let [first, own, last] = [of(a), of(mesh.nodes.len() + edge), of(b)];
+            [0, 1].map(|axis| (first[axis] + 2.0 * own[axis] + last[axis]) / 4.0)
+        });
+        let triangles =
+            mesh.triangles.iter().zip(&mesh.sides).map(|(&[a, b, c], &[opposite_a, opposite_b, opposite_c])| {
+                let middle = |edge: usize| mesh.nodes.len() + edge;
+                [a, b, c, middle(opposite_c), middle(opposite_a), middle(opposite_b)]
+            });
+        PlaneAnswer {
+            nodes: mesh.nodes.iter().copied().chain(mesh.edges.iter().map(middle)).collect(),
+            displacement: corners.chain(middles).collect(),
+            triangles: triangles.collect(),
+            stress: (0..mesh.triangles.len()).map(|triangle| self.mean_stress(triangle)).collect(),
+            shares: self.shares.clone(),
+        }
+    }
+
+    /// The mean over a triangle of both stresses.
+    fn mean_stress(&self, triangle: usize) -> Tensor {
+        let mut mean = [0.0; 3];
+        for k in 0..3 {
+            let of_displacement = self.problem.stress(self.strain(&self.primal.values, triangle, k, CENTRE));
+            let in_balance = at(&self.stress[triangle], k, CENTRE);
+            (0..3).for_each(|entry| mean[entry] += (of_displacement[entry] + in_balance[entry]) / 6.0);
+        }
+        mean
+    }
+}

@@ -1,0 +1,215 @@
+//! An answer with its guaranteed error: report, fields, meshes.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use super::{
+    Array, Drawing, Plot, Quantity, Scale, Series, Unstructured,
+    colour::Colour,
+    drawing::{Anchor, Paint},
+    line_plots,
+    report::{columns, entry, plural, printable, quantity},
+    write_files, write_picture,
+};
+use crate::continuum::PlaneAnswer;
+use crate::error::Error;
+use crate::fem::ElementKind;
+use crate::scene::Units;
+use crate::study::total_error::{Ended, TotalError, TotalErrorLevel, half_width};
+
+/// Panels of the picture of meshes: the first, the last, and some between.
+const PANELS: usize = 4;
+/// Width of a panel, and the space around it.
+const PANEL: f64 = 520.0;
+const SPACE: f64 = 24.0;
+const HEADING: f64 = 40.0;
+const LINE: Colour = Colour(0x2f, 0x4b, 0x6e);
+
+/// The report.
+pub(crate) fn total_error_text(title: &str, found: &TotalError, units: &Units) -> String {
+    let mut text = format!("{}\n", printable(title));
+    let percent = |share: f64| format!("{:.2e} %", 100.0 * share);
+    let (bound, goal) = (found.total_error.bound, found.goal);
+    let verdict = if bound <= goal.total_error { "as asked for" } else { "NOT as asked for" };
+    text += &entry(
+        "total error",
+        &format!("guaranteed at most {}, {verdict}: {}", percent(bound), percent(goal.total_error)),
+    );
+    text += &entry("", "of the displacement, against the continuum, in the energy norm");
+    text += &entry("", &format!("guaranteed at most {} for the mean stress", percent(found.mean_stress_error.bound)));
+    text += &entry("contact force", &force_text(found, units));
+    if let Some(last) = found.levels.last() {
+        let meshes = plural(found.levels.len(), "mesh").replace("meshs", "meshes");
+        let sizes =
+            format!("{} triangles, {} unknowns, and {} of the stress", last.triangles, last.dofs, last.stress_dofs);
+        text += &entry("mesh", &format!("{meshes}; the last: {sizes}"));
+    }
+    text += &entry("check", &format!("balance, signs, distances and energies agree to {:.1e}", found.defect));
+    text += &entry("domain", "the polygon of the first mesh: a curved side is that of its straight edges");
+    let next =
+        found.next_triangles.map_or(String::new(), |count| format!(" a mesh of {count} triangles would come next;"));
+    match found.ended {
+        Ended::Goal => {}
+        Ended::Time => text += &entry("ended", &format!("the time is up;{next} {}", needed(found))),
+        Ended::Memory => text += &entry("ended", &format!("memory does not suffice;{next} {}", needed(found))),
+    }
+    text += &entry("seconds", &format!("{:.3}", found.seconds));
+    text.push('\n');
+    let heading =
+        ["triangles", "unknowns", "of the stress", "total error", "mean stress", "force", "half width", "seconds"];
+    let mut table = vec![heading.map(String::from).to_vec()];
+    table.extend(found.levels.iter().map(row));
+    for line in columns(&table).lines() {
+        let _ = writeln!(text, "  {line}");
+    }
+    text
+}
+
+fn row(level: &TotalErrorLevel) -> Vec<String> {
+    vec![
+        level.triangles.to_string(),
+        level.dofs.to_string(),
+        level.stress_dofs.to_string(),
+        format!("{:.2e}", level.bound),
+        format!("{:.2e}", level.mean_stress_bound),
+        format!("{:.6e}", level.contact_force),
+        half_width(level).map_or("-".into(), |half| format!("{half:.1e}")),
+        format!("{:.3}", level.seconds),
+    ]
+}
+
+fn force_text(found: &TotalError, units: &Units) -> String {
+    let force = quantity(found.contact_force, &units.force);
+    match (found.force_interval, found.levels.last().and_then(half_width)) {
+        (Some([low, high]), Some(half)) => {
+            format!("{force}, guaranteed between {low:.7e} and {high:.7e}: within {:.1e} %", 100.0 * half)
+        }
+        _ => format!("{force}; no guaranteed interval"),
+    }
+}
+
+/// What the goal would take, from the rate of the last meshes.
+fn needed(found: &TotalError) -> String {
+    let [.., before, last] = &found.levels[..] else { return "a second mesh would tell what the goal takes".into() };
+    let rate = (before.bound / last.bound).ln() / (last.dofs as f64 / before.dofs as f64).ln();
+    let more = (last.bound / found.goal.total_error).powf(1.0 / rate);
+    match rate > 0.0 && more.is_finite() {
+        true => format!("the goal would take about {:.1e} unknowns", more.max(1.0) * last.dofs as f64),
+        false => "the last meshes do not tell what the goal would take".into(),
+    }
+}
+
+/// Leaves the fields, the last mesh, the table of meshes and two pictures in a folder.
+pub(crate) fn write_total_error(folder: &Path, title: &str, found: &TotalError, units: &Units) -> Result<(), Error> {
+    let (fields, mesh) = (fields(&found.answer)?, gmsh(&found.answer));
+    write_files(folder, &[("answer.vtu", &fields), ("mesh.msh", &mesh), ("meshes.csv", &csv(found))])?;
+    write_picture(folder, "total-error", &plot(title, found))?;
+    write_picture(folder, "meshes", &meshes(title, found, units))?;
+    Ok(())
+}
+
+fn csv(found: &TotalError) -> String {
+    let mut text =
+        String::from("triangles,dofs,stress_dofs,bound,mean_stress_bound,contact_force,force_low,force_high,seconds\n");
+    for level in &found.levels {
+        let [low, high] =
+            level.force_interval.map_or([String::new(), String::new()], |ends| ends.map(|end| end.to_string()));
+        let TotalErrorLevel { triangles, dofs, stress_dofs, bound, mean_stress_bound, contact_force, seconds, .. } =
+            level;
+        let _ = writeln!(
+            text,
+            "{triangles},{dofs},{stress_dofs},{bound},{mean_stress_bound},{contact_force},{low},{high},{seconds}"
+        );
+    }
+    text
+}
+
+/// The fields for ParaView: triangles of six nodes, the displacement at the nodes, mean stress and share of the bound on triangles.
+fn fields(answer: &PlaneAnswer) -> Result<String, Error> {
+    let nodes: Vec<[f64; 3]> = answer.nodes.iter().map(|&[x, y]| [x, y, 0.0]).collect();
+    let elements: Vec<Vec<usize>> = answer.triangles.iter().map(|triangle| triangle.to_vec()).collect();
+    let kinds = vec![ElementKind::T6; elements.len()];
+    let moved: Vec<f64> = answer.displacement.iter().flat_map(|&[x, y]| [x, y, 0.0]).collect();
+    let entry = |place: usize| -> Vec<f64> { answer.stress.iter().map(|stress| stress[place]).collect() };
+    let [xx, yy, xy] = [0, 1, 2].map(entry);
+    let data = Unstructured {
+        nodes: &nodes,
+        elements: &elements,
+        cell_types: &kinds,
+        point_data: &[Array::Vectors("displacement", &moved)],
+        cell_data: &[
+            Array::Scalars("mean_stress_xx", &xx),
+            Array::Scalars("mean_stress_yy", &yy),
+            Array::Scalars("mean_stress_xy", &xy),
+            Array::Scalars("share_of_bound", &answer.shares),
+        ],
+    };
+    data.to_vtu()
+}
+
+/// The last mesh for Gmsh, format 2.2: triangles of six nodes.
+fn gmsh(answer: &PlaneAnswer) -> String {
+    let mut text = String::from("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n");
+    let _ = writeln!(text, "{}", answer.nodes.len());
+    for (number, [x, y]) in answer.nodes.iter().enumerate() {
+        let _ = writeln!(text, "{} {x} {y} 0", number + 1);
+    }
+    let _ = writeln!(text, "$EndNodes\n$Elements\n{}", answer.triangles.len());
+    let kind = ElementKind::T6.reference().gmsh;
+    for (number, nodes) in answer.triangles.iter().enumerate() {
+        let nodes: Vec<String> = nodes.iter().map(|node| (node + 1).to_string()).collect();
+        let _ = writeln!(text, "{} {kind} 2 1 1 {}", number + 1, nodes.join(" "));
+    }
+    text += "$EndElements\n";
+    text
+}
+
+/// The bounds over the unknowns.
+fn plot(title: &str, found: &TotalError) -> Drawing {
+    let line = |name: &str, value: &dyn Fn(&TotalErrorLevel) -> Option<f64>| {
+        let point = |level: &TotalErrorLevel| Some([level.dofs as f64, value(level)?]);
+        Series::new(name, found.levels.iter().filter_map(point).collect())
+    };
+    let goal = Series::new(
+        "asked for",
+        found.levels.iter().map(|level| [level.dofs as f64, found.goal.total_error]).collect(),
+    );
+    let series = vec![
+        line("displacement", &|level| Some(level.bound)),
+        line("mean stress", &|level| Some(level.mean_stress_bound)),
+        line("contact force", &half_width),
+        goal,
+    ];
+    let series = series.into_iter().filter(|series| !series.points.is_empty()).collect();
+    let (x, y) = (Quantity::new("unknowns of the displacement", ""), Quantity::new("guaranteed relative error", ""));
+    line_plots(title, &[Plot { scales: [Scale::Logarithmic; 2], ..Plot::new(x, y, series) }])
+}
+
+/// Some of the meshes side by side, two in a row.
+fn meshes(title: &str, found: &TotalError, units: &Units) -> Drawing {
+    let count = found.meshes.len();
+    let panels = count.min(PANELS);
+    let chosen = (0..panels).map(|panel| if panels > 1 { panel * (count - 1) / (panels - 1) } else { 0 });
+    let nodes = &found.answer.nodes;
+    let low = [0, 1].map(|axis| nodes.iter().fold(f64::INFINITY, |low, node| low.min(node[axis])));
+    let high = [0, 1].map(|axis| nodes.iter().fold(f64::NEG_INFINITY, |high, node| high.max(node[axis])));
+    let scale = (PANEL / (high[0] - low[0])).min(PANEL / (high[1] - low[1]));
+    let size = [PANEL + SPACE, (high[1] - low[1]) * scale + HEADING + SPACE];
+    let (across, down) = (panels.min(2), panels.div_ceil(2));
+    let mut drawing = Drawing::new(size[0] * across as f64 + SPACE, size[1] * down as f64 + HEADING + SPACE);
+    drawing.bold_text([SPACE, HEADING - 12.0], &printable(title), 20.0, Anchor::Start);
+    for (panel, index) in chosen.enumerate() {
+        let corner = [SPACE + size[0] * (panel % 2) as f64, HEADING + size[1] * (panel / 2) as f64];
+        let level = &found.levels[index.min(found.levels.len() - 1)];
+        let heading = format!("{} triangles, guaranteed {:.2} %", level.triangles, 100.0 * level.bound);
+        drawing.text([corner[0], corner[1] + HEADING - 14.0], &heading, 16.0, Anchor::Start);
+        let place = |[x, y]: [f64; 2]| [corner[0] + (x - low[0]) * scale, corner[1] + HEADING + (high[1] - y) * scale];
+        let mesh = &found.meshes[index];
+        let triangles: Vec<[[f64; 2]; 3]> =
+            (0..mesh.triangles.len()).map(|triangle| mesh.corners(triangle).map(place)).collect();
+        drawing.polygons(&triangles, &Paint::stroke(LINE, 0.5));
+    }
+    let width = format!("width {}", quantity(high[0] - low[0], &units.length));
+    drawing.text([SPACE, drawing.height() - 8.0], &width, 14.0, Anchor::Start);
+    drawing
+}
