@@ -99,4 +99,6 @@ pub mod internals {
     pub use crate::scene::body::BodySpec;
     pub use crate::scene::schema::AnalysisSpec;
     pub use crate::study::scene::even_gaps;
+    #[cfg(feature = "cli")]
+    pub use crate::study::total_error::{Examined, examined};
 }

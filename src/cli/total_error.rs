@@ -14,7 +14,7 @@ use crate::watch::Watch;
 const REPORT: f64 = 0.05;
 
 pub(super) fn run(options: &Solve, scene: &Scene, goal: TotalErrorGoal, watch: &Watch) -> Result<Outcome, Error> {
-    let model = build(scene, &options.input)?;
+    let model = std::sync::Arc::new(build(scene, &options.input)?);
     warn(&warnings(&model));
     let settings = settings(options.method, &options.common, &watch.keeping(REPORT * options.time.unwrap_or(0.0)));
     let found = total_error(scene, &model, goal, &settings).map_err(|error| model.explain(error))?;

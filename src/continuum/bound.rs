@@ -63,7 +63,12 @@ pub struct Side {
 }
 
 impl Side {
-    fn solved(unknowns: Unknowns, rows: Vec<Row>, problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
+    fn solved(
+        unknowns: Unknowns,
+        rows: Vec<Row>,
+        problem: &ContactProblem,
+        settings: &Settings,
+    ) -> Result<Self, Error> {
         let solution = match solve(problem, settings) {
             // The check of the bracket judges both answers.
             Err(Error::NotCertified { solution, .. }) => *solution,

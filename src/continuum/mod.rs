@@ -6,6 +6,7 @@ mod bound;
 mod displacement;
 mod force;
 mod johnson_mercier;
+mod judge;
 mod problem;
 mod stress;
 mod system;

@@ -16,6 +16,8 @@ pub struct Triangulation {
     pub edges: Vec<[usize; 2]>,
     /// The edges of each triangle; edge k lies opposite to its node k.
     pub sides: Vec<[usize; 3]>,
+    /// The element of the first mesh of which each triangle is a piece.
+    pub origins: Vec<usize>,
     /// What holds on each edge of the outline: the number of a condition. `None` inside.
     pub conditions: Vec<Option<usize>>,
 }
@@ -26,11 +28,12 @@ fn key(a: usize, b: usize) -> [usize; 2] {
 }
 
 impl Triangulation {
-    /// The triangulation of these triangles (counterclockwise), turned so that the longest edge of each is bisected first, with the
+    /// The triangulation of these triangles (counterclockwise), pieces of the elements `origins`, turned so that the longest edge of each is bisected first, with the
     /// condition of each edge of the outline. `None` if an edge of the outline has no condition, or one inside has one.
     pub fn new(
         nodes: Vec<Point>,
         mut triangles: Vec<[usize; 3]>,
+        origins: Vec<usize>,
         outline: &HashMap<[usize; 2], usize>,
     ) -> Option<Self> {
         for triangle in &mut triangles {
@@ -38,7 +41,7 @@ impl Triangulation {
             let longest = (0..3).max_by(|&a, &b| length(a).total_cmp(&length(b))).unwrap_or(0);
             triangle.rotate_left(longest);
         }
-        let mesh = Self::of(nodes, triangles, outline);
+        let mesh = Self::of(nodes, triangles, origins, outline);
         let mut triangles_at = vec![0_u8; mesh.edges.len()];
         mesh.sides.iter().flatten().for_each(|&edge| triangles_at[edge] += 1);
         let fits = |(at, condition): (&u8, &Option<usize>)| (*at == 1) == condition.is_some();
@@ -46,7 +49,12 @@ impl Triangulation {
     }
 
     /// Numbers the edges.
-    fn of(nodes: Vec<Point>, triangles: Vec<[usize; 3]>, outline: &HashMap<[usize; 2], usize>) -> Self {
+    fn of(
+        nodes: Vec<Point>,
+        triangles: Vec<[usize; 3]>,
+        origins: Vec<usize>,
+        outline: &HashMap<[usize; 2], usize>,
+    ) -> Self {
         let mut numbers: HashMap<[usize; 2], usize> = HashMap::with_capacity(2 * triangles.len());
         let mut edges = Vec::with_capacity(2 * triangles.len());
         let mut side = |a: usize, b: usize| {
@@ -57,7 +65,7 @@ impl Triangulation {
         };
         let sides = triangles.iter().map(|&[a, b, c]| [side(b, c), side(c, a), side(a, b)]).collect();
         let conditions = edges.iter().map(|edge| outline.get(edge).copied()).collect();
-        Triangulation { nodes, triangles, edges, sides, conditions }
+        Triangulation { nodes, triangles, edges, sides, origins, conditions }
     }
 
     /// The corners of a triangle.
@@ -108,15 +116,18 @@ impl Triangulation {
                 outline.extend(ends.iter().map(|&end| (end, condition)));
             }
         }
-        let mut triangles = Vec::with_capacity(2 * self.triangles.len());
-        let mut left: Vec<[usize; 3]> = self.triangles.iter().rev().copied().collect();
-        while let Some([newest, a, b]) = left.pop() {
-            match middle.get(&key(a, b)) {
-                Some(&middle) => left.extend([[middle, b, newest], [middle, newest, a]]),
-                None => triangles.push([newest, a, b]),
+        let (mut triangles, mut origins) = (Vec::with_capacity(2 * self.triangles.len()), Vec::new());
+        let mut left: Vec<([usize; 3], usize)> =
+            self.triangles.iter().copied().zip(self.origins.iter().copied()).rev().collect();
+        while let Some(([newest, a, b], origin)) = left.pop() {
+            if let Some(&middle) = middle.get(&key(a, b)) {
+                left.extend([([middle, b, newest], origin), ([middle, newest, a], origin)]);
+            } else {
+                triangles.push([newest, a, b]);
+                origins.push(origin);
             }
         }
-        Self::of(nodes, triangles, &outline)
+        Self::of(nodes, triangles, origins, &outline)
     }
 }
 
@@ -145,7 +156,7 @@ mod tests {
     fn square() -> Triangulation {
         let nodes = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         let outline = HashMap::from([([0, 1], 0), ([1, 2], 1), ([2, 3], 2), ([0, 3], 3)]);
-        Triangulation::new(nodes, vec![[0, 1, 2], [0, 2, 3]], &outline).unwrap()
+        Triangulation::new(nodes, vec![[0, 1, 2], [0, 2, 3]], vec![0, 1], &outline).unwrap()
     }
 
     #[test]
@@ -167,6 +178,11 @@ mod tests {
                 lengths[condition] += outward(mesh.corners(triangle), local).1;
             }
             assert_eq!(lengths, [1.0; 4]);
+            for (triangle, origin) in mesh.origins.iter().enumerate() {
+                // The diagonal parts the square.
+                let [x, y] = mesh.corners(triangle).iter().fold([0.0; 2], |sum, at| [sum[0] + at[0], sum[1] + at[1]]);
+                assert_eq!(*origin, usize::from(y > x));
+            }
         }
         assert!(mesh.triangles.len() > 40, "{}", mesh.triangles.len());
     }

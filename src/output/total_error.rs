@@ -44,6 +44,11 @@ pub(crate) fn total_error_text(title: &str, found: &TotalError, units: &Units) -
             format!("{} triangles, {} unknowns, and {} of the stress", last.triangles, last.dofs, last.stress_dofs);
         text += &entry("mesh", &format!("{meshes}; the last: {sizes}"));
     }
+    if let Some(own) = found.own_mesh {
+        let bound = percent(own.total_error.bound);
+        text += &entry("own mesh", &format!("{} of {} unknowns: guaranteed at most {bound}", own.element, own.dofs));
+        text += &entry("", &format!("(estimated {})", percent(own.estimated)));
+    }
     text += &entry("check", &format!("balance, signs, distances and energies agree to {:.1e}", found.defect));
     text += &entry("domain", "the polygon of the first mesh: a curved side is that of its straight edges");
     let next =
@@ -209,7 +214,7 @@ fn meshes(title: &str, found: &TotalError, units: &Units) -> Drawing {
             (0..mesh.triangles.len()).map(|triangle| mesh.corners(triangle).map(place)).collect();
         drawing.polygons(&triangles, &Paint::stroke(LINE, 0.5));
     }
-    let width = format!("width {}", quantity(high[0] - low[0], &units.length));
+    let width = format!("width {} {}", high[0] - low[0], units.length);
     drawing.text([SPACE, drawing.height() - 8.0], &width, 14.0, Anchor::Start);
     drawing
 }

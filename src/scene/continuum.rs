@@ -8,6 +8,8 @@ use super::obstacle::PlacedObstacle;
 use super::schema::{LoadSpec, Place, Rule, Scene};
 use crate::continuum::{Condition, Distance, Enclosure, Facing, PlaneProblem, Point, Triangulation, twice_area};
 use crate::error::Error;
+use crate::fem::body::LocalPoint;
+use crate::fem::element::{Cell, MAX_NODES};
 use crate::fem::formulation::Formulation;
 use crate::fem::geometry::distance;
 use crate::fem::mesh::Mesh;
@@ -53,12 +55,12 @@ impl Scene {
                 .map(|(index, obstacle)| facing(index, obstacle, model.gap()))
                 .collect::<Result<_, _>>()?,
         };
-        let (nodes, triangles) = triangles(model.mesh());
+        let (nodes, triangles, origins) = triangles(model.mesh());
         let outline = self.outline(model, &nodes, &triangles, &mut problem.conditions)?;
         let unmatched = || {
             wrong("body", "the triangles of the mesh do not meet in whole edges, so that there is no guaranteed bound")
         };
-        let mesh = Triangulation::new(nodes, triangles, &outline).ok_or_else(unmatched)?;
+        let mesh = Triangulation::new(nodes, triangles, origins, &outline).ok_or_else(unmatched)?;
         Ok((problem, mesh))
     }
 
@@ -168,6 +170,19 @@ impl Scene {
     }
 }
 
+impl Model {
+    /// The strain `[xx, yy, xy]` of a nodal displacement at a point of an element of a plane mesh.
+    pub(crate) fn plane_strain_at(&self, displacement: &[f64], element: usize, [x, y]: Point) -> [f64; 3] {
+        let (body, nodes) = (self.body(), self.mesh().element(element));
+        let cell = Cell::new(self.mesh().kind().reference(), &body.coordinates(nodes));
+        let reference = cell.reference_coordinates([x, y, 0.0]);
+        let derivative = (self.mesh().kind().reference().derivative)(reference);
+        let point = LocalPoint { gradients: cell.map(&derivative).gradients, hoop: [0.0; MAX_NODES], weight: 0.0 };
+        let strain = point.strain(&body.gather(displacement, nodes), cell.unit());
+        [strain[0], strain[1], strain[3]]
+    }
+}
+
 /// The axis along which a unit vector lies.
 fn axis_of(direction: [f64; 3]) -> Option<usize> {
     (0..2).find(|&axis| direction[axis].abs() > 1.0 - ALONG_AXIS)
@@ -253,12 +268,13 @@ fn numbers(mesh: &Mesh) -> Vec<usize> {
     used.into_iter().map(number).collect()
 }
 
-/// The elements cut into triangles, counterclockwise: by their corners where all edges are straight, else by all nodes.
-fn triangles(mesh: &Mesh) -> (Vec<Point>, Vec<[usize; 3]>) {
+/// The elements cut into triangles, counterclockwise, with the number of the element of each: by their corners where all edges are straight,
+/// else by all nodes.
+fn triangles(mesh: &Mesh) -> (Vec<Point>, Vec<[usize; 3]>, Vec<usize>) {
     let (numbers, straight) = (numbers(mesh), is_straight(mesh));
     let at = |node: usize| [mesh.nodes()[node][0], mesh.nodes()[node][1]];
-    let mut triangles = Vec::new();
-    for element in mesh.elements() {
+    let (mut triangles, mut origins) = (Vec::new(), Vec::new());
+    for (number, element) in mesh.elements().enumerate() {
         let corners = corners(element.len());
         let mut inner: Vec<usize> = element[..corners].to_vec();
         if !straight && element.len() > corners {
@@ -276,6 +292,7 @@ fn triangles(mesh: &Mesh) -> (Vec<Point>, Vec<[usize; 3]>) {
             }
             _ => {}
         }
+        origins.resize(triangles.len(), number);
     }
     for triangle in &mut triangles {
         if twice_area(triangle.map(at)) < 0.0 {
@@ -284,5 +301,5 @@ fn triangles(mesh: &Mesh) -> (Vec<Point>, Vec<[usize; 3]>) {
     }
     let mut nodes = vec![[0.0; 2]; numbers.iter().max().map_or(0, |last| last + 1)];
     triangles.iter().flatten().for_each(|&node| nodes[numbers[node]] = at(node));
-    (nodes, triangles.iter().map(|triangle| triangle.map(|node| numbers[node])).collect())
+    (nodes, triangles.iter().map(|triangle| triangle.map(|node| numbers[node])).collect(), origins)
 }

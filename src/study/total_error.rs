@@ -1,5 +1,6 @@
 //! The total error: a mesh refined where the guaranteed bound is made, until it is small enough.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use serde::Serialize;
@@ -7,8 +8,8 @@ use serde::Serialize;
 use super::Status;
 use crate::continuum::{Bracket, PlaneAnswer, PlaneProblem, Triangulation};
 use crate::error::Error;
-use crate::qp::{Method, Settings};
-use crate::scene::{Model, Scene};
+use crate::qp::{Method, Settings, solve};
+use crate::scene::{Answer, Model, Scene};
 
 /// The share of J - D that the refined triangles make together.
 ///
@@ -75,6 +76,19 @@ pub(crate) struct Bound {
     pub guaranteed: bool,
 }
 
+/// The answer on the scene's own mesh, judged.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct OwnMesh {
+    /// Its elements.
+    pub element: &'static str,
+    /// Its unknowns.
+    pub dofs: usize,
+    /// The bound on |u - w| / |w|, w its displacement.
+    pub total_error: Bound,
+    /// What recovered stresses make of the same error: an estimate.
+    pub estimated: f64,
+}
+
 /// An answer with its guaranteed error against the continuum.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct TotalError {
@@ -91,6 +105,9 @@ pub(crate) struct TotalError {
     pub force_interval: Option<[f64; 2]>,
     /// The largest defect that the check of balance, signs and distances found, relative: rounding.
     pub defect: f64,
+    /// What the scene's own mesh would have given; none where that has no answer.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub own_mesh: Option<OwnMesh>,
     pub levels: Vec<TotalErrorLevel>,
     /// Triangles of the next mesh, if it was not made.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -110,21 +127,27 @@ pub(crate) struct TotalError {
 /// [`Error::Scene`] for what has no guaranteed bound; those of [`crate::solve`] on the first mesh.
 pub(crate) fn total_error(
     scene: &Scene,
-    model: &Model,
+    model: &Arc<Model>,
     goal: TotalErrorGoal,
     settings: &Settings,
 ) -> Result<TotalError, Error> {
     let (problem, mesh) = scene.plane_problem(model)?;
     // A stress in balance comes from a linear solve with a settled contact set, and from nothing less.
     let method = if settings.method == Method::Auto { Method::ActiveSet } else { settings.method };
-    let search =
-        Search { problem: &problem, goal, settings: Settings { method, ..settings.clone() }, clock: Instant::now() };
+    let search = Search {
+        problem: &problem,
+        model,
+        goal,
+        settings: Settings { method, ..settings.clone() },
+        clock: Instant::now(),
+    };
     search.run(mesh)
 }
 
 /// What stays the same from mesh to mesh.
 struct Search<'a> {
     problem: &'a PlaneProblem,
+    model: &'a Arc<Model>,
     goal: TotalErrorGoal,
     settings: Settings,
     clock: Instant,
@@ -134,6 +157,7 @@ impl Search<'_> {
     fn run(&self, first: Triangulation) -> Result<TotalError, Error> {
         let (mut meshes, mut levels) = (vec![first], Vec::<TotalErrorLevel>::new());
         let mut best: Option<(PlaneAnswer, f64)> = None;
+        let mut own_mesh = None;
         let (mut ended, mut next_triangles) = (Ended::Goal, None);
         while let Some(mesh) = meshes.last() {
             self.settings.watch.step("mesh", levels.len());
@@ -145,6 +169,9 @@ impl Search<'_> {
                 }
                 other => other?,
             };
+            if levels.is_empty() {
+                own_mesh = self.own_mesh(&bracket)?;
+            }
             let level = self.level(&bracket)?;
             let taken = level.seconds - levels.last().map_or(0.0, |last| last.seconds);
             let is_met = self.is_met(&level);
@@ -171,11 +198,27 @@ impl Search<'_> {
             force_interval: last.force_interval,
             defect,
             next_triangles,
+            own_mesh,
             seconds: self.clock.elapsed().as_secs_f64(),
             levels,
             answer,
             meshes,
         })
+    }
+
+    /// The answer on the scene's own mesh, held against the first bracket.
+    fn own_mesh(&self, first: &Bracket) -> Result<Option<OwnMesh>, Error> {
+        let model = self.model;
+        let Ok(solution) = solve(model.problem(), &self.settings) else { return Ok(None) };
+        let answer = Answer::of(model.clone(), &solution)?;
+        let judged = first.judged(|element, at| model.plane_strain_at(answer.displacement(), element, at));
+        let bound = if judged.bound == 0.0 { 0.0 } else { judged.bound / judged.norm };
+        Ok(Some(OwnMesh {
+            element: model.mesh().kind().name(),
+            dofs: model.problem().dofs(),
+            total_error: Bound { bound, guaranteed: true },
+            estimated: answer.discretisation_error()?,
+        }))
     }
 
     /// The numbers of a mesh; the interval of the force where it is asked for, or nothing else is.
@@ -232,6 +275,52 @@ fn marked(shares: &[f64], share: f64) -> Vec<bool> {
         sum += shares[index];
     }
     marked
+}
+
+/// What a study of the guarantee looks at: one mesh of several.
+#[derive(Clone, Debug)]
+pub struct Examined {
+    /// D(tau) and J(v): the exact energy lies between them.
+    pub energies: [f64; 2],
+    /// The bound on |u - v|, and |v|.
+    pub bound: f64,
+    pub norm: f64,
+    /// The force of v, and the interval.
+    pub force: f64,
+    pub force_interval: Option<[f64; 2]>,
+    /// The answer on the scene's own mesh: at least |u - w|, then |v - w| and |w|.
+    pub own: [f64; 3],
+    /// Unknowns of v.
+    pub dofs: usize,
+}
+
+/// Brackets on the mesh of a scene and on `levels` finer ones, for a study of the guarantee.
+///
+/// # Errors
+/// Those of the total error.
+pub fn examined(scene: &Scene, levels: usize) -> Result<Vec<Examined>, Error> {
+    let model = Arc::new(scene.build()?);
+    let (problem, mut mesh) = scene.plane_problem(&model)?;
+    let settings = Settings::with_method(Method::ActiveSet);
+    let own = Answer::of(model.clone(), &solve(model.problem(), &settings)?)?;
+    let mut found = Vec::with_capacity(levels + 1);
+    for level in 0..=levels {
+        let bracket = Bracket::new(&problem, &mesh, &settings)?;
+        let judged = bracket.judged(|element, at| model.plane_strain_at(own.displacement(), element, at));
+        found.push(Examined {
+            energies: [bracket.energy_of_stress(), bracket.energy_of_displacement()],
+            bound: (2.0 * bracket.distance().max(0.0)).sqrt(),
+            norm: bracket.energy.sqrt(),
+            force: bracket.force(),
+            force_interval: bracket.force_interval(&settings)?,
+            own: [judged.bound, judged.from_displacement, judged.norm],
+            dofs: bracket.primal.unknowns.free(),
+        });
+        if level < levels {
+            mesh = mesh.refined(&marked(&bracket.shares, MARKED));
+        }
+    }
+    Ok(found)
 }
 
 #[cfg(test)]

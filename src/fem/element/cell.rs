@@ -85,6 +85,21 @@ impl Cell {
     /// The values of the shape functions at a point, one for each node; `None` if the point is outside the cell by more than
     /// `tolerance`, in reference coordinates.
     pub fn weights_at(&self, point: [f64; 3], tolerance: f64) -> Option<PerNode<f64>> {
+        let (reference, at) = (self.reference, self.reference_coordinates(point));
+        let weights = (reference.shape)(at);
+        let place = self.place(&weights);
+        // Off the line or the plane of the cell no reference coordinates lead to the point.
+        let is_met = (0..3).all(|axis| (point[axis] - place[axis]).abs() <= tolerance * self.unit);
+        let own = &at[..reference.dimension];
+        let is_inside = match reference.form {
+            Shape::Product => own.iter().all(|xi| xi.abs() <= 1.0 + tolerance),
+            Shape::Simplex => own.iter().all(|&xi| xi >= -tolerance) && own.iter().sum::<f64>() <= 1.0 + tolerance,
+        };
+        (is_met && is_inside).then_some(weights)
+    }
+
+    /// The reference coordinates of a point in the cell, or near it, by the method of Newton.
+    pub fn reference_coordinates(&self, point: [f64; 3]) -> [f64; 3] {
         let reference = self.reference;
         let mut at = reference.centroid;
         for _ in 0..LOCATING_STEPS {
@@ -102,16 +117,7 @@ impl Cell {
                 break;
             }
         }
-        let weights = (reference.shape)(at);
-        let place = self.place(&weights);
-        // Off the line or the plane of the cell no reference coordinates lead to the point.
-        let is_met = (0..3).all(|axis| (point[axis] - place[axis]).abs() <= tolerance * self.unit);
-        let own = &at[..reference.dimension];
-        let is_inside = match reference.form {
-            Shape::Product => own.iter().all(|xi| xi.abs() <= 1.0 + tolerance),
-            Shape::Simplex => own.iter().all(|&xi| xi >= -tolerance) && own.iter().sum::<f64>() <= 1.0 + tolerance,
-        };
-        (is_met && is_inside).then_some(weights)
+        at
     }
 
     /// Checks that the determinant of the Jacobian is positive at the nodes and the quadrature points of `table`.
