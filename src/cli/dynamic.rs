@@ -80,7 +80,8 @@ impl<'a> Run<'a> {
     ) -> Result<Self, Error> {
         let run = Run::without_folder(model, dynamics, integrator);
         let mut folder = MotionFolder::new(path, scene, model, &dynamics.watched)?;
-        folder.observe(model, &run.integrator.observe(), run.integrator.state())?;
+        let resultants = dynamics.resultants(model, &run.integrator)?;
+        folder.observe(model, &run.integrator.observe(), run.integrator.state(), &resultants)?;
         folder.frame(model, 0.0, run.integrator.state(), &run.summary)?;
         Ok(Run { folder: Some(folder), ..run })
     }
@@ -121,7 +122,7 @@ impl<'a> Run<'a> {
             self.summary.add(&seen, step);
             let state = self.integrator.state();
             if let Some(folder) = &mut self.folder {
-                folder.observe(self.model, &seen, state)?;
+                folder.observe(self.model, &seen, state, &self.dynamics.resultants(self.model, &self.integrator)?)?;
                 if frames_until(state.steps) > frames_until(state.steps - 1) {
                     folder.frame(self.model, seen.time, state, &self.summary)?;
                 }

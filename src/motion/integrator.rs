@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use super::step::Advance;
-use super::{DynamicProblem, Observation, Scheme, State};
+use super::{Balance, DynamicProblem, Observation, Scheme, State};
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
 use crate::qp::linear::{dot, largest};
@@ -25,6 +25,8 @@ pub struct Integrator {
     /// Where in a step the scheme takes the loads, from 0 to 1.
     load_times: &'static [f64],
     state: State,
+    /// The state one step earlier; none before the first step of this integrator, or since it resumed.
+    before: Option<State>,
     watch: Watch,
     /// Seconds of the longest step so far.
     longest: f64,
@@ -73,13 +75,14 @@ impl Integrator {
             penalties: 0,
             multiplier: vec![0.0; rows],
             contact_set: ContactSet::from_fn(rows, |row| violation[row] >= -GAP_ROUNDING * reach),
+            middle: Vec::new(),
         };
         let state = prepared.start(&problem, step, state)?;
         if watch.is_over() {
             return Err(Error::Interrupted);
         }
         let load_times = scheme.load_times();
-        Ok(Integrator { problem, step, scheme: prepared, load_times, state, watch, longest: 0.0 })
+        Ok(Integrator { problem, step, scheme: prepared, load_times, state, before: None, watch, longest: 0.0 })
     }
 
     /// One step further.
@@ -105,7 +108,7 @@ impl Integrator {
         }
         let times = self.load_times.iter().map(|share| (self.state.steps as f64 + share) * self.step);
         next.work += self.problem.work(times, &self.state.displacement, &next.displacement);
-        self.state = next;
+        self.before = Some(std::mem::replace(&mut self.state, next));
         Ok(&self.state)
     }
 
@@ -132,8 +135,15 @@ impl Integrator {
         if let Some(&(name, found, expected, of)) = lengths.iter().find(|entry| entry.1 != entry.2) {
             return Err(Error::Length { name, found, expected, of });
         }
-        self.state = state;
+        (self.state, self.before) = (state, None);
         Ok(())
+    }
+
+    /// The balance of forces that the last step solved, at some of the dofs; `None` before the first step, or the first one
+    /// since a resume.
+    pub(crate) fn balance(&self, at: &[usize]) -> Option<Balance> {
+        let before = self.before.as_ref()?;
+        Some(self.scheme.balance(self.step, before, &self.state, at))
     }
 
     /// The current time: the number of steps times the step.

@@ -24,6 +24,7 @@
 //! # Ok::<(), signorini::Error>(())
 //! ```
 
+mod balance;
 mod integrator;
 mod problem;
 mod scheme;
@@ -31,6 +32,7 @@ mod state;
 mod step;
 mod time_function;
 
+pub(crate) use balance::Balance;
 pub use integrator::Integrator;
 pub use problem::DynamicProblem;
 pub(crate) use scheme::MOST_IN_CONTACT;

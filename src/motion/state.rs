@@ -29,6 +29,10 @@ pub struct State {
     /// Rows that were closed in the last step: where the search of the next one starts. What writes a state lists them itself.
     #[serde(skip)]
     pub contact_set: ContactSet,
+    /// Displacement at the middle of the last step, one entry per dof, in length, where that is not the mean of both ends; empty
+    /// elsewhere. No later step depends on it.
+    #[serde(skip)]
+    pub(crate) middle: Vec<f64>,
 }
 
 /// Numbers of a state.

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{DynamicProblem, State};
+use super::{Balance, DynamicProblem, State};
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
 use crate::qp::linear::SymmetricMatrix;
@@ -54,6 +54,8 @@ pub(super) trait Advance: fmt::Debug + Send + Sync {
     fn start(&self, problem: &DynamicProblem, step: f64, state: State) -> Result<State, Error>;
     /// The state after one step.
     fn advance(&self, problem: &DynamicProblem, step: f64, state: &State) -> Result<State, Error>;
+    /// The balance of forces that the step from `before` to `after` solved, with the multiplier of `after`, at some dofs.
+    fn balance(&self, step: f64, before: &State, after: &State, at: &[usize]) -> Balance;
 }
 
 /// A matrix prepared for one contact problem after another on the rows of a motion.
@@ -134,6 +136,7 @@ pub(super) fn next(
         velocity,
         multiplier,
         contact_set,
+        middle: Vec::new(),
     }
 }
 

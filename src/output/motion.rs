@@ -21,7 +21,7 @@ use super::{
 use crate::error::Error;
 use crate::file::{MOST_OF_TABLE, read_text_capped};
 use crate::motion::{Observation, State};
-use crate::scene::{Answer, Model, WatchedPoint};
+use crate::scene::{Answer, Model, Resultant, WatchedPoint};
 use crate::solution::ContactSet;
 use crate::study::MotionSummary;
 
@@ -45,7 +45,7 @@ pub struct MotionFolder {
     /// The scene in one line: a run goes on from its own checkpoint only.
     scene: String,
     history: MotionTable,
-    /// The resultant of each obstacle.
+    /// The resultant of each obstacle and support.
     resultants: MotionTable,
     /// Points that are watched, with their table; none if the scene asks for none.
     watch: Option<(Vec<WatchedPoint>, MotionTable)>,
@@ -140,28 +140,24 @@ impl MotionFolder {
         Ok((run, state, found.summary))
     }
 
-    /// One more line of the history, of the resultants, and of the points that are watched.
+    /// One more line of the history, of the resultants, and of the points that are watched: `seen`, the state of `integrator`
+    /// now, and the `resultants` of its last step, as [`Dynamics::resultants`](crate::scene::Dynamics::resultants).
     ///
     /// # Errors
     /// [`Error::File`]; [`Error::Length`] for the state of another model.
-    pub fn observe(&mut self, model: &Model, seen: &Observation, state: &State) -> Result<(), Error> {
+    pub fn observe(
+        &mut self,
+        model: &Model,
+        seen: &Observation,
+        state: &State,
+        resultants: &[Resultant],
+    ) -> Result<(), Error> {
         let Observation { time, force, closed, penetration, kinetic, strain, potential, .. } = seen;
         let energy = seen.energy();
         self.history.add(&format!(
             "{time:e},{force:e},{closed},{penetration:e},{kinetic:e},{strain:e},{potential:e},{energy:e}"
         ))?;
-        let mut resultants = format!("{time:e}");
-        for of in model.contact_resultants(&state.multiplier)? {
-            let centre = of.centre.map_or(vec![None; of.force.len()], |at| at.into_iter().map(Some).collect());
-            for value in of.force.into_iter().chain(of.moment).map(Some).chain(centre) {
-                // Without a force there is no centre.
-                let _ = match value {
-                    Some(value) => write!(resultants, ",{value:e}"),
-                    None => write!(resultants, ","),
-                };
-            }
-        }
-        self.resultants.add(&resultants)?;
+        self.resultants.add(&resultants_line(model, seen.time, resultants))?;
         let Some((watched, table)) = &mut self.watch else { return Ok(()) };
         let nodal = [
             model.nodal_displacement(&state.displacement)?,
@@ -314,7 +310,7 @@ fn closed_of(rows: usize, closed: &[usize]) -> ContactSet {
     set
 }
 
-/// The columns of the resultants: force, moment and centre of each obstacle.
+/// The columns of the resultants: force, moment and centre of each obstacle, and of each support.
 fn resultants_heading(model: &Model) -> String {
     let axes = &["x", "y", "z"][..model.mesh().dimension()];
     let turns: &[&str] = match (axes.len(), model.body().formulation().is_axisymmetric()) {
@@ -323,14 +319,32 @@ fn resultants_heading(model: &Model) -> String {
         _ => &[],
     };
     let mut heading = String::from("time");
-    for obstacle in model.obstacle_names() {
+    for name in model.obstacle_names().into_iter().chain(model.support_names()) {
         for (quantity, axes) in [("f", axes), ("m", turns), ("c", axes)] {
             axes.iter().for_each(|axis| {
-                let _ = write!(heading, ",{obstacle} {quantity}_{axis}");
+                let _ = write!(heading, ",{name} {quantity}_{axis}");
             });
         }
     }
     heading + "\n"
+}
+
+/// A line of the resultants at a time: of obstacles and then of supports, whose cells are empty where they are not given.
+fn resultants_line(model: &Model, time: f64, resultants: &[Resultant]) -> String {
+    let mut line = format!("{time:e}");
+    for of in resultants {
+        // Without a force there is no centre.
+        let centre = (0..of.force.len()).map(|axis| of.centre.as_ref().map(|at| at[axis]));
+        for value in of.force.iter().chain(&of.moment).copied().map(Some).chain(centre) {
+            let _ = match value {
+                Some(value) => write!(line, ",{value:e}"),
+                None => write!(line, ","),
+            };
+        }
+    }
+    let columns = resultants_heading(model).matches(',').count();
+    let missing = columns.saturating_sub(line.matches(',').count());
+    line + &",".repeat(missing)
 }
 
 /// The heading of the table of points, `time` and then u, v and f of each along the axes; `None` without points.

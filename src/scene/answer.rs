@@ -119,7 +119,9 @@ impl Answer {
     pub fn resultants(&self) -> Result<&[Resultant], Error> {
         let found = once(&self.resultants, || {
             let mut all = self.model.contact_resultants(&self.multiplier)?;
-            all.extend(self.model.other_resultants(&self.forces()?.reactions));
+            let reactions = &self.forces()?.reactions;
+            all.extend(self.model.support_resultants(|node| self.model.force_at(reactions, node)));
+            all.extend(self.model.load_resultant());
             without_rounding(&mut all);
             Ok(all)
         });

@@ -1,13 +1,16 @@
 //! The motion that a scene asks for: mass, scheme, step, initial state, loads in time.
 
 use super::entry::{COORDINATE_ROUNDING, located, number, point, refused, vector, wrong};
+use super::loads_in_time::NodalLoads;
+use super::moving_supports::MovingSupports;
+use super::resultants::without_rounding;
 use super::schema::{AnalysisSpec, DynamicSpec, FieldSpec, MassSpec, PenetrationSpec, Scene};
-use super::{Model, Warning, WatchedPoint};
+use super::{Model, Resultant, Warning, WatchedPoint};
 use crate::error::Error;
-use crate::fem::assembly::{MassForm, free_load, internal_force, mass};
+use crate::fem::assembly::{MassForm, free_load, free_mass, internal_force, nodal_mass};
 use crate::fem::body::{ElasticBody, Region};
-use crate::motion::{DynamicProblem, MOST_IN_CONTACT, Scheme, SchemeSpec, stable_step};
-use crate::qp::linear::{SymmetricMatrix, dot};
+use crate::motion::{DynamicProblem, Integrator, MOST_IN_CONTACT, Scheme, SchemeSpec, stable_step};
+use crate::qp::linear::{SparseMatrix, SymmetricMatrix, dot};
 use crate::qp::problem::ContactProblem;
 use crate::qp::{Method, Settings, solve};
 
@@ -51,6 +54,8 @@ pub struct Dynamics {
     pub window: f64,
     /// Points whose motion is written at every step.
     pub watched: Vec<WatchedPoint>,
+    /// What the supports bear.
+    supports: MovingSupports,
     /// What a reader of the answer should know.
     pub warnings: Vec<Warning>,
 }
@@ -97,26 +102,31 @@ impl Scene {
         let path = |index: usize| format!("{PATH}.watch[{index}]");
         let watched = spec.watch.iter().enumerate().map(|(index, spec)| WatchedPoint::new(model, spec, &path(index)));
         let watched = watched.collect::<Result<_, Error>>()?;
-        let problem = Self::starting(model, spec, self.moving(model, spec, form)?)?;
+        let loads = self.loads_in_time(model.body(), spec, PATH)?;
+        let nodal_mass = nodal_mass_of(model, form)?;
+        let mass = free_mass(model.body(), model.dofs(), &nodal_mass)?;
+        let problem = Self::starting(model, spec, Self::moving(model, spec, mass, &loads)?)?;
+        let supports = MovingSupports::new(model, &nodal_mass, problem.damping(), &loads)?;
         let (step, steps) = spec.steps(model.body(), &problem, scheme)?;
         let name = scheme.name();
         let warnings = scheme.gains_energy().then_some(Warning::GainsEnergy { scheme: name }).into_iter().collect();
         let window = WINDOW * crossing_time(model).unwrap_or(0.0);
-        Ok(Some(Dynamics { problem, scheme, step, steps, frames: spec.frames, window, watched, warnings }))
+        Ok(Some(Dynamics { problem, scheme, step, steps, frames: spec.frames, window, watched, supports, warnings }))
     }
 
     /// Mass, damping, loads in time: the motion from rest.
-    fn moving(&self, model: &Model, spec: &DynamicSpec, form: MassForm) -> Result<DynamicProblem, Error> {
+    fn moving(
+        model: &Model,
+        spec: &DynamicSpec,
+        mass: SymmetricMatrix,
+        loads: &NodalLoads,
+    ) -> Result<DynamicProblem, Error> {
         let (body, dofs) = (model.body(), model.dofs());
-        let mut constant = vec![0.0; body.nodal_dofs()];
-        for index in (0..self.loads.len()).filter(|&index| !spec.changes(index)) {
-            self.add_load(body, index, &mut constant)?;
-        }
-        let statics = model.problem().with_load(free_load(body, dofs, &constant)?)?;
+        let statics = model.problem().with_load(free_load(body, dofs, &loads.constant)?)?;
         let lifted = dofs.expand(&vec![0.0; dofs.free().len()])?;
         let energy = dot(&lifted, &internal_force(body, &lifted)?) / 2.0;
         let held = free_load(body, dofs, &vec![0.0; body.nodal_dofs()])?;
-        let mut problem = DynamicProblem::new(statics, mass_of(model, form)?)?
+        let mut problem = DynamicProblem::new(statics, mass)?
             .with_damping(spec.damping.mass, spec.damping.stiffness)
             .map_err(|error| match error {
                 Error::Setting { name, value, allowed } => {
@@ -127,15 +137,8 @@ impl Scene {
                 other => other,
             })?
             .holding(held, energy);
-        for (entry, changing) in spec.loads_in_time.iter().enumerate() {
-            let path = format!("{PATH}.loads-in-time[{entry}]");
-            let factor = changing.function(&path, self.loads.len())?;
-            if spec.loads_in_time[..entry].iter().any(|other| other.load == changing.load) {
-                return Err(wrong(path, format!("loads[{}] has two factors; give it one", changing.load)));
-            }
-            let mut load = vec![0.0; body.nodal_dofs()];
-            self.add_load(body, changing.load, &mut load)?;
-            problem = problem.with_load(factor, dofs.restrict(&load)?)?;
+        for (factor, load) in &loads.changing {
+            problem = problem.with_load(factor.clone(), dofs.restrict(load)?)?;
         }
         Ok(problem)
     }
@@ -148,7 +151,8 @@ impl Scene {
             if spec.initial_penetration == PenetrationSpec::Refuse {
                 return Err(deepest);
             }
-            displacement = projected(model.problem(), mass_of(model, MassForm::Lumped)?, &displacement)?;
+            let mass = free_mass(model.body(), model.dofs(), &nodal_mass_of(model, MassForm::Lumped)?)?;
+            displacement = projected(model.problem(), mass, &displacement)?;
         }
         let problem = problem.starting_from(displacement, model.dofs().restrict(&velocity)?)?;
         let energy = problem.initial_energy();
@@ -160,14 +164,47 @@ impl Scene {
     }
 }
 
-/// The mass of a model, in one of its forms.
-fn mass_of(model: &Model, form: MassForm) -> Result<SymmetricMatrix, Error> {
+/// The mass of the nodes of a model, in one of its forms; the lower triangle.
+fn nodal_mass_of(model: &Model, form: MassForm) -> Result<SparseMatrix, Error> {
     let contact_nodes: Vec<usize> =
         model.rows().iter().flat_map(|row| row.ends().collect::<Vec<_>>()).map(|(node, _)| node).collect();
-    mass(model.body(), model.dofs(), form, &contact_nodes).map_err(|error| match error {
+    nodal_mass(model.body(), form, &contact_nodes).map_err(|error| match error {
         Error::Mesh { message } => wrong("body", message),
         other => located(other, "material."),
     })
+}
+
+impl Dynamics {
+    /// The resultants of contact forces and support reactions of the last step, obstacle by obstacle and then support by
+    /// support. `integrator` moves [`problem`](Self::problem), that of `model`.
+    ///
+    /// Both are those of the balance that the scheme solved in the step: at its middle (`midpoint`, `contact-stabilised`), at
+    /// its end (`trapezoidal`, `penalty`, `penalty-loop`), `1 + alpha` times that of the end less `alpha` times that of the
+    /// beginning (`hht`), the mean of both ends (`central-difference`). The reactions on the body are, at supported dofs,
+    ///
+    /// ```text
+    /// R = M a + C v + K u - f(t) - B' lambda
+    /// ```
+    ///
+    /// where a is the acceleration at the end of the step by the rules of Newmark's kind, and the mean one of the step
+    /// elsewhere. So contact forces, reactions and loads add up to the change of momentum. Before the first step, and between
+    /// a resume and the next step, there is no such balance: the supports are left out.
+    ///
+    /// # Errors
+    /// [`Error::Length`] for an integrator of another model.
+    pub fn resultants(&self, model: &Model, integrator: &Integrator) -> Result<Vec<Resultant>, Error> {
+        let multiplier = &integrator.state().multiplier;
+        let [found, expected] = [integrator.problem(), &self.problem].map(|problem| problem.statics().dofs());
+        if found != expected {
+            return Err(Error::Length { name: "displacement", found, expected, of: "free dofs" });
+        }
+        let mut all = model.contact_resultants(multiplier)?;
+        if let Some(balance) = integrator.balance(self.supports.around()) {
+            all.extend(model.support_resultants(self.supports.reactions(model, balance, multiplier)));
+        }
+        without_rounding(&mut all);
+        Ok(all)
+    }
 }
 
 impl DynamicSpec {
@@ -211,10 +248,6 @@ impl DynamicSpec {
             return Err(wrong(format!("{PATH}.{name}"), message));
         }
         Ok(())
-    }
-
-    fn changes(&self, load: usize) -> bool {
-        self.loads_in_time.iter().any(|changing| changing.load == load)
     }
 
     /// The step and the number of steps.

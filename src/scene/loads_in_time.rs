@@ -1,9 +1,73 @@
-//! Factors of loads over time, from a scene.
+//! Loads that change with time, from a scene.
 
 use super::entry::{finite, located, wrong};
-use super::schema::{FactorSpec, LoadInTimeSpec};
+use super::schema::{DynamicSpec, FactorSpec, LoadInTimeSpec, Scene};
 use crate::error::Error;
+use crate::fem::body::ElasticBody;
 use crate::motion::TimeFunction;
+
+/// The loads on the nodes, in force, length `dim * n_nodes` each; or on some nodes, in their order.
+#[derive(Clone, Debug)]
+pub(super) struct NodalLoads {
+    /// The sum of those that do not change.
+    pub constant: Vec<f64>,
+    /// Each of the others, with its factor.
+    pub changing: Vec<(TimeFunction, Vec<f64>)>,
+}
+
+impl NodalLoads {
+    /// The same on some nodes alone.
+    pub fn at_nodes(&self, nodes: &[usize], dimension: usize) -> Self {
+        let gather = |load: &[f64]| -> Vec<f64> {
+            nodes.iter().flat_map(|&node| &load[dimension * node..dimension * (node + 1)]).copied().collect()
+        };
+        NodalLoads {
+            constant: gather(&self.constant),
+            changing: self.changing.iter().map(|(factor, load)| (factor.clone(), gather(load))).collect(),
+        }
+    }
+
+    /// The weighted sum of the loads at some times, given as `(time, weight)`; weights add up to one.
+    pub fn mean(&self, times: &[(f64, f64)]) -> Vec<f64> {
+        let mut sum = self.constant.clone();
+        for (factor, load) in &self.changing {
+            let factor: f64 = times.iter().map(|&(time, weight)| weight * factor.at(time)).sum();
+            sum.iter_mut().zip(load).for_each(|(sum, load)| *sum += factor * load);
+        }
+        sum
+    }
+}
+
+impl Scene {
+    /// The loads on all nodes of `body`, those of `loads-in-time` with their factors; `path` is where the motion stands.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for a load that does not exist, has two factors, or a factor that is none.
+    pub(super) fn loads_in_time(
+        &self,
+        body: &ElasticBody,
+        spec: &DynamicSpec,
+        path: &str,
+    ) -> Result<NodalLoads, Error> {
+        let changes = |load: usize| spec.loads_in_time.iter().any(|changing| changing.load == load);
+        let mut constant = vec![0.0; body.nodal_dofs()];
+        for index in (0..self.loads.len()).filter(|&index| !changes(index)) {
+            self.add_load(body, index, &mut constant)?;
+        }
+        let mut changing = Vec::with_capacity(spec.loads_in_time.len());
+        for (entry, of_load) in spec.loads_in_time.iter().enumerate() {
+            let path = format!("{path}.loads-in-time[{entry}]");
+            let factor = of_load.function(&path, self.loads.len())?;
+            if spec.loads_in_time[..entry].iter().any(|other| other.load == of_load.load) {
+                return Err(wrong(path, format!("loads[{}] has two factors; give it one", of_load.load)));
+            }
+            let mut load = vec![0.0; body.nodal_dofs()];
+            self.add_load(body, of_load.load, &mut load)?;
+            changing.push((factor, load));
+        }
+        Ok(NodalLoads { constant, changing })
+    }
+}
 
 impl LoadInTimeSpec {
     /// The factor, checked; `path` is its JSON path, `loads` how many loads there are.

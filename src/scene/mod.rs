@@ -28,6 +28,7 @@ mod held;
 mod loads_in_time;
 mod locate;
 mod model;
+mod moving_supports;
 mod obstacle;
 mod parse;
 mod parts;

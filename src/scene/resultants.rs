@@ -145,17 +145,17 @@ impl Model {
         self.obstacles().iter().enumerate().map(name).collect()
     }
 
-    /// Those of the support reactions, support by support, and of the loads, if there are any; `reactions` are nodal forces, as
-    /// [`Model::reactions`].
-    pub(super) fn other_resultants(&self, reactions: &[f64]) -> Vec<Resultant> {
-        let (nodes, dimension) = (self.mesh().nodes(), self.body().dimension());
-        let at_node = |forces: &[f64], node: usize| {
-            let of_node = &forces[dimension * node..dimension * (node + 1)];
-            [0, 1, 2].map(|axis| of_node.get(axis).copied().unwrap_or(0.0))
-        };
+    /// The names of the supports in reports: `supports[i]`.
+    pub(crate) fn support_names(&self) -> impl Iterator<Item = String> {
+        (0..self.parts().supports).map(|index| format!("supports[{index}]"))
+    }
+
+    /// Those of the support reactions, support by support, of the force on each held node; its part along free dofs is left out.
+    pub(super) fn support_resultants(&self, reaction: impl Fn(usize) -> [f64; 3]) -> Vec<Resultant> {
+        let nodes = self.mesh().nodes();
         let mut supports = vec![Sum::default(); self.parts().supports];
         let mut held: Vec<Option<usize>> = vec![None; supports.len()];
-        for (node, shares) in self.parts().held.shares(|node| at_node(reactions, node)) {
+        for (node, shares) in self.parts().held.shares(reaction) {
             for (by, force) in shares {
                 if let Holder::Support { index, .. } = by {
                     held[index] = held[index].or(Some(node));
@@ -163,17 +163,26 @@ impl Model {
                 }
             }
         }
-        let of_support = |(index, sum): (usize, &Sum)| Resultant {
-            on: self.name_of_body(held[index]),
-            ..sum.resultant(self, format!("supports[{index}]"))
+        let of_support = |((sum, held), name): ((&Sum, Option<usize>), String)| Resultant {
+            on: self.name_of_body(held),
+            ..sum.resultant(self, name)
         };
-        let mut all: Vec<Resultant> = supports.iter().enumerate().map(of_support).collect();
+        supports.iter().zip(held).zip(self.support_names()).map(of_support).collect()
+    }
+
+    /// That of the loads, if there are any.
+    pub(super) fn load_resultant(&self) -> Option<Resultant> {
+        let nodes = self.mesh().nodes();
         let mut loads = Sum::default();
-        (0..nodes.len()).for_each(|node| loads.add(nodes[node], at_node(self.nodal_load(), node)));
-        if !loads.forces.is_empty() {
-            all.push(loads.resultant(self, "loads".into()));
-        }
-        all
+        (0..nodes.len()).for_each(|node| loads.add(nodes[node], self.force_at(self.nodal_load(), node)));
+        (!loads.forces.is_empty()).then(|| loads.resultant(self, "loads".into()))
+    }
+
+    /// The force at a node among nodal forces (length `dim * n_nodes`).
+    pub(super) fn force_at(&self, forces: &[f64], node: usize) -> [f64; 3] {
+        let dimension = self.body().dimension();
+        let of_node = &forces[dimension * node..dimension * (node + 1)];
+        [0, 1, 2].map(|axis| of_node.get(axis).copied().unwrap_or(0.0))
     }
 
     /// The body of a node, where there are several.

@@ -174,8 +174,9 @@ fn with(scene: &Scene, model: &Model, scheme: SchemeSpec, steps: Option<usize>) 
         spec.step = steps.map(|steps| spec.duration / steps as f64);
         *spec = spec.clone().with_scheme(scheme);
     }
-    let found = scene.dynamics(model)?.ok_or_else(still)?;
-    Ok(Dynamics { steps: steps.unwrap_or(found.steps), ..found })
+    let mut found = scene.dynamics(model)?.ok_or_else(still)?;
+    found.steps = steps.unwrap_or(found.steps);
+    Ok(found)
 }
 
 fn still() -> Error {

@@ -11,5 +11,6 @@ mod impact_command;
 mod impact_errors;
 mod peaks;
 mod penalty_loop;
+mod reactions;
 mod trust;
 mod watch;

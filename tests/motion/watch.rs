@@ -132,7 +132,7 @@ fn a_run_that_is_resumed_within_its_contact_goes_on_with_its_points_and_its_peak
     fs::write(&table, fs::read_to_string(&table).unwrap() + "9e9,1,2\n").unwrap();
     assert_eq!(report(&["long.json", "--out", "parts", "--resume"]), whole);
     assert!(whole["contact"]["force_mean_max"].as_f64() > Some(300.0));
-    for name in ["watch.csv", "history.csv"] {
+    for name in ["watch.csv", "history.csv", "resultants.csv"] {
         let [whole, parts] = ["whole", "parts"].map(|run| fs::read(desk.path(&format!("{run}/{name}"))).unwrap());
         assert!(whole == parts, "{name} differs");
     }

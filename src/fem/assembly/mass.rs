@@ -42,7 +42,15 @@ pub fn mass(
     form: MassForm,
     contact_nodes: &[usize],
 ) -> Result<SymmetricMatrix, Error> {
-    body.check_nodal("dof map", dofs.nodal_count())?;
+    free_mass(body, dofs, &nodal_mass(body, form, contact_nodes)?)
+}
+
+/// The mass of the nodes (`n_nodes x n_nodes`, the lower triangle), the same for each axis; `contact_nodes` are those that lose
+/// theirs where it is redistributed.
+///
+/// # Errors
+/// As [`mass`].
+pub(crate) fn nodal_mass(body: &ElasticBody, form: MassForm, contact_nodes: &[usize]) -> Result<SparseMatrix, Error> {
     let elements = element_masses(body)?;
     let mut nodal = match form {
         MassForm::Redistributed => Redistribution::of(body, &elements, contact_nodes)?.triplets(body, &elements),
@@ -62,7 +70,7 @@ pub fn mass(
     };
     nodal.retain(|&(row, column, _)| row >= column);
     let nodes = body.mesh().nodes().len();
-    in_free_dofs(body.dimension(), dofs, &SparseMatrix::from_triplets(nodes, nodes, &nodal)?)
+    SparseMatrix::from_triplets(nodes, nodes, &nodal)
 }
 
 /// The consistent mass of every element, in its order.
@@ -97,8 +105,13 @@ fn lumped(element: &ElementMass, nodes: usize) -> [f64; MAX_NODES] {
     diagonal
 }
 
-/// The matrix of the free dofs from one entry for every pair of nodes, row not before column: the same for each axis.
-fn in_free_dofs(dimension: usize, dofs: &DofMap, nodal: &SparseMatrix) -> Result<SymmetricMatrix, Error> {
+/// The mass of the free dofs from that of the nodes, as [`nodal_mass`].
+///
+/// # Errors
+/// [`Error::Length`] where `dofs` does not belong to the mesh, [`Error::NotFinite`] where the mass overflows.
+pub(crate) fn free_mass(body: &ElasticBody, dofs: &DofMap, nodal: &SparseMatrix) -> Result<SymmetricMatrix, Error> {
+    body.check_nodal("dof map", dofs.nodal_count())?;
+    let dimension = body.dimension();
     let mut entries = Vec::with_capacity(dimension * nodal.entries());
     for (row, column, value) in nodal.triplets() {
         let frames = (dofs.frame(row), dofs.frame(column));

@@ -20,7 +20,7 @@ use super::stable_step::check_step;
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
 use crate::motion::step::{About, Advance, Parameter, plus};
-use crate::motion::{DynamicProblem, State};
+use crate::motion::{Balance, DynamicProblem, State};
 use crate::solution::ContactSet;
 
 pub(super) static ABOUT: About = About {
@@ -102,6 +102,16 @@ impl Advance for CentralDifference {
             penalties,
             multiplier,
             contact_set,
+            middle: Vec::new(),
         })
+    }
+
+    /// The mean of both ends: over it the impulse of the contact forces changes the momentum. Dampers feel the velocities
+    /// `v~` that led to both ends; at the start there is none but v.
+    fn balance(&self, step: f64, before: &State, after: &State, at: &[usize]) -> Balance {
+        let back = |state: &State| if state.steps == 0 { 0.0 } else { step / 2.0 };
+        let damped = |state: &State, dof: usize| state.velocity[dof] - back(state) * state.acceleration[dof];
+        let velocity = at.iter().map(|&dof| (damped(before, dof) + damped(after, dof)) / 2.0).collect();
+        Balance { velocity, ..Balance::between(step, before, after, 0.5, at) }
     }
 }

@@ -13,7 +13,7 @@ use super::projection::MassProjection;
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
 use crate::motion::step::{About, Advance, Stepping, next, plus};
-use crate::motion::{DynamicProblem, State};
+use crate::motion::{Balance, DynamicProblem, State};
 
 pub(super) static ABOUT: About = About {
     name: "contact-stabilised",
@@ -59,5 +59,9 @@ impl Advance for ContactStabilised {
         let velocity = plus(&state.velocity, 2.0 / step, &found.change);
         let multiplier = found.multiplier.iter().map(|lambda| lambda / 2.0).collect();
         Ok(next(problem, state, [displacement, velocity], (multiplier, found.contact_set)))
+    }
+
+    fn balance(&self, step: f64, before: &State, after: &State, at: &[usize]) -> Balance {
+        Balance::of_middle(step, before, after, at)
     }
 }

@@ -20,7 +20,7 @@
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
 use crate::motion::step::{About, Advance, Found, Stepping, next, plus};
-use crate::motion::{DynamicProblem, State};
+use crate::motion::{Balance, DynamicProblem, State};
 use crate::qp::Settings;
 use crate::qp::linear::{SparseMatrix, SymmetricMatrix, dot, largest};
 use crate::qp::problem::ContactProblem;
@@ -161,6 +161,17 @@ impl Advance for Midpoint {
             _ => Ok(next),
         }
     }
+
+    /// At the middle of the step. Dofs without mass stand there where the contact forces of the step hold them, which is not
+    /// the mean of both ends.
+    fn balance(&self, step: f64, before: &State, after: &State, at: &[usize]) -> Balance {
+        let mean = Balance::of_middle(step, before, after, at);
+        if after.middle.is_empty() {
+            return mean;
+        }
+        let velocity = at.iter().map(|&dof| 2.0 / step * (after.middle[dof] - before.displacement[dof])).collect();
+        Balance { displacement: at.iter().map(|&dof| after.middle[dof]).collect(), velocity, ..mean }
+    }
 }
 
 impl Midpoint {
@@ -178,6 +189,7 @@ impl Midpoint {
         let mut end = next(problem, state, [displacement, velocity], contact);
         if let Some(massless) = massless {
             massless.settle(problem, step, &state.displacement, &mut end)?;
+            end.middle = plus(&state.displacement, 1.0, &found.change);
         }
         Ok(end)
     }

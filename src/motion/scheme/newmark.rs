@@ -13,7 +13,7 @@ use super::projection::MassProjection;
 use crate::error::Error;
 use crate::fem::assembly::MassForm;
 use crate::motion::step::{Advance, Found, Stepping, next, plus};
-use crate::motion::{DynamicProblem, State};
+use crate::motion::{Balance, DynamicProblem, State};
 use crate::qp::Settings;
 
 /// The forms of the mass that the family can use.
@@ -113,5 +113,11 @@ impl Advance for Newmark {
         let predicted = self.predict(problem, step, state);
         let found = self.stepping.solve(predicted.force.clone(), predicted.gap.clone(), &state.contact_set)?;
         Ok(self.arrive(problem, step, state, &predicted, found))
+    }
+
+    /// At the end of the step, or with alpha < 0 as much before it; the acceleration is that of the end.
+    fn balance(&self, step: f64, before: &State, after: &State, at: &[usize]) -> Balance {
+        let acceleration = at.iter().map(|&dof| after.acceleration[dof]).collect();
+        Balance { acceleration, ..Balance::between(step, before, after, 1.0 + self.alpha, at) }
     }
 }

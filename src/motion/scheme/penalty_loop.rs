@@ -12,7 +12,7 @@ use super::newmark::{MASSES, Newmark};
 use super::penalty::springs;
 use crate::error::Error;
 use crate::motion::step::{About, Advance, Parameter, Stepping};
-use crate::motion::{DynamicProblem, State};
+use crate::motion::{Balance, DynamicProblem, State};
 use crate::qp::linear::largest;
 
 /// Penalties that are tried, each ten times the one before, from the local stiffness on. At the last one, 1e8, the rounding of
@@ -78,5 +78,9 @@ impl Advance for PenaltyLoop {
             self.threshold
         );
         Err(Error::Numerical { step: "penalty loop", reason })
+    }
+
+    fn balance(&self, step: f64, before: &State, after: &State, at: &[usize]) -> Balance {
+        self.newmark.balance(step, before, after, at)
     }
 }
