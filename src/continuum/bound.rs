@@ -15,6 +15,7 @@ use super::stress::{Place, Stresses};
 use super::system::{Row, Unknowns};
 use super::triangulation::{Triangulation, outward, twice_area};
 use crate::error::Error;
+use crate::fem::material::Lame;
 use crate::qp::problem::ContactProblem;
 use crate::qp::{Settings, solve};
 use crate::solution::Solution;
@@ -22,6 +23,10 @@ use crate::solution::Solution;
 /// Rounding that a stress in balance and a displacement off the obstacles may show, relative to the largest stress and length: some
 /// thousand times what is measured on meshes of 1e5 unknowns at a ratio of Poisson of 0.4999.
 const ROUNDING: f64 = 1e-7;
+
+/// Energies below this share of what a strain of one over the whole body would take, for its largest displacement, are rounding: the
+/// body moves as a rigid one.
+const REST: f64 = 1e-20;
 
 /// Places along an edge at which a displacement is held against the obstacle: ends, middle, and between.
 const SAMPLES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
@@ -185,12 +190,22 @@ impl<'a> Bracket<'a> {
         self.shares.iter().sum()
     }
 
-    /// The bound on |u - v| / |v|; infinite for a displacement without energy.
+    /// Do displacement and stress take no more energy than rounding makes?
+    fn is_at_rest(&self) -> bool {
+        let largest = self.primal.values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+        let Lame { lambda, mu } = self.problem.lame;
+        let rounding = REST * (lambda + 2.0 * mu) * self.problem.thickness * largest * largest;
+        self.energy.max(self.distance()) <= rounding
+    }
+
+    /// The bound on |u - v| / |v|; zero for a body at rest, infinite for one at rest in v alone.
     pub fn bound(&self) -> f64 {
-        match self.distance() <= 0.0 {
-            true => 0.0,
-            false => (2.0 * self.distance() / self.energy).sqrt(),
-        }
+        self.relative(2.0 * self.distance())
+    }
+
+    /// The root of a square of the energy norm over |v|.
+    fn relative(&self, square: f64) -> f64 {
+        if square <= 0.0 || self.is_at_rest() { 0.0 } else { (square / self.energy).sqrt() }
     }
 
     /// The square of the radius of the ball in the energy norm, about the mean of both stresses, in which the exact stress lies.
@@ -200,7 +215,7 @@ impl<'a> Bracket<'a> {
 
     /// The bound on the error of the mean stress, relative to |v|.
     pub fn bound_of_mean(&self) -> f64 {
-        if self.distance() <= 0.0 { 0.0 } else { (self.square_of_radius() / self.energy).sqrt() }
+        self.relative(self.square_of_radius())
     }
 
     /// J(v).
@@ -250,17 +265,23 @@ impl<'a> Bracket<'a> {
 
     /// How far each promise is missed, relative, found from the stresses and displacements alone.
     fn defects(&self) -> [(&'static str, f64); 4] {
+        // At rest all forces are rounding.
+        let strained = |defect: fn(&Self) -> f64| if self.is_at_rest() { 0.0 } else { defect(self) };
         [
-            ("the stress is out of balance", self.imbalance()),
-            ("the obstacle pulls", self.adhesion()),
+            ("the stress is out of balance", strained(Self::imbalance)),
+            ("the obstacle pulls", strained(Self::adhesion)),
             ("the displacement goes into an obstacle", self.penetration()),
-            ("J - D misses the sum of its parts", self.lost()),
+            ("J - D misses the sum of its parts", strained(Self::lost)),
         ]
     }
 
-    /// The largest stress.
+    /// The largest stress, in balance or of the displacement: the former is rounding where it touches nothing yet.
     fn largest_stress(&self) -> f64 {
-        self.stress.iter().flatten().flatten().flatten().fold(0.0, |largest: f64, entry| largest.max(entry.abs()))
+        const CENTRE: [f64; 3] = [1.0 / 3.0; 3];
+        let strain = |triangle: usize| self.displacements.strain(&self.primal.values, triangle, CENTRE);
+        let of_displacement = (0..self.stress.len()).map(|triangle| self.problem.stress(strain(triangle)));
+        let in_balance = self.stress.iter().flatten().flatten().copied();
+        of_displacement.chain(in_balance).flatten().fold(0.0, |largest: f64, entry| largest.max(entry.abs()))
     }
 
     /// The largest jump of a traction between triangles, traction that is not the load, and divergence times length that is not

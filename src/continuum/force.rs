@@ -58,7 +58,7 @@ impl Bracket<'_> {
             .map(|o| (o.axis, o.sense > 0.0))
             .collect();
         let ends: BTreeSet<_> = self.places.iter().map(|place| (place.edge, place.end)).collect();
-        if directions.len() != 1 || ends.len() != self.places.len() || self.energy == 0.0 {
+        if directions.len() != 1 || ends.len() != self.places.len() || self.bound() == 0.0 && self.force() == 0.0 {
             return Ok(None);
         }
         let closed = &self.primal.solution.contact_set;

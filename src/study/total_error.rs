@@ -282,11 +282,13 @@ fn marked(shares: &[f64], share: f64) -> Vec<bool> {
 pub struct Examined {
     /// D(tau) and J(v): the exact energy lies between them.
     pub energies: [f64; 2],
-    /// The bound on |u - v|, and |v|.
+    /// The bound on |u - v|.
     pub bound: f64,
+    /// |v|.
     pub norm: f64,
-    /// The force of v, and the interval.
+    /// The force of v.
     pub force: f64,
+    /// Its interval.
     pub force_interval: Option<[f64; 2]>,
     /// The answer on the scene's own mesh: at least |u - w|, then |v - w| and |w|.
     pub own: [f64; 3],

@@ -1,0 +1,52 @@
+//! Tries to catch the guaranteed bound of the total error in a lie: `cargo run --release --example guarantee [SCENES [LEVELS]]`.
+//!
+//! Random plane scenes, each on its own mesh and on finer ones: all intervals of the energy and of the force must meet, and no
+//! answer may be further from the last one than its bound says. Exits with 1 if one is.
+
+#[path = "../tests/support/plane_scenes.rs"]
+mod plane_scenes;
+
+use plane_scenes::{ELEMENTS, Shown, shown};
+
+fn main() -> std::process::ExitCode {
+    let mut numbers = std::env::args().skip(1).map(|text| text.parse::<u64>());
+    let (Some(scenes), Some(levels)) = (numbers.next().unwrap_or(Ok(300)).ok(), numbers.next().unwrap_or(Ok(6)).ok())
+    else {
+        eprintln!("usage: guarantee [SCENES [LEVELS]]");
+        return std::process::ExitCode::from(2);
+    };
+    let (mut all, mut refused, mut meshes): (Vec<Shown>, Vec<String>, usize) = (Vec::new(), Vec::new(), 0);
+    for seed in 1..=scenes {
+        match shown(seed, levels as usize) {
+            Ok(one) => {
+                meshes += levels as usize + 1;
+                one.violations.iter().for_each(|violation| println!("{violation}"));
+                all.push(one);
+            }
+            Err(error) => refused.push(format!("seed {seed}: {error}")),
+        }
+    }
+    refused.iter().for_each(|refusal| println!("refused: {refusal}"));
+    let violations: usize = all.iter().map(|one| one.violations.len()).sum();
+    println!("{} scenes, {meshes} meshes, {} refused, {violations} violations", all.len(), refused.len());
+    let of_displacement = all.iter().flat_map(|one| one.of_displacement.iter().copied()).collect();
+    println!("bound / error of v, median: {}", median(of_displacement));
+    for element in ELEMENTS {
+        let own = all.iter().filter(|one| one.element == element).filter_map(|one| one.of_own).collect();
+        println!("bound / error of the own mesh, {element}, median: {}", median(own));
+    }
+    let of_force = all.iter().flat_map(|one| one.of_force.iter().copied()).collect();
+    println!("half width of the force / bound, both relative, median: {}", median(of_force));
+    std::process::ExitCode::from(u8::from(violations > 0))
+}
+
+/// The median with the extremes, and how many there are.
+fn median(mut values: Vec<f64>) -> String {
+    values.sort_by(f64::total_cmp);
+    match (values.first(), values.get(values.len() / 2), values.last()) {
+        (Some(least), Some(middle), Some(most)) => {
+            format!("{middle:.2}, from {least:.2} to {most:.2}, of {}", values.len())
+        }
+        _ => "none".to_string(),
+    }
+}
