@@ -388,3 +388,117 @@ fn over(value: f64, size: f64) -> f64 {
 pub fn minus(a: Tensor, b: Tensor) -> Tensor {
     [0, 1, 2].map(|entry| a[entry] - b[entry])
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashMap;
+    use std::sync::Arc;
+
+    use super::super::problem::{Condition, Distance, Enclosure, Facing};
+    use super::super::triangulation::Point;
+    use super::*;
+    use crate::qp::Method;
+
+    /// The surface `y = 1 - 0.02 + (x - 0.4)^2` over a square of side 1.
+    #[derive(Debug)]
+    struct Bowl;
+
+    impl Distance for Bowl {
+        fn gap(&self, from: Point, to: Point) -> Option<Enclosure> {
+            let gap = |[x, y]: Point| 0.98 + (x - 0.4) * (x - 0.4) - y;
+            let middle = [0, 1].map(|axis| (from[axis] + to[axis]) / 2.0);
+            Some(Enclosure { values: [gap(from), gap(middle), gap(to)], below: 0.0, above: 0.0 })
+        }
+    }
+
+    /// A square on a clamped side, pulled on the right, heavy, under a bowl.
+    fn square() -> (PlaneProblem, Triangulation) {
+        let side =
+            |held: [Option<f64>; 2], traction: Point, obstacles: Vec<usize>| Condition { held, traction, obstacles };
+        let problem = PlaneProblem {
+            lame: Lame { lambda: 1.5, mu: 1.0 },
+            thickness: 0.5,
+            body_force: [0.01, -0.02],
+            conditions: vec![
+                side([Some(0.0); 2], [0.0; 2], vec![]),
+                side([None; 2], [0.03, 0.01], vec![]),
+                side([None; 2], [0.0; 2], vec![0]),
+                side([None; 2], [0.0; 2], vec![]),
+            ],
+            obstacles: vec![Facing { axis: 1, sense: 1.0, surface: Arc::new(Bowl) }],
+        };
+        let outline = HashMap::from([([0, 1], 0), ([1, 2], 1), ([2, 3], 2), ([0, 3], 3)]);
+        let nodes = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        let mut mesh = Triangulation::new(nodes, vec![[0, 1, 2], [0, 2, 3]], vec![0, 0], &outline).unwrap();
+        for _ in 0..2 {
+            mesh = mesh.refined(&vec![true; mesh.triangles.len()]);
+        }
+        (problem, mesh)
+    }
+
+    fn settings() -> Settings {
+        Settings::with_method(Method::ActiveSet)
+    }
+
+    /// What the check says of a bracket.
+    fn refusal(bracket: &Bracket) -> String {
+        bracket.check().unwrap_err().to_string()
+    }
+
+    #[test]
+    fn a_right_bracket_passes_the_check_and_touches() {
+        let (problem, mesh) = square();
+        let bracket = Bracket::new(&problem, &mesh, &settings()).unwrap();
+        assert!(bracket.defect < 1e-12, "{}", bracket.defect);
+        assert!(bracket.force() > 0.0 && bracket.contact_share > 0.0);
+        assert!(bracket.energy_of_stress() < bracket.energy_of_displacement());
+    }
+
+    #[test]
+    fn a_lost_traction_is_refused() {
+        let (problem, mesh) = square();
+        let mut without = problem.clone();
+        without.conditions[1].traction = [0.0; 2];
+        let mut bracket = Bracket::new(&without, &mesh, &settings()).unwrap();
+        bracket.problem = &problem;
+        assert!(refusal(&bracket).contains("the stress is out of balance"));
+    }
+
+    #[test]
+    fn a_missed_body_force_is_refused() {
+        let (problem, mesh) = square();
+        let weightless = PlaneProblem { body_force: [0.0; 2], ..problem.clone() };
+        let mut bracket = Bracket::new(&weightless, &mesh, &settings()).unwrap();
+        bracket.problem = &problem;
+        assert!(refusal(&bracket).contains("the stress is out of balance"));
+    }
+
+    #[test]
+    fn a_wrong_sign_on_a_candidate_edge_is_refused() {
+        let (problem, mesh) = square();
+        let mut bracket = Bracket::new(&problem, &mesh, &settings()).unwrap();
+        let pressed = bracket.dual.solution.multiplier.iter().position(|force| *force < 0.0).unwrap();
+        bracket.dual.solution.multiplier[pressed] *= -1.0;
+        assert!(!refusal(&bracket).is_empty());
+        let signs: Vec<_> = bracket.defects().into_iter().filter(|(what, _)| *what == "the obstacle pulls").collect();
+        assert!(signs[0].1 > 0.01, "{signs:?}");
+    }
+
+    /// Rows at the places of the nodes bound the values there, and nothing between.
+    #[test]
+    fn rows_at_nodes_instead_of_coefficients_are_refused() {
+        let (problem, mesh) = square();
+        let mut bracket = Bracket::new(&problem, &mesh, &settings()).unwrap();
+        let displacements = Displacements::new(&problem, &mesh);
+        let unknowns = displacements.unknowns();
+        let corners_only = 2 * mesh.nodes.len();
+        let rows: Vec<Row> =
+            displacements.rows(&unknowns).unwrap().into_iter().filter(|row| row.unknown < corners_only).collect();
+        let blocks: Vec<_> = displacements.blocks().collect();
+        let blocks = blocks.iter().map(|(numbers, block)| (*numbers, block));
+        let posed = unknowns.problem(blocks, &displacements.load(), &rows).unwrap();
+        bracket.primal = Side::solved(unknowns, rows, &posed, &settings()).unwrap();
+        bracket.measure();
+        assert!(refusal(&bracket).contains("the displacement goes into an obstacle"));
+    }
+}

@@ -3,6 +3,9 @@
 #[path = "../support/program.rs"]
 mod program;
 
+#[path = "../support/plane_scenes.rs"]
+mod plane_scenes;
+
 mod answers;
 mod auto;
 mod blocks;
@@ -16,6 +19,7 @@ mod promised;
 mod schema;
 mod terminal;
 mod time;
+mod total_error;
 mod tradeoff;
 mod verify;
 mod warnings;

@@ -1,0 +1,157 @@
+//! The guaranteed total error: what it promises, what it takes, what is refused.
+
+use crate::plane_scenes::shown;
+use crate::program::Desk;
+use serde_json::{Value, json};
+
+/// The classical scene: a block of 1 x 0.5, clamped below, pressed by a parabola 0.01 deep.
+fn classical(poisson: f64) -> Value {
+    json!({
+        "body": {"rectangle": {"x": {"points": [0, 1], "divisions": [8]}, "y": {"points": [0, 0.5], "divisions": [4]}}},
+        "material": {"young": 1e7, "poisson": poisson},
+        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}],
+        "obstacles": [{"boundary": "top", "approach": "+y", "shape": {"parabola": {"apex": [0.5, 0.49], "radius": 1}}}]
+    })
+}
+
+/// A column of height 2 between rollers, under its weight, with its head at a plane: the displacement is quadratic.
+fn column(model: &str) -> Value {
+    json!({
+        "model": model,
+        "body": {"rectangle": {"x": {"points": [0, 1], "divisions": [2]}, "y": {"points": [0, 2], "divisions": [3]}}},
+        "material": {"young": 100, "poisson": 0.3},
+        "supports": [
+            {"on": {"boundary": "bottom"}, "y": 0}, {"on": {"boundary": "left"}, "x": 0}, {"on": {"boundary": "right"}, "x": 0}
+        ],
+        "loads": [{"body-force": [0, 3]}],
+        "obstacles": [{"boundary": "top", "approach": "+y", "shape": {"plane": {"point": [0, 2.01], "normal": [0, 1]}}}]
+    })
+}
+
+fn solved(scene: &Value, arguments: &[&str]) -> (i32, Value, String) {
+    let desk = Desk::new();
+    desk.write("scene.json", &scene.to_string());
+    let all: Vec<&str> = ["solve", "scene.json", "--format", "json"].iter().chain(arguments).copied().collect();
+    let run = desk.run(&all);
+    (run.code, serde_json::from_str(&run.stdout).unwrap_or(Value::Null), run.stderr)
+}
+
+#[test]
+fn the_classical_scene_takes_few_unknowns() {
+    let (code, report, _) = solved(&classical(0.3), &["--total-error", "1e-2"]);
+    assert_eq!((code, &report["status"], &report["ended"]), (0, &json!("certified"), &json!("goal")));
+    assert_eq!(report["total_error"]["guaranteed"], true);
+    let levels = report["levels"].as_array().unwrap();
+    let number = |level: &Value, name: &str| level[name].as_f64().unwrap();
+    let first_below = |bound: f64| levels.iter().find(|level| number(level, "bound") <= bound).unwrap();
+    // The unknowns that an independent prototype took.
+    assert!(number(first_below(0.05), "dofs") <= 1312.0 && number(first_below(0.01), "dofs") <= 6142.0, "{report}");
+    let [low, high] = [0, 1].map(|end| report["force_interval"][end].as_f64().unwrap());
+    // The force on a mesh of 66,202 unknowns lies between 70939.1 and 70942.3.
+    assert!(low < 70939.2 && 70942.2 < high && (high - low) / 2.0 < 1e-3 * low, "{low} {high}");
+    let own = &report["own_mesh"];
+    assert!(own["element"] == "Q4" && own["total_error"]["bound"].as_f64().unwrap() > 0.2, "{own}");
+    // The rate from 3 % on, over the unknowns.
+    let (from, to) = (first_below(0.03), levels.last().unwrap());
+    let rate = (number(from, "bound") / number(to, "bound")).ln() / (number(to, "dofs") / number(from, "dofs")).ln();
+    assert!(rate > 0.95, "{rate}");
+}
+
+#[test]
+fn near_incompressibility_takes_not_many_more() {
+    let (code, report, _) = solved(&classical(0.4999), &["--total-error", "1e-2"]);
+    assert_eq!(code, 0);
+    assert!(report["levels"].as_array().unwrap().last().unwrap()["dofs"].as_f64().unwrap() < 15_000.0, "{report}");
+}
+
+/// What is quadratic is exact on the first mesh. The head would move by b h^2/2M with the modulus M of a column that cannot bulge;
+/// the plane presses it back.
+#[test]
+fn a_column_under_its_weight_is_exact() {
+    for (model, modulus) in [("plane-strain", 100.0 * 0.7 / (1.3 * 0.4)), ("plane-stress", 100.0 / (1.0 - 0.09))] {
+        let (code, report, _) = solved(&column(model), &["--total-error", "1e-6"]);
+        assert_eq!((code, report["levels"].as_array().unwrap().len()), (0, 1), "{report}");
+        let force = (3.0 * 4.0 / 2.0 / modulus - 0.01) * modulus / 2.0;
+        let found = report["contact_force"].as_f64().unwrap();
+        assert!((found / force - 1.0).abs() < 1e-9, "{found} {force}");
+        for end in 0..2 {
+            // Square roots of rounding: the interval of the force is of the order of its square.
+            assert!((report["force_interval"][end].as_f64().unwrap() / force - 1.0).abs() < 1e-6, "{report}");
+        }
+    }
+}
+
+#[test]
+fn a_force_error_is_reached_too() {
+    let (code, report, _) = solved(&classical(0.3), &["--total-error", "0.1", "--force-error", "2e-3"]);
+    let [low, high] = [0, 1].map(|end| report["force_interval"][end].as_f64().unwrap());
+    assert!(code == 0 && (high - low) / 2.0 <= 2e-3 * report["contact_force"].as_f64().unwrap(), "{report}");
+}
+
+#[test]
+fn what_time_does_not_allow_is_said() {
+    let (code, report, _) = solved(&classical(0.3), &["--total-error", "1e-7", "--time", "0.3"]);
+    assert_eq!((code, &report["status"], &report["ended"]), (4, &json!("not-certified"), &json!("time")));
+    assert!(report["total_error"]["bound"].as_f64().unwrap() < 0.5 && report["next_triangles"].as_u64().unwrap() > 64);
+}
+
+fn support(scene: &mut Value, further: Value) {
+    scene["supports"].as_array_mut().unwrap().push(further);
+}
+
+#[test]
+fn what_has_no_guarantee_is_refused_with_its_reason() {
+    let changed = |change: &dyn Fn(&mut Value)| {
+        let mut scene = classical(0.3);
+        change(&mut scene);
+        solved(&scene, &["--total-error", "1e-2"])
+    };
+    let cases: [(&dyn Fn(&mut Value), &str); 5] = [
+        (&|scene| scene["model"] = json!("axisymmetric"), "only plane strain and plane stress have one"),
+        (&|scene| scene["obstacles"][0]["rule"] = json!("closest-point"), "rule `approach` has one"),
+        (&|scene| scene["loads"] = json!([{"force": {"at": [1, 0.5], "value": [1, 0]}}]), "a force at a point"),
+        (&|scene| support(scene, json!({"on": {"point": [0, 0.5]}, "x": 0})), "a support at a point"),
+        (
+            &|scene| support(scene, json!({"on": {"boundary": "left"}, "normal": [1, 1]})),
+            "only one along x or y has one",
+        ),
+    ];
+    for (change, reason) in cases {
+        let (code, report, message) = changed(change);
+        assert!(code == 1 && report == Value::Null && message.contains(reason), "{code} {message}");
+    }
+    for wrong in ["0", "-0.1", "1", "2", "nan", "much"] {
+        let (code, _, message) = solved(&classical(0.3), &["--total-error", wrong]);
+        assert!(code == 2 && message.contains("above 0 and below 1"), "{wrong}: {code} {message}");
+    }
+    let (code, _, message) = solved(&classical(0.3), &["--force-error", "0.1"]);
+    assert!(code == 2 && message.contains("--total-error"), "{message}");
+}
+
+/// A short form of `cargo run --release --example guarantee`.
+#[test]
+fn no_random_scene_catches_the_guarantee_in_a_lie() {
+    let mut meshes = 0;
+    for seed in 1..=24 {
+        let one = shown(seed, 3).unwrap();
+        assert!(one.violations.is_empty(), "{:#?}", one.violations);
+        meshes += one.of_force.len();
+    }
+    assert!(meshes > 60, "{meshes}");
+}
+
+#[test]
+fn the_folder_has_fields_meshes_and_pictures() {
+    let desk = Desk::new();
+    desk.write("scene.json", &classical(0.3).to_string());
+    let run = desk.run(&["solve", "scene.json", "--total-error", "0.1", "--out", "out"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    assert!(run.stdout.lines().all(|line| line.chars().count() <= 100), "{}", run.stdout);
+    for name in
+        ["answer.vtu", "mesh.msh", "meshes.csv", "meshes.png", "total-error.svg", "total-error.txt", "report.json"]
+    {
+        assert!(desk.path("out").join(name).exists(), "{name}");
+    }
+    let table = std::fs::read_to_string(desk.path("out/meshes.csv")).unwrap();
+    assert!(table.starts_with("triangles,dofs,stress_dofs,bound,"), "{table}");
+}
