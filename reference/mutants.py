@@ -65,6 +65,7 @@ class Stage:
 
 
 STAGES = (
+    Stage("own", ("--lib",), ("qp::certificate::", "qp::claims::")),
     Stage(
         "quick",
         ("--test", "numerics"),

@@ -100,6 +100,9 @@ mod tests {
     /// Points along a side of the square.
     const SIDE: usize = 48;
 
+    /// Rounding of sums over all of them.
+    const ROUNDING: f64 = 1e-9;
+
     #[test]
     fn rows_that_press_over_an_open_gap_are_moved_to_it_at_the_cost_of_their_shifts() {
         // Five points on a square, a wall before each at 1, and the load under which they press there by 1 - 0.1 K 1 or more.
@@ -134,5 +137,11 @@ mod tests {
         let answer = Answer { displacement: &u, multiplier: &pulls, residual, violation: &violation };
         let (bound, measured) = problem.energy_error_bound_by(&multigrid, &answer, &Watch::default());
         assert!(measured.is_none() && bound.whole > 0.1 * (4.0 * SIDE as f64).sqrt(), "{bound:?}");
+        // The bound is that of the same displacements without forces.
+        let nothing = vec![0.0; dofs];
+        let residual = problem.accurate_residual(&u, &nothing);
+        let answer = Answer { displacement: &u, multiplier: &nothing, residual, violation: &violation };
+        let (without, _) = problem.energy_error_bound_by(&multigrid, &answer, &Watch::default());
+        assert!((bound.whole / without.whole - 1.0).abs() < ROUNDING, "{bound:?} {without:?}");
     }
 }
