@@ -33,8 +33,8 @@ FILES = ("src/qp/certificate/**", "src/qp/claims/**")
 
 SEED = 20
 COUNT = 60
-"""So many take half an hour on two cores that have other work too: 10 to 20 s for one that is killed, a minute for one
-that survives."""
+"""On two cores that have other work too a mutant takes 10 to 20 s if the first stage kills it, a minute if a later one
+does, and two to three if it survives."""
 
 ALLOWED = 0.02
 """The share of the mutants that build which may survive without a reason."""
