@@ -2,15 +2,16 @@
 
 cargo-mutants (`cargo install cargo-mutants --locked`) lists the mutants of certificate, bound, proof, infeasibility and
 claims: an operator exchanged, a condition negated, a function that returns a constant. This command draws some of them,
+by a digest of the seed and of what the mutant changes, so that an edit moves no other mutant in or out of the draw. It
 puts one at a time into a copy of the repository in `target/mutants`, builds it, and runs stages of fast tests until one
 fails. Survivors that are no faults stand in `tests/mutants.toml`, each with its reason. Exits with 1 if more than 2 %
 of the mutants that build survive without a reason. `--again` takes the killed ones of earlier runs as killed.
 """
 
 import argparse
+import hashlib
 import json
 import os
-import random
 import re
 import resource
 import shutil
@@ -32,8 +33,8 @@ FILES = ("src/qp/certificate/**", "src/qp/claims/**")
 
 SEED = 20
 COUNT = 60
-"""So many take half an hour on two cores that have other work too: 10 to 20 s for one that is killed, a minute for one
-that survives. A larger draw of the same seed has the smaller one in it."""
+"""On two cores that have other work too a mutant takes 10 to 20 s if the first stage kills it, a minute if a later one
+does, and two to three if it survives."""
 
 ALLOWED = 0.02
 """The share of the mutants that build which may survive without a reason."""
@@ -64,6 +65,7 @@ class Stage:
 
 
 STAGES = (
+    Stage("own", ("--lib",), ("qp::certificate::", "qp::claims::")),
     Stage(
         "quick",
         ("--test", "numerics"),
@@ -130,12 +132,23 @@ def listed(root: Path) -> list[Mutant]:
     return [Mutant(one["name"], one["file"], one["diff"]) for one in json.loads(done.stdout)]
 
 
-def drawn(mutants: list[Mutant], count: int, seed: int) -> list[Mutant]:
-    """`count` of the mutants, in the order of the list; the same for the same seed and list."""
-    draws, places = random.Random(seed), set()
-    while len(places) < min(count, len(mutants)):
-        places.add(draws.randrange(len(mutants)))
-    return [mutants[place] for place in sorted(places)]
+def numbered(mutants: list[Mutant]) -> list[str]:
+    """What each mutant is remembered by: its key, and its number among those of the same key, in one text."""
+    seen = Counter()
+    names = []
+    for mutant in mutants:
+        names.append("\n".join([*mutant.key, str(seen[mutant.key])]))
+        seen[mutant.key] += 1
+    return names
+
+
+def drawn(mutants: list[Mutant], count: int, seed: int) -> list[tuple[str, Mutant]]:
+    """`count` of the mutants, each with what it is remembered by: those with the least digests of the seed and that
+    text, in the order of the list. Others count only by how many of them have a lesser digest, so that an edited line
+    moves its own mutants; a larger draw of the same seed has the smaller one in it."""
+    named = list(zip(numbered(mutants), mutants))
+    digest = lambda place: hashlib.sha256(f"{seed}\n{named[place][0]}".encode()).digest()
+    return [named[place] for place in sorted(sorted(range(len(named)), key=digest)[:count])]
 
 
 def reasons(file: Path) -> dict[tuple[str, str], str]:
@@ -272,14 +285,15 @@ def main() -> int:
     print(f"the tests pass without a mutant, after {time.monotonic() - began:.0f} s", flush=True)
     last = dict(json.loads(kept.read_text())) if options.again and kept.exists() else {}
     outcomes = []
-    for mutant in chosen:
-        if last.get(mutant.name, "survived") == "survived":
+    for name, mutant in chosen:
+        if last.get(name, "survived") == "survived":
             outcome, stage = tried(mutant, tree)
             print(f"{time.monotonic() - began:6.0f} s  {outcome:<12}{stage:<10}{mutant.name}", flush=True)
         else:
-            outcome = last[mutant.name]
+            outcome = last[name]
+        last[name] = outcome
         outcomes.append((mutant, outcome))
-        kept.write_text(json.dumps(last | {mutant.name: outcome for mutant, outcome in outcomes}, indent=1))
+        kept.write_text(json.dumps(last, indent=1))
     table, is_met = summary(outcomes, known)
     print(f"\n{table}\n\n{time.monotonic() - began:.0f} s in all")
     return 0 if is_met else 1

@@ -60,18 +60,57 @@ class Change(unittest.TestCase):
 
 
 class Draw(unittest.TestCase):
+    def every(self, count: int, places: int = 1) -> list[Mutant]:
+        """Changes of so many functions, each at so many places with the same new line."""
+        both = [(number, place) for number in range(count) for place in range(places)]
+        return [Mutant(f"f.rs:{place}:1: change {number}", "f.rs", f"-\n+\n+x{number}") for number, place in both]
+
+    def drawn(self, *arguments) -> list[Mutant]:
+        return [mutant for _, mutant in mutants.drawn(*arguments)]
+
     def test_a_draw_depends_on_its_seed_alone_and_keeps_the_order(self):
-        every = [Mutant(f"file.rs:{place}:1: change", "file.rs", "") for place in range(500)]
-        first = mutants.drawn(every, 100, 1)
-        self.assertEqual(first, mutants.drawn(every, 100, 1))
-        self.assertNotEqual(first, mutants.drawn(every, 100, 2))
-        self.assertEqual(first, sorted(first, key=every.index))
-        self.assertEqual(len(set(first)), 100)
-        self.assertEqual(mutants.drawn(every, 1000, 1), every)
+        for every in (self.every(500), self.every(100, places=5), self.every(1, places=500)):
+            first = self.drawn(every, 100, 1)
+            self.assertEqual(first, self.drawn(every, 100, 1))
+            self.assertNotEqual(first, self.drawn(every, 100, 2))
+            self.assertEqual(first, sorted(first, key=every.index))
+            self.assertEqual(len(set(first)), 100)
+            self.assertEqual(self.drawn(every, 1000, 1), every)
 
     def test_a_larger_draw_has_the_smaller_one_in_it(self):
-        every = [Mutant(f"file.rs:{place}:1: change", "file.rs", "") for place in range(1737)]
-        self.assertLess(set(mutants.drawn(every, 60, 20)), set(mutants.drawn(every, 1000, 20)))
+        for every in (self.every(1737), self.every(579, places=3)):
+            self.assertLess(set(self.drawn(every, 60, 20)), set(self.drawn(every, 1000, 20)))
+
+    def test_without_some_mutants_the_others_stay_drawn(self):
+        every = self.every(1737)
+        draw = self.drawn(every, 60, 20)
+        # A line edited: its three mutants are gone, whether drawn or not.
+        for gone in (every[100:103], draw[:3], draw[-3:]):
+            rest = [mutant for mutant in every if mutant not in gone]
+            left = [mutant for mutant in draw if mutant not in gone]
+            after = self.drawn(rest, 60, 20)
+            self.assertLessEqual(set(left), set(after))
+            # As many come in as have gone, the same that a larger draw has.
+            larger = self.drawn(every, 60 + len(draw) - len(left), 20)
+            self.assertEqual(after, [mutant for mutant in larger if mutant not in gone])
+
+    def test_other_mutants_take_no_more_places_than_they_are_and_their_places_do_not_matter(self):
+        every = self.every(1737)
+        draw = self.drawn(every, 60, 20)
+        added = [Mutant(f"new.rs:{place}:1: change", "new.rs", f"-\n+\n+y{place}") for place in range(40)]
+        after = self.drawn(added + every, 60, 20)
+        self.assertEqual(len(set(draw) - set(after)), len(set(after) & set(added)))
+        self.assertLessEqual(set(after), set(draw) | set(added))
+        self.assertEqual(set(after), set(self.drawn(every + added, 60, 20)))
+        # Lines above that are longer or fewer change no key.
+        lower = [Mutant(mutant.name.replace(":0:", ":70:"), mutant.file, mutant.diff) for mutant in every]
+        self.assertEqual([one.key for one in self.drawn(lower, 60, 20)], [one.key for one in draw])
+
+    def test_a_mutant_is_remembered_by_its_key_and_its_number_among_equal_ones(self):
+        other = Mutant(LESS.name.replace(":2:18:", ":7:3:"), LESS.file, LESS.diff)
+        names = mutants.numbered([LESS, BODY, other])
+        self.assertEqual(len(set(names)), 3)
+        self.assertEqual(mutants.numbered([other, BODY]), names[:2])
 
 
 class Stages(unittest.TestCase):

@@ -125,11 +125,10 @@ impl EnergyNorm {
             let kept = self.displacement(&stiffness.mul(&vector));
             vector.iter_mut().zip(kept).for_each(|(value, kept)| *value -= kept);
             let left = size(&vector);
-            if !(left > 0.0 && length > 0.0) {
+            if left == 0.0 {
                 break;
             }
             contraction = contraction.max(left / length);
-            vector.iter_mut().for_each(|value| *value /= left);
         }
         contraction
     }
@@ -315,8 +314,16 @@ mod tests {
         }
         // For K~ = K + diag(e) on the diagonal only e / (4 + e) of the softest motion is missing at most.
         let found = norm(&pair(4.0 / 0.9, 0.45)).contraction(&stiffness);
-        let (soft, stiff) = (1.0 - 2.0 / (4.0 / 0.9 * 0.55), 1.0 - 6.0 / (4.0 / 0.9 * 1.45));
-        assert!(found <= soft * (1.0 + 1e-12) && found >= stiff, "{found} {soft} {stiff}");
+        let (soft, stiff): (f64, f64) = (1.0 - 2.0 / (4.0 / 0.9 * 0.55), 1.0 - 6.0 / (4.0 / 0.9 * 1.45));
+        // Each step multiplies the part along (1, 1), of stiffness 2, with the one, and that along (1, -1), of 6, with the other.
+        let start = generic(2, 0);
+        let energy = |steps: i32| {
+            let (along, across) = ((start[0] + start[1]) * soft.powi(steps), (start[0] - start[1]) * stiff.powi(steps));
+            2.0 * along * along + 6.0 * across * across
+        };
+        let step = |steps: usize| (energy(steps as i32) / energy(steps as i32 - 1)).sqrt();
+        let exact = (1..=POWER_STEPS).map(step).fold(0.0, f64::max);
+        assert!((found - exact).abs() < 1e-14 && found <= soft, "{found} {exact} {soft}");
         assert_eq!(norm(&stiffness).off_by(0.25).widening(), 1.0 + MEASURED * 0.25);
         assert_eq!(norm(&stiffness).widening(), 1.0);
     }

@@ -127,3 +127,21 @@ impl ContactProblem {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mode_names_the_dofs_that_move_most_and_none_that_rests() {
+        let in_words = |direction: &[f64]| {
+            let direction = direction.to_vec();
+            NullMode { direction, approach: Vec::new(), work: 0.0, resistance: 1e-28 }.in_words()
+        };
+        let named = |dofs: &str| {
+            format!("most of it at dof {dofs} (indices from 0); its forces K d vanish to 1e-28 of their terms")
+        };
+        assert_eq!(in_words(&[0.25, 0.0, -1.0, 0.5, 0.125]), named("2, 3, 0"));
+        assert_eq!(in_words(&[0.0, 1.0, 0.0, 0.0]), named("1"));
+    }
+}

@@ -18,9 +18,6 @@ use crate::qp::problem::ContactProblem;
 use crate::solution::{ContactSet, ProvenSet};
 use crate::watch::Watch;
 
-/// Sweeps of so few rows cost no more than a solve for all.
-const FEW_ROWS: usize = 8;
-
 /// Accuracy of the solve for an M-matrix without a factor; what it lacks widens the bounds.
 const ROUGH: f64 = 1e-2;
 
@@ -65,10 +62,9 @@ impl ContactProblem {
         }
         let halves = Halves::of(self, norm);
         let wide_error = norm.widening() * error;
-        // One solve is worth it if it saves sweeps.
-        let may_solve = rows > FEW_ROWS && !norm.is_over();
+        // One solve saves sweeps.
         let at_once = || halves.reach_at_once().or_else(|| self.monotone_reach(|s| Some(norm.displacement(s))));
-        let reach = if may_solve { at_once() } else { None }.unwrap_or_else(|| self.any_reach());
+        let reach = if norm.is_over() { None } else { at_once() }.unwrap_or_else(|| self.any_reach());
         let mut open = self.open_by(&answer, wide_error, &reach);
         let least = self.least_reach();
         let doubtful: Vec<(usize, f64)> = self
@@ -317,6 +313,27 @@ mod tests {
     }
 
     #[test]
+    fn what_is_out_of_balance_without_the_open_rows_is_free_of_their_forces() {
+        // K = 4, f = 8 and u = 1: a row that is proven open has no force in the exact answer, and -4 on the other balances.
+        let rows = SparseMatrix::from_triplets(2, 1, &[(0, 0, 1.0), (1, 0, -2.0)]).unwrap();
+        let stiffness =
+            SymmetricMatrix::from_lower(SparseMatrix::from_triplets(1, 1, &[(0, 0, 4.0)]).unwrap()).unwrap();
+        let problem = ContactProblem::new(stiffness, vec![8.0], rows, vec![1.0, 9.0]).unwrap();
+        let (displacement, multiplier) = ([1.0], [-4.0, -0.5]);
+        let residual = problem.accurate_residual(&displacement, &multiplier);
+        assert_eq!(residual, [1.0]);
+        let violation = problem.accurate_violation(&displacement);
+        let answer = Answer { displacement: &displacement, multiplier: &multiplier, residual, violation: &violation };
+        for (open, balance) in [([false, true], 0.0), ([false, false], 1.0)] {
+            let closed = problem.closed_by(&answer, &open.into_iter().collect(), 0.0, 1.0, |is_residual, force| {
+                assert_eq!((is_residual, force), (!open[1], &[balance][..]));
+                Some(force[0].abs() / 2.0)
+            });
+            assert_eq!(closed.imbalance, balance / 2.0);
+        }
+    }
+
+    #[test]
     fn a_row_has_the_same_reach_on_the_boundary_and_in_the_whole_body() {
         // With K = tridiag(-1, 3, -1) and B = 2 the compliance is 4 K^-1, and its inverse K / 4.
         for (dofs, on_boundary) in [(30, true), (400, false)] {
@@ -330,6 +347,10 @@ mod tests {
             let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
             assert_eq!(norm.boundary().is_some(), on_boundary);
             let halves = Halves::of(&problem, &norm);
+            // A sweep takes one multiplication for each value of the factor: those of a full triangle, or no less than those of K.
+            let full = dofs * (dofs + 1) / 2;
+            let least = if on_boundary { full - dofs } else { 2 * dofs - 1 };
+            assert!((least as f64..=full as f64).contains(&halves.sweep()), "{}", halves.sweep());
             for row in [0, 1, dofs / 2, dofs - 1] {
                 let mut force = vec![0.0; dofs];
                 force[row] = 2.0;

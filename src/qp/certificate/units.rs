@@ -47,7 +47,8 @@ impl ContactProblem {
             (false, _) => statics,
         };
         let is_far = |power: i32| power.abs() > FAR;
-        let far = is_far(stiffness) || is_far(length) || is_far(stiffness + length) || is_far(stiffness + 2 * length);
+        // A force, of the power stiffness + length, is far only if the stiffness or an energy is.
+        let far = is_far(stiffness) || is_far(length) || is_far(stiffness + 2 * length);
         far.then_some(Units { stiffness, length })
     }
 

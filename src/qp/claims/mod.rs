@@ -326,6 +326,24 @@ mod tests {
     }
 
     #[test]
+    fn forces_carry_a_load_if_they_balance_it_on_every_mode() {
+        // Nothing but its wall holds the second dof, under a force of 3.
+        let problem = before_a_wall(2).with_load(vec![4.0, 3.0]).unwrap();
+        let scaling = Scaling::of(problem.stiffness(), problem.contact()).unwrap();
+        let (load, gap) = (scaling.load(problem.load(), 0), scaling.gap(problem.gap(), 0));
+        let scaled = ContactProblem::new(scaling.stiffness().clone(), load, scaling.contact().clone(), gap).unwrap();
+        let null = scaled.stiffness().null_space().unwrap().unwrap();
+        let looked = Looked::of(&scaled, &scaling, null);
+        let is_carried = |forces: [f64; 2]| looked.is_carried_by(&scaling.multiplier(&forces, 0));
+        // The force on the first wall is no matter of the mode.
+        assert!(is_carried([-2.0, -3.0]) && is_carried([0.0, -3.0]));
+        assert!(is_carried([-2.0, -3.0 * (1.0 - BALANCED)]));
+        for force in [-3.0 * (1.0 - 3.0 * BALANCED), -2.9, -3.1, 0.0, 3.0] {
+            assert!(!is_carried([-2.0, force]), "{force}");
+        }
+    }
+
+    #[test]
     fn an_answer_out_of_balance_shows_no_freedom() {
         assert!(is_free(1.0, 2.0));
         // Out of balance by e the dof may move by 1e3 e / 2, of which 1e-4 of displacement and gap, 2, are allowed.

@@ -122,3 +122,65 @@ fn without_rounding(problem: &ContactProblem, added: &[f64], u: &[f64], lambda: 
 fn absolute(values: &[f64]) -> Vec<f64> {
     values.iter().map(|value| value.abs()).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    use super::*;
+    use crate::qp::judged::out_of_time;
+    use crate::watch::Watch;
+
+    /// Two dofs, each with its own row: `stiffness` on the diagonal.
+    fn two(stiffness: [f64; 2], load: [f64; 2], gap: [f64; 2]) -> ContactProblem {
+        let diagonal =
+            |values: [f64; 2]| SparseMatrix::from_triplets(2, 2, &[(0, 0, values[0]), (1, 1, values[1])]).unwrap();
+        let stiffness = SymmetricMatrix::from_lower(diagonal(stiffness)).unwrap();
+        ContactProblem::new(stiffness, load.to_vec(), diagonal([1.0; 2]), gap.to_vec()).unwrap()
+    }
+
+    #[test]
+    fn steps_end_with_the_answer_when_they_gain_nothing_and_keep_the_pivot_of_the_stiffness() {
+        // A dof of stiffness 2 under a force of 4 before a wall at 3, and one that a force of 3 presses to a wall at 1/2.
+        let problem = two([2.0, 0.0], [4.0, 3.0], [3.0, 0.5]);
+        let scaling = Scaling::of(problem.stiffness(), problem.contact()).unwrap();
+        let solves = Arc::new(AtomicUsize::new(0));
+        let counted = Arc::clone(&solves);
+        let watch = Watch::observed(move |watch| {
+            counted.fetch_add(usize::from(watch.activity().step == "certificate"), Ordering::SeqCst);
+        });
+        let settings = Settings { watch, ..Settings::default() };
+        let mut before = out_of_time(&problem, 0.0, 0.0).unwrap();
+        if let Error::NotCertified { solution, .. } = &mut before {
+            solution.lost_pivot = Some(1e-17);
+        }
+        let found = answer(&problem, &scaling, &settings, before).unwrap();
+        assert_eq!((&found.displacement[..], &found.multiplier[..]), (&[2.0, 0.5][..], &[0.0, -3.0][..]));
+        assert_eq!(found.lost_pivot, Some(1e-17));
+        // Each step takes a factor of about 2^-20 off the error: the third leaves less than the last bit, the fourth is as
+        // long as rounding, and the fifth is none.
+        let solves = solves.load(Ordering::SeqCst);
+        assert!((FEWEST_STEPS..=5).contains(&solves), "{solves}");
+    }
+
+    #[test]
+    fn forces_and_displacements_within_rounding_of_a_step_are_left_out() {
+        let problem = two([2.0, 2.0], [4.0, 1.0], [3.0, 3.0]);
+        // The added diagonal of 1/2 makes rounding of OF_STEP / 2 of a displacement of one.
+        let kept_force = |share: f64| {
+            let force = -share * OF_STEP / 2.0;
+            without_rounding(&problem, &[0.5; 2], &[1.0, 0.0], &[force, 0.0])[1].1[0] / force
+        };
+        assert_eq!((kept_force(0.9), kept_force(1.1)), (0.0, 1.0));
+        // On the second dof a load of one is rounded by OF_STEP, against a stiffness of 2 and the 1/2 that is added.
+        // The rounding of its own row is a share of OF_STEP of that.
+        let is_kept = |share: f64| {
+            let small = share * OF_STEP / 2.5;
+            let [.., (u, _)] = without_rounding(&problem, &[0.5; 2], &[1.0, small], &[0.0; 2]);
+            assert!(u[0] == 1.0 && (u[1] == small || u[1] == 0.0), "{u:?}");
+            u[1] != 0.0
+        };
+        assert!(is_kept(1.1) && !is_kept(0.9));
+    }
+}

@@ -56,7 +56,7 @@ impl ContactProblem {
         let mut multipliers = vec![answer.multiplier.to_vec()];
         let mut next = (repair.answer(&witness), repair.expanded(&witness.change));
         let (mut witness, mut best) = (witness, None);
-        loop {
+        for _ in 0..MOST_NEAR {
             let ((moved, multiplier), change) = next;
             // Multipliers stay sums: rounded, they would leave more than all other forces on a dof with next to no stiffness.
             let rounded = |row: usize| if multiplier[row] < 0.0 { 1.0 } else { 0.0 };
@@ -77,15 +77,14 @@ impl ContactProblem {
             let of_near = repair.bound(&witness);
             let size = of_near.size();
             let bound = of_near.farther(self, &step);
-            // Another repair gains the digits that this one has, unless most of the bound is the way to the witness.
-            let is_last = multipliers.len() > MOST_NEAR || size <= FAR * bound.size();
-            let is_better = best.as_ref().is_none_or(|best: &ErrorBound| bound.size() < GAINS * best.size());
+            let is_settled = settled(size, bound.size(), best.as_ref().map_or(f64::INFINITY, ErrorBound::size));
             best = Some(best.into_iter().fold(bound, ErrorBound::smaller));
-            if is_last || !is_better {
-                return best;
+            if is_settled {
+                break;
             }
             next = (repair.answer(&witness), repair.expanded(&witness.change));
         }
+        best
     }
 
     /// An answer repaired, in doubles: displacements at which the rows that look closed are at their gaps, and the multipliers
@@ -97,5 +96,49 @@ impl ContactProblem {
         let repair = Repair::new(self, norm, norm.boundary()?, &answer)?;
         let witness = repair.settle(&self.rows_that_look_closed(&answer), Multipliers::InEquilibrium)?;
         Some(repair.answer(&witness))
+    }
+}
+
+/// Does another repair gain nothing? It gains the digits that the last one has, unless most of the `bound` is the way to the
+/// witness, of which `rest` is left, or the last one has gained little on the `best` before.
+fn settled(rest: f64, bound: f64, best: f64) -> bool {
+    rest <= FAR * bound || bound >= GAINS * best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
+
+    /// Rounding of a handful of operations.
+    const ROUNDING: f64 = 1e-14;
+
+    #[test]
+    fn an_answer_is_repaired_to_the_equilibrium_of_the_rows_that_look_closed() {
+        // K = (2, -1; -1, 2) under forces of 3 and 1, a wall before the first dof at 1, and one far from the second. At the wall
+        // the second dof is at 1, and a force of 2 is left on the first.
+        let matrix = |entries: &[(usize, usize, f64)]| SparseMatrix::from_triplets(2, 2, entries).unwrap();
+        let stiffness = SymmetricMatrix::from_lower(matrix(&[(0, 0, 2.0), (1, 0, -1.0), (1, 1, 2.0)])).unwrap();
+        let walls = matrix(&[(0, 0, 1.0), (1, 1, 1.0)]);
+        let problem = ContactProblem::new(stiffness, vec![3.0, 1.0], walls, vec![1.0, 9.0]).unwrap();
+        let norm = EnergyNorm::of(problem.stiffness(), problem.contact()).unwrap().unwrap();
+        for (u, lambda) in [([1.25, 0.5], [-1.0, 0.0]), ([1.0, 1.0], [-2.0, 0.0]), ([0.75, 2.0], [-5.0, -1e-3])] {
+            let (moved, multiplier) = problem.repaired(&norm, &u, &lambda).unwrap();
+            let is_near = |a: &[f64], b: [f64; 2]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < ROUNDING);
+            assert!(is_near(&moved, [1.0, 1.0]), "{u:?}: {moved:?}");
+            assert!(is_near(&multiplier, [-2.0, 0.0]), "{u:?}: {multiplier:?}");
+        }
+    }
+
+    #[test]
+    fn repairs_end_when_half_the_bound_is_the_way_or_a_tenth_of_the_last_is_not_reached() {
+        // Nothing of the bound is the way, and there is none before, or one that is more than ten times as large.
+        assert!(!settled(1.0, 1.0, f64::INFINITY) && !settled(2.0, 2.0, 20.5));
+        // Half of it is the way, and a little less.
+        assert!(settled(1.0, 2.0, f64::INFINITY) && !settled(1.01, 2.0, f64::INFINITY));
+        // Ten times as large, and less than that.
+        assert!(settled(2.0, 2.0, 20.0) && settled(2.0, 2.0, 1.0));
+        // Without a bound no repair follows.
+        assert!(settled(f64::INFINITY, f64::INFINITY, f64::INFINITY));
     }
 }

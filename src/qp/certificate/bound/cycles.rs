@@ -100,15 +100,37 @@ mod tests {
     /// Points along a side of the square.
     const SIDE: usize = 48;
 
+    /// Rounding of sums over all of them.
+    const ROUNDING: f64 = 1e-9;
+
+    /// Five points on a square: 4 on the diagonal, -1 to each neighbour, and `more` on the diagonal.
+    fn square(more: f64) -> SymmetricMatrix {
+        let dofs = SIDE * SIDE;
+        let mut entries: Vec<_> = (0..dofs).map(|own| (own, own, 4.0 + more)).collect();
+        entries.extend((0..dofs).filter(|own| own % SIDE + 1 < SIDE).map(|own| (own + 1, own, -1.0)));
+        entries.extend((0..dofs - SIDE).map(|own| (own + SIDE, own, -1.0)));
+        SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &entries).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn a_stiffness_is_semidefinite_unless_a_direction_of_negative_energy_is_met_or_time_is_over() {
+        let definite = square(0.0);
+        let near_null = NearNullSpace::constants(&definite).unwrap();
+        let multigrid = Multigrid::new(&definite, &near_null, 1).unwrap();
+        // The least eigenvalue is 8 sin^2(pi / 98), less than a hundredth.
+        for (more, is_semidefinite) in [(0.0, true), (-0.1, false)] {
+            let none = SparseMatrix::from_triplets(0, SIDE * SIDE, &[]).unwrap();
+            let problem = ContactProblem::new(square(more), vec![0.0; SIDE * SIDE], none, Vec::new()).unwrap();
+            assert_eq!(problem.is_semidefinite_by(&multigrid, &Watch::default()), is_semidefinite, "{more}");
+            assert!(!problem.is_semidefinite_by(&multigrid, &Watch::default().within(0.0)), "{more}");
+        }
+    }
+
     #[test]
     fn rows_that_press_over_an_open_gap_are_moved_to_it_at_the_cost_of_their_shifts() {
         // Five points on a square, a wall before each at 1, and the load under which they press there by 1 - 0.1 K 1 or more.
         let dofs = SIDE * SIDE;
-        let mut entries: Vec<_> = (0..dofs).map(|own| (own, own, 4.0)).collect();
-        entries.extend((0..dofs).filter(|own| own % SIDE + 1 < SIDE).map(|own| (own + 1, own, -1.0)));
-        entries.extend((0..dofs - SIDE).map(|own| (own + SIDE, own, -1.0)));
-        let stiffness =
-            SymmetricMatrix::from_lower(SparseMatrix::from_triplets(dofs, dofs, &entries).unwrap()).unwrap();
+        let stiffness = square(0.0);
         let rows: Vec<_> = (0..dofs).map(|dof| (dof, dof, 1.0)).collect();
         let contact = SparseMatrix::from_triplets(dofs, dofs, &rows).unwrap();
         let load = stiffness.mul(&vec![0.9; dofs]).iter().map(|force| force + 1.0).collect();
@@ -134,5 +156,11 @@ mod tests {
         let answer = Answer { displacement: &u, multiplier: &pulls, residual, violation: &violation };
         let (bound, measured) = problem.energy_error_bound_by(&multigrid, &answer, &Watch::default());
         assert!(measured.is_none() && bound.whole > 0.1 * (4.0 * SIDE as f64).sqrt(), "{bound:?}");
+        // The bound is that of the same displacements without forces.
+        let nothing = vec![0.0; dofs];
+        let residual = problem.accurate_residual(&u, &nothing);
+        let answer = Answer { displacement: &u, multiplier: &nothing, residual, violation: &violation };
+        let (without, _) = problem.energy_error_bound_by(&multigrid, &answer, &Watch::default());
+        assert!((bound.whole / without.whole - 1.0).abs() < ROUNDING, "{bound:?} {without:?}");
     }
 }

@@ -312,6 +312,20 @@ mod tests {
     }
 
     #[test]
+    fn a_row_on_dofs_without_stiffness_has_a_spring_that_its_force_stretches_by_the_energy_norm() {
+        // A row joins the first dof, of stiffness 4, to the third, of none, which the second row feels alone.
+        let rows = SparseMatrix::from_triplets(2, 3, &[(0, 0, 3.0), (0, 2, 5.0), (1, 2, 1.0)]).unwrap();
+        let apart = apart();
+        let problem = ContactProblem::new(apart.stiffness, apart.load, rows, vec![9.0, 1.0]).unwrap();
+        // The energy norm of u_0 is 2 u_0; the second row is at its gap.
+        let spring = |u: f64| problem.springs(&[u, 0.0, 1.0], &[0.0, -10.0]).stiffness;
+        assert_eq!(spring(1.0), [0.0, (10.0_f64 / 2.0).powi(2)]);
+        assert_eq!(spring(-0.25), [0.0, (10.0_f64 / 0.5).powi(2)]);
+        // Without energy there is nothing to measure by.
+        assert_eq!(spring(0.0), [0.0, 1.0]);
+    }
+
+    #[test]
     fn rows_look_closed_if_their_force_reaches_over_their_distance() {
         let stiff = 1.0 / (9.0 / 4.0 + 25.0 / 16.0);
         for (share, looks) in [(0.9, false), (1.1, true)] {

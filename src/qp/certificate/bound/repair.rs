@@ -117,9 +117,9 @@ impl<'a> Repair<'a> {
 
     pub fn half(&self, row: usize) -> &[f64] {
         self.halves[row].get_or_init(|| {
-            let mut column = vec![0.0; self.boundary.len()];
-            self.rows[row].iter().for_each(|&(place, b)| column[place] += b);
-            self.boundary.forward(column)
+            let mut unit = vec![0.0; self.rows.len()];
+            unit[row] = 1.0;
+            self.spread(&unit)
         })
     }
 
@@ -233,5 +233,11 @@ mod tests {
         assert!((repair.bound(&witness).whole - 1.0).abs() < ROUNDING, "{:?}", repair.bound(&witness));
         // The residual and the change of the force, one each, move the spring by 1/2 in energy norm each.
         assert!((repair.cancelled(&witness) / CANCELLED - 1.0).abs() < ROUNDING, "{:e}", repair.cancelled(&witness));
+        // A way that is left to the gap counts for the answer, for its residual and for its rounding.
+        let open = Witness { rest: vec![0.25], ..witness };
+        assert!((repair.bound(&open).whole - (1.0 + 3.0 * 0.25)).abs() < ROUNDING, "{:?}", repair.bound(&open));
+        // With the force of 3 as it was, a force of 1 is left at the gap, which moves the spring by 1/4, 1/2 in energy norm.
+        let kept = repair.settle(&[true], Multipliers::OfTheAnswer).unwrap();
+        assert!((repair.bound(&kept).whole - 1.5).abs() < ROUNDING, "{:?}", repair.bound(&kept));
     }
 }

@@ -277,4 +277,60 @@ mod tests {
         assert_eq!(put([-25.0, -1.0], [Aim::WithinGap; 2]), Some(vec![0.0, 0.0]));
         assert_eq!(put([25.0, 1.0], at_gap), None);
     }
+
+    /// Two dofs of stiffness 4, and these rows, with their gaps at zero.
+    fn two(rows: [[f64; 2]; 2]) -> ContactProblem {
+        let stiffness = SparseMatrix::from_triplets(2, 2, &[(0, 0, 4.0), (1, 1, 4.0)]).unwrap();
+        let entries: Vec<_> = (0..4).map(|at| (at / 2, at % 2, rows[at / 2][at % 2])).collect();
+        let contact = SparseMatrix::from_triplets(2, 2, &entries).unwrap();
+        ContactProblem::new(SymmetricMatrix::from_lower(stiffness).unwrap(), vec![0.0; 2], contact, vec![0.0; 2])
+            .unwrap()
+    }
+
+    fn off<'a>(violation: &'a [f64]) -> Answer<'a> {
+        Answer { displacement: &[0.0; 2], multiplier: &[0.0; 2], residual: vec![0.0; 2], violation }
+    }
+
+    #[test]
+    fn rows_that_move_each_other_are_put_at_their_gaps_at_the_cost_of_all_their_shifts() {
+        let problem = two([[1.0, 0.0], [1.0, 1.0]]);
+        let start = Start { answer: &off(&[1.0, 0.0]), moved_by: &[0.0; 2], aims: &[Aim::AtGap; 2] };
+        let put = problem.put_along_rows(&problem.contact.transposed(), &start).unwrap();
+        // Each sweep moves either row half as far as the one before, first by 1, at a cost of 2 for each: 2 + 1 + 1/2 + ...
+        let whole = 4.0;
+        assert!(put[0] == put[1] && (whole..=2.0 * whole).contains(&put[0]), "{put:?}");
+        // The sweeps end, and what they leave counts as much as all of them, when the last is a hundredth of their sum.
+        assert!(put[0] >= 2.0 * (1.0 - LAST) * whole, "{put:?}");
+    }
+
+    #[test]
+    fn a_penetration_is_taken_back_in_any_unit_and_an_open_row_stays() {
+        let problem = two([[1.0, 0.0], [0.0, 2.0]]);
+        for unit in [1e-12, 1.0, 1e12] {
+            let violation = [3.0 * unit, -unit];
+            let repair = |is_closed: &dyn Fn(usize) -> bool| {
+                problem.repair(&problem.contact.transposed(), &off(&violation), is_closed).unwrap()
+            };
+            assert_eq!(repair(&|_| false), [-3.0 * unit, 0.0]);
+            assert_eq!(repair(&|_| true), [-3.0 * unit, unit / 2.0]);
+        }
+    }
+
+    #[test]
+    fn the_rest_of_the_body_follows_a_force_to_its_equilibrium() {
+        // A chain of four springs between two walls: K = tridiag(-1, 2, -1) has (n - i) / n of a force on the first dof at dof i.
+        let entries: Vec<_> = (0..4).map(|i| (i, i, 2.0)).chain((1..4).map(|i| (i, i - 1, -1.0))).collect();
+        let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(4, 4, &entries).unwrap()).unwrap();
+        let none = SparseMatrix::from_triplets(0, 4, &[]).unwrap();
+        let problem = ContactProblem::new(stiffness, vec![0.0; 4], none, Vec::new()).unwrap();
+        for (last_is_held, exact, force) in [
+            (false, [0.8, 0.6, 0.4, 0.2], [1.0, 0.0, 0.0, 0.0]),
+            (true, [0.75, 0.5, 0.25, 0.0], [1.0, 0.0, 0.0, -0.25]),
+        ] {
+            let (found, elastic) = problem.relaxed(&[1.0, 0.0, 0.0, 0.0], &[false, false, false, last_is_held]);
+            let is_near = |(a, b): (&f64, &f64)| (a - b).abs() < SUM_ROUNDING;
+            assert!(found.iter().zip(&exact).all(is_near), "{found:?}");
+            assert!(elastic.iter().zip(&force).all(is_near), "{elastic:?}");
+        }
+    }
 }

@@ -109,6 +109,18 @@ mod tests {
     const ROUNDING: f64 = 1e-13;
 
     #[test]
+    fn what_cancels_in_a_column_are_the_lengths_of_its_parts_whatever_their_signs() {
+        let mut found = Triangle::default();
+        found.push(Vec::new(), 2.0);
+        found.push(vec![3.0], 4.0);
+        // R w = (x, 8) with w_2 = 2; columns of lengths 2 and 5 beside one of length 7.
+        for (x, first) in [(8.0, 1.0), (4.0, -1.0)] {
+            let (weights, terms) = found.combined(&[x, 8.0], &[2.0, 5.0, 7.0]);
+            assert_eq!((&weights[..], terms), (&[first, 2.0][..], 7.0 + 2.0 + 2.0 * 5.0));
+        }
+    }
+
+    #[test]
     fn a_column_that_follows_from_others_is_left_out_with_its_weights_in_any_unit() {
         for unit in [1e-40, 1.0, 1e40] {
             let column = |entries: [f64; 3]| entries.map(|entry| unit * entry);
