@@ -157,7 +157,7 @@ impl Search<'_> {
     fn run(&self, first: Triangulation) -> Result<TotalError, Error> {
         let (mut meshes, mut levels) = (vec![first], Vec::<TotalErrorLevel>::new());
         let mut best: Option<(PlaneAnswer, f64)> = None;
-        let mut own_mesh = None;
+        let (mut own, mut own_mesh) = (None, None);
         let (mut ended, mut next_triangles) = (Ended::Goal, None);
         while let Some(mesh) = meshes.last() {
             self.settings.watch.step("mesh", levels.len());
@@ -169,19 +169,23 @@ impl Search<'_> {
                 }
                 other => other?,
             };
-            if levels.is_empty() {
-                own_mesh = self.own_mesh(&bracket)?;
-            }
             let level = self.level(&bracket)?;
             let taken = level.seconds - levels.last().map_or(0.0, |last| last.seconds);
             let is_met = self.is_met(&level);
             levels.push(level);
             best = Some((bracket.answer(), bracket.defect));
+            if levels.len() == 1 {
+                own = self.own_answer();
+            }
+            let is_late = !self.settings.watch.allows(GROWTH * taken);
+            if levels.len() == 1 || is_met || is_late {
+                own_mesh = own.as_ref().map(|own| self.own_mesh(own, &bracket)).transpose()?;
+            }
             if is_met {
                 break;
             }
             let finer = mesh.refined(&marked(&bracket.shares, MARKED));
-            if !self.settings.watch.allows(GROWTH * taken) {
+            if is_late {
                 (ended, next_triangles) = (Ended::Time, Some(finer.triangles.len()));
                 break;
             }
@@ -206,19 +210,23 @@ impl Search<'_> {
         })
     }
 
-    /// The answer on the scene's own mesh, held against the first bracket.
-    fn own_mesh(&self, first: &Bracket) -> Result<Option<OwnMesh>, Error> {
+    /// The answer on the scene's own mesh; none if there is none.
+    fn own_answer(&self) -> Option<Answer> {
+        let solution = solve(self.model.problem(), &self.settings).ok()?;
+        Answer::of(self.model.clone(), &solution).ok()
+    }
+
+    /// That answer held against a bracket.
+    fn own_mesh(&self, own: &Answer, bracket: &Bracket) -> Result<OwnMesh, Error> {
         let model = self.model;
-        let Ok(solution) = solve(model.problem(), &self.settings) else { return Ok(None) };
-        let answer = Answer::of(model.clone(), &solution)?;
-        let judged = first.judged(|element, at| model.plane_strain_at(answer.displacement(), element, at));
+        let judged = bracket.judged(|element, at| model.plane_strain_at(own.displacement(), element, at));
         let bound = if judged.bound == 0.0 { 0.0 } else { judged.bound / judged.norm };
-        Ok(Some(OwnMesh {
+        Ok(OwnMesh {
             element: model.mesh().kind().name(),
             dofs: model.problem().dofs(),
             total_error: Bound { bound, guaranteed: true },
-            estimated: answer.discretisation_error()?,
-        }))
+            estimated: own.discretisation_error()?,
+        })
     }
 
     /// The numbers of a mesh; the interval of the force where it is asked for, or nothing else is.

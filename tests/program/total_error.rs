@@ -91,7 +91,7 @@ fn a_force_error_is_reached_too() {
 #[test]
 fn what_time_does_not_allow_is_said() {
     let (code, report, _) = solved(&classical(0.3), &["--total-error", "1e-7", "--time", "0.3"]);
-    assert_eq!((code, &report["status"], &report["ended"]), (4, &json!("not-certified"), &json!("time")));
+    assert_eq!((code, &report["status"], &report["ended"]), (4, &json!("not_certified"), &json!("time")));
     assert!(report["total_error"]["bound"].as_f64().unwrap() < 0.5 && report["next_triangles"].as_u64().unwrap() > 64);
 }
 
@@ -118,7 +118,7 @@ fn what_has_no_guarantee_is_refused_with_its_reason() {
     ];
     for (change, reason) in cases {
         let (code, report, message) = changed(change);
-        assert!(code == 1 && report == Value::Null && message.contains(reason), "{code} {message}");
+        assert!(code == 1 && report["total_error"] == Value::Null && message.contains(reason), "{code} {message}");
     }
     for wrong in ["0", "-0.1", "1", "2", "nan", "much"] {
         let (code, _, message) = solved(&classical(0.3), &["--total-error", wrong]);
