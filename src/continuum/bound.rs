@@ -335,8 +335,8 @@ impl<'a> Bracket<'a> {
                 size = size.max(length);
             }
             let area = twice_area(corners);
-            for axis in 0..2 {
-                worst = worst.max((force[axis] / area + self.problem.body_force[axis]).abs() * area / size);
+            for (force, of_body) in force.into_iter().zip(self.problem.body_force) {
+                worst = worst.max((force / area + of_body).abs() * area / size);
             }
         }
         worst

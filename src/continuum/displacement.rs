@@ -86,6 +86,11 @@ impl<'a> Displacements<'a> {
         Ok(rows)
     }
 
+    /// The functions of each triangle.
+    pub fn numbers(&self) -> impl Iterator<Item = &[usize; LOCAL]> + '_ {
+        self.numbers.iter()
+    }
+
     /// The functions of each triangle, with its stiffness.
     pub fn blocks(&self) -> impl Iterator<Item = (&[usize; LOCAL], Block)> + '_ {
         self.numbers.iter().enumerate().map(|(triangle, numbers)| (numbers, self.stiffness(triangle)))

@@ -17,7 +17,7 @@ use std::collections::BTreeSet;
 use super::bound::{Bracket, minus};
 use super::johnson_mercier::{PartStress, at, mean_over_parts, traction};
 use super::problem::work;
-use super::system::Unknowns;
+use super::system::{Block, Unknowns};
 use super::triangulation::outward;
 use crate::error::Error;
 use crate::qp::linear::Cholesky;
@@ -32,6 +32,16 @@ const CAPS: [f64; 2] = [f64::INFINITY, 2.0];
 
 /// Rounds after which rows of the wrong sign are given up.
 const ROUNDS: usize = 12;
+
+/// What every pair takes: the matrices of the triangles, and the stress of edges at rest.
+struct Blocks {
+    displacement: Vec<Block>,
+    stress: Vec<Block>,
+    at_rest: Vec<PartStress>,
+}
+
+/// A stress, and its force at each place.
+type Pressed = (Vec<PartStress>, Vec<f64>);
 
 /// A pair z, tau_z and what its rows are worth.
 struct Test {
@@ -64,6 +74,11 @@ impl Bracket<'_> {
         let closed = &self.primal.solution.contact_set;
         let mut bonded: Vec<bool> = (0..self.primal.rows.len()).map(|row| closed.contains(row)).collect();
         let mut pressed: Vec<bool> = (0..self.places.len()).map(|row| self.pull(row) < 0.0).collect();
+        let blocks = Blocks {
+            displacement: self.displacements.blocks().map(|(_, block)| block).collect(),
+            stress: self.stresses.blocks().map(|(_, block)| block).collect(),
+            at_rest: self.stresses.stresses(&vec![0.0; self.dual.values.len()]),
+        };
         let mut last: Option<Test> = None;
         let (mut interval, mut scale): (Option<[f64; 2]>, f64) = (None, 0.0);
         for cap in CAPS {
@@ -75,7 +90,7 @@ impl Bracket<'_> {
                 bonded.iter_mut().zip(&test.ratios[0]).for_each(|(bonded, &ratio)| *bonded |= ratio > most);
                 pressed.iter_mut().zip(&test.ratios[1]).for_each(|(pressed, &ratio)| *pressed &= ratio <= most);
             }
-            let Some(test) = self.test(&mut bonded, &mut pressed, settings)? else { break };
+            let Some(test) = self.test(&mut bonded, &mut pressed, &blocks, settings)? else { break };
             let (found, natural) = self.interval(&test);
             scale = if last.is_none() { natural } else { scale };
             if found.iter().all(|bound| bound.is_finite()) {
@@ -125,9 +140,17 @@ impl Bracket<'_> {
     }
 
     /// The pair for these rows held; rows of the wrong sign are bonded or released until there are none.
-    fn test(&self, bonded: &mut [bool], pressed: &mut [bool], settings: &Settings) -> Result<Option<Test>, Error> {
-        let Some(displacement) = self.bonded_displacement(bonded, settings)? else { return Ok(None) };
-        let Some((stress, pulls)) = self.bonded_stress(pressed, settings)? else { return Ok(None) };
+    fn test(
+        &self,
+        bonded: &mut [bool],
+        pressed: &mut [bool],
+        blocks: &Blocks,
+        settings: &Settings,
+    ) -> Result<Option<Test>, Error> {
+        let Some(displacement) = self.bonded_displacement(bonded, &blocks.displacement, settings)? else {
+            return Ok(None);
+        };
+        let Some((stress, pulls)) = self.bonded_stress(pressed, blocks, settings)? else { return Ok(None) };
         let (primal, values) = (&self.primal, &self.primal.values);
         let mut beyond: f64 = 0.0;
         let mut of_rows: Vec<f64> = Vec::with_capacity(primal.rows.len());
@@ -155,15 +178,19 @@ impl Bracket<'_> {
     }
 
     /// The displacement -1 at bonded rows, without load; rows below -1 are bonded too.
-    fn bonded_displacement(&self, bonded: &mut [bool], settings: &Settings) -> Result<Option<Vec<f64>>, Error> {
+    fn bonded_displacement(
+        &self,
+        bonded: &mut [bool],
+        blocks: &[Block],
+        settings: &Settings,
+    ) -> Result<Option<Vec<f64>>, Error> {
         for _ in 0..ROUNDS {
             let mut held: Vec<Option<f64>> = self.primal.unknowns.held.iter().map(|held| held.map(|_| 0.0)).collect();
             let rows = || self.primal.rows.iter().zip(bonded.iter());
             rows().filter(|row| *row.1).for_each(|(row, _)| held[row.unknown] = Some(-row.sense));
             let unknowns = Unknowns::new(held);
-            let blocks: Vec<_> = self.displacements.blocks().collect();
             let load = vec![0.0; unknowns.held.len()];
-            let posed = unknowns.problem(blocks.iter().map(|(n, b)| (*n, b)), &load, &[])?;
+            let posed = unknowns.problem(self.displacements.numbers().zip(blocks), &load, &[])?;
             let values = unknowns.expanded(&linear(&posed, settings)?);
             let wrong: Vec<usize> = (0..bonded.len())
                 .filter(|&row| {
@@ -183,20 +210,21 @@ impl Bracket<'_> {
     fn bonded_stress(
         &self,
         pressed: &mut [bool],
+        blocks: &Blocks,
         settings: &Settings,
-    ) -> Result<Option<(Vec<PartStress>, Vec<f64>)>, Error> {
-        let nothing = self.stresses.stresses(&vec![0.0; self.dual.values.len()]);
+    ) -> Result<Option<Pressed>, Error> {
         for _ in 0..ROUNDS {
             let mut held: Vec<Option<f64>> = self.dual.unknowns.held.iter().map(|held| held.map(|_| 0.0)).collect();
             let rows = || self.dual.rows.iter().zip(pressed.iter());
             rows().filter(|row| *row.1).for_each(|(row, _)| held[row.unknown] = Some(-row.sense));
             let unknowns = Unknowns::new(held);
-            let blocks: Vec<_> = self.stresses.blocks().collect();
             let load = vec![0.0; unknowns.held.len()];
-            let posed = unknowns.problem(blocks.iter().map(|(n, b)| (*n, b)), &load, &[])?;
+            let posed = unknowns.problem(self.stresses.numbers().zip(&blocks.stress), &load, &[])?;
             let mut stress = self.stresses.stresses(&unknowns.expanded(&linear(&posed, settings)?));
             // The difference of two answers under the same body force has none.
-            for (values, at_rest) in stress.iter_mut().flatten().flatten().zip(nothing.iter().flatten().flatten()) {
+            for (values, at_rest) in
+                stress.iter_mut().flatten().flatten().zip(blocks.at_rest.iter().flatten().flatten())
+            {
                 *values = minus(*values, *at_rest);
             }
             let mut pulls = self.pulls(&stress);

@@ -132,10 +132,10 @@ fn product<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
 /// y. The unknowns are the coefficients of functions that meet only their own end of a linear traction: half the side's length.
 fn tractions(stress: &PartStress, corners: [Point; 3], thickness: f64) -> [f64; LOCAL] {
     let mut works = [0.0; LOCAL];
-    for side in 0..3 {
+    for (side, on_part) in stress.iter().enumerate() {
         let (normal, length) = outward(corners, side);
         for end in 0..2 {
-            let [x, y] = traction(stress[side][1 + end], normal);
+            let [x, y] = traction(on_part[1 + end], normal);
             let place = 4 * side + 2 * end;
             (works[place], works[place + 1]) = (thickness * length / 2.0 * x, thickness * length / 2.0 * y);
         }

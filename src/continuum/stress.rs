@@ -84,6 +84,11 @@ impl<'a> Stresses<'a> {
         (rows, places)
     }
 
+    /// The unknowns of each triangle.
+    pub fn numbers(&self) -> impl Iterator<Item = &[usize; LOCAL]> + '_ {
+        self.numbers.iter()
+    }
+
     /// The unknowns of each triangle, with its stiffness.
     pub fn blocks(&self) -> impl Iterator<Item = (&[usize; LOCAL], Block)> + '_ {
         self.numbers.iter().zip(self.elements.iter().map(Element::block))

@@ -133,7 +133,7 @@ fn csv(found: &TotalError) -> String {
 fn fields(answer: &PlaneAnswer) -> Result<String, Error> {
     let nodes: Vec<[f64; 3]> = answer.nodes.iter().map(|&[x, y]| [x, y, 0.0]).collect();
     let elements: Vec<Vec<usize>> = answer.triangles.iter().map(|triangle| triangle.to_vec()).collect();
-    let kinds = vec![ElementKind::T6; elements.len()];
+    let kinds = vec![ElementKind::QUADRATIC_TRIANGLE; elements.len()];
     let moved: Vec<f64> = answer.displacement.iter().flat_map(|&[x, y]| [x, y, 0.0]).collect();
     let entry = |place: usize| -> Vec<f64> { answer.stress.iter().map(|stress| stress[place]).collect() };
     let [xx, yy, xy] = [0, 1, 2].map(entry);
@@ -160,7 +160,7 @@ fn gmsh(answer: &PlaneAnswer) -> String {
         let _ = writeln!(text, "{} {x} {y} 0", number + 1);
     }
     let _ = writeln!(text, "$EndNodes\n$Elements\n{}", answer.triangles.len());
-    let kind = ElementKind::T6.reference().gmsh;
+    let kind = ElementKind::QUADRATIC_TRIANGLE.reference().gmsh;
     for (number, nodes) in answer.triangles.iter().enumerate() {
         let nodes: Vec<String> = nodes.iter().map(|node| (node + 1).to_string()).collect();
         let _ = writeln!(text, "{} {kind} 2 1 1 {}", number + 1, nodes.join(" "));

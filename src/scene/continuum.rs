@@ -1,6 +1,6 @@
 //! The plane contact problem that a scene describes, before any mesh.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use super::Model;
 use super::entry::wrong;
@@ -72,114 +72,118 @@ impl Scene {
         triangles: &[[usize; 3]],
         conditions: &mut Vec<Condition>,
     ) -> Result<HashMap<[usize; 2], usize>, Error> {
-        let mut sides: HashMap<[usize; 2], Vec<[usize; 2]>> = HashMap::new();
+        let mut outline = Outline::of(model.mesh(), nodes, triangles);
+        for (index, support) in self.supports.iter().enumerate() {
+            let path = format!("supports[{index}].on");
+            let Place::Boundary(name) = &support.on else {
+                let message = "a support at a point holds nothing in a continuum, so that there is no guaranteed bound; \
+                               hold a boundary";
+                return Err(wrong(path, message));
+            };
+            for component in self.components(index, support)? {
+                let Some(axis) = axis_of(component.direction) else {
+                    let message = "an inclined support has no guaranteed bound: only one along x or y has one";
+                    return Err(wrong(format!("supports[{index}].normal"), message));
+                };
+                let value = component.value * component.direction[axis];
+                outline.change(&format!("{path}.boundary"), name, |condition, _| condition.held[axis] = Some(value))?;
+            }
+        }
+        for (index, load) in self.loads.iter().enumerate() {
+            let Some((path, boundary, traction, pressure)) = spread(index, load)? else { continue };
+            outline.change(&path, boundary, |condition, normal| {
+                (0..2).for_each(|axis| condition.traction[axis] += traction[axis] - pressure * normal[axis]);
+            })?;
+        }
+        for (index, obstacle) in model.obstacles().iter().enumerate() {
+            let path = format!("obstacles[{index}].boundary");
+            outline.change(&path, obstacle.boundary(), |condition, _| condition.obstacles.push(index))?;
+        }
+        Ok(outline.numbered(conditions))
+    }
+}
+
+/// The path, the boundary, the traction and the pressure of a load on the outline; none of a body force.
+#[allow(clippy::type_complexity)]
+fn spread(index: usize, load: &LoadSpec) -> Result<Option<(String, &str, Point, f64)>, Error> {
+    let path = |field: &str| format!("loads[{index}].{field}");
+    match load {
+        LoadSpec::Traction(spec) => {
+            let traction = [0, 1].map(|axis| spec.value.get(axis).copied().unwrap_or(0.0));
+            Ok(Some((path("traction.boundary"), &spec.boundary, traction, 0.0)))
+        }
+        LoadSpec::Pressure(spec) => Ok(Some((path("pressure.boundary"), &spec.boundary, [0.0; 2], spec.value))),
+        LoadSpec::BodyForce(_) => Ok(None),
+        LoadSpec::Force(_) => {
+            let message = "a force at a point makes a displacement without end in a continuum, so that there is no \
+                           guaranteed bound; spread it over a boundary";
+            Err(wrong(path("force"), message))
+        }
+    }
+}
+
+/// The edges of one triangle alone, by their nodes, increasing: the outward normal and the condition of each.
+struct Outline<'a> {
+    mesh: &'a Mesh,
+    edges: BTreeMap<[usize; 2], (Point, Condition)>,
+}
+
+impl<'a> Outline<'a> {
+    fn of(mesh: &'a Mesh, nodes: &[Point], triangles: &[[usize; 3]]) -> Self {
+        let mut sides: BTreeMap<[usize; 2], Vec<[usize; 2]>> = BTreeMap::new();
         for &[a, b, c] in triangles {
             for [from, to] in [[a, b], [b, c], [c, a]] {
                 sides.entry([from.min(to), from.max(to)]).or_default().push([from, to]);
             }
         }
-        sides.retain(|_, directed| directed.len() == 1);
-        let mut own: HashMap<[usize; 2], Condition> = sides.keys().map(|&edge| (edge, Condition::default())).collect();
-        let edges = |path: String, name: &str| -> Result<Vec<[usize; 2]>, Error> {
-            let edges = edges_of(model.mesh(), name);
-            match edges.iter().all(|edge| sides.contains_key(edge)) {
-                true => Ok(edges),
-                false => {
-                    Err(wrong(path, format!("`{name}` runs through the body, so that there is no guaranteed bound")))
-                }
-            }
+        let normal = |side: [usize; 2]| {
+            let [from, to] = side.map(|node| nodes[node]);
+            let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+            [(to[1] - from[1]) / length, (from[0] - to[0]) / length]
         };
-        for (index, support) in self.supports.iter().enumerate() {
-            let path = format!("supports[{index}].on");
-            let Place::Boundary(name) = &support.on else {
-                return Err(wrong(
-                    path,
-                    "a support at a point holds nothing in a continuum, so that there is no guaranteed bound; hold a boundary",
-                ));
+        let outer = sides.into_iter().filter_map(|(edge, of_edge)| match of_edge[..] {
+            [side] => Some((edge, (normal(side), Condition::default()))),
+            _ => None,
+        });
+        Outline { mesh, edges: outer.collect() }
+    }
+
+    /// Changes the condition, given the outward normal, on each edge of a boundary that stands at a JSON path.
+    fn change(&mut self, path: &str, name: &str, change: impl Fn(&mut Condition, Point)) -> Result<(), Error> {
+        for edge in edges_of(self.mesh, name) {
+            let Some((normal, condition)) = self.edges.get_mut(&edge) else {
+                let message = format!("`{name}` runs through the body, so that there is no guaranteed bound");
+                return Err(wrong(path, message));
             };
-            let edges = edges(format!("{path}.boundary"), name)?;
-            for component in self.components(index, support)? {
-                let Some(axis) = axis_of(component.direction) else {
-                    let path = format!("supports[{index}].normal");
-                    return Err(wrong(
-                        path,
-                        "an inclined support has no guaranteed bound: only one along x or y has one",
-                    ));
-                };
-                for edge in &edges {
-                    let value = component.value * component.direction[axis];
-                    own.entry(*edge).or_default().held[axis] = Some(value);
-                }
-            }
+            change(condition, *normal);
         }
-        for (index, load) in self.loads.iter().enumerate() {
-            self.add_tractions(index, load, &edges, &mut |edge, traction_of| {
-                let [from, to] = sides[&edge][0].map(|node| nodes[node]);
-                let length = (to[0] - from[0]).hypot(to[1] - from[1]);
-                let normal = [(to[1] - from[1]) / length, (from[0] - to[0]) / length];
-                let traction = traction_of(normal);
-                let sum = &mut own.entry(edge).or_default().traction;
-                (0..2).for_each(|axis| sum[axis] += traction[axis]);
-            })?;
-        }
-        for (index, obstacle) in model.obstacles().iter().enumerate() {
-            for edge in edges(format!("obstacles[{index}].boundary"), obstacle.boundary())? {
-                own.entry(edge).or_default().obstacles.push(index);
-            }
-        }
+        Ok(())
+    }
+
+    /// The number of the condition of each edge; equal ones have one number.
+    fn numbered(self, conditions: &mut Vec<Condition>) -> HashMap<[usize; 2], usize> {
         let mut number = |condition: Condition| {
             conditions.iter().position(|other| *other == condition).unwrap_or_else(|| {
                 conditions.push(condition);
                 conditions.len() - 1
             })
         };
-        let mut sorted: Vec<_> = own.into_iter().collect();
-        sorted.sort_unstable_by_key(|entry| entry.0);
-        Ok(sorted.into_iter().map(|(edge, condition)| (edge, number(condition))).collect())
-    }
-
-    /// Gives each edge of a load its traction, by the outward normal there.
-    fn add_tractions(
-        &self,
-        index: usize,
-        load: &LoadSpec,
-        edges: &dyn Fn(String, &str) -> Result<Vec<[usize; 2]>, Error>,
-        add: &mut dyn FnMut([usize; 2], &dyn Fn(Point) -> Point),
-    ) -> Result<(), Error> {
-        let path = format!("loads[{index}]");
-        match load {
-            LoadSpec::Traction(spec) => {
-                let value = [0, 1].map(|axis| spec.value.get(axis).copied().unwrap_or(0.0));
-                edges(format!("{path}.traction.boundary"), &spec.boundary)?
-                    .into_iter()
-                    .for_each(|edge| add(edge, &|_| value));
-            }
-            LoadSpec::Pressure(spec) => {
-                let against = |normal: Point| normal.map(|part| -spec.value * part);
-                edges(format!("{path}.pressure.boundary"), &spec.boundary)?
-                    .into_iter()
-                    .for_each(|edge| add(edge, &against));
-            }
-            LoadSpec::BodyForce(_) => {}
-            LoadSpec::Force(_) => {
-                let message = "a force at a point makes a displacement without end in a continuum, so that there is no guaranteed bound; spread it over a boundary";
-                return Err(wrong(format!("{path}.force"), message));
-            }
-        }
-        Ok(())
+        self.edges.into_iter().map(|(edge, (_, condition))| (edge, number(condition))).collect()
     }
 }
 
 impl Model {
-    /// The strain `[xx, yy, xy]` of a nodal displacement at a point of an element of a plane mesh.
-    pub(crate) fn plane_strain_at(&self, displacement: &[f64], element: usize, [x, y]: Point) -> [f64; 3] {
-        let (body, nodes) = (self.body(), self.mesh().element(element));
-        let cell = Cell::new(self.mesh().kind().reference(), &body.coordinates(nodes));
-        let reference = cell.reference_coordinates([x, y, 0.0]);
-        let derivative = (self.mesh().kind().reference().derivative)(reference);
-        let point = LocalPoint { gradients: cell.map(&derivative).gradients, hoop: [0.0; MAX_NODES], weight: 0.0 };
-        let strain = point.strain(&body.gather(displacement, nodes), cell.unit());
-        [strain[0], strain[1], strain[3]]
+    /// The strain `[xx, yy, xy]` of a nodal displacement in an element of a plane mesh, at a point.
+    pub(crate) fn plane_strain_in(&self, displacement: &[f64], element: usize) -> impl Fn(Point) -> [f64; 3] {
+        let (body, nodes, reference) = (self.body(), self.mesh().element(element), self.mesh().kind().reference());
+        let cell = Cell::new(reference, &body.coordinates(nodes));
+        let own = body.gather(displacement, nodes);
+        move |[x, y]| {
+            let derivative = (reference.derivative)(cell.reference_coordinates([x, y, 0.0]));
+            let point = LocalPoint { gradients: cell.map(&derivative).gradients, hoop: [0.0; MAX_NODES], weight: 0.0 };
+            let strain = point.strain(&own, cell.unit());
+            [strain[0], strain[1], strain[3]]
+        }
     }
 }
 

@@ -219,7 +219,7 @@ impl Search<'_> {
     /// That answer held against a bracket.
     fn own_mesh(&self, own: &Answer, bracket: &Bracket) -> Result<OwnMesh, Error> {
         let model = self.model;
-        let judged = bracket.judged(|element, at| model.plane_strain_at(own.displacement(), element, at));
+        let judged = bracket.judged(|element| model.plane_strain_in(own.displacement(), element));
         let bound = if judged.bound == 0.0 { 0.0 } else { judged.bound / judged.norm };
         Ok(OwnMesh {
             element: model.mesh().kind().name(),
@@ -316,7 +316,7 @@ pub fn examined(scene: &Scene, levels: usize) -> Result<Vec<Examined>, Error> {
     let mut found = Vec::with_capacity(levels + 1);
     for level in 0..=levels {
         let bracket = Bracket::new(&problem, &mesh, &settings)?;
-        let judged = bracket.judged(|element, at| model.plane_strain_at(own.displacement(), element, at));
+        let judged = bracket.judged(|element| model.plane_strain_in(own.displacement(), element));
         found.push(Examined {
             energies: [bracket.energy_of_stress(), bracket.energy_of_displacement()],
             bound: (2.0 * bracket.distance().max(0.0)).sqrt(),

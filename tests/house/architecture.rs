@@ -22,7 +22,7 @@ const FLOORS: [&[&str]; 18] = [
     &["qp/attempts"],
     &["qp/claims"],
     &["qp"],
-    &["motion"],
+    &["motion", "continuum"],
     &["scene"],
     &["study"],
     &["output"],

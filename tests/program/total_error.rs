@@ -30,7 +30,7 @@ fn column(model: &str) -> Value {
 
 fn solved(scene: &Value, arguments: &[&str]) -> (i32, Value, String) {
     let desk = Desk::new();
-    desk.write("scene.json", &scene.to_string());
+    desk.write("scene.json", scene.to_string());
     let all: Vec<&str> = ["solve", "scene.json", "--format", "json"].iter().chain(arguments).copied().collect();
     let run = desk.run(&all);
     (run.code, serde_json::from_str(&run.stdout).unwrap_or(Value::Null), run.stderr)
@@ -101,12 +101,13 @@ fn support(scene: &mut Value, further: Value) {
 
 #[test]
 fn what_has_no_guarantee_is_refused_with_its_reason() {
-    let changed = |change: &dyn Fn(&mut Value)| {
+    type Change = dyn Fn(&mut Value);
+    let changed = |change: &Change| {
         let mut scene = classical(0.3);
         change(&mut scene);
         solved(&scene, &["--total-error", "1e-2"])
     };
-    let cases: [(&dyn Fn(&mut Value), &str); 5] = [
+    let cases: [(&Change, &str); 5] = [
         (&|scene| scene["model"] = json!("axisymmetric"), "only plane strain and plane stress have one"),
         (&|scene| scene["obstacles"][0]["rule"] = json!("closest-point"), "rule `approach` has one"),
         (&|scene| scene["loads"] = json!([{"force": {"at": [1, 0.5], "value": [1, 0]}}]), "a force at a point"),
@@ -143,7 +144,7 @@ fn no_random_scene_catches_the_guarantee_in_a_lie() {
 #[test]
 fn the_folder_has_fields_meshes_and_pictures() {
     let desk = Desk::new();
-    desk.write("scene.json", &classical(0.3).to_string());
+    desk.write("scene.json", classical(0.3).to_string());
     let run = desk.run(&["solve", "scene.json", "--total-error", "0.1", "--out", "out"]);
     assert_eq!(run.code, 0, "{}", run.stderr);
     assert!(run.stdout.lines().all(|line| line.chars().count() <= 100), "{}", run.stdout);

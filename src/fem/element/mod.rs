@@ -52,6 +52,10 @@ pub enum ElementKind {
 }
 
 impl ElementKind {
+    /// What a displacement that is quadratic on triangles is written as.
+    #[cfg(feature = "cli")]
+    pub(crate) const QUADRATIC_TRIANGLE: ElementKind = ElementKind::T6;
+
     /// All elements.
     pub const ALL: [ElementKind; 7] = [
         ElementKind::Line2,
