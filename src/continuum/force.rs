@@ -20,9 +20,9 @@ use super::problem::work;
 use super::system::{Block, Unknowns};
 use super::triangulation::outward;
 use crate::error::Error;
+use crate::fem::material::Lame;
 use crate::qp::linear::Cholesky;
 use crate::qp::problem::ContactProblem;
-use crate::qp::{Settings, solve};
 
 /// What is between 0 and -1 by less than this, or a pressure below this share of the largest, is rounding.
 const ROUNDING: f64 = 1e-12;
@@ -59,8 +59,8 @@ impl Bracket<'_> {
     /// Bounds on the sum of the contact forces, in force; `None` if obstacles come from several directions, or no bound was found.
     ///
     /// # Errors
-    /// Those of [`solve`].
-    pub fn force_interval(&self, settings: &Settings) -> Result<Option<[f64; 2]>, Error> {
+    /// Those of [`ContactProblem::new`].
+    pub fn force_interval(&self) -> Result<Option<[f64; 2]>, Error> {
         let directions: BTreeSet<_> = self
             .places
             .iter()
@@ -90,7 +90,7 @@ impl Bracket<'_> {
                 bonded.iter_mut().zip(&test.ratios[0]).for_each(|(bonded, &ratio)| *bonded |= ratio > most);
                 pressed.iter_mut().zip(&test.ratios[1]).for_each(|(pressed, &ratio)| *pressed &= ratio <= most);
             }
-            let Some(test) = self.test(&mut bonded, &mut pressed, &blocks, settings)? else { break };
+            let Some(test) = self.test(&mut bonded, &mut pressed, &blocks)? else { break };
             let (found, natural) = self.interval(&test);
             scale = if last.is_none() { natural } else { scale };
             if found.iter().all(|bound| bound.is_finite()) {
@@ -99,7 +99,8 @@ impl Bracket<'_> {
             }
             last = Some(test);
         }
-        Ok(interval)
+        // Where nothing but rounding is left, the ends may have changed places.
+        Ok(interval.map(|[low, high]| [low.min(high), low.max(high)]))
     }
 
     /// The interval that a pair gives, and the beta at which its term would reach that of the ball.
@@ -140,17 +141,11 @@ impl Bracket<'_> {
     }
 
     /// The pair for these rows held; rows of the wrong sign are bonded or released until there are none.
-    fn test(
-        &self,
-        bonded: &mut [bool],
-        pressed: &mut [bool],
-        blocks: &Blocks,
-        settings: &Settings,
-    ) -> Result<Option<Test>, Error> {
-        let Some(displacement) = self.bonded_displacement(bonded, &blocks.displacement, settings)? else {
+    fn test(&self, bonded: &mut [bool], pressed: &mut [bool], blocks: &Blocks) -> Result<Option<Test>, Error> {
+        let Some(displacement) = self.bonded_displacement(bonded, &blocks.displacement)? else {
             return Ok(None);
         };
-        let Some((stress, pulls)) = self.bonded_stress(pressed, blocks, settings)? else { return Ok(None) };
+        let Some((stress, pulls)) = self.bonded_stress(pressed, blocks)? else { return Ok(None) };
         let (primal, values) = (&self.primal, &self.primal.values);
         let mut beyond: f64 = 0.0;
         let mut of_rows: Vec<f64> = Vec::with_capacity(primal.rows.len());
@@ -178,12 +173,7 @@ impl Bracket<'_> {
     }
 
     /// The displacement -1 at bonded rows, without load; rows below -1 are bonded too.
-    fn bonded_displacement(
-        &self,
-        bonded: &mut [bool],
-        blocks: &[Block],
-        settings: &Settings,
-    ) -> Result<Option<Vec<f64>>, Error> {
+    fn bonded_displacement(&self, bonded: &mut [bool], blocks: &[Block]) -> Result<Option<Vec<f64>>, Error> {
         for _ in 0..ROUNDS {
             let mut held: Vec<Option<f64>> = self.primal.unknowns.held.iter().map(|held| held.map(|_| 0.0)).collect();
             let rows = || self.primal.rows.iter().zip(bonded.iter());
@@ -191,7 +181,8 @@ impl Bracket<'_> {
             let unknowns = Unknowns::new(held);
             let load = vec![0.0; unknowns.held.len()];
             let posed = unknowns.problem(self.displacements.numbers().zip(blocks), &load, &[])?;
-            let values = unknowns.expanded(&linear(&posed, settings)?);
+            let Some(free) = linear(&posed) else { return Ok(None) };
+            let values = unknowns.expanded(&free);
             let wrong: Vec<usize> = (0..bonded.len())
                 .filter(|&row| {
                     let of_row = &self.primal.rows[row];
@@ -207,12 +198,7 @@ impl Bracket<'_> {
     }
 
     /// The stress under edges held at -1 where pressed, and its forces there; places that pull are released.
-    fn bonded_stress(
-        &self,
-        pressed: &mut [bool],
-        blocks: &Blocks,
-        settings: &Settings,
-    ) -> Result<Option<Pressed>, Error> {
+    fn bonded_stress(&self, pressed: &mut [bool], blocks: &Blocks) -> Result<Option<Pressed>, Error> {
         for _ in 0..ROUNDS {
             let mut held: Vec<Option<f64>> = self.dual.unknowns.held.iter().map(|held| held.map(|_| 0.0)).collect();
             let rows = || self.dual.rows.iter().zip(pressed.iter());
@@ -220,7 +206,8 @@ impl Bracket<'_> {
             let unknowns = Unknowns::new(held);
             let load = vec![0.0; unknowns.held.len()];
             let posed = unknowns.problem(self.stresses.numbers().zip(&blocks.stress), &load, &[])?;
-            let mut stress = self.stresses.stresses(&unknowns.expanded(&linear(&posed, settings)?));
+            let Some(free) = linear(&posed) else { return Ok(None) };
+            let mut stress = self.stresses.stresses(&unknowns.expanded(&free));
             // The difference of two answers under the same body force has none.
             for (values, at_rest) in
                 stress.iter_mut().flatten().flatten().zip(blocks.at_rest.iter().flatten().flatten())
@@ -228,7 +215,10 @@ impl Bracket<'_> {
                 *values = minus(*values, *at_rest);
             }
             let mut pulls = self.pulls(&stress);
-            let largest = pulls.iter().fold(0.0, |largest: f64, pull| largest.max(pull.abs()));
+            // What a displacement of one would take of a body as wide as it is high: a body that nothing holds moves without force.
+            let Lame { lambda, mu } = self.problem.lame;
+            let unit = (lambda + 2.0 * mu) * self.problem.thickness;
+            let largest = pulls.iter().fold(unit, |largest: f64, pull| largest.max(pull.abs()));
             let wrong: Vec<usize> =
                 (0..pressed.len()).filter(|&row| pressed[row] && pulls[row] > ROUNDING * largest).collect();
             if wrong.is_empty() {
@@ -267,14 +257,14 @@ impl Bracket<'_> {
     }
 }
 
-/// The displacement of a problem without rows, refined once; by the solver of all problems where the stiffness is not definite.
-fn linear(problem: &ContactProblem, settings: &Settings) -> Result<Vec<f64>, Error> {
-    let Ok(factor) = Cholesky::of(problem.stiffness()) else { return Ok(solve(problem, settings)?.displacement) };
+/// The displacement of a problem without rows, refined once; none where the stiffness is not definite.
+fn linear(problem: &ContactProblem) -> Option<Vec<f64>> {
+    let factor = Cholesky::of(problem.stiffness()).ok()?;
     let mut solution = factor.solve(problem.load());
     let balanced = problem.stiffness().mul(&solution);
     let left: Vec<f64> = problem.load().iter().zip(balanced).map(|(load, force)| load - force).collect();
     solution.iter_mut().zip(factor.solve(&left)).for_each(|(value, step)| *value += step);
-    Ok(solution)
+    Some(solution)
 }
 
 /// A ratio of a displacement of order one, zero if that is rounding, infinite for something over nothing.

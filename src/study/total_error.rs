@@ -233,7 +233,7 @@ impl Search<'_> {
     fn level(&self, bracket: &Bracket) -> Result<TotalErrorLevel, Error> {
         let is_near = bracket.bound() <= self.goal.total_error || self.goal.force_error.is_some();
         let is_last = is_near || self.settings.watch.time_left().is_some();
-        let force_interval = if is_last { bracket.force_interval(&self.settings)? } else { None };
+        let force_interval = if is_last { bracket.force_interval()? } else { None };
         Ok(TotalErrorLevel {
             triangles: bracket.mesh.triangles.len(),
             dofs: bracket.primal.unknowns.free(),
@@ -322,7 +322,7 @@ pub fn examined(scene: &Scene, levels: usize) -> Result<Vec<Examined>, Error> {
             bound: (2.0 * bracket.distance().max(0.0)).sqrt(),
             norm: bracket.energy.sqrt(),
             force: bracket.force(),
-            force_interval: bracket.force_interval(&settings)?,
+            force_interval: bracket.force_interval()?,
             own: [judged.bound, judged.from_displacement, judged.norm],
             dofs: bracket.primal.unknowns.free(),
         });
