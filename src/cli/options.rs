@@ -104,7 +104,8 @@ pub(super) struct Solve {
     #[arg(long)]
     pub extrapolate: bool,
     /// Refine the mesh until the error against the continuum, relative in the energy norm, is guaranteed to be below (in the plane)
-    #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = parse_total_error)]
+    #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = parse_total_error,
+          conflicts_with_all = ["accuracy", "extrapolate", "resume"])]
     pub total_error: Option<f64>,
     /// And until the contact force is guaranteed to be within this relative error
     #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = parse_total_error, requires = "total_error")]

@@ -94,15 +94,13 @@ impl<'a> Bracket<'a> {
         let displacements = Displacements::new(problem, mesh);
         let unknowns = displacements.unknowns();
         let rows = displacements.rows(&unknowns)?;
-        let blocks: Vec<_> = displacements.blocks().collect();
-        let posed = unknowns.problem(blocks.iter().map(|(n, b)| (*n, b)), &displacements.load(), &rows)?;
+        let posed = unknowns.problem(displacements.blocks(), &displacements.load(), &rows)?;
         let mut primal = Side::solved(unknowns, rows, &posed, settings)?;
         primal.seconds = clock.elapsed().as_secs_f64();
         let stresses = Stresses::new(problem, mesh);
         let unknowns = stresses.unknowns();
         let (rows, places) = stresses.rows(&unknowns);
-        let blocks: Vec<_> = stresses.blocks().collect();
-        let posed = unknowns.problem(blocks.iter().map(|(n, b)| (*n, b)), &stresses.load(), &rows)?;
+        let posed = unknowns.problem(stresses.blocks(), &stresses.load(), &rows)?;
         let mut dual = Side::solved(unknowns, rows, &posed, settings)?;
         let stress = stresses.stresses(&dual.values);
         dual.seconds = clock.elapsed().as_secs_f64() - primal.seconds;
@@ -494,9 +492,7 @@ mod tests {
         let corners_only = 2 * mesh.nodes.len();
         let rows: Vec<Row> =
             displacements.rows(&unknowns).unwrap().into_iter().filter(|row| row.unknown < corners_only).collect();
-        let blocks: Vec<_> = displacements.blocks().collect();
-        let blocks = blocks.iter().map(|(numbers, block)| (*numbers, block));
-        let posed = unknowns.problem(blocks, &displacements.load(), &rows).unwrap();
+        let posed = unknowns.problem(displacements.blocks(), &displacements.load(), &rows).unwrap();
         bracket.primal = Side::solved(unknowns, rows, &posed, &settings()).unwrap();
         bracket.measure();
         assert!(refusal(&bracket).contains("the displacement goes into an obstacle"));

@@ -180,7 +180,7 @@ impl Bracket<'_> {
             rows().filter(|row| *row.1).for_each(|(row, _)| held[row.unknown] = Some(-row.sense));
             let unknowns = Unknowns::new(held);
             let load = vec![0.0; unknowns.held.len()];
-            let posed = unknowns.problem(self.displacements.numbers().zip(blocks), &load, &[])?;
+            let posed = unknowns.problem(self.displacements.numbers().zip(blocks.iter().copied()), &load, &[])?;
             let Some(free) = linear(&posed) else { return Ok(None) };
             let values = unknowns.expanded(&free);
             let wrong: Vec<usize> = (0..bonded.len())
@@ -205,7 +205,7 @@ impl Bracket<'_> {
             rows().filter(|row| *row.1).for_each(|(row, _)| held[row.unknown] = Some(-row.sense));
             let unknowns = Unknowns::new(held);
             let load = vec![0.0; unknowns.held.len()];
-            let posed = unknowns.problem(self.stresses.numbers().zip(&blocks.stress), &load, &[])?;
+            let posed = unknowns.problem(self.stresses.numbers().zip(blocks.stress.iter().copied()), &load, &[])?;
             let Some(free) = linear(&posed) else { return Ok(None) };
             let mut stress = self.stresses.stresses(&unknowns.expanded(&free));
             // The difference of two answers under the same body force has none.

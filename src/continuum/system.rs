@@ -73,7 +73,7 @@ impl Unknowns {
     /// As [`ContactProblem::new`].
     pub fn problem<'a>(
         &self,
-        triangles: impl Iterator<Item = (&'a [usize; LOCAL], &'a Block)>,
+        triangles: impl Iterator<Item = (&'a [usize; LOCAL], Block)>,
         load: &[f64],
         rows: &[Row],
     ) -> Result<ContactProblem, Error> {
@@ -81,7 +81,7 @@ impl Unknowns {
         for (unknowns, block) in triangles {
             for (&unknown, line) in unknowns.iter().zip(block) {
                 let Some(row) = self.numbers[unknown] else { continue };
-                for (&other, &value) in unknowns.iter().zip(line) {
+                for (&other, value) in unknowns.iter().zip(line) {
                     match (self.numbers[other], self.held[other]) {
                         (Some(column), _) if column <= row => entries.push((row, column, value)),
                         (None, Some(held)) => load[row] -= value * held,

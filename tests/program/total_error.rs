@@ -125,6 +125,8 @@ fn what_has_no_guarantee_is_refused_with_its_reason() {
         let (code, _, message) = solved(&classical(0.3), &["--total-error", wrong]);
         assert!(code == 2 && message.contains("above 0 and below 1"), "{wrong}: {code} {message}");
     }
+    let (code, _, message) = solved(&classical(0.3), &["--total-error", "0.1", "--accuracy", "0.1"]);
+    assert!(code == 2 && message.contains("cannot be used with"), "{message}");
     let (code, _, message) = solved(&classical(0.3), &["--force-error", "0.1"]);
     assert!(code == 2 && message.contains("--total-error"), "{message}");
 }
