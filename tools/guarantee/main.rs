@@ -3,7 +3,7 @@
 //! Random plane scenes, each on its own mesh and on finer ones: all intervals of the energy and of the force must meet, and no
 //! answer may be further from the last one than its bound says. Exits with 1 if one is.
 
-#[path = "../tests/support/plane_scenes.rs"]
+#[path = "../../tests/support/plane_scenes.rs"]
 mod plane_scenes;
 
 use plane_scenes::{ELEMENTS, Shown, shown};
