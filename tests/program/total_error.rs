@@ -90,7 +90,7 @@ fn a_force_error_is_reached_too() {
 
 #[test]
 fn what_time_does_not_allow_is_said() {
-    let (code, report, _) = solved(&classical(0.3), &["--total-error", "1e-7", "--time", "0.3"]);
+    let (code, report, _) = solved(&classical(0.3), &["--total-error", "1e-7", "--time", "1"]);
     assert_eq!((code, &report["status"], &report["ended"]), (4, &json!("not_certified"), &json!("time")));
     assert!(report["total_error"]["bound"].as_f64().unwrap() < 0.5 && report["next_triangles"].as_u64().unwrap() > 64);
 }
