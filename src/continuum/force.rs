@@ -112,7 +112,10 @@ impl Bracket<'_> {
                 let strain = self.strain(&test.displacement, triangle, k, weights);
                 minus(strain, self.problem.compliance(at(&test.stress[triangle], k, weights)))
             };
-            square += mean(&|k, weights| work(self.problem.stress(rest(k, weights)), rest(k, weights)));
+            square += mean(&|k, weights| {
+                let rest = rest(k, weights);
+                work(self.problem.stress(rest), rest)
+            });
             base += mean(&|k, weights| {
                 let strain = self.problem.stress(self.strain(&self.primal.values, triangle, k, weights));
                 let stress = at(&self.stress[triangle], k, weights);
