@@ -31,7 +31,7 @@ impl ObstacleShape for CircleSpec {
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let radius = site.positive("radius", self.radius)?;
         let apex = site.apex(self.centre, self.apex, radius)?;
-        Ok(Geometry::rigid(Profile::new(site, site.local(apex), Arc::new(Circle { radius }))))
+        Ok(Geometry::rigid(site, Profile::new(site, site.local(apex), Arc::new(Circle { radius }))))
     }
 
     fn radius(&self) -> f64 {

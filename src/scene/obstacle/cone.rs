@@ -26,6 +26,6 @@ impl ObstacleShape for ConeSpec {
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let apex = site.point("apex", &self.apex)?;
         let slope = site.positive("slope", self.slope)?;
-        Ok(Geometry::rigid(Solid::new(site, apex, Form::Turned(Arc::new(Polyline::wedge(slope))))))
+        Ok(Geometry::rigid(site, Solid::new(site, apex, Form::Turned(Arc::new(Polyline::wedge(slope))))))
     }
 }

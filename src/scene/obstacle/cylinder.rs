@@ -38,7 +38,7 @@ impl ObstacleShape for CylinderSpec {
         let radius = site.positive("radius", self.radius)?;
         let apex = site.apex(self.centre, self.apex, radius)?;
         let axis = axis_across(self.axis, &site.field("axis"), site.direction())?;
-        Ok(Geometry::rigid(Solid::new(site, apex, Form::DrawnOut(Arc::new(Circle { radius }))).along(axis)))
+        Ok(Geometry::rigid(site, Solid::new(site, apex, Form::DrawnOut(Arc::new(Circle { radius }))).along(axis)))
     }
 }
 

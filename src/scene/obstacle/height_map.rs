@@ -38,7 +38,7 @@ impl ObstacleShape for HeightMapSpec {
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let map = HeightMap::new(self, site)?;
         check_reach(&map, site)?;
-        Ok(Geometry::rigid(Solid::new(site, [0.0; 3], Form::Grid(Arc::new(map)))))
+        Ok(Geometry::rigid(site, Solid::new(site, [0.0; 3], Form::Grid(Arc::new(map)))))
     }
 }
 

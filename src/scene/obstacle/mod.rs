@@ -14,6 +14,7 @@ mod plane;
 mod polyline;
 mod profile;
 mod row;
+mod ruled;
 mod shape;
 mod solid;
 mod sphere;

@@ -30,7 +30,7 @@ impl ObstacleShape for ParabolaSpec {
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let apex = site.point("apex", &self.apex)?;
         let radius = site.positive("radius", self.radius)?;
-        Ok(Geometry::rigid(Profile::new(site, site.local(apex), Arc::new(Parabola { radius }))))
+        Ok(Geometry::rigid(site, Profile::new(site, site.local(apex), Arc::new(Parabola { radius }))))
     }
 }
 

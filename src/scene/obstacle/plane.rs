@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::frame::{Frame, Local};
 use super::profile::Profile;
-use super::row::{Obstacle, ObstacleRow};
+use super::row::ObstacleRow;
+use super::ruled::RigidSurface;
 use super::shape::{About, Geometry, ObstacleShape, Site};
 use super::surface::{Foot, Surface};
 use crate::error::Error;
@@ -57,9 +58,9 @@ impl ObstacleShape for PlaneSpec {
         let (point, normal) = self.checked(site)?;
         if site.body.dimension() == 2 {
             let line = Line { normal: Frame::of(site.approach).local([normal[0], normal[1]]) };
-            return Ok(Geometry::rigid(Profile::new(site, site.local(point), Arc::new(line))));
+            return Ok(Geometry::rigid(site, Profile::new(site, site.local(point), Arc::new(line))));
         }
-        Ok(Geometry::rigid(HalfSpace { point, normal, approach: site.direction(), rule: site.rule }))
+        Ok(Geometry::rigid(site, HalfSpace { point, normal, approach: site.direction() }))
     }
 }
 
@@ -91,11 +92,13 @@ struct HalfSpace {
     point: [f64; 3],
     normal: [f64; 3],
     approach: [f64; 3],
-    rule: Rule,
 }
 
-impl HalfSpace {
-    /// The row by one of the rules, the surface moved by `shift`.
+impl RigidSurface for HalfSpace {
+    fn approach(&self) -> [f64; 3] {
+        self.approach
+    }
+
     fn row_by(&self, rule: Rule, node: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
         let to_plane = dot(self.normal, minus(self.point, node));
         let lean = dot(self.normal, self.approach);
@@ -103,24 +106,5 @@ impl HalfSpace {
             Rule::Approach => ObstacleRow { normal: self.approach, gap: to_plane / lean + shift },
             Rule::ClosestPoint => ObstacleRow { normal: self.normal, gap: to_plane + shift * lean },
         }))
-    }
-}
-
-impl Obstacle for HalfSpace {
-    fn approach(&self) -> [f64; 3] {
-        self.approach
-    }
-
-    fn row(&self, point: [f64; 3]) -> Result<Option<ObstacleRow>, String> {
-        self.shifted_row(point, 0.0)
-    }
-
-    fn shifted_row(&self, point: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
-        self.row_by(self.rule, point, shift)
-    }
-
-    fn surface_normal(&self, point: [f64; 3], shift: f64) -> Option<[f64; 3]> {
-        let row = self.shifted_row(point, shift).ok()??;
-        Some(self.row_by(Rule::ClosestPoint, row.foot(point), shift).ok()??.normal)
     }
 }

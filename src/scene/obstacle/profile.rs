@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use super::frame::{Frame, Local};
-use super::row::{Obstacle, ObstacleRow};
+use super::row::ObstacleRow;
+use super::ruled::RigidSurface;
 use super::shape::Site;
 use super::surface::{Foot, Surface};
 use crate::scene::schema::approach::Rule;
@@ -20,7 +21,6 @@ pub(super) struct Profile {
     frame: Frame,
     origin: Local,
     surface: Arc<dyn Surface>,
-    rule: Rule,
     /// Extent of the body along the surface.
     extent: (f64, f64),
     rounding: f64,
@@ -33,12 +33,16 @@ impl Profile {
         let (low, high) = site.body.mesh().extent();
         let axis = frame.along_axis();
         let (extent, rounding) = ((low[axis], high[axis]), site.rounding());
-        Profile { frame, origin, surface, rule: site.rule, extent, rounding }
+        Profile { frame, origin, surface, extent, rounding }
     }
 }
 
-impl Profile {
-    /// The row by one of the rules, the surface moved by `shift`.
+impl RigidSurface for Profile {
+    fn approach(&self) -> [f64; 3] {
+        let [x, y] = self.frame.global([0.0, 1.0]);
+        [x, y, 0.0]
+    }
+
     fn row_by(&self, rule: Rule, [x, y, _]: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
         let local = self.frame.local([x, y]);
         let offset = [local[0] - self.origin[0], local[1] - self.origin[1] - shift];
@@ -52,21 +56,6 @@ impl Profile {
             let [x, y] = self.frame.global(foot.normal);
             ObstacleRow { normal: [x, y, 0.0], gap: foot.distance }
         }))
-    }
-}
-
-impl Obstacle for Profile {
-    fn approach(&self) -> [f64; 3] {
-        let [x, y] = self.frame.global([0.0, 1.0]);
-        [x, y, 0.0]
-    }
-
-    fn row(&self, point: [f64; 3]) -> Result<Option<ObstacleRow>, String> {
-        self.shifted_row(point, 0.0)
-    }
-
-    fn shifted_row(&self, point: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
-        self.row_by(self.rule, point, shift)
     }
 
     fn gap_along(&self, from: [f64; 3], to: [f64; 3], shift: f64) -> Option<([f64; 3], [f64; 2])> {
@@ -88,11 +77,6 @@ impl Obstacle for Profile {
         let ([first, middle, last], [below, _]) = self.surface.enclosed(start, end)?;
         let lowest = first.min(last).min(2.0 * middle - (first + last) / 2.0) - below;
         Some(([lowest - low.max(high); 3], [0.0, f64::INFINITY]))
-    }
-
-    fn surface_normal(&self, point: [f64; 3], shift: f64) -> Option<[f64; 3]> {
-        let row = self.shifted_row(point, shift).ok()??;
-        Some(self.row_by(Rule::ClosestPoint, row.foot(point), shift).ok()??.normal)
     }
 
     fn outline(&self, shift: f64, segments: usize) -> Vec<[f64; 2]> {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::frame::{Frame, Local};
 use super::pairs::Pair;
 use super::row::Obstacle;
+use super::ruled::{RigidSurface, Ruled};
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::scene::entry::{COORDINATE_ROUNDING, finite, number, vector, wrong};
@@ -40,8 +41,9 @@ pub(in crate::scene) enum Geometry {
 }
 
 impl Geometry {
-    pub fn rigid(obstacle: impl Obstacle + 'static) -> Self {
-        Geometry::Rigid(Arc::new(obstacle))
+    /// A rigid surface whose rows the rule of the site makes.
+    pub(super) fn rigid(site: &Site, surface: impl RigidSurface + 'static) -> Self {
+        Geometry::Rigid(Arc::new(Ruled { surface, rule: site.rule }))
     }
 }
 

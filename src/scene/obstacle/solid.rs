@@ -3,7 +3,8 @@
 use std::fmt::Debug;
 use std::sync::Arc;
 
-use super::row::{Obstacle, ObstacleRow};
+use super::row::ObstacleRow;
+use super::ruled::RigidSurface;
 use super::shape::Site;
 use super::surface::Surface;
 use crate::fem::geometry::{cross, dot};
@@ -16,7 +17,6 @@ pub(super) struct Solid {
     axes: [[f64; 3]; 3],
     origin: [f64; 3],
     form: Form,
-    rule: Rule,
     rounding: f64,
 }
 
@@ -47,7 +47,7 @@ impl Solid {
         let across = across(site.approach);
         let mut axes = [[0.0; 3]; 3];
         (axes[0][across[0]], axes[1][across[1]], axes[2]) = (1.0, 1.0, site.direction());
-        Solid { axes, origin, form, rule: site.rule, rounding: site.rounding() }
+        Solid { axes, origin, form, rounding: site.rounding() }
     }
 
     /// The same drawn out along another unit vector across the approach direction.
@@ -58,8 +58,11 @@ impl Solid {
     }
 }
 
-impl Solid {
-    /// The row by one of the rules, the surface moved by `shift`.
+impl RigidSurface for Solid {
+    fn approach(&self) -> [f64; 3] {
+        self.axes[2]
+    }
+
     fn row_by(&self, rule: Rule, node: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
         let from_origin = [0, 1, 2].map(|axis| node[axis] - self.origin[axis]);
         let [t1, t2, towards] = self.axes.map(|axis| dot(axis, from_origin));
@@ -89,25 +92,6 @@ impl Solid {
             let normal = [0, 1, 2].map(|i| (0..3).map(|axis| local[axis] * self.axes[axis][i]).sum());
             ObstacleRow { normal, gap }
         }))
-    }
-}
-
-impl Obstacle for Solid {
-    fn approach(&self) -> [f64; 3] {
-        self.axes[2]
-    }
-
-    fn row(&self, point: [f64; 3]) -> Result<Option<ObstacleRow>, String> {
-        self.shifted_row(point, 0.0)
-    }
-
-    fn shifted_row(&self, point: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
-        self.row_by(self.rule, point, shift)
-    }
-
-    fn surface_normal(&self, point: [f64; 3], shift: f64) -> Option<[f64; 3]> {
-        let row = self.shifted_row(point, shift).ok()??;
-        Some(self.row_by(Rule::ClosestPoint, row.foot(point), shift).ok()??.normal)
     }
 }
 

@@ -30,7 +30,7 @@ impl ObstacleShape for SphereSpec {
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let radius = site.positive("radius", self.radius)?;
         let apex = site.apex(self.centre, self.apex, radius)?;
-        Ok(Geometry::rigid(Solid::new(site, apex, Form::Turned(Arc::new(Circle { radius })))))
+        Ok(Geometry::rigid(site, Solid::new(site, apex, Form::Turned(Arc::new(Circle { radius })))))
     }
 
     fn radius(&self) -> f64 {

@@ -50,7 +50,7 @@ impl ObstacleShape for TableSpec {
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let table = self.polyline(site)?;
         check_reach(&table, site)?;
-        Ok(Geometry::rigid(Profile::new(site, [0.0; 2], Arc::new(table))))
+        Ok(Geometry::rigid(site, Profile::new(site, [0.0; 2], Arc::new(table))))
     }
 }
 

@@ -26,6 +26,6 @@ impl ObstacleShape for WedgeSpec {
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let apex = site.point("apex", &self.apex)?;
         let slope = site.positive("slope", self.slope)?;
-        Ok(Geometry::rigid(Profile::new(site, site.local(apex), Arc::new(Polyline::wedge(slope)))))
+        Ok(Geometry::rigid(site, Profile::new(site, site.local(apex), Arc::new(Polyline::wedge(slope)))))
     }
 }
