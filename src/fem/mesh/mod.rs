@@ -7,6 +7,8 @@ pub mod gmsh;
 pub(crate) mod lattice;
 mod outline;
 pub(crate) mod round;
+#[cfg(feature = "cli")]
+pub(crate) mod triangle_pieces;
 mod zone;
 
 pub use crate::fem::element::{ElementKind, FacetKind};
