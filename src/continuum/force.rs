@@ -14,7 +14,7 @@
 
 use std::collections::BTreeSet;
 
-use super::bound::{Bracket, minus};
+use super::bound::{Bracket, Side, minus};
 use super::johnson_mercier::{PartStress, at, mean_over_parts, traction};
 use super::problem::work;
 use super::system::{Block, Unknowns};
@@ -61,14 +61,8 @@ impl Bracket<'_> {
     /// # Errors
     /// Those of [`ContactProblem::new`].
     pub fn force_interval(&self) -> Result<Option<[f64; 2]>, Error> {
-        let directions: BTreeSet<_> = self
-            .places
-            .iter()
-            .map(|place| &self.problem.obstacles[place.obstacle])
-            .map(|o| (o.axis, o.sense > 0.0))
-            .collect();
         let ends: BTreeSet<_> = self.places.iter().map(|place| (place.edge, place.end)).collect();
-        if directions.len() != 1 || ends.len() != self.places.len() || self.bound() == 0.0 && self.force() == 0.0 {
+        if !self.problem.has_one_direction() || ends.len() != self.places.len() || self.is_at_rest() {
             return Ok(None);
         }
         let closed = &self.primal.solution.contact_set;
@@ -178,11 +172,7 @@ impl Bracket<'_> {
     /// The displacement -1 at bonded rows, without load; rows below -1 are bonded too.
     fn bonded_displacement(&self, bonded: &mut [bool], blocks: &[Block]) -> Result<Option<Vec<f64>>, Error> {
         for _ in 0..ROUNDS {
-            let mut held: Vec<Option<f64>> = self.primal.unknowns.held.iter().map(|held| held.map(|_| 0.0)).collect();
-            let rows = || self.primal.rows.iter().zip(bonded.iter());
-            rows().filter(|row| *row.1).for_each(|(row, _)| held[row.unknown] = Some(-row.sense));
-            let unknowns = Unknowns::new(held);
-            let load = vec![0.0; unknowns.held.len()];
+            let (unknowns, load) = with_contact_held(&self.primal, bonded);
             let posed = unknowns.problem(self.displacements.numbers().zip(blocks.iter().copied()), &load, &[])?;
             let Some(free) = linear(&posed) else { return Ok(None) };
             let values = unknowns.expanded(&free);
@@ -203,11 +193,7 @@ impl Bracket<'_> {
     /// The stress under edges held at -1 where pressed, and its forces there; places that pull are released.
     fn bonded_stress(&self, pressed: &mut [bool], blocks: &Blocks) -> Result<Option<Pressed>, Error> {
         for _ in 0..ROUNDS {
-            let mut held: Vec<Option<f64>> = self.dual.unknowns.held.iter().map(|held| held.map(|_| 0.0)).collect();
-            let rows = || self.dual.rows.iter().zip(pressed.iter());
-            rows().filter(|row| *row.1).for_each(|(row, _)| held[row.unknown] = Some(-row.sense));
-            let unknowns = Unknowns::new(held);
-            let load = vec![0.0; unknowns.held.len()];
+            let (unknowns, load) = with_contact_held(&self.dual, pressed);
             let posed = unknowns.problem(self.stresses.numbers().zip(blocks.stress.iter().copied()), &load, &[])?;
             let Some(free) = linear(&posed) else { return Ok(None) };
             let mut stress = self.stresses.stresses(&unknowns.expanded(&free));
@@ -258,6 +244,15 @@ impl Bracket<'_> {
     pub fn force(&self) -> f64 {
         -self.primal.solution.multiplier.iter().sum::<f64>()
     }
+}
+
+/// The unknowns with supports at zero and the unknowns of these rows at -1 towards the obstacle; and no load.
+fn with_contact_held(side: &Side, rows: &[bool]) -> (Unknowns, Vec<f64>) {
+    let mut held: Vec<Option<f64>> = side.unknowns.held.iter().map(|held| held.map(|_| 0.0)).collect();
+    let chosen = side.rows.iter().zip(rows).filter(|row| *row.1);
+    chosen.for_each(|(row, _)| held[row.unknown] = Some(-row.sense));
+    let load = vec![0.0; held.len()];
+    (Unknowns::new(held), load)
 }
 
 /// The displacement of a problem without rows, refined once; none where the stiffness is not definite.

@@ -3,6 +3,7 @@
 
 mod answer;
 mod bound;
+mod check;
 mod displacement;
 mod force;
 mod johnson_mercier;
@@ -14,5 +15,6 @@ mod triangulation;
 
 pub use answer::PlaneAnswer;
 pub use bound::Bracket;
+pub use judge::Judged;
 pub use problem::{Condition, Distance, Enclosure, Facing, PlaneProblem};
-pub use triangulation::{Point, Triangulation, twice_area};
+pub use triangulation::{Point, Triangulation};

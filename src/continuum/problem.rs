@@ -84,6 +84,13 @@ impl Enclosure {
 pub type Tensor = [f64; 3];
 
 impl PlaneProblem {
+    /// Do all obstacles lie in one direction from the body?
+    pub fn has_one_direction(&self) -> bool {
+        let mut directions = self.obstacles.iter().map(|facing| (facing.axis, facing.sense));
+        let first = directions.next();
+        first.is_some() && directions.all(|direction| Some(direction) == first)
+    }
+
     /// The strain of a stress.
     pub fn compliance(&self, stress: Tensor) -> Tensor {
         let Lame { lambda, mu } = self.lame;

@@ -38,6 +38,11 @@ pub(crate) fn total_error_text(title: &str, found: &TotalError, units: &Units) -
     text += &entry("", "of the displacement, against the continuum, in the energy norm");
     text += &entry("", &format!("guaranteed at most {} for the mean stress", percent(found.mean_stress_error.bound)));
     text += &entry("contact force", &force_text(found, units));
+    if let Some(wanted) = goal.force_error {
+        let is_met = found.levels.last().and_then(half_width).is_some_and(|half| half <= wanted);
+        let verdict = if is_met { "as asked for" } else { "NOT as asked for" };
+        text += &entry("", &format!("{verdict}: within {:.1e} %", 100.0 * wanted));
+    }
     if let Some(last) = found.levels.last() {
         let meshes = plural(found.levels.len(), "mesh").replace("meshs", "meshes");
         let sizes =

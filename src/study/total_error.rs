@@ -6,7 +6,7 @@ use std::time::Instant;
 use serde::Serialize;
 
 use super::Status;
-use crate::continuum::{Bracket, PlaneAnswer, PlaneProblem, Triangulation};
+use crate::continuum::{Bracket, Judged, PlaneAnswer, PlaneProblem, Triangulation};
 use crate::error::Error;
 use crate::qp::{Method, Settings, solve};
 use crate::scene::{Answer, Model, Scene};
@@ -132,6 +132,11 @@ pub(crate) fn total_error(
     settings: &Settings,
 ) -> Result<TotalError, Error> {
     let (problem, mesh) = scene.plane_problem(model)?;
+    if goal.force_error.is_some() && !problem.has_one_direction() {
+        let message =
+            "the contact force has a guaranteed interval only if all obstacles lie in one direction from the body";
+        return Err(Error::Scene { path: "obstacles".into(), message: message.into() });
+    }
     // A stress in balance comes from a linear solve with a settled contact set, and from nothing less.
     let method = if settings.method == Method::Auto { Method::ActiveSet } else { settings.method };
     let search = Search {
@@ -218,8 +223,7 @@ impl Search<'_> {
 
     /// That answer held against a bracket.
     fn own_mesh(&self, own: &Answer, bracket: &Bracket) -> Result<OwnMesh, Error> {
-        let model = self.model;
-        let judged = bracket.judged(|element| model.plane_strain_in(own.displacement(), element));
+        let (model, judged) = (self.model, judged(own, bracket));
         let bound = if judged.bound == 0.0 { 0.0 } else { judged.bound / judged.norm };
         Ok(OwnMesh {
             element: model.mesh().kind().name(),
@@ -252,6 +256,17 @@ impl Search<'_> {
         let force_met = self.goal.force_error.is_none_or(|wanted| half_width(level).is_some_and(|half| half <= wanted));
         level.bound <= self.goal.total_error && force_met
     }
+}
+
+/// An answer held against a bracket on pieces of its elements.
+fn judged(answer: &Answer, bracket: &Bracket) -> Judged {
+    bracket.judged(|element| {
+        let strain = answer.model().body().strain_in(answer.displacement(), element);
+        move |[x, y]| {
+            let [xx, yy, _, xy, ..] = strain([x, y, 0.0]);
+            [xx, yy, xy]
+        }
+    })
 }
 
 /// Half the width of the interval of the force, over the force; none without an interval.
@@ -316,7 +331,7 @@ pub fn examined(scene: &Scene, levels: usize) -> Result<Vec<Examined>, Error> {
     let mut found = Vec::with_capacity(levels + 1);
     for level in 0..=levels {
         let bracket = Bracket::new(&problem, &mesh, &settings)?;
-        let judged = bracket.judged(|element| model.plane_strain_in(own.displacement(), element));
+        let judged = judged(&own, &bracket);
         found.push(Examined {
             energies: [bracket.energy_of_stress(), bracket.energy_of_displacement()],
             bound: (2.0 * bracket.distance().max(0.0)).sqrt(),

@@ -81,6 +81,39 @@ fn a_column_under_its_weight_is_exact() {
     }
 }
 
+/// A mesh of Gmsh, whose middle nodes come last; its arc is the polygon of all nodes.
+#[test]
+fn quadratic_triangles_of_a_file_with_a_curved_side_have_a_bound() {
+    let desk = Desk::new();
+    let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/meshes/half-disc-t6.msh");
+    desk.write("disc.msh", std::fs::read(mesh).unwrap());
+    let scene = json!({
+        "body": {"gmsh": {"file": "disc.msh"}},
+        "material": {"young": 1, "poisson": 0.3},
+        "supports": [{"on": {"boundary": "cut"}, "x": 0, "y": 0}],
+        "obstacles": [{"boundary": "arc", "approach": "-y", "shape": {"plane": {"point": [0, -0.95], "normal": [0, -1]}}}]
+    });
+    desk.write("scene.json", scene.to_string());
+    let found = desk.run(&["solve", "scene.json", "--total-error", "0.05", "--format", "json"]).ends_with(0).json();
+    assert!(found["own_mesh"]["element"] == "T6" && found["defect"].as_f64().unwrap() < 1e-10, "{found}");
+    let intervals: Vec<f64> =
+        found["levels"].as_array().unwrap().iter().map(|one| one["bound"].as_f64().unwrap()).collect();
+    assert!(intervals.last().unwrap() <= &0.05, "{intervals:?}");
+}
+
+#[test]
+fn a_body_that_moves_far_is_bounded_by_its_own_strain() {
+    // The same block, its bottom moved by 100 and the parabola with it: the strain is 1e-4 of the displacement.
+    let mut scene = classical(0.3);
+    scene["supports"][0]["y"] = json!(100);
+    scene["obstacles"][0]["shape"]["parabola"]["apex"] = json!([0.5, 100.49]);
+    let (code, far, _) = solved(&scene, &["--total-error", "0.05"]);
+    let (_, near, _) = solved(&classical(0.3), &["--total-error", "0.05"]);
+    assert_eq!((code, far["levels"].as_array().unwrap().len()), (0, near["levels"].as_array().unwrap().len()));
+    let [far, near] = [far, near].map(|report| report["total_error"]["bound"].as_f64().unwrap());
+    assert!((far / near - 1.0).abs() < 1e-6, "{far} {near}");
+}
+
 #[test]
 fn a_force_error_is_reached_too() {
     let (code, report, _) = solved(&classical(0.3), &["--total-error", "0.1", "--force-error", "2e-3"]);
@@ -121,6 +154,14 @@ fn what_has_no_guarantee_is_refused_with_its_reason() {
         let (code, report, message) = changed(change);
         assert!(code == 1 && report["total_error"] == Value::Null && message.contains(reason), "{code} {message}");
     }
+    let mut two = classical(0.3);
+    let plane =
+        json!({"boundary": "left", "approach": "-x", "shape": {"plane": {"point": [-0.001, 0], "normal": [-1, 0]}}});
+    two["obstacles"].as_array_mut().unwrap().push(plane);
+    let (code, _, message) = solved(&two, &["--total-error", "0.1", "--force-error", "0.1"]);
+    assert!(code == 1 && message.contains("all obstacles lie in one direction"), "{message}");
+    let (code, report, _) = solved(&two, &["--total-error", "0.1"]);
+    assert!(code == 0 && report["force_interval"] == Value::Null, "{report}");
     for wrong in ["0", "-0.1", "1", "2", "nan", "much"] {
         let (code, _, message) = solved(&classical(0.3), &["--total-error", wrong]);
         assert!(code == 2 && message.contains("above 0 and below 1"), "{wrong}: {code} {message}");

@@ -221,6 +221,19 @@ impl ElasticBody {
         }
     }
 
+    /// The strain of a nodal displacement in an element, at points in place; of a body that is not one of revolution.
+    #[cfg(feature = "cli")]
+    pub(crate) fn strain_in(&self, displacement: &[f64], element: usize) -> impl Fn([f64; 3]) -> Symmetric {
+        let (reference, nodes) = (self.mesh.kind().reference(), self.mesh.element(element));
+        let cell = Cell::new(reference, &self.coordinates(nodes));
+        let own = self.gather(displacement, nodes);
+        move |at| {
+            let gradients = cell.map(&(reference.derivative)(cell.reference_coordinates(at))).gradients;
+            let point = LocalPoint { gradients, hoop: [0.0; MAX_NODES], weight: 0.0 };
+            point.strain(&own, cell.unit())
+        }
+    }
+
     /// The mean dilatation of an element where its integration asks for it, per length; `None` where it does not.
     pub(crate) fn mean_dilatation(
         &self,

@@ -1,0 +1,287 @@
+//! The check of a bracket: balance, signs, distances and energies, from the stresses and displacements alone.
+
+use super::bound::Bracket;
+use super::johnson_mercier::{part, traction};
+use super::triangulation::{outward, twice_area};
+use crate::error::Error;
+
+/// Jumps of tractions over the largest stress, and forces of the wrong sign over the largest force, that are rounding: fifty times
+/// what is measured on meshes of 1e5 unknowns at a ratio of Poisson of 0.4999.
+const OUT_OF_BALANCE: f64 = 1e-8;
+
+/// Depth in an obstacle that is rounding, over the largest displacement.
+const PENETRATION: f64 = 1e-12;
+
+/// The share of J - D by which the energies may miss it, beyond their own rounding.
+const LOST: f64 = 1e-2;
+
+/// Rounding of a sum of many energies, over the sum of their sizes.
+const ENERGY_ROUNDING: f64 = 1e-10;
+
+/// Places along an edge at which a displacement is held against the obstacle: ends, middle, and between.
+const SAMPLES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
+
+/// By how much a promise is missed, relative, and what of that is rounding.
+#[derive(Clone, Copy, Debug)]
+struct Defect {
+    what: &'static str,
+    size: f64,
+    allowed: f64,
+}
+
+impl Bracket<'_> {
+    /// Refuses what is not as it was promised; the largest defect otherwise.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`].
+    pub(super) fn check(&self) -> Result<f64, Error> {
+        let defects = self.defects();
+        match defects.iter().find(|defect| defect.size.is_nan() || defect.size > defect.allowed) {
+            None => Ok(defects.iter().fold(0.0, |worst, defect| f64::max(worst, defect.size))),
+            Some(Defect { what, size, allowed }) => {
+                let reason =
+                    format!("{what} by {size:.1e}; at most {allowed:.0e} is rounding, so that nothing is guaranteed");
+                Err(Error::Numerical { step: "the guaranteed bound", reason })
+            }
+        }
+    }
+
+    /// How far each promise is missed, relative, found from the stresses and displacements alone.
+    fn defects(&self) -> [Defect; 4] {
+        // At rest all forces are rounding.
+        let strained = |defect: fn(&Self) -> f64| if self.is_at_rest() { 0.0 } else { defect(self) };
+        let defect = |what, size, allowed| Defect { what, size, allowed };
+        [
+            defect("the stress is out of balance", strained(Self::imbalance), OUT_OF_BALANCE),
+            defect("the obstacle pulls", strained(Self::adhesion), OUT_OF_BALANCE),
+            defect("the displacement goes into an obstacle", self.penetration(), PENETRATION),
+            defect("J - D misses the sum of its shares", strained(Self::lost), LOST),
+        ]
+    }
+
+    /// The largest stress, in balance or of the displacement: the former is rounding where it touches nothing yet.
+    fn largest_stress(&self) -> f64 {
+        const CENTRE: [f64; 3] = [1.0 / 3.0; 3];
+        let strain = |triangle: usize| self.displacements.strain(&self.primal.values, triangle, CENTRE);
+        let of_displacement = (0..self.stress.len()).map(|triangle| self.problem.stress(strain(triangle)));
+        let in_balance = self.stress.iter().flatten().flatten().copied();
+        of_displacement.chain(in_balance).flatten().fold(0.0, |largest: f64, entry| largest.max(entry.abs()))
+    }
+
+    /// The largest jump of a traction between triangles, traction that is not the load, and divergence times length that is not
+    /// the body force, over the largest stress.
+    fn imbalance(&self) -> f64 {
+        let mut left = vec![[[0.0; 2]; 2]; self.mesh.edges.len()];
+        let mut worst: f64 = 0.0;
+        for triangle in 0..self.mesh.triangles.len() {
+            let corners = self.mesh.corners(triangle);
+            for local in 0..3 {
+                let (edge, (normal, _)) = (self.mesh.sides[triangle][local], outward(corners, local));
+                for end in 0..2 {
+                    let node = self.mesh.triangles[triangle][(local + 1 + end) % 3];
+                    let pull = traction(self.stress[triangle][local][1 + end], normal);
+                    let sum = &mut left[edge][usize::from(self.mesh.edges[edge][0] != node)];
+                    (0..2).for_each(|axis| sum[axis] += pull[axis]);
+                }
+            }
+            worst = worst.max(self.divergence(triangle));
+        }
+        for (_, _, edge, condition) in self.mesh.outline() {
+            let condition = &self.problem.conditions[condition];
+            for axis in 0..2 {
+                let free = condition.held[axis].is_none();
+                left[edge]
+                    .iter_mut()
+                    .for_each(|end| end[axis] = if free { end[axis] - condition.traction[axis] } else { 0.0 });
+            }
+        }
+        for (row, place) in self.places.iter().enumerate() {
+            let facing = &self.problem.obstacles[place.obstacle];
+            left[place.edge][place.end][facing.axis] -=
+                facing.sense * self.pull(row) / self.stresses.half_area(place.edge);
+        }
+        worst = left.iter().flatten().flatten().fold(worst, |worst, entry| worst.max(entry.abs()));
+        over(worst, self.largest_stress())
+    }
+
+    /// The largest part of divergence and body force that do not cancel on a triangle, times its size.
+    fn divergence(&self, triangle: usize) -> f64 {
+        let mut worst: f64 = 0.0;
+        for k in 0..3 {
+            let corners = part(self.mesh.corners(triangle), k);
+            let mut force = [0.0; 2];
+            let mut size: f64 = 0.0;
+            for corner in 0..3 {
+                let (normal, length) = outward(corners, corner);
+                let pull = traction(self.stress[triangle][k][corner], normal);
+                // The slope of a barycentric coordinate is the opposite of the normal over the height.
+                (0..2).for_each(|axis| force[axis] -= pull[axis] * length);
+                size = size.max(length);
+            }
+            let area = twice_area(corners);
+            for (force, of_body) in force.into_iter().zip(self.problem.body_force) {
+                worst = worst.max((force / area + of_body).abs() * area / size);
+            }
+        }
+        worst
+    }
+
+    /// The largest force of the wrong sign, over the largest one.
+    fn adhesion(&self) -> f64 {
+        let multiplier = &self.dual.solution.multiplier;
+        let wrong = multiplier.iter().fold(0.0, |worst: f64, force| worst.max(*force));
+        over(wrong, multiplier.iter().fold(0.0, |largest: f64, force| largest.max(force.abs())))
+    }
+
+    /// The deepest place of the displacement in an obstacle, over the largest displacement.
+    fn penetration(&self) -> f64 {
+        let (mut deepest, values) = (0.0_f64, &self.primal.values);
+        let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+        for (_, _, edge, condition) in self.mesh.outline() {
+            let [from, to] = self.mesh.edges[edge].map(|node| self.mesh.nodes[node]);
+            for &obstacle in &self.problem.conditions[condition].obstacles {
+                let facing = &self.problem.obstacles[obstacle];
+                let [first, middle, last] =
+                    self.displacements.on_edge(edge, facing.axis).map(|function| values[function]);
+                for s in SAMPLES {
+                    let place = [0, 1].map(|axis| from[axis] + s * (to[axis] - from[axis]));
+                    let moved = (1.0 - s).powi(2) * first + 2.0 * s * (1.0 - s) * middle + s * s * last;
+                    if let Some(gap) = facing.surface.gap(place, place) {
+                        deepest = deepest.max(facing.sense * moved - gap.values[0]);
+                    }
+                }
+            }
+        }
+        over(deepest, largest)
+    }
+
+    /// By how much J - D, from the energies, misses the sum of the shares, over that sum. Rounding of the energies is left out, and
+    /// the work of forces that rounding leaves out of balance: it grows with the distance by which a body is moved.
+    fn lost(&self) -> f64 {
+        let [high, low] = [self.energy_of_displacement(), self.energy_of_stress()];
+        let works = [self.work_of_loads(), self.work_on_supports(&self.stress), self.work_on_obstacles()];
+        let size = works.iter().fold(self.energy, |sum, work| sum + work.abs());
+        let rounding = (ENERGY_ROUNDING + self.imbalance()) * size;
+        over(((high - low - self.distance()).abs() - rounding).max(0.0), self.distance())
+    }
+}
+
+/// A ratio, zero for nothing over nothing.
+fn over(value: f64, size: f64) -> f64 {
+    if value == 0.0 { 0.0 } else { value / size }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashMap;
+    use std::sync::Arc;
+
+    use super::super::bound::Side;
+    use super::super::displacement::Displacements;
+    use super::super::problem::{Condition, Distance, Enclosure, Facing, PlaneProblem};
+    use super::super::system::Row;
+    use super::super::triangulation::{Point, Triangulation};
+    use super::*;
+    use crate::fem::material::Lame;
+    use crate::qp::{Method, Settings};
+
+    /// The surface `y = 1 - 0.02 + (x - 0.4)^2` over a square of side 1.
+    #[derive(Debug)]
+    struct Bowl;
+
+    impl Distance for Bowl {
+        fn gap(&self, from: Point, to: Point) -> Option<Enclosure> {
+            let gap = |[x, y]: Point| 0.98 + (x - 0.4) * (x - 0.4) - y;
+            let middle = [0, 1].map(|axis| (from[axis] + to[axis]) / 2.0);
+            Some(Enclosure { values: [gap(from), gap(middle), gap(to)], below: 0.0, above: 0.0 })
+        }
+    }
+
+    /// A square on a clamped side, pulled on the right, heavy, under a bowl.
+    fn square() -> (PlaneProblem, Triangulation) {
+        let side =
+            |held: [Option<f64>; 2], traction: Point, obstacles: Vec<usize>| Condition { held, traction, obstacles };
+        let problem = PlaneProblem {
+            lame: Lame { lambda: 1.5, mu: 1.0 },
+            thickness: 0.5,
+            body_force: [0.01, -0.02],
+            conditions: vec![
+                side([Some(0.0); 2], [0.0; 2], vec![]),
+                side([None; 2], [0.03, 0.01], vec![]),
+                side([None; 2], [0.0; 2], vec![0]),
+                side([None; 2], [0.0; 2], vec![]),
+            ],
+            obstacles: vec![Facing { axis: 1, sense: 1.0, surface: Arc::new(Bowl) }],
+        };
+        let outline = HashMap::from([([0, 1], 0), ([1, 2], 1), ([2, 3], 2), ([0, 3], 3)]);
+        let nodes = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        let mut mesh = Triangulation::new(nodes, vec![[0, 1, 2], [0, 2, 3]], vec![0, 0], &outline).unwrap();
+        for _ in 0..2 {
+            mesh = mesh.refined(&vec![true; mesh.triangles.len()]);
+        }
+        (problem, mesh)
+    }
+
+    fn settings() -> Settings {
+        Settings::with_method(Method::ActiveSet)
+    }
+
+    /// What the check says of a bracket.
+    fn refusal(bracket: &Bracket) -> String {
+        bracket.check().unwrap_err().to_string()
+    }
+
+    #[test]
+    fn a_right_bracket_passes_the_check_and_touches() {
+        let (problem, mesh) = square();
+        let bracket = Bracket::new(&problem, &mesh, &settings()).unwrap();
+        assert!(bracket.defect < 1e-12, "{}", bracket.defect);
+        assert!(bracket.force() > 0.0 && bracket.contact_share > 0.0);
+        assert!(bracket.energy_of_stress() < bracket.energy_of_displacement());
+    }
+
+    #[test]
+    fn a_lost_traction_is_refused() {
+        let (problem, mesh) = square();
+        let mut without = problem.clone();
+        without.conditions[1].traction = [0.0; 2];
+        let mut bracket = Bracket::new(&without, &mesh, &settings()).unwrap();
+        bracket.problem = &problem;
+        assert!(refusal(&bracket).contains("the stress is out of balance"));
+    }
+
+    #[test]
+    fn a_missed_body_force_is_refused() {
+        let (problem, mesh) = square();
+        let weightless = PlaneProblem { body_force: [0.0; 2], ..problem.clone() };
+        let mut bracket = Bracket::new(&weightless, &mesh, &settings()).unwrap();
+        bracket.problem = &problem;
+        assert!(refusal(&bracket).contains("the stress is out of balance"));
+    }
+
+    #[test]
+    fn a_wrong_sign_on_a_candidate_edge_is_refused() {
+        let (problem, mesh) = square();
+        let mut bracket = Bracket::new(&problem, &mesh, &settings()).unwrap();
+        let pressed = bracket.dual.solution.multiplier.iter().position(|force| *force < 0.0).unwrap();
+        bracket.dual.solution.multiplier[pressed] *= -1.0;
+        assert!(!refusal(&bracket).is_empty());
+        assert!(bracket.adhesion() > 0.01, "{}", bracket.adhesion());
+    }
+
+    /// Rows at the places of the nodes bound the values there, and nothing between.
+    #[test]
+    fn rows_at_nodes_instead_of_coefficients_are_refused() {
+        let (problem, mesh) = square();
+        let mut bracket = Bracket::new(&problem, &mesh, &settings()).unwrap();
+        let displacements = Displacements::new(&problem, &mesh);
+        let unknowns = displacements.unknowns();
+        let corners_only = 2 * mesh.nodes.len();
+        let rows: Vec<Row> =
+            displacements.rows(&unknowns).unwrap().into_iter().filter(|row| row.unknown < corners_only).collect();
+        let posed = unknowns.problem(displacements.blocks(), &displacements.load(), &rows).unwrap();
+        bracket.primal = Side::solved(unknowns, rows, &posed, &settings()).unwrap();
+        bracket.measure();
+        assert!(refusal(&bracket).contains("the displacement goes into an obstacle"));
+    }
+}
