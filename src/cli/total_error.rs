@@ -1,28 +1,73 @@
-//! `signorini solve --total-error`: an answer with its guaranteed error against the continuum.
+//! `signorini solve --total-error`: an answer with its error against the continuum, guaranteed or estimated.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use serde::Serialize;
 
 use super::input::{build, scene_title, warnings};
 use super::options::Solve;
 use super::outcome::{Outcome, Report, warn};
 use super::settings::settings;
 use crate::error::Error;
-use crate::output::{total_error_text, write_total_error};
+use crate::output::{estimated_error_text, gallery, total_error_text, write_estimated_error, write_total_error};
+use crate::qp::Settings;
 use crate::scene::Scene;
-use crate::study::total_error::{TotalErrorGoal, total_error};
+use crate::solution::Goal;
+use crate::study::total_error::{Estimated, Found, TotalErrorGoal, total_error};
+use crate::study::{Summary, scene_summary};
 use crate::watch::Watch;
 
 /// Writing takes this share of the time.
 const REPORT: f64 = 0.05;
 
 pub(super) fn run(options: &Solve, scene: &Scene, goal: TotalErrorGoal, watch: &Watch) -> Result<Outcome, Error> {
-    let model = std::sync::Arc::new(build(scene, &options.input)?);
+    let clock = Instant::now();
+    let model = Arc::new(build(scene, &options.input)?);
+    let seconds = clock.elapsed().as_secs_f64();
     warn(&warnings(&model));
     let settings = settings(options.method, &options.common, &watch.keeping(REPORT * options.time.unwrap_or(0.0)));
-    let found = total_error(scene, &model, goal, &settings).map_err(|error| model.explain(error))?;
     let (title, units) = (scene_title(&model, &options.input), model.units().clone());
-    let report = Report::new(&found, total_error_text(&title, &found, &units))?;
-    if let Some(folder) = &options.common.out {
-        report.write_with_text(folder, "total-error.txt")?;
-        write_total_error(folder, &title, &found, &units)?;
+    match total_error(scene, &model, goal, &settings).map_err(|error| model.explain(error))? {
+        Found::Guaranteed(found) => {
+            let report = Report::new(&found, total_error_text(&title, &found, &units))?;
+            if let Some(folder) = &options.common.out {
+                report.write_with_text(folder, "total-error.txt")?;
+                write_total_error(folder, &title, &found, &units)?;
+            }
+            Ok(report.outcome(options.common.format, found.status))
+        }
+        Found::Estimated(found) => estimated(options, *found, &title, &settings, seconds),
     }
-    Ok(report.outcome(options.common.format, found.status))
+}
+
+/// An estimated error with the answer that it is of.
+#[derive(Serialize)]
+struct EstimatedReport<'a> {
+    #[serde(flatten)]
+    found: &'a Estimated,
+    answer: &'a Summary,
+}
+
+fn estimated(
+    options: &Solve,
+    found: Estimated,
+    title: &str,
+    settings: &Settings,
+    seconds: f64,
+) -> Result<Outcome, Error> {
+    let goal = Goal { accuracy: Some(found.algebra()), ..settings.goal() };
+    let mut summary = scene_summary(&found.answer, found.solution.clone(), goal, seconds)?;
+    summary.discretisation_error = found.levels.last().map(|level| level.discretisation_error);
+    let units = found.answer.model().units();
+    let text = estimated_error_text(title, &found, &summary, units);
+    let report = Report::new(&EstimatedReport { found: &found, answer: &summary }, text)?;
+    let Some(folder) = options.common.out.clone() else {
+        return Ok(report.outcome(options.common.format, found.status));
+    };
+    gallery::write_answer(&folder, &summary.solution)?;
+    report.write_with_text(&folder, "total-error.txt")?;
+    write_estimated_error(&folder, title, &found)?;
+    let outcome = report.outcome(options.common.format, found.status);
+    Ok(outcome.with_pictures(move || gallery::write_solve(&folder, &found.answer, &summary.solution.history)))
 }

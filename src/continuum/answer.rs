@@ -16,6 +16,8 @@ pub struct PlaneAnswer {
     /// The nodes of each triangle: three corners, then the middles of the sides between the first two, the next two and the last and
     /// the first.
     pub triangles: Vec<[usize; 6]>,
+    /// The named parts of the outline, and the edges of each: two ends, then the middle.
+    pub boundaries: Vec<(String, Vec<[usize; 3]>)>,
     /// The displacement of each node.
     pub displacement: Vec<Point>,
     /// The mean over each triangle of the stress of the displacement and of the stress in balance.
@@ -41,7 +43,15 @@ impl Bracket<'_> {
                 let middle = |edge: usize| mesh.nodes.len() + edge;
                 [a, b, c, middle(opposite_c), middle(opposite_a), middle(opposite_b)]
             });
+        let mut boundaries: Vec<_> = self.problem.boundaries.iter().map(|name| (name.clone(), Vec::new())).collect();
+        for (triangle, local, edge, condition) in mesh.outline() {
+            let [from, to] = [1, 2].map(|next| mesh.triangles[triangle][(local + next) % 3]);
+            for &boundary in &self.problem.conditions[condition].boundaries {
+                boundaries[boundary].1.push([from, to, mesh.nodes.len() + edge]);
+            }
+        }
         PlaneAnswer {
+            boundaries,
             nodes: mesh.nodes.iter().copied().chain(mesh.edges.iter().map(middle)).collect(),
             displacement: corners.chain(middles).collect(),
             triangles: triangles.collect(),

@@ -199,8 +199,12 @@ mod tests {
 
     /// A square on a clamped side, pulled on the right, heavy, under a bowl.
     fn square() -> (PlaneProblem, Triangulation) {
-        let side =
-            |held: [Option<f64>; 2], traction: Point, obstacles: Vec<usize>| Condition { held, traction, obstacles };
+        let side = |held: [Option<f64>; 2], traction: Point, obstacles: Vec<usize>| Condition {
+            held,
+            traction,
+            obstacles,
+            boundaries: Vec::new(),
+        };
         let problem = PlaneProblem {
             lame: Lame { lambda: 1.5, mu: 1.0 },
             thickness: 0.5,
@@ -212,6 +216,7 @@ mod tests {
                 side([None; 2], [0.0; 2], vec![]),
             ],
             obstacles: vec![Facing { axis: 1, sense: 1.0, surface: Arc::new(Bowl) }],
+            boundaries: Vec::new(),
         };
         let outline = HashMap::from([([0, 1], 0), ([1, 2], 1), ([2, 3], 2), ([0, 3], 3)]);
         let nodes = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];

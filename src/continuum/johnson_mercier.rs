@@ -276,6 +276,7 @@ mod tests {
             body_force: [0.75, -2.0],
             conditions: Vec::new(),
             obstacles: Vec::new(),
+            boundaries: Vec::new(),
         }
     }
 

@@ -19,6 +19,8 @@ pub struct PlaneProblem {
     pub conditions: Vec<Condition>,
     /// The obstacles.
     pub obstacles: Vec<Facing>,
+    /// The names of the parts of the outline.
+    pub boundaries: Vec<String>,
 }
 
 /// What holds on a side of the outline, the same along it.
@@ -30,6 +32,8 @@ pub struct Condition {
     pub traction: Point,
     /// The obstacles that it may touch.
     pub obstacles: Vec<usize>,
+    /// The named parts of the outline that it belongs to.
+    pub boundaries: Vec<usize>,
 }
 
 /// A rigid obstacle whose rows lie along one axis.
@@ -139,6 +143,7 @@ mod tests {
             body_force: [0.0; 2],
             conditions: Vec::new(),
             obstacles: Vec::new(),
+            boundaries: Vec::new(),
         };
         let strain = [0.25, -0.5, 0.125];
         let back = material.compliance(material.stress(strain));

@@ -11,6 +11,8 @@ mod colour;
 mod colour_bar;
 mod contour;
 pub(crate) mod drawing;
+#[cfg(feature = "cli")]
+mod estimated_error;
 pub(crate) mod file;
 // What the program leaves in its folders; of it a motion needs the fields and the scene of a picture only.
 #[cfg_attr(not(feature = "cli"), allow(dead_code))]
@@ -22,6 +24,8 @@ mod motion;
 mod motion_report;
 mod motion_table;
 mod motion_tradeoff;
+#[cfg(feature = "cli")]
+mod msh;
 mod obstacle;
 mod paint;
 mod panels;
@@ -40,6 +44,8 @@ pub(crate) mod vtu;
 
 pub(crate) use body::{ContactPicture, ObstacleLine, common_limits, common_window};
 pub use drawing::Drawing;
+#[cfg(feature = "cli")]
+pub(crate) use estimated_error::{estimated_error_text, write_estimated_error};
 pub(crate) use file::write_atomically;
 pub use file::{write_files, write_picture};
 #[cfg(feature = "cli")]

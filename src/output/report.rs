@@ -229,7 +229,7 @@ fn mesh_text(summary: &Summary) -> String {
 }
 
 /// A sentence in lines that fit beside the names of entries.
-fn wrapped(sentence: &str) -> Vec<String> {
+pub(super) fn wrapped(sentence: &str) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in sentence.split_whitespace() {
         match lines.last_mut() {

@@ -8,12 +8,13 @@ use super::{
     colour::Colour,
     drawing::{Anchor, Paint},
     line_plots,
+    msh::msh,
     report::{columns, entry, plural, printable, quantity},
     write_files, write_picture,
 };
 use crate::continuum::PlaneAnswer;
 use crate::error::Error;
-use crate::fem::ElementKind;
+use crate::fem::{Boundary, ElementKind, Mesh};
 use crate::scene::Units;
 use crate::study::total_error::{Ended, TotalError, TotalErrorLevel, half_width};
 
@@ -28,20 +29,15 @@ const LINE: Colour = Colour(0x2f, 0x4b, 0x6e);
 /// The report.
 pub(crate) fn total_error_text(title: &str, found: &TotalError, units: &Units) -> String {
     let mut text = format!("{}\n", printable(title));
-    let percent = |share: f64| format!("{:.2e} %", 100.0 * share);
     let (bound, goal) = (found.total_error.bound, found.goal);
-    let verdict = if bound <= goal.total_error { "as asked for" } else { "NOT as asked for" };
-    text += &entry(
-        "total error",
-        &format!("guaranteed at most {}, {verdict}: {}", percent(bound), percent(goal.total_error)),
-    );
+    text +=
+        &entry("total error", &format!("guaranteed at most {}, {}", percent(bound), verdict(bound, goal.total_error)));
     text += &entry("", "of the displacement, against the continuum, in the energy norm");
     text += &entry("", &format!("guaranteed at most {} for the mean stress", percent(found.mean_stress_error.bound)));
     text += &entry("contact force", &force_text(found, units));
     if let Some(wanted) = goal.force_error {
-        let is_met = found.levels.last().and_then(half_width).is_some_and(|half| half <= wanted);
-        let verdict = if is_met { "as asked for" } else { "NOT as asked for" };
-        text += &entry("", &format!("{verdict}: within {:.1e} %", 100.0 * wanted));
+        let half = found.levels.last().and_then(half_width).unwrap_or(f64::INFINITY);
+        text += &entry("", &verdict(half, wanted));
     }
     if let Some(last) = found.levels.last() {
         let meshes = plural(found.levels.len(), "mesh").replace("meshs", "meshes");
@@ -59,7 +55,7 @@ pub(crate) fn total_error_text(title: &str, found: &TotalError, units: &Units) -
     let next =
         found.next_triangles.map_or(String::new(), |count| format!(" a mesh of {count} triangles would come next;"));
     match found.ended {
-        Ended::Goal => {}
+        Ended::Goal | Ended::Mesh => {}
         Ended::Time => text += &entry("ended", &format!("the time is up;{next} {}", needed(found))),
         Ended::Memory => text += &entry("ended", &format!("memory does not suffice;{next} {}", needed(found))),
     }
@@ -73,6 +69,16 @@ pub(crate) fn total_error_text(title: &str, found: &TotalError, units: &Units) -
         let _ = writeln!(text, "  {line}");
     }
     text
+}
+
+pub(super) fn percent(share: f64) -> String {
+    format!("{:.2e} %", 100.0 * share)
+}
+
+/// Whether an error is as small as it should be.
+pub(super) fn verdict(error: f64, goal: f64) -> String {
+    let is_met = if error <= goal { "as asked for" } else { "NOT as asked for" };
+    format!("{is_met}: {}", percent(goal))
 }
 
 fn row(level: &TotalErrorLevel) -> Vec<String> {
@@ -102,17 +108,26 @@ fn force_text(found: &TotalError, units: &Units) -> String {
 fn needed(found: &TotalError) -> String {
     let [.., before, last] = &found.levels[..] else { return "a second mesh would tell what the goal takes".into() };
     let rate = (before.bound / last.bound).ln() / (last.dofs as f64 / before.dofs as f64).ln();
-    let more = (last.bound / found.goal.total_error).powf(1.0 / rate);
+    unknowns_needed(rate, last.bound / found.goal.total_error, last.dofs)
+}
+
+/// The unknowns of an error so many times smaller, which falls with a power of the unknowns.
+pub(super) fn unknowns_needed(rate: f64, times: f64, dofs: usize) -> String {
+    let more = times.powf(1.0 / rate);
     match rate > 0.0 && more.is_finite() {
-        true => format!("the goal would take about {:.1e} unknowns", more.max(1.0) * last.dofs as f64),
+        true => format!("the goal would take about {:.1e} unknowns", more.max(1.0) * dofs as f64),
         false => "the last meshes do not tell what the goal would take".into(),
     }
 }
 
 /// Leaves the fields, the last mesh, the table of meshes and two pictures in a folder.
 pub(crate) fn write_total_error(folder: &Path, title: &str, found: &TotalError, units: &Units) -> Result<(), Error> {
-    let (fields, mesh) = (fields(&found.answer)?, gmsh(&found.answer));
-    write_files(folder, &[("answer.vtu", &fields), ("mesh.msh", &mesh), ("meshes.csv", &csv(found))])?;
+    let mesh = mesh(&found.answer)?;
+    let msh = msh(&mesh, &[("body", 0..mesh.element_count())]);
+    write_files(
+        folder,
+        &[("answer.vtu", &fields(&mesh, &found.answer)?), ("mesh.msh", &msh), ("meshes.csv", &csv(found))],
+    )?;
     write_picture(folder, "total-error", &plot(title, found))?;
     write_picture(folder, "meshes", &meshes(title, found, units))?;
     Ok(())
@@ -134,16 +149,23 @@ fn csv(found: &TotalError) -> String {
     text
 }
 
-/// The fields for ParaView: triangles of six nodes, the displacement at the nodes, mean stress and share of the bound on triangles.
-fn fields(answer: &PlaneAnswer) -> Result<String, Error> {
-    let nodes: Vec<[f64; 3]> = answer.nodes.iter().map(|&[x, y]| [x, y, 0.0]).collect();
-    let elements: Vec<Vec<usize>> = answer.triangles.iter().map(|triangle| triangle.to_vec()).collect();
-    let kinds = vec![ElementKind::QUADRATIC_TRIANGLE; elements.len()];
+/// The mesh of the displacement: triangles of six nodes.
+fn mesh(answer: &PlaneAnswer) -> Result<Mesh, Error> {
+    let kind = ElementKind::QUADRATIC_TRIANGLE;
+    let boundary = |(name, edges): &(String, Vec<[usize; 3]>)| Boundary::new(name, kind.facet(), edges.concat());
+    let nodes = answer.nodes.iter().map(|&[x, y]| [x, y, 0.0]).collect();
+    Mesh::new(nodes, kind, answer.triangles.concat(), answer.boundaries.iter().map(boundary).collect())
+}
+
+/// The fields for ParaView: the displacement at the nodes, mean stress and share of the bound on triangles.
+fn fields(mesh: &Mesh, answer: &PlaneAnswer) -> Result<String, Error> {
+    let elements: Vec<Vec<usize>> = mesh.elements().map(<[usize]>::to_vec).collect();
+    let kinds = vec![mesh.kind(); elements.len()];
     let moved: Vec<f64> = answer.displacement.iter().flat_map(|&[x, y]| [x, y, 0.0]).collect();
     let entry = |place: usize| -> Vec<f64> { answer.stress.iter().map(|stress| stress[place]).collect() };
     let [xx, yy, xy] = [0, 1, 2].map(entry);
     let data = Unstructured {
-        nodes: &nodes,
+        nodes: mesh.nodes(),
         elements: &elements,
         cell_types: &kinds,
         point_data: &[Array::Vectors("displacement", &moved)],
@@ -155,23 +177,6 @@ fn fields(answer: &PlaneAnswer) -> Result<String, Error> {
         ],
     };
     data.to_vtu()
-}
-
-/// The last mesh for Gmsh, format 2.2: triangles of six nodes.
-fn gmsh(answer: &PlaneAnswer) -> String {
-    let mut text = String::from("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n");
-    let _ = writeln!(text, "{}", answer.nodes.len());
-    for (number, [x, y]) in answer.nodes.iter().enumerate() {
-        let _ = writeln!(text, "{} {x} {y} 0", number + 1);
-    }
-    let _ = writeln!(text, "$EndNodes\n$Elements\n{}", answer.triangles.len());
-    let kind = ElementKind::QUADRATIC_TRIANGLE.reference().gmsh;
-    for (number, nodes) in answer.triangles.iter().enumerate() {
-        let nodes: Vec<String> = nodes.iter().map(|node| (node + 1).to_string()).collect();
-        let _ = writeln!(text, "{} {kind} 2 1 1 {}", number + 1, nodes.join(" "));
-    }
-    text += "$EndElements\n";
-    text
 }
 
 /// The bounds over the unknowns.

@@ -7,6 +7,8 @@ use super::resultants::{Resultant, without_rounding};
 use super::rigid_body_modes::RigidBodyModes;
 use crate::error::Error;
 use crate::fem::assembly::internal_force;
+#[cfg(feature = "cli")]
+use crate::fem::recovery::discretisation::EstimatedError;
 use crate::fem::recovery::{self, StressField};
 use crate::solution::{ContactSet, Solution};
 
@@ -137,6 +139,15 @@ impl Answer {
     /// [`recovery::discretisation_error`].
     pub fn discretisation_error(&self) -> Result<f64, Error> {
         recovery::discretisation_error(self.model.body(), &self.displacement, self.stress()?)
+    }
+
+    /// The same, element by element.
+    ///
+    /// # Errors
+    /// As [`Model::stress`].
+    #[cfg(feature = "cli")]
+    pub(crate) fn estimated_error(&self) -> Result<EstimatedError, Error> {
+        EstimatedError::of(self.model.body(), &self.displacement, self.stress()?)
     }
 }
 

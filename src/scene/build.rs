@@ -8,6 +8,7 @@ use super::obstacle::{Obstacle, PlacedObstacle};
 use super::parts::Parts;
 use super::schema::Scene;
 use crate::error::Error;
+use crate::fem::body::ElasticBody;
 
 impl Scene {
     /// Discretises the scene and poses its contact problem.
@@ -26,7 +27,16 @@ impl Scene {
     /// As [`Scene::build`]; [`Error::Scene`] for a boundary that does not exist, and for a direction or a normal that is
     /// not of unit length or leads out of the model.
     pub fn build_with(&self, further: &[(&str, Arc<dyn Obstacle>)]) -> Result<Model, Error> {
-        let body = self.elastic_body()?;
+        self.build_of(self.bodies()?, further)
+    }
+
+    /// The same of bodies that stand for those of the scene, in their order: on other meshes.
+    pub(crate) fn build_of(
+        &self,
+        bodies: Vec<ElasticBody>,
+        further: &[(&str, Arc<dyn Obstacle>)],
+    ) -> Result<Model, Error> {
+        let body = self.joined(bodies)?;
         let held = self.held(&body)?;
         let dofs = held.dofs(body.mesh())?;
         let (supports, is_part) = (self.supports.len(), self.may_be_part(&body)?);

@@ -16,6 +16,22 @@ use crate::fem::mesh::triangle_pieces::TrianglePieces;
 const ALONG_AXIS: f64 = 1e-14;
 
 impl Scene {
+    /// Refuses what has no answer in the continuum.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for a force at a point, but for that on a bar.
+    pub(crate) fn check_continuum(&self) -> Result<(), Error> {
+        let is_point = |load: &LoadSpec| matches!(load, LoadSpec::Force(_));
+        match self.loads.iter().position(is_point) {
+            Some(index) if self.model.dimension() > 1 => {
+                let message = "a force at a point makes a displacement without end in a continuum, so that there is no \
+                               total error; spread it over a boundary";
+                Err(wrong(format!("loads[{index}].force"), message))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// The plane problem of the polygon that the mesh of `model` fills, and the triangles to begin with.
     ///
     /// # Errors
@@ -49,6 +65,7 @@ impl Scene {
             obstacles: obstacles
                 .map(|(index, obstacle)| facing(index, obstacle, model.gap()))
                 .collect::<Result<_, _>>()?,
+            boundaries: model.mesh().boundaries().iter().map(|boundary| boundary.name.clone()).collect(),
         };
         let at_body = |error| match error {
             Error::Mesh { message } => wrong("body", format!("{message}, so that there is no guaranteed bound")),
@@ -89,7 +106,7 @@ impl Scene {
             }
         }
         for (index, load) in self.loads.iter().enumerate() {
-            let Some((path, boundary, traction, pressure)) = spread(index, load)? else { continue };
+            let Some((path, boundary, traction, pressure)) = spread(index, load) else { continue };
             outline.change(&path, boundary, |condition, normal| {
                 (0..2).for_each(|axis| condition.traction[axis] += traction[axis] - pressure * normal[axis]);
             })?;
@@ -98,26 +115,28 @@ impl Scene {
             let path = format!("obstacles[{index}].boundary");
             outline.change(&path, obstacle.boundary(), |condition, _| condition.obstacles.push(index))?;
         }
+        for (index, boundary) in model.mesh().boundaries().iter().enumerate() {
+            for edge in pieces.edges_of(model.mesh(), &boundary.name) {
+                // One that runs through the body is no part of the outline.
+                if let Some((_, condition)) = outline.edges.get_mut(&edge) {
+                    condition.boundaries.push(index);
+                }
+            }
+        }
         Ok(outline.numbered(conditions))
     }
 }
 
-/// The path, the boundary, the traction and the pressure of a load on the outline; none of a body force.
-#[allow(clippy::type_complexity)]
-fn spread(index: usize, load: &LoadSpec) -> Result<Option<(String, &str, Point, f64)>, Error> {
+/// The path, the boundary, the traction and the pressure of a load on the outline; none of another one.
+fn spread(index: usize, load: &LoadSpec) -> Option<(String, &str, Point, f64)> {
     let path = |field: &str| format!("loads[{index}].{field}");
     match load {
         LoadSpec::Traction(spec) => {
             let traction = [0, 1].map(|axis| spec.value.get(axis).copied().unwrap_or(0.0));
-            Ok(Some((path("traction.boundary"), &spec.boundary, traction, 0.0)))
+            Some((path("traction.boundary"), &spec.boundary, traction, 0.0))
         }
-        LoadSpec::Pressure(spec) => Ok(Some((path("pressure.boundary"), &spec.boundary, [0.0; 2], spec.value))),
-        LoadSpec::BodyForce(_) => Ok(None),
-        LoadSpec::Force(_) => {
-            let message = "a force at a point makes a displacement without end in a continuum, so that there is no \
-                           guaranteed bound; spread it over a boundary";
-            Err(wrong(path("force"), message))
-        }
+        LoadSpec::Pressure(spec) => Some((path("pressure.boundary"), &spec.boundary, [0.0; 2], spec.value)),
+        LoadSpec::BodyForce(_) | LoadSpec::Force(_) => None,
     }
 }
 

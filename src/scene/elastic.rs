@@ -23,26 +23,38 @@ struct DescribedBody<'a> {
 }
 
 impl Scene {
-    /// All bodies of the scene in one.
-    pub(super) fn elastic_body(&self) -> Result<ElasticBody, Error> {
-        let first = DescribedBody { scene: self, spec: &self.body, material: &self.material, place: String::new() };
-        let mut body = first.elastic_body()?;
-        for (index, further) in self.further_bodies.iter().enumerate() {
-            let path = format!("further-bodies[{index}]");
-            let name = &further.name;
+    /// The bodies of the scene, each for itself.
+    pub(crate) fn bodies(&self) -> Result<Vec<ElasticBody>, Error> {
+        self.described().map(|described| described.elastic_body()).collect()
+    }
+
+    /// Bodies in the order of the scene in one.
+    pub(super) fn joined(&self, bodies: Vec<ElasticBody>) -> Result<ElasticBody, Error> {
+        let (mut bodies, mut described) = (bodies.into_iter(), self.described());
+        let (Some(mut joined), Some(_)) = (bodies.next(), described.next()) else {
+            return Err(wrong("body", "there is no body"));
+        };
+        let further = self.further_bodies.iter().zip(described).zip(bodies).enumerate();
+        for (index, ((spec, described), body)) in further {
+            let name = &spec.name;
             if name.is_empty() || self.further_bodies[..index].iter().any(|other| other.name == *name) {
                 let message = format!("`{name}` is not allowed: every further body needs a name of its own");
-                return Err(wrong(format!("{path}.name"), message));
+                return Err(wrong(format!("{}name", described.place), message));
             }
-            let described = DescribedBody {
-                scene: self,
-                spec: &further.body,
-                material: &further.material,
-                place: format!("{path}."),
-            };
-            body = body.beside(&described.elastic_body()?, name).map_err(|error| described.at_body(error))?;
+            joined = joined.beside(&body, name).map_err(|error| described.at_body(error))?;
         }
-        Ok(body)
+        Ok(joined)
+    }
+
+    fn described(&self) -> impl Iterator<Item = DescribedBody<'_>> {
+        let first = DescribedBody { scene: self, spec: &self.body, material: &self.material, place: String::new() };
+        let further = self.further_bodies.iter().enumerate().map(|(index, further)| DescribedBody {
+            scene: self,
+            spec: &further.body,
+            material: &further.material,
+            place: format!("further-bodies[{index}]."),
+        });
+        std::iter::once(first).chain(further)
     }
 }
 

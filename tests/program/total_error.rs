@@ -132,18 +132,19 @@ fn support(scene: &mut Value, further: Value) {
     scene["supports"].as_array_mut().unwrap().push(further);
 }
 
+/// The classical scene with a change, its error to be below 20 %.
+fn changed(change: &dyn Fn(&mut Value)) -> (i32, Value, String) {
+    let mut scene = classical(0.3);
+    change(&mut scene);
+    solved(&scene, &["--total-error", "0.2"])
+}
+
 #[test]
-fn what_has_no_guarantee_is_refused_with_its_reason() {
+fn what_has_no_guarantee_is_estimated_with_the_reason() {
     type Change = dyn Fn(&mut Value);
-    let changed = |change: &Change| {
-        let mut scene = classical(0.3);
-        change(&mut scene);
-        solved(&scene, &["--total-error", "1e-2"])
-    };
-    let cases: [(&Change, &str); 5] = [
-        (&|scene| scene["model"] = json!("axisymmetric"), "only plane strain and plane stress have one"),
+    let cases: [(&Change, &str); 4] = [
+        (&|scene| scene["model"] = json!("axisymmetric"), "model: an axisymmetric body has no guaranteed bound"),
         (&|scene| scene["obstacles"][0]["rule"] = json!("closest-point"), "rule `approach` has one"),
-        (&|scene| scene["loads"] = json!([{"force": {"at": [1, 0.5], "value": [1, 0]}}]), "a force at a point"),
         (&|scene| support(scene, json!({"on": {"point": [0, 0.5]}, "x": 0})), "a support at a point"),
         (
             &|scene| support(scene, json!({"on": {"boundary": "left"}, "normal": [1, 1]})),
@@ -152,8 +153,28 @@ fn what_has_no_guarantee_is_refused_with_its_reason() {
     ];
     for (change, reason) in cases {
         let (code, report, message) = changed(change);
-        assert!(code == 1 && report["total_error"] == Value::Null && message.contains(reason), "{code} {message}");
+        let error = &report["total_error"];
+        assert!(code == 0 && error["guaranteed"] == false && error["bound"].as_f64().unwrap() <= 0.2, "{message}");
+        assert!(report["reason"].as_str().unwrap().contains(reason), "{report}");
+        let levels = report["levels"].as_array().unwrap();
+        assert!(levels.len() > 1 && levels[0]["total_error"].as_f64().unwrap() > 0.2, "{report}");
+        // The answer is that of the last mesh.
+        assert_eq!(report["answer"]["model"]["dofs"], levels.last().unwrap()["dofs"]);
     }
+}
+
+#[test]
+fn what_has_no_total_error_is_refused_with_the_reason() {
+    let (code, report, message) =
+        changed(&|scene| scene["loads"] = json!([{"force": {"at": [1, 0.5], "value": [1, 0]}}]));
+    assert!(
+        code == 1 && report["total_error"] == Value::Null && message.contains("a force at a point"),
+        "{code} {message}"
+    );
+    let mut turned = classical(0.3);
+    turned["model"] = json!("axisymmetric");
+    let (code, _, message) = solved(&turned, &["--total-error", "0.1", "--force-error", "0.1"]);
+    assert!(code == 1 && message.contains("leave out --force-error"), "{message}");
     let mut two = classical(0.3);
     let plane =
         json!({"boundary": "left", "approach": "-x", "shape": {"plane": {"point": [-0.001, 0], "normal": [-1, 0]}}});
@@ -170,6 +191,58 @@ fn what_has_no_guarantee_is_refused_with_its_reason() {
     assert!(code == 2 && message.contains("cannot be used with"), "{message}");
     let (code, _, message) = solved(&classical(0.3), &["--force-error", "0.1"]);
     assert!(code == 2 && message.contains("--total-error"), "{message}");
+}
+
+/// A block of 1 x 1 x 0.5 in tetrahedra, clamped below, with a ball 0.01 deep in its top.
+fn block(cells: usize) -> Value {
+    let axis = |length: f64, divisions: usize| json!({"points": [0, length], "divisions": [divisions]});
+    json!({
+        "model": "space",
+        "body": {"box": {
+            "x": axis(1.0, 2 * cells), "y": axis(1.0, 2 * cells), "z": axis(0.5, cells), "element": "tet4"
+        }},
+        "material": {"young": 1e7, "poisson": 0.3},
+        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0, "z": 0}],
+        "obstacles": [{"boundary": "top", "approach": "+z", "shape": {"sphere": {"apex": [0.5, 0.5, 0.49], "radius": 1}}}]
+    })
+}
+
+/// Bisected tetrahedra take fewer unknowns than equal ones, stand where the contact is, and make a mesh that another scene can have.
+#[test]
+fn tetrahedra_follow_the_contact() {
+    let desk = Desk::new();
+    desk.write("scene.json", block(2).to_string());
+    let run = desk.run(&["solve", "scene.json", "--total-error", "0.2", "--format", "json", "--out", "out"]);
+    let found = run.ends_with(0).json();
+    let last = found["levels"].as_array().unwrap().last().unwrap().clone();
+    assert!(last["total_error"].as_f64().unwrap() <= 0.2 && last["energy_error_bound"].as_f64().unwrap() <= 0.02);
+    // With 1.5 times the unknowns and more, equal tetrahedra are farther off.
+    let (_, equal, _) = solved(&block(10), &[]);
+    assert!(equal["model"]["dofs"].as_f64().unwrap() > 1.5 * last["dofs"].as_f64().unwrap(), "{equal}");
+    assert!(equal["discretisation_error"].as_f64().unwrap() > 1.3 * last["total_error"].as_f64().unwrap(), "{equal}");
+
+    let mut again = block(2);
+    again["body"] = json!({"gmsh": {"file": "out/mesh.msh"}});
+    desk.write("again.json", again.to_string());
+    let again = desk.run(&["solve", "again.json", "--format", "json"]).ends_with(0).json();
+    assert_eq!(again["model"]["dofs"], last["dofs"]);
+    let [one, two] = [&again, &found["answer"]].map(|answer| answer["contact"]["force"].as_f64().unwrap());
+    assert!((one / two - 1.0).abs() < 0.02, "{one} {two}");
+    for name in ["meshes.csv", "total-error.png", "total-error.txt", "report.json", "u.mtx", "solution.vtu"] {
+        assert!(desk.path("out").join(name).exists(), "{name}");
+    }
+}
+
+#[test]
+fn a_file_of_other_elements_has_no_finer_mesh() {
+    let desk = Desk::new();
+    let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/meshes/box-hex8.msh");
+    desk.write("box.msh", std::fs::read(mesh).unwrap());
+    let mut scene = block(2);
+    scene["body"] = json!({"gmsh": {"file": "box.msh"}});
+    desk.write("scene.json", scene.to_string());
+    let run = desk.run(&["solve", "scene.json", "--total-error", "0.01"]);
+    assert!(run.code == 4 && run.stdout.contains("has no finer one"), "{} {}", run.stdout, run.stderr);
 }
 
 /// A short form of `cargo run --release --example guarantee`.

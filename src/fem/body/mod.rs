@@ -133,6 +133,16 @@ impl ElasticBody {
         Ok(self)
     }
 
+    /// The same single body on another mesh of its elements.
+    ///
+    /// # Errors
+    /// As [`ElasticBody::new`].
+    #[cfg(feature = "cli")]
+    pub(crate) fn on(&self, mesh: Mesh) -> Result<Self, Error> {
+        let material = *self.regions[0].material();
+        Self::new(mesh, material, self.formulation)?.with_integration(self.integration)
+    }
+
     /// The mesh.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh

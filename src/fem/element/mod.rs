@@ -56,6 +56,10 @@ impl ElementKind {
     #[cfg(feature = "cli")]
     pub(crate) const QUADRATIC_TRIANGLE: ElementKind = ElementKind::T6;
 
+    /// What is refined in space by bisection.
+    #[cfg(feature = "cli")]
+    pub(crate) const LINEAR_TETRAHEDRON: ElementKind = ElementKind::Tet4;
+
     /// All elements.
     pub const ALL: [ElementKind; 7] = [
         ElementKind::Line2,

@@ -1,6 +1,8 @@
 //! Meshes of one kind of element, in one, two or three dimensions: nodes, elements, named boundaries.
 
 mod axis;
+#[cfg(feature = "cli")]
+pub(crate) mod bisection;
 mod boundary;
 mod faces;
 pub mod gmsh;

@@ -19,37 +19,65 @@ use crate::fem::material::Lame;
 /// # Errors
 /// [`Error::Length`] where displacement or field do not belong to the body.
 pub fn discretisation_error(body: &ElasticBody, displacement: &[f64], field: &StressField) -> Result<f64, Error> {
-    body.check_nodal("nodal displacement", displacement.len())?;
-    let (found, expected) = (field.nodes.len(), body.mesh().nodes().len());
-    if found != expected {
-        return Err(Error::Length { name: "nodal stress", found, expected, of: "nodes" });
-    }
-    // The rule for bodies of revolution integrates the squares of linear differences too.
-    let table = Tabulated::new(body.mesh().kind().reference(), Rule::Revolved);
-    let standard = body.tabulated();
-    let (mut difference, mut whole) = (0.0, 0.0);
-    for BodyElement { nodes, cell, lame } in body.elements() {
-        let local = body.gather(displacement, nodes);
-        let mean = body.mean_dilatation(&cell, &standard, &local);
-        let mut recovered: PerNode<Symmetric> = [[0.0; 6]; MAX_NODES];
-        for (stress, &node) in recovered.iter_mut().zip(nodes) {
-            *stress = components(&field.nodes[node]);
+    Ok(EstimatedError::of(body, displacement, field)?.relative())
+}
+
+/// The estimate in the squares of its norms: twice an energy.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct EstimatedError {
+    /// `||sigma* - sigma_h||^2` on each element.
+    pub of_elements: Vec<f64>,
+    /// `||sigma_h||^2`.
+    pub whole: f64,
+}
+
+impl EstimatedError {
+    /// As [`discretisation_error`].
+    ///
+    /// # Errors
+    /// As [`discretisation_error`].
+    pub fn of(body: &ElasticBody, displacement: &[f64], field: &StressField) -> Result<Self, Error> {
+        body.check_nodal("nodal displacement", displacement.len())?;
+        let (found, expected) = (field.nodes.len(), body.mesh().nodes().len());
+        if found != expected {
+            return Err(Error::Length { name: "nodal stress", found, expected, of: "nodes" });
         }
-        let volume = cell.unit().powi(body.dimension() as i32);
-        for at in &table.points {
-            let point = body.point(&cell, at);
-            let strain = point.strain(&local, cell.unit());
-            let stress = body.stress(lame, &strain, mean.unwrap_or_else(|| trace(&strain)));
-            let mut away = stress;
-            for (share, of_node) in at.shape.iter().zip(&recovered) {
-                away.iter_mut().zip(of_node).for_each(|(entry, component)| *entry -= share * component);
+        // The rule for bodies of revolution integrates the squares of linear differences too.
+        let table = Tabulated::new(body.mesh().kind().reference(), Rule::Revolved);
+        let standard = body.tabulated();
+
+        let (mut of_elements, mut whole) = (Vec::with_capacity(body.mesh().element_count()), 0.0);
+        for BodyElement { nodes, cell, lame } in body.elements() {
+            let local = body.gather(displacement, nodes);
+            let mean = body.mean_dilatation(&cell, &standard, &local);
+            let mut recovered: PerNode<Symmetric> = [[0.0; 6]; MAX_NODES];
+            for (stress, &node) in recovered.iter_mut().zip(nodes) {
+                *stress = components(&field.nodes[node]);
             }
-            difference += volume * point.weight * complementary_energy(body.formulation(), lame, &away);
-            whole += volume * point.weight * complementary_energy(body.formulation(), lame, &stress);
+            let volume = cell.unit().powi(body.dimension() as i32);
+            let mut difference = 0.0;
+            for at in &table.points {
+                let point = body.point(&cell, at);
+                let strain = point.strain(&local, cell.unit());
+                let stress = body.stress(lame, &strain, mean.unwrap_or_else(|| trace(&strain)));
+                let mut away = stress;
+                for (share, of_node) in at.shape.iter().zip(&recovered) {
+                    away.iter_mut().zip(of_node).for_each(|(entry, component)| *entry -= share * component);
+                }
+                difference += volume * point.weight * complementary_energy(body.formulation(), lame, &away);
+                whole += volume * point.weight * complementary_energy(body.formulation(), lame, &stress);
+            }
+            of_elements.push(difference);
         }
+        Ok(EstimatedError { of_elements, whole })
     }
-    let total = whole + difference;
-    Ok(if total > 0.0 { (difference / total).sqrt() } else { 0.0 })
+
+    /// The error over the norm of the exact stress, both estimated.
+    pub fn relative(&self) -> f64 {
+        let difference: f64 = self.of_elements.iter().sum();
+        let total = self.whole + difference;
+        if total > 0.0 { (difference / total).sqrt() } else { 0.0 }
+    }
 }
 
 fn components(stress: &Stress) -> Symmetric {

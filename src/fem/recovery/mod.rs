@@ -1,6 +1,6 @@
 //! Stress recovery: at the centroids, and extrapolated to the nodes and averaged there; the error of the mesh from it.
 
-mod discretisation;
+pub(crate) mod discretisation;
 
 pub use discretisation::discretisation_error;
 

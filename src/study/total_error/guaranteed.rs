@@ -5,42 +5,15 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::Status;
+use super::goal::{Bound, Ended, TotalErrorGoal, marked, shortage};
 use crate::continuum::{Bracket, Judged, PlaneAnswer, PlaneProblem, Triangulation};
 use crate::error::Error;
 use crate::qp::{Method, Settings, solve};
 use crate::scene::{Answer, Model, Scene};
-
-/// The share of J - D that the refined triangles make together.
-///
-/// # Source
-/// W. Doerfler, "A convergent adaptive algorithm for Poisson's equation", SIAM J. Numer. Anal. 33 (1996) 1106-1124.
-const MARKED: f64 = 0.5;
+use crate::study::Status;
 
 /// The next mesh takes about as many times the seconds of this one.
 const GROWTH: f64 = 2.2;
-
-/// What is asked for.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(crate) struct TotalErrorGoal {
-    /// The most that |u - v| / |v| may be, in the energy norm.
-    pub total_error: f64,
-    /// The most that the force may be off, as half the width of its interval over the force.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub force_error: Option<f64>,
-}
-
-/// Why no finer mesh was made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum Ended {
-    /// The goal is met.
-    Goal,
-    /// The next mesh would have taken more time than was left.
-    Time,
-    /// The next mesh would have taken more memory than there is.
-    Memory,
-}
 
 /// One mesh on the way.
 #[derive(Clone, Debug, Serialize)]
@@ -65,15 +38,6 @@ pub(crate) struct TotalErrorLevel {
     /// Those of the displacement on this mesh, and those of the stress.
     pub displacement_seconds: f64,
     pub stress_seconds: f64,
-}
-
-/// The bound in reports.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(crate) struct Bound {
-    /// At least |u - v| / |v|.
-    pub bound: f64,
-    /// Whether that is proven, and not estimated.
-    pub guaranteed: bool,
 }
 
 /// The answer on the scene's own mesh, judged.
@@ -121,17 +85,17 @@ pub(crate) struct TotalError {
     pub meshes: Vec<Triangulation>,
 }
 
-/// Refines the mesh of a plane scene until its total error is as small as asked for, or time or memory end.
+/// Refines the mesh of a plane problem until its total error is as small as asked for, or time or memory end.
 ///
 /// # Errors
-/// [`Error::Scene`] for what has no guaranteed bound; those of [`crate::solve`] on the first mesh.
-pub(crate) fn total_error(
-    scene: &Scene,
+/// Those of [`crate::solve`] on the first mesh; [`Error::Scene`] for a bound of the force before obstacles of several directions.
+pub(super) fn total_error(
+    problem: &PlaneProblem,
+    mesh: Triangulation,
     model: &Arc<Model>,
     goal: TotalErrorGoal,
     settings: &Settings,
 ) -> Result<TotalError, Error> {
-    let (problem, mesh) = scene.plane_problem(model)?;
     if goal.force_error.is_some() && !problem.has_one_direction() {
         let message =
             "the contact force has a guaranteed interval only if all obstacles lie in one direction from the body";
@@ -139,13 +103,8 @@ pub(crate) fn total_error(
     }
     // A stress in balance comes from a linear solve with a settled contact set, and from nothing less.
     let method = if settings.method == Method::Auto { Method::ActiveSet } else { settings.method };
-    let search = Search {
-        problem: &problem,
-        model,
-        goal,
-        settings: Settings { method, ..settings.clone() },
-        clock: Instant::now(),
-    };
+    let search =
+        Search { problem, model, goal, settings: Settings { method, ..settings.clone() }, clock: Instant::now() };
     search.run(mesh)
 }
 
@@ -189,7 +148,7 @@ impl Search<'_> {
             if is_met {
                 break;
             }
-            let finer = mesh.refined(&marked(&bracket.shares, MARKED));
+            let finer = mesh.refined(&marked(&bracket.shares));
             if is_late {
                 (ended, next_triangles) = (Ended::Time, Some(finer.triangles.len()));
                 break;
@@ -275,31 +234,6 @@ pub(crate) fn half_width(level: &TotalErrorLevel) -> Option<f64> {
     Some(if high > low { (high - low) / 2.0 / level.contact_force.abs() } else { 0.0 })
 }
 
-/// What an error says is short.
-fn shortage(error: &Error) -> Option<Ended> {
-    match error {
-        Error::OutOfTime { .. } | Error::Interrupted => Some(Ended::Time),
-        Error::NoRoom { .. } | Error::TooLarge { .. } => Some(Ended::Memory),
-        _ => None,
-    }
-}
-
-/// The fewest triangles that make a share of the whole.
-fn marked(shares: &[f64], share: f64) -> Vec<bool> {
-    let mut order: Vec<usize> = (0..shares.len()).collect();
-    order.sort_by(|&a, &b| shares[b].total_cmp(&shares[a]));
-    let wanted = share * shares.iter().sum::<f64>();
-    let (mut sum, mut marked) = (0.0, vec![false; shares.len()]);
-    for index in order {
-        if sum >= wanted {
-            break;
-        }
-        marked[index] = true;
-        sum += shares[index];
-    }
-    marked
-}
-
 /// What a study of the guarantee looks at: one mesh of several.
 #[derive(Clone, Debug)]
 pub struct Examined {
@@ -342,20 +276,8 @@ pub fn examined(scene: &Scene, levels: usize) -> Result<Vec<Examined>, Error> {
             dofs: bracket.primal.unknowns.free(),
         });
         if level < levels {
-            mesh = mesh.refined(&marked(&bracket.shares, MARKED));
+            mesh = mesh.refined(&marked(&bracket.shares));
         }
     }
     Ok(found)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_fewest_triangles_make_half_of_the_whole() {
-        assert_eq!(marked(&[1.0, 4.0, 2.0, 1.0], 0.5), [false, true, false, false]);
-        assert_eq!(marked(&[1.0, 3.0, 2.0, 2.0], 0.6), [false, true, true, false]);
-        assert_eq!(marked(&[0.0, 0.0], 0.5), [false, false]);
-    }
 }

@@ -1,0 +1,112 @@
+//! An answer with its estimated total error: report, meshes, fields and pictures.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use super::msh::msh;
+use super::report::{columns, entry, plural, printable, solve_text, wrapped};
+use super::total_error::{percent, verdict};
+use super::{Drawing, Plot, Quantity, Scale, Series, line_plots, write_files, write_picture};
+use crate::error::Error;
+use crate::scene::Units;
+use crate::study::Summary;
+use crate::study::total_error::{Ended, Estimated, EstimatedLevel};
+
+/// The report: how the mesh came about, then the answer on it.
+pub(crate) fn estimated_error_text(title: &str, found: &Estimated, answer: &Summary, units: &Units) -> String {
+    let mut text = format!("{}\n", printable(title));
+    let (error, goal) = (found.total_error.bound, found.goal.total_error);
+    text += &entry("total error", &format!("estimated {}, {}", percent(error), verdict(error, goal)));
+    text += &entry("", "of the displacement, against the continuum, in the energy norm");
+    for (number, line) in wrapped(&format!("no guarantee: {}", found.reason)).iter().enumerate() {
+        text += &entry("", if number == 0 { line.clone() } else { format!("  {line}") }.as_str());
+    }
+    if let Some(last) = found.levels.last() {
+        let meshes = plural(found.levels.len(), "mesh").replace("meshs", "meshes");
+        text += &entry("mesh", &format!("{meshes}; the last: {} elements, {} unknowns", last.elements, last.dofs));
+    }
+    match found.ended {
+        Ended::Goal => {}
+        Ended::Time => text += &entry("ended", &format!("no time for a finer mesh; {}", needed(found))),
+        Ended::Memory => text += &entry("ended", &format!("no memory for a finer mesh; {}", needed(found))),
+        Ended::Mesh => text += &entry("ended", "the mesh of a file has no finer one; mesh the body with smaller cells"),
+    }
+    text += &entry("seconds", &format!("{:.3}", found.seconds));
+    text.push('\n');
+    let heading = ["elements", "unknowns", "rows", "method", "total error", "of the algebra", "force", "seconds"];
+    let mut table = vec![heading.map(String::from).to_vec()];
+    table.extend(found.levels.iter().map(row));
+    for line in columns(&table).lines() {
+        let _ = writeln!(text, "  {line}");
+    }
+    text.push('\n');
+    text + &solve_text(&format!("The answer on the last mesh: {title}"), answer, units)
+}
+
+fn row(level: &EstimatedLevel) -> Vec<String> {
+    vec![
+        level.elements.to_string(),
+        level.dofs.to_string(),
+        level.contact_rows.to_string(),
+        level.method.clone(),
+        format!("{:.2e}", level.total_error),
+        format!("{:.1e}", level.energy_error_bound),
+        format!("{:.6e}", level.contact_force),
+        format!("{:.3}", level.seconds),
+    ]
+}
+
+/// What the goal would take, from the rate of the last meshes.
+fn needed(found: &Estimated) -> String {
+    let [.., before, last] = &found.levels[..] else { return "a second mesh would tell what the goal takes".into() };
+    let rate = (before.total_error / last.total_error).ln() / (last.dofs as f64 / before.dofs as f64).ln();
+    super::total_error::unknowns_needed(rate, last.total_error / found.goal.total_error, last.dofs)
+}
+
+/// Leaves the last mesh, the table of meshes and the plot of the errors in a folder.
+pub(crate) fn write_estimated_error(folder: &Path, title: &str, found: &Estimated) -> Result<(), Error> {
+    let body = found.answer.model().body();
+    let bodies: Vec<_> = body
+        .regions()
+        .iter()
+        .map(|region| (if region.name().is_empty() { "body" } else { region.name() }, region.elements()))
+        .collect();
+    write_files(folder, &[("mesh.msh", &msh(body.mesh(), &bodies)), ("meshes.csv", &csv(found))])?;
+    write_picture(folder, "total-error", &plot(title, found))?;
+    Ok(())
+}
+
+fn csv(found: &Estimated) -> String {
+    let mut text = String::from(
+        "elements,dofs,contact_rows,method,discretisation_error,energy_error_bound,total_error,contact_force,seconds\n",
+    );
+    for level in &found.levels {
+        let EstimatedLevel {
+            elements,
+            dofs,
+            contact_rows,
+            method,
+            discretisation_error,
+            energy_error_bound,
+            total_error,
+            contact_force,
+            seconds,
+        } = level;
+        let _ = writeln!(
+            text,
+            "{elements},{dofs},{contact_rows},{method},{discretisation_error},{energy_error_bound},{total_error},\
+             {contact_force},{seconds}"
+        );
+    }
+    text
+}
+
+/// The errors over the unknowns.
+fn plot(title: &str, found: &Estimated) -> Drawing {
+    let line = |name: &str, value: &dyn Fn(&EstimatedLevel) -> f64| {
+        Series::new(name, found.levels.iter().map(|level| [level.dofs as f64, value(level)]).collect())
+    };
+    let series = vec![line("estimated", &|level| level.total_error), line("asked for", &|_| found.goal.total_error)];
+    let (x, y) = (Quantity::new("unknowns", ""), Quantity::new("total error, relative", ""));
+    line_plots(title, &[Plot { scales: [Scale::Logarithmic; 2], ..Plot::new(x, y, series) }])
+}

@@ -1,0 +1,46 @@
+//! A mesh as a file of Gmsh, format 2.2, which a scene can name as its body.
+
+use std::fmt::Write as _;
+use std::ops::Range;
+
+use crate::fem::Mesh;
+
+/// The file of a mesh whose bodies are these ranges of elements, each with its name; boundaries keep theirs.
+pub(super) fn msh(mesh: &Mesh, bodies: &[(&str, Range<usize>)]) -> String {
+    let dimension = mesh.dimension();
+    let mut text = String::from("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n");
+    let _ = writeln!(text, "{}", mesh.boundaries().len() + bodies.len());
+    for (index, boundary) in mesh.boundaries().iter().enumerate() {
+        let _ = writeln!(text, "{} {} \"{}\"", dimension - 1, index + 1, boundary.name);
+    }
+    let first = mesh.boundaries().len() + 1;
+    for (index, (name, _)) in bodies.iter().enumerate() {
+        let _ = writeln!(text, "{dimension} {} \"{name}\"", first + index);
+    }
+    let _ = writeln!(text, "$EndPhysicalNames\n$Nodes\n{}", mesh.nodes().len());
+    for (number, [x, y, z]) in mesh.nodes().iter().enumerate() {
+        let _ = writeln!(text, "{} {x} {y} {z}", number + 1);
+    }
+    let facets: usize = mesh.boundaries().iter().map(|boundary| boundary.facet_count()).sum();
+    let _ = writeln!(text, "$EndNodes\n$Elements\n{}", facets + mesh.element_count());
+    let mut number = 0;
+    let mut line = |kind: usize, group: usize, nodes: &[usize]| {
+        number += 1;
+        let _ = write!(text, "{number} {kind} 2 {group} {group}");
+        nodes.iter().for_each(|node| {
+            let _ = write!(text, " {}", node + 1);
+        });
+        text.push('\n');
+    };
+    for (index, boundary) in mesh.boundaries().iter().enumerate() {
+        let kind = boundary.kind.reference().gmsh;
+        boundary.facets().for_each(|facet| line(kind, index + 1, facet));
+    }
+    let kind = mesh.kind().reference().gmsh;
+    for (element, nodes) in mesh.elements().enumerate() {
+        let body = bodies.iter().position(|(_, elements)| elements.contains(&element)).unwrap_or(0);
+        line(kind, first + body, nodes);
+    }
+    text += "$EndElements\n";
+    text
+}

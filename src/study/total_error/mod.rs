@@ -1,0 +1,53 @@
+//! The mesh refined until the error against the continuum is as small as asked for: guaranteed in the plane, estimated elsewhere.
+
+mod estimated;
+mod goal;
+mod guaranteed;
+
+pub(crate) use estimated::{Estimated, EstimatedLevel};
+pub(crate) use goal::{Ended, TotalErrorGoal};
+pub use guaranteed::{Examined, examined};
+pub(crate) use guaranteed::{TotalError, TotalErrorLevel, half_width};
+
+use std::sync::Arc;
+
+use crate::error::Error;
+use crate::qp::Settings;
+use crate::scene::{Model, Scene};
+
+/// An answer and what is known of its total error.
+pub(crate) enum Found {
+    /// A bound that is proven.
+    Guaranteed(Box<TotalError>),
+    /// An estimate.
+    Estimated(Box<Estimated>),
+}
+
+/// Refines the mesh of a scene, whose model this is, until its total error is as small as asked for, or time or memory end.
+///
+/// # Errors
+/// [`Error::Scene`] for a scene that has no answer in the continuum, and for a bound of the force without a guarantee; those of
+/// [`crate::solve`] on the first mesh.
+pub(crate) fn total_error(
+    scene: &Scene,
+    model: &Arc<Model>,
+    goal: TotalErrorGoal,
+    settings: &Settings,
+) -> Result<Found, Error> {
+    scene.check_continuum()?;
+    match scene.plane_problem(model) {
+        Ok((problem, mesh)) => {
+            let found = guaranteed::total_error(&problem, mesh, model, goal, settings)?;
+            Ok(Found::Guaranteed(Box::new(found)))
+        }
+        Err(Error::Scene { path, message }) if goal.force_error.is_some() => {
+            let message = format!("{message}; without one no bound of the force is known: leave out --force-error");
+            Err(Error::Scene { path, message })
+        }
+        Err(Error::Scene { path, message }) => {
+            let found = estimated::total_error(scene, model, goal, format!("{path}: {message}"), settings)?;
+            Ok(Found::Estimated(Box::new(found)))
+        }
+        Err(other) => Err(other),
+    }
+}
