@@ -86,13 +86,12 @@ impl Bracket<'_> {
             }
             worst = worst.max(self.divergence(triangle));
         }
-        for (_, _, edge, condition) in self.mesh.outline() {
+        for (triangle, local, edge, condition) in self.mesh.outline() {
             let condition = &self.problem.conditions[condition];
+            let pull = condition.pull(outward(self.mesh.corners(triangle), local).0);
             for axis in 0..2 {
                 let free = condition.held[axis].is_none();
-                left[edge]
-                    .iter_mut()
-                    .for_each(|end| end[axis] = if free { end[axis] - condition.traction[axis] } else { 0.0 });
+                left[edge].iter_mut().for_each(|end| end[axis] = if free { end[axis] - pull[axis] } else { 0.0 });
             }
         }
         for (row, place) in self.places.iter().enumerate() {
@@ -203,7 +202,7 @@ mod tests {
             held,
             traction,
             obstacles,
-            boundaries: Vec::new(),
+            ..Condition::default()
         };
         let problem = PlaneProblem {
             lame: Lame { lambda: 1.5, mu: 1.0 },
@@ -222,7 +221,7 @@ mod tests {
         let nodes = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         let mut mesh = Triangulation::new(nodes, vec![[0, 1, 2], [0, 2, 3]], vec![0, 0], &outline).unwrap();
         for _ in 0..2 {
-            mesh = mesh.refined(&vec![true; mesh.triangles.len()]);
+            mesh = problem.refined(&mesh, &vec![true; mesh.triangles.len()]);
         }
         (problem, mesh)
     }

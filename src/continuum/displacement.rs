@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use super::problem::{Condition, PlaneProblem, Tensor, work};
 use super::system::{Block, LOCAL, Row, Unknowns};
-use super::triangulation::{Point, Triangulation, distance, twice_area};
+use super::triangulation::{Point, Triangulation, distance, outward, twice_area};
 use crate::error::Error;
 
 /// The middles of the sides of a triangle: the mean of a quadratic function at these is its mean.
@@ -123,8 +123,9 @@ impl<'a> Displacements<'a> {
                 .enumerate()
                 .for_each(|(place, &number)| load[number] += share * problem.body_force[place % 2]);
         }
-        for (_, _, edge, condition) in mesh.outline() {
-            let Condition { held, traction, .. } = &problem.conditions[condition];
+        for (triangle, local, edge, condition) in mesh.outline() {
+            let condition = &problem.conditions[condition];
+            let (held, traction) = (condition.held, condition.pull(outward(mesh.corners(triangle), local).0));
             let [from, to] = mesh.edges[edge].map(|node| mesh.nodes[node]);
             let share = problem.thickness * distance(from, to) / 3.0;
             for axis in (0..2).filter(|&axis| held[axis].is_none()) {

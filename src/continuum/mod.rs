@@ -16,5 +16,5 @@ mod triangulation;
 pub use answer::PlaneAnswer;
 pub use bound::Bracket;
 pub use judge::Judged;
-pub use problem::{Condition, Distance, Enclosure, Facing, PlaneProblem};
+pub use problem::{Circle, Condition, Distance, Enclosure, Facing, PlaneProblem};
 pub use triangulation::{Point, Triangulation};

@@ -3,7 +3,7 @@
 use std::fmt::Debug;
 use std::sync::Arc;
 
-use super::triangulation::Point;
+use super::triangulation::{Point, Triangulation, distance};
 use crate::fem::material::Lame;
 
 /// Frictionless contact of an elastic body that fills a polygon, in plane strain or plane stress.
@@ -30,10 +30,30 @@ pub struct Condition {
     pub held: [Option<f64>; 2],
     /// The traction along each axis, in force per area; along one that is held it does no work that matters, and is not used.
     pub traction: Point,
+    /// The pressure against the outward normal, in force per area.
+    pub pressure: f64,
     /// The obstacles that it may touch.
     pub obstacles: Vec<usize>,
     /// The named parts of the outline that it belongs to.
     pub boundaries: Vec<usize>,
+    /// The circle on which new nodes are set; they halve the straight side if there is none.
+    pub circle: Option<Circle>,
+}
+
+/// A circle that a side stands for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Circle {
+    /// Its centre.
+    pub centre: Point,
+    /// Its radius, in length.
+    pub radius: f64,
+}
+
+impl Condition {
+    /// Traction and pressure on a side with this outward unit normal, in force per area.
+    pub fn pull(&self, normal: Point) -> Point {
+        [0, 1].map(|axis| self.traction[axis] - self.pressure * normal[axis])
+    }
 }
 
 /// A rigid obstacle whose rows lie along one axis.
@@ -88,6 +108,24 @@ impl Enclosure {
 pub type Tensor = [f64; 3];
 
 impl PlaneProblem {
+    /// Returns `true` if the polygon follows a circle more closely with each mesh.
+    pub fn has_circles(&self) -> bool {
+        self.conditions.iter().any(|condition| condition.circle.is_some())
+    }
+
+    /// The mesh in which the marked triangles are refined; new nodes of sides that stand for circles lie on these, unless a triangle
+    /// would fold.
+    pub fn refined(&self, mesh: &Triangulation, marked: &[bool]) -> Triangulation {
+        let finer = mesh.refined(marked, |condition, middle| match self.conditions[condition].circle {
+            Some(Circle { centre, radius }) => {
+                let away = distance(centre, middle);
+                [0, 1].map(|axis| centre[axis] + (middle[axis] - centre[axis]) * radius / away)
+            }
+            None => middle,
+        });
+        if finer.is_folded() { mesh.refined(marked, |_, middle| middle) } else { finer }
+    }
+
     /// Do all obstacles lie in one direction from the body?
     pub fn has_one_direction(&self) -> bool {
         let mut directions = self.obstacles.iter().map(|facing| (facing.axis, facing.sense));

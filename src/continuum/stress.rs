@@ -4,9 +4,9 @@
 //! traction, so that a row of the balance is one of tractions at that end, and a contact row bounds one unknown.
 
 use super::johnson_mercier::{Element, PartStress};
-use super::problem::{Condition, PlaneProblem};
+use super::problem::PlaneProblem;
 use super::system::{Block, LOCAL, Row, Unknowns};
-use super::triangulation::{Triangulation, distance};
+use super::triangulation::{Triangulation, distance, outward};
 
 /// Stresses on a mesh.
 #[derive(Debug)]
@@ -101,8 +101,8 @@ impl<'a> Stresses<'a> {
         for (numbers, element) in self.numbers.iter().zip(&self.elements) {
             numbers.iter().zip(element.load()).for_each(|(&number, part)| load[number] += part);
         }
-        for (_, _, edge, condition) in mesh.outline() {
-            let Condition { traction, .. } = &problem.conditions[condition];
+        for (triangle, local, edge, condition) in mesh.outline() {
+            let traction = problem.conditions[condition].pull(outward(mesh.corners(triangle), local).0);
             let share = self.half_area(edge);
             for axis in 0..2 {
                 (0..2).for_each(|end| load[unknown(edge, end, axis)] += share * traction[axis]);

@@ -22,6 +22,9 @@ pub struct Triangulation {
     pub conditions: Vec<Option<usize>>,
 }
 
+/// Twice the area of a triangle over the square of its longest side, below which it is flat.
+const FLAT: f64 = 1e-3;
+
 /// What tells an edge: its two nodes, increasing.
 fn key(a: usize, b: usize) -> [usize; 2] {
     [a.min(b), a.max(b)]
@@ -68,6 +71,16 @@ impl Triangulation {
         Triangulation { nodes, triangles, edges, sides, origins, conditions }
     }
 
+    /// Has a triangle no area, or its corners clockwise?
+    pub fn is_folded(&self) -> bool {
+        // Of the square of its longest side: what is less is rounding of zero.
+        let share = |corners: [Point; 3]| {
+            let longest = (0..3).map(|local| outward(corners, local).1).fold(0.0, f64::max);
+            twice_area(corners) / longest.powi(2)
+        };
+        (0..self.triangles.len()).any(|triangle| share(self.corners(triangle)) <= FLAT)
+    }
+
     /// The corners of a triangle.
     pub fn corners(&self, triangle: usize) -> [Point; 3] {
         self.triangles[triangle].map(|node| self.nodes[node])
@@ -85,8 +98,9 @@ impl Triangulation {
     }
 
     /// The mesh in which every edge of the marked triangles is halved, and what else that takes. The outline keeps its conditions,
-    /// and no angle becomes smaller than the fourfold bisection of the first mesh makes it.
-    pub fn refined(&self, marked: &[bool]) -> Self {
+    /// and no angle becomes smaller than the fourfold bisection of the first mesh makes it. `placed` moves the middle of a side of the
+    /// outline, given the number of its condition.
+    pub fn refined(&self, marked: &[bool], placed: impl Fn(usize, Point) -> Point) -> Self {
         let mut halved = vec![false; self.edges.len()];
         for (sides, _) in self.sides.iter().zip(marked).filter(|entry| *entry.1) {
             sides.iter().for_each(|&edge| halved[edge] = true);
@@ -106,7 +120,8 @@ impl Triangulation {
         for (edge, &[a, b]) in self.edges.iter().enumerate() {
             let ends: &[[usize; 2]] = if halved[edge] {
                 let [from, to] = [self.nodes[a], self.nodes[b]];
-                nodes.push([0, 1].map(|axis| (from[axis] + to[axis]) / 2.0));
+                let half = [0, 1].map(|axis| (from[axis] + to[axis]) / 2.0);
+                nodes.push(self.conditions[edge].map_or(half, |condition| placed(condition, half)));
                 middle.insert([a, b], nodes.len() - 1);
                 &[key(a, nodes.len() - 1), key(b, nodes.len() - 1)]
             } else {
@@ -164,7 +179,7 @@ mod tests {
         let mut mesh = square();
         for step in 0..6 {
             let marked: Vec<bool> = (0..mesh.triangles.len()).map(|index| index % 3 == step % 3).collect();
-            mesh = mesh.refined(&marked);
+            mesh = mesh.refined(&marked, |_, middle| middle);
             let area: f64 = (0..mesh.triangles.len()).map(|index| twice_area(mesh.corners(index)) / 2.0).sum();
             // Every coordinate is a short binary fraction: nothing is rounded.
             assert_eq!(area, 1.0);
@@ -193,7 +208,7 @@ mod tests {
         let mut mesh = square();
         for _ in 0..8 {
             let marked: Vec<bool> = mesh.triangles.iter().map(|nodes| nodes.contains(&0)).collect();
-            mesh = mesh.refined(&marked);
+            mesh = mesh.refined(&marked, |_, middle| middle);
         }
         for index in 0..mesh.triangles.len() {
             let corners = mesh.corners(index);

@@ -16,7 +16,7 @@ use crate::continuum::PlaneAnswer;
 use crate::error::Error;
 use crate::fem::{Boundary, ElementKind, Mesh};
 use crate::scene::Units;
-use crate::study::total_error::{Ended, TotalError, TotalErrorLevel, half_width};
+use crate::study::total_error::{Domain, Ended, TotalError, TotalErrorLevel, half_width};
 
 /// Panels of the picture of meshes: the first, the last, and some between.
 const PANELS: usize = 4;
@@ -51,7 +51,11 @@ pub(crate) fn total_error_text(title: &str, found: &TotalError, units: &Units) -
         text += &entry("", &format!("(estimated {})", percent(own.estimated)));
     }
     text += &entry("check", &format!("balance, signs, distances and energies agree to {:.1e}", found.defect));
-    text += &entry("domain", "the polygon of the first mesh: a curved side is that of its straight edges");
+    let domain = match found.domain {
+        Domain::FirstPolygon => "the polygon of the first mesh: a curved side is that of its straight edges",
+        Domain::LastPolygon => "the polygon of the last mesh: its nodes lie on the circles of the body",
+    };
+    text += &entry("domain", domain);
     let next =
         found.next_triangles.map_or(String::new(), |count| format!(" a mesh of {count} triangles would come next;"));
     match found.ended {

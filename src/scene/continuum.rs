@@ -6,7 +6,7 @@ use super::Model;
 use super::entry::wrong;
 use super::obstacle::PlacedObstacle;
 use super::schema::{LoadSpec, Place, Rule, Scene};
-use crate::continuum::{Condition, Distance, Enclosure, Facing, PlaneProblem, Point, Triangulation};
+use crate::continuum::{Circle, Condition, Distance, Enclosure, Facing, PlaneProblem, Point, Triangulation};
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
 use crate::fem::mesh::Mesh;
@@ -102,26 +102,25 @@ impl Scene {
                     return Err(wrong(format!("supports[{index}].normal"), message));
                 };
                 let value = component.value * component.direction[axis];
-                outline.change(&format!("{path}.boundary"), name, |condition, _| condition.held[axis] = Some(value))?;
+                outline.change(&format!("{path}.boundary"), name, |condition| condition.held[axis] = Some(value))?;
             }
         }
         for (index, load) in self.loads.iter().enumerate() {
             let Some((path, boundary, traction, pressure)) = spread(index, load) else { continue };
-            outline.change(&path, boundary, |condition, normal| {
-                (0..2).for_each(|axis| condition.traction[axis] += traction[axis] - pressure * normal[axis]);
+            outline.change(&path, boundary, |condition| {
+                (0..2).for_each(|axis| condition.traction[axis] += traction[axis]);
+                condition.pressure += pressure;
             })?;
         }
         for (index, obstacle) in model.obstacles().iter().enumerate() {
             let path = format!("obstacles[{index}].boundary");
-            outline.change(&path, obstacle.boundary(), |condition, _| condition.obstacles.push(index))?;
+            outline.change(&path, obstacle.boundary(), |condition| condition.obstacles.push(index))?;
         }
         for (index, boundary) in model.mesh().boundaries().iter().enumerate() {
-            for edge in pieces.edges_of(model.mesh(), &boundary.name) {
-                // One that runs through the body is no part of the outline.
-                if let Some((_, condition)) = outline.edges.get_mut(&edge) {
-                    condition.boundaries.push(index);
-                }
-            }
+            outline.change_outer(&boundary.name, |condition| condition.boundaries.push(index));
+        }
+        for (name, centre, radius) in self.body.shape().circles() {
+            outline.change_outer(name, |condition| condition.circle = Some(Circle { centre, radius }));
         }
         Ok(outline.numbered(conditions))
     }
@@ -140,43 +139,42 @@ fn spread(index: usize, load: &LoadSpec) -> Option<(String, &str, Point, f64)> {
     }
 }
 
-/// The edges of one triangle alone, by their nodes, increasing: the outward normal and the condition of each.
+/// The edges of one triangle alone, by their nodes, increasing, and the condition of each.
 struct Outline<'a> {
     mesh: &'a Mesh,
     pieces: &'a TrianglePieces,
-    edges: BTreeMap<[usize; 2], (Point, Condition)>,
+    edges: BTreeMap<[usize; 2], Condition>,
 }
 
 impl<'a> Outline<'a> {
     fn of(mesh: &'a Mesh, pieces: &'a TrianglePieces) -> Self {
-        let mut sides: BTreeMap<[usize; 2], Vec<[usize; 2]>> = BTreeMap::new();
+        let mut triangles_at: BTreeMap<[usize; 2], usize> = BTreeMap::new();
         for &[a, b, c] in &pieces.triangles {
             for [from, to] in [[a, b], [b, c], [c, a]] {
-                sides.entry([from.min(to), from.max(to)]).or_default().push([from, to]);
+                *triangles_at.entry([from.min(to), from.max(to)]).or_default() += 1;
             }
         }
-        let normal = |side: [usize; 2]| {
-            let [from, to] = side.map(|node| pieces.nodes[node]);
-            let length = (to[0] - from[0]).hypot(to[1] - from[1]);
-            [(to[1] - from[1]) / length, (from[0] - to[0]) / length]
-        };
-        let outer = sides.into_iter().filter_map(|(edge, of_edge)| match of_edge[..] {
-            [side] => Some((edge, (normal(side), Condition::default()))),
-            _ => None,
-        });
-        Outline { mesh, pieces, edges: outer.collect() }
+        let outer = triangles_at.into_iter().filter(|entry| entry.1 == 1);
+        Outline { mesh, pieces, edges: outer.map(|(edge, _)| (edge, Condition::default())).collect() }
     }
 
-    /// Changes the condition, given the outward normal, on each edge of a boundary that stands at a JSON path.
-    fn change(&mut self, path: &str, name: &str, change: impl Fn(&mut Condition, Point)) -> Result<(), Error> {
+    /// Changes the condition on each edge of a boundary that stands at a JSON path.
+    fn change(&mut self, path: &str, name: &str, change: impl Fn(&mut Condition)) -> Result<(), Error> {
         for edge in self.pieces.edges_of(self.mesh, name) {
-            let Some((normal, condition)) = self.edges.get_mut(&edge) else {
+            let Some(condition) = self.edges.get_mut(&edge) else {
                 let message = format!("`{name}` runs through the body, so that there is no guaranteed bound");
                 return Err(wrong(path, message));
             };
-            change(condition, *normal);
+            change(condition);
         }
         Ok(())
+    }
+
+    /// Changes what of a boundary belongs to the outline.
+    fn change_outer(&mut self, name: &str, change: impl Fn(&mut Condition)) {
+        for edge in self.pieces.edges_of(self.mesh, name) {
+            self.edges.get_mut(&edge).into_iter().for_each(&change);
+        }
     }
 
     /// The number of the condition of each edge; equal ones have one number.
@@ -187,7 +185,7 @@ impl<'a> Outline<'a> {
                 conditions.len() - 1
             })
         };
-        self.edges.into_iter().map(|(edge, (_, condition))| (edge, number(condition))).collect()
+        self.edges.into_iter().map(|(edge, condition)| (edge, number(condition))).collect()
     }
 }
 

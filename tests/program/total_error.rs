@@ -101,6 +101,63 @@ fn quadratic_triangles_of_a_file_with_a_curved_side_have_a_bound() {
     assert!(intervals.last().unwrap() <= &0.05, "{intervals:?}");
 }
 
+/// Half a disc of radius 1 in triangles, its flat side clamped, pressed 0.02 into a plane.
+fn half_disc(divisions: usize, growth: f64) -> Value {
+    json!({
+        "body": {"half-disc": {
+            "centre": [0, 1], "radius": 1, "element": "t3",
+            "zone": {"width": 0.2, "divisions": divisions, "growth": growth}
+        }},
+        "material": {"young": 1, "poisson": 0.3},
+        "supports": [{"on": {"boundary": "cut"}, "x": 0, "y": 0}],
+        "obstacles": [{"boundary": "arc", "approach": "-y", "shape": {"plane": {"point": [0, 0.02], "normal": [0, -1]}}}]
+    })
+}
+
+/// New nodes go onto the circle: the force is that of the disc, whatever the first mesh is.
+#[test]
+fn nodes_on_known_circles_follow_them() {
+    let forces = [half_disc(2, 2.0), half_disc(8, 1.4)].map(|scene| {
+        let (code, report, message) = solved(&scene, &["--total-error", "0.02"]);
+        assert!(code == 0 && report["domain"] == "last-polygon", "{message}");
+        report["contact_force"].as_f64().unwrap()
+    });
+    // Polygons of 16 and of 60 sides are farther apart.
+    assert!((forces[0] / forces[1] - 1.0).abs() < 2e-3, "{forces:?}");
+    let desk = Desk::new();
+    desk.write("scene.json", half_disc(2, 2.0).to_string());
+    desk.run(&["solve", "scene.json", "--total-error", "0.02", "--out", "out"]).ends_with(0);
+    let mut again = half_disc(2, 2.0);
+    again["body"] = json!({"gmsh": {"file": "out/mesh.msh"}});
+    desk.write("again.json", again.to_string());
+    let again = desk.run(&["solve", "again.json", "--format", "json"]).ends_with(0).json();
+    let force = again["contact"]["force"].as_f64().unwrap();
+    assert!((force / forces[0] - 1.0).abs() < 1e-2, "{force}");
+}
+
+/// Lame's quarter of a ring of radii 1 and 2 under pressure inside, its outside before a plane that it does not reach: half the work
+/// of the pressure is the energy.
+#[test]
+fn a_pressed_ring_has_the_energy_of_lame() {
+    let scene = json!({
+        "body": {"ring": {
+            "radius": {"points": [1, 2], "divisions": [2]}, "angle": {"points": [0, 90], "divisions": [2]}, "element": "q4"
+        }},
+        "material": {"young": 100, "poisson": 0.3},
+        "supports": [{"on": {"boundary": "start"}, "y": 0}, {"on": {"boundary": "end"}, "x": 0}],
+        "loads": [{"pressure": {"boundary": "inner", "value": 1}}],
+        "obstacles": [{"boundary": "outer", "approach": "+x", "shape": {"plane": {"point": [3, 0], "normal": [1, 0]}}}]
+    });
+    let (code, report, message) = solved(&scene, &["--total-error", "5e-3"]);
+    assert_eq!(code, 0, "{message}");
+    let moved = 1.3 / 100.0 / 3.0 * (0.4 + 4.0);
+    let exact = -0.5 * moved * std::f64::consts::FRAC_PI_2;
+    let [low, high] = [0, 1].map(|end| report["potential_energy"][end].as_f64().unwrap());
+    // Polygons of some hundred sides are 1e-4 off in energy.
+    assert!(low < high && low / exact < 1.0005 && high / exact > 0.9995, "{low} {exact} {high}");
+    assert!((high / exact - 1.0).abs() < 5e-4, "{low} {exact} {high}");
+}
+
 #[test]
 fn a_body_that_moves_far_is_bounded_by_its_own_strain() {
     // The same block, its bottom moved by 100 and the parabola with it: the strain is 1e-4 of the displacement.

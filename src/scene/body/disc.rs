@@ -49,6 +49,11 @@ impl BodyShape for DiscSpec {
         self.integration
     }
 
+    #[cfg(feature = "cli")]
+    fn circles(&self) -> Vec<(&'static str, [f64; 2], f64)> {
+        ["lower", "upper"].map(|name| (name, self.centre, self.radius)).to_vec()
+    }
+
     fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
         site.check_estimate(&self.block(None))?;
         disc(self.centre, self.radius, &self.zone, self.sides(), self.element.kind())

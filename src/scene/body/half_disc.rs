@@ -53,6 +53,11 @@ impl BodyShape for HalfDiscSpec {
         self.integration
     }
 
+    #[cfg(feature = "cli")]
+    fn circles(&self) -> Vec<(&'static str, [f64; 2], f64)> {
+        vec![("arc", self.centre, self.radius)]
+    }
+
     fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
         site.check_estimate(&self.block(None))?;
         let lower = half_disc(self.centre, self.radius, &self.zone, self.sides(), self.element.kind())?;

@@ -41,6 +41,13 @@ impl BodyShape for RingSpec {
         self.integration
     }
 
+    #[cfg(feature = "cli")]
+    fn circles(&self) -> Vec<(&'static str, [f64; 2], f64)> {
+        let ends = [self.radius.points.first(), self.radius.points.last()];
+        let named = ["inner", "outer"].into_iter().zip(ends);
+        named.filter_map(|(name, radius)| Some((name, self.centre, *radius?))).collect()
+    }
+
     fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
         site.check_product(&[&self.radius, &self.angle])?;
         ring(self.centre, &site.lines(&self.radius, "radius")?, &site.lines(&self.angle, "angle")?, self.element.kind())

@@ -31,6 +31,12 @@ pub(in crate::scene) trait BodyShape {
         1.0
     }
 
+    /// The boundaries that stand for circles in the plane, with centre and radius.
+    #[cfg(feature = "cli")]
+    fn circles(&self) -> Vec<(&'static str, [f64; 2], f64)> {
+        Vec::new()
+    }
+
     /// The mesh; errors that are not of the scene yet are those of the body as a whole.
     fn mesh(&self, site: &Site) -> Result<Mesh, Error>;
 

@@ -53,16 +53,30 @@ pub(crate) struct OwnMesh {
     pub estimated: f64,
 }
 
+/// The body that a bound is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Domain {
+    /// The polygon of the first mesh.
+    FirstPolygon,
+    /// The polygon of the last mesh, whose nodes on known circles follow these.
+    LastPolygon,
+}
+
 /// An answer with its guaranteed error against the continuum.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct TotalError {
     pub status: Status,
     pub goal: TotalErrorGoal,
     pub ended: Ended,
-    /// |u - v| / |v| in the energy norm: u the exact displacement of the polygon, v the answer.
+    /// What body the bounds are of.
+    pub domain: Domain,
+    /// |u - v| / |v| in the energy norm: u the exact displacement of that body, v the answer.
     pub total_error: Bound,
     /// |sigma - tau_m| / |v|: tau_m the mean of the stress of v and of the stress in balance.
     pub mean_stress_error: Bound,
+    /// The exact potential energy lies between these, D(tau) and J(v), in force times length.
+    pub potential_energy: [f64; 2],
     /// The sum of the contact forces of v.
     pub contact_force: f64,
     /// The exact contact force lies between these; none if obstacles come from several directions.
@@ -120,7 +134,7 @@ struct Search<'a> {
 impl Search<'_> {
     fn run(&self, first: Triangulation) -> Result<TotalError, Error> {
         let (mut meshes, mut levels) = (vec![first], Vec::<TotalErrorLevel>::new());
-        let mut best: Option<(PlaneAnswer, f64)> = None;
+        let mut best: Option<(PlaneAnswer, f64, [f64; 2])> = None;
         let (mut own, mut own_mesh) = (None, None);
         let (mut ended, mut next_triangles) = (Ended::Goal, None);
         while let Some(mesh) = meshes.last() {
@@ -137,31 +151,38 @@ impl Search<'_> {
             let taken = level.seconds - levels.last().map_or(0.0, |last| last.seconds);
             let is_met = self.is_met(&level);
             levels.push(level);
-            best = Some((bracket.answer(), bracket.defect));
+            let energies = [bracket.energy_of_stress(), bracket.energy_of_displacement()];
+            best = Some((bracket.answer(), bracket.defect, energies));
             if levels.len() == 1 {
                 own = self.own_answer();
             }
             let is_late = !self.settings.watch.allows(GROWTH * taken);
-            if levels.len() == 1 || is_met || is_late {
+            // The own answer lives on the polygon of the first mesh.
+            let is_same = levels.len() == 1 || !self.problem.has_circles();
+            if levels.len() == 1 || is_same && (is_met || is_late) {
                 own_mesh = own.as_ref().map(|own| self.own_mesh(own, &bracket)).transpose()?;
             }
             if is_met {
                 break;
             }
-            let finer = mesh.refined(&marked(&bracket.shares));
+            let finer = self.problem.refined(mesh, &marked(&bracket.shares));
             if is_late {
                 (ended, next_triangles) = (Ended::Time, Some(finer.triangles.len()));
                 break;
             }
             meshes.push(finer);
         }
-        let (Some((answer, defect)), Some(last)) = (best, levels.last()) else { return Err(Error::Interrupted) };
+        let (Some((answer, defect, potential_energy)), Some(last)) = (best, levels.last()) else {
+            return Err(Error::Interrupted);
+        };
         Ok(TotalError {
             status: if ended == Ended::Goal { Status::Certified } else { Status::NotCertified },
             goal: self.goal,
             ended,
+            domain: if self.problem.has_circles() { Domain::LastPolygon } else { Domain::FirstPolygon },
             total_error: Bound { bound: last.bound, guaranteed: true },
             mean_stress_error: Bound { bound: last.mean_stress_bound, guaranteed: true },
+            potential_energy,
             contact_force: last.contact_force,
             force_interval: last.force_interval,
             defect,
@@ -276,7 +297,7 @@ pub fn examined(scene: &Scene, levels: usize) -> Result<Vec<Examined>, Error> {
             dofs: bracket.primal.unknowns.free(),
         });
         if level < levels {
-            mesh = mesh.refined(&marked(&bracket.shares));
+            mesh = mesh.refined(&marked(&bracket.shares), |_, middle| middle);
         }
     }
     Ok(found)

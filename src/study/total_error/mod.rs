@@ -6,8 +6,8 @@ mod guaranteed;
 
 pub(crate) use estimated::{Estimated, EstimatedLevel};
 pub(crate) use goal::{Ended, TotalErrorGoal};
+pub(crate) use guaranteed::{Domain, TotalError, TotalErrorLevel, half_width};
 pub use guaranteed::{Examined, examined};
-pub(crate) use guaranteed::{TotalError, TotalErrorLevel, half_width};
 
 use std::sync::Arc;
 
