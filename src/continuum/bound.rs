@@ -17,8 +17,8 @@ use super::triangulation::{Triangulation, outward, twice_area};
 use crate::error::Error;
 use crate::fem::material::Lame;
 use crate::qp::problem::ContactProblem;
-use crate::qp::{Settings, solve};
-use crate::solution::Solution;
+use crate::qp::{Prepared, Settings, solve};
+use crate::solution::{ContactSet, Solution};
 
 /// The strain that rounding makes of a displacement of one, on a triangle of size one: some hundred units in the last place.
 const NOISE: f64 = 100.0 * f64::EPSILON;
@@ -64,12 +64,21 @@ impl Side {
         unknowns: Unknowns,
         rows: Vec<Row>,
         problem: &ContactProblem,
+        start: Option<ContactSet>,
         settings: &Settings,
     ) -> Result<Self, Error> {
-        let solution = match solve(problem, settings) {
-            // The check of the bracket judges both answers.
-            Err(Error::NotCertified { solution, .. }) => *solution,
-            other => other?,
+        let from_start = start.map(|closed| {
+            let prepared = Prepared::for_gaps(problem, 1, settings)?.starting_from(closed);
+            prepared.solve(problem.gap())
+        });
+        let solution = match from_start {
+            Some(Ok(solution)) => solution,
+            // What a start spoils is solved without it.
+            Some(Err(_)) | None => match solve(problem, settings) {
+                // The check of the bracket judges both answers.
+                Err(Error::NotCertified { solution, .. }) => *solution,
+                other => other?,
+            },
         };
         let values = unknowns.expanded(&solution.displacement);
         Ok(Side { unknowns, rows, solution, values, seconds: 0.0 })
@@ -77,23 +86,37 @@ impl Side {
 }
 
 impl<'a> Bracket<'a> {
-    /// Solves both problems on a mesh, and checks what they promise.
+    /// Solves both problems on a mesh, and checks what they promise. The nodes that are said to touch are where both start from.
     ///
     /// # Errors
     /// Those of [`solve`]; [`Error::Numerical`] if the check finds a defect beyond rounding: then nothing is guaranteed.
-    pub fn new(problem: &'a PlaneProblem, mesh: &'a Triangulation, settings: &Settings) -> Result<Self, Error> {
+    pub fn new(
+        problem: &'a PlaneProblem,
+        mesh: &'a Triangulation,
+        touching: Option<&[bool]>,
+        settings: &Settings,
+    ) -> Result<Self, Error> {
         let clock = std::time::Instant::now();
         let displacements = Displacements::new(problem, mesh);
         let unknowns = displacements.unknowns();
         let rows = displacements.rows(&unknowns)?;
         let posed = unknowns.problem(displacements.blocks(), &displacements.load(), &rows)?;
-        let mut primal = Side::solved(unknowns, rows, &posed, settings)?;
+        let start = touching.map(|nodes| {
+            let (count, edges) = (mesh.nodes.len(), &mesh.edges);
+            ContactSet::from_fn(rows.len(), |row| match rows[row].unknown / 2 {
+                node if node < count => nodes[node],
+                edge => edges[edge - count].iter().all(|&end| nodes[end]),
+            })
+        });
+        let mut primal = Side::solved(unknowns, rows, &posed, start, settings)?;
         primal.seconds = clock.elapsed().as_secs_f64();
         let stresses = Stresses::new(problem, mesh);
         let unknowns = stresses.unknowns();
         let (rows, places) = stresses.rows(&unknowns);
         let posed = unknowns.problem(stresses.blocks(), &stresses.load(), &rows)?;
-        let mut dual = Side::solved(unknowns, rows, &posed, settings)?;
+        let start = touching
+            .map(|nodes| ContactSet::from_fn(rows.len(), |row| nodes[mesh.edges[places[row].edge][places[row].end]]));
+        let mut dual = Side::solved(unknowns, rows, &posed, start, settings)?;
         let stress = stresses.stresses(&dual.values);
         dual.seconds = clock.elapsed().as_secs_f64() - primal.seconds;
         let mut bracket = Bracket {
@@ -113,6 +136,17 @@ impl<'a> Bracket<'a> {
         bracket.measure();
         bracket.defect = bracket.check()?;
         Ok(bracket)
+    }
+
+    /// The nodes that the displacement presses against an obstacle.
+    pub fn touching(&self) -> Vec<bool> {
+        let mut nodes = vec![false; self.mesh.nodes.len()];
+        for (index, row) in self.primal.rows.iter().enumerate() {
+            if let Some(node) = nodes.get_mut(row.unknown / 2) {
+                *node |= self.primal.solution.contact_set.contains(index);
+            }
+        }
+        nodes
     }
 
     /// Volume of a triangle.

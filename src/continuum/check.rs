@@ -238,7 +238,7 @@ mod tests {
     #[test]
     fn a_right_bracket_passes_the_check_and_touches() {
         let (problem, mesh) = square();
-        let bracket = Bracket::new(&problem, &mesh, &settings()).unwrap();
+        let bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
         assert!(bracket.defect < 1e-12, "{}", bracket.defect);
         assert!(bracket.force() > 0.0 && bracket.contact_share > 0.0);
         assert!(bracket.energy_of_stress() < bracket.energy_of_displacement());
@@ -249,7 +249,7 @@ mod tests {
         let (problem, mesh) = square();
         let mut without = problem.clone();
         without.conditions[1].traction = [0.0; 2];
-        let mut bracket = Bracket::new(&without, &mesh, &settings()).unwrap();
+        let mut bracket = Bracket::new(&without, &mesh, None, &settings()).unwrap();
         bracket.problem = &problem;
         assert!(refusal(&bracket).contains("the stress is out of balance"));
     }
@@ -258,7 +258,7 @@ mod tests {
     fn a_missed_body_force_is_refused() {
         let (problem, mesh) = square();
         let weightless = PlaneProblem { body_force: [0.0; 2], ..problem.clone() };
-        let mut bracket = Bracket::new(&weightless, &mesh, &settings()).unwrap();
+        let mut bracket = Bracket::new(&weightless, &mesh, None, &settings()).unwrap();
         bracket.problem = &problem;
         assert!(refusal(&bracket).contains("the stress is out of balance"));
     }
@@ -266,7 +266,7 @@ mod tests {
     #[test]
     fn a_wrong_sign_on_a_candidate_edge_is_refused() {
         let (problem, mesh) = square();
-        let mut bracket = Bracket::new(&problem, &mesh, &settings()).unwrap();
+        let mut bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
         let pressed = bracket.dual.solution.multiplier.iter().position(|force| *force < 0.0).unwrap();
         bracket.dual.solution.multiplier[pressed] *= -1.0;
         assert!(!refusal(&bracket).is_empty());
@@ -277,14 +277,14 @@ mod tests {
     #[test]
     fn rows_at_nodes_instead_of_coefficients_are_refused() {
         let (problem, mesh) = square();
-        let mut bracket = Bracket::new(&problem, &mesh, &settings()).unwrap();
+        let mut bracket = Bracket::new(&problem, &mesh, None, &settings()).unwrap();
         let displacements = Displacements::new(&problem, &mesh);
         let unknowns = displacements.unknowns();
         let corners_only = 2 * mesh.nodes.len();
         let rows: Vec<Row> =
             displacements.rows(&unknowns).unwrap().into_iter().filter(|row| row.unknown < corners_only).collect();
         let posed = unknowns.problem(displacements.blocks(), &displacements.load(), &rows).unwrap();
-        bracket.primal = Side::solved(unknowns, rows, &posed, &settings()).unwrap();
+        bracket.primal = Side::solved(unknowns, rows, &posed, None, &settings()).unwrap();
         bracket.measure();
         assert!(refusal(&bracket).contains("the displacement goes into an obstacle"));
     }

@@ -20,6 +20,8 @@ pub struct Triangulation {
     pub origins: Vec<usize>,
     /// What holds on each edge of the outline: the number of a condition. `None` inside.
     pub conditions: Vec<Option<usize>>,
+    /// The ends of the edge that each of the last nodes halves; none in a first mesh.
+    parents: Vec<[usize; 2]>,
 }
 
 /// Twice the area of a triangle over the square of its longest side, below which it is flat.
@@ -68,7 +70,7 @@ impl Triangulation {
         };
         let sides = triangles.iter().map(|&[a, b, c]| [side(b, c), side(c, a), side(a, b)]).collect();
         let conditions = edges.iter().map(|edge| outline.get(edge).copied()).collect();
-        Triangulation { nodes, triangles, edges, sides, origins, conditions }
+        Triangulation { nodes, triangles, edges, sides, origins, conditions, parents: Vec::new() }
     }
 
     /// Has a triangle no area, or its corners clockwise?
@@ -117,11 +119,13 @@ impl Triangulation {
             }
         }
         let (mut nodes, mut outline, mut middle) = (self.nodes.clone(), HashMap::new(), HashMap::new());
+        let mut parents = Vec::new();
         for (edge, &[a, b]) in self.edges.iter().enumerate() {
             let ends: &[[usize; 2]] = if halved[edge] {
                 let [from, to] = [self.nodes[a], self.nodes[b]];
                 let half = [0, 1].map(|axis| (from[axis] + to[axis]) / 2.0);
                 nodes.push(self.conditions[edge].map_or(half, |condition| placed(condition, half)));
+                parents.push([a, b]);
                 middle.insert([a, b], nodes.len() - 1);
                 &[key(a, nodes.len() - 1), key(b, nodes.len() - 1)]
             } else {
@@ -142,7 +146,14 @@ impl Triangulation {
                 origins.push(origin);
             }
         }
-        Self::of(nodes, triangles, origins, &outline)
+        Triangulation { parents, ..Self::of(nodes, triangles, origins, &outline) }
+    }
+
+    /// What is true of nodes of the mesh before, carried to this one: of a new node it is true if it is of both ends of its edge.
+    pub fn carried(&self, mut of_nodes: Vec<bool>) -> Vec<bool> {
+        let of_new: Vec<bool> = self.parents.iter().map(|ends| ends.iter().all(|&end| of_nodes[end])).collect();
+        of_nodes.extend(of_new);
+        of_nodes
     }
 }
 

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::goal::{Bound, Ended, TotalErrorGoal, marked, shortage};
+use super::goal::{Answering, Bound, Ended, TotalErrorGoal, marked, shortage};
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::fem::mesh::bisection::Tetrahedra;
@@ -129,7 +129,7 @@ pub(super) fn total_error(
 /// How finer meshes are made.
 enum Refinement {
     /// By bisection of the tetrahedra of each body.
-    Bisected(Vec<(ElasticBody, Tetrahedra)>),
+    Bisected(Vec<(ElasticBody, Tetrahedra)>, Answering),
     /// By cutting every cell of the scene into so many along each edge.
     Divided(usize),
     /// Not at all.
@@ -142,7 +142,9 @@ impl Refinement {
         let bisected = bodies.into_iter().map(|body| Tetrahedra::of(body.mesh()).map(|cells| (body, cells)));
         // Only a mesh file has no finer mesh.
         let divided = || if scene.refined(2).is_ok() { Refinement::Divided(1) } else { Refinement::Fixed };
-        Ok(bisected.collect::<Option<_>>().map_or_else(divided, Refinement::Bisected))
+        Ok(bisected
+            .collect::<Option<_>>()
+            .map_or_else(divided, |bodies| Refinement::Bisected(bodies, Answering::new())))
     }
 }
 
@@ -193,11 +195,12 @@ impl Search<'_> {
     ) -> Result<Option<Model>, Error> {
         match refinement {
             Refinement::Fixed => Ok(None),
-            Refinement::Bisected(bodies) => {
+            Refinement::Bisected(bodies, answering) => {
                 if !self.allows(levels, BISECTED) {
                     return Ok(None);
                 }
-                let marked = marked(shares);
+                let error = levels.last().map_or(1.0, |level| level.total_error);
+                let marked = marked(shares, answering.share(error, goal.total_error));
                 for (region, (body, cells)) in answer.model().body().regions().iter().zip(bodies.iter_mut()) {
                     cells.refine(&marked[region.elements()]);
                     *body = body.on(cells.mesh()?)?;

@@ -8,7 +8,7 @@ use crate::error::Error;
 ///
 /// # Source
 /// W. Doerfler, "A convergent adaptive algorithm for Poisson's equation", SIAM J. Numer. Anal. 33 (1996) 1106-1124.
-const MARKED: f64 = 0.5;
+pub(super) const MARKED: f64 = 0.5;
 
 /// What is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -43,6 +43,29 @@ pub(crate) struct Bound {
     pub guaranteed: bool,
 }
 
+/// How a refinement answers: what share of the square of the error it removes, over the share that is refined.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Answering {
+    refined: f64,
+    before: Option<f64>,
+}
+
+impl Answering {
+    pub fn new() -> Self {
+        Answering { refined: MARKED, before: None }
+    }
+
+    /// The share to refine at this error: [`MARKED`], or what by the last step just meets the goal.
+    pub fn share(&mut self, error: f64, goal: f64) -> f64 {
+        let removed = |before: f64, after: f64| 1.0 - (after / before).powi(2);
+        let wanted = removed(error, AIM * goal);
+        let gain = self.before.map(|before| removed(before, error) / self.refined).filter(|&gain| gain > 0.0);
+        self.refined = gain.map_or(MARKED, |gain| (wanted / gain).clamp(LEAST, MARKED));
+        self.before = Some(error);
+        self.refined
+    }
+}
+
 /// What an error says is short.
 pub(super) fn shortage(error: &Error) -> Option<Ended> {
     match error {
@@ -52,11 +75,17 @@ pub(super) fn shortage(error: &Error) -> Option<Ended> {
     }
 }
 
-/// The fewest elements whose shares make [`MARKED`] of the whole.
-pub(super) fn marked(shares: &[f64]) -> Vec<bool> {
+/// The goal is aimed at with so much to spare.
+const AIM: f64 = 0.95;
+
+/// The least share that is refined: less would take too many meshes.
+const LEAST: f64 = 0.1;
+
+/// The fewest elements whose shares make `share` of the whole.
+pub(super) fn marked(shares: &[f64], share: f64) -> Vec<bool> {
     let mut order: Vec<usize> = (0..shares.len()).collect();
     order.sort_by(|&a, &b| shares[b].total_cmp(&shares[a]));
-    let wanted = MARKED * shares.iter().sum::<f64>();
+    let wanted = share * shares.iter().sum::<f64>();
     let (mut sum, mut marked) = (0.0, vec![false; shares.len()]);
     for index in order {
         if sum >= wanted {
@@ -74,8 +103,24 @@ mod tests {
 
     #[test]
     fn the_fewest_elements_make_half_of_the_whole() {
-        assert_eq!(marked(&[1.0, 4.0, 2.0, 1.0]), [false, true, false, false]);
-        assert_eq!(marked(&[1.0, 3.0, 3.0, 2.0]), [false, true, true, false]);
-        assert_eq!(marked(&[0.0, 0.0]), [false, false]);
+        assert_eq!(marked(&[1.0, 4.0, 2.0, 1.0], 0.5), [false, true, false, false]);
+        assert_eq!(marked(&[1.0, 3.0, 2.0, 2.0], 0.6), [false, true, true, false]);
+        assert_eq!(marked(&[0.0, 0.0], 0.5), [false, false]);
+    }
+
+    #[test]
+    fn the_last_mesh_is_no_finer_than_the_goal_asks() {
+        let mut answering = Answering::new();
+        assert_eq!(answering.share(0.4, 0.095), MARKED);
+        // Half of the square was refined, and three quarters of it went: what is 0.1 / 0.95 off needs less than that.
+        let goal = 0.1 / AIM;
+        let share = answering.share(0.2, goal);
+        assert_eq!(share, MARKED);
+        let share = answering.share(0.125, goal);
+        let gain = (1.0 - (0.125_f64 / 0.2).powi(2)) / MARKED;
+        assert!((share - 0.36 / gain).abs() < 1e-12, "{share}");
+        // A step that gained nothing teaches nothing.
+        assert_eq!(answering.share(0.125, goal), MARKED);
+        assert_eq!(answering.share(0.0951, 0.1), LEAST);
     }
 }

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::goal::{Bound, Ended, TotalErrorGoal, marked, shortage};
+use super::goal::{Answering, Bound, Ended, MARKED, TotalErrorGoal, marked, shortage};
 use crate::continuum::{Bracket, Judged, PlaneAnswer, PlaneProblem, Triangulation};
 use crate::error::Error;
 use crate::qp::{Method, Settings, solve};
@@ -135,11 +135,12 @@ impl Search<'_> {
     fn run(&self, first: Triangulation) -> Result<TotalError, Error> {
         let (mut meshes, mut levels) = (vec![first], Vec::<TotalErrorLevel>::new());
         let mut best: Option<(PlaneAnswer, f64, [f64; 2])> = None;
-        let (mut own, mut own_mesh) = (None, None);
+        let (mut own, mut own_mesh, mut touching) = (None, None, None);
+        let mut answering = Answering::new();
         let (mut ended, mut next_triangles) = (Ended::Goal, None);
         while let Some(mesh) = meshes.last() {
             self.settings.watch.step("mesh", levels.len());
-            let bracket = match Bracket::new(self.problem, mesh, &self.settings) {
+            let bracket = match Bracket::new(self.problem, mesh, touching.as_deref(), &self.settings) {
                 Err(error) if best.is_some() && shortage(&error).is_some() => {
                     (ended, next_triangles) = (shortage(&error).unwrap_or(Ended::Time), Some(mesh.triangles.len()));
                     meshes.pop();
@@ -165,11 +166,15 @@ impl Search<'_> {
             if is_met {
                 break;
             }
-            let finer = self.problem.refined(mesh, &marked(&bracket.shares));
+            // The force has a rate of its own.
+            let goal = if self.goal.force_error.is_some() { 0.0 } else { self.goal.total_error };
+            let share = answering.share(bracket.bound(), goal);
+            let finer = self.problem.refined(mesh, &marked(&bracket.shares, share));
             if is_late {
                 (ended, next_triangles) = (Ended::Time, Some(finer.triangles.len()));
                 break;
             }
+            touching = Some(finer.carried(bracket.touching()));
             meshes.push(finer);
         }
         let (Some((answer, defect, potential_energy)), Some(last)) = (best, levels.last()) else {
@@ -285,7 +290,7 @@ pub fn examined(scene: &Scene, levels: usize) -> Result<Vec<Examined>, Error> {
     let own = Answer::of(model.clone(), &solve(model.problem(), &settings)?)?;
     let mut found = Vec::with_capacity(levels + 1);
     for level in 0..=levels {
-        let bracket = Bracket::new(&problem, &mesh, &settings)?;
+        let bracket = Bracket::new(&problem, &mesh, None, &settings)?;
         let judged = judged(&own, &bracket);
         found.push(Examined {
             energies: [bracket.energy_of_stress(), bracket.energy_of_displacement()],
@@ -297,7 +302,7 @@ pub fn examined(scene: &Scene, levels: usize) -> Result<Vec<Examined>, Error> {
             dofs: bracket.primal.unknowns.free(),
         });
         if level < levels {
-            mesh = mesh.refined(&marked(&bracket.shares), |_, middle| middle);
+            mesh = mesh.refined(&marked(&bracket.shares, MARKED), |_, middle| middle);
         }
     }
     Ok(found)
