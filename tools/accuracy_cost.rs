@@ -97,7 +97,7 @@ fn block(cells: usize) -> Result<Scene, Error> {
 /// Milliseconds of the cheapest point of each way that is at least so accurate.
 fn rows(title: &str, measured: &Tradeoff) -> String {
     let mesh = &measured.meshes[0];
-    let of_mesh = mesh.discretisation_error;
+    let of_mesh = mesh.discretisation_error.unwrap_or(f64::NAN);
     let mut text = format!(
         "| {title}: {} dofs, {} rows, mesh {of_mesh:.1e} off; ms | {} |\n|---|{}\n",
         mesh.dofs,

@@ -265,8 +265,8 @@ pub(super) struct Common {
 
 #[derive(Debug, Args)]
 pub(super) struct Tradeoff {
-    /// Scene (a JSON file)
-    pub scene: PathBuf,
+    /// Scene (a JSON file) or problem directory (with K.mtx, f.mtx, B.mtx, g.mtx), whose algebra alone is measured
+    pub input: PathBuf,
     /// Finer meshes beside the scene's own, each with half the cells
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u8).range(0..=8))]
     pub refinements: u8,

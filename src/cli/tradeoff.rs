@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::input::{build, read_scene, scene_title, warnings};
+use super::input::{Input, build, read_scene, scene_title, warnings};
 use super::options::Tradeoff;
 use super::outcome::{Outcome, Report, warn};
 use crate::error::Error;
@@ -11,15 +11,27 @@ use crate::output::{
     tradeoff_plot, tradeoff_text, write_files, write_picture,
 };
 use crate::qp::Settings;
-use crate::study::{TradeoffGrid, motion_tradeoff, tradeoff};
+use crate::study::{TradeoffGrid, motion_tradeoff, problem_tradeoff, tradeoff};
 use crate::watch::Watch;
 
 pub(super) fn run(options: &Tradeoff, watch: &Watch) -> Result<Outcome, Error> {
-    let scene = read_scene(&options.scene, &options.limits)?;
+    let grid = TradeoffGrid {
+        refinements: options.refinements.into(),
+        runs: options.runs.into(),
+        most_full_dofs: options.most_full_dofs,
+    };
+    if options.input.is_dir() {
+        let input = Input::read(&options.input, &options.limits)?;
+        let measured = problem_tradeoff(input.problem(), &grid, watch)?;
+        let (text, csv) = (tradeoff_text(&input.title, &measured), tradeoff_csv(&measured));
+        let plots = || vec![("tradeoff", tradeoff_plot(&input.title, &measured))];
+        return reported(options, watch, &measured, text, &csv, plots);
+    }
+    let scene = read_scene(&options.input, &options.limits)?;
     let moves = scene.analysis.is_some();
-    let model = if moves { scene.build()? } else { build(&scene, &options.scene)? };
+    let model = if moves { scene.build()? } else { build(&scene, &options.input)? };
     warn(&warnings(&model));
-    let title = &scene_title(&model, &options.scene);
+    let title = &scene_title(&model, &options.input);
     if moves {
         let settings = Settings { watch: watch.clone(), ..Settings::default() };
         let measured = motion_tradeoff(&scene, &settings)?;
@@ -27,11 +39,6 @@ pub(super) fn run(options: &Tradeoff, watch: &Watch) -> Result<Outcome, Error> {
         let plots = || vec![("tradeoff", motion_tradeoff_plot(title, &measured))];
         return reported(options, watch, &measured, text, &csv, plots);
     }
-    let grid = TradeoffGrid {
-        refinements: options.refinements.into(),
-        runs: options.runs.into(),
-        most_full_dofs: options.most_full_dofs,
-    };
     let measured = tradeoff(&scene, &grid, watch)?;
     let (text, csv) = (tradeoff_text(title, &measured), tradeoff_csv(&measured));
     let plots =

@@ -41,12 +41,11 @@ pub fn tradeoff_text(title: &str, tradeoff: &Tradeoff) -> String {
             1 => "mesh of the scene".to_string(),
             times => format!("cells cut into {times} along each edge"),
         };
-        text += &format!(
-            "\n{cells}: {} dofs, {}; the mesh itself is about {:.1e} of the energy norm off\n",
-            mesh.dofs,
-            plural(mesh.contact_rows, "contact row"),
-            mesh.discretisation_error
-        );
+        let (cells, off) = match mesh.discretisation_error {
+            Some(error) => (cells, format!("; the mesh itself is about {error:.1e} of the energy norm off")),
+            None => ("matrices".to_string(), String::new()),
+        };
+        text += &format!("\n{cells}: {} dofs, {}{off}\n", mesh.dofs, plural(mesh.contact_rows, "contact row"));
         let mut table = vec![HEADING.map(String::from).to_vec()];
         table.extend(tradeoff.points.iter().filter(|point| point.mesh == index).map(row));
         text += &columns(&table);
@@ -78,7 +77,7 @@ fn row(point: &TradeoffPoint) -> Vec<String> {
         number(point.energy_error),
         if point.energy_error_bound.is_finite() { number(point.energy_error_bound) } else { "none".to_string() },
         number(point.force_error),
-        number(point.pressure_error),
+        point.pressure_error.map_or_else(|| "-".to_string(), number),
         point.rows_wrong.to_string(),
     ]
 }
@@ -103,8 +102,9 @@ fn way(point: &TradeoffPoint) -> String {
 }
 
 fn advice(tradeoff: &Tradeoff) -> String {
-    let mut lines = vec!["\nWhat to choose on the mesh of the scene:".to_string()];
-    let off = tradeoff.meshes.first().map_or(0.0, |mesh| mesh.discretisation_error);
+    let off = tradeoff.meshes.first().and_then(|mesh| mesh.discretisation_error);
+    let place = if off.is_some() { " on the mesh of the scene" } else { "" };
+    let (mut lines, off) = (vec![format!("\nWhat to choose{place}:")], off.unwrap_or(0.0));
     for advice in tradeoff.advice.iter().filter(|advice| !advice.chooses_mesh) {
         let wanted = match (advice.accuracy, advice.seconds) {
             (Some(accuracy), _) => format!("energy error {accuracy:.0e}"),
@@ -125,6 +125,9 @@ fn advice(tradeoff: &Tradeoff) -> String {
 
 /// Mesh and method for a total error and for a time, a sentence each.
 fn advice_of_meshes(tradeoff: &Tradeoff) -> String {
+    if tradeoff.advice.iter().all(|advice| !advice.chooses_mesh) {
+        return String::new();
+    }
     let mut text = "\nWhich mesh and which method, the error of the mesh estimated and included:\n".to_string();
     for advice in tradeoff.advice.iter().filter(|advice| advice.chooses_mesh) {
         let wanted = match (advice.total_error, advice.seconds) {
@@ -135,7 +138,7 @@ fn advice_of_meshes(tradeoff: &Tradeoff) -> String {
         let choice = chosen.and_then(|point| Some((point, tradeoff.meshes.get(point.mesh)?))).map_or_else(
             || "none of the measured meshes and methods".to_string(),
             |(point, mesh)| {
-                let total = 100.0 * point.total_error;
+                let total = 100.0 * point.total_error.unwrap_or(f64::INFINITY);
                 format!("{} dofs by {}: {:.5} s, {total:.1} % off", mesh.dofs, way(point), point.seconds)
             },
         );
@@ -165,6 +168,7 @@ fn losses(points: &[TradeoffPoint]) -> String {
 
 /// The points as comma-separated values, a line each under a heading.
 pub fn tradeoff_csv(tradeoff: &Tradeoff) -> String {
+    let given = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:e}"));
     let mut text =
         "mesh,divided_by,dofs,contact_rows,discretisation_error,method,knob,unknowns,precision,seconds,certificate_seconds,proof_seconds,energy_error,\
                     total_error,energy_error_bound,force_error,pressure_error,rows_wrong,best\n"
@@ -172,24 +176,24 @@ pub fn tradeoff_csv(tradeoff: &Tradeoff) -> String {
     for point in &tradeoff.points {
         let Some(mesh) = tradeoff.meshes.get(point.mesh) else { continue };
         text += &format!(
-            "{},{},{},{},{:e},\"{}\",{},{},{},{:e},{:e},{:e},{:e},{:e},{:e},{:e},{:e},{},{}\n",
+            "{},{},{},{},{},\"{}\",{},{},{},{:e},{:e},{:e},{:e},{},{:e},{:e},{},{},{}\n",
             point.mesh,
             mesh.divided_by,
             mesh.dofs,
             mesh.contact_rows,
-            mesh.discretisation_error,
+            given(mesh.discretisation_error),
             point.method,
-            point.knob.map_or_else(String::new, |knob| format!("{knob:e}")),
+            given(point.knob),
             unknowns(point),
             precision(point),
             point.seconds,
             point.certificate_seconds,
             point.proof_seconds,
             point.energy_error,
-            point.total_error,
+            given(point.total_error),
             point.energy_error_bound,
             point.force_error,
-            point.pressure_error,
+            given(point.pressure_error),
             point.rows_wrong,
             u8::from(point.best)
         );
@@ -228,8 +232,10 @@ pub(crate) fn total_error_plot(title: &str, tradeoff: &Tradeoff) -> Drawing {
     let mut series: Vec<Series> = Vec::new();
     for (index, mesh) in tradeoff.meshes.iter().enumerate() {
         let mut cheapest: Vec<(String, &TradeoffPoint)> = Vec::new();
-        let near =
-            |point: &&TradeoffPoint| point.mesh == index && point.total_error <= NEARLY * mesh.discretisation_error;
+        let Some(of_mesh) = mesh.discretisation_error else { continue };
+        let near = |point: &&TradeoffPoint| {
+            point.mesh == index && point.total_error.is_some_and(|total| total <= NEARLY * of_mesh)
+        };
         for point in tradeoff.points.iter().filter(|point| !point.mixed).filter(near) {
             let name = format!("{}, {} dofs", point.method, unknowns(point));
             match cheapest.iter_mut().find(|entry| entry.0 == name) {
@@ -239,7 +245,7 @@ pub(crate) fn total_error_plot(title: &str, tradeoff: &Tradeoff) -> Drawing {
             }
         }
         for (name, point) in cheapest {
-            let place = [point.seconds, point.total_error];
+            let place = [point.seconds, point.total_error.unwrap_or(of_mesh)];
             match series.iter_mut().find(|series| series.name == name) {
                 Some(series) => series.points.push(place),
                 None => series.push(Series::new(name, vec![place])),

@@ -7,8 +7,9 @@ use serde::Serialize;
 
 use crate::error::Error;
 use crate::qp::linear::dot;
+use crate::qp::problem::ContactProblem;
 use crate::qp::{Condense, InteriorPoint, Method, Penalty, Precision, Prepared, Settings, solve};
-use crate::scene::{Answer, Model, Scene};
+use crate::scene::{Answer, Scene};
 use crate::solution::Solution;
 use crate::watch::Watch;
 
@@ -72,8 +73,9 @@ pub struct TradeoffMesh {
     pub dofs: usize,
     /// Contact rows.
     pub contact_rows: usize,
-    /// Estimated error of the mesh, relative in energy.
-    pub discretisation_error: f64,
+    /// Estimated error of the mesh, relative in energy; a problem directory has no mesh.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub discretisation_error: Option<f64>,
 }
 
 /// One method with its settings: its time, and the errors against the exact answer of its mesh.
@@ -101,12 +103,14 @@ pub struct TradeoffPoint {
     /// Energy norm of the error of the displacement over that of the displacement, as the bound has it.
     pub energy_error: f64,
     /// Error against the exact answer of the scene, relative in energy: that of the algebra and the estimated one of the mesh, which
-    /// are nearly at right angles, together.
-    pub total_error: f64,
+    /// are nearly at right angles, together; none in a problem directory.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub total_error: Option<f64>,
     /// Error of the contact force, relative.
     pub force_error: f64,
-    /// Error of the largest pressure, relative.
-    pub pressure_error: f64,
+    /// Error of the largest pressure, relative; none in a problem directory, which has no areas.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pressure_error: Option<f64>,
     /// Misclassified rows: closed in one contact set and open in the other.
     pub rows_wrong: usize,
     /// Bound of the energy error by the certificate.
@@ -153,28 +157,103 @@ pub struct Tradeoff {
 /// As [`Scene::refined`], [`Scene::build`] and [`solve`]; an answer that is not certified is an answer here.
 /// [`Error::Interrupted`] where not one point was measured.
 pub fn tradeoff(scene: &Scene, grid: &TradeoffGrid, watch: &Watch) -> Result<Tradeoff, Error> {
-    let watched = |settings| Settings { watch: watch.clone(), ..settings };
-    let mut result = Tradeoff { meshes: Vec::new(), points: Vec::new(), advice: Vec::new(), runs: grid.runs.max(1) };
+    let mut result = Tradeoff::new(grid);
     for refinement in 0..=grid.refinements {
         let divided_by = 1_usize << refinement.min(usize::BITS as usize - 1);
         let model = Arc::new(scene.refined(divided_by)?.build()?);
-        let explained = |error| model.explain(error);
-        let exact = match solve(model.problem(), &watched(Settings::with_method(Method::ActiveSet))) {
-            Err(_) if watch.is_stopped() => break,
-            solved => solved.map_err(explained)?,
+        let peak = |solution: &Solution| -> Result<Option<f64>, Error> {
+            Ok(Some(model.pressure(&solution.multiplier)?.into_iter().fold(0.0, f64::max)))
         };
-        let full = model.problem().dofs() <= grid.most_full_dofs;
+        let measured = Measured { problem: model.problem(), peak: &peak, mesh: refinement };
+        let exact = measured.all(grid, watch, &mut result.points).map_err(|error| model.explain(error))?;
+        let Some(exact) = exact else { break };
+        let discretisation_error = Some(Answer::of(model.clone(), &exact)?.discretisation_error()?);
+        result.meshes.push(TradeoffMesh { discretisation_error, ..TradeoffMesh::of(model.problem(), divided_by) });
+        if watch.is_stopped() {
+            break;
+        }
+    }
+    result.advised()
+}
+
+/// Solves a problem that comes as matrices by all methods: errors of the algebra alone.
+///
+/// # Errors
+/// As [`solve`]; [`Error::Interrupted`] where not one point was measured.
+#[cfg(feature = "cli")]
+pub(crate) fn problem_tradeoff(
+    problem: &ContactProblem,
+    grid: &TradeoffGrid,
+    watch: &Watch,
+) -> Result<Tradeoff, Error> {
+    let mut result = Tradeoff::new(grid);
+    Measured { problem, peak: &|_| Ok(None), mesh: 0 }.all(grid, watch, &mut result.points)?;
+    result.meshes.push(TradeoffMesh::of(problem, 1));
+    result.advised()
+}
+
+impl TradeoffMesh {
+    fn of(problem: &ContactProblem, divided_by: usize) -> Self {
+        let (dofs, contact_rows) = (problem.dofs(), problem.gap().len());
+        TradeoffMesh { divided_by, dofs, contact_rows, discretisation_error: None }
+    }
+}
+
+impl Tradeoff {
+    fn new(grid: &TradeoffGrid) -> Self {
+        Tradeoff { meshes: Vec::new(), points: Vec::new(), advice: Vec::new(), runs: grid.runs.max(1) }
+    }
+
+    /// With what follows from all points together.
+    fn advised(mut self) -> Result<Self, Error> {
+        if self.points.is_empty() {
+            return Err(Error::Interrupted);
+        }
+        for point in &mut self.points {
+            let of_mesh = self.meshes.get(point.mesh).and_then(|mesh| mesh.discretisation_error);
+            point.total_error = of_mesh.map(|of_mesh| point.energy_error.hypot(of_mesh));
+        }
+        mark_best(&mut self.points);
+        self.advice = advice(&self.points);
+        if self.meshes.iter().any(|mesh| mesh.discretisation_error.is_some()) {
+            self.advice.extend(advice_of_meshes(&self.points));
+        }
+        Ok(self)
+    }
+}
+
+/// The problem of one mesh.
+struct Measured<'a> {
+    problem: &'a ContactProblem,
+    /// The largest pressure of an answer, if there are areas.
+    peak: &'a dyn Fn(&Solution) -> Result<Option<f64>, Error>,
+    mesh: usize,
+}
+
+impl Measured<'_> {
+    /// Adds the points of all ways; the exact answer, or none if `watch` was asked to stop before.
+    fn all(
+        &self,
+        grid: &TradeoffGrid,
+        watch: &Watch,
+        points: &mut Vec<TradeoffPoint>,
+    ) -> Result<Option<Solution>, Error> {
+        let watched = |settings| Settings { watch: watch.clone(), ..settings };
+        let exact = match solve(self.problem, &watched(Settings::with_method(Method::ActiveSet))) {
+            Err(_) if watch.is_stopped() => return Ok(None),
+            solved => solved?,
+        };
         let mut ways = ways(Condense::Auto, Precision::Double);
         ways.extend(self::ways(Condense::Auto, Precision::Mixed));
-        if full {
+        if self.problem.dofs() <= grid.most_full_dofs {
             ways.extend(self::ways(Condense::Never, Precision::Double));
         }
         ways.extend(multigrid_ways());
         ways.iter_mut().for_each(|way| way.settings = watched(way.settings.clone()));
-        for (way, timed) in ways.iter().zip(timed(&model, &ways, result.runs, watch).map_err(explained)?) {
+        for (way, timed) in ways.iter().zip(timed(self.problem, &ways, grid.runs.max(1), watch)?) {
             let Some(Timed { solution, seconds, second }) = timed else { continue };
-            result.points.push(TradeoffPoint {
-                mesh: refinement,
+            points.push(TradeoffPoint {
+                mesh: self.mesh,
                 mixed: way.settings.precision == Precision::Mixed,
                 method: way.method,
                 knob: way.knob,
@@ -183,30 +262,40 @@ pub fn tradeoff(scene: &Scene, grid: &TradeoffGrid, watch: &Watch) -> Result<Tra
                 certificate_seconds: solution.seconds.certificate,
                 proof_seconds: solution.seconds.proof,
                 is_repeated: second < (1.0 + REPEATED) * seconds,
-                ..errors(&model, &solution, &exact)?
+                ..self.errors(&solution, &exact)?
             });
         }
-        result.meshes.push(TradeoffMesh {
-            divided_by,
-            dofs: model.problem().dofs(),
-            contact_rows: model.rows().len(),
-            discretisation_error: Answer::of(model.clone(), &exact)?.discretisation_error()?,
-        });
-        if watch.is_stopped() {
-            break;
-        }
+        Ok(Some(exact))
     }
-    if result.points.is_empty() {
-        return Err(Error::Interrupted);
+
+    /// How far an answer is from the exact one.
+    fn errors(&self, solution: &Solution, exact: &Solution) -> Result<TradeoffPoint, Error> {
+        let norm = |u: &[f64]| dot(u, &self.problem.stiffness().mul(u)).max(0.0).sqrt();
+        let relative = |value: f64, scale: f64| if value == 0.0 { 0.0 } else { (value / scale).abs() };
+        let away: Vec<f64> = solution.displacement.iter().zip(&exact.displacement).map(|(u, v)| u - v).collect();
+        let force = exact.contact_force();
+        let pressure_error =
+            (self.peak)(solution)?.zip((self.peak)(exact)?).map(|(peak, exact)| relative(peak - exact, exact));
+        let differs = |row: &usize| solution.contact_set.contains(*row) != exact.contact_set.contains(*row);
+        Ok(TradeoffPoint {
+            mesh: 0,
+            method: "",
+            knob: None,
+            condensed: false,
+            mixed: false,
+            seconds: 0.0,
+            certificate_seconds: 0.0,
+            proof_seconds: 0.0,
+            is_repeated: false,
+            energy_error: relative(norm(&away), norm(&solution.displacement)),
+            total_error: None,
+            force_error: relative(solution.contact_force() - force, force),
+            pressure_error,
+            rows_wrong: (0..exact.contact_set.rows()).filter(differs).count(),
+            energy_error_bound: solution.certificate.energy_error_bound,
+            best: false,
+        })
     }
-    for point in &mut result.points {
-        let of_mesh = result.meshes.get(point.mesh).map_or(f64::INFINITY, |mesh| mesh.discretisation_error);
-        point.total_error = point.energy_error.hypot(of_mesh);
-    }
-    mark_best(&mut result.points);
-    result.advice = advice(&result.points);
-    result.advice.extend(advice_of_meshes(&result.points));
-    Ok(result)
 }
 
 /// One way to an answer.
@@ -278,15 +367,14 @@ struct Timed {
 ///
 /// The answer is `None` if the precision does not suffice, if multigrid cannot solve the problem, or if `watch` was asked to stop
 /// before the way was run.
-fn timed(model: &Model, ways: &[Way], runs: usize, watch: &Watch) -> Result<Vec<Option<Timed>>, Error> {
+fn timed(problem: &ContactProblem, ways: &[Way], runs: usize, watch: &Watch) -> Result<Vec<Option<Timed>>, Error> {
     let run = |number: usize, way: &Way| {
         if watch.is_stopped() {
             return Ok(None);
         }
         watch.part("run", number + 1, runs * ways.len());
         let clock = Instant::now();
-        let solved =
-            Prepared::new(model.problem(), &way.settings).and_then(|prepared| prepared.solve(model.problem().gap()));
+        let solved = Prepared::new(problem, &way.settings).and_then(|prepared| prepared.solve(problem.gap()));
         let seconds = clock.elapsed().as_secs_f64();
         if watch.is_stopped() {
             // What was cut short measures nothing.
@@ -321,36 +409,6 @@ fn timed(model: &Model, ways: &[Way], runs: usize, watch: &Watch) -> Result<Vec<
         }
     }
     Ok(fastest)
-}
-
-/// How far an answer is from the exact one.
-fn errors(model: &Model, solution: &Solution, exact: &Solution) -> Result<TradeoffPoint, Error> {
-    let norm = |u: &[f64]| dot(u, &model.problem().stiffness().mul(u)).max(0.0).sqrt();
-    let relative = |value: f64, scale: f64| if value == 0.0 { 0.0 } else { (value / scale).abs() };
-    let away: Vec<f64> = solution.displacement.iter().zip(&exact.displacement).map(|(u, v)| u - v).collect();
-    let peak = |solution: &Solution| -> Result<f64, Error> {
-        Ok(model.pressure(&solution.multiplier)?.into_iter().fold(0.0, f64::max))
-    };
-    let (force, pressure) = (exact.contact_force(), peak(exact)?);
-    let differs = |row: &usize| solution.contact_set.contains(*row) != exact.contact_set.contains(*row);
-    Ok(TradeoffPoint {
-        mesh: 0,
-        method: "",
-        knob: None,
-        condensed: false,
-        mixed: false,
-        seconds: 0.0,
-        certificate_seconds: 0.0,
-        proof_seconds: 0.0,
-        is_repeated: false,
-        energy_error: relative(norm(&away), norm(&solution.displacement)),
-        total_error: f64::INFINITY,
-        force_error: relative(solution.contact_force() - force, force),
-        pressure_error: relative(peak(solution)? - pressure, pressure),
-        rows_wrong: (0..model.rows().len()).filter(differs).count(),
-        energy_error_bound: solution.certificate.energy_error_bound,
-        best: false,
-    })
 }
 
 impl TradeoffPoint {
@@ -405,15 +463,18 @@ fn advice_of_meshes(points: &[TradeoffPoint]) -> Vec<Advice> {
     };
     let of_errors = TOTAL_ERRORS.iter().map(|&total| Advice {
         total_error: Some(total),
-        point: by(|point| [point.seconds, point.total_error], &|point| point.total_error <= total),
+        point: by(|point| [point.seconds, point.total_error.unwrap_or(f64::INFINITY)], &|point| {
+            point.total_error.is_some_and(|of_point| of_point <= total)
+        }),
         chooses_mesh: true,
         ..Advice::default()
     });
     // Of errors that differ by a hundredth the one that is found sooner.
-    let rounded = |point: &TradeoffPoint| [(100.0 * point.total_error.ln()).round(), point.seconds];
+    let rounded =
+        |point: &TradeoffPoint| [(100.0 * point.total_error.map_or(f64::INFINITY, f64::ln)).round(), point.seconds];
     let of_budgets = BUDGETS.iter().map(|&seconds| Advice {
         seconds: Some(seconds),
-        point: by(rounded, &|point| point.seconds <= seconds && point.total_error.is_finite()),
+        point: by(rounded, &|point| point.seconds <= seconds && point.total_error.is_some_and(f64::is_finite)),
         chooses_mesh: true,
         ..Advice::default()
     });

@@ -84,22 +84,25 @@ fn what_a_loose_answer_costs_and_loses_stands_beside_the_exact_one() {
 fn a_total_error_or_a_time_chooses_mesh_and_method() {
     let result = measured(&scene());
     for point in &result.points {
-        let of_mesh = result.meshes[point.mesh].discretisation_error;
-        assert!(point.total_error >= of_mesh.max(point.energy_error), "{point:?}");
-        assert!(point.total_error <= of_mesh + point.energy_error, "{point:?}");
+        let (of_mesh, total) = (result.meshes[point.mesh].discretisation_error.unwrap(), point.total_error.unwrap());
+        assert!(total >= of_mesh.max(point.energy_error), "{point:?}");
+        assert!(total <= of_mesh + point.energy_error, "{point:?}");
     }
     let chosen: Vec<_> = result.advice.iter().filter(|advice| advice.chooses_mesh).collect();
     let wanted: Vec<_> = chosen.iter().map(|advice| (advice.total_error, advice.seconds)).collect();
     let (error, time) = (|total| (Some(total), None), |seconds| (None, Some(seconds)));
     assert_eq!(wanted, [error(0.1), error(0.03), error(0.01), time(0.1), time(1.0), time(10.0)]);
     for advice in &chosen[..3] {
-        let good = |point: &&TradeoffPoint| point.total_error <= advice.total_error.unwrap();
+        let good = |point: &&TradeoffPoint| point.total_error.unwrap() <= advice.total_error.unwrap();
         let soonest = result.points.iter().filter(good).map(|point| point.seconds).fold(f64::INFINITY, f64::min);
         assert_eq!(advice.point.map_or(f64::INFINITY, |index| result.points[index].seconds), soonest);
     }
     // In ten seconds everything of this small scene is done: the finer mesh is nearer.
     let best = &result.points[chosen[5].point.unwrap()];
-    assert!(best.mesh == 1 && best.total_error < 1.02 * result.meshes[1].discretisation_error, "{best:?}");
+    assert!(
+        best.mesh == 1 && best.total_error.unwrap() < 1.02 * result.meshes[1].discretisation_error.unwrap(),
+        "{best:?}"
+    );
     let text = tradeoff_text("block", &result);
     assert!(text.contains("  in 10 s") && text.contains("72 dofs by "), "{text}");
 }
@@ -204,4 +207,28 @@ fn the_program_prints_the_table_and_leaves_its_values() {
     desk.run(&["tradeoff", "missing.json"]).fails_with(1, &["missing.json"]);
     desk.run(&["tradeoff", "scene.json", "--runs", "0"]).ends_with(2);
     desk.run(&["tradeoff", "scene.json", "--refinements", "9"]).ends_with(2);
+}
+
+/// Matrices have no mesh: their trade-off is that of the algebra, the same as that of the scene which they came from.
+#[test]
+fn a_problem_directory_has_the_algebraic_part() {
+    let desk = Desk::new();
+    desk.write("scene.json", scene().to_string());
+    desk.run(&["export", "scene.json", "matrices"]).ends_with(0);
+    let run = desk.run(&["tradeoff", "matrices", "--runs", "1", "--format", "json", "--out", "out"]);
+    let found = run.ends_with(0).json();
+    let points = found["points"].as_array().unwrap();
+    let of_scene = measured(&scene());
+    assert_eq!(points.len(), of_scene.points.iter().filter(|point| point.mesh == 0).count());
+    for (point, same) in points.iter().zip(&of_scene.points) {
+        assert_eq!((&point["method"], &point["rows_wrong"]), (&json!(same.method), &json!(same.rows_wrong)));
+        assert!(point.get("total_error").is_none() && point.get("pressure_error").is_none(), "{point}");
+        let error = point["energy_error"].as_f64().unwrap();
+        assert!((error - same.energy_error).abs() <= 1e-3 * same.energy_error + 1e-10, "{point} {same:?}");
+    }
+    assert!(found["meshes"][0].get("discretisation_error").is_none(), "{found}");
+    let text = std::fs::read_to_string(desk.path("out/tradeoff.txt")).unwrap();
+    assert!(text.contains("matrices: 20 dofs") && text.contains("What to choose:\n"), "{text}");
+    assert!(!text.contains("Which mesh"), "{text}");
+    assert!(desk.path("out/tradeoff.png").exists() && !desk.path("out/total-error.png").exists());
 }
