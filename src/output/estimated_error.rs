@@ -16,8 +16,12 @@ use crate::study::total_error::{Ended, Estimated, EstimatedLevel};
 pub(crate) fn estimated_error_text(title: &str, found: &Estimated, answer: &Summary, units: &Units) -> String {
     let mut text = format!("{}\n", printable(title));
     let (error, goal) = (found.total_error.bound, found.goal.total_error);
-    text += &entry("total error", &format!("estimated {}, {}", percent(error), verdict(error, goal)));
+    let depth = found.levels.last().map_or(0.0, |last| last.depth_between_nodes);
+    text += &entry("total error", &format!("estimated {}, {}", percent(error), verdict(error.max(depth), goal)));
     text += &entry("", "of the displacement, against the continuum, in the energy norm");
+    let deepest =
+        format!("the deepest place between nodes lies {} of the indentation inside an obstacle", percent(depth));
+    text += &entry("", &deepest);
     for (number, line) in wrapped(&format!("no guarantee: {}", found.reason)).iter().enumerate() {
         text += &entry("", if number == 0 { line.clone() } else { format!("  {line}") }.as_str());
     }
@@ -33,7 +37,8 @@ pub(crate) fn estimated_error_text(title: &str, found: &Estimated, answer: &Summ
     }
     text += &entry("seconds", &format!("{:.3}", found.seconds));
     text.push('\n');
-    let heading = ["elements", "unknowns", "rows", "method", "total error", "of the algebra", "force", "seconds"];
+    let heading =
+        ["elements", "unknowns", "rows", "method", "total error", "of the algebra", "depth", "force", "seconds"];
     let mut table = vec![heading.map(String::from).to_vec()];
     table.extend(found.levels.iter().map(row));
     for line in columns(&table).lines() {
@@ -51,6 +56,7 @@ fn row(level: &EstimatedLevel) -> Vec<String> {
         level.method.clone(),
         format!("{:.2e}", level.total_error),
         format!("{:.1e}", level.energy_error_bound),
+        format!("{:.1e}", level.depth_between_nodes),
         format!("{:.6e}", level.contact_force),
         format!("{:.3}", level.seconds),
     ]
@@ -78,7 +84,7 @@ pub(crate) fn write_estimated_error(folder: &Path, title: &str, found: &Estimate
 
 fn csv(found: &Estimated) -> String {
     let mut text = String::from(
-        "elements,dofs,contact_rows,method,discretisation_error,energy_error_bound,total_error,contact_force,seconds\n",
+        "elements,dofs,contact_rows,method,discretisation_error,energy_error_bound,total_error,depth_between_nodes,contact_force,seconds\n",
     );
     for level in &found.levels {
         let EstimatedLevel {
@@ -89,13 +95,14 @@ fn csv(found: &Estimated) -> String {
             discretisation_error,
             energy_error_bound,
             total_error,
+            depth_between_nodes,
             contact_force,
             seconds,
         } = level;
         let _ = writeln!(
             text,
             "{elements},{dofs},{contact_rows},{method},{discretisation_error},{energy_error_bound},{total_error},\
-             {contact_force},{seconds}"
+             {depth_between_nodes},{contact_force},{seconds}"
         );
     }
     text

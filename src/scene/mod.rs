@@ -20,6 +20,8 @@ mod build;
 mod condition;
 #[cfg(feature = "cli")]
 mod continuum;
+#[cfg(feature = "cli")]
+pub(crate) mod depths;
 mod dynamics;
 mod elastic;
 mod entry;

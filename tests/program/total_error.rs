@@ -290,6 +290,24 @@ fn tetrahedra_follow_the_contact() {
     }
 }
 
+/// The first mesh, whose nodes all stand beside the tip, would be at rest and without any error.
+#[test]
+fn a_tip_between_nodes_is_seen() {
+    for element in ["tet4", "hex8"] {
+        let mut scene = block(2);
+        scene["body"]["box"]["element"] = json!(element);
+        scene["obstacles"][0]["shape"] = json!({"sphere": {"apex": [0.375, 0.375, 0.49], "radius": 0.1}});
+        let (code, report, message) = solved(&scene, &["--total-error", "0.4"]);
+        assert_eq!(code, 0, "{message}");
+        let levels = report["levels"].as_array().unwrap();
+        assert_eq!(levels[0]["contact_force"].as_f64(), Some(0.0), "{report}");
+        let last = levels.last().unwrap();
+        assert!(
+            last["contact_force"].as_f64().unwrap() > 1000.0 && last["depth_between_nodes"].as_f64().unwrap() < 0.4
+        );
+    }
+}
+
 #[test]
 fn a_file_of_other_elements_has_no_finer_mesh() {
     let desk = Desk::new();

@@ -10,6 +10,7 @@ use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::fem::mesh::bisection::Tetrahedra;
 use crate::qp::{Settings, solve};
+use crate::scene::depths::Depths;
 use crate::scene::{Answer, Model, Scene};
 use crate::solution::Solution;
 use crate::study::Status;
@@ -43,10 +44,19 @@ pub(crate) struct EstimatedLevel {
     pub energy_error_bound: f64,
     /// Both together.
     pub total_error: f64,
+    /// The largest depth in an obstacle between nodes, over how far the obstacles push the body.
+    pub depth_between_nodes: f64,
     /// The sum of the contact forces, in force.
     pub contact_force: f64,
     /// Seconds since the start.
     pub seconds: f64,
+}
+
+impl EstimatedLevel {
+    /// A mesh that does not see the tip of an obstacle between its nodes has no error that its stresses tell.
+    fn meets(&self, goal: TotalErrorGoal) -> bool {
+        self.total_error <= goal.total_error && self.depth_between_nodes <= goal.total_error
+    }
 }
 
 /// An answer with its estimated error against the continuum.
@@ -91,21 +101,21 @@ pub(super) fn total_error(
     let search = Search { scene, settings, clock: Instant::now() };
     let mut refinement = Refinement::of(scene)?;
     let mut levels = Vec::<EstimatedLevel>::new();
-    let (mut answer, mut solution, mut shares) = search.solved(model.clone(), &mut levels)?;
+    let mut found = search.solved(model.clone(), &mut levels)?;
     let ended = loop {
-        if levels.last().is_some_and(|level| level.total_error <= goal.total_error) {
+        if levels.last().is_some_and(|level| level.meets(goal)) {
             break Ended::Goal;
         }
         if matches!(refinement, Refinement::Fixed) {
             break Ended::Mesh;
         }
-        let next = match search.next(&mut refinement, &answer, &shares, &levels, goal) {
+        let next = match search.next(&mut refinement, &found, &levels, goal) {
             Ok(Some(finer)) => search.solved(Arc::new(finer), &mut levels),
             Ok(None) => break Ended::Time,
             Err(error) => Err(error),
         };
         match next {
-            Ok(found) => (answer, solution, shares) = found,
+            Ok(finer) => found = finer,
             Err(error) => match shortage(&error) {
                 Some(ended) => break ended,
                 None => return Err(error),
@@ -121,8 +131,8 @@ pub(super) fn total_error(
         reason,
         levels,
         seconds: search.clock.elapsed().as_secs_f64(),
-        answer,
-        solution,
+        answer: found.answer,
+        solution: found.solution,
     })
 }
 
@@ -148,6 +158,15 @@ impl Refinement {
     }
 }
 
+/// The answer on one mesh.
+struct Found {
+    answer: Answer,
+    solution: Solution,
+    /// The square of the estimated error on each element.
+    shares: Vec<f64>,
+    depths: Depths,
+}
+
 /// What stays the same from mesh to mesh.
 struct Search<'a> {
     scene: &'a Scene,
@@ -156,19 +175,15 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The answer of a model, and the square of the estimated error on each element; its numbers go to the levels.
-    fn solved(
-        &self,
-        model: Arc<Model>,
-        levels: &mut Vec<EstimatedLevel>,
-    ) -> Result<(Answer, Solution, Vec<f64>), Error> {
+    /// The answer of a model; its numbers go to the levels.
+    fn solved(&self, model: Arc<Model>, levels: &mut Vec<EstimatedLevel>) -> Result<Found, Error> {
         self.settings.watch.step("mesh", levels.len());
         let solution = match solve(model.problem(), &self.settings) {
             Err(Error::NotCertified { solution, .. }) => *solution,
             other => other.map_err(|error| model.explain(error))?,
         };
         let answer = Answer::of(model.clone(), &solution)?;
-        let estimated = answer.estimated_error()?;
+        let (estimated, depths) = (answer.estimated_error()?, answer.depths_between_nodes()?);
         let (of_mesh, of_algebra) = (estimated.relative(), solution.certificate.energy_error_bound);
         levels.push(EstimatedLevel {
             elements: model.mesh().element_count(),
@@ -178,18 +193,18 @@ impl Search<'_> {
             discretisation_error: of_mesh,
             energy_error_bound: of_algebra,
             total_error: of_mesh.hypot(of_algebra),
+            depth_between_nodes: depths.relative(),
             contact_force: solution.contact_force(),
             seconds: self.clock.elapsed().as_secs_f64(),
         });
-        Ok((answer, solution, estimated.of_elements))
+        Ok(Found { answer, solution, shares: estimated.of_elements, depths })
     }
 
     /// The model on the next mesh; none if there is no time for one.
     fn next(
         &self,
         refinement: &mut Refinement,
-        answer: &Answer,
-        shares: &[f64],
+        found: &Found,
         levels: &[EstimatedLevel],
         goal: TotalErrorGoal,
     ) -> Result<Option<Model>, Error> {
@@ -200,8 +215,11 @@ impl Search<'_> {
                     return Ok(None);
                 }
                 let error = levels.last().map_or(1.0, |level| level.total_error);
-                let marked = marked(shares, answering.share(error, goal.total_error));
-                for (region, (body, cells)) in answer.model().body().regions().iter().zip(bodies.iter_mut()) {
+                let mut marked = marked(&found.shares, answering.share(error, goal.total_error));
+                let too_deep = goal.total_error * found.depths.pushed;
+                let deep = marked.iter_mut().zip(&found.depths.of_elements);
+                deep.for_each(|(marked, depth)| *marked |= *depth > too_deep);
+                for (region, (body, cells)) in found.answer.model().body().regions().iter().zip(bodies.iter_mut()) {
                     cells.refine(&marked[region.elements()]);
                     *body = body.on(cells.mesh()?)?;
                 }
@@ -209,7 +227,7 @@ impl Search<'_> {
                 self.scene.build_of(bodies, &[]).map(Some)
             }
             Refinement::Divided(times) => {
-                let dimension = answer.model().body().dimension() as i32;
+                let dimension = found.answer.model().body().dimension() as i32;
                 let growth = |next: usize| (next as f64 / *times as f64).powi(dimension);
                 let wanted = finer(levels, *times, goal.total_error, dimension);
                 let Some(next) = (*times + 1..=wanted).rev().find(|&next| self.allows(levels, growth(next))) else {
@@ -238,8 +256,9 @@ impl Search<'_> {
 fn finer(levels: &[EstimatedLevel], times: usize, goal: f64, dimension: i32) -> usize {
     let [.., before, last] = levels else { return 2 * times };
     let size = (last.dofs as f64 / before.dofs as f64).ln() / f64::from(dimension);
-    let rate = ((before.total_error / last.total_error).ln() / size).clamp(RATES[0], RATES[1]);
-    let wanted = times as f64 * (last.total_error / goal).powf(1.0 / rate);
+    let [before, last] = [before, last].map(|level| level.total_error.max(level.depth_between_nodes));
+    let rate = ((before / last).ln() / size).clamp(RATES[0], RATES[1]);
+    let wanted = times as f64 * (last / goal).powf(1.0 / rate);
     (wanted.ceil().min(1e9) as usize).clamp(times + 1, 2 * times)
 }
 
@@ -257,6 +276,7 @@ mod tests {
             discretisation_error: total_error,
             energy_error_bound: 0.0,
             total_error,
+            depth_between_nodes: 0.0,
             contact_force: 0.0,
             seconds: 0.0,
         }
