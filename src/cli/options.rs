@@ -103,7 +103,8 @@ pub(super) struct Solve {
     /// Extrapolate the penalty answer to an infinite penalty
     #[arg(long)]
     pub extrapolate: bool,
-    /// Refine the mesh until the error against the continuum, relative in the energy norm, is guaranteed to be below (in the plane)
+    /// Refine the mesh until the error against the continuum, relative in the energy norm, is below: guaranteed in the plane, else
+    /// estimated
     #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = parse_total_error,
           conflicts_with_all = ["accuracy", "extrapolate", "resume"])]
     pub total_error: Option<f64>,
