@@ -55,7 +55,7 @@ fn run() -> Result<(), Error> {
     ];
     let mut table = String::new();
     for (name, title, scene, runs) in scenes {
-        let grid = TradeoffGrid { refinements: 0, runs, most_full_dofs: 10_000 };
+        let grid = TradeoffGrid { refinements: 0, runs, ..TradeoffGrid::default() };
         let measured = tradeoff(&scene, &grid, &Watch::default())?;
         table += &rows(title, &measured);
         if let Some(folder) = &folder {

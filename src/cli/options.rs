@@ -268,9 +268,12 @@ pub(super) struct Common {
 pub(super) struct Tradeoff {
     /// Scene (a JSON file) or problem directory (with K.mtx, f.mtx, B.mtx, g.mtx), whose algebra alone is measured
     pub input: PathBuf,
-    /// Finer meshes beside the scene's own, each with half the cells
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u8).range(0..=8))]
-    pub refinements: u8,
+    /// Finer meshes beside the scene's own, each with half the cells; 1 if neither this nor --time is given
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=8))]
+    pub refinements: Option<u8>,
+    /// Begin no finer mesh that would end later than so many seconds after the start; without --refinements as many as that allows
+    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = parse_seconds)]
+    pub time: Option<f64>,
     /// Runs of each point, of which the fastest counts
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub runs: u16,

@@ -14,11 +14,15 @@ use crate::qp::Settings;
 use crate::study::{TradeoffGrid, motion_tradeoff, problem_tradeoff, tradeoff};
 use crate::watch::Watch;
 
+/// Finer meshes where time alone limits them.
+const MOST_REFINEMENTS: usize = 8;
+
 pub(super) fn run(options: &Tradeoff, watch: &Watch) -> Result<Outcome, Error> {
     let grid = TradeoffGrid {
-        refinements: options.refinements.into(),
+        refinements: options.refinements.map_or(if options.time.is_some() { MOST_REFINEMENTS } else { 1 }, usize::from),
         runs: options.runs.into(),
         most_full_dofs: options.most_full_dofs,
+        seconds: options.time.unwrap_or(f64::INFINITY),
     };
     if options.input.is_dir() {
         let input = Input::read(&options.input, &options.limits)?;

@@ -25,6 +25,9 @@ const REPEATED: f64 = 0.03;
 /// See [`REPEATED`].
 const MOST_RUNS: usize = 4;
 
+/// A mesh of so many times the unknowns takes so many times the seconds to this power, all methods together.
+const PER_UNKNOWN: f64 = 1.5;
+
 /// Last penalties of the penalty ladder, in multiples of the local stiffness; the best is 1e8.
 const PENALTIES: [f64; 9] = [1e0, 1e2, 1e4, 1e6, 1e7, 1e8, 1e10, 1e12, 1e14];
 
@@ -56,11 +59,13 @@ pub struct TradeoffGrid {
     pub runs: usize,
     /// Points of more dofs than this are solved on the contact boundary only.
     pub most_full_dofs: usize,
+    /// No finer mesh is begun that would end later than so many seconds after the start, by what the last one took.
+    pub seconds: f64,
 }
 
 impl Default for TradeoffGrid {
     fn default() -> Self {
-        TradeoffGrid { refinements: 1, runs: 5, most_full_dofs: 10_000 }
+        TradeoffGrid { refinements: 1, runs: 5, most_full_dofs: 10_000, seconds: f64::INFINITY }
     }
 }
 
@@ -158,7 +163,9 @@ pub struct Tradeoff {
 /// [`Error::Interrupted`] where not one point was measured.
 pub fn tradeoff(scene: &Scene, grid: &TradeoffGrid, watch: &Watch) -> Result<Tradeoff, Error> {
     let mut result = Tradeoff::new(grid);
+    let clock = Instant::now();
     for refinement in 0..=grid.refinements {
+        let began = clock.elapsed().as_secs_f64();
         let divided_by = 1_usize << refinement.min(usize::BITS as usize - 1);
         let model = Arc::new(scene.refined(divided_by)?.build()?);
         let peak = |solution: &Solution| -> Result<Option<f64>, Error> {
@@ -169,7 +176,9 @@ pub fn tradeoff(scene: &Scene, grid: &TradeoffGrid, watch: &Watch) -> Result<Tra
         let Some(exact) = exact else { break };
         let discretisation_error = Some(Answer::of(model.clone(), &exact)?.discretisation_error()?);
         result.meshes.push(TradeoffMesh { discretisation_error, ..TradeoffMesh::of(model.problem(), divided_by) });
-        if watch.is_stopped() {
+        let now = clock.elapsed().as_secs_f64();
+        let growth = 2_f64.powi(model.body().dimension() as i32).powf(PER_UNKNOWN);
+        if watch.is_stopped() || now + growth * (now - began) > grid.seconds {
             break;
         }
     }

@@ -1,6 +1,6 @@
 //! The guaranteed total error: what it promises, what it takes, what is refused.
 
-use crate::plane_scenes::shown;
+use crate::plane_scenes::{of_column, shown};
 use crate::program::Desk;
 use serde_json::{Value, json};
 
@@ -330,6 +330,9 @@ fn no_random_scene_catches_the_guarantee_in_a_lie() {
         meshes += one.of_force.len();
     }
     assert!(meshes > 60, "{meshes}");
+    for seed in 1..=12 {
+        assert_eq!(of_column(seed, 1).unwrap(), Vec::<String>::new());
+    }
 }
 
 #[test]

@@ -232,3 +232,16 @@ fn a_problem_directory_has_the_algebraic_part() {
     assert!(!text.contains("Which mesh"), "{text}");
     assert!(desk.path("out/tradeoff.png").exists() && !desk.path("out/total-error.png").exists());
 }
+
+/// A time of nothing still has the mesh of the scene, and one of a second more than that.
+#[test]
+fn meshes_are_as_fine_as_the_time_allows() {
+    let desk = Desk::new();
+    desk.write("scene.json", scene().to_string());
+    let meshes = |time: &str| {
+        let run = desk.run(&["tradeoff", "scene.json", "--runs", "1", "--time", time, "--format", "json"]);
+        run.ends_with(0).json()["meshes"].as_array().unwrap().len()
+    };
+    let (at_once, later) = (meshes("1e-6"), meshes("3"));
+    assert!(at_once == 1 && later > 1, "{at_once} {later}");
+}

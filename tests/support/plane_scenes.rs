@@ -96,6 +96,67 @@ pub fn scene(seed: u64) -> (Scene, &'static str) {
     (Scene::from_json(&scene.to_string(), "scene").unwrap(), element)
 }
 
+/// A column of the weight or the uplift b between rollers, its head against a plane: its displacement is quadratic.
+///
+/// With the modulus M of a column that cannot bulge, the pressure q at the head, the height h and the gap g: the head moves by
+/// `b h^2/2M - q h/M`, which is g where it touches, and the stress at y is `b (h - y) - q`. Energy and force of the exact answer follow.
+pub fn column(seed: u64) -> (Scene, &'static str, [f64; 2]) {
+    let mut draws = Draws(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
+    (0..8).for_each(|_| {
+        draws.next();
+    });
+    let (width, height, thickness) = (draws.between(0.5, 2.0), draws.between(0.3, 1.2), draws.between(0.1, 2.0));
+    let (young, poisson) = (10_f64.powf(draws.between(3.0, 11.0)), *draws.of(&[0.0, 0.2, 0.3, 0.45, 0.49, 0.499]));
+    let (model, element) = (*draws.of(&["plane-strain", "plane-stress"]), *draws.of(&ELEMENTS));
+    let modulus = match model {
+        "plane-strain" => young * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson)),
+        _ => young / (1.0 - poisson * poisson),
+    };
+    let gap = height * 1e-3 * draws.between(-1.0, 1.0);
+    // From a head that hardly touches to one that is pressed by many times the force.
+    let force = 2.0 * modulus / (height * height) * (gap + height * 1e-3 * draws.between(0.01, 2.0));
+    let scene = json!({
+        "model": model,
+        "thickness": thickness,
+        "body": {"rectangle": {"x": draws.lines(width), "y": draws.lines(height), "element": element}},
+        "material": {"young": young, "poisson": poisson},
+        "supports": [
+            {"on": {"boundary": "bottom"}, "y": 0}, {"on": {"boundary": "left"}, "x": 0}, {"on": {"boundary": "right"}, "x": 0}
+        ],
+        "loads": [{"body-force": [0, force]}],
+        "obstacles": [{"boundary": "top", "approach": "+y", "shape": {"plane": {"point": [0, height + gap], "normal": [0, 1]}}}],
+    });
+    let pressure = force * height / 2.0 - modulus * gap / height;
+    let stored = (force * force * height.powi(3) / 3.0 - pressure * force * height * height
+        + pressure * pressure * height)
+        / (2.0 * modulus);
+    let work = force * (force * height.powi(3) / 3.0 - pressure * height * height / 2.0) / modulus;
+    let area = width * thickness;
+    let exact = [area * (stored - work), area * pressure];
+    (Scene::from_json(&scene.to_string(), "scene").unwrap(), element, exact)
+}
+
+/// The brackets of a column, held against the exact energy and force, and what is not as it is guaranteed.
+///
+/// # Errors
+/// Those of the total error.
+pub fn of_column(seed: u64, levels: usize) -> Result<Vec<String>, Error> {
+    let (scene, element, [energy, force]) = column(seed);
+    let mut violations = Vec::new();
+    for (number, one) in examined(&scene, levels)?.iter().enumerate() {
+        // Both sides hold the quadratic displacement: what is left is rounding of their energies, and its root in the distance.
+        let size = ROUNDING * one.norm.powi(2).max(energy.abs());
+        let [low, high] = one.energies;
+        let [least, most] = one.force_interval.unwrap_or([f64::NAN; 2]);
+        let slack = ROUNDING.sqrt() * force;
+        let is_held = low <= energy + size && energy <= high + size && high - low <= size;
+        if !(is_held && least <= force + slack && force <= most + slack && most - least <= 2.0 * slack) {
+            violations.push(format!("column {seed}, {element}, mesh {number}: {energy} and {force}: {one:?}"));
+        }
+    }
+    Ok(violations)
+}
+
 /// What the brackets of one scene show.
 #[derive(Clone, Debug)]
 pub struct Shown {
