@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use super::mesh_series::{MeshPanel, mesh_series};
 use super::msh::msh;
 use super::report::{columns, entry, plural, printable, solve_text, wrapped};
 use super::total_error::{percent, verdict};
@@ -79,6 +80,14 @@ pub(crate) fn write_estimated_error(folder: &Path, title: &str, found: &Estimate
         .collect();
     write_files(folder, &[("mesh.msh", &msh(body.mesh(), &bodies)), ("meshes.csv", &csv(found))])?;
     write_picture(folder, "total-error", &plot(title, found))?;
+    let panel = |(cells, level): (&Vec<Vec<[f64; 2]>>, &EstimatedLevel)| MeshPanel {
+        heading: format!("{} elements, estimated {:.2} %", level.elements, 100.0 * level.total_error),
+        cells: cells.clone(),
+    };
+    let panels: Vec<MeshPanel> = found.views.iter().zip(&found.levels).map(panel).collect();
+    if panels.iter().all(|panel| !panel.cells.is_empty()) {
+        write_picture(folder, "meshes", &mesh_series(title, &panels, &found.answer.model().units().length))?;
+    }
     Ok(())
 }
 

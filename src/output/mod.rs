@@ -20,6 +20,8 @@ pub(crate) mod gallery;
 mod json;
 mod legend;
 mod mark;
+#[cfg(feature = "cli")]
+mod mesh_series;
 mod motion;
 mod motion_report;
 mod motion_table;

@@ -4,27 +4,17 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use super::{
-    Array, Drawing, Plot, Quantity, Scale, Series, Unstructured,
-    colour::Colour,
-    drawing::{Anchor, Paint},
-    line_plots,
+    Array, Drawing, Plot, Quantity, Scale, Series, Unstructured, line_plots,
+    mesh_series::{MeshPanel, mesh_series},
     msh::msh,
     report::{columns, entry, plural, printable, quantity},
     write_files, write_picture,
 };
-use crate::continuum::PlaneAnswer;
+use crate::continuum::{PlaneAnswer, Triangulation};
 use crate::error::Error;
 use crate::fem::{Boundary, ElementKind, Mesh};
 use crate::scene::Units;
 use crate::study::total_error::{Domain, Ended, TotalError, TotalErrorLevel, half_width};
-
-/// Panels of the picture of meshes: the first, the last, and some between.
-const PANELS: usize = 4;
-/// Width of a panel, and the space around it.
-const PANEL: f64 = 520.0;
-const SPACE: f64 = 24.0;
-const HEADING: f64 = 40.0;
-const LINE: Colour = Colour(0x2f, 0x4b, 0x6e);
 
 /// The report.
 pub(crate) fn total_error_text(title: &str, found: &TotalError, units: &Units) -> String {
@@ -133,7 +123,12 @@ pub(crate) fn write_total_error(folder: &Path, title: &str, found: &TotalError, 
         &[("answer.vtu", &fields(&mesh, &found.answer)?), ("mesh.msh", &msh), ("meshes.csv", &csv(found))],
     )?;
     write_picture(folder, "total-error", &plot(title, found))?;
-    write_picture(folder, "meshes", &meshes(title, found, units))?;
+    let panel = |(mesh, level): (&Triangulation, &TotalErrorLevel)| MeshPanel {
+        heading: format!("{} triangles, guaranteed {:.2} %", level.triangles, 100.0 * level.bound),
+        cells: (0..mesh.triangles.len()).map(|triangle| mesh.corners(triangle).to_vec()).collect(),
+    };
+    let panels: Vec<MeshPanel> = found.meshes.iter().zip(&found.levels).map(panel).collect();
+    write_picture(folder, "meshes", &mesh_series(title, &panels, &units.length))?;
     Ok(())
 }
 
@@ -202,33 +197,4 @@ fn plot(title: &str, found: &TotalError) -> Drawing {
     let series = series.into_iter().filter(|series| !series.points.is_empty()).collect();
     let (x, y) = (Quantity::new("unknowns of the displacement", ""), Quantity::new("guaranteed relative error", ""));
     line_plots(title, &[Plot { scales: [Scale::Logarithmic; 2], ..Plot::new(x, y, series) }])
-}
-
-/// Some of the meshes side by side, two in a row.
-fn meshes(title: &str, found: &TotalError, units: &Units) -> Drawing {
-    let count = found.meshes.len();
-    let panels = count.min(PANELS);
-    let chosen = (0..panels).map(|panel| if panels > 1 { panel * (count - 1) / (panels - 1) } else { 0 });
-    let nodes = &found.answer.nodes;
-    let low = [0, 1].map(|axis| nodes.iter().fold(f64::INFINITY, |low, node| low.min(node[axis])));
-    let high = [0, 1].map(|axis| nodes.iter().fold(f64::NEG_INFINITY, |high, node| high.max(node[axis])));
-    let scale = (PANEL / (high[0] - low[0])).min(PANEL / (high[1] - low[1]));
-    let size = [PANEL + SPACE, (high[1] - low[1]) * scale + HEADING + SPACE];
-    let (across, down) = (panels.min(2), panels.div_ceil(2));
-    let mut drawing = Drawing::new(size[0] * across as f64 + SPACE, size[1] * down as f64 + HEADING + SPACE);
-    drawing.bold_text([SPACE, HEADING - 12.0], &printable(title), 20.0, Anchor::Start);
-    for (panel, index) in chosen.enumerate() {
-        let corner = [SPACE + size[0] * (panel % 2) as f64, HEADING + size[1] * (panel / 2) as f64];
-        let level = &found.levels[index.min(found.levels.len() - 1)];
-        let heading = format!("{} triangles, guaranteed {:.2} %", level.triangles, 100.0 * level.bound);
-        drawing.text([corner[0], corner[1] + HEADING - 14.0], &heading, 16.0, Anchor::Start);
-        let place = |[x, y]: [f64; 2]| [corner[0] + (x - low[0]) * scale, corner[1] + HEADING + (high[1] - y) * scale];
-        let mesh = &found.meshes[index];
-        let triangles: Vec<[[f64; 2]; 3]> =
-            (0..mesh.triangles.len()).map(|triangle| mesh.corners(triangle).map(place)).collect();
-        drawing.polygons(&triangles, &Paint::stroke(LINE, 0.5));
-    }
-    let width = format!("width {} {}", high[0] - low[0], units.length);
-    drawing.text([SPACE, drawing.height() - 8.0], &width, 14.0, Anchor::Start);
-    drawing
 }

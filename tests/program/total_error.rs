@@ -285,7 +285,9 @@ fn tetrahedra_follow_the_contact() {
     assert_eq!(again["model"]["dofs"], last["dofs"]);
     let [one, two] = [&again, &found["answer"]].map(|answer| answer["contact"]["force"].as_f64().unwrap());
     assert!((one / two - 1.0).abs() < 0.02, "{one} {two}");
-    for name in ["meshes.csv", "total-error.png", "total-error.txt", "report.json", "u.mtx", "solution.vtu"] {
+    for name in
+        ["meshes.csv", "meshes.png", "total-error.png", "total-error.txt", "report.json", "u.mtx", "solution.vtu"]
+    {
         assert!(desk.path("out").join(name).exists(), "{name}");
     }
 }

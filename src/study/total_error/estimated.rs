@@ -71,6 +71,9 @@ pub(crate) struct Estimated {
     pub reason: String,
     pub levels: Vec<EstimatedLevel>,
     pub seconds: f64,
+    /// The cells of each mesh as they are seen: of a body in space the facets that may touch, along the approach direction.
+    #[serde(skip)]
+    pub views: Vec<Vec<Vec<[f64; 2]>>>,
     /// The answer on the last mesh.
     #[serde(skip)]
     pub answer: Answer,
@@ -102,6 +105,7 @@ pub(super) fn total_error(
     let mut refinement = Refinement::of(scene)?;
     let mut levels = Vec::<EstimatedLevel>::new();
     let mut found = search.solved(model.clone(), &mut levels)?;
+    let mut views = vec![view(model)];
     let ended = loop {
         if levels.last().is_some_and(|level| level.meets(goal)) {
             break Ended::Goal;
@@ -115,7 +119,10 @@ pub(super) fn total_error(
             Err(error) => Err(error),
         };
         match next {
-            Ok(finer) => found = finer,
+            Ok(finer) => {
+                views.push(view(finer.answer.model()));
+                found = finer;
+            }
             Err(error) => match shortage(&error) {
                 Some(ended) => break ended,
                 None => return Err(error),
@@ -131,9 +138,30 @@ pub(super) fn total_error(
         reason,
         levels,
         seconds: search.clock.elapsed().as_secs_f64(),
+        views,
         answer: found.answer,
         solution: found.solution,
     })
+}
+
+/// The cells of a plane mesh, or the facets that may touch of one in space, seen along the approach direction; none of a bar.
+fn view(model: &Model) -> Vec<Vec<[f64; 2]>> {
+    let (mesh, nodes) = (model.mesh(), model.mesh().nodes());
+    if mesh.dimension() == 2 {
+        let corners = mesh.kind().corners();
+        let cell =
+            |element: &[usize]| element[..corners].iter().map(|&node| [nodes[node][0], nodes[node][1]]).collect();
+        return mesh.elements().map(cell).collect();
+    }
+    let mut facets = Vec::new();
+    for obstacle in model.obstacles().iter().filter(|_| mesh.dimension() == 3) {
+        let approach = obstacle.approach().map(f64::abs);
+        let along = (0..3).fold(0, |most, axis| if approach[axis] > approach[most] { axis } else { most });
+        let across = [[1, 2], [0, 2], [0, 1]][along];
+        let seen = |facet: &[usize]| facet.iter().map(|&node| across.map(|axis| nodes[node][axis])).collect();
+        facets.extend(mesh.boundary(obstacle.boundary()).into_iter().flat_map(|boundary| boundary.facets()).map(seen));
+    }
+    facets
 }
 
 /// How finer meshes are made.
