@@ -114,16 +114,20 @@ impl PlaneProblem {
     }
 
     /// The mesh in which the marked triangles are refined; new nodes of sides that stand for circles lie on these, unless a triangle
-    /// would fold.
+    /// would fold: then the new sides are straight.
     pub fn refined(&self, mesh: &Triangulation, marked: &[bool]) -> Triangulation {
-        let finer = mesh.refined(marked, |condition, middle| match self.conditions[condition].circle {
+        let straight = mesh.refined(marked, |_, middle| middle);
+        if !self.has_circles() {
+            return straight;
+        }
+        let round = mesh.refined(marked, |condition, middle| match self.conditions[condition].circle {
             Some(Circle { centre, radius }) => {
                 let away = distance(centre, middle);
                 [0, 1].map(|axis| centre[axis] + (middle[axis] - centre[axis]) * radius / away)
             }
             None => middle,
         });
-        if finer.is_folded() { mesh.refined(marked, |_, middle| middle) } else { finer }
+        if round.is_folded_beside(&straight) { straight } else { round }
     }
 
     /// Do all obstacles lie in one direction from the body?
@@ -161,6 +165,29 @@ mod tests {
     use super::*;
 
     /// The bounds of an enclosure hold the function `s^2` itself, and one that leaves it by the margins.
+    /// A flat triangle on a chord: the middle of the arc lies beyond its tip, or not.
+    #[test]
+    fn a_node_goes_onto_its_circle_unless_a_triangle_would_fold() {
+        let on_circle = Circle { centre: [0.0, 1.0], radius: 2.0_f64.sqrt() };
+        let side = |circle| Condition { circle, ..Condition::default() };
+        let problem = PlaneProblem {
+            lame: Lame { lambda: 1.0, mu: 1.0 },
+            thickness: 1.0,
+            body_force: [0.0; 2],
+            conditions: vec![side(Some(on_circle)), side(None)],
+            obstacles: Vec::new(),
+            boundaries: Vec::new(),
+        };
+        let outline = [([0, 1], 0), ([1, 2], 1), ([0, 2], 1)].into_iter().collect();
+        for (tip, moved) in [(-0.1, 0.0), (-2.0, 1.0 - on_circle.radius)] {
+            let nodes = vec![[-1.0, 0.0], [1.0, 0.0], [0.0, tip]];
+            let mesh = Triangulation::new(nodes, vec![[0, 2, 1]], vec![0], &outline).unwrap();
+            let finer = problem.refined(&mesh, &[true]);
+            let middle = finer.nodes.iter().skip(3).find(|node| node[0] == 0.0).unwrap();
+            assert!((middle[1] - moved).abs() < 1e-15, "{middle:?}");
+        }
+    }
+
     #[test]
     fn an_enclosure_bounds_means_and_coefficients() {
         let square = Enclosure { values: [0.0, 0.25, 1.0], below: 0.0, above: 0.0 };

@@ -24,8 +24,8 @@ pub struct Triangulation {
     parents: Vec<[usize; 2]>,
 }
 
-/// Twice the area of a triangle over the square of its longest side, below which it is flat.
-const FLAT: f64 = 1e-3;
+/// A triangle that keeps less than this share of its area when its nodes are moved is nearly flat then, or folded.
+const FOLDED: f64 = 0.1;
 
 /// What tells an edge: its two nodes, increasing.
 fn key(a: usize, b: usize) -> [usize; 2] {
@@ -73,14 +73,10 @@ impl Triangulation {
         Triangulation { nodes, triangles, edges, sides, origins, conditions, parents: Vec::new() }
     }
 
-    /// Has a triangle no area, or its corners clockwise?
-    pub fn is_folded(&self) -> bool {
-        // Of the square of its longest side: what is less is rounding of zero.
-        let share = |corners: [Point; 3]| {
-            let longest = (0..3).map(|local| outward(corners, local).1).fold(0.0, f64::max);
-            twice_area(corners) / longest.powi(2)
-        };
-        (0..self.triangles.len()).any(|triangle| share(self.corners(triangle)) <= FLAT)
+    /// Has a triangle lost most of the area that it has in a mesh of the same triangles, whose nodes stand elsewhere?
+    pub fn is_folded_beside(&self, other: &Triangulation) -> bool {
+        let area = |mesh: &Triangulation, triangle: usize| twice_area(mesh.corners(triangle));
+        (0..self.triangles.len()).any(|triangle| area(self, triangle) <= FOLDED * area(other, triangle))
     }
 
     /// The corners of a triangle.

@@ -43,7 +43,7 @@ pub(crate) fn total_error_text(title: &str, found: &TotalError, units: &Units) -
     text += &entry("check", &format!("balance, signs, distances and energies agree to {:.1e}", found.defect));
     let domain = match found.domain {
         Domain::FirstPolygon => "the polygon of the first mesh: a curved side is that of its straight edges",
-        Domain::LastPolygon => "the polygon of the last mesh: its nodes lie on the circles of the body",
+        Domain::LastPolygon => "the polygon of the last mesh: new nodes lie on the circles of the body",
     };
     text += &entry("domain", domain);
     let next =

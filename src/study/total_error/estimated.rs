@@ -207,6 +207,10 @@ impl Search<'_> {
     fn solved(&self, model: Arc<Model>, levels: &mut Vec<EstimatedLevel>) -> Result<Found, Error> {
         self.settings.watch.step("mesh", levels.len());
         let solution = match solve(model.problem(), &self.settings) {
+            // The answer of the mesh before is better than what time cut short.
+            Err(Error::NotCertified { .. }) if !levels.is_empty() && self.settings.watch.is_over() => {
+                return Err(Error::Interrupted);
+            }
             Err(Error::NotCertified { solution, .. }) => *solution,
             other => other.map_err(|error| model.explain(error))?,
         };
