@@ -99,6 +99,23 @@ def box(divisions, recombined):
     gmsh.option.setNumber("Mesh.MeshSizeMax", 0.6)
 
 
+def half_ball():
+    """The lower half of the unit ball about (0, 0, 1), finer towards its lowest point."""
+    occ = gmsh.model.occ
+    ball = occ.addSphere(0, 0, 1, 1)
+    half = occ.intersect([(3, ball)], [(3, occ.addBox(-1, -1, -0.5, 2, 2, 1.5))])[0][0][1]
+    occ.synchronize()
+    sides = {tag: gmsh.model.occ.getCenterOfMass(2, tag)[2] for _, tag in gmsh.model.getEntities(2)}
+    cut = max(sides, key=sides.get)
+    name_all(2, {"cut": [cut], "round": [tag for tag in sides if tag != cut]})
+    name_all(3, {"ball": [half]})
+    gmsh.model.mesh.field.add("Ball", 1)
+    for name, value in (("ZCenter", 0), ("Radius", 0.3), ("VIn", 0.25), ("VOut", 0.7), ("Thickness", 0.8)):
+        gmsh.model.mesh.field.setNumber(1, name, value)
+    gmsh.model.mesh.field.setAsBackgroundMesh(1)
+    gmsh.option.setNumber("Mesh.MeshSizeMax", 0.7)
+
+
 def write(name, version, dimension, build, **options):
     gmsh.clear()
     for option, value in (OPTIONS | {"Mesh.MshFileVersion": version} | options).items():
@@ -120,4 +137,7 @@ if __name__ == "__main__":
     write("half-disc-t6", 2.2, 2, half_disc, **{"Mesh.ElementOrder": 2})
     write("box-tet4", 4.1, 3, lambda: box(0, False))
     write("box-hex8", 4.1, 3, lambda: box(2, True))
+    write("box-tet10", 4.1, 3, lambda: box(0, False), **{"Mesh.ElementOrder": 2})
+    write("box-hex20", 4.1, 3, lambda: box(2, True), **{"Mesh.ElementOrder": 2})
+    write("half-ball-tet10", 2.2, 3, half_ball, **{"Mesh.ElementOrder": 2})
     gmsh.finalize()

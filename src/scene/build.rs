@@ -8,6 +8,7 @@ use super::obstacle::{Obstacle, PlacedObstacle};
 use super::parts::Parts;
 use super::schema::Scene;
 use crate::error::Error;
+use crate::fem::assembly::DofMap;
 use crate::fem::body::ElasticBody;
 
 impl Scene {
@@ -38,7 +39,7 @@ impl Scene {
     ) -> Result<Model, Error> {
         let body = self.joined(bodies)?;
         let held = self.held(&body)?;
-        let dofs = held.dofs(body.mesh())?;
+        let dofs = self.with_contact_faces(held.dofs(body.mesh())?, &body, further);
         let (supports, is_part) = (self.supports.len(), self.may_be_part(&body)?);
         let load = self.load(&body)?;
         let path = |index: usize| format!("obstacles[{index}]");
@@ -58,5 +59,14 @@ impl Scene {
             Parts { title, units, body, dofs, held, supports, is_part, load, obstacles, warnings, moves },
             self.gap,
         )
+    }
+
+    /// The dofs with coefficients on the quadratic faces that may touch.
+    fn with_contact_faces(&self, dofs: DofMap, body: &ElasticBody, further: &[(&str, Arc<dyn Obstacle>)]) -> DofMap {
+        let of_scene = self
+            .obstacles
+            .iter()
+            .flat_map(|spec| [Some(spec.boundary.as_str()), spec.shape.shape().other_boundary()].into_iter().flatten());
+        dofs.with_contact_faces(body, of_scene.chain(further.iter().map(|(boundary, _)| *boundary)))
     }
 }

@@ -72,6 +72,15 @@ impl Scene {
     /// [`Error::Scene`] for a value that describes no motion, an initial penetration, a step beyond the stable one.
     pub fn dynamics(&self, model: &Model) -> Result<Option<Dynamics>, Error> {
         let Some(spec) = self.dynamic() else { return Ok(None) };
+        if !model.dofs().basis().is_nodal() {
+            let kind = model.mesh().kind();
+            let message = format!(
+                "{} elements carry contact in equilibria alone; take {} for a motion",
+                kind.name(),
+                kind.linear().name()
+            );
+            return Err(wrong("analysis", message));
+        }
         let scheme = spec.scheme();
         spec.check_parameters()?;
         scheme.check().map_err(in_place)?;

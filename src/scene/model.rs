@@ -198,7 +198,8 @@ impl Model {
         Ok(self.rows.iter().enumerate().map(pressure).collect())
     }
 
-    /// Nodal contact forces, `lambda n`, in force; with two bodies the opposite on the other one.
+    /// Nodal contact forces, `lambda n`, in force; with two bodies the opposite on the other one. On quadratic faces in space those
+    /// of the shape functions: under a uniform pressure zero or negative at corners.
     ///
     /// # Errors
     /// As [`Model::pressure`].
@@ -212,12 +213,18 @@ impl Model {
                 entries.iter_mut().zip(row.normal).for_each(|(entry, component)| *entry += sign * lambda * component);
             }
         }
+        self.parts.dofs.basis().scatter(&mut forces, dimension);
         Ok(forces)
     }
 
     /// External loads at all nodes, in force, length `dim * n_nodes`.
     pub fn nodal_load(&self) -> &[f64] {
         &self.parts.load
+    }
+
+    /// The place at which the force of a row has its moment: the node, or, in the middle of a curved edge, its coefficient.
+    pub(super) fn place(&self, node: usize) -> [f64; 3] {
+        self.parts.dofs.basis().place(self.mesh().nodes(), node)
     }
 
     pub(super) fn check_multiplier(&self, multiplier: &[f64]) -> Result<(), Error> {

@@ -121,10 +121,9 @@ impl Model {
     /// [`Error::Length`] where `multiplier` does not have one entry per contact row.
     pub fn contact_resultants(&self, multiplier: &[f64]) -> Result<Vec<Resultant>, Error> {
         self.check_multiplier(multiplier)?;
-        let nodes = self.mesh().nodes();
         let mut sums = vec![Sum::default(); self.obstacles().len()];
         for (row, &lambda) in self.rows().iter().zip(multiplier) {
-            sums[row.obstacle].add(nodes[row.node], row.normal.map(|component| 0.0 + lambda * component));
+            sums[row.obstacle].add(self.place(row.node), row.normal.map(|component| 0.0 + lambda * component));
         }
         let names = self.obstacle_names();
         let resultant = |(index, sum): (usize, &Sum)| {

@@ -1,9 +1,12 @@
 //! Contact rows: B u <= g in the free dofs, from the candidates of every obstacle.
 
+use std::collections::BTreeMap;
+
 use super::Warning;
-use super::entry::{COORDINATE_ROUNDING, finite, point, wrong};
+use super::entry::{COORDINATE_ROUNDING, finite, point, refused, wrong};
 use super::parts::Parts;
 use crate::error::Error;
+use crate::fem::assembly::DofMap;
 use crate::fem::geometry::dot;
 use crate::qp::linear::SparseMatrix;
 
@@ -20,10 +23,12 @@ pub struct ContactRow {
     pub normal: [f64; 3],
     /// Signed distance of the undeformed node to the obstacle, or to its partner, along `normal`, in length; negative inside.
     ///
-    /// The gap of the problem is this less what prescribed displacements of its nodes take up.
+    /// The gap of the problem is this less what prescribed displacements of its nodes take up. At mid-side nodes of quadratic
+    /// faces in space row and gap of the problem are those of a coefficient (see
+    /// [`DofMap::with_contact_faces`](crate::fem::DofMap::with_contact_faces)).
     pub gap: f64,
     /// Integral of the node's shape function over the candidate boundary, in area: thickness, cross-section or
-    /// circumference included.
+    /// circumference included. On quadratic faces in space the function is one with a positive integral.
     pub tributary_area: f64,
     /// Outward unit normal [x, y, z] of the body at the node: the mean over the facets around it; zero where these cancel.
     pub outward: [f64; 3],
@@ -61,26 +66,21 @@ pub(super) fn build(parts: &Parts, scene_gap: f64) -> Result<Rows, Error> {
     let dimension = parts.body.dimension();
     let rounding = COORDINATE_ROUNDING * mesh.size();
     let (mut rows, mut gap, mut entries, mut warnings) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    for (index, obstacle) in parts.obstacles.iter().enumerate() {
-        let mut reached = false;
-        for (candidate, &(node, tributary_area)) in obstacle.candidates().iter().enumerate() {
-            let at = mesh.nodes()[node];
-            let found = obstacle.row(candidate, at, scene_gap).map_err(|reason| {
-                let message = format!("node {node} at {} {reason}", point(&at[..dimension]));
-                wrong(format!("obstacles[{index}]"), message)
-            })?;
-            let Some(found) = found else { continue };
-            reached = true;
-            let row = ContactRow {
-                node,
-                partner: obstacle.partner(candidate),
-                obstacle: index,
-                normal: found.normal,
-                gap: found.gap,
-                tributary_area,
-                outward: obstacle.outward(candidate),
-            };
-            let (mut remaining, mut free) = (row.gap, Vec::new());
+    for index in 0..parts.obstacles.len() {
+        let found = of_obstacle(parts, index, scene_gap)?;
+        if found.is_empty() {
+            warnings.push(Warning::NoContactRow { obstacle: index });
+        }
+        let by_node: BTreeMap<usize, ContactRow> = match dofs.basis().is_nodal() {
+            true => BTreeMap::new(),
+            false => found.iter().map(|row| (row.node, *row)).collect(),
+        };
+        for row in found {
+            check_pair(dofs, &by_node, &row)?;
+            let mut free = Vec::new();
+            // Beyond the rim of the obstacle its gap goes on as it is at the node.
+            let mut remaining =
+                dofs.coefficient(row.node, |node| by_node.get(&node).map_or(row.gap, |other| other.gap));
             for (node, sign) in row.ends() {
                 let along = dofs.along(node, &row.normal[..dimension]);
                 remaining -= sign * along.prescribed;
@@ -92,10 +92,53 @@ pub(super) fn build(parts: &Parts, scene_gap: f64) -> Result<Rows, Error> {
                 gap.push(remaining);
             }
         }
-        if !reached {
-            warnings.push(Warning::NoContactRow { obstacle: index });
-        }
     }
     let contact = SparseMatrix::from_triplets(rows.len(), dofs.free().len(), &entries)?;
     Ok(Rows { rows, contact, gap, warnings })
+}
+
+/// The rows of an obstacle, in the order of its candidates.
+fn of_obstacle(parts: &Parts, index: usize, scene_gap: f64) -> Result<Vec<ContactRow>, Error> {
+    let (nodes, dimension) = (parts.body.mesh().nodes(), parts.body.dimension());
+    let obstacle = &parts.obstacles[index];
+    let mut rows = Vec::with_capacity(obstacle.candidates().len());
+    let areas = parts.dofs.row_areas(obstacle.candidates());
+    for (candidate, (node, tributary_area)) in areas.into_iter().enumerate() {
+        let at = nodes[node];
+        let found = obstacle.row(candidate, at, scene_gap).map_err(|reason| {
+            let message = format!("node {node} at {} {reason}", point(&at[..dimension]));
+            wrong(format!("obstacles[{index}]"), message)
+        })?;
+        let Some(found) = found else { continue };
+        rows.push(ContactRow {
+            node,
+            partner: obstacle.partner(candidate),
+            obstacle: index,
+            normal: found.normal,
+            gap: found.gap,
+            tributary_area,
+            outward: obstacle.outward(candidate),
+        });
+    }
+    Ok(rows)
+}
+
+/// Checks that the node across a mid-side node is one too, between the nodes across the ends of its edge.
+fn check_pair(dofs: &DofMap, by_node: &BTreeMap<usize, ContactRow>, row: &ContactRow) -> Result<(), Error> {
+    let Some(partner) = row.partner.filter(|_| !dofs.basis().is_nodal()) else { return Ok(()) };
+    let across = |end: usize| by_node.get(&end).and_then(|row| row.partner);
+    let fits = match (dofs.basis().ends(row.node), dofs.basis().ends(partner)) {
+        (None, None) => true,
+        (Some(own), Some([a, b])) => [[Some(a), Some(b)], [Some(b), Some(a)]].contains(&own.map(across)),
+        _ => false,
+    };
+    if fits {
+        return Ok(());
+    }
+    let message = format!(
+        "nodes {} and {partner} lie across each other, but do not both lie in the middle of edges that do; quadratic faces of two \
+         bodies must match, edge for edge",
+        row.node
+    );
+    Err(refused("unpaired-nodes", format!("obstacles[{}]", row.obstacle), message))
 }

@@ -131,12 +131,18 @@ impl Answer {
 
 /// The straight cells of a facet: the nodes of each around it.
 pub(crate) fn straight_cells(kind: FacetKind, facet: &[usize]) -> Vec<Vec<usize>> {
+    // A quadratic triangle in four: the corners and the middle. A quadratic quadrilateral in four corners and the middle.
+    const QUARTERS: [[usize; 3]; 4] = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]];
+    const CORNERS_AND_MIDDLE: [&[usize]; 5] = [&[0, 4, 7], &[4, 1, 5], &[5, 2, 6], &[6, 3, 7], &[4, 5, 6, 7]];
+    let of_facet = |cell: &[usize]| cell.iter().map(|&local| facet[local]).collect();
     match kind {
         FacetKind::Point1 | FacetKind::T3 | FacetKind::Q4 => vec![facet.to_vec()],
         FacetKind::Line2 | FacetKind::Line3 => {
             let along: Vec<usize> = kind.reference().along.iter().map(|&local| facet[local]).collect();
             along.windows(2).map(<[usize]>::to_vec).collect()
         }
+        FacetKind::T6 => QUARTERS.iter().map(|cell| of_facet(cell)).collect(),
+        FacetKind::Q8 => CORNERS_AND_MIDDLE.iter().map(|cell| of_facet(cell)).collect(),
     }
 }
 
@@ -242,7 +248,7 @@ impl Patch<'_> {
         let mut sum = Sum::default();
         for row in rows() {
             let (row, lambda) = (&model.rows()[row], self.answer.multiplier()[row]);
-            sum.add(self.place(row.node), row.normal.map(|component| 0.0 + lambda * component));
+            sum.add(model.place(row.node), row.normal.map(|component| 0.0 + lambda * component));
         }
         let written = |at: [f64; 3]| at[..dimension].to_vec();
         Segment {

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use signorini::fem::GmshFile;
+use signorini::fem::{ElasticBody, Formulation, GmshFile, Material, tributary_areas};
 use signorini::fem::{ElementKind, Mesh};
 
 fn path(name: &str) -> PathBuf {
@@ -82,9 +82,38 @@ fn mid_sides_of_a_half_disc_lie_on_the_arc_in_their_order() {
     }
 }
 
+/// Gmsh and VTK order the mid-sides of solids differently; each must lie between the corners that the element says.
+#[test]
+fn mid_sides_of_solids_lie_between_their_corners() {
+    for name in ["box-tet10.msh", "box-hex20.msh"] {
+        let solid = mesh(name);
+        let element = solid.kind().reference();
+        for nodes in solid.elements() {
+            for (&middle, &[a, b]) in nodes[element.corners..].iter().zip(element.mid_sides) {
+                let [at, one, two] = [middle, nodes[a], nodes[b]].map(|node| solid.nodes()[node]);
+                assert!((0..3).all(|axis| (2.0 * at[axis] - one[axis] - two[axis]).abs() < 1e-9), "{name}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_half_ball_of_quadratic_tetrahedra_is_round() {
+    let ball = mesh("half-ball-tet10.msh");
+    assert_eq!(ball.kind(), ElementKind::Tet10);
+    lies(&ball, "round", |[x, y, z]| x.hypot(y).hypot(z - 1.0) - 1.0);
+    lies(&ball, "cut", |[_, _, z]| z - 1.0);
+    let body = ElasticBody::new(ball, Material::new(1.0, 0.3).unwrap(), Formulation::Space).unwrap();
+    let area: f64 = tributary_areas(&body, body.mesh().boundary("round").unwrap()).iter().map(|(_, area)| area).sum();
+    // 2 pi. Curved quadratic faces: the fourth power of the size of a cell, 0.7 at most.
+    assert!((area / std::f64::consts::TAU - 1.0).abs() < 2e-3, "{area}");
+}
+
 #[test]
 fn boxes_have_their_six_sides_seen_from_outside() {
-    for (name, kind) in [("box-tet4.msh", ElementKind::Tet4), ("box-hex8.msh", ElementKind::Hex8)] {
+    use ElementKind::{Hex8, Hex20, Tet4, Tet10};
+    let boxes = [("box-tet4.msh", Tet4), ("box-hex8.msh", Hex8), ("box-tet10.msh", Tet10), ("box-hex20.msh", Hex20)];
+    for (name, kind) in boxes {
         let solid = mesh(name);
         assert_eq!((solid.kind(), solid.boundaries().len()), (kind, 6));
         for (side, axis, at) in [

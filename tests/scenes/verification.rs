@@ -99,6 +99,30 @@ fn a_half_ball_has_the_force_and_the_pressure_of_hertz_about_its_axis_and_in_spa
     assert!(about_axis[0].unknowns * 15 < in_space[0].unknowns);
 }
 
+/// A quarter of a half ball of 20-node bricks. Rows are those of coefficients: pressures at corners and
+/// mid-sides lie on one curve.
+#[test]
+fn quadratic_bricks_have_the_pressure_of_hertz_at_every_node_of_a_ball() {
+    let point = PointContact { modulus: 1.0 / 0.91, radius: 1.0 };
+    let mut scene = quarter_ball(6, 2.0);
+    scene["body"]["half-ball"]["element"] = "hex20".into();
+    let solved = Solved::of(&scene).unwrap();
+    let force = 4.0 * solved.force();
+    let (off, peak) = (force / point.force(2.5e-5) - 1.0, solved.peak_pressure() / point.peak_pressure(force) - 1.0);
+    assert!(off.abs() < BALL && peak.abs() < 0.01, "force {off:.2e}, peak {peak:.2e}");
+    let radius = point.contact_radius(force);
+    let mut inside = 0;
+    for ([x, y, _], pressure) in solved.pressures() {
+        let r = x.hypot(y);
+        if r < 0.8 * radius {
+            let error = pressure / point.pressure(force, r) - 1.0;
+            assert!(error.abs() < 0.03, "at r = {r:.2e}: {error:.2e}");
+            inside += 1;
+        }
+    }
+    assert!(inside > 40, "{inside}");
+}
+
 /// The corner on the axis has nearly no tributary area where the edge is curved: its pressure is not lambda over that.
 #[test]
 fn quadratic_elements_show_a_finite_pressure_at_the_pole_of_a_ball() {

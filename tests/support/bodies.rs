@@ -32,7 +32,7 @@ pub fn distorted(kind: ElementKind) -> Mesh {
     distort(&rectangle(&[0.0, 0.5, 1.0, 1.5, 2.0], &[0.0, 0.3, 0.7, 1.0], kind).unwrap(), [0.1, 0.06, 0.0])
 }
 
-/// The mesh with inner nodes moved by up to `reach` along each axis; mid-sides go to the middle of their side.
+/// The mesh with inner nodes moved by up to `reach` along each axis; in the plane mid-sides go to the middle of their side.
 pub fn distort(regular: &Mesh, reach: [f64; 3]) -> Mesh {
     let (low, high) = regular.extent();
     let dimension = regular.dimension();
@@ -44,7 +44,7 @@ pub fn distort(regular: &Mesh, reach: [f64; 3]) -> Mesh {
     };
     let mut nodes: Vec<[f64; 3]> = regular.nodes().iter().enumerate().map(move_inner).collect();
     let kind = regular.kind();
-    if kind.is_quadratic() {
+    if kind.is_quadratic() && dimension == 2 {
         for element in regular.elements() {
             for side in 0..kind.corners() {
                 let (a, b) = (nodes[element[side]], nodes[element[(side + 1) % kind.corners()]]);

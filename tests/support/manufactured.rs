@@ -9,7 +9,7 @@ use signorini::fem::{
     discretisation_error, error_norms, free_load, stiffness, stress, tributary_areas,
 };
 use signorini::internals::{QuadraturePoint, error_norms_by};
-use signorini::scene::rectangle;
+use signorini::scene::{cuboid, rectangle};
 use signorini::{ContactProblem, Error, SparseMatrix, solve_qp};
 
 /// The contact pressure at one node.
@@ -76,6 +76,54 @@ fn state(exact: &dyn ContactSolution, [x, y, _]: [f64; 3]) -> ExactState {
 
 fn in_space([x, y]: [f64; 2]) -> [f64; 3] {
     [x, y, 0.0]
+}
+
+/// Solves the same in space: a plate `[0, 1]^2` of four cells' thickness, or less, whose faces z = const do not move across
+/// their plane. Quadratic faces on y = 0 have rows of coefficients.
+///
+/// # Errors
+/// As [`solve_block`].
+pub fn solve_plate(exact: &dyn ContactSolution, kind: ElementKind, cells: usize) -> Result<SolvedBlock<'_>, Error> {
+    let clock = Instant::now();
+    let PlaneElasticity { lambda, mu } = exact.elasticity();
+    let material = Material::new(mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu), lambda / (lambda + mu) / 2.0)?;
+    let lines: Vec<f64> = (0..=cells).map(|line| line as f64 / cells as f64).collect();
+    let mesh = cuboid(&lines, &lines, &lines[..=cells.min(2)], kind)?;
+    let body = ElasticBody::new(mesh, material, Formulation::Space)?;
+    let nodes = body.mesh().nodes();
+    let depth = lines[cells.min(2)];
+    let mut held = vec![None; body.nodal_dofs()];
+    for (node, &[x, y, z]) in nodes.iter().enumerate() {
+        if z == 0.0 || z == depth {
+            held[3 * node + 2] = Some(0.0);
+        }
+        if x == 0.0 || x == 1.0 || y == 1.0 {
+            let at = in_space(exact.displacement([x, y]));
+            (0..3).for_each(|axis| held[3 * node + axis] = Some(at[axis]));
+        }
+    }
+    let dofs = DofMap::new(held)?.with_contact_faces(&body, ["front"]);
+    let mut load = vec![0.0; body.nodal_dofs()];
+    add_body_force_field(&body, |[x, y, _]| in_space(exact.body_force([x, y])), &mut load);
+
+    let (mut entries, mut gap, mut places) = (Vec::new(), Vec::new(), Vec::new());
+    let front = body.mesh().boundary("front").map_or_else(Vec::new, |front| tributary_areas(&body, front));
+    for (node, area) in dofs.row_areas(&front) {
+        if let Some(column) = dofs.number(3 * node + 1) {
+            entries.push((gap.len(), column, -1.0));
+            gap.push(dofs.coefficient(node, |node| exact.gap(nodes[node][0])));
+            places.push((nodes[node][0], area));
+        }
+    }
+    let contact = SparseMatrix::from_triplets(gap.len(), dofs.free().len(), &entries)?;
+    let problem = ContactProblem::new(stiffness(&body, &dofs)?, free_load(&body, &dofs, &load)?, contact, gap)?;
+    let solution = solve_qp(&problem)?;
+    let seconds = clock.elapsed().as_secs_f64();
+    let displacement = dofs.expand(&solution.displacement)?;
+    let compared =
+        |(&(x, area), lambda): (&(f64, f64), &f64)| NodalPressure { x, ours: -lambda / area, exact: exact.pressure(x) };
+    let pressure = places.iter().zip(&solution.multiplier).map(compared).collect();
+    Ok(SolvedBlock { unknowns: problem.dofs(), pressure, seconds, exact, body, displacement })
 }
 
 /// Solves the block `[0, 1]^2` in plane strain with `cells` x `cells` cells and compares it with `exact`.

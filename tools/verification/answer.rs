@@ -69,6 +69,11 @@ impl Solved {
         self.pressure.iter().copied().fold(0.0, f64::max)
     }
 
+    /// The place and the pressure of every contact row.
+    pub fn pressures(&self) -> impl Iterator<Item = ([f64; 3], f64)> {
+        self.model.rows().iter().map(|row| self.model.mesh().nodes()[row.node]).zip(self.pressure.iter().copied())
+    }
+
     /// The node of a contact row that is nearest to `x`, and the pressure there.
     pub fn pressure_near(&self, x: f64) -> [f64; 2] {
         let at = self.model.rows().iter().map(|row| self.model.mesh().nodes()[row.node][0]);

@@ -1,7 +1,7 @@
 //! The contact patch test on distorted meshes: a block pressed onto a frictionless plane is compressed uniformly.
 
 use signorini::fem;
-use signorini::fem::ElementKind::{self, Hex8, Q4, Q8, T3, T6, Tet4};
+use signorini::fem::ElementKind::{self, Hex8, Hex20, Q4, Q8, T3, T6, Tet4, Tet10};
 use signorini::fem::Formulation;
 use signorini::fem::Material;
 use signorini::fem::{DofMap, Mesh, StressField, add_pressure, free_load, stiffness, tributary_areas};
@@ -17,7 +17,7 @@ const REVOLVED: Formulation = Formulation::Axisymmetric;
 const SPACE: Formulation = Formulation::Space;
 
 /// Every element in every formulation that it serves.
-pub const VARIANTS: [(ElementKind, Formulation, Integration); 17] = {
+pub const VARIANTS: [(ElementKind, Formulation, Integration); 19] = {
     use Integration::{MeanDilatation, Standard};
     [
         (T3, STRAIN, Standard),
@@ -37,6 +37,8 @@ pub const VARIANTS: [(ElementKind, Formulation, Integration); 17] = {
         (Tet4, SPACE, Standard),
         (Hex8, SPACE, Standard),
         (Hex8, SPACE, MeanDilatation),
+        (Tet10, SPACE, Standard),
+        (Hex20, SPACE, Standard),
     ]
 };
 
@@ -62,7 +64,15 @@ fn distorted(kind: ElementKind) -> Result<Mesh, Error> {
         2 => rectangle(&x, &y, kind)?,
         _ => cuboid(&x, &y, &lines(0.6, &[0.0, 0.4, 0.7, 1.0]), kind)?,
     };
-    Ok(distort(&regular, [0.04, 0.04, if kind.dimension() == 3 { 0.03 } else { 0.0 }]))
+    // In space mid-sides move for themselves, so that edges are curved.
+    Ok(distort(
+        &regular,
+        match (kind.dimension(), kind.is_quadratic()) {
+            (2, _) => [0.04, 0.04, 0.0],
+            (_, false) => [0.04, 0.04, 0.03],
+            (_, true) => [0.01, 0.01, 0.008],
+        },
+    ))
 }
 
 /// The largest difference from the normal stresses `exact`, without shear.
@@ -93,12 +103,12 @@ pub fn contact_patch(
     let mut held = vec![None; body.nodal_dofs()];
     nodes_of("left").iter().for_each(|node| held[dimension * node] = Some(0.0));
     nodes_of("front").iter().for_each(|node| held[dimension * node + 1] = Some(0.0));
-    let dofs = DofMap::new(held)?;
+    let dofs = DofMap::new(held)?.with_contact_faces(&body, ["bottom"]);
     let mut load = vec![0.0; body.nodal_dofs()];
     if let Some(top) = mesh.boundary("top") {
         add_pressure(&body, top, pressure, &mut load);
     }
-    let areas = mesh.boundary("bottom").map_or_else(Vec::new, |bottom| tributary_areas(&body, bottom));
+    let areas = mesh.boundary("bottom").map_or_else(Vec::new, |bottom| dofs.row_areas(&tributary_areas(&body, bottom)));
     let column = |&(node, _): &(usize, f64)| dofs.number(dimension * node + down);
     let entries: Vec<_> =
         areas.iter().filter_map(column).enumerate().map(|(row, column)| (row, column, -1.0)).collect();

@@ -3,8 +3,9 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use super::Frame;
+use super::{Frame, PositiveBasis};
 use crate::error::Error;
+use crate::fem::body::ElasticBody;
 use crate::fem::mesh::Mesh;
 
 /// Stands where a free dof has its number.
@@ -17,6 +18,9 @@ const NO_COMPONENT: f64 = 1e-14;
 ///
 /// The dofs of a node run along the coordinate axes; those of a node with a [`Frame`] run along its axes, and are its
 /// local dofs. Nodal vectors run along the coordinate axes always.
+///
+/// On quadratic faces in space that may touch an obstacle the dofs of a mid-side node are coefficients of shape functions with
+/// positive integrals; those of all other nodes are their displacements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DofMap {
     /// Zero at free dofs.
@@ -27,9 +31,10 @@ pub struct DofMap {
     /// Dofs of a node; only frames ask.
     dimension: usize,
     frames: BTreeMap<usize, Frame>,
+    basis: PositiveBasis,
 }
 
-/// The displacement of a node along a vector: the sum of `coefficient * free dof`, and what supports prescribe.
+/// The displacement of a node, or its coefficient, along a vector: the sum of `coefficient * free dof`, and what supports prescribe.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Along {
     /// Numbers of free dofs with their coefficients.
@@ -60,7 +65,8 @@ impl DofMap {
         }
         free.shrink_to_fit();
         let prescribed = prescribed.into_iter().map(Option::unwrap_or_default).collect();
-        Ok(DofMap { prescribed, number, free, dimension: 1, frames: BTreeMap::new() })
+        let (frames, basis) = (BTreeMap::new(), PositiveBasis::default());
+        Ok(DofMap { prescribed, number, free, dimension: 1, frames, basis })
     }
 
     /// From one entry per dof, `dimension` a node, where those of the nodes in `frames` are local: along the axes of
@@ -78,6 +84,59 @@ impl DofMap {
             Some(node) => Err(Error::Mesh { message: format!("a frame for node {node}, but there are {nodes} nodes") }),
             None => Ok(DofMap { dimension, frames, ..Self::new(prescribed)? }),
         }
+    }
+
+    /// The same with coefficients at the mid-side nodes of `boundaries`, where obstacles may touch them, if `body` has quadratic
+    /// faces in space: of shape functions with positive integrals, so that a uniform pressure pushes at every
+    /// node.
+    ///
+    /// A node keeps its displacement where a support holds it, but not the ends of its edge alike. A boundary that the mesh does
+    /// not have is passed over.
+    ///
+    /// # Source
+    /// A. Popp, B. I. Wohlmuth, M. W. Gee, W. A. Wall, *Dual quadratic mortar finite element methods for 3D finite deformation
+    /// contact*, SIAM J. Sci. Comput. 34 (2012) B421-B446.
+    pub fn with_contact_faces<'a>(mut self, body: &ElasticBody, boundaries: impl IntoIterator<Item = &'a str>) -> Self {
+        let dimension = body.dimension();
+        let boundaries = boundaries.into_iter().filter_map(|name| body.mesh().boundary(name));
+        let mut basis = PositiveBasis::on(body, boundaries);
+        if basis.is_nodal() {
+            return self;
+        }
+        let held = |node: usize, axis: usize| self.number[dimension * node + axis] == SUPPORTED;
+        let is_turned = |node: usize| self.frames.contains_key(&node);
+        basis.retain(|middle, ends| {
+            let held_alike =
+                |axis: usize| !held(middle, axis) || ends.iter().all(|&end| held(end, axis) && !is_turned(end));
+            !is_turned(middle) && (0..dimension).all(held_alike)
+        });
+        for dof in (0..self.number.len()).filter(|&dof| self.number[dof] == SUPPORTED) {
+            let (node, axis) = (dof / dimension, dof % dimension);
+            self.prescribed[dof] = basis.coefficient(node, |node| self.prescribed[dimension * node + axis]);
+        }
+        DofMap { dimension, basis, ..self }
+    }
+
+    /// The coefficient at a node of a function with these values at the nodes: the gap of its contact row. It is the value itself
+    /// but at mid-side nodes of [contact faces](Self::with_contact_faces).
+    pub fn coefficient(&self, node: usize, value: impl Fn(usize) -> f64) -> f64 {
+        self.basis.coefficient(node, value)
+    }
+
+    /// The tributary areas of contact rows from those of the nodes of a boundary, in its order: the integrals of the functions that
+    /// their dofs belong to. They are the areas themselves but on [contact faces](Self::with_contact_faces).
+    pub fn row_areas(&self, of_nodes: &[(usize, f64)]) -> Vec<(usize, f64)> {
+        let mut areas: BTreeMap<usize, f64> = BTreeMap::new();
+        if !self.basis.is_nodal() {
+            areas.extend(of_nodes.iter().copied());
+            self.basis.gather_areas(&mut areas);
+        }
+        of_nodes.iter().map(|&(node, area)| (node, areas.get(&node).copied().unwrap_or(area))).collect()
+    }
+
+    /// The coefficients at mid-side nodes.
+    pub(crate) fn basis(&self) -> &PositiveBasis {
+        &self.basis
     }
 
     /// All dofs of `mesh` free, but for those of the nodes of `boundaries`: they move by `displacement(point)`.
@@ -115,7 +174,7 @@ impl DofMap {
     }
 
     /// The displacement of `node` along `vector`, which has one entry per coordinate: how a contact row or a measured
-    /// displacement is written in the free dofs.
+    /// displacement is written in the free dofs. Of a mid-side node with a coefficient it is that of the coefficient.
     pub fn along(&self, node: usize, vector: &[f64]) -> Along {
         let mut local = vector.to_vec();
         if let Some(frame) = self.frame(node) {
@@ -175,10 +234,11 @@ impl DofMap {
         let value = |(dof, &number): (usize, &usize)| if number == SUPPORTED { supported(dof) } else { free[number] };
         let mut nodal: Vec<f64> = self.number.iter().enumerate().map(value).collect();
         self.turn_back(&mut nodal);
+        self.basis.evaluate(&mut nodal, self.dimension);
         Ok(nodal)
     }
 
-    /// The entries of a nodal vector at the free dofs.
+    /// The entries of nodal forces at the free dofs.
     ///
     /// # Errors
     /// [`Error::Length`] where `nodal` does not have one entry per nodal dof.
@@ -187,7 +247,7 @@ impl DofMap {
         Ok(self.free.iter().map(|&dof| local[dof]).collect())
     }
 
-    /// The part of a nodal vector along the supported dofs: the reactions among the forces on all nodes.
+    /// The part of nodal forces along the supported dofs: the reactions among the forces on all nodes.
     ///
     /// # Errors
     /// As [`DofMap::restrict`].
@@ -195,16 +255,20 @@ impl DofMap {
         let mut part = self.turned_in(nodal)?.into_owned();
         self.free.iter().for_each(|&dof| part[dof] = 0.0);
         self.turn_back(&mut part);
+        self.basis.scatter(&mut part, self.dimension);
         Ok(part)
     }
 
-    /// A nodal vector with the entries of the nodes with frames along their axes.
+    /// Nodal forces as those on coefficients, with the entries of the nodes with frames along their axes.
     fn turned_in<'a>(&self, nodal: &'a [f64]) -> Result<Cow<'a, [f64]>, Error> {
         if nodal.len() != self.nodal_count() {
             let (found, expected) = (nodal.len(), self.nodal_count());
             return Err(Error::Length { name: "nodal vector", found, expected, of: "nodal dofs" });
         }
         let mut local = Cow::Borrowed(nodal);
+        if !self.basis.is_nodal() {
+            self.basis.gather(local.to_mut(), self.dimension);
+        }
         for (node, frame) in &self.frames {
             frame.turn_in(&mut local.to_mut()[self.dimension * node..self.dimension * (node + 1)]);
         }

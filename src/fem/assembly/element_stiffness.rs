@@ -2,11 +2,8 @@
 //! g_b[i] + mu delta_ij g_a . g_b)`, g = grad N, d the dilatation of a unit displacement.
 
 use crate::fem::body::{ElasticBody, Integration, LocalPoint};
-use crate::fem::element::{Cell, MAX_NODES, Tabulated};
+use crate::fem::element::{Cell, Tabulated};
 use crate::fem::material::Lame;
-
-/// Pairs of nodes a >= b.
-const PAIRS: usize = MAX_NODES * (MAX_NODES + 1) / 2;
 
 /// A block of a pair of nodes: row axis, column axis.
 pub(super) type Block = [[f64; 3]; 3];
@@ -14,7 +11,7 @@ pub(super) type Block = [[f64; 3]; 3];
 /// The stiffness of one element, in force per length: a block for every pair of its nodes.
 #[derive(Clone, Debug)]
 pub struct ElementStiffness {
-    blocks: [Block; PAIRS],
+    blocks: Vec<Block>,
 }
 
 impl ElementStiffness {
@@ -24,8 +21,51 @@ impl ElementStiffness {
     pub fn block(&self, a: usize, b: usize) -> &Block {
         &self.blocks[pair(a, b)]
     }
+
+    /// Adds `factor` times the function of local node `other` to that of `node`: rows and columns of the stiffness alike.
+    pub(super) fn add_function(&mut self, node: usize, other: usize, factor: f64) {
+        let nodes = (0..).take_while(|&count| pair(count, 0) < self.blocks.len()).count();
+        let of = |blocks: &[Block], a: usize, b: usize| match a >= b {
+            true => blocks[pair(a, b)],
+            false => transposed(&blocks[pair(b, a)]),
+        };
+        let own = of(&self.blocks, node, node);
+        let (across, beyond) = (of(&self.blocks, node, other), of(&self.blocks, other, other));
+        for third in (0..nodes).filter(|&third| third != node) {
+            let (mut sum, part) = (of(&self.blocks, node, third), of(&self.blocks, other, third));
+            each(&mut sum, |i, j, entry| *entry += factor * part[i][j]);
+            match node >= third {
+                true => self.blocks[pair(node, third)] = sum,
+                false => self.blocks[pair(third, node)] = transposed(&sum),
+            }
+        }
+        let mut sum = own;
+        each(&mut sum, |i, j, entry| *entry += factor * (across[i][j] + across[j][i] + factor * beyond[i][j]));
+        self.blocks[pair(node, node)] = sum;
+    }
+
+    /// Multiplies the function of a local node.
+    pub(super) fn scale_function(&mut self, node: usize, factor: f64) {
+        let nodes = (0..).take_while(|&count| pair(count, 0) < self.blocks.len()).count();
+        for other in 0..nodes {
+            let square = if other == node { factor } else { 1.0 };
+            each(&mut self.blocks[pair(node.max(other), node.min(other))], |_, _, entry| *entry *= factor * square);
+        }
+    }
 }
 
+fn transposed(block: &Block) -> Block {
+    [0, 1, 2].map(|i| [0, 1, 2].map(|j| block[j][i]))
+}
+
+/// Changes every entry of a block, given with its row and its column.
+fn each(block: &mut Block, mut change: impl FnMut(usize, usize, &mut f64)) {
+    for (i, row) in block.iter_mut().enumerate() {
+        row.iter_mut().enumerate().for_each(|(j, entry)| change(i, j, entry));
+    }
+}
+
+/// The place of nodes a >= b among the pairs of an element.
 #[inline]
 fn pair(a: usize, b: usize) -> usize {
     a * (a + 1) / 2 + b
@@ -44,8 +84,8 @@ pub fn element_stiffness(body: &ElasticBody, lame: Lame, table: &Tabulated, cell
     };
     // Gradients are per unit of the cell and determinants in units: what is left of it.
     let scale = cell.unit().powi(table.reference.dimension as i32 - 2);
-    let mut products = [[[0.0; 3]; 3]; PAIRS];
-    let mut radial = Radial::default();
+    let mut products = vec![[[0.0; 3]; 3]; pair(nodes, 0)];
+    let mut radial = if dilatation == Dilatation::Trace { Radial::of(0) } else { Radial::of(nodes) };
     for at in &table.points {
         let point = body.point(cell, at);
         let weight = point.weight * scale;
@@ -69,8 +109,9 @@ pub fn element_stiffness(body: &ElasticBody, lame: Lame, table: &Tabulated, cell
         for b in 0..=a {
             let place = pair(a, b);
             let g = products[place];
+            let squares = radial.squares.get(place).copied().unwrap_or(0.0);
             let dilatation = radial.dilatation(dilatation, (a, b), g);
-            finish(&mut products[place], lame, &dilatation, radial.squares[place]);
+            finish(&mut products[place], lame, &dilatation, squares);
         }
     }
     ElementStiffness { blocks: products }
@@ -106,16 +147,28 @@ enum Dilatation {
 struct Radial {
     volume: f64,
     /// Of the dilatation of a unit displacement of each node along each axis.
-    dilatation: [[f64; 3]; MAX_NODES],
+    dilatation: Vec<[f64; 3]>,
     /// Of h_a h_b.
-    squares: [f64; PAIRS],
+    squares: Vec<f64>,
     /// Of h_a grad N_b.
-    rows: [[f64; 2]; PAIRS],
+    rows: Vec<[f64; 2]>,
     /// Of grad N_a h_b.
-    columns: [[f64; 2]; PAIRS],
+    columns: Vec<[f64; 2]>,
 }
 
 impl Radial {
+    /// Zeros for an element of so many nodes.
+    fn of(nodes: usize) -> Self {
+        let pairs = pair(nodes, 0);
+        Radial {
+            volume: 0.0,
+            dilatation: vec![[0.0; 3]; nodes],
+            squares: vec![0.0; pairs],
+            rows: vec![[0.0; 2]; pairs],
+            columns: vec![[0.0; 2]; pairs],
+        }
+    }
+
     /// Adds a quadrature point.
     #[inline]
     fn add(&mut self, point: &LocalPoint, nodes: usize, weight: f64) {
@@ -163,17 +216,5 @@ impl Radial {
             }
         }
         dilatation
-    }
-}
-
-impl Default for Radial {
-    fn default() -> Self {
-        Radial {
-            volume: 0.0,
-            dilatation: [[0.0; 3]; MAX_NODES],
-            squares: [0.0; PAIRS],
-            rows: [[0.0; 2]; PAIRS],
-            columns: [[0.0; 2]; PAIRS],
-        }
     }
 }

@@ -4,7 +4,7 @@ use super::DofMap;
 use super::redistribution::{ElementMass, Redistribution};
 use crate::error::Error;
 use crate::fem::body::{BodyElement, ElasticBody};
-use crate::fem::element::{MAX_NODES, Tabulated};
+use crate::fem::element::Tabulated;
 use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
 
 /// The form of a mass matrix.
@@ -57,11 +57,14 @@ pub(crate) fn nodal_mass(body: &ElasticBody, form: MassForm, contact_nodes: &[us
         MassForm::Consistent | MassForm::Lumped => {
             let mut triplets = Vec::new();
             for (nodes, element) in body.mesh().elements().zip(&elements) {
-                let lumped = (form == MassForm::Lumped).then(|| lumped(element, nodes.len()));
-                for (a, &row) in nodes.iter().enumerate() {
-                    match &lumped {
-                        Some(diagonal) => triplets.push((row, row, diagonal[a])),
-                        None => triplets.extend(nodes.iter().zip(&element[a]).map(|(&column, &m)| (row, column, m))),
+                match form {
+                    MassForm::Lumped => {
+                        triplets.extend(nodes.iter().zip(lumped(element)).map(|(&a, mass)| (a, a, mass)))
+                    }
+                    _ => {
+                        for (&row, of_row) in nodes.iter().zip(element.rows()) {
+                            triplets.extend(nodes.iter().zip(of_row).map(|(&column, &mass)| (row, column, mass)));
+                        }
                     }
                 }
             }
@@ -82,25 +85,24 @@ fn element_masses(body: &ElasticBody) -> Result<Vec<ElementMass>, Error> {
         densities.extend(std::iter::repeat_n(region.material().density().ok_or(missing)?, region.elements().len()));
     }
     let of_element = |(BodyElement { nodes, cell, .. }, density): (BodyElement<'_>, f64)| {
-        let mut mass = [[0.0; MAX_NODES]; MAX_NODES];
+        let mut mass = ElementMass::zero(nodes.len());
         let scale = density * cell.unit().powi(body.dimension() as i32);
         for at in &table.points {
             let weight = body.point(&cell, at).weight * scale;
-            for (row, share) in mass.iter_mut().zip(at.shape).take(nodes.len()) {
-                row.iter_mut().zip(at.shape).take(nodes.len()).for_each(|(m, other)| *m += weight * share * other);
-            }
+            mass.add(weight, &at.shape[..nodes.len()]);
         }
         mass
     };
     Ok(body.elements().zip(densities).map(of_element).collect())
 }
 
-/// The lumped mass of an element with this number of nodes.
-fn lumped(element: &ElementMass, nodes: usize) -> [f64; MAX_NODES] {
-    let mut diagonal = element.map(|row| row.iter().sum());
-    if diagonal[..nodes].iter().any(|&sum| sum <= 1e-12 * element[0][0].abs()) {
-        let (total, trace) = (diagonal.iter().sum::<f64>(), (0..nodes).map(|a| element[a][a]).sum::<f64>());
-        (0..nodes).for_each(|a| diagonal[a] = element[a][a] * total / trace);
+/// The lumped mass of an element, node by node.
+fn lumped(element: &ElementMass) -> Vec<f64> {
+    let mut diagonal: Vec<f64> = element.rows().map(|row| row.iter().sum()).collect();
+    let own: Vec<f64> = element.rows().enumerate().map(|(a, row)| row[a]).collect();
+    if diagonal.iter().any(|&sum| sum <= 1e-12 * own[0].abs()) {
+        let (total, trace) = (diagonal.iter().sum::<f64>(), own.iter().sum::<f64>());
+        diagonal = own.into_iter().map(|mass| mass * total / trace).collect();
     }
     diagonal
 }

@@ -13,6 +13,7 @@ mod load;
 mod mass;
 mod nodal_columns;
 mod pattern;
+mod positive_basis;
 mod redistribution;
 mod rigid_body_modes;
 mod stiffness;
@@ -27,6 +28,7 @@ pub use load::{add_body_force, add_body_force_field, add_pressure, add_traction,
 pub use mass::{MassForm, mass};
 pub(crate) use mass::{free_mass, nodal_mass};
 pub(crate) use nodal_columns::{mass_columns, stiffness_columns};
+pub(crate) use positive_basis::PositiveBasis;
 pub use rigid_body_modes::rigid_body_modes;
 pub use stiffness::stiffness;
 pub use surface::{node_normals, tributary_areas};

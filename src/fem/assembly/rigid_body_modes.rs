@@ -24,7 +24,8 @@ pub fn rigid_body_modes(body: &ElasticBody, dofs: &DofMap) -> Vec<Vec<f64>> {
             Some(frame) => direction = frame.axes()[axis],
             None => direction[axis] = 1.0,
         }
-        let from_middle = [0, 1, 2].map(|i| (2.0 * mesh.nodes()[node][i] - least[i] - most[i]) / size);
+        let place = dofs.basis().place(mesh.nodes(), node);
+        let from_middle = [0, 1, 2].map(|i| (2.0 * place[i] - least[i] - most[i]) / size);
         for (translation, motion) in motions[..dimension].iter_mut().enumerate() {
             motion.push(direction[translation]);
         }

@@ -44,7 +44,8 @@ pub fn stiffness(body: &ElasticBody, dofs: &DofMap) -> Result<SymmetricMatrix, E
     let mut values = vec![0.0; rows.len()];
     let table = body.tabulated();
     for BodyElement { nodes, cell, lame } in body.elements() {
-        let element = element_stiffness(body, lame, &table, &cell);
+        let mut element = element_stiffness(body, lame, &table, &cell);
+        dofs.basis().change(nodes, &mut element);
         let mut free = [FreeAxes::default(); MAX_NODES];
         for (of_node, &node) in free.iter_mut().zip(nodes) {
             *of_node = FreeAxes::of(node, dimension, dofs);

@@ -58,9 +58,10 @@ fn sense(kind: FacetKind, facet: &[usize], face: &[usize], number: usize) -> f64
         // The end of a bar has no order: its first face looks along -x.
         FacetKind::Point1 => number > 0,
         FacetKind::Line2 | FacetKind::Line3 => facet.first() == face.first(),
-        FacetKind::T3 | FacetKind::Q4 => {
-            let place = face.iter().position(|node| Some(node) == facet.first()).unwrap_or(0);
-            facet.get(1) == face.get((place + 1) % face.len())
+        FacetKind::T3 | FacetKind::Q4 | FacetKind::T6 | FacetKind::Q8 => {
+            let corners = kind.reference().corners;
+            let place = face[..corners].iter().position(|node| Some(node) == facet.first()).unwrap_or(0);
+            facet.get(1) == face.get((place + 1) % corners)
         }
     };
     if alike { 1.0 } else { -1.0 }

@@ -227,6 +227,7 @@ impl ElasticBody {
         LocalPoint {
             gradients: map.gradients,
             hoop,
+            nodes: cell.nodes(),
             weight: map.determinant * at.weight * self.formulation().measure(radius),
         }
     }
@@ -239,7 +240,7 @@ impl ElasticBody {
         let own = self.gather(displacement, nodes);
         move |at| {
             let gradients = cell.map(&(reference.derivative)(cell.reference_coordinates(at))).gradients;
-            let point = LocalPoint { gradients, hoop: [0.0; MAX_NODES], weight: 0.0 };
+            let point = LocalPoint { gradients, hoop: [0.0; MAX_NODES], nodes: nodes.len(), weight: 0.0 };
             point.strain(&own, cell.unit())
         }
     }

@@ -1,6 +1,6 @@
 //! A point in an element: gradients, hoop terms, weight; strains there.
 
-use crate::fem::element::{MAX_NODES, PerNode};
+use crate::fem::element::PerNode;
 
 /// A symmetric tensor `[xx, yy, zz, xy, yz, zx]`; in a body of revolution zz is the hoop component.
 ///
@@ -15,6 +15,8 @@ pub struct LocalPoint {
     /// Shape function over radius, per unit: the hoop strain of a unit radial displacement. Zero but in bodies of
     /// revolution.
     pub hoop: PerNode<f64>,
+    /// Number of nodes of the element.
+    pub nodes: usize,
     /// Quadrature weight times determinant times area, thickness or circumference; the determinant in units.
     pub weight: f64,
 }
@@ -25,7 +27,7 @@ impl LocalPoint {
     pub fn strain(&self, displacement: &PerNode<[f64; 3]>, unit: f64) -> Symmetric {
         let mut slope = [[0.0; 3]; 3];
         let mut hoop = self.hoop[0] * displacement[0][0];
-        for node in 1..MAX_NODES {
+        for node in 1..self.nodes {
             // Relative to the first node: a translation strains nothing, to the last bit.
             for (axis, row) in slope.iter_mut().enumerate() {
                 let relative = displacement[node][axis] - displacement[0][axis];

@@ -65,6 +65,11 @@ impl Cell {
         Cell { reference, coordinates: relative, origin, unit }
     }
 
+    /// Number of its nodes.
+    pub fn nodes(&self) -> usize {
+        self.reference.nodes.len()
+    }
+
     /// The unit of the cell: a power of two, in the unit of length of the coordinates.
     pub fn unit(&self) -> f64 {
         self.unit

@@ -1,7 +1,7 @@
 //! Hex8, the trilinear hexahedron: N_a = (1 + xi_a xi)(1 + eta_a eta)(1 + zeta_a zeta)/8, 2 x 2 x 2 Gauss points.
 
 use super::quadrature::CUBE_2X2X2;
-use super::reference::{FacetKind, LatticeCounts, PerNode, ReferenceElement, Shape};
+use super::reference::{FacetKind, LatticeCounts, PerNode, ReferenceElement, Shape, padded};
 
 const CORNERS: [[f64; 3]; 8] = [
     [-1.0, -1.0, -1.0],
@@ -21,6 +21,7 @@ pub(super) static HEX8: ReferenceElement = ReferenceElement {
     dimension: 3,
     nodes: &CORNERS,
     corners: 8,
+    mid_sides: &[],
     faces: &[&[0, 3, 2, 1], &[4, 5, 6, 7], &[0, 1, 5, 4], &[1, 2, 6, 5], &[2, 3, 7, 6], &[3, 0, 4, 7]],
     along: &[0, 1, 2, 3, 4, 5, 6, 7],
     shape,
@@ -30,17 +31,18 @@ pub(super) static HEX8: ReferenceElement = ReferenceElement {
     centroid: [0.0; 3],
     facet: FacetKind::Q4,
     gmsh: 5,
+    gmsh_order: &[0, 1, 2, 3, 4, 5, 6, 7],
     vtk: 12,
     counts: LatticeCounts { nodes: 1.0, line: 1.0, connections: 8.0, neighbours: 27.0 },
 };
 
 fn shape([xi, eta, zeta]: [f64; 3]) -> PerNode<f64> {
-    CORNERS.map(|[a, b, c]| (1.0 + a * xi) * (1.0 + b * eta) * (1.0 + c * zeta) / 8.0)
+    padded(CORNERS.map(|[a, b, c]| (1.0 + a * xi) * (1.0 + b * eta) * (1.0 + c * zeta) / 8.0))
 }
 
 fn derivative([xi, eta, zeta]: [f64; 3]) -> PerNode<[f64; 3]> {
-    CORNERS.map(|[a, b, c]| {
+    padded(CORNERS.map(|[a, b, c]| {
         let (x, y, z) = (1.0 + a * xi, 1.0 + b * eta, 1.0 + c * zeta);
         [a * y * z / 8.0, x * b * z / 8.0, x * y * c / 8.0]
-    })
+    }))
 }

@@ -10,6 +10,7 @@ pub(super) static LINE2: ReferenceElement = ReferenceElement {
     dimension: 1,
     nodes: &[[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]],
     corners: 2,
+    mid_sides: &[],
     faces: &[&[0], &[1]],
     along: &[0, 1],
     shape,
@@ -19,6 +20,7 @@ pub(super) static LINE2: ReferenceElement = ReferenceElement {
     centroid: [0.0; 3],
     facet: FacetKind::Point1,
     gmsh: 1,
+    gmsh_order: &[0, 1],
     vtk: 3,
     counts: LatticeCounts { nodes: 1.0, line: 1.0, connections: 2.0, neighbours: 3.0 },
 };

@@ -10,6 +10,7 @@ pub(super) static LINE3: ReferenceElement = ReferenceElement {
     dimension: 1,
     nodes: &[[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
     corners: 2,
+    mid_sides: &[[0, 1]],
     faces: &[&[0], &[1]],
     along: &[0, 2, 1],
     shape,
@@ -19,6 +20,7 @@ pub(super) static LINE3: ReferenceElement = ReferenceElement {
     centroid: [0.0; 3],
     facet: FacetKind::Point1,
     gmsh: 8,
+    gmsh_order: &[0, 1, 2],
     vtk: 21,
     counts: LatticeCounts::NONE,
 };

@@ -4,6 +4,7 @@
 //! else works on any of them. Reference coordinates are `[xi, eta, zeta]`; those beyond the dimension of the cell are zero.
 
 mod cell;
+mod hex20;
 mod hex8;
 mod line2;
 mod line3;
@@ -15,6 +16,7 @@ mod reference;
 mod t3;
 mod t6;
 mod tabulated;
+mod tet10;
 mod tet4;
 
 pub use cell::Cell;
@@ -23,6 +25,7 @@ pub use reference::{FacetKind, LatticeCounts, MAX_NODES, PerNode, QuadraturePoin
 pub use tabulated::{Rule, Tabulated, TabulatedPoint};
 
 use hex8::HEX8;
+use hex20::HEX20;
 use line2::LINE2;
 use line3::LINE3;
 use point1::POINT1;
@@ -31,6 +34,7 @@ use q8::Q8;
 use t3::T3;
 use t6::T6;
 use tet4::TET4;
+use tet10::TET10;
 
 /// The elements that a mesh can be made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,6 +53,12 @@ pub enum ElementKind {
     Tet4,
     /// Trilinear hexahedron: the lower face counterclockwise seen from above, then the upper one (VTK order).
     Hex8,
+    /// Quadratic tetrahedron: four corners as those of `Tet4`, then the mid-sides (0,1), (1,2), (2,0), (0,3), (1,3), (2,3)
+    /// (VTK order).
+    Tet10,
+    /// Serendipity hexahedron: eight corners as those of `Hex8`, then the mid-sides of the lower face, of the upper one, and of
+    /// the edges between them (VTK order).
+    Hex20,
 }
 
 impl ElementKind {
@@ -61,7 +71,7 @@ impl ElementKind {
     pub(crate) const LINEAR_TETRAHEDRON: ElementKind = ElementKind::Tet4;
 
     /// All elements.
-    pub const ALL: [ElementKind; 7] = [
+    pub const ALL: [ElementKind; 9] = [
         ElementKind::Line2,
         ElementKind::T3,
         ElementKind::T6,
@@ -69,6 +79,8 @@ impl ElementKind {
         ElementKind::Q8,
         ElementKind::Tet4,
         ElementKind::Hex8,
+        ElementKind::Tet10,
+        ElementKind::Hex20,
     ];
 
     /// The reference cell.
@@ -81,6 +93,8 @@ impl ElementKind {
             ElementKind::Q8 => &Q8,
             ElementKind::Tet4 => &TET4,
             ElementKind::Hex8 => &HEX8,
+            ElementKind::Tet10 => &TET10,
+            ElementKind::Hex20 => &HEX20,
         }
     }
 
@@ -107,6 +121,15 @@ impl ElementKind {
     /// Dimension of the element: 1, 2 or 3.
     pub fn dimension(self) -> usize {
         self.reference().dimension
+    }
+
+    /// The element of the corners alone.
+    pub(crate) fn linear(self) -> ElementKind {
+        let is_linear = |other: &ElementKind| {
+            let (own, other) = (self.reference(), other.reference());
+            other.nodes.len() == own.corners && (own.form, own.dimension) == (other.form, other.dimension)
+        };
+        Self::ALL.into_iter().find(is_linear).unwrap_or(self)
     }
 
     /// Returns `true` if linear functions have degree one in each coordinate: a quadrilateral, a brick.
@@ -141,6 +164,8 @@ impl FacetKind {
             FacetKind::Line3 => &LINE3,
             FacetKind::T3 => &T3,
             FacetKind::Q4 => &Q4,
+            FacetKind::T6 => &T6,
+            FacetKind::Q8 => &Q8,
         }
     }
 

@@ -1,7 +1,7 @@
 //! Point1, the end of a bar: N = 1.
 
 use super::quadrature::POINT;
-use super::reference::{FacetKind, LatticeCounts, ReferenceElement, Shape};
+use super::reference::{FacetKind, LatticeCounts, MAX_NODES, ReferenceElement, Shape, padded};
 
 /// A single node.
 pub(super) static POINT1: ReferenceElement = ReferenceElement {
@@ -10,15 +10,17 @@ pub(super) static POINT1: ReferenceElement = ReferenceElement {
     dimension: 0,
     nodes: &[[0.0; 3]],
     corners: 1,
+    mid_sides: &[],
     faces: &[],
     along: &[0],
-    shape: |_| [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    derivative: |_| [[0.0; 3]; 8],
+    shape: |_| padded([1.0]),
+    derivative: |_| [[0.0; 3]; MAX_NODES],
     quadrature: &POINT,
     quadrature_revolved: &POINT,
     centroid: [0.0; 3],
     facet: FacetKind::Point1,
     gmsh: 15,
+    gmsh_order: &[0],
     vtk: 1,
     counts: LatticeCounts::NONE,
 };

@@ -12,6 +12,7 @@ pub(super) static Q4: ReferenceElement = ReferenceElement {
     dimension: 2,
     nodes: &CORNERS,
     corners: 4,
+    mid_sides: &[],
     faces: &[&[0, 1], &[1, 2], &[2, 3], &[3, 0]],
     along: &[0, 1, 2, 3],
     shape,
@@ -21,6 +22,7 @@ pub(super) static Q4: ReferenceElement = ReferenceElement {
     centroid: [0.0; 3],
     facet: FacetKind::Line2,
     gmsh: 3,
+    gmsh_order: &[0, 1, 2, 3],
     vtk: 9,
     counts: LatticeCounts { nodes: 1.0, line: 1.0, connections: 4.0, neighbours: 9.0 },
 };

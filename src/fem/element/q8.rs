@@ -3,7 +3,10 @@
 //! (1 + xi_a xi)(1 - eta^2)/2 at the mid-sides.
 
 use super::quadrature::SQUARE_3X3;
-use super::reference::{FacetKind, LatticeCounts, PerNode, ReferenceElement, Shape};
+use super::reference::{FacetKind, LatticeCounts, PerNode, ReferenceElement, Shape, padded};
+
+/// The corners between which each mid-side node lies.
+const SIDES: [[usize; 2]; 4] = [[0, 1], [1, 2], [2, 3], [3, 0]];
 
 const NODES: [[f64; 3]; 8] = [
     [-1.0, -1.0, 0.0],
@@ -23,6 +26,7 @@ pub(super) static Q8: ReferenceElement = ReferenceElement {
     dimension: 2,
     nodes: &NODES,
     corners: 4,
+    mid_sides: &SIDES,
     faces: &[&[0, 1, 4], &[1, 2, 5], &[2, 3, 6], &[3, 0, 7]],
     along: &[0, 1, 2, 3, 4, 5, 6, 7],
     shape,
@@ -32,12 +36,13 @@ pub(super) static Q8: ReferenceElement = ReferenceElement {
     centroid: [0.0; 3],
     facet: FacetKind::Line3,
     gmsh: 16,
+    gmsh_order: &[0, 1, 2, 3, 4, 5, 6, 7],
     vtk: 23,
     counts: LatticeCounts { nodes: 3.0, line: 2.0, connections: 8.0, neighbours: 15.5 },
 };
 
 fn shape([xi, eta, _]: [f64; 3]) -> PerNode<f64> {
-    NODES.map(|[a, b, _]| {
+    padded(NODES.map(|[a, b, _]| {
         if a == 0.0 {
             (1.0 - xi) * (1.0 + xi) * (1.0 + b * eta) / 2.0
         } else if b == 0.0 {
@@ -45,11 +50,11 @@ fn shape([xi, eta, _]: [f64; 3]) -> PerNode<f64> {
         } else {
             (1.0 + a * xi) * (1.0 + b * eta) * (a * xi + b * eta - 1.0) / 4.0
         }
-    })
+    }))
 }
 
 fn derivative([xi, eta, _]: [f64; 3]) -> PerNode<[f64; 3]> {
-    NODES.map(|[a, b, _]| {
+    padded(NODES.map(|[a, b, _]| {
         if a == 0.0 {
             [-xi * (1.0 + b * eta), b * (1.0 - xi) * (1.0 + xi) / 2.0, 0.0]
         } else if b == 0.0 {
@@ -58,5 +63,5 @@ fn derivative([xi, eta, _]: [f64; 3]) -> PerNode<[f64; 3]> {
             let (along_xi, along_eta) = (2.0 * a * xi + b * eta, a * xi + 2.0 * b * eta);
             [a * (1.0 + b * eta) * along_xi / 4.0, b * (1.0 + a * xi) * along_eta / 4.0, 0.0]
         }
-    })
+    }))
 }

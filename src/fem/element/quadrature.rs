@@ -61,6 +61,18 @@ pub(super) const CUBE_2X2X2: [QuadraturePoint; 8] = {
     points
 };
 
+/// Three by three by three Gauss points on the cube, exact for quintics in each coordinate.
+pub(super) const CUBE_3X3X3: [QuadraturePoint; 27] = {
+    let mut points = [point(0.0, 0.0, 0.0, 0.0); 27];
+    let mut k = 0;
+    while k < 27 {
+        let (p, q, r) = (INTERVAL_3[k % 3], INTERVAL_3[k / 3 % 3], INTERVAL_3[k / 9]);
+        points[k] = point(p.at[0], q.at[0], r.at[0], p.weight * q.weight * r.weight);
+        k += 1;
+    }
+    points
+};
+
 /// The centroid of the triangle (0,0), (1,0), (0,1), exact for linear functions.
 pub(super) const TRIANGLE_1: [QuadraturePoint; 1] = [point(1.0 / 3.0, 1.0 / 3.0, 0.0, 0.5)];
 
@@ -92,6 +104,28 @@ pub(super) const TRIANGLE_6: [QuadraturePoint; 6] = {
 
 /// The centroid of the tetrahedron (0,0,0), (1,0,0), (0,1,0), (0,0,1), exact for linear functions.
 pub(super) const TETRAHEDRON_1: [QuadraturePoint; 1] = [point(0.25, 0.25, 0.25, 1.0 / 6.0)];
+
+/// Eight points inside the tetrahedron, exact for cubics: what the stiffness of curved edges takes to pass the patch test.
+///
+/// # Source
+/// Y. Jinyun, *Symmetric Gaussian quadrature formulae for tetrahedronal regions*, Comput. Methods Appl. Mech. Engrg. 43 (1984)
+/// 349-353: two orbits of four points.
+pub(super) const TETRAHEDRON_8: [QuadraturePoint; 8] = {
+    const A: f64 = 0.328_054_696_711_426_7;
+    const WEIGHT_A: f64 = 0.138_527_966_511_862_2 / 6.0;
+    const B: f64 = 0.106_952_273_932_930_7;
+    const WEIGHT_B: f64 = 0.111_472_033_488_137_8 / 6.0;
+    [
+        point(A, A, A, WEIGHT_A),
+        point(1.0 - 3.0 * A, A, A, WEIGHT_A),
+        point(A, 1.0 - 3.0 * A, A, WEIGHT_A),
+        point(A, A, 1.0 - 3.0 * A, WEIGHT_A),
+        point(B, B, B, WEIGHT_B),
+        point(1.0 - 3.0 * B, B, B, WEIGHT_B),
+        point(B, 1.0 - 3.0 * B, B, WEIGHT_B),
+        point(B, B, 1.0 - 3.0 * B, WEIGHT_B),
+    ]
+};
 
 /// Abscissas and weights of five Gauss points on [-1, 1], exact for degree nine.
 const GAUSS_5: [(f64, f64); 5] = [

@@ -1,10 +1,17 @@
 //! What an element says of itself: the form in which each has a file of its own.
 
 /// The largest number of nodes that an element here has.
-pub const MAX_NODES: usize = 8;
+pub const MAX_NODES: usize = 20;
 
 /// One value per node of an element; entries beyond its nodes are zero.
 pub type PerNode<T> = [T; MAX_NODES];
+
+/// The values of the nodes of an element, with zeros behind them.
+pub(super) fn padded<T: Copy + Default, const N: usize>(values: [T; N]) -> PerNode<T> {
+    let mut all = [T::default(); MAX_NODES];
+    all[..N].copy_from_slice(&values);
+    all
+}
 
 /// What a reference cell is the product or the hull of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,6 +44,8 @@ pub struct ReferenceElement {
     pub nodes: &'static [[f64; 3]],
     /// Number of corners.
     pub corners: usize,
+    /// The corners between which each node behind the corners lies, in the order of these nodes.
+    pub mid_sides: &'static [[usize; 2]],
     /// Local nodes of every face, in the order of the facet's own reference cell, seen from outside counterclockwise.
     pub faces: &'static [&'static [usize]],
     /// Local nodes in the order along the cell; the own order where the cell is no line.
@@ -53,9 +62,11 @@ pub struct ReferenceElement {
     pub centroid: [f64; 3],
     /// What a face of the element is; of a point and of an edge, which are no elements of a body in the plane, its ends.
     pub facet: FacetKind,
-    /// The number by which a file of Gmsh knows the element, with its nodes in the same order.
+    /// The number by which a file of Gmsh knows the element.
     pub gmsh: usize,
-    /// The number by which a file of VTK knows it.
+    /// The place of each node among those of an element in a file of Gmsh.
+    pub gmsh_order: &'static [usize],
+    /// The number by which a file of VTK knows it, with its nodes in the same order.
     pub vtk: u8,
     /// What a cell of a structured mesh brings with it.
     pub counts: LatticeCounts,
@@ -106,4 +117,8 @@ pub enum FacetKind {
     T3,
     /// Quadrilateral of four nodes, in order around it.
     Q4,
+    /// Quadratic triangle: three corners, then the mid-sides (0,1), (1,2), (2,0).
+    T6,
+    /// Quadratic quadrilateral: four corners, then the mid-sides (0,1), (1,2), (2,3), (3,0).
+    Q8,
 }

@@ -12,6 +12,7 @@ pub(super) static T3: ReferenceElement = ReferenceElement {
     dimension: 2,
     nodes: &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
     corners: 3,
+    mid_sides: &[],
     faces: &[&[0, 1], &[1, 2], &[2, 0]],
     along: &[0, 1, 2],
     shape,
@@ -21,6 +22,7 @@ pub(super) static T3: ReferenceElement = ReferenceElement {
     centroid: [1.0 / 3.0, 1.0 / 3.0, 0.0],
     facet: FacetKind::Line2,
     gmsh: 2,
+    gmsh_order: &[0, 1, 2],
     vtk: 5,
     counts: LatticeCounts { nodes: 1.0, line: 1.0, connections: 6.0, neighbours: 7.0 },
 };

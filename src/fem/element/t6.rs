@@ -17,6 +17,7 @@ pub(super) static T6: ReferenceElement = ReferenceElement {
     dimension: 2,
     nodes: &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.5, 0.0, 0.0], [0.5, 0.5, 0.0], [0.0, 0.5, 0.0]],
     corners: 3,
+    mid_sides: &SIDES,
     faces: &[&[0, 1, 3], &[1, 2, 4], &[2, 0, 5]],
     along: &[0, 1, 2, 3, 4, 5],
     shape,
@@ -26,6 +27,7 @@ pub(super) static T6: ReferenceElement = ReferenceElement {
     centroid: [1.0 / 3.0, 1.0 / 3.0, 0.0],
     facet: FacetKind::Line3,
     gmsh: 9,
+    gmsh_order: &[0, 1, 2, 3, 4, 5],
     vtk: 22,
     counts: LatticeCounts { nodes: 4.0, line: 2.0, connections: 12.0, neighbours: 11.5 },
 };

@@ -10,6 +10,7 @@ pub(super) static TET4: ReferenceElement = ReferenceElement {
     dimension: 3,
     nodes: &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
     corners: 4,
+    mid_sides: &[],
     faces: &[&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[0, 3, 2]],
     along: &[0, 1, 2, 3],
     shape,
@@ -19,6 +20,7 @@ pub(super) static TET4: ReferenceElement = ReferenceElement {
     centroid: [0.25; 3],
     facet: FacetKind::T3,
     gmsh: 4,
+    gmsh_order: &[0, 1, 2, 3],
     vtk: 10,
     counts: LatticeCounts { nodes: 1.0, line: 1.0, connections: 24.0, neighbours: 15.0 },
 };

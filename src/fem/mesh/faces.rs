@@ -6,7 +6,7 @@ use super::{Boundary, Mesh, fail};
 use crate::error::Error;
 
 /// The most nodes that a facet has.
-const MOST_NODES: usize = 4;
+const MOST_NODES: usize = 8;
 
 /// The nodes of a facet in increasing order, padded at the end: the same for a face of any orientation.
 type Key = [usize; MOST_NODES];

@@ -4,6 +4,7 @@ mod axis;
 #[cfg(feature = "cli")]
 pub(crate) mod bisection;
 mod boundary;
+mod elevation;
 mod faces;
 pub mod gmsh;
 pub(crate) mod lattice;

@@ -78,7 +78,8 @@ impl BodyShape for BoxSpec {
 /// The mesh of the lines `x`, `y`, `z` (coordinates, strictly increasing, at least two each),
 /// of an element in space.
 ///
-/// Nodes are numbered along x first, then along y. Each cell is one brick or six tetrahedra. The boundaries are `left`,
+/// Nodes are numbered along x first, then along y. Each cell is one brick or six tetrahedra; nodes in the middle of
+/// edges follow the others. The boundaries are `left`,
 /// `right` (along x), `front`, `back` (along y), `bottom` and `top` (along z), their facets counterclockwise seen from
 /// outside.
 ///
@@ -88,6 +89,9 @@ impl BodyShape for BoxSpec {
 pub fn cuboid(x: &[f64], y: &[f64], z: &[f64], kind: ElementKind) -> Result<Mesh, Error> {
     if kind.dimension() != 3 {
         return fail(format!("a box is no mesh of {}", kind.name()));
+    }
+    if kind.is_quadratic() {
+        return cuboid(x, y, z, kind.linear())?.elevated(kind);
     }
     check_lines(&[("x", x), ("y", y), ("z", z)], 1)?;
     let count = [x.len() - 1, y.len() - 1, z.len() - 1];

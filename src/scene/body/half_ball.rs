@@ -10,13 +10,14 @@ use crate::fem::Integration;
 use crate::fem::mesh::lattice::Lattice;
 use crate::fem::mesh::round::{Grading, mirrored};
 use crate::fem::mesh::{ElementKind, MAX_NODES, Mesh, Zone, fail};
-use crate::scene::schema::cells::HalfSpec;
+use crate::scene::entry::wrong;
+use crate::scene::schema::cells::{HalfSpec, SolidElementSpec};
 use crate::scene::schema::json::{object, word, words};
 
 /// Corners of a face of the core, in steps along its two directions, counterclockwise seen from outside.
 const AROUND: [[usize; 2]; 4] = [[0, 0], [1, 0], [1, 1], [0, 1]];
 
-/// Half of a ball, the lower one where not said otherwise, of `hex8`.
+/// Half of a ball, the lower one where not said otherwise, of `hex8` or `hex20`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -36,6 +37,9 @@ pub struct HalfBallSpec {
     /// `symmetry-x` and `symmetry-y`.
     #[serde(default, deserialize_with = "words")]
     pub symmetric: Vec<SymmetrySpec>,
+    /// The element: `hex8`, or `hex20`, whose edges follow the sphere.
+    #[serde(default, deserialize_with = "word", skip_serializing_if = "SolidElementSpec::is_default")]
+    pub element: SolidElementSpec,
     /// How its stiffness is integrated.
     #[serde(default, deserialize_with = "word")]
     pub integration: Integration,
@@ -63,7 +67,15 @@ impl BodyShape for HalfBallSpec {
         site.check_estimate(&self.block(None))?;
         let sides = [SymmetrySpec::X, SymmetrySpec::Y]
             .map(|axis| if self.symmetric.contains(&axis) { Sides::Beyond } else { Sides::Both });
-        let lower = half_ball(self.centre, self.radius, &self.zone, sides)?;
+        let kind = self.element.kind();
+        if !kind.is_product() {
+            let message = format!("a half ball is not cut into {}; take `hex8` or `hex20`", kind.name());
+            return Err(wrong(format!("{}.element", site.path), message));
+        }
+        let mut lower = half_ball(self.centre, self.radius, &self.zone, sides)?;
+        if kind.is_quadratic() {
+            lower = lower.elevated(kind)?.onto_sphere("round", self.centre, self.radius);
+        }
         Ok(self.half.of(lower, 2, self.centre[2]))
     }
 
@@ -74,7 +86,7 @@ impl BodyShape for HalfBallSpec {
         let around = (4.0 * aside * aside + 8.0 * aside * down) / 2.0_f64.powi(halves);
         let core = 4.0 * aside * aside * down / 2.0_f64.powi(halves);
         let side = around.sqrt();
-        let counts = ElementKind::Hex8.reference().counts;
+        let counts = self.element.kind().reference().counts;
         Block { cells: vec![side, side, shells + core / around], lengths: Vec::new(), counts }
     }
 

@@ -51,6 +51,10 @@ impl ObstacleShape for FacingSpec {
         search.check_others(&pairs)?;
         Ok(Geometry::Pairs(pairs))
     }
+
+    fn other_boundary(&self) -> Option<&str> {
+        Some(&self.boundary)
+    }
 }
 
 fn unpaired(site: &Site, message: String) -> Error {
@@ -182,7 +186,7 @@ impl Across {
         let corners = match kind {
             FacetKind::Point1 => return None,
             FacetKind::Line2 | FacetKind::Line3 => &facet[..2],
-            FacetKind::T3 | FacetKind::Q4 => facet,
+            FacetKind::T3 | FacetKind::Q4 | FacetKind::T6 | FacetKind::Q8 => &facet[..kind.reference().corners],
         };
         let pairs: Option<Vec<Pair>> = corners.iter().map(|&corner| pair_of[corner]).collect();
         let pairs = pairs?;

@@ -25,6 +25,11 @@ pub(in crate::scene) trait ObstacleShape {
     /// Checks the numbers, and puts the surface where it stands.
     fn place(&self, site: &Site) -> Result<Geometry, Error>;
 
+    /// The boundary that is the surface, if that is one of another body.
+    fn other_boundary(&self) -> Option<&str> {
+        None
+    }
+
     /// A length, beyond which the surface does not reach or touch.
     fn radius(&self) -> f64 {
         f64::INFINITY

@@ -30,6 +30,10 @@ pub enum SolidElementSpec {
     /// Trilinear hexahedron.
     #[default]
     Hex8,
+    /// Quadratic tetrahedron of ten nodes.
+    Tet10,
+    /// Quadratic hexahedron of 20 nodes.
+    Hex20,
 }
 
 /// The half of a disc or a ball.
@@ -56,10 +60,17 @@ impl ElementSpec {
 }
 
 impl SolidElementSpec {
+    /// Returns `true` for the element of a scene that names none.
+    pub(in crate::scene) fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+
     pub(in crate::scene) fn kind(self) -> ElementKind {
         match self {
             SolidElementSpec::Tet4 => ElementKind::Tet4,
             SolidElementSpec::Hex8 => ElementKind::Hex8,
+            SolidElementSpec::Tet10 => ElementKind::Tet10,
+            SolidElementSpec::Hex20 => ElementKind::Hex20,
         }
     }
 }

@@ -12,12 +12,6 @@ use crate::fem::mesh::{Mesh, fail};
 /// generator, far below any cell.
 const FLAT: f64 = 1e-9;
 
-/// Why quadratic elements in space are refused.
-const WRONG_SIGN: &str = "under a uniform pressure the consistent nodal forces on their faces have the wrong sign or \
-                          vanish at the corners (20-node bricks: -1/12 at a corner, +1/3 at a mid-side; ten-node \
-                          tetrahedra: 0 at a corner), so that they cannot carry contact; take four-node tetrahedra or \
-                          eight-node bricks (in Gmsh, `Mesh.ElementOrder = 1`)";
-
 /// The place of a node of the file in the mesh, if it is in the body.
 pub(super) type Numbers = Vec<Option<usize>>;
 
@@ -74,8 +68,9 @@ impl<'a> Body<'a> {
         }
         self.flatten(file, &used, &mut nodes)?;
         let mut connectivity = Vec::with_capacity(self.elements.len() * self.kind.nodes());
+        let order = self.kind.reference().gmsh_order;
         for element in &self.elements {
-            connectivity.extend(element.nodes.iter().filter_map(|&node| numbers[node]));
+            connectivity.extend(order.iter().filter_map(|&place| numbers[element.nodes[place]]));
         }
         if self.kind.dimension() < 3 {
             turn_if_clockwise(self.kind, &nodes, &mut connectivity);
@@ -141,7 +136,7 @@ fn kind(file: &GmshFile, elements: &[Element]) -> Result<ElementKind, Error> {
     }
 }
 
-/// The element here that an element type is; their nodes have the same order.
+/// The element here that an element type is.
 fn accepted(cell: &CellType) -> Result<ElementKind, String> {
     let refused = |reason: &str| Err(format!("{} are refused: {reason}", cell.plural));
     if let Some(kind) = ElementKind::ALL.into_iter().find(|kind| kind.reference().gmsh == cell.number) {
@@ -149,9 +144,9 @@ fn accepted(cell: &CellType) -> Result<ElementKind, String> {
     }
     match cell.number {
         10 => refused("quadratic quadrilaterals have eight nodes here (in Gmsh, `Mesh.SecondOrderIncomplete = 1`)"),
-        11 | 12 | 17 => refused(WRONG_SIGN),
+        12 => refused("quadratic bricks have 20 nodes here (in Gmsh, `Mesh.SecondOrderIncomplete = 1`)"),
         8 => refused("a bar has two nodes here (in Gmsh, `Mesh.ElementOrder = 1`)"),
-        _ => refused("bodies in space are of four-node tetrahedra or eight-node bricks here"),
+        _ => refused("bodies in space are of tetrahedra (four or ten nodes) or bricks (eight or 20 nodes) here"),
     }
 }
 
