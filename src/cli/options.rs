@@ -131,8 +131,12 @@ pub(super) struct Sweep {
     /// Scene (a JSON file)
     pub scene: PathBuf,
     /// Gaps from the first to the last, and their number, as -0.01:-0.10:10
-    #[arg(long, value_name = "FIRST:LAST:COUNT", allow_hyphen_values = true, value_parser = parse_gaps)]
-    pub gaps: Gaps,
+    #[arg(long, value_name = "FIRST:LAST:COUNT", allow_hyphen_values = true, value_parser = parse_gaps,
+          required_unless_present = "forces", conflicts_with = "forces")]
+    pub gaps: Option<Gaps>,
+    /// Forces on the obstacle that a force presses, from the first to the last, and their number, as 0:10e3:11
+    #[arg(long, value_name = "FIRST:LAST:COUNT", allow_hyphen_values = true, value_parser = parse_forces)]
+    pub forces: Option<Gaps>,
     /// Method that finds the contact sets
     #[arg(long, value_enum, default_value_t = Method::Auto)]
     pub method: Method,
@@ -140,7 +144,7 @@ pub(super) struct Sweep {
     pub common: Common,
 }
 
-/// The gaps of a sweep.
+/// The gaps, or the forces, of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Gaps {
     pub first: f64,
@@ -152,7 +156,19 @@ pub(super) struct Gaps {
 const MOST_GAPS: usize = 10_000;
 
 fn parse_gaps(text: &str) -> Result<Gaps, String> {
-    let form = "it must be FIRST:LAST:COUNT, as -0.01:-0.10:10";
+    parse_range(text, "gap", "it must be FIRST:LAST:COUNT, as -0.01:-0.10:10")
+}
+
+fn parse_forces(text: &str) -> Result<Gaps, String> {
+    let form = "it must be FIRST:LAST:COUNT, as 0:10e3:11";
+    let forces = parse_range(text, "force", form)?;
+    match forces.first.min(forces.last) {
+        least if least < 0.0 => Err(format!("{least} would pull the obstacle away: forces are 0 or positive; {form}")),
+        _ => Ok(forces),
+    }
+}
+
+fn parse_range(text: &str, of: &str, form: &str) -> Result<Gaps, String> {
     let parts: Vec<&str> = text.split(':').collect();
     let [first, last, count] = parts[..] else { return Err(form.to_string()) };
     let number = |part: &str| match part.parse::<f64>() {
@@ -165,7 +181,7 @@ fn parse_gaps(text: &str) -> Result<Gaps, String> {
     };
     let gaps = Gaps { first: number(first)?, last: number(last)?, count };
     if count == 1 && gaps.first != gaps.last {
-        return Err(format!("one gap cannot be both {first} and {last}; {form}"));
+        return Err(format!("one {of} cannot be both {first} and {last}; {form}"));
     }
     Ok(gaps)
 }

@@ -1,12 +1,12 @@
 //! `signorini sweep`: one scene at several gaps.
 
 use super::input::{scene_title, still_model, warnings};
-use super::options::Sweep;
+use super::options::{Gaps, Sweep};
 use super::outcome::{Outcome, Report, warn};
 use super::settings::settings;
 use crate::error::Error;
 use crate::output::{gallery, sweep_text};
-use crate::study::scene::even_gaps;
+use crate::study::scene::{even_gaps, sweep_forces};
 use crate::study::sweep;
 use crate::watch::Watch;
 
@@ -14,8 +14,12 @@ pub(super) fn run(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
     let common = &options.common;
     let model = still_model(&options.scene, &common.limits)?;
     warn(&warnings(&model));
-    let gaps = even_gaps(options.gaps.first, options.gaps.last, options.gaps.count);
-    let swept = sweep(&model, &gaps, &settings(options.method, common, watch))?;
+    let settings = settings(options.method, common, watch);
+    let even = |range: &Gaps| even_gaps(range.first, range.last, range.count);
+    let swept = match (&options.gaps, &options.forces) {
+        (_, Some(forces)) => sweep_forces(&model, &even(forces), &settings)?,
+        (gaps, None) => sweep(&model, &gaps.as_ref().map_or_else(Vec::new, even), &settings)?,
+    };
     watch.step("report", 0);
     let text = sweep_text(&scene_title(&model, &options.scene), &swept, model.units());
     let report = Report::new(&swept, text)?;

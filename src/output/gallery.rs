@@ -122,21 +122,28 @@ pub fn write_sweep(folder: &Path, sweep: &Sweep) -> Result<(), Error> {
         points.iter().enumerate().filter(|(_, point)| is_plane(point.answer.model()))
     {
         let title = format!("{}, {}", headline(answer.model(), ""), closed_nodes(answer.contact_set()));
-        series.push((format!("gap-{:02}", index + 1), Scene::new(answer, title)?));
+        let name = if points[index].force.is_some() { "force" } else { "gap" };
+        series.push((format!("{name}-{:02}", index + 1), Scene::new(answer, title)?));
     }
     draw_series(folder, &series)?;
     let Some(first) = points.first() else { return Ok(()) };
     let units = first.answer.model().units();
+    let (swept, swept_in) = match first.force {
+        Some(_) => ("force F", &units.force),
+        None => ("gap g", &units.length),
+    };
     let over_gap = |name: &str, unit: &str, at_point: Value<SweepPoint>, at_corner: Value<SweepCorner>| {
         // Beside the exact path the gaps are marks, which no line may join.
         let join = if sweep.corners.is_empty() { None } else { Some([f64::NAN; 2]) };
-        let at_points = points.iter().flat_map(|point| [Some([point.gap, at_point(point)]), join]).flatten().collect();
+        let at = |point: &SweepPoint| [point.force.unwrap_or(point.gap), at_point(point)];
+        let at_points = points.iter().flat_map(|point| [Some(at(point)), join]).flatten().collect();
         let exact = sweep.corners.iter().map(|corner| [corner.gap, at_corner(corner)]).collect::<Vec<_>>();
-        let mut series = vec![Series::new("gaps of the sweep", at_points)];
+        let marks = if first.force.is_some() { "forces of the sweep" } else { "gaps of the sweep" };
+        let mut series = vec![Series::new(marks, at_points)];
         if !exact.is_empty() {
             series.insert(0, Series::new("exact path", exact));
         }
-        let mut plot = Plot::new(Quantity::new("gap g", &units.length), Quantity::new(name, unit), series);
+        let mut plot = Plot::new(Quantity::new(swept, swept_in), Quantity::new(name, unit), series);
         plot.nested = true;
         plot
     };
@@ -148,8 +155,12 @@ pub fn write_sweep(folder: &Path, sweep: &Sweep) -> Result<(), Error> {
         let area = |point: &SweepPoint| contact(point).area.unwrap_or(0.0);
         over_gap("contact area", &format!("{}²", units.length), &area, &|corner| corner.area)
     };
+    let force_or_travel = match first.force {
+        Some(_) => over_gap("travel d", &units.length, &|point| point.travel().unwrap_or(0.0), &|_| 0.0),
+        None => over_gap("sum of multipliers", &units.force, &|point| contact(point).force, &|corner| corner.force),
+    };
     let plots = [
-        over_gap("sum of multipliers", &units.force, &|point| contact(point).force, &|corner| corner.force),
+        force_or_travel,
         extent,
         over_gap("peak pressure", &units.pressure(), &|p| contact(p).pressure_max.unwrap_or(0.0), &|c| c.pressure_max),
     ];
@@ -161,7 +172,10 @@ pub fn write_sweep(folder: &Path, sweep: &Sweep) -> Result<(), Error> {
 type Value<'a, T> = &'a dyn Fn(&T) -> f64;
 
 fn headline(model: &Model, what: &str) -> String {
-    let gap = format!("gap {} {}", brief(model.gap()), model.units().length);
+    let gap = match model.pressing_force() {
+        Some(force) => format!("force {} {}", brief(force), model.units().force),
+        None => format!("gap {} {}", brief(model.gap()), model.units().length),
+    };
     let parts = [model.title(), gap.trim_end(), what];
     parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
 }
@@ -215,7 +229,7 @@ impl Scene {
         let closed_nodes: Vec<usize> = set.iter().map(|row| model.rows()[row].node).collect();
         let outline = |i: usize| {
             let [x, y, _] = model.obstacles()[i].approach();
-            (model.obstacle_outline(i, OUTLINE_SEGMENTS), [x, y])
+            (model.obstacles()[i].outline(answer.shift(i), OUTLINE_SEGMENTS), [x, y])
         };
         let corners = model.mesh().kind().corners();
         Ok(Scene {

@@ -147,6 +147,9 @@ fn resultants_text(summary: &Summary, units: &Units) -> String {
         if let Some(centre) = &resultant.centre {
             text += &format!(", centre {} {}", place(centre), units.length);
         }
+        if let Some(travel) = resultant.travel {
+            text += &format!(", travel {travel:.6e} {}", units.length);
+        }
         text.trim_end().to_string()
     };
     let segment = |segment: &Segment| {
@@ -292,8 +295,9 @@ const MOST_EVENTS: usize = 40;
 
 /// The table of a sweep, and what happens between its gaps.
 pub fn sweep_text(title: &str, sweep: &Sweep, units: &Units) -> String {
+    let is_of_forces = sweep.points.first().is_some_and(|point| point.force.is_some());
     let header = [
-        in_unit("gap", &units.length),
+        if is_of_forces { in_unit("travel", &units.length) } else { in_unit("gap", &units.length) },
         "iterations".to_string(),
         "contact".to_string(),
         in_unit("-sum(lambda)", &units.force),
@@ -305,7 +309,7 @@ pub fn sweep_text(title: &str, sweep: &Sweep, units: &Units) -> String {
     let row = |point: &SweepPoint| {
         let Summary { solution, contact, .. } = &point.summary;
         vec![
-            format!("{:.6}", point.gap),
+            point.travel().map_or_else(|| format!("{:.6}", point.gap), |travel| format!("{travel:.6e}")),
             solution.iterations.to_string(),
             contact.count.to_string(),
             format!("{:.9e}", contact.force),

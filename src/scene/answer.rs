@@ -18,6 +18,8 @@ use crate::solution::{ContactSet, Solution};
 pub struct Answer {
     model: Arc<Model>,
     displacement: Vec<f64>,
+    /// That of each obstacle that a force presses, in length.
+    travel: Vec<Option<f64>>,
     multiplier: Vec<f64>,
     contact_set: ContactSet,
     pressure: Vec<f64>,
@@ -63,6 +65,9 @@ impl Answer {
         }
         Ok(Answer {
             displacement: model.nodal_displacement(displacement)?,
+            travel: (0..model.obstacles().len())
+                .map(|index| model.travel(displacement, index))
+                .collect::<Result<_, _>>()?,
             pressure: model.pressure(multiplier)?,
             multiplier: multiplier.to_vec(),
             contact_set: contact_set.clone(),
@@ -81,6 +86,16 @@ impl Answer {
     /// Nodal displacements, length `dim * n_nodes`, order `[u_x0, u_y0, u_x1, ...]`, in length.
     pub fn displacement(&self) -> &[f64] {
         &self.displacement
+    }
+
+    /// How far an obstacle that a force presses has moved against its approach direction, in length; `None` for one that stands still.
+    pub fn travel(&self, obstacle: usize) -> Option<f64> {
+        self.travel.get(obstacle).copied().flatten()
+    }
+
+    /// The whole shift of an obstacle along its approach direction, in length: that of the scene, its own, less its travel.
+    pub(crate) fn shift(&self, obstacle: usize) -> f64 {
+        self.model.obstacles()[obstacle].shift(self.model.gap()) - self.travel(obstacle).unwrap_or(0.0)
     }
 
     /// The multiplier of each row, in force, `<= 0`.
@@ -121,6 +136,7 @@ impl Answer {
     pub fn resultants(&self) -> Result<&[Resultant], Error> {
         let found = once(&self.resultants, || {
             let mut all = self.model.contact_resultants(&self.multiplier)?;
+            all.iter_mut().zip(&self.travel).for_each(|(resultant, travel)| resultant.travel = *travel);
             let reactions = &self.forces()?.reactions;
             all.extend(self.model.support_resultants(|node| self.model.force_at(reactions, node)));
             all.extend(self.model.load_resultant());

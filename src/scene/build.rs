@@ -3,10 +3,12 @@
 use std::sync::Arc;
 
 use super::elastic::locking;
+use super::entry::wrong;
 use super::model::Model;
 use super::obstacle::{Obstacle, PlacedObstacle};
 use super::parts::Parts;
 use super::schema::Scene;
+use super::unknowns::Unknowns;
 use crate::error::Error;
 use crate::fem::assembly::DofMap;
 use crate::fem::body::ElasticBody;
@@ -55,8 +57,13 @@ impl Scene {
         warnings.extend(self.suspect(&body, &dofs)?);
         let (title, units) = (self.title.clone(), self.units.clone());
         let moves = self.analysis.is_some();
+        let unknowns = Unknowns::of(dofs.free().len(), &obstacles);
+        if let Some(index) = unknowns.pressed().first().filter(|_| moves) {
+            let message = "an obstacle without mass has no motion of its own; let it stand still, or load the body";
+            return Err(wrong(format!("{}.force", path(*index)), message));
+        }
         Model::new(
-            Parts { title, units, body, dofs, held, supports, is_part, load, obstacles, warnings, moves },
+            Parts { title, units, body, dofs, held, supports, is_part, load, obstacles, unknowns, warnings, moves },
             self.gap,
         )
     }

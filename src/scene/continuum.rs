@@ -197,9 +197,14 @@ fn axis_of(direction: [f64; 3]) -> Option<usize> {
 /// An obstacle whose rows lie along one axis.
 fn facing(index: usize, obstacle: &PlacedObstacle, gap: f64) -> Result<Facing, Error> {
     let path = format!("obstacles[{index}]");
+    if obstacle.force().is_some() {
+        let message = "an obstacle that a force presses has no guaranteed bound: one that stands still has";
+        return Err(wrong(format!("{path}.force"), message));
+    }
     match (obstacle.rule(), axis_of(obstacle.approach())) {
         (Some(Rule::Approach), Some(axis)) if obstacle.rigid().is_some() => {
-            let (sense, surface) = (obstacle.approach()[axis].signum(), Shifted { obstacle: obstacle.clone(), gap });
+            let (sense, gap) = (obstacle.approach()[axis].signum(), obstacle.shift(gap));
+            let surface = Shifted { obstacle: obstacle.clone(), gap };
             Ok(Facing { axis, sense, surface: std::sync::Arc::new(surface) })
         }
         (Some(Rule::ClosestPoint), _) => Err(wrong(

@@ -40,7 +40,7 @@ impl Answer {
                 let Some((element, _)) = owner else { continue };
                 for at in &table.points {
                     let [place, moved] = self.on_facet(facet, at);
-                    let row = rigid.shifted_row(place, model.gap()).map_err(|reason| Error::Scene {
+                    let row = rigid.shifted_row(place, self.shift(index)).map_err(|reason| Error::Scene {
                         path: format!("obstacles[{index}]"),
                         message: format!("the place {place:?} between nodes {reason}"),
                     })?;

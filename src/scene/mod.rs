@@ -42,6 +42,7 @@ pub(crate) mod schema;
 mod segments;
 mod size;
 mod suspect;
+mod unknowns;
 mod warning;
 mod watched;
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::entry::wrong;
+use super::entry::{finite, wrong};
 use super::obstacle::PlacedObstacle;
 use super::parts::Parts;
 use super::rigid_body_modes::RigidBodyModes;
@@ -17,6 +17,10 @@ use crate::fem::mesh::Mesh;
 use crate::qp::linear::SymmetricMatrix;
 use crate::qp::linear::multigrid::NearNullSpace;
 use crate::qp::problem::ContactProblem;
+#[cfg(feature = "cli")]
+use crate::qp::{Settings, solve};
+#[cfg(feature = "cli")]
+use crate::solution::Solution;
 
 /// Tributary areas below this, relative to the largest, are rounding of zero; radii, relative to the size of the body.
 const NO_AREA: f64 = 1e-12;
@@ -24,7 +28,8 @@ const NO_AREA: f64 = 1e-12;
 /// A discretised scene: mesh, contact problem, and what its rows and dofs mean.
 ///
 /// Nodal vectors have length `dim * n_nodes` and the order `[x_0, y_0, x_1, ...]` (with z in space). `displacement`
-/// arguments are those of a solution: one entry per free dof.
+/// arguments are those of a solution: one entry per free dof, and behind
+/// them the travel of each obstacle that a force presses.
 ///
 /// ```
 /// use signorini::{Scene, solve_qp};
@@ -50,17 +55,22 @@ impl Model {
     pub(super) fn new(parts: Parts, gap: f64) -> Result<Self, Error> {
         let built = rows::build(&parts, gap)?;
         if !parts.moves {
-            RigidBodyModes::of(&parts.body).check_held(&parts, &built.rows)?;
+            RigidBodyModes::of_parts(&parts).check_held(&parts, &built.rows)?;
         }
-        let stiffness = stiffness(&parts.body, &parts.dofs).map_err(|error| match error {
-            Error::NotFinite { .. } => {
-                let message = "the stiffness that it makes with body and thickness overflows; choose other units";
-                wrong("material", message)
-            }
-            other => other,
-        })?;
-        let load = free_load(&parts.body, &parts.dofs, &parts.load)?;
-        let near_null = NearNullSpace::of_modes(rigid_body_modes(&parts.body, &parts.dofs)).map(Arc::new);
+        let stiffness = stiffness(&parts.body, &parts.dofs)
+            .and_then(|of_free| parts.unknowns.stiffness(of_free))
+            .map_err(|error| match error {
+                Error::NotFinite { .. } => {
+                    let message = "the stiffness that it makes with body and thickness overflows; choose other units";
+                    wrong("material", message)
+                }
+                other => other,
+            })?;
+        let force = |obstacle: usize| parts.obstacles[obstacle].force().unwrap_or(0.0);
+        let load = parts.unknowns.with_travels(free_load(&parts.body, &parts.dofs, &parts.load)?, force);
+        let modes = rigid_body_modes(&parts.body, &parts.dofs).into_iter();
+        let modes = modes.map(|mode| parts.unknowns.with_travels(mode, |_| 0.0)).collect();
+        let near_null = NearNullSpace::of_modes(modes).map(Arc::new);
         Self::with_rows(Arc::new(parts), gap, built, (stiffness, load, near_null))
     }
 
@@ -87,11 +97,57 @@ impl Model {
     pub fn with_gap(&self, gap: f64) -> Result<Self, Error> {
         let built = rows::build(&self.parts, gap)?;
         if !self.parts.moves {
-            RigidBodyModes::of(&self.parts.body).check_held(&self.parts, &built.rows)?;
+            RigidBodyModes::of_parts(&self.parts).check_held(&self.parts, &built.rows)?;
         }
         let (stiffness, load) = (self.problem.stiffness().clone(), self.problem.load().to_vec());
         let near_null = self.problem.near_null().cloned();
         Self::with_rows(self.parts.clone(), gap, built, (stiffness, load, near_null))
+    }
+
+    /// The force on the one obstacle that a force presses; `None` where there is no such obstacle, or several.
+    pub(crate) fn pressing_force(&self) -> Option<f64> {
+        let &[obstacle] = self.parts.unknowns.pressed() else { return None };
+        self.parts.unknowns.travel(obstacle).map(|unknown| self.problem.load()[unknown])
+    }
+
+    /// The same scene with another force on the one obstacle that a force presses.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] where a force presses no obstacle or several, or for a force that is not finite.
+    pub(crate) fn pressed_by(&self, force: f64) -> Result<Self, Error> {
+        let parts = &self.parts;
+        let &[obstacle] = parts.unknowns.pressed() else {
+            let count = parts.unknowns.pressed().len();
+            let message = format!("{count} of them have a `force`; a sweep over forces needs one that has");
+            return Err(wrong("obstacles", message));
+        };
+        finite(format!("obstacles[{obstacle}].force"), force)?;
+        let of_free = parts.unknowns.of_free(self.problem.load())?.to_vec();
+        let problem = self.problem.with_load(parts.unknowns.with_travels(of_free, |_| force))?;
+        Ok(Model { problem, ..self.clone() })
+    }
+
+    /// The solution with pressed obstacles where they first touch the body, without a force.
+    ///
+    /// # Errors
+    /// As [`solve`].
+    #[cfg(feature = "cli")]
+    pub(crate) fn touched(&self, settings: &Settings) -> Result<Solution, Error> {
+        let (parts, problem) = (&self.parts, &self.problem);
+        let is_pressed = |row: usize| parts.unknowns.travel(self.rows[row].obstacle).is_some();
+        // Out of reach, on a spring that nothing stretches.
+        let away = |(row, &gap): (usize, &f64)| if is_pressed(row) { f64::INFINITY } else { gap };
+        let gap = problem.gap().iter().enumerate().map(away).collect();
+        let load = parts.unknowns.with_travels(parts.unknowns.of_free(problem.load())?.to_vec(), |_| 0.0);
+        let stiffness = parts.unknowns.on_springs(problem.stiffness())?;
+        let mut solution = solve(&ContactProblem::new(stiffness, load, problem.contact().clone(), gap)?, settings)?;
+        let left = problem.violation(&solution.displacement);
+        for &obstacle in parts.unknowns.pressed() {
+            let Some(travel) = parts.unknowns.travel(obstacle) else { continue };
+            let rows = problem.contact().column(travel);
+            solution.displacement[travel] = rows.map(|(row, lean)| -left[row] / lean).fold(f64::INFINITY, f64::min);
+        }
+        Ok(solution)
     }
 
     pub(super) fn parts(&self) -> &Parts {
@@ -136,7 +192,10 @@ impl Model {
     /// The surface of obstacle `obstacle` at this model's gap, as [`PlacedObstacle::outline`]; empty where there is no such
     /// obstacle.
     pub fn obstacle_outline(&self, obstacle: usize, segments: usize) -> Vec<[f64; 2]> {
-        self.parts.obstacles.get(obstacle).map_or_else(Vec::new, |obstacle| obstacle.outline(self.gap, segments))
+        self.parts
+            .obstacles
+            .get(obstacle)
+            .map_or_else(Vec::new, |obstacle| obstacle.outline(obstacle.shift(self.gap), segments))
     }
 
     /// The contact rows, in the order of the rows of [`problem`](Self::problem): obstacle by obstacle, each in the
@@ -152,7 +211,7 @@ impl Model {
 
     /// Returns `true` if the supports alone hold all bodies; otherwise contact holds some rigid-body mode.
     pub(crate) fn is_supported(&self) -> bool {
-        RigidBodyModes::of(&self.parts.body).are_supported(&self.parts)
+        RigidBodyModes::of_parts(&self.parts).are_supported(&self.parts)
     }
 
     /// The contact problem in the free dofs.
@@ -165,7 +224,17 @@ impl Model {
     /// # Errors
     /// [`Error::Length`] where `displacement` does not have one entry per free dof.
     pub fn nodal_displacement(&self, displacement: &[f64]) -> Result<Vec<f64>, Error> {
-        self.parts.dofs.expand(displacement)
+        self.parts.dofs.expand(self.parts.unknowns.of_free(displacement)?)
+    }
+
+    /// How far an obstacle that a force presses has moved against its approach direction, in length, in a solution with these
+    /// `displacement`s; `None` for one that stands still.
+    ///
+    /// # Errors
+    /// As [`Model::nodal_displacement`].
+    pub fn travel(&self, displacement: &[f64], obstacle: usize) -> Result<Option<f64>, Error> {
+        self.parts.unknowns.of_free(displacement)?;
+        Ok(self.parts.unknowns.travel(obstacle).map(|unknown| displacement[unknown]))
     }
 
     /// Contact pressure of each row, `-lambda` over the tributary area as it is seen along the row, in force per area, `>= 0` in

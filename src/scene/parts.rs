@@ -2,6 +2,7 @@
 
 use super::held::Held;
 use super::obstacle::PlacedObstacle;
+use super::unknowns::Unknowns;
 use super::{Units, Warning};
 use crate::fem::assembly::DofMap;
 use crate::fem::body::ElasticBody;
@@ -22,6 +23,7 @@ pub(super) struct Parts {
     /// External load at all nodes, length `dim * n_nodes`.
     pub load: Vec<f64>,
     pub obstacles: Vec<PlacedObstacle>,
+    pub unknowns: Unknowns,
     pub warnings: Vec<Warning>,
     /// `true` if the analysis is dynamic: inertia then resists motions that no support holds.
     pub moves: bool,

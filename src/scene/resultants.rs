@@ -35,6 +35,9 @@ pub struct Resultant {
     /// A point on the line of action: with the force there the moment is what is given, but for a part along the force.
     /// Of parallel forces it is their centre. None where the forces cancel.
     pub centre: Option<Vec<f64>>,
+    /// How far an obstacle that a force presses has moved against its approach direction, in length.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub travel: Option<f64>,
 }
 
 /// Forces at points, added up.
@@ -101,6 +104,7 @@ impl Sum {
                 _ => Vec::new(),
             },
             centre: self.centre(formulation).map(|centre| centre[..dimension].to_vec()),
+            travel: None,
         }
     }
 }

@@ -68,6 +68,12 @@ pub(super) fn build(parts: &Parts, scene_gap: f64) -> Result<Rows, Error> {
     let (mut rows, mut gap, mut entries, mut warnings) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for index in 0..parts.obstacles.len() {
         let found = of_obstacle(parts, index, scene_gap)?;
+        let travel = parts.unknowns.travel(index);
+        if found.is_empty() && travel.is_some() {
+            let message = "no travel produces the force: on its way the obstacle meets no node of its boundary; check its place, its \
+                           approach direction and its radius";
+            return Err(wrong(format!("obstacles[{index}].force"), message));
+        }
         if found.is_empty() {
             warnings.push(Warning::NoContactRow { obstacle: index });
         }
@@ -86,6 +92,9 @@ pub(super) fn build(parts: &Parts, scene_gap: f64) -> Result<Rows, Error> {
                 remaining -= sign * along.prescribed;
                 free.extend(along.free.into_iter().map(|(column, component)| (rows.len(), column, sign * component)));
             }
+            if let Some(travel) = travel {
+                free.push((rows.len(), travel, dot(row.normal, parts.obstacles[index].approach())));
+            }
             if !free.is_empty() || remaining < -rounding {
                 entries.extend(free);
                 rows.push(row);
@@ -93,7 +102,7 @@ pub(super) fn build(parts: &Parts, scene_gap: f64) -> Result<Rows, Error> {
             }
         }
     }
-    let contact = SparseMatrix::from_triplets(rows.len(), dofs.free().len(), &entries)?;
+    let contact = SparseMatrix::from_triplets(rows.len(), parts.unknowns.count(), &entries)?;
     Ok(Rows { rows, contact, gap, warnings })
 }
 
@@ -105,7 +114,7 @@ fn of_obstacle(parts: &Parts, index: usize, scene_gap: f64) -> Result<Vec<Contac
     let areas = parts.dofs.row_areas(obstacle.candidates());
     for (candidate, (node, tributary_area)) in areas.into_iter().enumerate() {
         let at = nodes[node];
-        let found = obstacle.row(candidate, at, scene_gap).map_err(|reason| {
+        let found = obstacle.row(candidate, at, obstacle.shift(scene_gap)).map_err(|reason| {
             let message = format!("node {node} at {} {reason}", point(&at[..dimension]));
             wrong(format!("obstacles[{index}]"), message)
         })?;

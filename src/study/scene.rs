@@ -90,17 +90,28 @@ fn contact_width(model: &Model, closed: &ContactSet) -> Option<f64> {
     }
 }
 
-/// One gap of a sweep.
+/// One gap, or one force, of a sweep.
 #[derive(Clone, Debug, Serialize)]
 pub struct SweepPoint {
     /// The scene-wide gap.
     pub gap: f64,
+    /// The force that presses the obstacle, in a sweep over forces.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub force: Option<f64>,
     /// The solution with its numbers.
     #[serde(flatten)]
     pub summary: Summary,
     /// The answer, joined with the scene at this gap.
     #[serde(skip)]
     pub answer: Answer,
+}
+
+impl SweepPoint {
+    /// How far the pressed obstacle has moved, in a sweep over forces.
+    pub(crate) fn travel(&self) -> Option<f64> {
+        self.force?;
+        (0..self.answer.model().obstacles().len()).find_map(|obstacle| self.answer.travel(obstacle))
+    }
 }
 
 /// A row that touches or releases on the way from the first to the last gap of a sweep.
@@ -132,10 +143,10 @@ pub struct SweepCorner {
     pub pressure_max: f64,
 }
 
-/// A scene at several gaps.
-#[derive(Clone, Debug, Serialize)]
+/// A scene at several gaps, or forces.
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Sweep {
-    /// The answers at the gaps that were asked for.
+    /// The answers at the gaps or forces that were asked for.
     pub points: Vec<SweepPoint>,
     /// What happens between the first and the last gap; empty where the rows do not move on straight lines.
     pub events: Vec<SweepEvent>,
@@ -154,21 +165,16 @@ pub struct Sweep {
 /// # Errors
 /// As [`Model::with_gap`] and [`solve`]; [`Error::Interrupted`] where not one gap was done.
 pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, Error> {
-    let (Some(&first), Some(&last)) = (gaps.first(), gaps.last()) else {
-        return Ok(Sweep { points: Vec::new(), events: Vec::new(), corners: Vec::new() });
-    };
+    let (Some(&first), Some(&last)) = (gaps.first(), gaps.last()) else { return Ok(Sweep::default()) };
     let at_first = model.with_gap(first)?;
     let prepared =
         Prepared::for_gaps(at_first.problem(), gaps.len(), settings).map_err(|error| at_first.explain(error))?;
     let is_by_choice = settings.method == Method::Auto && prepared.hierarchy().is_some();
-    let mut points: Vec<SweepPoint> = Vec::new();
-    for (index, &gap) in gaps.iter().enumerate() {
-        settings.watch.part("gap", index + 1, gaps.len());
+    let points = points("gap", gaps, settings, |gap, known| {
         let clock = Instant::now();
         let model = model.with_gap(gap)?;
         let assemble_seconds = clock.elapsed().as_secs_f64();
         let same_rows = model.problem().contact() == at_first.problem().contact();
-        let known = points.last().map_or_else(Start::default, |point| Start::from(&point.summary.solution));
         let solved = match same_rows {
             true => prepared.starting_from(known).solve(model.problem().gap()),
             false => solve(model.problem(), settings),
@@ -177,28 +183,73 @@ pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, 
             Err(Error::NotCertified { .. }) if is_by_choice => solve(model.problem(), settings),
             solved => solved,
         };
+        Ok(Solved { model, solved, assemble_seconds })
+    })?;
+    if settings.watch.is_stopped() {
+        return Ok(Sweep { points, ..Sweep::default() });
+    }
+    let (events, corners) = between(&prepared, &at_first, first, last)?;
+    Ok(Sweep { points, events, corners })
+}
+
+/// Solves a scene at every one of `forces`, 0 or positive, of the one obstacle that a force presses. Without a force the obstacle
+/// stands where it first touches the body.
+///
+/// # Errors
+/// [`Error::Scene`] where a force presses no obstacle or several; as [`solve`]; [`Error::Interrupted`] where not one force was done.
+#[cfg(feature = "cli")]
+pub(crate) fn sweep_forces(model: &Model, forces: &[f64], settings: &Settings) -> Result<Sweep, Error> {
+    let prepared = Prepared::new(model.problem(), settings).map_err(|error| model.explain(error))?;
+    let mut points = points("force", forces, settings, |force, known| {
+        let clock = Instant::now();
+        let model = model.pressed_by(force)?;
+        let assemble_seconds = clock.elapsed().as_secs_f64();
+        let solved = match force > 0.0 {
+            true => prepared.starting_from(known).solve_load(model.problem().load().to_vec()),
+            false => model.touched(settings),
+        };
+        Ok(Solved { model, solved, assemble_seconds })
+    })?;
+    for (point, &force) in points.iter_mut().zip(forces) {
+        (point.gap, point.force) = (point.answer.model().gap(), Some(force));
+    }
+    Ok(Sweep { points, ..Sweep::default() })
+}
+
+/// A model of a sweep with what the solver said to it.
+struct Solved {
+    model: Model,
+    solved: Result<Solution, Error>,
+    assemble_seconds: f64,
+}
+
+/// The answers at all values of what is swept, each from the start that the last one makes.
+fn points(
+    name: &'static str,
+    values: &[f64],
+    settings: &Settings,
+    solved_at: impl Fn(f64, Start) -> Result<Solved, Error>,
+) -> Result<Vec<SweepPoint>, Error> {
+    let mut points: Vec<SweepPoint> = Vec::new();
+    for (index, &value) in values.iter().enumerate() {
+        settings.watch.part(name, index + 1, values.len());
+        let known = points.last().map_or_else(Start::default, |point| Start::from(&point.summary.solution));
+        let Solved { model, solved, assemble_seconds } = solved_at(value, known)?;
         let solution = match solved {
             Ok(solution) => solution,
-            // What was cut short is no answer to this gap.
+            // What was cut short is no answer to this value.
             Err(_) if settings.watch.is_stopped() => break,
             Err(Error::NotCertified { solution, .. }) => *solution,
             Err(error) => return Err(model.explain(error)),
         };
         let answer = Answer::of(Arc::new(model), &solution)?;
         let summary = scene_summary(&answer, solution, settings.goal(), assemble_seconds)?;
-        points.push(SweepPoint { gap, summary, answer });
+        points.push(SweepPoint { gap: value, force: None, summary, answer });
         if settings.watch.is_stopped() {
             break;
         }
     }
-    if points.is_empty() {
-        return Err(Error::Interrupted);
-    }
-    if settings.watch.is_stopped() {
-        return Ok(Sweep { points, events: Vec::new(), corners: Vec::new() });
-    }
-    let (events, corners) = between(&prepared, &at_first, first, last)?;
-    Ok(Sweep { points, events, corners })
+    if points.is_empty() { Err(Error::Interrupted) } else { Ok(points) }
 }
 
 /// Events and corners between two gaps; none where the rows turn on the way, or where the body is not condensed.

@@ -162,7 +162,7 @@ fn between_nodes(answer: &Answer) -> Option<AnswerWarning> {
                 sum.map(|part| part / cell.len() as f64)
             };
             let at = mean(&|node| nodes[node]);
-            let Ok(Some(row)) = rigid.shifted_row(at, model.gap()) else { continue };
+            let Ok(Some(row)) = rigid.shifted_row(at, answer.shift(index)) else { continue };
             let deep = dot(row.normal, mean(&moved)) - row.gap;
             if deep > worst.map_or(BETWEEN * depth, |worst| worst.0) {
                 worst = Some((deep, index, at));
@@ -235,7 +235,7 @@ fn leaning_normals(answer: &Answer) -> Option<AnswerWarning> {
         for row in loaded.iter().filter(|row| row.obstacle == index) {
             // At a corner of the surface every normal between those beside it will do.
             let beside = shifts.iter().map(|shift| [0, 1, 2].map(|axis| nodes[row.node][axis] + shift[axis]));
-            let normals = beside.filter_map(|at| obstacle.surface_normal(place[&row.node], at, model.gap()));
+            let normals = beside.filter_map(|at| obstacle.surface_normal(place[&row.node], at, answer.shift(index)));
             let Some(lean) = normals.map(|surface| dot(surface, row.normal)).reduce(f64::max) else { continue };
             let angle = lean.clamp(-1.0, 1.0).acos().to_degrees();
             if worst.is_none_or(|(most, ..)| angle > most) {

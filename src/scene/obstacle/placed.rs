@@ -8,7 +8,7 @@ use crate::error::Error;
 use crate::fem::assembly::{node_normals, tributary_areas};
 use crate::fem::body::ElasticBody;
 use crate::fem::geometry::length;
-use crate::scene::entry::{boundary, number, wrong};
+use crate::scene::entry::{boundary, finite, number, wrong};
 use crate::scene::schema::approach::Rule;
 use crate::scene::schema::obstacle::ObstacleSpec;
 
@@ -30,12 +30,17 @@ pub struct PlacedObstacle {
     geometry: Geometry,
     /// How its rows are made; none for an obstacle of a user's own.
     rule: Option<Rule>,
+    /// Shift along the approach direction besides that of the scene, in length.
+    gap: f64,
+    /// What presses it against its approach direction, in force.
+    force: Option<f64>,
 }
 
 impl PlacedObstacle {
     /// Checks the obstacle at JSON path `path`.
     pub(in crate::scene) fn of_scene(spec: &ObstacleSpec, path: &str, body: &ElasticBody) -> Result<Self, Error> {
         let (candidates, outward) = candidates(body, &spec.boundary, &format!("{path}.boundary"))?;
+        let (gap, force) = pressing(spec, path)?;
         let dimension = body.dimension();
         let (axis, _) = spec.approach.axis();
         if axis >= dimension {
@@ -57,6 +62,10 @@ impl PlacedObstacle {
             candidates: &candidates,
         };
         let (approach, geometry) = (site.direction(), shape.place(&site)?);
+        if force.is_some() && matches!(geometry, Geometry::Pairs(_)) {
+            let message = "another body is pressed by its own loads; give it one instead";
+            return Err(wrong(format!("{path}.force"), message));
+        }
         Ok(PlacedObstacle {
             boundary: spec.boundary.clone(),
             candidates,
@@ -65,6 +74,8 @@ impl PlacedObstacle {
             dimension,
             geometry,
             rule: Some(spec.rule),
+            gap,
+            force,
         })
     }
 
@@ -89,6 +100,8 @@ impl PlacedObstacle {
                     dimension,
                     geometry,
                     rule: None,
+                    gap: 0.0,
+                    force: None,
                 })
             }
         }
@@ -105,6 +118,17 @@ impl PlacedObstacle {
             Geometry::Rigid(obstacle) => Some(obstacle.as_ref()),
             Geometry::Pairs(_) => None,
         }
+    }
+
+    /// Where it stands if the scene shifts all obstacles by `gap`: its whole shift along the approach direction, in length, without the
+    /// travel of one that a force presses.
+    pub(crate) fn shift(&self, gap: f64) -> f64 {
+        gap + self.gap
+    }
+
+    /// The force that presses it against its approach direction; `None` for an obstacle that stands still.
+    pub fn force(&self) -> Option<f64> {
+        self.force
     }
 
     /// How its rows are made; `None` for an obstacle of a user's own.
@@ -177,6 +201,25 @@ impl PlacedObstacle {
         check_direction(row.normal, self.dimension).map_err(|reason| format!("has a row whose normal {reason}"))?;
         Ok(Some(ObstacleRow { normal: row.normal.map(|c| if c.abs() < NO_COMPONENT { 0.0 } else { c }), ..row }))
     }
+}
+
+/// Where an obstacle stands, besides the gap of the scene, and the force that presses it.
+fn pressing(spec: &ObstacleSpec, path: &str) -> Result<(f64, Option<f64>), Error> {
+    finite(format!("{path}.gap"), spec.gap.unwrap_or(0.0))?;
+    if let Some(force) = spec.force {
+        finite(format!("{path}.force"), force)?;
+        if force <= 0.0 {
+            let message = format!(
+                "{} is not allowed: the force presses the obstacle on the body, and must be positive",
+                number(force)
+            );
+            return Err(wrong(format!("{path}.force"), message));
+        }
+        if spec.gap.is_some() {
+            return Err(wrong(path, "gives both gap and force; the force finds the gap, so give one of them"));
+        }
+    }
+    Ok((spec.gap.unwrap_or(0.0), spec.force))
 }
 
 /// The nodes of a boundary with their tributary areas, and the outward normals there.

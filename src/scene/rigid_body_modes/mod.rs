@@ -20,8 +20,11 @@ const HELD: f64 = 1e-10;
 /// Amplitudes are the multiples of the unit motions, six for each body in turn.
 #[derive(Clone, Debug)]
 pub(super) struct RigidBodyModes {
+    /// The elastic bodies, and behind them the pressed obstacles.
     bodies: Vec<UnitMotions>,
     dimension: usize,
+    /// The obstacles that stand behind the bodies.
+    obstacles: Vec<usize>,
 }
 
 impl RigidBodyModes {
@@ -29,7 +32,18 @@ impl RigidBodyModes {
         RigidBodyModes {
             bodies: body.regions().iter().map(|region| UnitMotions::of(body, region)).collect(),
             dimension: body.dimension(),
+            obstacles: Vec::new(),
         }
+    }
+
+    /// The same with those of the obstacles that a force presses: each moves along its approach direction.
+    pub fn of_parts(parts: &Parts) -> Self {
+        let mut modes = Self::of(&parts.body);
+        let size = parts.body.mesh().size();
+        modes.obstacles = parts.unknowns.pressed().to_vec();
+        let of_obstacle = |&index: &usize| UnitMotions::of_obstacle(index, parts.obstacles[index].approach(), size);
+        modes.bodies.extend(parts.unknowns.pressed().iter().map(of_obstacle));
+        modes
     }
 
     /// The places of those amplitudes whose motions cost no energy.
@@ -61,7 +75,22 @@ impl RigidBodyModes {
             let of_node = self.along(nodes, node, row.normal);
             components.iter_mut().zip(of_node).for_each(|(component, part)| *component += sign * part);
         }
+        if let Some(place) = self.obstacles.iter().position(|&obstacle| obstacle == row.obstacle) {
+            let body = self.bodies.len() - self.obstacles.len() + place;
+            let of_obstacle = self.bodies[body].along([0.0; 3], row.normal);
+            (0..6).for_each(|mode| components[6 * body + mode] -= of_obstacle[mode]);
+        }
         components
+    }
+
+    /// The travel of each pressed obstacle in a motion: against its approach direction.
+    fn travels(&self, parts: &Parts, amplitudes: &[f64]) -> Vec<f64> {
+        let first = self.bodies.len() - self.obstacles.len();
+        let travel = |(place, &obstacle): (usize, &usize)| {
+            let along = self.bodies[first + place].along([0.0; 3], parts.obstacles[obstacle].approach());
+            -dot(&along, &amplitudes[6 * (first + place)..6 * (first + place + 1)])
+        };
+        self.obstacles.iter().enumerate().map(travel).collect()
     }
 
     /// Refuses bodies with a rigid-body mode that neither supports nor contact rows resist.
@@ -72,7 +101,9 @@ impl RigidBodyModes {
         let free = self.free(parts, rows);
         let Some(first) = free.first() else { return Ok(()) };
         let names: Vec<String> = free.iter().map(|motion| self.describe(motion, Sense::Either)).collect();
-        let direction = parts.dofs.free().iter().map(|&dof| dot(&self.at_dof(parts, dof), first)).collect();
+        let mut direction: Vec<f64> =
+            parts.dofs.free().iter().map(|&dof| dot(&self.at_dof(parts, dof), first)).collect();
+        direction.extend(self.travels(parts, first));
         Err(Error::UnderHeld { mode: format!("{}: {}", names.join(", "), advice(rows)), direction })
     }
 

@@ -58,6 +58,16 @@ impl UnitMotions {
         }
     }
 
+    /// That of a rigid obstacle, by its number, which moves along its approach direction.
+    pub fn of_obstacle(index: usize, approach: [f64; 3], size: f64) -> Self {
+        let modes: &[usize] = match approach.map(|component| component != 0.0) {
+            [true, ..] => &[0],
+            [_, true, _] => &[1],
+            _ => &[2],
+        };
+        UnitMotions { name: format!("obstacles[{index}]"), nodes: 0..0, centre: [0.0; 3], size, dimension: 3, modes }
+    }
+
     /// The displacement of unit motion `mode` at a point.
     fn at(&self, mode: usize, point: [f64; 3]) -> [f64; 3] {
         let [x, y, z] = [0, 1, 2].map(|axis| (point[axis] - self.centre[axis]) / self.size);

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::approach::{Approach, Rule};
-use super::json::{choice, word};
+use super::json::{choice, number, word};
 use crate::scene::obstacle::ShapeSpec;
 
 /// A frictionless obstacle and the boundary that may touch it.
@@ -19,6 +19,13 @@ pub struct ObstacleSpec {
     /// How a node's contact row is made.
     #[serde(default, deserialize_with = "word")]
     pub rule: Rule,
+    /// Shift of this obstacle along its approach direction, besides that of the whole scene; negative moves it towards the body.
+    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    pub gap: Option<f64>,
+    /// The force, positive, that presses the obstacle against its approach direction, along which alone it moves: in force, on a body
+    /// of revolution that of the full circle. Its travel is found.
+    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    pub force: Option<f64>,
     /// The surface of the obstacle.
     #[serde(deserialize_with = "choice")]
     pub shape: ShapeSpec,

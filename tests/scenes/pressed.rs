@@ -1,0 +1,205 @@
+//! Obstacles that a force presses: travel and force against closed forms, and against obstacles that are moved.
+
+use serde_json::{Value, json};
+use signorini::scene::{Answer, Resultant};
+use signorini::{Error, Model, Scene, solve_qp};
+use std::sync::Arc;
+
+use crate::exact_solutions::LineContact;
+use crate::program::Desk;
+
+/// Travel and force of two problems with the same answer: rounding, enlarged by condition numbers of up to 1e5.
+const SAME: f64 = 1e-10;
+
+fn model(scene: &Value) -> Model {
+    Scene::from_json(&scene.to_string(), "scene").and_then(|scene| scene.build()).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn answer(scene: &Value) -> Answer {
+    let model = model(scene);
+    let solution = solve_qp(model.problem()).unwrap_or_else(|error| panic!("{error}"));
+    Answer::of(Arc::new(model), &solution).unwrap()
+}
+
+/// The force along the approach direction on each obstacle.
+fn forces(answer: &Answer) -> Vec<f64> {
+    let obstacles = answer.model().obstacles();
+    let along = |(resultant, approach): (&Resultant, [f64; 3])| {
+        -resultant.force.iter().zip(approach).map(|(force, part)| force * part).sum::<f64>()
+    };
+    answer.resultants().unwrap().iter().zip(obstacles.iter().map(|obstacle| obstacle.approach())).map(along).collect()
+}
+
+/// A block on its bottom, under a shape.
+fn block(body: Value, space: bool, rule: &str, shape: Value) -> Value {
+    let held = if space {
+        json!({"on": {"boundary": "bottom"}, "x": 0, "y": 0, "z": 0})
+    } else {
+        json!({"on": {"boundary": "bottom"}, "x": 0, "y": 0})
+    };
+    json!({
+        "model": if space { "space" } else { "plane-strain" }, "body": body, "material": {"young": 1e7, "poisson": 0.3},
+        "supports": [held],
+        "obstacles": [{"boundary": "top", "approach": if space { "+z" } else { "+y" }, "rule": rule, "shape": shape}],
+    })
+}
+
+fn axis(divisions: usize) -> Value {
+    json!({"points": [0, 1], "divisions": [divisions]})
+}
+
+#[test]
+fn a_force_and_the_travel_that_it_finds_are_those_of_an_obstacle_that_is_moved() {
+    let plane = json!({"rectangle": {"x": axis(12), "y": axis(8), "element": "q8"}});
+    let solid = |element: &str| json!({"box": {"x": axis(4), "y": axis(4), "z": axis(3), "element": element}});
+    let circle = json!({"circle": {"centre": [0.45, 2.01], "radius": 1}});
+    let ball = json!({"sphere": {"apex": [0.5, 0.45, 1.002], "radius": 2}});
+    let leaning = json!({"plane": {"point": [1, 1.001], "normal": [-0.1, 1]}});
+    let cases = [
+        block(plane.clone(), false, "approach", circle),
+        block(plane, false, "closest-point", leaning),
+        block(solid("hex8"), true, "approach", ball.clone()),
+        block(solid("tet10"), true, "approach", ball),
+    ];
+    for mut scene in cases {
+        let travel = 0.012;
+        scene["obstacles"][0]["gap"] = (-travel).into();
+        let moved = answer(&scene);
+        let [force] = forces(&moved)[..] else { panic!("one obstacle") };
+        assert!(force > 0.0);
+        scene["obstacles"][0].as_object_mut().unwrap().remove("gap");
+        scene["obstacles"][0]["force"] = force.into();
+        let pressed = answer(&scene);
+        let found = pressed.travel(0).unwrap();
+        assert!((found / travel - 1.0).abs() < SAME, "{scene}: {found}");
+        assert!((forces(&pressed)[0] / force - 1.0).abs() < SAME, "{scene}");
+        assert_eq!(pressed.contact_set(), moved.contact_set());
+        let largest = moved.displacement().iter().fold(0.0, |largest: f64, u| largest.max(u.abs()));
+        let off = pressed.displacement().iter().zip(moved.displacement()).map(|(a, b)| (a - b).abs());
+        assert!(off.fold(0.0, f64::max) < SAME * largest, "{scene}");
+        assert!(pressed.forces().unwrap().balance < 1e-11, "{scene}");
+    }
+}
+
+/// Half a cylinder of radius 1 on its cut; a plane comes from below with the force whose approach Hertz gives as 0.01.
+#[test]
+fn a_plane_pressed_on_half_a_cylinder_travels_as_hertz_says() {
+    let (force, line) = (4.983922e-3, LineContact { modulus: 1.0 / 0.91, radius: 1.0 });
+    let answer = answer(&json!({
+        "model": "plane-strain",
+        "body": {"half-disc": {"radius": 1, "zone": {"width": 0.1, "divisions": 8}, "element": "q8"}},
+        "material": {"young": 1, "poisson": 0.3},
+        "supports": [{"on": {"boundary": "cut"}, "y": 0}, {"on": {"point": [0, 0]}, "x": 0}],
+        "obstacles": [{"boundary": "arc", "approach": "-y", "force": force,
+                       "shape": {"plane": {"point": [0, -1], "normal": [0, -1]}}}],
+    }));
+    let travel = answer.travel(0).unwrap();
+    // The theory is that of a small contact, a/R = 0.076.
+    assert!((travel / 0.01 - 1.0).abs() < 1e-3, "{travel}");
+    let peak = answer.pressure().iter().copied().fold(0.0, f64::max);
+    assert!((peak / line.peak_pressure(force) - 1.0).abs() < 0.01, "{peak}");
+}
+
+/// GOAL        a thin ring between two plates, each pressed with F
+/// REFERENCE   S. Timoshenko, *Strength of Materials* II, thin ring under two opposite forces: the diameter shortens by
+///             (pi/4 - 2/pi) F R^3/(E I), with the share of axial and shear stiffness below a hundredth here
+#[test]
+fn two_plates_on_a_ring_travel_alike_and_as_a_thin_ring_yields() {
+    let (force, height) = (1e-3, 0.05);
+    let plate = |approach: &str, y: f64| {
+        json!({"boundary": "outer", "approach": approach, "force": force,
+               "shape": {"plane": {"point": [0, y], "normal": [0, y.signum()]}}})
+    };
+    let outer = 1.0 + height / 2.0;
+    let mut scene = json!({
+        "model": "plane-stress",
+        "body": {"ring": {"radius": {"points": [1.0 - height / 2.0, outer], "divisions": [2]},
+                          "angle": {"points": [0, 360], "divisions": [240]}, "element": "q8"}},
+        "material": {"young": 1000, "poisson": 0.3},
+        "supports": [{"on": {"point": [outer, 0]}, "y": 0}, {"on": {"point": [-outer, 0]}, "y": 0},
+                     {"on": {"point": [0, outer]}, "x": 0}],
+        "obstacles": [plate("+y", outer), plate("-y", -outer)],
+    });
+    let pressed = answer(&scene);
+    let [above, below] = [0, 1].map(|plate| pressed.travel(plate).unwrap());
+    assert!((above / below - 1.0).abs() < 1e-8, "{above} {below}");
+    let inertia = height.powi(3) / 12.0;
+    let thin = (std::f64::consts::PI / 4.0 - 2.0 / std::f64::consts::PI) * force / (1000.0 * inertia);
+    assert!(((above + below) / thin - 1.0).abs() < 0.02, "{} {thin}", above + below);
+    for index in 0..2 {
+        scene["obstacles"][index].as_object_mut().unwrap().remove("force");
+        scene["obstacles"][index]["gap"] = (-[above, below][index]).into();
+    }
+    for moved in forces(&answer(&scene)) {
+        // The ring is soft: 1e-12 of its size in the travel is 1e-9 of the force.
+        assert!((moved / force - 1.0).abs() < 1e-8, "{moved}");
+    }
+}
+
+#[test]
+fn a_sweep_over_forces_begins_where_the_obstacle_touches() {
+    let desk = Desk::new();
+    let mut scene = block(
+        json!({"rectangle": {"x": axis(12), "y": axis(8)}}),
+        false,
+        "approach",
+        json!({"circle": {"apex": [0.5, 1.003], "radius": 1}}),
+    );
+    scene["obstacles"][0]["force"] = 1.into();
+    desk.write("scene.json", scene.to_string());
+    let report = desk.run(&["sweep", "scene.json", "--forces", "0:2e4:5", "--format", "json"]).ends_with(0).json();
+    let points = report["points"].as_array().unwrap();
+    let number = |value: &Value| value.as_f64().unwrap();
+    let travels: Vec<f64> = points.iter().map(|point| number(&point["resultants"][0]["travel"])).collect();
+    assert!((travels[0] - 0.003).abs() < 1e-15, "{travels:?}");
+    assert!(travels.is_sorted() && travels[4] > travels[0] + 1e-3, "{travels:?}");
+    for (index, point) in points.iter().enumerate() {
+        let force = 5e3 * index as f64;
+        assert_eq!(number(&point["force"]), force);
+        assert!((number(&point["contact"]["force"]) - force).abs() <= 1e-9 * 2e4, "{point}");
+        assert_eq!(point["status"], "certified");
+    }
+}
+
+#[test]
+fn what_cannot_be_pressed_is_refused_where_it_stands() {
+    let plain = || {
+        block(
+            json!({"rectangle": {"x": axis(2), "y": axis(2)}}),
+            false,
+            "approach",
+            json!({"circle": {"apex": [0.5, 1], "radius": 1}}),
+        )
+    };
+    let refused = |change: &dyn Fn(&mut Value), phrases: &[&str]| {
+        let mut scene = plain();
+        change(&mut scene);
+        let error = Scene::from_json(&scene.to_string(), "scene").and_then(|scene| scene.build()).unwrap_err();
+        assert!(matches!(error, Error::Scene { .. } | Error::UnderHeld { .. }), "{error:?}");
+        phrases.iter().for_each(|phrase| assert!(error.to_string().contains(phrase), "{error}"));
+    };
+    refused(&|scene| scene["obstacles"][0]["force"] = json!(-3), &["obstacles[0].force", "-3", "positive"]);
+    refused(&|scene| scene["obstacles"][0]["force"] = json!(0), &["obstacles[0].force", "positive"]);
+    refused(
+        &|scene| {
+            scene["obstacles"][0]["force"] = json!(3);
+            scene["obstacles"][0]["gap"] = json!(0.1);
+        },
+        &["obstacles[0]", "both gap and force"],
+    );
+    refused(
+        &|scene| {
+            scene["obstacles"][0]["force"] = json!(3);
+            scene["obstacles"][0]["shape"] = json!({"circle": {"apex": [7, 1], "radius": 1}});
+        },
+        &["obstacles[0].force", "no travel produces the force"],
+    );
+    // Two plates against each other hold nothing along their way.
+    refused(
+        &|scene| {
+            scene["obstacles"][0]["force"] = json!(3);
+            scene["supports"] = json!([{"on": {"boundary": "left"}, "x": 0}]);
+        },
+        &["translation along y"],
+    );
+}
