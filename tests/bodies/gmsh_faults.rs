@@ -254,7 +254,7 @@ fn a_plane_mesh_lies_at_any_height_and_is_scaled() {
 
 #[test]
 fn a_domain_that_does_not_exist_is_told_with_those_that_do() {
-    let file = GmshFile::parse(&text(&V2), "x").unwrap();
+    let file = GmshFile::parse(text(&V2), "x").unwrap();
     let message = file.mesh(Some("bulk"), 1.0).unwrap_err().to_string();
     assert!(message.contains("no physical group `bulk`") && message.contains("floor, body"), "{message}");
     assert_eq!(file.mesh(Some("body"), 1.0).unwrap(), file.mesh(None, 1.0).unwrap());
