@@ -6,7 +6,8 @@ The files are kept, so that no test needs Gmsh; run this to write them anew:
 
 Gmsh needs libraries of a graphical system (on Debian libglu1-mesa, libxcursor1, libxft2, libxinerama1).
 Every file has a node that belongs to no element of the body. Those of version 4.1 have node tags with gaps and out of
-order; Gmsh itself numbers the nodes anew when it writes version 2.2.
+order; Gmsh itself numbers the nodes anew when it writes version 2.2. The cube is one mesh in four forms, with coordinates
+that ASCII holds to the last bit.
 """
 
 import pathlib
@@ -22,6 +23,7 @@ OPTIONS = {
     "Mesh.ElementOrder": 1,
     "Mesh.SecondOrderIncomplete": 1,
     "Mesh.Algorithm": 6,
+    "Mesh.MeshSizeMin": 0,
 }
 
 
@@ -83,7 +85,7 @@ def half_disc():
     name_all(2, {"disc": [body]})
 
 
-def box(divisions, recombined):
+def box(divisions, recombined, size=0.6):
     """The unit cube."""
     gmsh.model.occ.addBox(0, 0, 0, 1, 1, 1)
     stray = gmsh.model.occ.addPoint(5, 5, 5)
@@ -96,7 +98,7 @@ def box(divisions, recombined):
     name_all(0, {"stray": [stray]})
     name_all(2, {name: [tag] for tag, name in enumerate(sides, start=1)})
     name_all(3, {"body": [1]})
-    gmsh.option.setNumber("Mesh.MeshSizeMax", 0.6)
+    gmsh.option.setNumber("Mesh.MeshSizeMax", size)
 
 
 def half_ball():
@@ -116,18 +118,32 @@ def half_ball():
     gmsh.option.setNumber("Mesh.MeshSizeMax", 0.7)
 
 
-def write(name, version, dimension, build, **options):
+def generate(name, dimension, build, **options):
     gmsh.clear()
-    for option, value in (OPTIONS | {"Mesh.MshFileVersion": version} | options).items():
+    for option, value in (OPTIONS | options).items():
         gmsh.option.setNumber(option, value)
     gmsh.model.add(name)
     build()
     gmsh.model.mesh.generate(dimension)
+
+
+def write(name, version, dimension, build, **options):
+    generate(name, dimension, build, **{"Mesh.MshFileVersion": version} | options)
     tags = [int(tag) for tag in gmsh.model.mesh.getNodes()[0]]
     shuffled = [3 * tag + 7 for tag in tags]
     random.Random(1).shuffle(shuffled)
     gmsh.model.mesh.renumberNodes(tags, shuffled)
     gmsh.write(str(FOLDER / f"{name}.msh"))
+
+
+def write_forms(name, dimension, build, **options):
+    """One mesh in both versions, each as ASCII and binary."""
+    generate(name, dimension, build, **options)
+    for version in (4.1, 2.2):
+        for binary, form in enumerate(("ascii", "binary")):
+            gmsh.option.setNumber("Mesh.MshFileVersion", version)
+            gmsh.option.setNumber("Mesh.Binary", binary)
+            gmsh.write(str(FOLDER / f"{name}-{version}-{form}.msh"))
 
 
 if __name__ == "__main__":
@@ -140,4 +156,5 @@ if __name__ == "__main__":
     write("box-tet10", 4.1, 3, lambda: box(0, False), **{"Mesh.ElementOrder": 2})
     write("box-hex20", 4.1, 3, lambda: box(2, True), **{"Mesh.ElementOrder": 2})
     write("half-ball-tet10", 2.2, 3, half_ball, **{"Mesh.ElementOrder": 2})
+    write_forms("cube-tet4", 3, lambda: box(0, False, 2), **{"Mesh.MeshSizeMin": 2})
     gmsh.finalize()

@@ -230,14 +230,14 @@ pub enum Error {
         /// What is wrong, and what is allowed.
         message: String,
     },
-    /// A file of lines, as a matrix or a mesh, that does not have the right form.
+    /// A matrix or mesh file that does not have the right form.
     #[error("{}:{line}: {message}", file.display())]
     FileSyntax {
         /// The file.
         file: PathBuf,
-        /// Line, from 1.
+        /// Line, from 1; in a binary mesh the line in which the section begins.
         line: usize,
-        /// What is wrong, and what is allowed.
+        /// What is wrong, and what is allowed; in a binary mesh behind the byte of the file, from 0.
         message: String,
     },
     /// A file or folder that cannot be read or written.

@@ -121,7 +121,14 @@ fn faults_of_files_have_their_line() {
         (String::new(), 1, "without a section `$MeshFormat`"),
         ("hello".into(), 1, "it is no mesh of Gmsh"),
         (text(&V2[8..]), 1, "it is no mesh of Gmsh"),
-        (with(&V2, 2, "2.2 1 8"), 2, "`Mesh.Binary = 0`"),
+        (
+            with(&V2, 2, "2.2 1 8"),
+            2,
+            "the bytes after this line are 24 45 6e 64; in a binary file they must be 01 00 00 00",
+        ),
+        (with(&V2, 2, "2.2 1 4"), 2, "the data size is 4"),
+        (with(&V2, 2, "2.2 2 8"), 2, "the file type is 2; it must be 0 for ASCII or 1 for binary"),
+        (text(&["$MeshFormat", "4.1 1 8", "\u{1}"]), 2, "the file ends after this line"),
         (with(&V2, 2, "4 0 8"), 2, "version 4 of the format is not read; versions 4.1 and 2.2"),
         (with(&V2, 2, "3.0 0 8"), 2, "version 3"),
         (with(&V2, 2, "two 0 8"), 2, "is `two`"),
@@ -245,7 +252,7 @@ fn a_plane_mesh_lies_at_any_height_and_is_scaled() {
 
 #[test]
 fn a_domain_that_does_not_exist_is_told_with_those_that_do() {
-    let file = GmshFile::parse(&text(&V2), "x").unwrap();
+    let file = GmshFile::parse(text(&V2), "x").unwrap();
     let message = file.mesh(Some("bulk"), 1.0).unwrap_err().to_string();
     assert!(message.contains("no physical group `bulk`") && message.contains("floor, body"), "{message}");
     assert_eq!(file.mesh(Some("body"), 1.0).unwrap(), file.mesh(None, 1.0).unwrap());

@@ -4,6 +4,8 @@
 mod bodies;
 #[path = "../support/closed_forms/mod.rs"]
 mod exact_solutions;
+#[path = "../support/gmsh_forms.rs"]
+mod forms;
 #[path = "../support/manufactured.rs"]
 mod solved_block;
 
@@ -12,7 +14,9 @@ mod closed_forms;
 mod curved_bodies;
 mod elements;
 mod facets;
+mod gmsh_binary_faults;
 mod gmsh_faults;
+mod gmsh_forms;
 mod gmsh_meshes;
 mod loads;
 mod manufactured;

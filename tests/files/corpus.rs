@@ -86,7 +86,17 @@ fn no_kept_problem_keeps_the_loop_alive() {
 fn damaged_files_and_problems_do_no_harm() {
     let (inputs, desk) = (2000, desk());
     let mut draws = Draws(5);
-    for name in ["plane.json", "space.json", "round.json", "square2.msh", "square4.msh", "K.mtx", "B.mtx"] {
+    for name in [
+        "plane.json",
+        "space.json",
+        "round.json",
+        "square2.msh",
+        "square4.msh",
+        "square2b.msh",
+        "square4b.msh",
+        "K.mtx",
+        "B.mtx",
+    ] {
         let text = fs::read(faults(name)).unwrap();
         let accepted = (0..inputs).filter(|_| read(name, &damaged(&mut draws, &text), desk.path()).is_ok()).count();
         assert!(accepted > 0 && accepted < inputs, "{name}: {accepted} of {inputs}");

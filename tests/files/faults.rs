@@ -80,7 +80,16 @@ fn every_malformed_file_is_refused_with_its_code_and_its_sentence() {
 
 #[test]
 fn the_files_that_the_cases_change_are_right() {
-    for name in ["plane.json", "space.json", "round.json", "square2.msh", "square4.msh", "K.mtx"] {
+    for name in [
+        "plane.json",
+        "space.json",
+        "round.json",
+        "square2.msh",
+        "square4.msh",
+        "square2b.msh",
+        "square4b.msh",
+        "K.mtx",
+    ] {
         let error = refused(&folder(), name);
         assert!(error.is_none(), "{name}: {}", error.unwrap());
     }

@@ -34,7 +34,7 @@ const LONG: f64 = 5.0;
 /// The files of each target; a problem has none.
 const TARGETS: [(&str, &[&str]); 4] = [
     ("scene", &["plane.json", "space.json", "round.json"]),
-    ("mesh", &["square2.msh", "square4.msh"]),
+    ("mesh", &["square2.msh", "square4.msh", "square2b.msh", "square4b.msh"]),
     ("matrix", &["K.mtx", "f.mtx", "B.mtx", "g.mtx"]),
     ("problem", &[]),
 ];

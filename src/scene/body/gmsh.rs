@@ -12,10 +12,11 @@ use crate::fem::mesh::{ElementKind, Mesh};
 use crate::scene::entry::{refused, wrong};
 use crate::scene::schema::json::word;
 
-/// Bytes of a mesh file for one node and the elements that belong to it, about.
+/// Bytes of a mesh file for one node and the elements that belong to it, about: files of Gmsh of either version, ASCII or
+/// binary, have 87 to 237.
 const OF_MESH_FILE: f64 = 150.0;
 
-/// A mesh written by Gmsh: a `.msh` file of version 4.1 or 2.2 in ASCII. A bar has the cross-section 1.
+/// A mesh written by Gmsh: a `.msh` file of version 4.1 or 2.2, ASCII or binary. A bar has the cross-section 1.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]

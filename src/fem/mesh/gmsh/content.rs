@@ -2,11 +2,11 @@
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
-use std::path::Path;
 
 use super::cells::cell_type;
 use super::file::{Block, GmshFile, PhysicalGroup};
-use super::lines::Fields;
+use super::record::Record;
+use super::source::Source;
 use crate::error::Error;
 use crate::fem::mesh::MAX_NODES;
 
@@ -22,20 +22,20 @@ pub(super) struct Content {
 }
 
 impl Content {
-    /// Takes the node `tag`, which stands in the line of `fields`.
-    pub fn add_node(&mut self, fields: &Fields, tag: usize, at: [f64; 3]) -> Result<(), Error> {
+    /// Takes the node `tag`, which stands in `record`.
+    pub fn add_node(&mut self, record: &Record, tag: usize, at: [f64; 3]) -> Result<(), Error> {
         match self.places.entry(tag) {
-            Entry::Occupied(_) => return Err(fields.fault(format!("node {tag} is given twice"))),
+            Entry::Occupied(_) => return Err(record.fault(format!("node {tag} is given twice"))),
             Entry::Vacant(place) => place.insert(self.nodes.len()),
         };
         self.nodes.push(at);
         self.node_tags.push(tag);
-        self.node_lines.push(fields.line());
+        self.node_lines.push(record.place());
         Ok(())
     }
 
     /// Makes the last block one of elements of type `number` in these groups.
-    pub fn begin_block(&mut self, fields: &Fields, number: usize, groups: &[u64]) -> Result<(), Error> {
+    pub fn begin_block(&mut self, record: &Record, number: usize, groups: &[u64]) -> Result<(), Error> {
         if self.blocks.last().is_some_and(|block| block.cell.number == number && block.groups == groups) {
             return Ok(());
         }
@@ -44,28 +44,29 @@ impl Content {
                 "the element type {number} is not known here; elements of first and second order are \
                  (in Gmsh, `Mesh.ElementOrder = 1` or 2)"
             );
-            return Err(fields.fault(message));
+            return Err(record.fault(message));
         };
         let groups = groups.to_vec();
         self.blocks.push(Block { cell, groups, tags: Vec::new(), lines: Vec::new(), nodes: Vec::new() });
         Ok(())
     }
 
-    /// Takes the element `tag` into the last block; the rest of `fields` are its nodes.
-    pub fn add_element(&mut self, mut fields: Fields, tag: usize) -> Result<(), Error> {
+    /// Takes the element `tag` into the last block; the rest of `record` are its nodes.
+    pub fn add_element(&mut self, mut record: Record, tag: usize) -> Result<(), Error> {
         let Some(block) = self.blocks.last_mut() else { return Ok(()) };
         for _ in 0..block.cell.nodes {
-            block.nodes.push(fields.whole("the tag of a node")?);
+            block.nodes.push(record.whole("the tag of a node")?);
         }
         block.tags.push(tag);
-        block.lines.push(fields.line());
-        fields.end()
+        block.lines.push(record.place());
+        record.end()
     }
 
     /// Replaces the tags of nodes by their places, and checks that the groups have elements.
-    pub fn finish(self, file: &Path, last_line: usize) -> Result<GmshFile, Error> {
+    pub fn finish(self, source: Source) -> Result<GmshFile, Error> {
         let Content { nodes, node_tags, node_lines, places, blocks, groups } = self;
-        let mut content = GmshFile { file: file.into(), nodes, node_tags, node_lines, blocks, groups, last_line };
+        let (file, last_line, form) = (source.file().into(), source.place(), source.into_form());
+        let mut content = GmshFile { file, form, nodes, node_tags, node_lines, blocks, groups, last_line };
         let mut missing = None;
         for block in &mut content.blocks {
             let each = block.cell.nodes;
@@ -88,12 +89,12 @@ impl Content {
 }
 
 /// Reads a count and refuses one beyond all bodies; nothing is ever allocated from a count alone.
-pub(super) fn announced(fields: &mut Fields, of: &str) -> Result<usize, Error> {
+pub(super) fn announced(record: &mut Record, of: &str) -> Result<usize, Error> {
     // A tetrahedral mesh has about six times as many elements as nodes.
     const MOST: usize = 10 * MAX_NODES;
-    let count = fields.whole(format_args!("the number of {of}"))?;
+    let count = record.whole(format_args!("the number of {of}"))?;
     if count > MOST {
-        return Err(fields.fault(format!("{count} {of} are announced, but at most {MOST} are allowed")));
+        return Err(record.fault(format!("{count} {of} are announced, but at most {MOST} are allowed")));
     }
     Ok(count)
 }

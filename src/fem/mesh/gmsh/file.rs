@@ -3,13 +3,15 @@
 use std::path::PathBuf;
 
 use super::cells::CellType;
-use super::lines;
+use super::form::Form;
 use crate::error::Error;
 
 /// What stands in a file: nodes, elements of any type, physical groups.
 #[derive(Clone, Debug)]
 pub struct GmshFile {
     pub(super) file: PathBuf,
+    /// It tells what a line is here and below: in binary form a byte.
+    pub(super) form: Form,
     /// In the order of the file, with their tags and lines.
     pub(super) nodes: Vec<[f64; 3]>,
     pub(super) node_tags: Vec<usize>,
@@ -64,6 +66,6 @@ impl GmshFile {
     }
 
     pub(super) fn fault(&self, line: usize, message: impl Into<String>) -> Error {
-        lines::fault(&self.file, line, message)
+        self.form.fault(&self.file, line, message)
     }
 }

@@ -3,41 +3,41 @@
 use std::collections::HashSet;
 
 use super::file::{GmshFile, PhysicalGroup};
-use super::lines::{Fields, Lines};
+use super::record::Record;
+use super::source::{Source, shortened};
 use crate::error::Error;
 
-/// The section `$PhysicalNames`: a count, then `dimension tag "name"`.
-pub(super) fn names(lines: &mut Lines, groups: &mut Vec<PhysicalGroup>) -> Result<(), Error> {
-    let mut fields = lines.fields(|| "the number of physical names")?;
-    let count = fields.whole("the number of physical names")?;
-    fields.end()?;
+/// The section `$PhysicalNames`, text in either form: a count, then `dimension tag "name"`.
+pub(super) fn names(source: &mut Source, groups: &mut Vec<PhysicalGroup>) -> Result<(), Error> {
+    let mut line = source.line(|| "the number of physical names")?;
+    let count = line.whole("the number of physical names")?;
+    line.end()?;
     for index in 1..=count {
-        let mut fields = lines.fields(|| format!("physical name {index} of {count}"))?;
-        let dimension = fields.whole("the dimension of a physical group")?;
-        let tag = fields.integer("the tag of a physical group")?.unsigned_abs();
-        let name = quoted(&fields)?;
+        let mut line = source.line(|| format!("physical name {index} of {count}"))?;
+        let dimension = line.whole("the dimension of a physical group")?;
+        let tag = line.integer("the tag of a physical group")?.unsigned_abs();
+        let name = quoted(&line)?;
         if dimension > 3 {
-            return Err(
-                fields.fault(format!("the physical group `{name}` has dimension {dimension}; at most 3 is one"))
-            );
+            return Err(line.fault(format!("the physical group `{name}` has dimension {dimension}; at most 3 is one")));
         }
         if groups.iter().any(|group| (group.dimension, group.tag) == (dimension, tag)) {
-            return Err(fields.fault(format!("the physical group {tag} of dimension {dimension} is named twice")));
+            return Err(line.fault(format!("the physical group {tag} of dimension {dimension} is named twice")));
         }
-        groups.push(PhysicalGroup { dimension, tag, name, line: fields.line() });
+        groups.push(PhysicalGroup { dimension, tag, name, line: line.place() });
     }
-    lines.end("PhysicalNames")
+    source.end("PhysicalNames")
 }
 
-fn quoted(fields: &Fields) -> Result<String, Error> {
-    let text = fields.text();
+fn quoted(line: &Record) -> Result<String, Error> {
+    let text = String::from_utf8_lossy(line.text());
     let name = text.split_once('"').and_then(|(_, rest)| rest.strip_suffix('"')).map(str::trim);
     match name {
-        Some("") => Err(fields.fault("the name of a physical group is empty")),
+        Some("") => Err(line.fault("the name of a physical group is empty")),
         Some(name) => Ok(name.into()),
-        None => {
-            Err(fields.fault(format!("the name of a physical group must stand in quotes, but the line is `{text}`")))
-        }
+        None => Err(line.fault(format!(
+            "the name of a physical group must stand in quotes, but the line is `{}`",
+            shortened(line.text())
+        ))),
     }
 }
 

@@ -1,4 +1,4 @@
-//! Meshes written by Gmsh: `.msh` files of version 4.1 and 2.2 in ASCII.
+//! Meshes written by Gmsh: `.msh` files of version 4.1 and 2.2, in ASCII and in binary form of either byte order.
 //!
 //! Physical groups carry the names: the elements of the highest dimension are the body, and every group one dimension
 //! below becomes a boundary. A group without a name is called by its number.
@@ -39,9 +39,11 @@ mod boundaries;
 mod cells;
 mod content;
 mod file;
+mod form;
 mod groups;
-mod lines;
+mod record;
 mod sections;
+mod source;
 mod version2;
 mod version4;
 
@@ -61,20 +63,19 @@ impl GmshFile {
     /// [`Error::File`] for a file that cannot be read, and as [`GmshFile::parse`].
     pub fn read(file: impl AsRef<Path>) -> Result<Self, Error> {
         let path = file.as_ref();
-        let bytes = read_capped(path, MOST_OF_TABLE)?;
-        // What is no text is a binary file, and is refused by its first lines.
-        Self::parse(&String::from_utf8_lossy(&bytes), path)
+        Self::parse(read_capped(path, MOST_OF_TABLE)?, path)
     }
 
-    /// Reads the text of a file; `file` is named in errors.
+    /// Reads the content of a file, a text or bytes; `file` is named in errors.
     ///
     /// # Errors
-    /// [`Error::FileSyntax`] with the line: for a version other than 4.1 and 2.2, a binary file, a section that is
-    /// missing or ends early or announces another number of lines than it has, a number of the wrong kind, coordinates
-    /// that are not finite, an element type that is not known, an element whose node does not exist, a group without
-    /// elements.
-    pub fn parse(text: &str, file: impl AsRef<Path>) -> Result<Self, Error> {
-        sections::read(file.as_ref(), text)
+    /// [`Error::FileSyntax`] with the line; in a binary file with the line in which the section begins, and with the byte,
+    /// from 0, at which the node, element or other record begins: for a version other than 4.1 and 2.2, a byte order or
+    /// a data size that is not known, a section that is missing or ends early or announces another number of lines than
+    /// it has, a number of the wrong kind, coordinates that are not finite, an element type that is not known, an
+    /// element whose node does not exist, a group without elements.
+    pub fn parse(content: impl AsRef<[u8]>, file: impl AsRef<Path>) -> Result<Self, Error> {
+        sections::read(file.as_ref(), content.as_ref())
     }
 
     /// The physical groups, in the order of the file; without those that have no name.

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use super::content::Content;
 use super::file::GmshFile;
-use super::lines::{Lines, shortened};
+use super::form::{ByteOrder, TagWidth};
+use super::source::{Source, shortened};
 use super::{groups, version2, version4};
 use crate::error::Error;
 
@@ -18,73 +19,103 @@ enum Version {
 /// Error for a file without a mesh header; it quotes no content, which may be private.
 const NO_MESH: &str = "it is no mesh of Gmsh: a section `$MeshFormat` should begin here, which tells the version";
 
+/// The sections that are read; each stands once in a file.
+const ONCE: [&str; 5] = ["MeshFormat", "PhysicalNames", "Entities", "Nodes", "Elements"];
+
 /// Reads all sections; those that say nothing about nodes, elements and groups are passed over.
-pub(super) fn read(file: &Path, text: &str) -> Result<GmshFile, Error> {
-    // Some editors put a byte order mark in front.
-    let mut lines = Lines::new(file, text.strip_prefix('\u{feff}').unwrap_or(text));
+pub(super) fn read(file: &Path, content: &[u8]) -> Result<GmshFile, Error> {
+    let mut source = Source::new(file, content);
     let mut content = Content::default();
     let mut entities = version4::Entities::new();
     let mut version = None;
-    let mut seen: Vec<&str> = Vec::new();
-    while let Some(line) = lines.next() {
-        let Some(name) = line.strip_prefix('$').map(str::trim) else {
+    let mut seen: Vec<&[u8]> = Vec::new();
+    while let Some(line) = source.section() {
+        let Some(name) = line.strip_prefix(b"$").map(<[u8]>::trim_ascii) else {
             if version.is_none() {
-                return Err(lines.fault(NO_MESH));
+                return Err(source.fault(NO_MESH));
             }
             let message = format!("`{}` stands where a section, as `$MeshFormat`, should begin", shortened(line));
-            return Err(lines.fault(message));
+            return Err(source.fault(message));
         };
-        if name == "Comments" {
-            lines.skip(name)?;
+        if name == b"Comments" {
+            source.skip(name)?;
             continue;
         }
-        if seen.contains(&name) && ["MeshFormat", "PhysicalNames", "Entities", "Nodes", "Elements"].contains(&name) {
-            return Err(lines.fault(format!("there is a second section `${name}`")));
+        if seen.contains(&name) && ONCE.iter().any(|once| once.as_bytes() == name) {
+            return Err(source.fault(format!("there is a second section `${}`", shortened(name))));
         }
-        if name != "MeshFormat" && version.is_none() {
-            return Err(lines.fault(NO_MESH));
+        if name != b"MeshFormat" && version.is_none() {
+            return Err(source.fault(NO_MESH));
         }
         match (name, version) {
-            ("MeshFormat", _) => version = Some(format(&mut lines)?),
-            ("PhysicalNames", _) => groups::names(&mut lines, &mut content.groups)?,
-            ("Entities", Some(Version::V4)) => version4::entities(&mut lines, &mut entities)?,
-            ("Nodes", Some(Version::V4)) => version4::nodes(&mut lines, &mut content)?,
-            ("Elements", Some(Version::V4)) => version4::elements(&mut lines, &entities, &mut content)?,
-            ("Nodes", _) => version2::nodes(&mut lines, &mut content)?,
-            ("Elements", _) => version2::elements(&mut lines, &mut content)?,
-            ("PartitionedEntities", _) => {
-                return Err(lines.fault("the mesh is partitioned; save it in one part"));
+            (b"MeshFormat", _) => version = Some(format(&mut source)?),
+            (b"PhysicalNames", _) => groups::names(&mut source, &mut content.groups)?,
+            (b"Entities", Some(Version::V4)) => version4::entities(&mut source, &mut entities)?,
+            (b"Nodes", Some(Version::V4)) => version4::nodes(&mut source, &mut content)?,
+            (b"Elements", Some(Version::V4)) => version4::elements(&mut source, &entities, &mut content)?,
+            (b"Nodes", _) => version2::nodes(&mut source, &mut content)?,
+            (b"Elements", _) => version2::elements(&mut source, &mut content)?,
+            (b"PartitionedEntities", _) => {
+                return Err(source.fault("the mesh is partitioned; save it in one part"));
             }
-            _ => lines.skip(name)?,
+            _ => source.skip(name)?,
         }
         seen.push(name);
     }
     for name in ["MeshFormat", "Nodes", "Elements"] {
-        if !seen.contains(&name) {
-            return Err(lines.fault(format!("the file ends without a section `${name}`")));
+        if !seen.contains(&name.as_bytes()) {
+            return Err(source.fault(format!("the file ends without a section `${name}`")));
         }
     }
-    content.finish(file, lines.line())
+    content.finish(source)
 }
 
-/// The section `$MeshFormat`: `version file-type data-size`.
-fn format(lines: &mut Lines) -> Result<Version, Error> {
-    let mut fields = lines.fields(|| "the version of the format")?;
-    let number = fields.finite("the version of the format")?;
-    let binary = fields.whole("the file type, 0 for ASCII,")?;
-    let version = if number == 4.1 {
-        Version::V4
+/// The section `$MeshFormat`: `version file-type data-size`, in binary form then the int 1.
+fn format(source: &mut Source) -> Result<Version, Error> {
+    let begin = source.place();
+    let mut line = source.line(|| "the version of the format")?;
+    let number = line.finite("the version of the format")?;
+    let form = line.whole("the file type, 0 for ASCII or 1 for binary,")?;
+    let (version, tags) = if number == 4.1 {
+        (Version::V4, TagWidth::Size)
     } else if number == 2.2 {
-        Version::V2
+        (Version::V2, TagWidth::Int)
     } else {
         let message = format!(
             "version {number} of the format is not read; versions 4.1 and 2.2 are (in Gmsh, `Mesh.MshFileVersion = 4.1`)"
         );
-        return Err(fields.fault(message));
+        return Err(line.fault(message));
     };
-    if binary != 0 {
-        return Err(fields.fault("the file is binary; save it as ASCII (in Gmsh, `Mesh.Binary = 0`)"));
+    match form {
+        0 => {}
+        1 => {
+            let size = line.whole("the data size")?;
+            if size != 8 {
+                return Err(line.fault(format!("the data size is {size}; in a binary file it must be 8 bytes")));
+            }
+            line.end()?;
+            let order = byte_order(source)?;
+            source.turn_binary(order, tags, begin);
+        }
+        other => return Err(line.fault(format!("the file type is {other}; it must be 0 for ASCII or 1 for binary"))),
     }
-    lines.end("MeshFormat")?;
+    source.end("MeshFormat")?;
     Ok(version)
+}
+
+/// The order in which the int 1 is written.
+fn byte_order(source: &mut Source) -> Result<ByteOrder, Error> {
+    match source.take() {
+        Some([1, 0, 0, 0]) => Ok(ByteOrder::Little),
+        Some([0, 0, 0, 1]) => Ok(ByteOrder::Big),
+        Some([a, b, c, d]) => {
+            let message = format!(
+                "the bytes after this line are {a:02x} {b:02x} {c:02x} {d:02x}; in a binary file they must be 01 00 00 00 or 00 00 00 01, \
+                 the number 1, which tells the byte order"
+            );
+            Err(source.fault(message))
+        }
+        None => Err(source
+            .fault("the file ends after this line; in a binary file the number 1 follows, which tells the byte order")),
+    }
 }

@@ -4,7 +4,8 @@
 use std::collections::HashMap;
 
 use super::content::{Content, announced};
-use super::lines::Lines;
+use super::record::Record;
+use super::source::Source;
 use crate::error::Error;
 
 /// The physical groups of an entity, by its dimension and tag.
@@ -12,104 +13,132 @@ pub(super) type Entities = HashMap<(usize, i64), Vec<u64>>;
 
 /// The section `$Entities`: four counts, then `tag box number-of-groups group ...`, points first, then curves, surfaces
 /// and volumes.
-pub(super) fn entities(lines: &mut Lines, entities: &mut Entities) -> Result<(), Error> {
+pub(super) fn entities(source: &mut Source, entities: &mut Entities) -> Result<(), Error> {
     const NAMES: [&str; 4] = ["points", "curves", "surfaces", "volumes"];
-    let mut fields = lines.fields(|| "the numbers of points, curves, surfaces and volumes")?;
+    let mut record = source.record(|| "the numbers of points, curves, surfaces and volumes")?;
     let mut counts = [0; 4];
     for (count, name) in counts.iter_mut().zip(NAMES) {
-        *count = announced(&mut fields, name)?;
+        *count = announced(&mut record, name)?;
     }
-    fields.end()?;
+    record.end()?;
     for (dimension, (count, name)) in counts.into_iter().zip(NAMES).enumerate() {
         for index in 1..=count {
-            let mut fields = lines.fields(|| format!("number {index} of {count} {name}"))?;
-            let tag = fields.integer("the tag of an entity")?;
+            let mut record = source.record(|| format!("number {index} of {count} {name}"))?;
+            let tag = record.integer("the tag of an entity")?;
             // A point has its place, the others their box.
             for _ in 0..if dimension == 0 { 3 } else { 6 } {
-                fields.finite("a coordinate of an entity")?;
+                record.finite("a coordinate of an entity")?;
             }
             let mut groups = Vec::new();
-            for _ in 0..fields.whole("the number of physical groups")? {
+            for _ in 0..record.whole("the number of physical groups")? {
                 // The sign of a group is an orientation.
-                groups.push(fields.integer("a physical group")?.unsigned_abs());
+                groups.push(record.integer("a physical group")?.unsigned_abs());
             }
-            // What bounds the entity follows, and is of no use here.
+            // What bounds the entity is of no use here.
+            if dimension > 0 {
+                for _ in 0..record.whole("the number of bounding entities")? {
+                    record.integer("a bounding entity")?;
+                }
+            }
             if entities.insert((dimension, tag), groups).is_some() {
-                return Err(fields.fault(format!("entity {tag} of dimension {dimension} is given twice")));
+                return Err(record.fault(format!("entity {tag} of dimension {dimension} is given twice")));
             }
         }
     }
-    lines.end("Entities")
+    source.end("Entities")
 }
 
 /// The section `$Nodes`: in every block first all tags, then all coordinates.
-pub(super) fn nodes(lines: &mut Lines, content: &mut Content) -> Result<(), Error> {
-    let mut fields = lines.fields(|| "the number of node blocks")?;
-    let blocks = announced(&mut fields, "blocks")?;
-    let count = announced(&mut fields, "nodes")?;
+pub(super) fn nodes(source: &mut Source, content: &mut Content) -> Result<(), Error> {
+    let mut record = source.record(|| "the number of node blocks")?;
+    let counted = record.place();
+    let (blocks, count) = counts(&mut record, "nodes")?;
     let mut read = 0;
-    let counted = fields;
     for block in 1..=blocks {
-        let mut fields = lines.fields(|| format!("node block {block} of {blocks}"))?;
-        fields.integer("the dimension of the entity")?;
-        fields.integer("the tag of the entity")?;
-        fields.integer("the sign for parametric coordinates")?;
-        let here = announced(&mut fields, "nodes in the block")?;
-        fields.end()?;
+        let mut record = source.record(|| format!("node block {block} of {blocks}"))?;
+        let dimension = dimension(&mut record)?;
+        record.integer("the tag of the entity")?;
+        let parameters = match record.code("the sign for parametric coordinates")? {
+            0 => 0,
+            1 => dimension,
+            other => {
+                return Err(record.fault(format!("the sign for parametric coordinates is {other}; it must be 0 or 1")));
+            }
+        };
+        let here = announced(&mut record, "nodes in the block")?;
+        record.end()?;
         let mut tags = Vec::new();
         for index in 1..=here {
-            let mut fields = lines.fields(|| format!("the tag of node {index} of {here} in the block"))?;
-            tags.push(fields.whole("the tag of a node")?);
-            fields.end()?;
+            let mut record = source.record(|| format!("the tag of node {index} of {here} in the block"))?;
+            tags.push(record.whole("the tag of a node")?);
+            record.end()?;
         }
         for tag in tags {
-            // Parametric coordinates may follow, and are of no use here.
-            let mut fields = lines.fields(|| format!("the coordinates of node {tag}"))?;
-            let at = [fields.finite("x")?, fields.finite("y")?, fields.finite("z")?];
-            content.add_node(&fields, tag, at)?;
+            let mut record = source.record(|| format!("the coordinates of node {tag}"))?;
+            let at = [record.finite("x")?, record.finite("y")?, record.finite("z")?];
+            // Of no use here.
+            for _ in 0..parameters {
+                record.finite("a parametric coordinate")?;
+            }
+            content.add_node(&record, tag, at)?;
         }
         read += here;
     }
     if read != count {
-        return Err(counted.fault(format!("{count} nodes are announced, but the blocks hold {read}")));
+        return Err(source.fault_at(counted, format!("{count} nodes are announced, but the blocks hold {read}")));
     }
-    lines.end("Nodes")
+    source.end("Nodes")
 }
 
 /// The section `$Elements`: in every block `tag node ...`.
-pub(super) fn elements(lines: &mut Lines, entities: &Entities, content: &mut Content) -> Result<(), Error> {
-    let mut fields = lines.fields(|| "the number of element blocks")?;
-    let blocks = announced(&mut fields, "blocks")?;
-    let count = announced(&mut fields, "elements")?;
+pub(super) fn elements(source: &mut Source, entities: &Entities, content: &mut Content) -> Result<(), Error> {
+    let mut record = source.record(|| "the number of element blocks")?;
+    let counted = record.place();
+    let (blocks, count) = counts(&mut record, "elements")?;
     let mut read = 0;
-    let counted = fields;
     for block in 1..=blocks {
-        let mut fields = lines.fields(|| format!("element block {block} of {blocks}"))?;
-        let dimension = fields.whole("the dimension of the entity")?;
-        let entity = fields.integer("the tag of the entity")?;
-        let number = fields.whole("the type of the elements")?;
-        let here = announced(&mut fields, "elements in the block")?;
+        let mut record = source.record(|| format!("element block {block} of {blocks}"))?;
+        let dimension = dimension(&mut record)?;
+        let entity = record.integer("the tag of the entity")?;
+        let number = record.code("the type of the elements")?;
+        let here = announced(&mut record, "elements in the block")?;
         let groups = match entities.get(&(dimension, entity)) {
             Some(groups) => groups.as_slice(),
             // A file without geometry has no entities at all, and so no groups.
             None if entities.is_empty() => &[],
             None => {
                 return Err(
-                    fields.fault(format!("there is no entity {entity} of dimension {dimension} in `$Entities`"))
+                    record.fault(format!("there is no entity {entity} of dimension {dimension} in `$Entities`"))
                 );
             }
         };
-        content.begin_block(&fields, number, groups)?;
-        fields.end()?;
+        content.begin_block(&record, number, groups)?;
+        record.end()?;
         for index in 1..=here {
-            let mut fields = lines.fields(|| format!("element {index} of {here} in the block"))?;
-            let tag = fields.whole("the tag of an element")?;
-            content.add_element(fields, tag)?;
+            let mut record = source.record(|| format!("element {index} of {here} in the block"))?;
+            let tag = record.whole("the tag of an element")?;
+            content.add_element(record, tag)?;
         }
         read += here;
     }
     if read != count {
-        return Err(counted.fault(format!("{count} elements are announced, but the blocks hold {read}")));
+        return Err(source.fault_at(counted, format!("{count} elements are announced, but the blocks hold {read}")));
     }
-    lines.end("Elements")
+    source.end("Elements")
+}
+
+/// What begins a section of blocks: their number, the number of `what` in all, the lowest and the highest tag.
+fn counts(record: &mut Record, what: &str) -> Result<(usize, usize), Error> {
+    let counts = (announced(record, "blocks")?, announced(record, what)?);
+    // Tags may have gaps.
+    record.whole("the lowest tag")?;
+    record.whole("the highest tag")?;
+    Ok(counts)
+}
+
+fn dimension(record: &mut Record) -> Result<usize, Error> {
+    match record.code("the dimension of the entity")? {
+        dimension @ 0..=3 => Ok(dimension),
+        other => Err(record.fault(format!("the dimension of the entity is {other}; at most 3 is one"))),
+    }
 }

@@ -1,0 +1,165 @@
+//! The bytes of a file and the sections in them; every fault has its place.
+
+use std::path::Path;
+
+use super::form::{ByteOrder, Form, TagWidth};
+use crate::error::Error;
+
+/// A file that is read from its first byte to its last: as text, until it says that it is binary.
+pub(super) struct Source<'a> {
+    file: &'a Path,
+    form: Form,
+    /// What has not been read.
+    rest: &'a [u8],
+    /// Number of bytes that have been read, and of line ends among them.
+    bytes: usize,
+    line_ends: usize,
+    /// First byte and line of what was read last.
+    byte: usize,
+    line: usize,
+}
+
+impl<'a> Source<'a> {
+    pub fn new(file: &'a Path, content: &'a [u8]) -> Self {
+        // Some editors put a byte order mark in front.
+        const MARK: &[u8] = "\u{feff}".as_bytes();
+        let mut source = Source { file, form: Form::Text, rest: content, bytes: 0, line_ends: 0, byte: 0, line: 1 };
+        if content.starts_with(MARK) {
+            source.pass(MARK.len());
+        }
+        source
+    }
+
+    pub fn file(&self) -> &'a Path {
+        self.file
+    }
+
+    pub fn form(&self) -> &Form {
+        &self.form
+    }
+
+    /// The form, which tells places once the file has been read.
+    pub fn into_form(self) -> Form {
+        self.form
+    }
+
+    /// Reads on in binary form, in a section that begins in line `line`.
+    pub fn turn_binary(&mut self, order: ByteOrder, tags: TagWidth, line: usize) {
+        self.form = Form::Binary { order, tags, sections: vec![(0, line)] };
+    }
+
+    /// Where that stands which was read last; in an empty file the first line.
+    pub fn place(&self) -> usize {
+        match self.form {
+            Form::Text => self.line,
+            Form::Binary { .. } => self.byte,
+        }
+    }
+
+    /// The next line that is not empty, without the blanks around it.
+    pub fn next(&mut self) -> Option<&'a [u8]> {
+        while !self.rest.is_empty() {
+            self.begin();
+            let end = self.rest.iter().position(|&byte| byte == b'\n');
+            let line = self.pass(end.map_or(self.rest.len(), |end| end + 1)).trim_ascii();
+            if !line.is_empty() {
+                return Some(line);
+            }
+        }
+        None
+    }
+
+    /// The line in which the next section should begin.
+    pub fn section(&mut self) -> Option<&'a [u8]> {
+        let line = self.next()?;
+        if let Form::Binary { sections, .. } = &mut self.form {
+            sections.push((self.byte, self.line));
+        }
+        Some(line)
+    }
+
+    /// Makes what follows the place of faults.
+    pub fn begin(&mut self) {
+        (self.byte, self.line) = (self.bytes, self.line_ends + 1);
+    }
+
+    pub fn is_at_end(&self) -> bool {
+        self.rest.is_empty()
+    }
+
+    /// The next `N` bytes, if the file has them.
+    pub fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
+        let bytes = *self.rest.first_chunk()?;
+        self.pass(N);
+        Some(bytes)
+    }
+
+    /// The next `count` bytes, of those that are left.
+    fn pass(&mut self, count: usize) -> &'a [u8] {
+        let (passed, rest) = self.rest.split_at(count);
+        self.rest = rest;
+        self.bytes += count;
+        self.line_ends += passed.iter().filter(|&&byte| byte == b'\n').count();
+        passed
+    }
+
+    /// Closes the section `name`, whose content has been read.
+    pub fn end(&mut self, name: &str) -> Result<(), Error> {
+        match self.next().map(|line| line.strip_prefix(b"$End")) {
+            Some(Some(end)) if end.trim_ascii() == name.as_bytes() => Ok(()),
+            Some(Some(end)) => {
+                Err(self.fault(format!("`$End{}` stands where `$End{name}` should stand", shortened(end))))
+            }
+            Some(None) => {
+                Err(self
+                    .fault(format!("there is more in the section than it announces; `$End{name}` should stand here")))
+            }
+            None => Err(self.fault(format!("the file ends before `$End{name}`"))),
+        }
+    }
+
+    /// Passes over the section `name`, which has just begun.
+    pub fn skip(&mut self, name: &[u8]) -> Result<(), Error> {
+        let begin = self.line;
+        let end = [b"$End", name].concat();
+        let found = match self.form {
+            Form::Text => std::iter::from_fn(|| self.next())
+                .find(|line| line.strip_prefix(b"$End").is_some_and(|end| end.trim_ascii() == name)),
+            // Nothing tells how long the numbers of an unknown section are.
+            Form::Binary { .. } => {
+                let ends = |rest: &[u8]| rest.first().is_none_or(u8::is_ascii_whitespace);
+                let is_end = |at: &usize| self.rest[*at..].strip_prefix(end.as_slice()).is_some_and(ends);
+                (0..self.rest.len()).find(is_end).map(|at| self.pass(at + end.len()))
+            }
+        };
+        match found {
+            Some(_) => Ok(()),
+            None => {
+                let end = shortened(&end);
+                Err(self.fault(format!("the file ends before `{end}`; the section begins in line {begin}")))
+            }
+        }
+    }
+
+    /// A fault of what was read last.
+    pub fn fault(&self, message: impl Into<String>) -> Error {
+        self.fault_at(self.place(), message)
+    }
+
+    /// A fault of what stands at a place.
+    pub fn fault_at(&self, place: usize, message: impl Into<String>) -> Error {
+        self.form.fault(self.file, place, message)
+    }
+}
+
+/// Bytes for a message: as text of one line, and their beginning, if they are long.
+pub(super) fn shortened(bytes: &[u8]) -> String {
+    const SHOWN: usize = 60;
+    // A character has at most four bytes.
+    let text = String::from_utf8_lossy(&bytes[..bytes.len().min(4 * SHOWN + 4)]);
+    let shown = text.chars().map(|character| if character.is_control() { '\u{fffd}' } else { character });
+    match text.char_indices().nth(SHOWN) {
+        Some(_) => shown.take(SHOWN).chain("...".chars()).collect(),
+        None => shown.collect(),
+    }
+}
