@@ -33,6 +33,7 @@ mod model;
 mod moving_supports;
 mod obstacle;
 mod parse;
+mod part;
 mod parts;
 mod refine;
 mod resultants;

@@ -18,6 +18,7 @@ mod inclined_supports;
 mod mesh_scenes;
 mod obstacle_rows;
 mod obstacles_in_space;
+mod parts;
 mod resultants;
 mod rigid_body_modes;
 mod scene_errors;

@@ -29,4 +29,5 @@ pub(crate) use mass::{free_mass, nodal_mass};
 pub(crate) use nodal_columns::{mass_columns, stiffness_columns};
 pub use rigid_body_modes::rigid_body_modes;
 pub use stiffness::stiffness;
+pub(crate) use surface::facet_centres;
 pub use surface::{node_normals, tributary_areas};

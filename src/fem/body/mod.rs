@@ -13,7 +13,7 @@ use crate::error::Error;
 use crate::fem::element::{Cell, ElementKind, MAX_NODES, PerNode, Rule, Tabulated, TabulatedPoint};
 use crate::fem::formulation::Formulation;
 use crate::fem::material::{Lame, Material};
-use crate::fem::mesh::Mesh;
+use crate::fem::mesh::{Boundary, Mesh};
 
 /// Radii of a body of revolution above minus this times its size are rounding of zero.
 const ON_THE_AXIS: f64 = 1e-12;
@@ -141,6 +141,15 @@ impl ElasticBody {
     pub(crate) fn on(&self, mesh: Mesh) -> Result<Self, Error> {
         let material = *self.regions[0].material();
         Self::new(mesh, material, self.formulation)?.with_integration(self.integration)
+    }
+
+    /// The same body with another named boundary.
+    ///
+    /// # Errors
+    /// As [`Mesh::with_boundary`].
+    pub(crate) fn with_boundary(mut self, boundary: Boundary) -> Result<Self, Error> {
+        self.mesh = self.mesh.with_boundary(boundary)?;
+        Ok(self)
     }
 
     /// The mesh.
