@@ -15,6 +15,7 @@ mod contact_scenes;
 mod dimensions;
 mod inclined_frames;
 mod inclined_supports;
+mod loads;
 mod mesh_scenes;
 mod obstacle_rows;
 mod obstacles_in_space;

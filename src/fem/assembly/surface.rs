@@ -1,5 +1,7 @@
 //! Integrals over boundaries: areas that belong to nodes, with their normals.
 
+use std::borrow::Cow;
+
 use crate::fem::body::ElasticBody;
 use crate::fem::element::{Cell, PerNode, QuadraturePoint, Tabulated};
 use crate::fem::geometry::{length, unit};
@@ -22,14 +24,14 @@ pub(super) struct FacetPoint<'a> {
 /// Hands every quadrature point of a boundary to `visit`, facet by facet.
 pub(super) fn for_each_point(body: &ElasticBody, boundary: &Boundary, visit: &mut dyn FnMut(&FacetPoint)) {
     let table = Tabulated::new(boundary.kind.reference(), body.rule());
-    for_each_point_of(body, boundary, &table, visit);
+    for_each_point_of(body, boundary, &|_| Cow::Borrowed(&table), visit);
 }
 
-/// The same with the points of `table`.
-pub(super) fn for_each_point_of(
+/// The same with the points that `table_of` gives a facet, by its nodes.
+pub(super) fn for_each_point_of<'a>(
     body: &ElasticBody,
     boundary: &Boundary,
-    table: &Tabulated,
+    table_of: &dyn Fn(&[usize]) -> Cow<'a, Tabulated>,
     visit: &mut dyn FnMut(&FacetPoint),
 ) {
     let mesh = body.mesh();
@@ -46,7 +48,7 @@ pub(super) fn for_each_point_of(
             let of_face: Vec<usize> = faces[face].iter().map(|&local| nodes[local]).collect();
             sense(boundary.kind, facet, &of_face, face)
         });
-        for at in &table.points {
+        for at in &table_of(facet).points {
             let vector = cell.area_vector(&at.derivative);
             let size = length(vector);
             let place = cell.place(&at.shape);
@@ -109,6 +111,6 @@ pub(crate) fn facet_centres(body: &ElasticBody, boundary: &Boundary) -> Vec<([f6
     let reference = boundary.kind.reference();
     let table = Tabulated::with_rule(reference, vec![QuadraturePoint { at: reference.centroid, weight: 1.0 }]);
     let mut centres = Vec::with_capacity(boundary.facet_count());
-    for_each_point_of(body, boundary, &table, &mut |point| centres.push((point.at, point.normal)));
+    for_each_point_of(body, boundary, &|_| Cow::Borrowed(&table), &mut |point| centres.push((point.at, point.normal)));
     centres
 }

@@ -203,6 +203,19 @@ impl ElasticBody {
         })
     }
 
+    /// The density of the material of every element, in the order of [`elements`](Self::elements).
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for a material without density.
+    pub(crate) fn densities(&self) -> Result<Vec<f64>, Error> {
+        let mut densities = Vec::with_capacity(self.mesh.element_count());
+        for region in &self.regions {
+            let missing = Error::Setting { name: "density", value: f64::NAN, allowed: "positive and finite" };
+            densities.extend(std::iter::repeat_n(region.material().density().ok_or(missing)?, region.elements().len()));
+        }
+        Ok(densities)
+    }
+
     /// The coordinates of up to [`MAX_NODES`] nodes.
     pub(crate) fn coordinates(&self, nodes: &[usize]) -> PerNode<[f64; 3]> {
         let mut coordinates = [[0.0; 3]; MAX_NODES];

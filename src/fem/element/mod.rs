@@ -5,6 +5,7 @@
 
 mod cell;
 mod hex8;
+mod levels;
 mod line2;
 mod line3;
 mod point1;
@@ -18,6 +19,7 @@ mod tabulated;
 mod tet4;
 
 pub use cell::Cell;
+pub use levels::between_levels;
 pub use quadrature::Part;
 pub use reference::{FacetKind, LatticeCounts, MAX_NODES, PerNode, QuadraturePoint, ReferenceElement, Shape};
 pub use tabulated::{Rule, Tabulated, TabulatedPoint};

@@ -8,16 +8,19 @@ mod body;
 pub(super) mod cells;
 mod condition;
 pub(super) mod json;
+pub(super) mod load;
 pub(super) mod model;
 pub(super) mod obstacle;
 mod part;
+pub(super) mod profile;
 
 pub use analysis::{
     AnalysisSpec, DynamicSpec, FactorSpec, FieldSpec, LoadInTimeSpec, MassSpec, PenetrationSpec, WatchSpec,
 };
 pub use approach::Rule;
 pub use body::{FurtherBodySpec, MaterialSpec};
-pub use condition::{LoadSpec, Place, SupportSpec};
+pub use condition::{Place, SupportSpec};
+pub use load::LoadSpec;
 pub use model::ModelSpec;
 pub use obstacle::ObstacleSpec;
 pub use part::PartSpec;
