@@ -157,7 +157,10 @@ impl PlacedLoad<'_> {
             *place = entry;
         }
         add_moment(self.body, boundary, moment, load).ok_or_else(|| {
-            let message = format!("`{}` is a straight line about which no traction makes this moment", boundary.name);
+            let name = &boundary.name;
+            let message = format!(
+                "no turning traction on `{name}` has this moment: its facets lie on a straight line, or its size is beyond all numbers"
+            );
             wrong(self.at("boundary"), message)
         })
     }

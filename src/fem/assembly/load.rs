@@ -60,10 +60,12 @@ pub(crate) fn add_traction_with_kinks(
     let table_of = |facet: &[usize]| {
         let along: Vec<f64> = facet[..reference.corners].iter().map(|&node| dot(nodes[node], kinks.along)).collect();
         let [low, high] = [f64::min, f64::max].map(|of| along.iter().copied().reduce(of).unwrap_or_default());
-        let levels: Vec<f64> = kinks.at.iter().copied().filter(|&at| low < at && at < high).collect();
-        match levels.is_empty() {
-            true => Cow::Borrowed(&whole),
-            false => Cow::Owned(Tabulated::with_rule(reference, between_levels(reference, &along, &levels))),
+        let (from, to) = (kinks.at.partition_point(|&at| at <= low), kinks.at.partition_point(|&at| at < high));
+        match kinks.at.get(from..to) {
+            Some(levels @ [_, ..]) => {
+                Cow::Owned(Tabulated::with_rule(reference, between_levels(reference, &along, levels)))
+            }
+            _ => Cow::Borrowed(&whole),
         }
     };
     let visit = &mut |point: &FacetPoint| add_share(body, point, field(point.at, point.normal), load);
@@ -91,6 +93,10 @@ pub(crate) fn add_moment(body: &ElasticBody, boundary: &Boundary, moment: [f64; 
         let away = Vector3::from(minus(point.at, centre));
         inertia += (Matrix3::identity() * away.norm_squared() - away * away.transpose()) * point.area;
     });
+    // The search for its axes does not end on what is not a number.
+    if !inertia.iter().all(|entry| entry.is_finite()) {
+        return None;
+    }
     let principal = inertia.symmetric_eigen();
     let (moment, largest) = (Vector3::from(moment), principal.eigenvalues.max());
     let mut omega = Vector3::zeros();
