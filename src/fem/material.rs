@@ -35,7 +35,7 @@ impl Material {
         Ok(Material { young, poisson, density: None })
     }
 
-    /// The same material with a density (mass per volume), which only dynamics asks for.
+    /// The same material with a density (mass per volume), which motions and forces of inertia ask for.
     ///
     /// # Errors
     /// [`Error::Setting`] for a density that is not positive and finite.

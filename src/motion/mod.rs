@@ -40,3 +40,4 @@ pub use scheme::{Scheme, SchemeSpec, stable_step};
 pub use state::{Observation, State};
 pub use step::Parameter;
 pub use time_function::TimeFunction;
+pub(crate) use time_function::between;

@@ -83,14 +83,7 @@ impl TimeFunction {
     pub fn at(&self, t: f64) -> f64 {
         let share = |start: f64, end: f64| ((t - start) / (end - start)).clamp(0.0, 1.0);
         match *self {
-            TimeFunction::Table(ref points) => {
-                let after = points.partition_point(|&(time, _)| time <= t);
-                match (after.checked_sub(1).and_then(|before| points.get(before)), points.get(after)) {
-                    (Some(&(from, first)), Some(&(to, last))) => first + (last - first) * (t - from) / (to - from),
-                    (Some(&(_, factor)), None) | (None, Some(&(_, factor))) => factor,
-                    (None, None) => 1.0,
-                }
-            }
+            TimeFunction::Table(ref points) => between(points, t),
             TimeFunction::Sine { frequency, phase } => (TAU * frequency * t + phase).sin(),
             TimeFunction::Ramp { start, end } => share(start, end),
             TimeFunction::Pulse { start, end } => match share(start, end) {
@@ -98,5 +91,16 @@ impl TimeFunction {
                 inside => (PI * inside).sin(),
             },
         }
+    }
+}
+
+/// The value at `t` of straight lines between points `(t, value)`, t increasing; constant before the first and after the last, 1 without
+/// points.
+pub(crate) fn between(points: &[(f64, f64)], t: f64) -> f64 {
+    let after = points.partition_point(|&(at, _)| at <= t);
+    match (after.checked_sub(1).and_then(|before| points.get(before)), points.get(after)) {
+        (Some(&(from, first)), Some(&(to, last))) => first + (last - first) * (t - from) / (to - from),
+        (Some(&(_, value)), None) | (None, Some(&(_, value))) => value,
+        (None, None) => 1.0,
     }
 }

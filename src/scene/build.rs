@@ -39,7 +39,7 @@ impl Scene {
         bodies: Vec<ElasticBody>,
         further: &[(&str, Arc<dyn Obstacle>)],
     ) -> Result<Model, Error> {
-        let body = self.joined(bodies)?;
+        let body = self.with_parts(self.joined(bodies)?)?;
         let held = self.held(&body)?;
         let dofs = self.with_contact_faces(held.dofs(body.mesh())?, &body, further);
         let (supports, is_part) = (self.supports.len(), self.may_be_part(&body)?);

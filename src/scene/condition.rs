@@ -1,13 +1,13 @@
-//! Supports and loads of a scene, at the nodes.
+//! Supports of a scene, at the nodes.
 
-use super::entry::{PLACE_TOLERANCE, boundary, finite, point, vector, wrong};
+use super::entry::{boundary, finite, node_at, point, vector, wrong};
 use super::held::{COORDINATES, Component, Held, Holder, unit_normal};
-use super::schema::{LoadSpec, Place, Scene, SupportSpec};
+use super::profile::Profile;
+use super::schema::{Place, Scene, SupportSpec};
 use crate::error::Error;
-use crate::fem::assembly::{add_body_force, add_pressure, add_traction, node_normals};
+use crate::fem::assembly::node_normals;
 use crate::fem::body::ElasticBody;
-use crate::fem::geometry::{distance, dot};
-use crate::fem::mesh::Mesh;
+use crate::fem::geometry::dot;
 
 /// Radii below this times the body's size lie on the axis of revolution.
 const ON_THE_AXIS: f64 = 1e-12;
@@ -33,8 +33,14 @@ impl Scene {
                 Place::Boundary(name) => boundary(mesh, name, &format!("{path}.on.boundary"))?.nodes(),
                 Place::Point(at) => vec![node_at(mesh, at, &format!("{path}.on.point"))?],
             };
-            for component in components {
-                nodes.iter().for_each(|&node| held.prescribe(node, component));
+            let profile = support.profile.as_ref();
+            let profile = profile.map(|spec| Profile::of(spec, &format!("{path}.profile"), body.dimension()));
+            let profile = profile.transpose()?;
+            for node in nodes {
+                let factor = profile.as_ref().map_or(1.0, |profile| profile.at(mesh.nodes()[node]));
+                for component in &components {
+                    held.prescribe(node, Component { value: factor * component.value, ..*component });
+                }
             }
         }
         Ok(held)
@@ -97,65 +103,5 @@ impl Scene {
             return Err(wrong(path, format!("holds nothing; give {names}")));
         }
         Ok(components)
-    }
-
-    pub(super) fn load(&self, body: &ElasticBody) -> Result<Vec<f64>, Error> {
-        let mut load = vec![0.0; body.nodal_dofs()];
-        for index in 0..self.loads.len() {
-            self.add_load(body, index, &mut load)?;
-        }
-        match load.iter().all(|value| value.is_finite()) {
-            true => Ok(load),
-            false => Err(wrong("loads", "the loads add up to a force that is not finite")),
-        }
-    }
-
-    /// Adds load number `index` to the nodal load.
-    pub(super) fn add_load(&self, body: &ElasticBody, index: usize, load: &mut [f64]) -> Result<(), Error> {
-        let (mesh, dimension) = (body.mesh(), body.dimension());
-        let path = format!("loads[{index}]");
-        match &self.loads[index] {
-            LoadSpec::Traction(spec) => {
-                let boundary = boundary(mesh, &spec.boundary, &format!("{path}.traction.boundary"))?;
-                let traction = vector(&format!("{path}.traction.value"), &spec.value, dimension)?;
-                add_traction(body, boundary, traction, load);
-            }
-            LoadSpec::Pressure(spec) => {
-                let boundary = boundary(mesh, &spec.boundary, &format!("{path}.pressure.boundary"))?;
-                finite(format!("{path}.pressure.value"), spec.value)?;
-                add_pressure(body, boundary, spec.value, load);
-            }
-            LoadSpec::Force(spec) => {
-                let node = node_at(mesh, &spec.at, &format!("{path}.force.at"))?;
-                let force = vector(&format!("{path}.force.value"), &spec.value, dimension)?;
-                let entries = &mut load[dimension * node..dimension * (node + 1)];
-                entries.iter_mut().zip(force).for_each(|(entry, component)| *entry += component);
-            }
-            LoadSpec::BodyForce(value) => {
-                add_body_force(body, vector(&format!("{path}.body-force"), value, dimension)?, load);
-            }
-        }
-        Ok(())
-    }
-}
-
-fn node_at(mesh: &Mesh, at: &[f64], path: &str) -> Result<usize, Error> {
-    let dimension = mesh.dimension();
-    let place = vector(path, at, dimension)?;
-    let away = |node: &[f64; 3]| distance(*node, place);
-    let tolerance = PLACE_TOLERANCE * mesh.size();
-    let there: Vec<usize> = (0..mesh.nodes().len()).filter(|&node| away(&mesh.nodes()[node]) <= tolerance).collect();
-    match (&there[..], mesh.nearest_node(place)) {
-        ([node], _) => Ok(*node),
-        ([one, other, ..], _) => {
-            let message =
-                format!("nodes {one} and {other} of two bodies lie at {}; name a boundary instead", point(at));
-            Err(wrong(path, message))
-        }
-        ([], Some((node, _))) => {
-            let nearest = point(&mesh.nodes()[node][..dimension]);
-            Err(wrong(path, format!("there is no node at {}; the nearest is node {node} at {nearest}", point(at))))
-        }
-        ([], None) => Err(wrong(path, "the mesh has no nodes")),
     }
 }

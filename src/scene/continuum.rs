@@ -3,9 +3,11 @@
 use std::collections::{BTreeMap, HashMap};
 
 use super::Model;
-use super::entry::wrong;
+use super::entry::{boundary, wrong};
+use super::load::spread;
 use super::obstacle::PlacedObstacle;
-use super::schema::{LoadSpec, Place, Rule, Scene};
+use super::schema::load::{LoadSpec, PressureSpec, TractionSpec};
+use super::schema::{Place, Rule, Scene};
 use crate::continuum::{Circle, Condition, Distance, Enclosure, Facing, PlaneProblem, Point, Triangulation};
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
@@ -21,8 +23,7 @@ impl Scene {
     /// # Errors
     /// [`Error::Scene`] for a force at a point, but for that on a bar.
     pub(crate) fn check_continuum(&self) -> Result<(), Error> {
-        let is_point = |load: &LoadSpec| matches!(load, LoadSpec::Force(_));
-        match self.loads.iter().position(is_point) {
+        match self.loads.iter().position(LoadSpec::is_at_point) {
             Some(index) if self.model.dimension() > 1 => {
                 let message = "a force at a point makes a displacement without end in a continuum, so that there is no \
                                total error; spread it over a boundary";
@@ -52,9 +53,13 @@ impl Scene {
         };
         let mut body_force = [0.0; 2];
         for load in &self.loads {
-            if let LoadSpec::BodyForce(force) = load {
-                body_force.iter_mut().zip(force).for_each(|(sum, part)| *sum += part);
-            }
+            let (force, density) = match load {
+                LoadSpec::BodyForce(force) => (force, 1.0),
+                // The model is built: there is a density.
+                LoadSpec::Gravity(acceleration) => (acceleration, region.material().density().unwrap_or_default()),
+                _ => continue,
+            };
+            body_force.iter_mut().zip(force).for_each(|(sum, part)| *sum += density * part);
         }
         let obstacles = model.obstacles().iter().enumerate();
         let mut problem = PlaneProblem {
@@ -96,6 +101,11 @@ impl Scene {
                                hold a boundary";
                 return Err(wrong(path, message));
             };
+            if support.profile.is_some() {
+                let message =
+                    "a displacement that changes along a boundary has no guaranteed bound: only a constant one has";
+                return Err(wrong(format!("supports[{index}].profile"), message));
+            }
             for component in self.components(index, support)? {
                 let Some(axis) = axis_of(component.direction) else {
                     let message = "an inclined support has no guaranteed bound: only one along x or y has one";
@@ -106,7 +116,7 @@ impl Scene {
             }
         }
         for (index, load) in self.loads.iter().enumerate() {
-            let Some((path, boundary, traction, pressure)) = spread(index, load) else { continue };
+            let Some((path, boundary, traction, pressure)) = on_outline(model, index, load)? else { continue };
             outline.change(&path, boundary, |condition| {
                 (0..2).for_each(|axis| condition.traction[axis] += traction[axis]);
                 condition.pressure += pressure;
@@ -126,16 +136,39 @@ impl Scene {
     }
 }
 
-/// The path, the boundary, the traction and the pressure of a load on the outline; none of another one.
-fn spread(index: usize, load: &LoadSpec) -> Option<(String, &str, Point, f64)> {
+/// Path, boundary, traction and pressure of a load on the outline; none of another one.
+type OnOutline<'a> = Option<(String, &'a str, Point, f64)>;
+
+/// What load number `index` puts on the outline.
+///
+/// # Errors
+/// [`Error::Scene`] for a load that is not constant.
+fn on_outline<'a>(model: &Model, index: usize, load: &'a LoadSpec) -> Result<OnOutline<'a>, Error> {
     let path = |field: &str| format!("loads[{index}].{field}");
+    let varies = |field: &str, what: &str| {
+        let message =
+            format!("{what} has no guaranteed bound: only constant tractions, pressures and body forces have one");
+        Err(wrong(path(field), message))
+    };
+    let in_plane = |value: &[f64]| [0, 1].map(|axis| value.get(axis).copied().unwrap_or(0.0));
     match load {
-        LoadSpec::Traction(spec) => {
-            let traction = [0, 1].map(|axis| spec.value.get(axis).copied().unwrap_or(0.0));
-            Some((path("traction.boundary"), &spec.boundary, traction, 0.0))
+        LoadSpec::Traction(TractionSpec { profile: Some(_), .. }) => {
+            varies("traction.profile", "a traction that changes along a boundary")
         }
-        LoadSpec::Pressure(spec) => Some((path("pressure.boundary"), &spec.boundary, [0.0; 2], spec.value)),
-        LoadSpec::BodyForce(_) | LoadSpec::Force(_) => None,
+        LoadSpec::Pressure(PressureSpec { profile: Some(_), .. }) => {
+            varies("pressure.profile", "a pressure that changes along a boundary")
+        }
+        LoadSpec::Moment(_) => varies("moment", "the traction of a moment"),
+        LoadSpec::Centrifugal(_) => varies("centrifugal", "a force that grows with the distance from an axis"),
+        LoadSpec::Traction(spec) => Ok(Some((path("traction.boundary"), &spec.boundary, in_plane(&spec.value), 0.0))),
+        LoadSpec::Pressure(spec) => Ok(Some((path("pressure.boundary"), &spec.boundary, [0.0; 2], spec.value))),
+        LoadSpec::Force(spec) => {
+            let (Some(name), path) = (&spec.boundary, path("force.boundary")) else { return Ok(None) };
+            let [x, y] = in_plane(&spec.value);
+            let traction = spread(model.body(), boundary(model.mesh(), name, &path)?, [x, y, 0.0], &path)?;
+            Ok(Some((path, name, in_plane(&traction), 0.0)))
+        }
+        LoadSpec::BodyForce(_) | LoadSpec::Gravity(_) => Ok(None),
     }
 }
 

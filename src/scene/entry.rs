@@ -1,6 +1,7 @@
 //! Entries of a scene: how they are checked, and named in messages.
 
 use crate::error::Error;
+use crate::fem::geometry::distance;
 use crate::fem::mesh::{Boundary, Mesh};
 
 /// A point named in a scene must lie on a node, and a table must reach a candidate, to within this times the body's
@@ -26,6 +27,23 @@ pub(super) fn finite(path: impl Into<String>, value: f64) -> Result<(), Error> {
 pub(super) fn finite_pair(path: &str, pair: [f64; 2]) -> Result<(), Error> {
     finite(format!("{path}[0]"), pair[0])?;
     finite(format!("{path}[1]"), pair[1])
+}
+
+/// Checks a table at a JSON path: as many factors as `places`, at least one, which have this name, and increase.
+pub(super) fn table(path: &str, (name, places): (&str, &[f64]), factors: &[f64]) -> Result<(), Error> {
+    if places.len() != factors.len() || places.is_empty() {
+        let message = format!("{} {name} and {} factors; give as many, at least one", places.len(), factors.len());
+        return Err(wrong(path, message));
+    }
+    for (index, &place) in places.iter().enumerate() {
+        finite(format!("{path}.{name}[{index}]"), place)?;
+        if index > 0 && place <= places[index - 1] {
+            let message = format!("{place:?} does not lie beyond {:?}; {name} must increase", places[index - 1]);
+            return Err(wrong(format!("{path}.{name}[{index}]"), message));
+        }
+        finite(format!("{path}.factors[{index}]"), factors[index])?;
+    }
+    Ok(())
 }
 
 /// A number as a reader writes it: plain in the middle, with an exponent at the extremes.
@@ -70,4 +88,26 @@ pub(super) fn boundary<'a>(mesh: &'a Mesh, name: &str, path: &str) -> Result<&'a
         let names: Vec<&str> = mesh.boundaries().iter().map(|boundary| boundary.name.as_str()).collect();
         wrong(path, format!("there is no boundary `{name}`; there are {}", names.join(", ")))
     })
+}
+
+/// The node at a point of a scene.
+pub(super) fn node_at(mesh: &Mesh, at: &[f64], path: &str) -> Result<usize, Error> {
+    let dimension = mesh.dimension();
+    let place = vector(path, at, dimension)?;
+    let away = |node: &[f64; 3]| distance(*node, place);
+    let tolerance = PLACE_TOLERANCE * mesh.size();
+    let there: Vec<usize> = (0..mesh.nodes().len()).filter(|&node| away(&mesh.nodes()[node]) <= tolerance).collect();
+    match (&there[..], mesh.nearest_node(place)) {
+        ([node], _) => Ok(*node),
+        ([one, other, ..], _) => {
+            let message =
+                format!("nodes {one} and {other} of two bodies lie at {}; name a boundary instead", point(at));
+            Err(wrong(path, message))
+        }
+        ([], Some((node, _))) => {
+            let nearest = point(&mesh.nodes()[node][..dimension]);
+            Err(wrong(path, format!("there is no node at {}; the nearest is node {node} at {nearest}", point(at))))
+        }
+        ([], None) => Err(wrong(path, "the mesh has no nodes")),
+    }
 }

@@ -1,6 +1,6 @@
 //! Loads that change with time, from a scene.
 
-use super::entry::{finite, located, wrong};
+use super::entry::{located, table as check_table, wrong};
 use super::schema::{DynamicSpec, FactorSpec, LoadInTimeSpec, Scene};
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
@@ -80,20 +80,7 @@ impl LoadInTimeSpec {
             FactorSpec::Table(table) => {
                 let path = format!("{path}.factor.table");
                 let (times, factors) = (&table.times, &table.factors);
-                if times.len() != factors.len() || times.is_empty() {
-                    let message =
-                        format!("{} times and {} factors; give as many, at least one", times.len(), factors.len());
-                    return Err(wrong(path, message));
-                }
-                for (index, &time) in times.iter().enumerate() {
-                    finite(format!("{path}.times[{index}]"), time)?;
-                    if index > 0 && time <= times[index - 1] {
-                        let message =
-                            format!("{time:?} does not lie beyond {:?}; times must increase", times[index - 1]);
-                        return Err(wrong(format!("{path}.times[{index}]"), message));
-                    }
-                    finite(format!("{path}.factors[{index}]"), factors[index])?;
-                }
+                check_table(&path, ("times", times), factors)?;
                 ("table", TimeFunction::Table(times.iter().copied().zip(factors.iter().copied()).collect()))
             }
             FactorSpec::Sine(sine) => ("sine", TimeFunction::Sine { frequency: sine.frequency, phase: sine.phase }),

@@ -6,7 +6,7 @@ use super::Warning;
 use super::entry::COORDINATE_ROUNDING;
 use super::parts::Parts;
 use super::rows::ContactRow;
-use super::schema::{LoadSpec, Place, Scene};
+use super::schema::{Place, Scene};
 use crate::error::Error;
 use crate::fem::assembly::DofMap;
 use crate::fem::body::ElasticBody;
@@ -36,7 +36,7 @@ impl Scene {
             let (whole, free) = (size(&load), size(&dofs.restrict(&load)?));
             if whole > 0.0 && free <= NOTHING * whole {
                 warnings.push(Warning::LoadOnSupport { load: index });
-            } else if matches!(self.loads[index], LoadSpec::Force(_)) && body.dimension() > 1 {
+            } else if self.loads[index].is_at_point() && body.dimension() > 1 {
                 warnings.push(Warning::PointLoad { load: index });
             }
         }

@@ -20,6 +20,7 @@ mod schema;
 mod terminal;
 mod time;
 mod total_error;
+mod total_error_of_loads;
 mod tradeoff;
 mod verify;
 mod warnings;

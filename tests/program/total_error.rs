@@ -5,7 +5,7 @@ use crate::program::Desk;
 use serde_json::{Value, json};
 
 /// The classical scene: a block of 1 x 0.5, clamped below, pressed by a parabola 0.01 deep.
-fn classical(poisson: f64) -> Value {
+pub fn classical(poisson: f64) -> Value {
     json!({
         "body": {"rectangle": {"x": {"points": [0, 1], "divisions": [8]}, "y": {"points": [0, 0.5], "divisions": [4]}}},
         "material": {"young": 1e7, "poisson": poisson},
@@ -15,7 +15,7 @@ fn classical(poisson: f64) -> Value {
 }
 
 /// A column of height 2 between rollers, under its weight, with its head at a plane: the displacement is quadratic.
-fn column(model: &str) -> Value {
+pub fn column(model: &str) -> Value {
     json!({
         "model": model,
         "body": {"rectangle": {"x": {"points": [0, 1], "divisions": [2]}, "y": {"points": [0, 2], "divisions": [3]}}},
@@ -28,7 +28,7 @@ fn column(model: &str) -> Value {
     })
 }
 
-fn solved(scene: &Value, arguments: &[&str]) -> (i32, Value, String) {
+pub fn solved(scene: &Value, arguments: &[&str]) -> (i32, Value, String) {
     let desk = Desk::new();
     desk.write("scene.json", scene.to_string());
     let all: Vec<&str> = ["solve", "scene.json", "--format", "json"].iter().chain(arguments).copied().collect();
@@ -251,7 +251,7 @@ fn what_has_no_total_error_is_refused_with_the_reason() {
 }
 
 /// A block of 1 x 1 x 0.5 in tetrahedra, clamped below, with a ball 0.01 deep in its top.
-fn block(cells: usize) -> Value {
+pub fn block(cells: usize) -> Value {
     let axis = |length: f64, divisions: usize| json!({"points": [0, length], "divisions": [divisions]});
     json!({
         "model": "space",

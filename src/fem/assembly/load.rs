@@ -1,56 +1,176 @@
 //! Consistent nodal loads: f_a = integral of N_a times the force.
 
-use super::surface::for_each_point;
+use std::borrow::Cow;
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::surface::{FacetPoint, for_each_point, for_each_point_of};
 use super::{DofMap, internal_force};
 use crate::error::Error;
 use crate::fem::body::{BodyElement, ElasticBody};
-use crate::fem::element::Tabulated;
+use crate::fem::element::{Tabulated, between_levels};
+use crate::fem::geometry::{cross, dot, minus};
 use crate::fem::mesh::Boundary;
+
+/// A moment of inertia of a boundary below this times the largest is rounding: the boundary is a straight line about that axis.
+const NO_INERTIA: f64 = 1e-12;
 
 /// Adds to the nodal load (length `dim * n_nodes`) a constant traction (x, y, z; force per area) on a boundary.
 pub fn add_traction(body: &ElasticBody, boundary: &Boundary, traction: [f64; 3], load: &mut [f64]) {
-    add_traction_field(body, boundary, |_, _| traction, load);
+    for_each_point(body, boundary, &mut |point| add_share(body, point, traction, load));
 }
 
 /// Adds to the nodal load (length `dim * n_nodes`) a pressure (force per area) on a boundary: positive pushes against
 /// the outward normal.
 pub fn add_pressure(body: &ElasticBody, boundary: &Boundary, pressure: f64, load: &mut [f64]) {
-    add_traction_field(body, boundary, |_, normal| normal.map(|component| -pressure * component), load);
+    let visit = &mut |point: &FacetPoint| {
+        add_share(body, point, point.normal.map(|component| -pressure * component), load);
+    };
+    for_each_point(body, boundary, visit);
 }
 
 /// Adds to the nodal load (length `dim * n_nodes`) the traction `field(point, outward unit normal)` (force per area) on
-/// a boundary, by the quadrature of its facets.
+/// a boundary, by five quadrature points in each direction of a facet.
 pub fn add_traction_field(
     body: &ElasticBody,
     boundary: &Boundary,
     field: impl Fn([f64; 3], [f64; 3]) -> [f64; 3],
     load: &mut [f64],
 ) {
-    for_each_point(body, boundary, &mut |point| {
-        let traction = field(point.at, point.normal);
-        for (&node, share) in point.nodes.iter().zip(point.shape) {
-            add_at(body, node, traction, share * point.area, load);
+    add_traction_with_kinks(body, boundary, Kinks { along: [0.0; 3], at: &[] }, field, load);
+}
+
+/// Planes across a unit vector, at these coordinates along it, increasing.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Kinks<'a> {
+    pub along: [f64; 3],
+    pub at: &'a [f64],
+}
+
+/// The same of a field that has kinks: facets are cut there, and every piece has five quadrature points in each direction.
+pub(crate) fn add_traction_with_kinks(
+    body: &ElasticBody,
+    boundary: &Boundary,
+    kinks: Kinks,
+    field: impl Fn([f64; 3], [f64; 3]) -> [f64; 3],
+    load: &mut [f64],
+) {
+    let (reference, nodes) = (boundary.kind.reference(), body.mesh().nodes());
+    let whole = Tabulated::fine(reference);
+    let table_of = |facet: &[usize]| {
+        let along: Vec<f64> = facet[..reference.corners].iter().map(|&node| dot(nodes[node], kinks.along)).collect();
+        let [low, high] = [f64::min, f64::max].map(|of| along.iter().copied().reduce(of).unwrap_or_default());
+        let (from, to) = (kinks.at.partition_point(|&at| at <= low), kinks.at.partition_point(|&at| at < high));
+        match kinks.at.get(from..to) {
+            Some(levels @ [_, ..]) => {
+                Cow::Owned(Tabulated::with_rule(reference, between_levels(reference, &along, levels)))
+            }
+            _ => Cow::Borrowed(&whole),
         }
+    };
+    let visit = &mut |point: &FacetPoint| add_share(body, point, field(point.at, point.normal), load);
+    for_each_point_of(body, boundary, &table_of, visit);
+}
+
+/// Adds to the nodal load (length `dim * n_nodes`) the traction `omega x (x - c)` on a boundary, c its centre of area, whose moment
+/// (force times length) is the one given; its force is zero. `None` for a moment that no such traction has.
+pub(crate) fn add_moment(body: &ElasticBody, boundary: &Boundary, moment: [f64; 3], load: &mut [f64]) -> Option<()> {
+    let table = Tabulated::fine(boundary.kind.reference());
+    let visit = |visit: &mut dyn FnMut(&FacetPoint)| {
+        for_each_point_of(body, boundary, &|_| Cow::Borrowed(&table), visit);
+    };
+    // From the first node, so that a boundary far from the origin loses no digits.
+    let first = body.mesh().nodes()[*boundary.connectivity.first()?];
+    let (mut area, mut sum) = (0.0, [0.0; 3]);
+    visit(&mut |point| {
+        area += point.area;
+        let away = minus(point.at, first);
+        (0..3).for_each(|axis| sum[axis] += point.area * away[axis]);
     });
+    let centre = [0, 1, 2].map(|axis| first[axis] + sum[axis] / area);
+    let mut inertia = Matrix3::zeros();
+    visit(&mut |point| {
+        let away = Vector3::from(minus(point.at, centre));
+        inertia += (Matrix3::identity() * away.norm_squared() - away * away.transpose()) * point.area;
+    });
+    // The search for its axes does not end on what is not a number.
+    if !inertia.iter().all(|entry| entry.is_finite()) {
+        return None;
+    }
+    let principal = inertia.symmetric_eigen();
+    let (moment, largest) = (Vector3::from(moment), principal.eigenvalues.max());
+    let mut omega = Vector3::zeros();
+    for (axis, &about) in principal.eigenvectors.column_iter().zip(&principal.eigenvalues) {
+        let part = axis.dot(&moment);
+        if about > NO_INERTIA * largest {
+            omega += axis * (part / about);
+        } else if part.abs() > NO_INERTIA * moment.norm() {
+            return None;
+        }
+    }
+    let omega = [omega.x, omega.y, omega.z];
+    visit(&mut |point| add_share(body, point, cross(omega, minus(point.at, centre)), load));
+    Some(())
+}
+
+/// Adds the force of a traction on the share of a quadrature point.
+fn add_share(body: &ElasticBody, point: &FacetPoint, traction: [f64; 3], load: &mut [f64]) {
+    for (&node, share) in point.nodes.iter().zip(point.shape) {
+        add_at(body, node, traction, share * point.area, load);
+    }
 }
 
 /// Adds to the nodal load (length `dim * n_nodes`) a constant body force (x, y, z; force per volume).
 pub fn add_body_force(body: &ElasticBody, force: [f64; 3], load: &mut [f64]) {
-    add_force_at(body, &body.tabulated(), |_| force, load);
+    add_force_at(body, &body.tabulated(), |_, _| force, load);
 }
 
 /// Adds to the nodal load (length `dim * n_nodes`) the body force `field(point)` (force per volume), by five quadrature
 /// points in each direction of an element.
 pub fn add_body_force_field(body: &ElasticBody, field: impl Fn([f64; 3]) -> [f64; 3], load: &mut [f64]) {
-    add_force_at(body, &Tabulated::fine(body.mesh().kind().reference()), field, load);
+    add_force_at(body, &Tabulated::fine(body.mesh().kind().reference()), |_, at| field(at), load);
 }
 
-fn add_force_at(body: &ElasticBody, table: &Tabulated, field: impl Fn([f64; 3]) -> [f64; 3], load: &mut [f64]) {
-    for BodyElement { nodes, cell, .. } in body.elements() {
+/// Adds to the nodal load (length `dim * n_nodes`) the densities of the materials times a constant acceleration (length per time
+/// squared).
+///
+/// # Errors
+/// [`Error::Setting`] for a material without density.
+pub(crate) fn add_gravity(body: &ElasticBody, acceleration: [f64; 3], load: &mut [f64]) -> Result<(), Error> {
+    let densities = body.densities()?;
+    let force = |element: usize, _| acceleration.map(|component| densities[element] * component);
+    add_force_at(body, &body.tabulated(), force, load);
+    Ok(())
+}
+
+/// Adds to the nodal load (length `dim * n_nodes`) the force of a rotation by `omega` (radians per time) about the axis through
+/// `point` along the unit vector `axis`: the density times omega squared times the way from the axis.
+///
+/// # Errors
+/// [`Error::Setting`] for a material without density.
+pub(crate) fn add_centrifugal(
+    body: &ElasticBody,
+    omega: f64,
+    (axis, point): ([f64; 3], [f64; 3]),
+    load: &mut [f64],
+) -> Result<(), Error> {
+    let densities = body.densities()?;
+    let force = |element: usize, at: [f64; 3]| {
+        let away = minus(at, point);
+        let along = dot(away, axis);
+        [0, 1, 2].map(|k| densities[element] * omega * omega * (away[k] - along * axis[k]))
+    };
+    add_force_at(body, &Tabulated::fine(body.mesh().kind().reference()), force, load);
+    Ok(())
+}
+
+/// Adds the body force `field(element, point)`.
+fn add_force_at(body: &ElasticBody, table: &Tabulated, field: impl Fn(usize, [f64; 3]) -> [f64; 3], load: &mut [f64]) {
+    for (element, BodyElement { nodes, cell, .. }) in body.elements().enumerate() {
         let scale = cell.unit().powi(body.dimension() as i32);
         for at in &table.points {
             let volume = body.point(&cell, at).weight * scale;
-            let force = field(cell.place(&at.shape));
+            let force = field(element, cell.place(&at.shape));
             for (&node, share) in nodes.iter().zip(at.shape) {
                 add_at(body, node, force, share * volume, load);
             }

@@ -79,11 +79,6 @@ pub(crate) fn nodal_mass(body: &ElasticBody, form: MassForm, contact_nodes: &[us
 /// The consistent mass of every element, in its order.
 fn element_masses(body: &ElasticBody) -> Result<Vec<ElementMass>, Error> {
     let table = Tabulated::fine(body.mesh().kind().reference());
-    let mut densities = Vec::with_capacity(body.regions().len());
-    for region in body.regions() {
-        let missing = Error::Setting { name: "density", value: f64::NAN, allowed: "positive and finite" };
-        densities.extend(std::iter::repeat_n(region.material().density().ok_or(missing)?, region.elements().len()));
-    }
     let of_element = |(BodyElement { nodes, cell, .. }, density): (BodyElement<'_>, f64)| {
         let mut mass = ElementMass::zero(nodes.len());
         let scale = density * cell.unit().powi(body.dimension() as i32);
@@ -93,7 +88,7 @@ fn element_masses(body: &ElasticBody) -> Result<Vec<ElementMass>, Error> {
         }
         mass
     };
-    Ok(body.elements().zip(densities).map(of_element).collect())
+    Ok(body.elements().zip(body.densities()?).map(of_element).collect())
 }
 
 /// The lumped mass of an element, node by node.

@@ -1,7 +1,9 @@
 //! Integrals over boundaries: areas that belong to nodes, with their normals.
 
+use std::borrow::Cow;
+
 use crate::fem::body::ElasticBody;
-use crate::fem::element::{Cell, PerNode, Tabulated};
+use crate::fem::element::{Cell, PerNode, QuadraturePoint, Tabulated};
 use crate::fem::geometry::{length, unit};
 use crate::fem::mesh::{Boundary, FacetKind};
 
@@ -21,9 +23,19 @@ pub(super) struct FacetPoint<'a> {
 
 /// Hands every quadrature point of a boundary to `visit`, facet by facet.
 pub(super) fn for_each_point(body: &ElasticBody, boundary: &Boundary, visit: &mut dyn FnMut(&FacetPoint)) {
+    let table = Tabulated::new(boundary.kind.reference(), body.rule());
+    for_each_point_of(body, boundary, &|_| Cow::Borrowed(&table), visit);
+}
+
+/// The same with the points that `table_of` gives a facet, by its nodes.
+pub(super) fn for_each_point_of<'a>(
+    body: &ElasticBody,
+    boundary: &Boundary,
+    table_of: &dyn Fn(&[usize]) -> Cow<'a, Tabulated>,
+    visit: &mut dyn FnMut(&FacetPoint),
+) {
     let mesh = body.mesh();
     let reference = boundary.kind.reference();
-    let table = Tabulated::new(reference, body.rule());
     let owners = mesh.faces_of(boundary);
     let faces = mesh.kind().reference().faces;
     for (facet, owner) in boundary.facets().zip(owners) {
@@ -36,7 +48,7 @@ pub(super) fn for_each_point(body: &ElasticBody, boundary: &Boundary, visit: &mu
             let of_face: Vec<usize> = faces[face].iter().map(|&local| nodes[local]).collect();
             sense(boundary.kind, facet, &of_face, face)
         });
-        for at in &table.points {
+        for at in &table_of(facet).points {
             let vector = cell.area_vector(&at.derivative);
             let size = length(vector);
             let place = cell.place(&at.shape);
@@ -93,4 +105,13 @@ pub fn node_normals(body: &ElasticBody, boundary: &Boundary) -> Vec<(usize, [f64
         }
     });
     nodes.into_iter().map(|node| (node, unit(sums.get(node).copied().unwrap_or_default()))).collect()
+}
+
+/// The centre of each facet of a boundary, with the outward unit normal there.
+pub(crate) fn facet_centres(body: &ElasticBody, boundary: &Boundary) -> Vec<([f64; 3], [f64; 3])> {
+    let reference = boundary.kind.reference();
+    let table = Tabulated::with_rule(reference, vec![QuadraturePoint { at: reference.centroid, weight: 1.0 }]);
+    let mut centres = Vec::with_capacity(boundary.facet_count());
+    for_each_point_of(body, boundary, &|_| Cow::Borrowed(&table), &mut |point| centres.push((point.at, point.normal)));
+    centres
 }

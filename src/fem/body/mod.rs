@@ -13,7 +13,7 @@ use crate::error::Error;
 use crate::fem::element::{Cell, ElementKind, MAX_NODES, PerNode, Rule, Tabulated, TabulatedPoint};
 use crate::fem::formulation::Formulation;
 use crate::fem::material::{Lame, Material};
-use crate::fem::mesh::Mesh;
+use crate::fem::mesh::{Boundary, Mesh};
 
 /// Radii of a body of revolution above minus this times its size are rounding of zero.
 const ON_THE_AXIS: f64 = 1e-12;
@@ -143,6 +143,15 @@ impl ElasticBody {
         Self::new(mesh, material, self.formulation)?.with_integration(self.integration)
     }
 
+    /// The same body with another named boundary.
+    ///
+    /// # Errors
+    /// As [`Mesh::with_boundary`].
+    pub(crate) fn with_boundary(mut self, boundary: Boundary) -> Result<Self, Error> {
+        self.mesh = self.mesh.with_boundary(boundary)?;
+        Ok(self)
+    }
+
     /// The mesh.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
@@ -192,6 +201,19 @@ impl ElasticBody {
             let cell = Cell::new(reference, &self.coordinates(nodes));
             BodyElement { nodes, cell, lame }
         })
+    }
+
+    /// The density of the material of every element, in the order of [`elements`](Self::elements).
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for a material without density.
+    pub(crate) fn densities(&self) -> Result<Vec<f64>, Error> {
+        let mut densities = Vec::with_capacity(self.mesh.element_count());
+        for region in &self.regions {
+            let missing = Error::Setting { name: "density", value: f64::NAN, allowed: "positive and finite" };
+            densities.extend(std::iter::repeat_n(region.material().density().ok_or(missing)?, region.elements().len()));
+        }
+        Ok(densities)
     }
 
     /// The coordinates of up to [`MAX_NODES`] nodes.

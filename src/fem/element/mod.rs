@@ -6,6 +6,7 @@
 mod cell;
 mod hex20;
 mod hex8;
+mod levels;
 mod line2;
 mod line3;
 mod point1;
@@ -20,6 +21,7 @@ mod tet10;
 mod tet4;
 
 pub use cell::Cell;
+pub use levels::between_levels;
 pub use quadrature::Part;
 pub use reference::{FacetKind, LatticeCounts, MAX_NODES, PerNode, QuadraturePoint, ReferenceElement, Shape};
 pub use tabulated::{Rule, Tabulated, TabulatedPoint};

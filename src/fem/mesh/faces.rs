@@ -1,7 +1,9 @@
 //! Which element a facet belongs to.
 
 use std::collections::HashMap;
+use std::ops::Range;
 
+use super::outline::chained;
 use super::{Boundary, Mesh, fail};
 use crate::error::Error;
 
@@ -51,6 +53,22 @@ impl Mesh {
             }
         }
         found
+    }
+
+    /// All faces of these elements that no two of them share, seen from outside; edges in the order in which they follow each other.
+    pub(crate) fn surface(&self, elements: Range<usize>) -> Boundary {
+        let faces = self.kind().reference().faces;
+        let of_element = |element: usize| {
+            let nodes = self.element(element);
+            faces.iter().map(move |face| face.iter().map(move |&local| nodes[local]))
+        };
+        let mut count: HashMap<Key, usize> = HashMap::new();
+        for face in elements.clone().flat_map(of_element) {
+            *count.entry(key(face)).or_default() += 1;
+        }
+        let outer = elements.flat_map(of_element).filter(|face| count.get(&key(face.clone())) == Some(&1));
+        let kind = self.kind().facet();
+        Boundary::new("surface", kind, chained(kind, outer.flatten().collect()))
     }
 
     pub(super) fn check_facets(&self) -> Result<(), Error> {

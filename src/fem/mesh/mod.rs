@@ -187,6 +187,16 @@ impl Mesh {
         Self::new(self.nodes, self.kind, self.connectivity, self.boundaries)
     }
 
+    /// The same mesh with one boundary more, behind the others.
+    ///
+    /// # Errors
+    /// [`Error::Mesh`] for a name that exists, facets of the wrong kind, a facet that is no face of an element.
+    pub(crate) fn with_boundary(mut self, boundary: Boundary) -> Result<Self, Error> {
+        self.boundaries.push(boundary);
+        self.check_boundaries()?;
+        Ok(self)
+    }
+
     /// The smallest and the largest coordinates, `([x_min, y_min, z_min], [x_max, y_max, z_max])`.
     pub fn extent(&self) -> ([f64; 3], [f64; 3]) {
         extent(&self.nodes)

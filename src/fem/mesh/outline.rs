@@ -27,6 +27,15 @@ impl Mesh {
     }
 }
 
+impl Boundary {
+    /// The facets that are kept, by their numbers, under another name.
+    pub(crate) fn part(&self, name: &str, is_kept: impl Fn(usize) -> bool) -> Boundary {
+        let kept = self.facets().enumerate().filter(|&(index, _)| is_kept(index));
+        let connectivity = kept.flat_map(|(_, facet)| facet).copied().collect();
+        Boundary::new(name, self.kind, chained(self.kind, connectivity))
+    }
+}
+
 /// Edges in the order in which they follow each other; other facets as they are.
 pub(super) fn chained(kind: FacetKind, connectivity: Vec<usize>) -> Vec<usize> {
     if kind.reference().dimension != 1 {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::json::{choice, choices, given, object, objects, word};
+use super::json::{choice, choices, given, given_object, object, objects, word};
 use crate::motion::SchemeSpec;
 
 /// The analysis; a scene without one is static.
@@ -210,10 +210,6 @@ pub struct IntervalSpec {
     pub start: f64,
     /// Its end, later.
     pub end: f64,
-}
-
-fn given_object<'de, D: serde::Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {
-    object(deserializer).map(Some)
 }
 
 fn given_word<'de, D: serde::Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {

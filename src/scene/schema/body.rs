@@ -14,7 +14,7 @@ pub struct MaterialSpec {
     pub young: f64,
     /// Poisson's ratio: above -1, at most 0.5 in a bar and in plane stress, below 0.5 elsewhere.
     pub poisson: f64,
-    /// Density, positive, in mass per volume; only a dynamic analysis asks for it.
+    /// Density, positive, in mass per volume; a dynamic analysis, gravity and centrifugal forces ask for it.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     pub density: Option<f64>,
 }

@@ -1,8 +1,9 @@
-//! Supports and loads as they are written in a scene.
+//! Supports as they are written in a scene.
 
 use serde::{Deserialize, Serialize};
 
-use super::json::{choice, given, number, object};
+use super::json::{choice, given, given_object, number};
+use super::profile::ProfileSpec;
 
 /// Where on the body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -41,52 +42,7 @@ pub struct SupportSpec {
     /// Prescribed displacement along the normal, in length; 0 where it is left out.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub value: Option<f64>,
-}
-
-/// An external load.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case")]
-pub enum LoadSpec {
-    /// A constant traction on a boundary.
-    Traction(#[serde(deserialize_with = "object")] TractionSpec),
-    /// A constant pressure on a boundary, against its outward normal.
-    Pressure(#[serde(deserialize_with = "object")] PressureSpec),
-    /// A force at a node.
-    Force(#[serde(deserialize_with = "object")] ForceSpec),
-    /// A constant body force, in force per volume.
-    BodyForce(Vec<f64>),
-}
-
-/// A constant traction on a boundary.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields)]
-pub struct TractionSpec {
-    /// The boundary.
-    pub boundary: String,
-    /// The traction, in force per area.
-    pub value: Vec<f64>,
-}
-
-/// A constant pressure on a boundary.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields)]
-pub struct PressureSpec {
-    /// The boundary.
-    pub boundary: String,
-    /// The pressure, in force per area; positive pushes on the body.
-    pub value: f64,
-}
-
-/// A force at a node.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields)]
-pub struct ForceSpec {
-    /// The point; there must be a node.
-    pub at: Vec<f64>,
-    /// The force; on a body of revolution that of the full circle.
-    pub value: Vec<f64>,
+    /// A factor of all these displacements that changes along a direction.
+    #[serde(default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
+    pub profile: Option<ProfileSpec>,
 }

@@ -8,17 +8,22 @@ mod body;
 pub(super) mod cells;
 mod condition;
 pub(super) mod json;
+pub(super) mod load;
 pub(super) mod model;
 pub(super) mod obstacle;
+mod part;
+pub(super) mod profile;
 
 pub use analysis::{
     AnalysisSpec, DynamicSpec, FactorSpec, FieldSpec, LoadInTimeSpec, MassSpec, PenetrationSpec, WatchSpec,
 };
 pub use approach::Rule;
 pub use body::{FurtherBodySpec, MaterialSpec};
-pub use condition::{LoadSpec, Place, SupportSpec};
+pub use condition::{Place, SupportSpec};
+pub use load::LoadSpec;
 pub use model::ModelSpec;
 pub use obstacle::ObstacleSpec;
+pub use part::PartSpec;
 
 use std::path::PathBuf;
 
@@ -57,6 +62,9 @@ pub struct Scene {
     /// Further elastic bodies, that only contact joins to the first and to each other.
     #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
     pub further_bodies: Vec<FurtherBodySpec>,
+    /// Parts of boundaries, each with a name that is a boundary like any other.
+    #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
+    pub parts: Vec<PartSpec>,
     /// Prescribed displacements.
     #[serde(default, deserialize_with = "objects")]
     pub supports: Vec<SupportSpec>,

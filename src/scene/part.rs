@@ -1,0 +1,145 @@
+//! Parts of boundaries: facets chosen by where they lie and where they look.
+
+use super::entry::{PLACE_TOLERANCE, boundary, finite, number, point, vector, wrong};
+use super::schema::{PartSpec, Scene};
+use crate::error::Error;
+use crate::fem::assembly::facet_centres;
+use crate::fem::body::ElasticBody;
+use crate::fem::geometry::{cross, distance, dot, length, unit};
+use crate::fem::mesh::Boundary;
+
+/// Normals farther out than the given angle by less than this, in degrees, are rounding of coordinates.
+const SAME_ANGLE: f64 = 1e-6;
+
+impl Scene {
+    /// The body with the parts of its boundaries that the scene names, behind the others.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for a name that is taken, a boundary that does not exist, a region that is none, a part without a facet.
+    pub(super) fn with_parts(&self, mut body: ElasticBody) -> Result<ElasticBody, Error> {
+        for (index, spec) in self.parts.iter().enumerate() {
+            let path = format!("parts[{index}]");
+            let mesh = body.mesh();
+            if spec.name.is_empty() || mesh.boundary(&spec.name).is_some() {
+                let message = format!("`{}` is not allowed: every part needs a name of its own", spec.name);
+                return Err(wrong(format!("{path}.name"), message));
+            }
+            let region = Region::of(spec, &path, body.dimension())?;
+            let whole = spec.whole(&body, &path)?;
+            let tolerance = PLACE_TOLERANCE * mesh.size();
+            let outside: Vec<Outside> =
+                facet_centres(&body, &whole).into_iter().map(|(at, normal)| region.outside(at, normal)).collect();
+            let part = whole.part(&spec.name, |facet| outside.get(facet).is_some_and(|one| one.is_in(tolerance)));
+            if part.connectivity.is_empty() {
+                return Err(wrong(path, nearest(&whole.name, &outside, mesh.size(), body.dimension())));
+            }
+            body = body.with_boundary(part)?;
+        }
+        Ok(body)
+    }
+}
+
+impl PartSpec {
+    /// The boundary, or the whole surface, that it is a part of.
+    fn whole(&self, body: &ElasticBody, path: &str) -> Result<Boundary, Error> {
+        let mesh = body.mesh();
+        let Some(name) = &self.of else {
+            return Ok(mesh.surface(body.regions().first().map_or(0..0, |region| region.elements())));
+        };
+        match body.regions().iter().skip(1).find(|region| region.name() == name) {
+            Some(region) if mesh.boundary(name).is_none() => Ok(mesh.surface(region.elements())),
+            _ => Ok(boundary(mesh, name, &format!("{path}.of"))?.clone()),
+        }
+    }
+}
+
+/// Where the facets of a part lie, and where they look.
+struct Region {
+    /// The smallest and the largest coordinates.
+    cuboid: Option<[[f64; 3]; 2]>,
+    /// Centre and radius.
+    sphere: Option<([f64; 3], f64)>,
+    /// A unit vector, and degrees around it.
+    normal: Option<([f64; 3], f64)>,
+}
+
+/// How far out of a region a facet is.
+struct Outside {
+    /// The centre of the facet.
+    at: [f64; 3],
+    /// In length; 0 in the region.
+    away: f64,
+    /// In degrees; 0 within the angle.
+    aside: f64,
+}
+
+impl Outside {
+    fn is_in(&self, tolerance: f64) -> bool {
+        self.away <= tolerance && self.aside <= SAME_ANGLE
+    }
+}
+
+impl Region {
+    fn of(spec: &PartSpec, path: &str, dimension: usize) -> Result<Self, Error> {
+        let mut region = Region { cuboid: None, sphere: None, normal: None };
+        if let Some(cuboid) = &spec.cuboid {
+            let low = vector(&format!("{path}.box.min"), &cuboid.min, dimension)?;
+            let high = vector(&format!("{path}.box.max"), &cuboid.max, dimension)?;
+            if let Some(axis) = (0..dimension).find(|&axis| high[axis] < low[axis]) {
+                let message = format!("{} lies below {}; no max may lie below its min", high[axis], low[axis]);
+                return Err(wrong(format!("{path}.box.max[{axis}]"), message));
+            }
+            region.cuboid = Some([low, high]);
+        }
+        if let Some(sphere) = &spec.sphere {
+            let centre = vector(&format!("{path}.sphere.centre"), &sphere.centre, dimension)?;
+            finite(format!("{path}.sphere.radius"), sphere.radius)?;
+            if sphere.radius <= 0.0 {
+                let message = format!("{} is not allowed: it must be positive", number(sphere.radius));
+                return Err(wrong(format!("{path}.sphere.radius"), message));
+            }
+            region.sphere = Some((centre, sphere.radius));
+        }
+        if let Some(normal) = &spec.normal {
+            let field = format!("{path}.normal.direction");
+            let direction = unit(vector(&field, &normal.direction, dimension)?);
+            if direction == [0.0; 3] {
+                return Err(wrong(field, "the vector is zero and has no direction; it needs a length"));
+            }
+            if !(0.0..=180.0).contains(&normal.within) {
+                let message = format!("{} is not allowed: it must be from 0 to 180 degrees", number(normal.within));
+                return Err(wrong(format!("{path}.normal.within"), message));
+            }
+            region.normal = Some((direction, normal.within));
+        }
+        Ok(region)
+    }
+
+    fn outside(&self, at: [f64; 3], normal: [f64; 3]) -> Outside {
+        let of_box = self.cuboid.map_or(0.0, |[low, high]| {
+            length([0, 1, 2].map(|axis| (low[axis] - at[axis]).max(at[axis] - high[axis]).max(0.0)))
+        });
+        let of_sphere = self.sphere.map_or(0.0, |(centre, radius)| (distance(at, centre) - radius).max(0.0));
+        let aside = self.normal.map_or(0.0, |(direction, within)| {
+            let angle = length(cross(direction, normal)).atan2(dot(direction, normal)).to_degrees();
+            (angle - within).max(0.0)
+        });
+        Outside { at, away: of_box.max(of_sphere), aside }
+    }
+}
+
+/// That no facet lies in a part, and which one is nearest, in a body of this size.
+fn nearest(whole: &str, outside: &[Outside], size: f64, dimension: usize) -> String {
+    let far = |one: &&Outside| one.away / size + one.aside / 180.0;
+    let Some(nearest) = outside.iter().min_by(|a, b| far(a).total_cmp(&far(b))) else {
+        return format!("`{whole}` has no facets");
+    };
+    let away = (nearest.away > 0.0).then(|| format!("{:.3e} outside", nearest.away));
+    let aside = (nearest.aside > 0.0).then(|| format!("{:.1} degrees beyond the angle", nearest.aside));
+    let out: Vec<String> = away.into_iter().chain(aside).collect();
+    let centre = point(&nearest.at[..dimension]);
+    format!(
+        "no facet of `{whole}` lies in it; the nearest has its centroid at {centre}, {}; change the region, or refine the mesh",
+        out.join(" and ")
+    )
+}

@@ -1,0 +1,107 @@
+//! Loads as they are written in a scene.
+
+use serde::{Deserialize, Serialize};
+
+use super::json::{given, given_object, object};
+use super::profile::ProfileSpec;
+
+/// An external load. Body forces, gravity and centrifugal forces act on all bodies.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum LoadSpec {
+    /// A traction on a boundary.
+    Traction(#[serde(deserialize_with = "object")] TractionSpec),
+    /// A pressure on a boundary, against its outward normal.
+    Pressure(#[serde(deserialize_with = "object")] PressureSpec),
+    /// A force at a node, or on a boundary.
+    Force(#[serde(deserialize_with = "object")] ForceSpec),
+    /// A moment on a boundary.
+    Moment(#[serde(deserialize_with = "object")] MomentSpec),
+    /// A constant body force, in force per volume.
+    BodyForce(Vec<f64>),
+    /// The acceleration of gravity, in length per time squared: a body force of density times it. Needs a density.
+    Gravity(Vec<f64>),
+    /// The centrifugal force of a rotation. Needs a density.
+    Centrifugal(#[serde(deserialize_with = "object")] CentrifugalSpec),
+}
+
+impl LoadSpec {
+    /// Returns `true` for a force at a single point.
+    pub fn is_at_point(&self) -> bool {
+        matches!(self, LoadSpec::Force(ForceSpec { at: Some(_), .. }))
+    }
+}
+
+/// A traction on a boundary.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct TractionSpec {
+    /// The boundary.
+    pub boundary: String,
+    /// The traction, in force per area.
+    pub value: Vec<f64>,
+    /// A factor of it that changes along a direction.
+    #[serde(default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
+    pub profile: Option<ProfileSpec>,
+}
+
+/// A pressure on a boundary.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct PressureSpec {
+    /// The boundary.
+    pub boundary: String,
+    /// The pressure, in force per area; positive pushes on the body.
+    pub value: f64,
+    /// A factor of it that changes along a direction.
+    #[serde(default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
+    pub profile: Option<ProfileSpec>,
+}
+
+/// A force at a node, or spread over a boundary as a constant traction.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct ForceSpec {
+    /// The point; there must be a node.
+    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    pub at: Option<Vec<f64>>,
+    /// The boundary, instead of a point.
+    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    pub boundary: Option<String>,
+    /// The force on the whole thickness, or on the full circle of a body of revolution, where its radial component is summed up.
+    pub value: Vec<f64>,
+}
+
+/// A moment on a boundary: a traction that grows with the distance from the centre of the boundary, at right angles to the way from
+/// there and to an axis; across a flat end that of pure bending. Its force is zero, so that its moment is the same about every point.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct MomentSpec {
+    /// The boundary.
+    pub boundary: String,
+    /// The moment, in force times length: `[m]` about z in the plane, on the whole thickness, counterclockwise; three components in
+    /// space.
+    pub value: Vec<f64>,
+}
+
+/// The centrifugal force of a rotation: density times the square of omega times the way from the axis.
+///
+/// In the plane the axis is at right angles to it, about an axis it is that one.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct CentrifugalSpec {
+    /// The angular velocity, in radians per time.
+    pub omega: f64,
+    /// The direction of the axis, of any length but zero; in space alone, and needed there.
+    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    pub axis: Option<Vec<f64>>,
+    /// A point on the axis, the origin where it is left out; not in an axisymmetric model.
+    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    pub point: Option<Vec<f64>>,
+}

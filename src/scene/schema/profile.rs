@@ -1,0 +1,16 @@
+//! Factors over space as they are written in a scene.
+
+use serde::{Deserialize, Serialize};
+
+/// A factor that changes along a direction: straight lines between places, constant beyond the first and the last.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct ProfileSpec {
+    /// The direction, of any length but zero.
+    pub along: Vec<f64>,
+    /// Places along it, at least one, increasing: lengths from the plane through the origin at right angles to it.
+    pub places: Vec<f64>,
+    /// The factor at each.
+    pub factors: Vec<f64>,
+}

@@ -1,0 +1,90 @@
+//! The total error with parts of boundaries and spread loads: what stays guaranteed, what is estimated.
+
+use crate::total_error::{block, classical, column, solved};
+use serde_json::{Value, json};
+
+#[test]
+fn gravity_is_a_constant_body_force() {
+    let mut scene = column("plane-strain");
+    let (_, expected, _) = solved(&scene, &["--total-error", "1e-6"]);
+    scene["material"]["density"] = json!(2);
+    scene["loads"] = json!([{"gravity": [0, 1.5]}]);
+    let (code, report, _) = solved(&scene, &["--total-error", "1e-6"]);
+    assert_eq!((code, &report["total_error"]["guaranteed"]), (0, &json!(true)));
+    assert_eq!(report["contact_force"], expected["contact_force"]);
+}
+
+/// A force of 600 on a side of 0.5 with a thickness of 2 is a traction of 600.
+#[test]
+fn a_force_on_a_boundary_is_a_constant_traction() {
+    let found = [
+        json!({"force": {"boundary": "right", "value": [600, -300]}}),
+        json!({"traction": {"boundary": "right", "value": [600, -300]}}),
+    ]
+    .map(|load| {
+        let mut scene = classical(0.3);
+        scene["thickness"] = json!(2);
+        scene["loads"] = json!([load]);
+        let (code, report, message) = solved(&scene, &["--total-error", "0.05"]);
+        assert!(code == 0 && report["total_error"]["guaranteed"] == true, "{message}");
+        report["contact_force"].as_f64().unwrap()
+    });
+    assert!((found[0] / found[1] - 1.0).abs() < 1e-12, "{found:?}");
+}
+
+/// Half a layer that a strip of 0.5 presses onto a plane: the plane carries the strip, and the bound says so.
+#[test]
+fn a_load_on_a_part_has_a_guaranteed_bound() {
+    let scene = json!({
+        "body": {"rectangle": {"x": {"points": [0, 4], "divisions": [16]}, "y": {"points": [0, 1], "divisions": [4]}}},
+        "material": {"young": 1000, "poisson": 0.3},
+        "parts": [{"name": "strip", "of": "top", "box": {"min": [0, 1], "max": [0.5, 1]}}],
+        "supports": [{"on": {"boundary": "left"}, "x": 0}],
+        "loads": [{"pressure": {"boundary": "strip", "value": 8}}],
+        "obstacles": [{"boundary": "bottom", "approach": "-y", "shape": {"plane": {"point": [0, 0], "normal": [0, -1]}}}]
+    });
+    let (code, report, message) = solved(&scene, &["--total-error", "0.03"]);
+    assert!(code == 0 && report["total_error"]["guaranteed"] == true, "{code} {message}");
+    assert!(report["levels"].as_array().unwrap().len() > 1);
+    assert!((report["contact_force"].as_f64().unwrap() / 4.0 - 1.0).abs() < 1e-6, "{report}");
+}
+
+#[test]
+fn what_changes_along_a_boundary_is_estimated_with_the_reason() {
+    let profile = json!({"along": [0, 1], "places": [0, 0.5], "factors": [1, 0]});
+    let cases = [
+        (json!({"pressure": {"boundary": "left", "value": 1e4, "profile": profile}}), "loads[0].pressure.profile"),
+        (json!({"traction": {"boundary": "left", "value": [1e4, 0], "profile": profile}}), "loads[0].traction.profile"),
+        (json!({"moment": {"boundary": "left", "value": [1e3]}}), "loads[0].moment"),
+        (json!({"centrifugal": {"omega": 10}}), "loads[0].centrifugal"),
+    ];
+    let estimated = |scene: &Value, path: &str| {
+        let (code, report, message) = solved(scene, &["--total-error", "0.3"]);
+        assert!(code == 0 && report["total_error"]["guaranteed"] == false, "{path}: {message}");
+        let reason = report["reason"].as_str().unwrap();
+        assert!(reason.starts_with(path) && reason.contains("no guaranteed bound"), "{reason}");
+    };
+    for (load, path) in cases {
+        let mut scene = classical(0.3);
+        scene["material"]["density"] = json!(1);
+        scene["loads"] = json!([load]);
+        estimated(&scene, path);
+    }
+    let mut scene = classical(0.3);
+    scene["supports"][0]["profile"] = json!({"along": [1, 0], "places": [0, 1], "factors": [0, 1]});
+    estimated(&scene, "supports[0].profile");
+}
+
+/// The edge of the part is one of cells: halves of its facets stay within, and the load is the same on every mesh.
+#[test]
+fn a_part_is_found_again_on_bisected_tetrahedra() {
+    let mut scene = block(2);
+    scene["parts"] = json!([{"name": "half", "of": "top", "box": {"min": [0, 0, 0.5], "max": [0.5, 1, 0.5]}}]);
+    scene["loads"] = json!([{"pressure": {"boundary": "half", "value": 3000}}]);
+    let (code, report, message) = solved(&scene, &["--total-error", "0.25"]);
+    assert!(code == 0 && report["levels"].as_array().unwrap().len() > 1, "{message}");
+    let resultants = report["answer"]["resultants"].as_array().unwrap();
+    let loads = resultants.iter().find(|one| one["of"] == "loads").unwrap();
+    let force = loads["force"][2].as_f64().unwrap();
+    assert!((force / -1500.0 - 1.0).abs() < 1e-12, "{loads}");
+}
