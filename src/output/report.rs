@@ -147,6 +147,12 @@ fn resultants_text(summary: &Summary, units: &Units) -> String {
         if let Some(centre) = &resultant.centre {
             text += &format!(", centre {} {}", place(centre), units.length);
         }
+        if let Some(motion) = &resultant.motion {
+            text += &format!(", moved {} {}", rounded(&motion.displacement, 0.0), units.length);
+            if !motion.rotation.is_empty() {
+                text += &format!(", turned {}", rounded(&motion.rotation, 0.0));
+            }
+        }
         if let Some(travel) = resultant.travel {
             text += &format!(", travel {travel:.6e} {}", units.length);
         }

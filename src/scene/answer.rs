@@ -18,6 +18,8 @@ use crate::solution::{ContactSet, Solution};
 pub struct Answer {
     model: Arc<Model>,
     displacement: Vec<f64>,
+    /// The values of all unknowns.
+    unknowns: Vec<f64>,
     /// That of each obstacle that a force presses, in length.
     travel: Vec<Option<f64>>,
     multiplier: Vec<f64>,
@@ -35,7 +37,11 @@ pub struct Forces {
     pub contact: Vec<f64>,
     /// Support reactions, as [`Model::reactions`].
     pub reactions: Vec<f64>,
-    /// The imbalance of loads, reactions and contact forces, as [`Model::force_balance`].
+    /// The forces of springs.
+    pub springs: Vec<f64>,
+    /// The forces of rigid faces.
+    pub rigid_faces: Vec<f64>,
+    /// The imbalance of loads, reactions, springs, rigid faces and contact forces, as [`Model::force_balance`].
     pub balance: f64,
 }
 
@@ -65,6 +71,7 @@ impl Answer {
         }
         Ok(Answer {
             displacement: model.nodal_displacement(displacement)?,
+            unknowns: displacement.to_vec(),
             travel: (0..model.obstacles().len())
                 .map(|index| model.travel(displacement, index))
                 .collect::<Result<_, _>>()?,
@@ -139,6 +146,8 @@ impl Answer {
             all.iter_mut().zip(&self.travel).for_each(|(resultant, travel)| resultant.travel = *travel);
             let reactions = &self.forces()?.reactions;
             all.extend(self.model.support_resultants(|node| self.model.force_at(reactions, node)));
+            all.extend(self.model.spring_resultants(&self.displacement));
+            all.extend(self.model.face_resultants(&self.forces()?.rigid_faces, &self.unknowns)?);
             all.extend(self.model.load_resultant());
             without_rounding(&mut all);
             Ok(all)
@@ -215,9 +224,13 @@ impl Model {
         let mut forces = internal_force(self.body(), displacement)?;
         let acting = self.nodal_load().iter().zip(&contact);
         forces.iter_mut().zip(acting).for_each(|(force, (load, contact))| *force = *force - load - contact);
+        let springs = self.parts().spring_forces(displacement);
+        forces.iter_mut().zip(&springs).for_each(|(force, spring)| *force -= spring);
         let reactions = self.dofs().supported_part(&forces)?;
+        let rigid_faces = self.force_of_faces(&forces, |_| true)?;
         let motions = RigidBodyModes::of(self.body());
-        let balance = motions.imbalance(self.mesh().nodes(), &[self.nodal_load(), &reactions, &contact]);
-        Ok(Forces { contact, reactions, balance })
+        let acting = [self.nodal_load(), &reactions, &contact, &springs, &rigid_faces];
+        let balance = motions.imbalance(self.mesh().nodes(), &acting);
+        Ok(Forces { contact, reactions, springs, rigid_faces, balance })
     }
 }

@@ -40,7 +40,10 @@ impl Scene {
         further: &[(&str, Arc<dyn Obstacle>)],
     ) -> Result<Model, Error> {
         let body = self.with_parts(self.joined(bodies)?)?;
-        let held = self.held(&body)?;
+        let (symmetry, springs) = (self.planes_of_symmetry(&body)?, self.springs(&body)?);
+        let mut held = self.held(&body)?;
+        symmetry.hold(&body, &mut held);
+        let rigid_faces = self.rigid_faces(&body, &mut held)?;
         let dofs = self.with_contact_faces(held.dofs(body.mesh())?, &body, further);
         let (supports, is_part) = (self.supports.len(), self.may_be_part(&body)?);
         let load = self.load(&body)?;
@@ -57,13 +60,30 @@ impl Scene {
         warnings.extend(self.suspect(&body, &dofs)?);
         let (title, units) = (self.title.clone(), self.units.clone());
         let moves = self.analysis.is_some();
-        let unknowns = Unknowns::of(dofs.free().len(), &obstacles);
+        let nodes = body.mesh().nodes();
+        let unknowns = Unknowns::of(nodes, &dofs, body.dimension(), &rigid_faces, &obstacles)?;
         if let Some(index) = unknowns.pressed().first().filter(|_| moves) {
             let message = "an obstacle without mass has no motion of its own; let it stand still, or load the body";
             return Err(wrong(format!("{}.force", path(*index)), message));
         }
         Model::new(
-            Parts { title, units, body, dofs, held, supports, is_part, load, obstacles, unknowns, warnings, moves },
+            Parts {
+                title,
+                units,
+                body,
+                dofs,
+                held,
+                supports,
+                is_part,
+                load,
+                springs,
+                symmetry,
+                rigid_faces,
+                obstacles,
+                unknowns,
+                warnings,
+                moves,
+            },
             self.gap,
         )
     }

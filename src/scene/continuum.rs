@@ -45,6 +45,15 @@ impl Scene {
                 format!("{} has no guaranteed bound: only plane strain and plane stress have one", formulation.name());
             return Err(wrong("model", message));
         };
+        for (field, is_there) in [
+            ("springs", !self.springs.is_empty()),
+            ("symmetry", !self.symmetry.is_empty()),
+            ("rigid-faces", !self.rigid_faces.is_empty()),
+        ] {
+            if is_there {
+                return Err(wrong(field, "they have no guaranteed bound: supports alone have one"));
+            }
+        }
         let [region] = body.regions() else {
             return Err(wrong(
                 "further-bodies",

@@ -36,7 +36,7 @@ impl Model {
 
     fn name_of(&self, direction: &[f64]) -> Option<String> {
         let parts = self.parts();
-        let mode = parts.dofs.expand_motion(parts.unknowns.of_free(direction).ok()?).ok()?;
+        let mode = parts.dofs.expand_motion(&parts.unknowns.motion(direction).ok()?).ok()?;
         RigidBodyModes::of(&parts.body).name_of(parts.body.mesh().nodes(), &mode)
     }
 

@@ -24,8 +24,21 @@ pub(super) const COORDINATES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0],
 pub(super) enum Holder {
     /// On the axis of revolution nothing moves radially.
     Axis,
+    /// A plane of symmetry.
+    Symmetry,
     /// A field of a support.
     Support { index: usize, field: &'static str },
+}
+
+impl Holder {
+    /// Its name in messages.
+    pub fn name(self) -> String {
+        match self {
+            Holder::Axis => "the axis of revolution".into(),
+            Holder::Symmetry => "a plane of symmetry".into(),
+            Holder::Support { index, .. } => format!("supports[{index}]"),
+        }
+    }
 }
 
 /// A prescribed component of a displacement: `direction . u = value`.
@@ -58,6 +71,11 @@ impl Held {
         self.nodes.entry(node).or_default().push(component);
     }
 
+    /// Takes what is prescribed at a node away, and returns it.
+    pub fn release(&mut self, node: usize) -> Vec<Component> {
+        self.nodes.remove(&node).unwrap_or_default()
+    }
+
     /// The dofs of `mesh`: a node that is held along coordinate axes alone, or fully, needs no frame.
     ///
     /// # Errors
@@ -70,6 +88,7 @@ impl Held {
             let span = Span::of(components.clone()).map_err(|(by, message)| {
                 let path = match by {
                     Holder::Axis => "supports".into(),
+                    Holder::Symmetry => "symmetry".into(),
                     Holder::Support { index, field } => format!("supports[{index}].{field}"),
                 };
                 wrong(path, format!("{message} node {node} at {}", point(&mesh.nodes()[node][..dimension])))
@@ -190,7 +209,7 @@ fn contradiction(component: &Component, implied: f64, before: &[Component]) -> S
     let mut names: Vec<String> = Vec::new();
     for other in prescribing {
         match other.by {
-            Holder::Axis => names.push("the axis of revolution".into()),
+            Holder::Axis | Holder::Symmetry => names.push(other.by.name()),
             Holder::Support { index, .. } => supports.push(index),
         }
     }

@@ -57,19 +57,20 @@ impl Model {
         if !parts.moves {
             RigidBodyModes::of_parts(&parts).check_held(&parts, &built.rows)?;
         }
-        let stiffness = stiffness(&parts.body, &parts.dofs)
-            .and_then(|of_free| parts.unknowns.stiffness(of_free))
-            .map_err(|error| match error {
-                Error::NotFinite { .. } => {
-                    let message = "the stiffness that it makes with body and thickness overflows; choose other units";
-                    wrong("material", message)
-                }
-                other => other,
-            })?;
-        let force = |obstacle: usize| parts.obstacles[obstacle].force().unwrap_or(0.0);
-        let load = parts.unknowns.with_travels(free_load(&parts.body, &parts.dofs, &parts.load)?, force);
+        let stiffness = stiffness(&parts.body, &parts.dofs).and_then(|of_body| parts.on_springs(of_body));
+        let of_free = stiffness.map_err(|error| match error {
+            Error::NotFinite { .. } => {
+                let message = "the stiffness that it makes with body and thickness overflows; choose other units";
+                wrong("material", message)
+            }
+            other => other,
+        })?;
+        let force = |obstacle: usize| parts.share_of(obstacle, parts.obstacles[obstacle].force().unwrap_or(0.0));
+        let load = free_load(&parts.body, &parts.dofs, &parts.load_on_springs()?)?;
+        let load = parts.unknowns.load(load, &of_free, force);
+        let stiffness = parts.unknowns.stiffness(of_free)?;
         let modes = rigid_body_modes(&parts.body, &parts.dofs).into_iter();
-        let modes = modes.map(|mode| parts.unknowns.with_travels(mode, |_| 0.0)).collect();
+        let modes = modes.map(|mode| parts.unknowns.of_motion(mode, |_| 0.0)).collect();
         let near_null = NearNullSpace::of_modes(modes).map(Arc::new);
         Self::with_rows(Arc::new(parts), gap, built, (stiffness, load, near_null))
     }
@@ -107,7 +108,8 @@ impl Model {
     /// The force on the one obstacle that a force presses; `None` where there is no such obstacle, or several.
     pub(crate) fn pressing_force(&self) -> Option<f64> {
         let &[obstacle] = self.parts.unknowns.pressed() else { return None };
-        self.parts.unknowns.travel(obstacle).map(|unknown| self.problem.load()[unknown])
+        let parts = self.parts.symmetry.parts_of_obstacle(self.parts.obstacles[obstacle].approach());
+        self.parts.unknowns.travel(obstacle).map(|unknown| parts * self.problem.load()[unknown])
     }
 
     /// The same scene with another force on the one obstacle that a force presses.
@@ -122,8 +124,9 @@ impl Model {
             return Err(wrong("obstacles", message));
         };
         finite(format!("obstacles[{obstacle}].force"), force)?;
-        let of_free = parts.unknowns.of_free(self.problem.load())?.to_vec();
-        let problem = self.problem.with_load(parts.unknowns.with_travels(of_free, |_| force))?;
+        let load = self.problem.load().to_vec();
+        let load = parts.unknowns.pressed_by(load, |obstacle| parts.share_of(obstacle, force));
+        let problem = self.problem.with_load(load)?;
         Ok(Model { problem, ..self.clone() })
     }
 
@@ -138,7 +141,7 @@ impl Model {
         // Out of reach, on a spring that nothing stretches.
         let away = |(row, &gap): (usize, &f64)| if is_pressed(row) { f64::INFINITY } else { gap };
         let gap = problem.gap().iter().enumerate().map(away).collect();
-        let load = parts.unknowns.with_travels(parts.unknowns.of_free(problem.load())?.to_vec(), |_| 0.0);
+        let load = parts.unknowns.pressed_by(problem.load().to_vec(), |_| 0.0);
         let stiffness = parts.unknowns.on_springs(problem.stiffness())?;
         let mut solution = solve(&ContactProblem::new(stiffness, load, problem.contact().clone(), gap)?, settings)?;
         let left = problem.violation(&solution.displacement);
@@ -148,6 +151,11 @@ impl Model {
             solution.displacement[travel] = rows.map(|(row, lean)| -left[row] / lean).fold(f64::INFINITY, f64::min);
         }
         Ok(solution)
+    }
+
+    /// How many times the modelled part makes the whole, by planes of symmetry.
+    pub(crate) fn parts_of_whole(&self) -> f64 {
+        self.parts.symmetry.parts()
     }
 
     pub(super) fn parts(&self) -> &Parts {
@@ -224,7 +232,7 @@ impl Model {
     /// # Errors
     /// [`Error::Length`] where `displacement` does not have one entry per free dof.
     pub fn nodal_displacement(&self, displacement: &[f64]) -> Result<Vec<f64>, Error> {
-        self.parts.dofs.expand(self.parts.unknowns.of_free(displacement)?)
+        self.parts.dofs.expand(&self.parts.unknowns.displacement(displacement)?)
     }
 
     /// How far an obstacle that a force presses has moved against its approach direction, in length, in a solution with these
@@ -233,7 +241,7 @@ impl Model {
     /// # Errors
     /// As [`Model::nodal_displacement`].
     pub fn travel(&self, displacement: &[f64], obstacle: usize) -> Result<Option<f64>, Error> {
-        self.parts.unknowns.of_free(displacement)?;
+        self.parts.unknowns.motion(displacement)?;
         Ok(self.parts.unknowns.travel(obstacle).map(|unknown| displacement[unknown]))
     }
 

@@ -1,12 +1,16 @@
 //! Resultants: the force, moment and centre of each obstacle, pair of bodies, support, and of the loads.
 
+use std::ops::Range;
+
 use serde::Serialize;
 
 use super::Model;
 use super::held::Holder;
 use super::obstacle::PlacedObstacle;
+use super::rigid_face::Motion;
 use super::schema::approach::Rule;
 use crate::error::Error;
+use crate::fem::assembly::Springs;
 use crate::fem::formulation::Formulation;
 use crate::fem::geometry::{cross, dot, length, minus};
 
@@ -38,6 +42,18 @@ pub struct Resultant {
     /// How far an obstacle that a force presses has moved against its approach direction, in length.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub travel: Option<f64>,
+    /// How a rigid face has moved.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub motion: Option<FaceMotion>,
+}
+
+/// How a rigid face has moved.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FaceMotion {
+    /// Its centre, in length, a component for each coordinate.
+    pub displacement: Vec<f64>,
+    /// Its rotation, in radians: about z in the plane, three components in space, none elsewhere.
+    pub rotation: Vec<f64>,
 }
 
 /// Forces at points, added up.
@@ -105,6 +121,7 @@ impl Sum {
             },
             centre: self.centre(formulation).map(|centre| centre[..dimension].to_vec()),
             travel: None,
+            motion: None,
         }
     }
 }
@@ -127,7 +144,10 @@ impl Model {
         self.check_multiplier(multiplier)?;
         let mut sums = vec![Sum::default(); self.obstacles().len()];
         for (row, &lambda) in self.rows().iter().zip(multiplier) {
-            sums[row.obstacle].add(self.place(row.node), row.normal.map(|component| 0.0 + lambda * component));
+            let force = row.normal.map(|component| 0.0 + lambda * component);
+            // A plane across its way gives an obstacle a twin, whose force is not its own.
+            let approach = self.obstacles()[row.obstacle].approach();
+            self.add_images(&mut sums[row.obstacle], self.place(row.node), force, |axis| approach[axis] == 0.0);
         }
         let names = self.obstacle_names();
         let resultant = |(index, sum): (usize, &Sum)| {
@@ -162,7 +182,7 @@ impl Model {
             for (by, force) in shares {
                 if let Holder::Support { index, .. } = by {
                     held[index] = held[index].or(Some(node));
-                    supports[index].add(nodes[node], force);
+                    self.add_images(&mut supports[index], nodes[node], force, |_| true);
                 }
             }
         }
@@ -173,11 +193,70 @@ impl Model {
         supports.iter().zip(held).zip(self.support_names()).map(of_support).collect()
     }
 
+    /// Adds a force on the modelled part with its mirror images across those planes of symmetry whose axis `across` keeps.
+    fn add_images(&self, sum: &mut Sum, at: [f64; 3], force: [f64; 3], across: impl Fn(usize) -> bool) {
+        self.parts().symmetry.images(at, force, across).into_iter().for_each(|(at, force)| sum.add(at, force));
+    }
+
+    /// Those of the springs on the body, in the order of the scene, in a nodal displacement.
+    pub(super) fn spring_resultants(&self, displacement: &[f64]) -> Vec<Resultant> {
+        let nodes = self.mesh().nodes();
+        let of_springs = |(index, springs): (usize, &Springs)| {
+            let forces = springs.forces(displacement, self.body().dimension());
+            let mut sum = Sum::default();
+            (0..nodes.len())
+                .for_each(|node| self.add_images(&mut sum, nodes[node], self.force_at(&forces, node), |_| true));
+            sum.resultant(self, format!("springs[{index}]"))
+        };
+        self.parts().springs.iter().enumerate().map(of_springs).collect()
+    }
+
+    /// The forces on the nodes of those rigid faces that `keeps` says, among all forces that hold the body.
+    ///
+    /// # Errors
+    /// [`Error::Length`] where the forces are not those of all nodes.
+    pub(super) fn force_of_faces(&self, forces: &[f64], keeps: impl Fn(usize) -> bool) -> Result<Vec<f64>, Error> {
+        let faces = self.parts().rigid_faces.iter().enumerate().filter(|(index, _)| keeps(*index));
+        let mut on_face = vec![false; self.mesh().nodes().len()];
+        faces.flat_map(|(_, face)| face.nodes()).for_each(|&node| on_face[node] = true);
+        let dimension = self.body().dimension();
+        self.dofs().part(forces, |dof| on_face[dof / dimension])
+    }
+
+    /// Those of the rigid faces on the body, in the order of the scene, with their motions.
+    ///
+    /// # Errors
+    /// As [`Model::force_of_faces`].
+    pub(super) fn face_resultants(&self, forces: &[f64], unknowns: &[f64]) -> Result<Vec<Resultant>, Error> {
+        let nodes = self.mesh().nodes();
+        let mut all = Vec::with_capacity(self.parts().rigid_faces.len());
+        for (index, face) in self.parts().rigid_faces.iter().enumerate() {
+            let own = self.force_of_faces(forces, |other| other == index)?;
+            let mut sum = Sum::default();
+            (0..nodes.len())
+                .for_each(|node| self.add_images(&mut sum, nodes[node], self.force_at(&own, node), |_| true));
+            let found = self.parts().unknowns.motions(unknowns, index);
+            let amount = |(motion, unknown): (&Motion, Option<f64>)| {
+                let by_unknown = unknown.map(|unknown| unknown * face.unit(motion));
+                (motion.kind, by_unknown.or(motion.prescribed).unwrap_or(0.0))
+            };
+            let moved: Vec<(usize, f64)> = face.motions.iter().zip(found).map(amount).collect();
+            let of = |kinds: Range<usize>| {
+                moved.iter().filter(|entry| kinds.contains(&entry.0)).map(|entry| entry.1).collect::<Vec<f64>>()
+            };
+            let motion = FaceMotion { displacement: of(0..3), rotation: of(3..6) };
+            let on = self.name_of_body(face.nodes().first().copied());
+            all.push(Resultant { on, motion: Some(motion), ..sum.resultant(self, format!("rigid-faces[{index}]")) });
+        }
+        Ok(all)
+    }
+
     /// That of the loads, if there are any.
     pub(super) fn load_resultant(&self) -> Option<Resultant> {
         let nodes = self.mesh().nodes();
         let mut loads = Sum::default();
-        (0..nodes.len()).for_each(|node| loads.add(nodes[node], self.force_at(self.nodal_load(), node)));
+        let force = |node: usize| self.force_at(self.nodal_load(), node);
+        (0..nodes.len()).for_each(|node| self.add_images(&mut loads, nodes[node], force(node), |_| true));
         (!loads.forces.is_empty()).then(|| loads.resultant(self, "loads".into()))
     }
 
@@ -197,7 +276,7 @@ impl Model {
 
     /// What the forces of a report are those of, as `per metre, of the modelled part`; empty if they are those of the whole body.
     ///
-    /// A part is modelled if a support lets a flat boundary slide along itself and nothing else: that may be a plane of symmetry.
+    /// The whole is that of planes of symmetry. A part is modelled if a support lets a flat boundary slide along itself and nothing else: that may be a plane of symmetry.
     pub fn basis_of_forces(&self) -> String {
         let unit = match self.units().length.as_str() {
             "m" => "metre",
@@ -213,7 +292,10 @@ impl Model {
             Formulation::Axisymmetric => Some("per full circle".to_string()),
             Formulation::Bar { .. } | Formulation::Space => None,
         };
-        let part = self.parts().is_part.then(|| "of the modelled part".to_string());
+        let part = match self.parts_of_whole() {
+            1.0 => self.parts().is_part.then(|| "of the modelled part".to_string()),
+            parts => Some(format!("of the whole, which is {parts} times the modelled part")),
+        };
         across.into_iter().chain(part).collect::<Vec<_>>().join(", ")
     }
 }

@@ -89,8 +89,9 @@ pub(super) fn build(parts: &Parts, scene_gap: f64) -> Result<Rows, Error> {
                 dofs.coefficient(row.node, |node| by_node.get(&node).map_or(row.gap, |other| other.gap));
             for (node, sign) in row.ends() {
                 let along = dofs.along(node, &row.normal[..dimension]);
-                remaining -= sign * along.prescribed;
-                free.extend(along.free.into_iter().map(|(column, component)| (rows.len(), column, sign * component)));
+                let (entries, prescribed) = parts.unknowns.combination(&along.free);
+                remaining -= sign * (along.prescribed + prescribed);
+                free.extend(entries.into_iter().map(|(column, component)| (rows.len(), column, sign * component)));
             }
             if let Some(travel) = travel {
                 free.push((rows.len(), travel, dot(row.normal, parts.obstacles[index].approach())));

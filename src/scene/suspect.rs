@@ -6,7 +6,7 @@ use super::Warning;
 use super::entry::COORDINATE_ROUNDING;
 use super::parts::Parts;
 use super::rows::ContactRow;
-use super::schema::{Place, Scene};
+use super::schema::{Place, Scene, SymmetryPlane};
 use crate::error::Error;
 use crate::fem::assembly::DofMap;
 use crate::fem::body::ElasticBody;
@@ -46,7 +46,12 @@ impl Scene {
     /// Cuts at planes of symmetry that no support holds.
     fn free_symmetries(&self, body: &ElasticBody) -> Vec<Warning> {
         let is_held = |name: &str| {
-            self.supports.iter().any(|support| matches!(&support.on, Place::Boundary(boundary) if boundary == name))
+            let of_plane = |plane: &SymmetryPlane| name.strip_prefix(SYMMETRY) == Some(plane.name());
+            self.symmetry.iter().any(of_plane)
+                || self
+                    .supports
+                    .iter()
+                    .any(|support| matches!(&support.on, Place::Boundary(boundary) if boundary == name))
         };
         let names = body.mesh().boundaries().iter().map(|boundary| boundary.name.as_str());
         let is_cut = |name: &&str| name.rsplit('.').next().is_some_and(|own| own.starts_with(SYMMETRY));

@@ -48,6 +48,7 @@ pub fn scene_summary(
     summary.warnings.extend(warnings);
     let contact = &mut summary.contact;
     contact.pressure_max = Some(answer.pressure().iter().copied().fold(0.0, f64::max));
+    contact.force *= model.parts_of_whole();
     contact.width = contact_width(model, closed);
     contact.area = Some(contact_area(model, closed));
     contact.force_balance = Some(answer.forces()?.balance);
@@ -77,7 +78,9 @@ pub fn problem_summary(
 
 /// Area of the boundary that the closed rows stand for; thickness, cross-section or circumference included.
 fn contact_area(model: &Model, closed: &ContactSet) -> f64 {
-    closed.iter().filter_map(|row| model.rows().get(row)).fold(0.0, |area, row| area + row.tributary_area)
+    let of_part =
+        closed.iter().filter_map(|row| model.rows().get(row)).fold(0.0, |area, row| area + row.tributary_area);
+    model.parts_of_whole() * of_part
 }
 
 /// Length of the boundary that the closed rows stand for, in the unit of length, where the model has a thickness.
@@ -286,7 +289,7 @@ fn between(
             let closed = path.contact_set_on(piece);
             corners.push(SweepCorner {
                 gap: gap_at(t),
-                force: -multiplier.iter().sum::<f64>(),
+                force: -multiplier.iter().sum::<f64>() * at_first.parts_of_whole(),
                 width: contact_width(at_first, &closed),
                 area: contact_area(at_first, &closed),
                 pressure_max,

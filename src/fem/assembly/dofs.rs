@@ -193,6 +193,17 @@ impl DofMap {
         along
     }
 
+    /// The displacement of `node` itself along `vector`, which has one entry per coordinate.
+    pub(crate) fn displacement_along(&self, node: usize, vector: &[f64]) -> Along {
+        let mut sum = Along { free: Vec::new(), prescribed: 0.0 };
+        for (of, share) in self.basis.values(node) {
+            let along = self.along(of, vector);
+            sum.prescribed += share * along.prescribed;
+            sum.free.extend(along.free.into_iter().map(|(number, part)| (number, share * part)));
+        }
+        sum
+    }
+
     /// The nodal dof of each free dof, increasing.
     pub fn free(&self) -> &[usize] {
         &self.free
@@ -252,8 +263,16 @@ impl DofMap {
     /// # Errors
     /// As [`DofMap::restrict`].
     pub fn supported_part(&self, nodal: &[f64]) -> Result<Vec<f64>, Error> {
+        self.part(nodal, |dof| self.number(dof).is_none())
+    }
+
+    /// The part of nodal forces along some of the dofs.
+    ///
+    /// # Errors
+    /// As [`DofMap::restrict`].
+    pub(crate) fn part(&self, nodal: &[f64], keeps: impl Fn(usize) -> bool) -> Result<Vec<f64>, Error> {
         let mut part = self.turned_in(nodal)?.into_owned();
-        self.free.iter().for_each(|&dof| part[dof] = 0.0);
+        part.iter_mut().enumerate().filter(|(dof, _)| !keeps(*dof)).for_each(|(_, value)| *value = 0.0);
         self.turn_back(&mut part);
         self.basis.scatter(&mut part, self.dimension);
         Ok(part)

@@ -16,6 +16,7 @@ mod pattern;
 mod positive_basis;
 mod redistribution;
 mod rigid_body_modes;
+mod springs;
 mod stiffness;
 mod surface;
 
@@ -31,6 +32,7 @@ pub(crate) use mass::{free_mass, nodal_mass};
 pub(crate) use nodal_columns::{mass_columns, stiffness_columns};
 pub(crate) use positive_basis::PositiveBasis;
 pub use rigid_body_modes::rigid_body_modes;
+pub(crate) use springs::Springs;
 pub use stiffness::stiffness;
 pub(crate) use surface::facet_centres;
 pub use surface::{node_normals, tributary_areas};

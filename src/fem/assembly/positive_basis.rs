@@ -61,6 +61,13 @@ impl PositiveBasis {
         self.ends.get(&node).copied()
     }
 
+    /// The coefficients that make the value at a node, each with its share.
+    pub fn values(&self, node: usize) -> impl Iterator<Item = (usize, f64)> {
+        let ends = self.ends(node);
+        let own = if ends.is_some() { 1.0 - 2.0 * WEIGHT } else { 1.0 };
+        std::iter::once((node, own)).chain(ends.into_iter().flatten().map(|end| (end, WEIGHT)))
+    }
+
     /// The coefficient at a node of a function with these values at the nodes.
     pub fn coefficient(&self, node: usize, value: impl Fn(usize) -> f64) -> f64 {
         match self.ends(node) {

@@ -5,6 +5,7 @@ mod unit;
 use nalgebra::DMatrix;
 
 use super::parts::Parts;
+use super::rigid_face::{Motion, RigidFace};
 use super::rows::ContactRow;
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
@@ -93,6 +94,30 @@ impl RigidBodyModes {
         self.obstacles.iter().enumerate().map(travel).collect()
     }
 
+    /// The component of each unit motion along each motion that a rigid face prescribes.
+    fn prescribed(&self, face: &RigidFace) -> Vec<Vec<f64>> {
+        let Some(&node) = face.nodes().first() else { return Vec::new() };
+        let at = |at: [f64; 3], direction: [f64; 3]| -> Vec<f64> {
+            let of_body = |motions: &UnitMotions| match motions.nodes.contains(&node) {
+                true => motions.along(at, direction),
+                false => [0.0; 6],
+            };
+            self.bodies.iter().flat_map(of_body).collect()
+        };
+        let of_motion = |motion: &Motion| {
+            let (one, two) = ((motion.kind + 1) % 3, (motion.kind + 2) % 3);
+            if motion.kind < 3 {
+                return at(face.centre, unit::along_axis(motion.kind));
+            }
+            // A rotation is how much farther the place one step along the next axis moves along the one behind it.
+            let mut beside = face.centre;
+            beside[one] += 1.0 / face.unit(motion);
+            let [near, far] = [face.centre, beside].map(|place| at(place, unit::along_axis(two)));
+            far.iter().zip(near).map(|(far, near)| far - near).collect()
+        };
+        face.motions.iter().filter(|motion| motion.prescribed.is_some()).map(of_motion).collect()
+    }
+
     /// Refuses bodies with a rigid-body mode that neither supports nor contact rows resist.
     ///
     /// # Errors
@@ -101,9 +126,12 @@ impl RigidBodyModes {
         let free = self.free(parts, rows);
         let Some(first) = free.first() else { return Ok(()) };
         let names: Vec<String> = free.iter().map(|motion| self.describe(motion, Sense::Either)).collect();
-        let mut direction: Vec<f64> =
-            parts.dofs.free().iter().map(|&dof| dot(&self.at_dof(parts, dof), first)).collect();
-        direction.extend(self.travels(parts, first));
+        let of_free = parts.dofs.free().iter().map(|&dof| dot(&self.at_dof(parts, dof), first)).collect();
+        let travels = self.travels(parts, first);
+        let travel = |obstacle: usize| {
+            self.obstacles.iter().position(|&other| other == obstacle).map_or(0.0, |place| travels[place])
+        };
+        let direction = parts.unknowns.of_motion(of_free, travel);
         Err(Error::UnderHeld { mode: format!("{}: {}", names.join(", "), advice(rows)), direction })
     }
 
@@ -118,7 +146,10 @@ impl RigidBodyModes {
         let supported = (0..parts.dofs.nodal_count()).filter(|&dof| parts.dofs.number(dof).is_none());
         let of_supports = supported.map(|dof| self.at_dof(parts, dof));
         let of_rows = rows.iter().map(|row| self.in_row(nodes, row));
-        let mut resisted: Vec<Vec<f64>> = of_supports.chain(of_rows).collect();
+        let held = parts.springs.iter().flat_map(|springs| springs.held());
+        let of_springs = held.map(|(node, direction)| self.along(nodes, node, direction));
+        let of_faces = parts.rigid_faces.iter().flat_map(|face| self.prescribed(face));
+        let mut resisted: Vec<Vec<f64>> = of_supports.chain(of_rows).chain(of_springs).chain(of_faces).collect();
         let (modes, amplitudes) = (self.modes(), 6 * self.bodies.len());
         // A row for each motion at least, or the decomposition leaves out what they do not span.
         resisted.resize(resisted.len().max(modes.len()), vec![0.0; amplitudes]);

@@ -13,6 +13,9 @@ pub(super) mod model;
 pub(super) mod obstacle;
 mod part;
 pub(super) mod profile;
+mod rigid_face;
+pub(super) mod spring;
+mod symmetry;
 
 pub use analysis::{
     AnalysisSpec, DynamicSpec, FactorSpec, FieldSpec, LoadInTimeSpec, MassSpec, PenetrationSpec, WatchSpec,
@@ -24,11 +27,14 @@ pub use load::LoadSpec;
 pub use model::ModelSpec;
 pub use obstacle::ObstacleSpec;
 pub use part::PartSpec;
+pub use rigid_face::RigidFaceSpec;
+pub use spring::SpringSpec;
+pub use symmetry::SymmetryPlane;
 
 use std::path::PathBuf;
 
 use super::body::BodySpec;
-use json::{choice, choices, object, objects, word};
+use json::{choice, choices, object, objects, word, words};
 
 /// A contact scene: an elastic body, its supports and loads, and the obstacles around it.
 ///
@@ -68,6 +74,16 @@ pub struct Scene {
     /// Prescribed displacements.
     #[serde(default, deserialize_with = "objects")]
     pub supports: Vec<SupportSpec>,
+    /// Boundaries that move as rigid plates.
+    #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
+    pub rigid_faces: Vec<RigidFaceSpec>,
+    /// Springs between the body and the ground.
+    #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
+    pub springs: Vec<SpringSpec>,
+    /// Planes of symmetry: the body is a half, a quarter or an eighth of a whole. Each is supported, and forces and areas in
+    /// reports are those of the whole.
+    #[serde(default, deserialize_with = "words", skip_serializing_if = "Vec::is_empty")]
+    pub symmetry: Vec<SymmetryPlane>,
     /// External loads; they add up.
     #[serde(default, deserialize_with = "choices")]
     pub loads: Vec<LoadSpec>,

@@ -226,7 +226,7 @@ impl Search<'_> {
             energy_error_bound: of_algebra,
             total_error: of_mesh.hypot(of_algebra),
             depth_between_nodes: depths.relative(),
-            contact_force: solution.contact_force(),
+            contact_force: model.parts_of_whole() * solution.contact_force(),
             seconds: self.clock.elapsed().as_secs_f64(),
         });
         Ok(Found { answer, solution, shares: estimated.of_elements, depths })

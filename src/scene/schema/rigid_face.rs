@@ -1,0 +1,52 @@
+//! Boundaries that move as rigid plates, as they are written in a scene.
+
+use serde::{Deserialize, Serialize};
+
+use super::json::{given, given_object, number};
+
+/// A boundary that moves as a rigid plate: its centre by a displacement, and turned about it. What is not prescribed follows the force
+/// and the moment.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct RigidFaceSpec {
+    /// The boundary.
+    pub boundary: String,
+    /// The centre, about which it turns and at which the force acts; that of its area where it is left out.
+    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    pub centre: Option<Vec<f64>>,
+    /// Prescribed displacement of the centre along x.
+    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    pub x: Option<f64>,
+    /// Prescribed displacement of the centre along y.
+    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    pub y: Option<f64>,
+    /// Prescribed displacement of the centre along z.
+    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    pub z: Option<f64>,
+    /// Prescribed rotations about the centre.
+    #[serde(default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
+    pub rotation: Option<RotationSpec>,
+    /// The force on it; zero where it is left out.
+    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    pub force: Option<Vec<f64>>,
+    /// The moment on it about the centre: about z in the plane, three components in space; zero where it is left out.
+    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    pub moment: Option<Vec<f64>>,
+}
+
+/// Prescribed rotations, in radians, small; one that is left out is free.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct RotationSpec {
+    /// About x, in space.
+    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    pub x: Option<f64>,
+    /// About y, in space.
+    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    pub y: Option<f64>,
+    /// About z.
+    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    pub z: Option<f64>,
+}

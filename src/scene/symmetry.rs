@@ -1,0 +1,109 @@
+//! Planes of symmetry of a scene: where they lie, what they hold, and the whole that the body is a part of.
+
+use super::entry::{COORDINATE_ROUNDING, number, wrong};
+use super::held::{COORDINATES, Component, Held, Holder};
+use super::schema::{ModelSpec, Scene, SymmetryPlane};
+use crate::error::Error;
+use crate::fem::body::ElasticBody;
+
+/// The planes of symmetry of a model.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Symmetry {
+    /// The axis across each plane, and where it lies along it.
+    planes: Vec<(usize, f64)>,
+    /// Lengths below this are rounding of coordinates.
+    rounding: f64,
+}
+
+impl Scene {
+    /// The planes of symmetry, which lie where the body ends flat.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for a plane that is named twice or does not exist in the model, where the body ends nowhere flat across it, or
+    /// where both of its ends are flat and none lies at zero.
+    pub(super) fn planes_of_symmetry(&self, body: &ElasticBody) -> Result<Symmetry, Error> {
+        let rounding = COORDINATE_ROUNDING * body.mesh().size();
+        let mut symmetry = Symmetry { planes: Vec::new(), rounding };
+        if !self.symmetry.is_empty() && self.analysis.is_some() {
+            return Err(wrong("symmetry", "planes of symmetry are for equilibria; a motion has supports alone"));
+        }
+        for (index, plane) in self.symmetry.iter().enumerate() {
+            let (path, name, axis) = (format!("symmetry[{index}]"), plane.name(), plane.axis());
+            if axis >= self.model.dimension() {
+                return Err(wrong(path, format!("the model `{}` has no {name}", self.model.name())));
+            }
+            if self.model == ModelSpec::Axisymmetric && *plane == SymmetryPlane::X {
+                return Err(wrong(path, "x is the radius, about which the body is symmetric as it is"));
+            }
+            if self.symmetry[..index].contains(plane) {
+                return Err(wrong(path, format!("`{name}` is named twice")));
+            }
+            symmetry.planes.push((axis, flat_end(body, axis, rounding).map_err(|message| wrong(path, message))?));
+        }
+        Ok(symmetry)
+    }
+}
+
+/// Where the body ends flat across an axis, which is the plane of symmetry.
+fn flat_end(body: &ElasticBody, axis: usize, rounding: f64) -> Result<f64, String> {
+    let (mesh, name) = (body.mesh(), ["x", "y", "z"][axis]);
+    let surface = mesh.surface(0..mesh.element_count());
+    let (low, high) = mesh.extent();
+    let lies = |at: f64| {
+        surface.facets().any(|facet| facet.iter().all(|&node| (mesh.nodes()[node][axis] - at).abs() <= rounding))
+    };
+    let ends: Vec<f64> = [low[axis], high[axis]].into_iter().filter(|&end| lies(end)).collect();
+    match ends[..] {
+        [end] => Ok(end),
+        [] => Err(format!(
+            "the body does not end flat at {name} = {} or {name} = {}, so that it is no part of one that is symmetric there",
+            number(low[axis]),
+            number(high[axis])
+        )),
+        _ => match ends.iter().find(|end| end.abs() <= rounding) {
+            Some(&end) => Ok(end),
+            None => Err(format!(
+                "the body ends flat at both {name} = {} and {name} = {}; move it, so that the plane of symmetry lies at 0",
+                number(ends[0]),
+                number(ends[1])
+            )),
+        },
+    }
+}
+
+impl Symmetry {
+    /// Holds the nodes on the planes.
+    pub fn hold(&self, body: &ElasticBody, held: &mut Held) {
+        for &(axis, at) in &self.planes {
+            let lies = |node: &usize| (body.mesh().nodes()[*node][axis] - at).abs() <= self.rounding;
+            for node in (0..body.mesh().nodes().len()).filter(lies) {
+                held.prescribe(node, Component { direction: COORDINATES[axis], value: 0.0, by: Holder::Symmetry });
+            }
+        }
+    }
+
+    /// How many parts make the whole.
+    pub fn parts(&self) -> f64 {
+        2.0_f64.powi(self.planes.len() as i32)
+    }
+
+    /// How many parts one obstacle presses that comes along `approach`: a plane across its way gives it a twin on the other side.
+    pub fn parts_of_obstacle(&self, approach: [f64; 3]) -> f64 {
+        2.0_f64.powi(self.planes.iter().filter(|plane| approach[plane.0] == 0.0).count() as i32)
+    }
+
+    /// A force at a place with its mirror images, of planes that `across` keeps.
+    pub fn images(&self, at: [f64; 3], force: [f64; 3], across: impl Fn(usize) -> bool) -> Vec<([f64; 3], [f64; 3])> {
+        let mut all = vec![(at, force)];
+        for &(axis, plane) in self.planes.iter().filter(|plane| across(plane.0)) {
+            let mirrored = |&(mut at, mut force): &([f64; 3], [f64; 3])| {
+                at[axis] = 2.0 * plane - at[axis];
+                force[axis] = -force[axis];
+                (at, force)
+            };
+            let images: Vec<_> = all.iter().map(mirrored).collect();
+            all.extend(images);
+        }
+        all
+    }
+}

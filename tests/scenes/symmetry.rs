@@ -1,0 +1,110 @@
+//! Planes of symmetry: a quarter, a half and the whole say the same.
+
+use serde_json::{Value, json};
+use signorini::scene::Answer;
+use signorini::{Error, Model, Scene, solve_qp};
+use std::sync::Arc;
+
+use crate::program::Desk;
+
+/// Answers to one problem on one mesh: rounding, enlarged by a condition number of 1e3.
+const SAME: f64 = 1e-10;
+
+fn built(scene: &Value) -> Result<Model, Error> {
+    Scene::from_json(&scene.to_string(), "scene").and_then(|scene| scene.build())
+}
+
+fn answer(scene: &Value) -> Answer {
+    let model = built(scene).unwrap_or_else(|error| panic!("{error}"));
+    let solution = solve_qp(model.problem()).unwrap_or_else(|error| panic!("{error}"));
+    Answer::of(Arc::new(model), &solution).unwrap()
+}
+
+/// A block [-1, 1]^2 x [0, 1], or what planes of symmetry leave of it, on a spring and a support, under a ball that a force presses.
+fn block(element: &str, planes: &[&str]) -> Value {
+    let across = |name: &str| match planes.contains(&name) {
+        true => json!({"points": [0, 1], "divisions": [2]}),
+        false => json!({"points": [-1, 1], "divisions": [4]}),
+    };
+    let mut supports = vec![json!({"on": {"boundary": "bottom"}, "z": 0})];
+    // What symmetry holds for the parts.
+    for (axis, point) in [("x", [0, 1, 0]), ("y", [1, 0, 0])] {
+        if !planes.contains(&axis) {
+            supports.push(json!({"on": {"point": point}, axis: 0}));
+            if axis == "x" {
+                supports.push(json!({"on": {"point": [0, 1, 1]}, axis: 0}));
+            }
+        }
+    }
+    if planes.is_empty() {
+        supports.push(json!({"on": {"point": [0, -1, 0]}, "x": 0}));
+    }
+    json!({
+        "model": "space",
+        "body": {"box": {"x": across("x"), "y": across("y"), "z": {"points": [0, 1], "divisions": [2]}, "element": element}},
+        "material": {"young": 1000, "poisson": 0.3},
+        "symmetry": planes,
+        "supports": supports,
+        "obstacles": [{"boundary": "top", "approach": "+z", "force": 40,
+                       "shape": {"sphere": {"apex": [0, 0, 1], "radius": 5}}}],
+    })
+}
+
+#[test]
+fn a_quarter_a_half_and_the_whole_agree() {
+    for element in ["hex8", "hex20"] {
+        let whole = answer(&block(element, &[]));
+        let travel = whole.travel(0).unwrap();
+        assert!(travel > 0.0);
+        for planes in [&["x"][..], &["y"], &["x", "y"]] {
+            let part = answer(&block(element, planes));
+            assert!((part.travel(0).unwrap() / travel - 1.0).abs() < SAME, "{element} {planes:?}");
+            let (of_part, of_whole) = (part.resultants().unwrap(), whole.resultants().unwrap());
+            for (ours, exact) in of_part[0].force.iter().zip(&of_whole[0].force) {
+                assert!((ours - exact).abs() < SAME * 40.0, "{element} {planes:?}: {:?}", of_part[0]);
+            }
+            assert!((of_part[1].force[2] - 40.0).abs() < SAME * 40.0, "{:?}", of_part[1]);
+            let nodes = whole.model().mesh().nodes();
+            for (node, at) in part.model().mesh().nodes().iter().enumerate() {
+                let same = (0..nodes.len()).find(|&other| nodes[other] == *at).unwrap();
+                for axis in 0..3 {
+                    let off = part.displacement()[3 * node + axis] - whole.displacement()[3 * same + axis];
+                    assert!(off.abs() < SAME * travel, "{element} {planes:?}: {off:e} at {at:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_report_says_what_the_forces_are_those_of() {
+    let desk = Desk::new();
+    desk.write("scene.json", block("hex8", &["x", "y"]).to_string());
+    let report = desk.run(&["solve", "scene.json", "--format", "json"]).ends_with(0).json();
+    assert_eq!(report["force_basis"], "of the whole, which is 4 times the modelled part");
+    assert!((report["contact"]["force"].as_f64().unwrap() - 40.0).abs() < 1e-8);
+    // The mesh is coarse; nothing is said of cuts that no support holds.
+    let codes: Vec<_> = report["warnings"].as_array().unwrap().iter().map(|warning| warning["code"].clone()).collect();
+    assert_eq!(codes, ["mesh-dependent"]);
+}
+
+#[test]
+fn planes_where_the_body_does_not_end_flat_are_refused() {
+    let refused = |change: &dyn Fn(&mut Value), phrases: &[&str]| {
+        let mut scene = block("hex8", &["x"]);
+        change(&mut scene);
+        let error = built(&scene).unwrap_err().to_string();
+        phrases.iter().for_each(|phrase| assert!(error.contains(phrase), "{error}"));
+    };
+    refused(
+        &|scene| scene["body"]["box"]["x"]["points"] = json!([2, 3]),
+        &["symmetry[0]", "x = 2 and x = 3", "plane of symmetry lies at 0"],
+    );
+    refused(&|scene| scene["symmetry"] = json!(["x", "x"]), &["symmetry[1]", "named twice"]);
+    let disc = json!({
+        "body": {"disc": {"radius": 1, "zone": {"width": 0.2, "divisions": 2}}},
+        "material": {"young": 1, "poisson": 0}, "symmetry": ["x"],
+    });
+    let error = built(&disc).unwrap_err().to_string();
+    assert!(error.contains("symmetry[0]") && error.contains("does not end flat at x = -1"), "{error}");
+}
