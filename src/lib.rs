@@ -68,6 +68,7 @@ pub mod qp;
 pub mod scene;
 mod solution;
 pub mod study;
+mod surface;
 mod watch;
 
 pub use error::{Error, Failure};
@@ -101,4 +102,5 @@ pub mod internals {
     pub use crate::study::scene::even_gaps;
     #[cfg(feature = "cli")]
     pub use crate::study::total_error::{Examined, examined};
+    pub use crate::surface::{ClosedSurface, Closest};
 }

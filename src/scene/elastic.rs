@@ -69,8 +69,7 @@ impl DescribedBody<'_> {
         let site = Site {
             path: self.path(""),
             model: self.scene.model,
-            folder: self.scene.folder.as_deref(),
-            reads_outside: self.scene.reads_outside,
+            files: self.scene.files(),
         };
         self.spec.shape().mesh(&site).map_err(|error| self.at_body(error))
     }

@@ -49,7 +49,7 @@ impl Scene {
         let radius = self.obstacles.iter().map(|obstacle| obstacle.shape.shape().radius());
         let reach = 2.0 * radius.fold(0.0, f64::max);
         for body in bodies {
-            let block = body.shape().block(self.folder.as_deref());
+            let block = body.shape().block(Some(self.files()));
             let (dimension, counts) = (block.cells.len() as f64, block.counts);
             let cells: f64 = block.cells.iter().product();
             let lines: f64 = block.cells.iter().map(|cells| cells + 1.0).product();

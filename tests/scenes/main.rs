@@ -10,7 +10,10 @@ mod oracles;
 mod program;
 #[path = "../support/rollers.rs"]
 mod rollers;
+#[path = "../support/triangles.rs"]
+mod triangles;
 
+mod concave_obstacles;
 mod contact_scenes;
 mod dimensions;
 mod inclined_frames;
@@ -23,6 +26,7 @@ mod rigid_body_modes;
 mod scene_errors;
 mod scene_model;
 mod slender;
+mod surfaces;
 mod turned_bodies;
 mod two_bodies;
 mod user_obstacles;
