@@ -68,7 +68,6 @@ pub mod qp;
 pub mod scene;
 mod solution;
 pub mod study;
-mod surface;
 mod watch;
 
 pub use error::{Error, Failure};
@@ -85,6 +84,7 @@ pub use watch::Watch;
 pub mod internals {
     pub use crate::fem::element::{Cell, MAX_NODES, QuadraturePoint, Rule, Tabulated};
     pub use crate::fem::norms::error_norms_by;
+    pub use crate::fem::surface::{ClosedSurface, Closest};
     #[cfg(feature = "pictures")]
     pub use crate::output::body::{ContactPicture, ObstacleLine, common_limits, common_window};
     #[cfg(feature = "pictures")]
@@ -102,5 +102,4 @@ pub mod internals {
     pub use crate::study::scene::even_gaps;
     #[cfg(feature = "cli")]
     pub use crate::study::total_error::{Examined, examined};
-    pub use crate::surface::{ClosedSurface, Closest};
 }

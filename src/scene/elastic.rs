@@ -66,11 +66,7 @@ impl DescribedBody<'_> {
 
     /// The mesh of the shape.
     fn mesh(&self) -> Result<Mesh, Error> {
-        let site = Site {
-            path: self.path(""),
-            model: self.scene.model,
-            files: self.scene.files(),
-        };
+        let site = Site { path: self.path(""), model: self.scene.model, files: self.scene.files() };
         self.spec.shape().mesh(&site).map_err(|error| self.at_body(error))
     }
 

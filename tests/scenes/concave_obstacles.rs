@@ -125,7 +125,8 @@ fn the_gap_to_a_circle_on_a_stretch_stays_within_its_enclosure() {
         let lowest = (0..=300).map(|step| exact(1.0 + step as f64 / 1000.0)).fold(f64::INFINITY, f64::min);
         assert!(values.iter().all(|&value| value <= lowest), "{side} {values:?} {lowest}");
         assert!(circle.gap_along([1.4, 1.0, 0.0], [1.6, 1.0, 0.0], 0.0).is_none());
-        let by_normals = square("closest-point", json!({"circle": {"centre": centre, "radius": 0.9, "side": side}}), 0.0);
+        let by_normals =
+            square("closest-point", json!({"circle": {"centre": centre, "radius": 0.9, "side": side}}), 0.0);
         assert!(by_normals.obstacles()[0].rigid().unwrap().gap_along([0.3, 1.0, 0.0], [0.5, 1.0, 0.0], 0.0).is_none());
     }
 }
@@ -214,10 +215,14 @@ fn a_ball_in_a_cup_has_the_force_and_the_pressure_of_hertz_with_the_difference_o
         let model = built(&scene);
         let solution = solve_qp(model.problem()).unwrap();
         let force = solution.contact_force();
-        assert!((force / hertz.force(delta) - 1.0).abs() < 0.06, "{rule}: {force} {}", hertz.force(delta));
+        assert!((force / hertz.force(delta) - 1.0).abs() < 0.04, "{rule}: {force} {}", hertz.force(delta));
         let pressure = model.pressure(&solution.multiplier).unwrap();
         let peak = pressure.iter().copied().fold(0.0, f64::max);
-        assert!((peak / hertz.peak_pressure(force) - 1.0).abs() < 0.03, "{rule}: {peak} {}", hertz.peak_pressure(force));
+        assert!(
+            (peak / hertz.peak_pressure(force) - 1.0).abs() < 0.03,
+            "{rule}: {peak} {}",
+            hertz.peak_pressure(force)
+        );
     }
 }
 
@@ -234,7 +239,11 @@ fn what_is_no_torus_and_no_side_is_refused_at_its_field() {
         (torus("minor", json!(0)), "torus.minor", "must be positive"),
         (torus("major", json!(-1)), "torus.major", "must be positive"),
         (torus("axis", json!([0, 0, 0])), "torus.axis", "has no direction"),
-        (torus("axis", json!([0, 1, 1])), "torus.axis", "parallel or perpendicular to the approach direction (0, 0, 1)"),
+        (
+            torus("axis", json!([0, 1, 1])),
+            "torus.axis",
+            "parallel or perpendicular to the approach direction (0, 0, 1)",
+        ),
         (circle, "sphere.side", "outside"),
     ] {
         let scene = Scene::from_json(&cube_scene("approach", shape, 0.0).to_string(), "scene");

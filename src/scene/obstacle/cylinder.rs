@@ -49,7 +49,8 @@ fn axis_across(written: &[f64; 3], site: &Site) -> Result<[f64; 3], Error> {
     let (axis, lean) = site.axis("axis", written)?;
     let approach = site.direction();
     if lean.abs() > PERPENDICULAR {
-        let message = format!("{} must be perpendicular to the approach direction {}", point(written), point(&approach));
+        let message =
+            format!("{} must be perpendicular to the approach direction {}", point(written), point(&approach));
         return Err(wrong(site.field("axis"), message));
     }
     Ok(unit([0, 1, 2].map(|i| axis[i] - lean * approach[i])))

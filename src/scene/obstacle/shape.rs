@@ -33,6 +33,11 @@ pub(in crate::scene) trait ObstacleShape {
     fn radius(&self) -> f64 {
         f64::INFINITY
     }
+
+    /// Memory that it takes beside its rows, estimated, in bytes.
+    fn bytes(&self, _files: Files) -> f64 {
+        0.0
+    }
 }
 
 /// What an obstacle of a model looks like.

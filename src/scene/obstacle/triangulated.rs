@@ -9,10 +9,14 @@ use super::ruled::RigidSurface;
 use super::shape::{About, Geometry, ObstacleShape, Side, Site};
 use crate::error::Error;
 use crate::fem::geometry::minus;
+use crate::fem::surface::{ClosedSurface, Crossing};
 use crate::scene::entry::located;
+use crate::scene::files::Files;
 use crate::scene::schema::approach::{Approach, Rule};
 use crate::scene::schema::json::word;
-use crate::surface::{ClosedSurface, Crossing};
+
+/// Bytes of memory for a byte of the file, about: 2.5 for a binary STL, the densest form.
+const OF_FILE: f64 = 3.0;
 
 /// A closed surface of triangles from an STL file, binary or ASCII, or an OBJ file; flat triangles, never smoothed.
 ///
@@ -50,13 +54,18 @@ impl ObstacleShape for SurfaceSpec {
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let origin = site.point("origin", &self.origin)?;
         let file = site.files.named(&self.file, site.field("file"))?;
-        let surface = ClosedSurface::read(&file, self.scale, origin).map_err(|error| located(error, &site.field("")))?;
+        let surface =
+            ClosedSurface::read(&file, self.scale, origin).map_err(|error| located(error, &site.field("")))?;
         let (approach, rounding) = (site.approach, site.rounding());
         let direction = site.direction();
         Ok(Geometry::rigid(
             site,
             Triangulated { surface: Arc::new(surface), side: self.side, approach, direction, rounding },
         ))
+    }
+
+    fn bytes(&self, files: Files) -> f64 {
+        OF_FILE * files.length(&self.file)
     }
 }
 

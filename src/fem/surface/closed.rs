@@ -99,55 +99,65 @@ fn limits(triangle: Triangle) -> Limits {
     triangle.0.into_iter().fold(NOWHERE, |sum, corner| joined(sum, [corner; 2]))
 }
 
+/// Edges with one fault.
+#[derive(Clone, Copy, Debug)]
+struct Faulty {
+    /// Their number, counted once for each triangle along them.
+    count: usize,
+    /// The first triangle that has one.
+    triangle: usize,
+    edge: [u32; 2],
+}
+
 /// Every edge must join two triangles, in opposite directions.
 fn check_edges(facets: &Facets, around: &Around) -> Result<(), Error> {
-    /// Number of edges of a kind, counted once for each triangle along them, and the first triangle with the edge.
-    type Found = Option<(usize, usize, [u32; 2])>;
-    let [mut open, mut crowded, mut alike]: [Found; 3] = [None; 3];
+    let [mut open, mut crowded, mut alike]: [Option<Faulty>; 3] = [None; 3];
     for (triangle, corners) in facets.corners.iter().enumerate() {
         for corner in 0..3 {
             let edge = [corners[corner], corners[(corner + 1) % 3]];
-            let runs = |from: u32, to: u32| {
-                let has = |&&other: &&u32| {
-                    let other = facets.corners[other as usize];
-                    (0..3).any(|corner| other[corner] == from && other[(corner + 1) % 3] == to)
-                };
-                around.at(from).iter().filter(has).count()
-            };
-            let kind = match (runs(edge[0], edge[1]), runs(edge[1], edge[0])) {
+            // The end with fewer triangles: at the tip of a cone there are very many.
+            let [from, to] = edge.map(|end| around.at(end));
+            let (mut along, mut against) = (0, 0);
+            for &other in if from.len() < to.len() { from } else { to } {
+                let other = facets.corners[other as usize];
+                let runs = |[a, b]: [u32; 2]| (0..3).any(|corner| [other[corner], other[(corner + 1) % 3]] == [a, b]);
+                along += usize::from(runs(edge));
+                against += usize::from(runs([edge[1], edge[0]]));
+            }
+            let kind = match (along, against) {
                 (1, 1) => continue,
                 (1, 0) => &mut open,
                 (2, 0) => &mut alike,
                 _ => &mut crowded,
             };
-            kind.get_or_insert((0, triangle, edge)).0 += 1;
+            kind.get_or_insert(Faulty { count: 0, triangle, edge }).count += 1;
         }
     }
-    let fault = |(_, triangle, edge): (usize, usize, [u32; 2]), message: String| {
-        let [from, to] = edge.map(|vertex| facets.vertices[vertex as usize]);
-        let message = format!("{message}; the first runs from {from:?} to {to:?} at the triangle that begins here");
-        Err(facets.fault(facets.place(triangle), message))
-    };
-    match (open, crowded, alike) {
-        (Some(found), _, _) => fault(
-            found,
-            format!(
-                "the surface is not closed, vertices of equal coordinates welded: {} edges belong to one triangle only, but \
-                 an obstacle needs an inside",
-                found.0
-            ),
-        ),
+    let edges = |count: usize| if count == 1 { "1 edge".into() } else { format!("{count} edges") };
+    let (found, message) = match (open, crowded, alike) {
+        (Some(found), _, _) => {
+            let many = if found.count == 1 { "belongs" } else { "belong" };
+            let message = format!(
+                "the surface is not closed, vertices of equal coordinates welded: {} {many} to one triangle only, but an \
+                 obstacle needs an inside",
+                edges(found.count)
+            );
+            (found, message)
+        }
         (None, Some(found), _) => {
-            fault(found, "more than two triangles meet at an edge, so that inside and outside are not told apart".into())
+            (found, "more than two triangles meet at an edge, so that inside and outside are not told apart".into())
         }
-        (None, None, Some(found)) => fault(
-            found,
-            format!(
-                "triangles on both sides of {} edges run along them in the same direction, so that one of them faces \
-                 inwards; orient them alike",
-                found.0 / 2
-            ),
-        ),
-        (None, None, None) => Ok(()),
-    }
+        (None, None, Some(found)) => {
+            let message = format!(
+                "triangles on both sides of {} run along them in the same direction, so that one of them faces inwards; \
+                 orient them alike",
+                edges(found.count / 2)
+            );
+            (found, message)
+        }
+        (None, None, None) => return Ok(()),
+    };
+    let [from, to] = found.edge.map(|vertex| facets.vertices[vertex as usize]);
+    let message = format!("{message}; the first runs from {from:?} to {to:?} at the triangle that begins here");
+    Err(facets.fault(facets.place(found.triangle), message))
 }

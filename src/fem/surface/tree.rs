@@ -46,7 +46,10 @@ impl Tree {
         let widest = (0..3).map(|axis| high[axis] - low[axis]).fold(f64::MIN_POSITIVE, f64::max);
         let thing = |&number: &u32| {
             let [from, to] = limits(number);
-            Thing { middle: [0, 1, 2].map(|axis| (((from[axis] + to[axis]) / 2.0 - low[axis]) / widest) as f32), number }
+            Thing {
+                middle: [0, 1, 2].map(|axis| (((from[axis] + to[axis]) / 2.0 - low[axis]) / widest) as f32),
+                number,
+            }
         };
         let mut things: Vec<Thing> = numbers.iter().map(thing).collect();
         let mut tree = Tree { branches: Vec::new(), order: Vec::with_capacity(numbers.len()) };

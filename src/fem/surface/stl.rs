@@ -14,7 +14,8 @@ const RECORD: usize = 50;
 
 /// Reads the bytes of a file: binary if its length is what its header announces.
 pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Facets, Error> {
-    let announced = bytes.get(HEADER - 4..HEADER).map(|count| u32::from_le_bytes([count[0], count[1], count[2], count[3]]));
+    let announced =
+        bytes.get(HEADER - 4..HEADER).map(|count| u32::from_le_bytes([count[0], count[1], count[2], count[3]]));
     let expected = announced.map(|count| HEADER as u64 + RECORD as u64 * u64::from(count));
     if expected == Some(bytes.len() as u64) {
         return binary(file, bytes);

@@ -35,7 +35,9 @@ pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Facets, Error> {
                 };
                 if others.len() < 2 {
                     let found = corners.len();
-                    return Err(facets.fault(place, format!("a face needs at least three corners, but this has {found}")));
+                    return Err(
+                        facets.fault(place, format!("a face needs at least three corners, but this has {found}"))
+                    );
                 }
                 for pair in others.windows(2) {
                     facets.add([*first, pair[0], pair[1]], place);

@@ -58,9 +58,10 @@ impl ClosedSurface {
         let sum = apart.iter().map(seen).fold([0.0; 3], |sum, one| [0, 1, 2].map(|axis| sum[axis] + one.outward[axis]));
         let cancels = length(sum) < CANCELLED * apart.len() as f64;
         let candidates = if apart.len() < MOST_FEET { &apart } else { &feet };
-        let most = candidates.iter().map(seen).reduce(|most, other| {
-            if against(other.outward) > against(most.outward) { other } else { most }
-        });
+        let most = candidates
+            .iter()
+            .map(seen)
+            .reduce(|most, other| if against(other.outward) > against(most.outward) { other } else { most });
         let alone = most.unwrap_or(Closest { outward: towards.map(|part| -part), height: nearest });
         if apart.len() == 1 || apart.len() == MOST_FEET || cancels {
             return alone;

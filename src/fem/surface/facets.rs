@@ -86,10 +86,12 @@ impl Facets {
             *vertex = [0, 1, 2].map(|axis| scale * vertex[axis] + origin[axis]);
         }
         let is_large = |vertex: &[f64; 3]| vertex.iter().any(|part| part.is_nan() || part.abs() > LARGEST);
-        let large = self.corners.iter().position(|corners| corners.iter().any(|&at| is_large(&self.vertices[at as usize])));
+        let large =
+            self.corners.iter().position(|corners| corners.iter().any(|&at| is_large(&self.vertices[at as usize])));
         match large {
             Some(triangle) => {
-                let message = format!("a scaled coordinate of this triangle lies beyond {LARGEST:e}; take a smaller scale");
+                let message =
+                    format!("a scaled coordinate of this triangle lies beyond {LARGEST:e}; take a smaller scale");
                 Err(self.fault(self.place(triangle), message))
             }
             None => Ok(self),
