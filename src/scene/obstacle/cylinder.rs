@@ -6,7 +6,7 @@ use super::circle::round;
 use super::shape::{About, Geometry, ObstacleShape, Side, Site};
 use super::solid::{Form, Solid};
 use crate::error::Error;
-use crate::fem::geometry::unit;
+use crate::fem::geometry::dot;
 use crate::scene::entry::{point, wrong};
 use crate::scene::schema::json::word;
 
@@ -46,12 +46,14 @@ impl ObstacleShape for CylinderSpec {
 
 /// The unit direction of a cylinder's axis.
 fn axis_across(written: &[f64; 3], site: &Site) -> Result<[f64; 3], Error> {
-    let (axis, lean) = site.axis("axis", written)?;
-    let approach = site.direction();
+    let (axis, approach) = (site.axis("axis", written)?, site.direction());
+    let lean = dot(axis, approach);
     if lean.abs() > PERPENDICULAR {
         let message =
             format!("{} must be perpendicular to the approach direction {}", point(written), point(&approach));
         return Err(wrong(site.field("axis"), message));
     }
-    Ok(unit([0, 1, 2].map(|i| axis[i] - lean * approach[i])))
+    let level = [0, 1, 2].map(|i| axis[i] - lean * approach[i]);
+    let length = dot(level, level).sqrt();
+    Ok(level.map(|part| part / length))
 }

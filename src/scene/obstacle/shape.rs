@@ -10,7 +10,6 @@ use super::row::Obstacle;
 use super::ruled::{RigidSurface, Ruled};
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
-use crate::fem::geometry::{dot, unit};
 use crate::scene::entry::{COORDINATE_ROUNDING, finite, number, vector, wrong};
 use crate::scene::files::Files;
 use crate::scene::schema::approach::{Approach, Rule};
@@ -127,16 +126,15 @@ impl Site<'_> {
         vector(&self.field(name), entries, entries.len())
     }
 
-    /// The unit vector of a field that is a direction of any length but zero, and how far it runs along the approach direction.
-    pub fn axis(&self, name: &str, entries: &[f64; 3]) -> Result<([f64; 3], f64), Error> {
+    /// A field that is a direction of any length but zero, its largest component scaled to 1.
+    pub fn axis(&self, name: &str, entries: &[f64; 3]) -> Result<[f64; 3], Error> {
         let path = self.field(name);
         let axis = vector(&path, entries, 3)?;
         let largest = axis.iter().fold(0.0_f64, |largest, part| largest.max(part.abs()));
         if largest == 0.0 {
             return Err(wrong(path, "(0, 0, 0) has no direction; the axis needs a length"));
         }
-        let axis = unit(axis.map(|part| part / largest));
-        Ok((axis, dot(axis, self.direction())))
+        Ok(axis.map(|part| part / largest))
     }
 
     /// A field that is positive.

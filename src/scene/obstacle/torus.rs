@@ -34,7 +34,8 @@ pub(super) const ABOUT: About = About { name: "torus", dimensions: &[3] };
 impl ObstacleShape for TorusSpec {
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let centre = site.point("centre", &self.centre)?;
-        let (axis, lean) = site.axis("axis", &self.axis)?;
+        let (axis, approach) = (unit(site.axis("axis", &self.axis)?), site.direction());
+        let lean = dot(axis, approach);
         let (major, minor) = (site.positive("major", self.major)?, site.positive("minor", self.minor)?);
         if minor >= major {
             let message = format!(
@@ -44,7 +45,6 @@ impl ObstacleShape for TorusSpec {
             );
             return Err(wrong(site.field("minor"), message));
         }
-        let approach = site.direction();
         let (axis, stands) = if lean.abs() <= ALIGNED {
             (unit(minus(axis, approach.map(|part| lean * part))), Stands::Upright)
         } else if 1.0 - lean.abs() <= ALIGNED {
