@@ -240,6 +240,16 @@ pub enum Error {
         /// What is wrong, and what is allowed; in a binary mesh behind the byte of the file, from 0.
         message: String,
     },
+    /// A binary file, as an STL, that does not have the right form.
+    #[error("{}, byte {byte}: {message}", file.display())]
+    FileBytes {
+        /// The file.
+        file: PathBuf,
+        /// Offset of what is wrong, from 0.
+        byte: usize,
+        /// What is wrong, and what is allowed.
+        message: String,
+    },
     /// A file or folder that cannot be read or written.
     #[error("cannot {action} {}: {source}", path.display())]
     File {
@@ -301,7 +311,7 @@ impl Error {
             Error::Mesh { .. } => bad_input("mesh"),
             Error::Refused { code, .. } => bad_input(code),
             Error::SceneSyntax { .. } | Error::Scene { .. } => bad_input("scene"),
-            Error::FileSyntax { .. } => bad_input("file-syntax"),
+            Error::FileSyntax { .. } | Error::FileBytes { .. } => bad_input("file-syntax"),
             Error::File { .. } => bad_input("file"),
         }
     }

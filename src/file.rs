@@ -12,6 +12,9 @@ pub const MOST_OF_SCENE: u64 = 256 << 20;
 /// Most bytes of a mesh or a matrix: more than any body that can be solved needs.
 pub const MOST_OF_TABLE: u64 = 4 << 30;
 
+/// Most bytes of a surface: twenty million triangles.
+pub const MOST_OF_SURFACE: u64 = 1 << 30;
+
 /// Most bytes of what is no regular file, and so does not say how long it is: a pipe, a device.
 const MOST_OF_STREAM: u64 = 64 << 20;
 

@@ -84,6 +84,7 @@ pub use watch::Watch;
 pub mod internals {
     pub use crate::fem::element::{Cell, MAX_NODES, QuadraturePoint, Rule, Tabulated};
     pub use crate::fem::norms::error_norms_by;
+    pub use crate::fem::surface::{ClosedSurface, Closest};
     #[cfg(feature = "pictures")]
     pub use crate::output::body::{ContactPicture, ObstacleLine, common_limits, common_window};
     #[cfg(feature = "pictures")]

@@ -246,7 +246,7 @@ pub(super) struct Limits {
     /// Refuse what needs more memory, as 500MB or 1.5GB [default: what the machine has available]
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
     pub max_memory: Option<f64>,
-    /// Let the scene read mesh files that lie outside its own folder
+    /// Let the scene read files of meshes and surfaces that lie outside its own folder
     #[arg(long)]
     pub allow_outside: bool,
 }

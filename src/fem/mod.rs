@@ -10,6 +10,7 @@ pub(crate) mod material;
 pub(crate) mod mesh;
 pub(crate) mod norms;
 pub(crate) mod recovery;
+pub(crate) mod surface;
 
 pub use assembly::{
     DofMap, Frame, MassForm, add_body_force, add_body_force_field, add_pressure, add_traction, add_traction_field,

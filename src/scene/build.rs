@@ -1,9 +1,11 @@
 //! From a scene to a model: every value is checked where it is used, and named by its JSON path.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use super::elastic::locking;
 use super::entry::wrong;
+use super::files::Files;
 use super::model::Model;
 use super::obstacle::{Obstacle, PlacedObstacle};
 use super::parts::Parts;
@@ -33,6 +35,11 @@ impl Scene {
         self.build_of(self.bodies()?, further)
     }
 
+    /// The files that the scene names.
+    pub(super) fn files(&self) -> Files<'_> {
+        Files { folder: self.folder.as_deref().unwrap_or(Path::new("")), reads_outside: self.reads_outside }
+    }
+
     /// The same of bodies that stand for those of the scene, in their order: on other meshes.
     pub(crate) fn build_of(
         &self,
@@ -50,7 +57,7 @@ impl Scene {
         let path = |index: usize| format!("obstacles[{index}]");
         let mut obstacles = Vec::with_capacity(self.obstacles.len() + further.len());
         for (index, spec) in self.obstacles.iter().enumerate() {
-            obstacles.push(PlacedObstacle::of_scene(spec, &path(index), &body)?);
+            obstacles.push(PlacedObstacle::of_scene(spec, &path(index), &body, self.files())?);
         }
         for (boundary, obstacle) in further {
             let path = path(obstacles.len());

@@ -66,12 +66,7 @@ impl DescribedBody<'_> {
 
     /// The mesh of the shape.
     fn mesh(&self) -> Result<Mesh, Error> {
-        let site = Site {
-            path: self.path(""),
-            model: self.scene.model,
-            folder: self.scene.folder.as_deref(),
-            reads_outside: self.scene.reads_outside,
-        };
+        let site = Site { path: self.path(""), model: self.scene.model, files: self.scene.files() };
         self.spec.shape().mesh(&site).map_err(|error| self.at_body(error))
     }
 

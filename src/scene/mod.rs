@@ -26,6 +26,7 @@ mod dynamics;
 mod elastic;
 mod entry;
 mod explain;
+mod files;
 mod held;
 mod load;
 mod loads_in_time;

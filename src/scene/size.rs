@@ -35,7 +35,7 @@ impl Size {
 }
 
 impl Scene {
-    /// Estimates the size of the scene without building it; of a mesh file its length alone is read.
+    /// Estimates the size of the scene without building it; of a file that it names the length alone is read.
     pub fn size(&self) -> Size {
         let mut size = Size {
             nodes: 0.0,
@@ -48,8 +48,11 @@ impl Scene {
         let bodies = std::iter::once(&self.body).chain(self.further_bodies.iter().map(|further| &further.body));
         let radius = self.obstacles.iter().map(|obstacle| obstacle.shape.shape().radius());
         let reach = 2.0 * radius.fold(0.0, f64::max);
+        let surfaces: f64 = self.obstacles.iter().map(|obstacle| obstacle.shape.shape().bytes(self.files())).sum();
+        size.bytes += surfaces;
+        size.multigrid_bytes += surfaces;
         for body in bodies {
-            let block = body.shape().block(self.folder.as_deref());
+            let block = body.shape().block(Some(self.files()));
             let (dimension, counts) = (block.cells.len() as f64, block.counts);
             let cells: f64 = block.cells.iter().product();
             let lines: f64 = block.cells.iter().map(|cells| cells + 1.0).product();

@@ -12,7 +12,7 @@ const FLOORS: [&[&str]; 18] = [
     &["solution", "watch"],
     &["error"],
     &["file", "qp/barrier", "fem/formulation", "fem/geometry"],
-    &["qp/linear", "fem/element", "fem/material"],
+    &["qp/linear", "fem/element", "fem/material", "fem/surface"],
     &["qp/problem", "fem/mesh"],
     &["qp/certificate", "qp/transform", "qp/method", "fem/body"],
     &["qp/settings", "qp/matrix_market", "fem/assembly", "fem/recovery", "fem/norms"],

@@ -8,6 +8,7 @@ use std::time::Duration;
 
 use crate::oracles::Dense;
 use signorini::fem::GmshFile;
+use signorini::internals::ClosedSurface;
 use signorini::qp::read_problem;
 use signorini::{
     Condense, ContactProblem, Error, Method, Prepared, Scene, Settings, SparseMatrix, SymmetricMatrix, solve, solve_qp,
@@ -69,8 +70,17 @@ fn provoked() -> Result<BTreeMap<&'static str, (&'static str, Error)>, Error> {
         ("SceneSyntax", ("scene", Scene::from_json("{", "plane.json").map(drop).unwrap_err())),
         ("Scene", ("scene", scene(("\"bottom\"", "\"below\""))?.build().map(drop).unwrap_err())),
         ("FileSyntax", ("file-syntax", GmshFile::parse("", "square.msh").map(drop).unwrap_err())),
+        ("FileBytes", ("file-syntax", empty_surface())),
         ("File", ("file", read_problem(nowhere).unwrap_err())),
     ]))
+}
+
+/// A file of a surface with nothing in it.
+fn empty_surface() -> Error {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("die.stl");
+    fs::write(&file, "").unwrap();
+    ClosedSurface::read(&file, 1.0, [0.0; 3]).map(drop).unwrap_err()
 }
 
 /// A mesh of no such domain.

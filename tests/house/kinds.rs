@@ -98,6 +98,8 @@ fn an_obstacle_shape_stands_in_two_files() {
         ("Cylinder", "CylinderSpec", "cylinder"),
         ("Cone", "ConeSpec", "cone"),
         ("HeightMap", "HeightMapSpec", "height_map"),
+        ("Torus", "TorusSpec", "torus"),
+        ("Surface", "SurfaceSpec", "triangulated"),
         ("Body", "FacingSpec", "facing"),
     ] {
         let file = format!("scene/obstacle/{file}.rs");

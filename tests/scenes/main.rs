@@ -10,7 +10,10 @@ mod oracles;
 mod program;
 #[path = "../support/rollers.rs"]
 mod rollers;
+#[path = "../support/triangles.rs"]
+mod triangles;
 
+mod concave_obstacles;
 mod contact_scenes;
 mod dimensions;
 mod inclined_frames;
@@ -28,6 +31,7 @@ mod scene_errors;
 mod scene_model;
 mod slender;
 mod springs;
+mod surfaces;
 mod symmetry;
 mod turned_bodies;
 mod two_bodies;

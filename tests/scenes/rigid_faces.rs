@@ -145,7 +145,7 @@ fn faces_that_cannot_move_so_are_refused_where_they_stand() {
     let overlapping = |scene: &mut Value| scene["supports"] = json!([{"on": {"boundary": "bottom"}, "x": 0, "y": 0}]);
     refused(&overlapping, &["rigid-faces[0]", "held by supports[0]", "prescribe `x` too"]);
     let twice = |scene: &mut Value| {
-        let other = json!({"boundary": "top", "force": [1, 0]});
+        let other = json!({"boundary": "right", "force": [1, 0]});
         scene["rigid-faces"].as_array_mut().unwrap().push(other);
     };
     refused(&twice, &["rigid-faces[1].boundary", "rigid-faces[0] too"]);

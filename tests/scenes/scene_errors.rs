@@ -164,7 +164,7 @@ fn texts_that_are_no_scene_are_refused_at_path_line_and_column() {
         ),
         (with("/obstacles/0/approach", json!("up")), "obstacles[0].approach", "`+x`, `-x`, `+y`, `-y`"),
         (with("/obstacles/0/rule", json!("closest")), "obstacles[0].rule", "`closest-point`"),
-        (shape(json!({"torus": {}})), "obstacles[0].shape.torus", "`plane`"),
+        (shape(json!({"helix": {}})), "obstacles[0].shape.helix", "`plane`"),
         (
             shape(json!({"circle": {"apex": [0, 1, 2], "radius": 1}})),
             "obstacles[0].shape.circle.apex",

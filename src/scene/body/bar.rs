@@ -1,13 +1,12 @@
 //! The structured bar along x.
 
-use std::path::Path;
-
 use serde::{Deserialize, Serialize};
 
 use super::shape::{About, Block, BodyShape, Site};
 use crate::error::Error;
 use crate::fem::mesh::{Boundary, ElementKind, FacetKind, Mesh, check_lines};
 use crate::fem::{Axis, Integration};
+use crate::scene::files::Files;
 use crate::scene::schema::json::object;
 
 /// A bar along x.
@@ -42,7 +41,7 @@ impl BodyShape for BarSpec {
         bar(&site.lines(&self.x, "x")?)
     }
 
-    fn block(&self, _: Option<&Path>) -> Block {
+    fn block(&self, _: Option<Files>) -> Block {
         Block::product(&[&self.x], ElementKind::Line2)
     }
 

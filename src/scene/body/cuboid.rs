@@ -1,13 +1,12 @@
 //! The structured box: the product of three graded axes.
 
-use std::path::Path;
-
 use serde::{Deserialize, Serialize};
 
 use super::shape::{About, Block, BodyShape, Site};
 use crate::error::Error;
 use crate::fem::mesh::{Boundary, ElementKind, Mesh, check_lines, fail};
 use crate::fem::{Axis, Integration};
+use crate::scene::files::Files;
 use crate::scene::schema::cells::SolidElementSpec;
 use crate::scene::schema::json::{object, word};
 
@@ -65,7 +64,7 @@ impl BodyShape for BoxSpec {
         cuboid(&site.lines(&self.x, "x")?, &site.lines(&self.y, "y")?, &site.lines(&self.z, "z")?, self.element.kind())
     }
 
-    fn block(&self, _: Option<&Path>) -> Block {
+    fn block(&self, _: Option<Files>) -> Block {
         Block::product(&[&self.x, &self.y, &self.z], self.element.kind())
     }
 

@@ -1,7 +1,5 @@
 //! The disc: a half disc and its mirror image, joined along the cut.
 
-use std::path::Path;
-
 use serde::{Deserialize, Serialize};
 
 use super::half_disc::{half_disc, half_disc_block};
@@ -9,6 +7,7 @@ use super::shape::{About, Block, BodyShape, Sides, Site};
 use crate::error::Error;
 use crate::fem::Integration;
 use crate::fem::mesh::{Boundary, ElementKind, Mesh, Zone, fail};
+use crate::scene::files::Files;
 use crate::scene::schema::cells::ElementSpec;
 use crate::scene::schema::json::{object, word};
 
@@ -59,7 +58,7 @@ impl BodyShape for DiscSpec {
         disc(self.centre, self.radius, &self.zone, self.sides(), self.element.kind())
     }
 
-    fn block(&self, _: Option<&Path>) -> Block {
+    fn block(&self, _: Option<Files>) -> Block {
         let mut halves = half_disc_block(&self.zone, self.radius, self.sides(), self.element.kind());
         halves.cells[0] *= 2.0;
         halves

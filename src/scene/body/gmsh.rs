@@ -1,7 +1,5 @@
 //! A body from a mesh file of Gmsh.
 
-use std::path::{Path, PathBuf};
-
 use serde::{Deserialize, Serialize};
 
 use super::shape::{About, Block, BodyShape, Site};
@@ -10,6 +8,7 @@ use crate::fem::Integration;
 use crate::fem::mesh::gmsh::GmshFile;
 use crate::fem::mesh::{ElementKind, Mesh};
 use crate::scene::entry::{refused, wrong};
+use crate::scene::files::Files;
 use crate::scene::schema::json::word;
 
 /// Bytes of a mesh file for one node and the elements that belong to it, about: files of Gmsh of either version, ASCII or
@@ -40,38 +39,13 @@ fn unchanged() -> f64 {
 
 pub(super) const ABOUT: About = About { name: "gmsh", dimension: None };
 
-impl GmshSpec {
-    /// The mesh file that is named, which lies below the folder of the scene once `..` and links are followed, unless the
-    /// scene may read outside.
-    fn mesh_file(&self, site: &Site) -> Result<PathBuf, Error> {
-        // The folder of a scene that is named alone is the empty path.
-        let folder = site.folder.unwrap_or(Path::new(""));
-        let file = folder.join(&self.file);
-        if site.reads_outside {
-            return Ok(file);
-        }
-        let real = |path: &Path| {
-            path.canonicalize().map_err(|source| Error::File { action: "read", path: path.into(), source })
-        };
-        let home = real(if folder.as_os_str().is_empty() { Path::new(".") } else { folder })?;
-        if !real(&file)?.starts_with(home) {
-            let message = format!(
-                "the file {} lies outside the folder of the scene; copy it there, or allow it (--allow-outside)",
-                file.display()
-            );
-            return Err(wrong(format!("{}.file", site.path), message));
-        }
-        Ok(file)
-    }
-}
-
 impl BodyShape for GmshSpec {
     fn integration(&self) -> Integration {
         self.integration
     }
 
     fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
-        let file = GmshFile::read(self.mesh_file(site)?)?;
+        let file = GmshFile::read(site.files.named(&self.file, format!("{}.file", site.path))?)?;
         let bodies = file.bodies();
         if self.group.is_none() && bodies.len() > 1 {
             let names = bodies.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
@@ -92,9 +66,8 @@ impl BodyShape for GmshSpec {
         Ok(mesh)
     }
 
-    fn block(&self, folder: Option<&Path>) -> Block {
-        let file = folder.map_or_else(|| self.file.clone().into(), |folder| folder.join(&self.file));
-        let bytes = std::fs::metadata(file).map_or(0.0, |about| about.len() as f64);
+    fn block(&self, files: Option<Files>) -> Block {
+        let bytes = files.map_or(0.0, |files| files.length(&self.file));
         // What is plane has fewer elements for a node, which its own estimate hardly notices.
         let side = (bytes / OF_MESH_FILE).sqrt();
         Block { cells: vec![side; 2], lengths: Vec::new(), counts: ElementKind::T3.reference().counts }

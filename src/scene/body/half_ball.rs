@@ -1,7 +1,5 @@
 //! The lower half of a ball, or its mirror image: a core of bricks, and shells of bricks around it out to the sphere.
 
-use std::path::Path;
-
 use serde::{Deserialize, Serialize};
 
 use super::shape::{About, Block, BodyShape, RoundCells, Sides, Site};
@@ -11,6 +9,7 @@ use crate::fem::mesh::lattice::Lattice;
 use crate::fem::mesh::round::{Grading, mirrored};
 use crate::fem::mesh::{ElementKind, MAX_NODES, Mesh, Zone, fail};
 use crate::scene::entry::wrong;
+use crate::scene::files::Files;
 use crate::scene::schema::cells::{HalfSpec, SolidElementSpec};
 use crate::scene::schema::json::{object, word, words};
 
@@ -79,7 +78,7 @@ impl BodyShape for HalfBallSpec {
         Ok(self.half.of(lower, 2, self.centre[2]))
     }
 
-    fn block(&self, _: Option<&Path>) -> Block {
+    fn block(&self, _: Option<Files>) -> Block {
         let RoundCells { aside, down, shells } = RoundCells::of(&self.zone, self.radius);
         let halves = self.symmetric.len().min(2) as i32;
         // Top and four sides of the core, less what symmetry leaves out.

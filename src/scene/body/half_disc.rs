@@ -1,7 +1,5 @@
 //! The lower half of a disc, or its mirror image: a core of straight lines, and shells around it out to the arc.
 
-use std::path::Path;
-
 use serde::{Deserialize, Serialize};
 
 use super::shape::{About, Block, BodyShape, RoundCells, Sides, Site};
@@ -10,6 +8,7 @@ use crate::fem::Integration;
 use crate::fem::mesh::lattice::{Lattice, half_steps};
 use crate::fem::mesh::round::{Grading, mirrored};
 use crate::fem::mesh::{ElementKind, MAX_NODES, Mesh, Zone, fail};
+use crate::scene::files::Files;
 use crate::scene::schema::cells::{ElementSpec, HalfSpec};
 use crate::scene::schema::json::{object, word};
 
@@ -64,7 +63,7 @@ impl BodyShape for HalfDiscSpec {
         Ok(self.half.of(lower, 1, self.centre[1]))
     }
 
-    fn block(&self, _: Option<&Path>) -> Block {
+    fn block(&self, _: Option<Files>) -> Block {
         half_disc_block(&self.zone, self.radius, self.sides(), self.element.kind())
     }
 

@@ -1,7 +1,5 @@
 //! The structured rectangle: the product of two graded axes.
 
-use std::path::Path;
-
 use serde::{Deserialize, Serialize};
 
 use super::shape::{About, Block, BodyShape, Site};
@@ -9,6 +7,7 @@ use crate::error::Error;
 use crate::fem::mesh::lattice::half_steps;
 use crate::fem::mesh::{Boundary, ElementKind, Mesh, check_lines, fail};
 use crate::fem::{Axis, Integration};
+use crate::scene::files::Files;
 use crate::scene::schema::cells::ElementSpec;
 use crate::scene::schema::json::{object, word};
 
@@ -46,7 +45,7 @@ impl BodyShape for RectangleSpec {
         rectangle(&site.lines(&self.x, "x")?, &site.lines(&self.y, "y")?, self.element.kind())
     }
 
-    fn block(&self, _: Option<&Path>) -> Block {
+    fn block(&self, _: Option<Files>) -> Block {
         Block::product(&[&self.x, &self.y], self.element.kind())
     }
 

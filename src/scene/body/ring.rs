@@ -1,7 +1,5 @@
 //! The structured ring, or a sector of it: the product of a radial axis and an angle.
 
-use std::path::Path;
-
 use serde::{Deserialize, Serialize};
 
 use super::shape::{About, Block, BodyShape, Site};
@@ -9,6 +7,7 @@ use crate::error::Error;
 use crate::fem::mesh::lattice::{Lattice, half_steps};
 use crate::fem::mesh::{ElementKind, Mesh, check_lines, fail};
 use crate::fem::{Axis, Integration};
+use crate::scene::files::Files;
 use crate::scene::schema::cells::ElementSpec;
 use crate::scene::schema::json::{object, word};
 
@@ -53,7 +52,7 @@ impl BodyShape for RingSpec {
         ring(self.centre, &site.lines(&self.radius, "radius")?, &site.lines(&self.angle, "angle")?, self.element.kind())
     }
 
-    fn block(&self, _: Option<&Path>) -> Block {
+    fn block(&self, _: Option<Files>) -> Block {
         // An angle is no length.
         Block { lengths: Vec::new(), ..Block::product(&[&self.radius, &self.angle], self.element.kind()) }
     }

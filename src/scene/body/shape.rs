@@ -1,12 +1,11 @@
 //! What every body shape tells: its mesh, its size before anything is built, the same on finer cells.
 
-use std::path::Path;
-
 use crate::error::Error;
 use crate::fem::Integration;
 use crate::fem::element::LatticeCounts;
 use crate::fem::mesh::{Axis, ElementKind, MAX_NODES, Mesh, Zone};
 use crate::scene::entry::wrong;
+use crate::scene::files::Files;
 use crate::scene::schema::model::ModelSpec;
 
 /// The corner to corner part of a round body's radius that is not core, about.
@@ -40,8 +39,8 @@ pub(in crate::scene) trait BodyShape {
     /// The mesh; errors that are not of the scene yet are those of the body as a whole.
     fn mesh(&self, site: &Site) -> Result<Mesh, Error>;
 
-    /// A block of cells that stands for the mesh; files start from `folder`.
-    fn block(&self, folder: Option<&Path>) -> Block;
+    /// A block of cells that stands for the mesh, which may be one of `files`.
+    fn block(&self, files: Option<Files>) -> Block;
 
     /// Cuts every cell into `times` along each edge.
     fn refine(&mut self, times: usize) -> Result<(), Error>;
@@ -52,10 +51,8 @@ pub(in crate::scene) struct Site<'a> {
     /// Its JSON path, as `body.ring`.
     pub path: String,
     pub model: ModelSpec,
-    /// Where relative file names start.
-    pub folder: Option<&'a Path>,
-    /// Files outside the folder may be read.
-    pub reads_outside: bool,
+    /// The files of the scene.
+    pub files: Files<'a>,
 }
 
 impl Site<'_> {

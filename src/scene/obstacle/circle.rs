@@ -1,4 +1,4 @@
-//! A circle, the half that faces the body: h(s) = R - sqrt(R^2 - s^2).
+//! A circle seen from outside, the half that faces the body: h(s) = R - sqrt(R^2 - s^2); or from inside: h(s) = sqrt(R^2 - s^2) - R.
 
 use std::sync::Arc;
 
@@ -6,9 +6,10 @@ use serde::{Deserialize, Serialize};
 
 use super::frame::Local;
 use super::profile::Profile;
-use super::shape::{About, Geometry, ObstacleShape, Site};
+use super::shape::{About, Geometry, ObstacleShape, Side, Site};
 use super::surface::{Foot, Surface};
 use crate::error::Error;
+use crate::scene::schema::json::word;
 
 /// A circle, given by its centre or by its apex.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -18,11 +19,14 @@ pub struct CircleSpec {
     /// The centre.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub centre: Option<[f64; 2]>,
-    /// The point nearest to the body: the centre less the radius along the approach direction.
+    /// The centre less the radius along the approach direction, the point nearest to the body; from inside the centre plus it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub apex: Option<[f64; 2]>,
     /// Radius, positive. Nodes beyond its reach have no contact row.
     pub radius: f64,
+    /// Where the body lies: `outside`, or `inside` as a pin in a hole and all around is the obstacle.
+    #[serde(default, deserialize_with = "word", skip_serializing_if = "Side::is_outside")]
+    pub side: Side,
 }
 
 pub(super) const ABOUT: About = About { name: "circle", dimensions: &[2] };
@@ -30,8 +34,8 @@ pub(super) const ABOUT: About = About { name: "circle", dimensions: &[2] };
 impl ObstacleShape for CircleSpec {
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let radius = site.positive("radius", self.radius)?;
-        let apex = site.apex(self.centre, self.apex, radius)?;
-        Ok(Geometry::rigid(site, Profile::new(site, site.local(apex), Arc::new(Circle { radius }))))
+        let apex = site.apex(self.centre, self.apex, self.side.signed(radius))?;
+        Ok(Geometry::rigid(site, Profile::new(site, site.local(apex), round(radius, self.side))))
     }
 
     fn radius(&self) -> f64 {
@@ -39,10 +43,18 @@ impl ObstacleShape for CircleSpec {
     }
 }
 
+/// A circle with its apex at the origin.
+pub(super) fn round(radius: f64, side: Side) -> Arc<dyn Surface> {
+    match side {
+        Side::Outside => Arc::new(Circle { radius }),
+        Side::Inside => Arc::new(Hollow(Circle { radius })),
+    }
+}
+
 /// A circle with its apex at the origin and its centre at (0, R).
 #[derive(Debug)]
-pub(super) struct Circle {
-    pub radius: f64,
+struct Circle {
+    radius: f64,
 }
 
 impl Surface for Circle {
@@ -84,5 +96,36 @@ impl Surface for Circle {
 
     fn range(&self) -> (f64, f64) {
         (-self.radius, self.radius)
+    }
+}
+
+/// What lies around a circle with its apex at the origin and its centre at (0, -R): the mirror image of the circle as a graph.
+#[derive(Debug)]
+struct Hollow(Circle);
+
+impl Surface for Hollow {
+    fn height(&self, along: f64) -> Option<f64> {
+        self.0.height(along).map(|height| 0.0 - height)
+    }
+
+    fn enclosed(&self, from: f64, to: f64) -> Option<([f64; 3], [f64; 2])> {
+        let (_, [below, above]) = self.0.enclosed(from, to)?;
+        Some((self.heights(from, to)?, [above, below]))
+    }
+
+    /// The radius less the distance to the centre, all around; from the centre straight along the approach direction.
+    fn closest(&self, [along, towards]: Local, tolerance: f64) -> Result<Option<Foot>, &'static str> {
+        let (r, rest) = (self.0.radius, self.0.radius + towards);
+        let to_centre = along.hypot(rest);
+        if to_centre <= tolerance {
+            return Ok(Some(Foot { normal: [0.0, 1.0], distance: -towards }));
+        }
+        // -(s^2 + q^2 + 2 R q)/(d + R) is R - d without the cancellation.
+        let distance = -(along * along + towards * towards + 2.0 * r * towards) / (to_centre + r);
+        Ok(Some(Foot { normal: [along / to_centre, rest / to_centre], distance }))
+    }
+
+    fn range(&self) -> (f64, f64) {
+        self.0.range()
     }
 }

@@ -1,15 +1,14 @@
-//! A cylinder without ends, the half that faces the body: a circle drawn out along the axis.
-
-use std::sync::Arc;
+//! A cylinder without ends, seen from outside or inside: a circle drawn out along the axis.
 
 use serde::{Deserialize, Serialize};
 
-use super::circle::Circle;
-use super::shape::{About, Geometry, ObstacleShape, Site};
+use super::circle::round;
+use super::shape::{About, Geometry, ObstacleShape, Side, Site};
 use super::solid::{Form, Solid};
 use crate::error::Error;
 use crate::fem::geometry::dot;
-use crate::scene::entry::{point, vector, wrong};
+use crate::scene::entry::{point, wrong};
+use crate::scene::schema::json::word;
 
 /// An axis of a cylinder may lean by the rounding of its written components.
 const PERPENDICULAR: f64 = 1e-9;
@@ -22,13 +21,16 @@ pub struct CylinderSpec {
     /// Any point of the axis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub centre: Option<[f64; 3]>,
-    /// Any point of the line nearest to the body: the axis less the radius along the approach direction.
+    /// Any point of the axis less the radius along the approach direction, the line nearest to the body; from inside plus it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub apex: Option<[f64; 3]>,
     /// Direction of the axis, perpendicular to the approach direction. Of any length but zero.
     pub axis: [f64; 3],
     /// Radius, positive. Nodes beyond its reach have no contact row.
     pub radius: f64,
+    /// Where the body lies: `outside`, or `inside` as a pin in a hole and all around is the obstacle.
+    #[serde(default, deserialize_with = "word", skip_serializing_if = "Side::is_outside")]
+    pub side: Side,
 }
 
 pub(super) const ABOUT: About = About { name: "cylinder", dimensions: &[3] };
@@ -36,26 +38,22 @@ pub(super) const ABOUT: About = About { name: "cylinder", dimensions: &[3] };
 impl ObstacleShape for CylinderSpec {
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let radius = site.positive("radius", self.radius)?;
-        let apex = site.apex(self.centre, self.apex, radius)?;
-        let axis = axis_across(self.axis, &site.field("axis"), site.direction())?;
-        Ok(Geometry::rigid(site, Solid::new(site, apex, Form::DrawnOut(Arc::new(Circle { radius }))).along(axis)))
+        let apex = site.apex(self.centre, self.apex, self.side.signed(radius))?;
+        let axis = axis_across(&self.axis, site)?;
+        Ok(Geometry::rigid(site, Solid::new(site, apex, Form::DrawnOut(round(radius, self.side))).along(axis)))
     }
 }
 
 /// The unit direction of a cylinder's axis.
-fn axis_across(axis: [f64; 3], path: &str, approach: [f64; 3]) -> Result<[f64; 3], Error> {
-    let axis = vector(path, &axis, 3)?;
-    let largest = axis.iter().fold(0.0_f64, |largest, part| largest.max(part.abs()));
-    if largest == 0.0 {
-        return Err(wrong(path, "(0, 0, 0) has no direction; the axis needs a length"));
-    }
-    let scaled = axis.map(|part| part / largest);
-    let lean = dot(scaled, approach);
+fn axis_across(written: &[f64; 3], site: &Site) -> Result<[f64; 3], Error> {
+    let (axis, approach) = (site.axis("axis", written)?, site.direction());
+    let lean = dot(axis, approach);
     if lean.abs() > PERPENDICULAR {
-        let message = format!("{} must be perpendicular to the approach direction {}", point(&axis), point(&approach));
-        return Err(wrong(path, message));
+        let message =
+            format!("{} must be perpendicular to the approach direction {}", point(written), point(&approach));
+        return Err(wrong(site.field("axis"), message));
     }
-    let level = [0, 1, 2].map(|i| scaled[i] - lean * approach[i]);
+    let level = [0, 1, 2].map(|i| axis[i] - lean * approach[i]);
     let length = dot(level, level).sqrt();
     Ok(level.map(|part| part / length))
 }

@@ -20,6 +20,8 @@ mod solid;
 mod sphere;
 mod surface;
 mod table;
+mod torus;
+mod triangulated;
 mod wedge;
 
 pub use circle::CircleSpec;
@@ -33,6 +35,8 @@ pub use plane::PlaneSpec;
 pub use row::{Obstacle, ObstacleRow};
 pub use sphere::SphereSpec;
 pub use table::TableSpec;
+pub use torus::TorusSpec;
+pub use triangulated::SurfaceSpec;
 pub use wedge::WedgeSpec;
 
 use serde::{Deserialize, Serialize};
@@ -49,26 +53,30 @@ pub enum ShapeSpec {
     Plane(#[serde(deserialize_with = "object")] PlaneSpec),
     /// A parabola t^2/(2 radius) that bulges towards the body.
     Parabola(#[serde(deserialize_with = "object")] ParabolaSpec),
-    /// The half of a circle that faces the body.
+    /// A circle, seen from outside or inside.
     Circle(#[serde(deserialize_with = "object")] CircleSpec),
     /// A wedge slope |t| that points at the body.
     Wedge(#[serde(deserialize_with = "object")] WedgeSpec),
     /// A polyline.
     Table(#[serde(deserialize_with = "object")] TableSpec),
-    /// In space: the half of a sphere that faces the body.
+    /// In space: a sphere, seen from outside or inside.
     Sphere(#[serde(deserialize_with = "object")] SphereSpec),
-    /// In space: the half of a cylinder that faces the body, its axis across the approach direction.
+    /// In space: a cylinder, seen from outside or inside, its axis across the approach direction.
     Cylinder(#[serde(deserialize_with = "object")] CylinderSpec),
     /// In space: a cone that points at the body, its axis along the approach direction.
     Cone(#[serde(deserialize_with = "object")] ConeSpec),
     /// In space: heights on a grid, bilinear in between.
     HeightMap(#[serde(deserialize_with = "object")] HeightMapSpec),
+    /// In space: a torus, its axis along or across the approach direction.
+    Torus(#[serde(deserialize_with = "object")] TorusSpec),
+    /// In space: a closed surface of triangles from a file.
+    Surface(#[serde(deserialize_with = "object")] SurfaceSpec),
     /// The surface of another elastic body, node to node.
     Body(#[serde(deserialize_with = "object")] FacingSpec),
 }
 
 /// What all shapes are called, in the order in which messages name them.
-const ALL: [About; 10] = [
+const ALL: [About; 12] = [
     plane::ABOUT,
     parabola::ABOUT,
     circle::ABOUT,
@@ -78,6 +86,8 @@ const ALL: [About; 10] = [
     cylinder::ABOUT,
     cone::ABOUT,
     height_map::ABOUT,
+    torus::ABOUT,
+    triangulated::ABOUT,
     facing::ABOUT,
 ];
 
@@ -104,6 +114,8 @@ impl ShapeSpec {
             ShapeSpec::Cylinder(spec) => (cylinder::ABOUT, spec),
             ShapeSpec::Cone(spec) => (cone::ABOUT, spec),
             ShapeSpec::HeightMap(spec) => (height_map::ABOUT, spec),
+            ShapeSpec::Torus(spec) => (torus::ABOUT, spec),
+            ShapeSpec::Surface(spec) => (triangulated::ABOUT, spec),
             ShapeSpec::Body(spec) => (facing::ABOUT, spec),
         }
     }

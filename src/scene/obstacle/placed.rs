@@ -9,6 +9,7 @@ use crate::fem::assembly::{node_normals, tributary_areas};
 use crate::fem::body::ElasticBody;
 use crate::fem::geometry::length;
 use crate::scene::entry::{boundary, finite, number, wrong};
+use crate::scene::files::Files;
 use crate::scene::schema::approach::Rule;
 use crate::scene::schema::obstacle::ObstacleSpec;
 
@@ -38,7 +39,12 @@ pub struct PlacedObstacle {
 
 impl PlacedObstacle {
     /// Checks the obstacle at JSON path `path`.
-    pub(in crate::scene) fn of_scene(spec: &ObstacleSpec, path: &str, body: &ElasticBody) -> Result<Self, Error> {
+    pub(in crate::scene) fn of_scene(
+        spec: &ObstacleSpec,
+        path: &str,
+        body: &ElasticBody,
+        files: Files,
+    ) -> Result<Self, Error> {
         let (candidates, outward) = candidates(body, &spec.boundary, &format!("{path}.boundary"))?;
         let (gap, force) = pressing(spec, path)?;
         let dimension = body.dimension();
@@ -60,6 +66,7 @@ impl PlacedObstacle {
             rule: spec.rule,
             body,
             candidates: &candidates,
+            files,
         };
         let (approach, geometry) = (site.direction(), shape.place(&site)?);
         if force.is_some() && matches!(geometry, Geometry::Pairs(_)) {

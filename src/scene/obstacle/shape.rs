@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use super::frame::{Frame, Local};
 use super::pairs::Pair;
 use super::row::Obstacle;
@@ -9,6 +11,7 @@ use super::ruled::{RigidSurface, Ruled};
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::scene::entry::{COORDINATE_ROUNDING, finite, number, vector, wrong};
+use crate::scene::files::Files;
 use crate::scene::schema::approach::{Approach, Rule};
 
 /// What an obstacle shape is called, and where it belongs.
@@ -33,6 +36,11 @@ pub(in crate::scene) trait ObstacleShape {
     /// A length, beyond which the surface does not reach or touch.
     fn radius(&self) -> f64 {
         f64::INFINITY
+    }
+
+    /// Memory that it takes beside its rows, estimated, in bytes.
+    fn bytes(&self, _files: Files) -> f64 {
+        0.0
     }
 }
 
@@ -65,6 +73,33 @@ pub(in crate::scene) struct Site<'a> {
     pub body: &'a ElasticBody,
     /// The candidate nodes with their tributary areas.
     pub candidates: &'a [(usize, f64)],
+    pub files: Files<'a>,
+}
+
+/// Where the body lies to a round or closed surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum Side {
+    /// The body lies outside; the obstacle is what the surface encloses.
+    #[default]
+    Outside,
+    /// The body lies inside, as a ball in a cup or a pin in a hole; the obstacle is all around it.
+    Inside,
+}
+
+impl Side {
+    pub(super) fn is_outside(&self) -> bool {
+        *self == Side::Outside
+    }
+
+    /// A radius with its sign along the approach direction from the apex to the centre.
+    pub(super) fn signed(self, radius: f64) -> f64 {
+        match self {
+            Side::Outside => radius,
+            Side::Inside => -radius,
+        }
+    }
 }
 
 impl Site<'_> {
@@ -96,6 +131,17 @@ impl Site<'_> {
         vector(&self.field(name), entries, entries.len())
     }
 
+    /// A field that is a direction of any length but zero, its largest component scaled to 1.
+    pub fn axis(&self, name: &str, entries: &[f64; 3]) -> Result<[f64; 3], Error> {
+        let path = self.field(name);
+        let axis = vector(&path, entries, 3)?;
+        let largest = axis.iter().fold(0.0_f64, |largest, part| largest.max(part.abs()));
+        if largest == 0.0 {
+            return Err(wrong(path, "(0, 0, 0) has no direction; the axis needs a length"));
+        }
+        Ok(axis.map(|part| part / largest))
+    }
+
     /// A field that is positive.
     pub fn positive(&self, name: &str, value: f64) -> Result<f64, Error> {
         let path = self.field(name);
@@ -107,7 +153,7 @@ impl Site<'_> {
         }
     }
 
-    /// The point nearest to the body of a round shape, which its centre or its apex gives.
+    /// The apex of a round shape, which it tells itself or by its centre: that lies `radius` further along the approach direction.
     pub fn apex<const N: usize>(
         &self,
         centre: Option<[f64; N]>,

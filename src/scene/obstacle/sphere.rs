@@ -1,13 +1,12 @@
-//! A sphere, the half that faces the body: a circle turned about the approach direction.
-
-use std::sync::Arc;
+//! A sphere, seen from outside or inside: a circle turned about the approach direction.
 
 use serde::{Deserialize, Serialize};
 
-use super::circle::Circle;
-use super::shape::{About, Geometry, ObstacleShape, Site};
+use super::circle::round;
+use super::shape::{About, Geometry, ObstacleShape, Side, Site};
 use super::solid::{Form, Solid};
 use crate::error::Error;
+use crate::scene::schema::json::word;
 
 /// A sphere, given by its centre or by its apex.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -17,11 +16,14 @@ pub struct SphereSpec {
     /// The centre.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub centre: Option<[f64; 3]>,
-    /// The point nearest to the body: the centre less the radius along the approach direction.
+    /// The centre less the radius along the approach direction, the point nearest to the body; from inside the centre plus it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub apex: Option<[f64; 3]>,
     /// Radius, positive. Nodes beyond its reach have no contact row.
     pub radius: f64,
+    /// Where the body lies: `outside`, or `inside` as a ball in a cup and all around is the obstacle.
+    #[serde(default, deserialize_with = "word", skip_serializing_if = "Side::is_outside")]
+    pub side: Side,
 }
 
 pub(super) const ABOUT: About = About { name: "sphere", dimensions: &[3] };
@@ -29,8 +31,8 @@ pub(super) const ABOUT: About = About { name: "sphere", dimensions: &[3] };
 impl ObstacleShape for SphereSpec {
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let radius = site.positive("radius", self.radius)?;
-        let apex = site.apex(self.centre, self.apex, radius)?;
-        Ok(Geometry::rigid(site, Solid::new(site, apex, Form::Turned(Arc::new(Circle { radius })))))
+        let apex = site.apex(self.centre, self.apex, self.side.signed(radius))?;
+        Ok(Geometry::rigid(site, Solid::new(site, apex, Form::Turned(round(radius, self.side)))))
     }
 
     fn radius(&self) -> f64 {

@@ -99,7 +99,7 @@ pub struct Scene {
     /// The folder of the file that the scene was read from: where relative file names start. Not part of the text.
     #[serde(skip)]
     pub folder: Option<PathBuf>,
-    /// Whether the scene may name mesh files outside its folder. Not part of the text.
+    /// Whether the scene may name files outside its folder. Not part of the text.
     #[serde(skip)]
     pub reads_outside: bool,
 }

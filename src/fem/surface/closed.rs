@@ -1,0 +1,163 @@
+//! A closed surface: every edge joins two triangles that run along it in opposite directions.
+
+use super::facets::Facets;
+use super::tree::{Limits, NOWHERE, Tree, joined};
+use super::triangle::Triangle;
+use crate::error::Error;
+use crate::fem::geometry::{distance, dot, length, minus};
+
+/// A volume below this times area and extent is rounding: a sheet that lies on itself encloses none.
+const NO_VOLUME: f64 = 1e-13;
+
+/// The surface of a solid, or of several.
+#[derive(Debug)]
+pub struct ClosedSurface {
+    vertices: Vec<[f64; 3]>,
+    /// Counterclockwise seen from outside.
+    corners: Vec<[u32; 3]>,
+    around: Around,
+    tree: Tree,
+}
+
+/// The triangles around each vertex.
+#[derive(Debug)]
+struct Around {
+    starts: Vec<u32>,
+    triangles: Vec<u32>,
+}
+
+impl Around {
+    fn new(vertices: usize, corners: &[[u32; 3]]) -> Self {
+        let mut starts = vec![0; vertices + 1];
+        corners.iter().flatten().for_each(|&vertex| starts[vertex as usize + 1] += 1);
+        for vertex in 0..vertices {
+            starts[vertex + 1] += starts[vertex];
+        }
+        let (mut next, mut triangles) = (starts.clone(), vec![0; 3 * corners.len()]);
+        for (triangle, corners) in corners.iter().enumerate() {
+            for &vertex in corners {
+                triangles[next[vertex as usize] as usize] = triangle as u32;
+                next[vertex as usize] += 1;
+            }
+        }
+        Around { starts, triangles }
+    }
+
+    fn at(&self, vertex: u32) -> &[u32] {
+        let vertex = vertex as usize;
+        &self.triangles[self.starts[vertex] as usize..self.starts[vertex + 1] as usize]
+    }
+}
+
+impl ClosedSurface {
+    /// Checks that the triangles close, turns them if all run clockwise, and makes the tree.
+    pub(super) fn new(mut facets: Facets) -> Result<Self, Error> {
+        let around = Around::new(facets.vertices.len(), &facets.corners);
+        check_edges(&facets, &around)?;
+        let place = |corners: &[u32; 3]| Triangle(corners.map(|vertex| facets.vertices[vertex as usize]));
+        let has_area = |&triangle: &u32| place(&facets.corners[triangle as usize]).area_normal() != [0.0; 3];
+        let numbers: Vec<u32> = (0..facets.corners.len() as u32).filter(has_area).collect();
+        if numbers.is_empty() {
+            return Err(facets.fault(0, "it holds no triangle with an area"));
+        }
+        let tree = Tree::new(&numbers, |triangle| limits(place(&facets.corners[triangle as usize])));
+        let [low, high] = tree.limits();
+        let (mut volume, mut area) = (0.0, 0.0);
+        for triangle in numbers.iter().map(|&triangle| place(&facets.corners[triangle as usize])) {
+            let normal = triangle.area_normal();
+            volume += dot(normal, minus(triangle.0[0], low)) / 6.0;
+            area += length(normal) / 2.0;
+        }
+        if volume.abs() <= NO_VOLUME * area * distance(low, high) {
+            return Err(facets.fault(0, format!("it encloses no volume: {volume:.1e}, for an area of {area:.1e}")));
+        }
+        if volume < 0.0 {
+            facets.corners.iter_mut().for_each(|corners| corners.swap(1, 2));
+        }
+        Ok(ClosedSurface { vertices: facets.vertices, corners: facets.corners, around, tree })
+    }
+
+    pub(super) fn tree(&self) -> &Tree {
+        &self.tree
+    }
+
+    pub(super) fn triangle(&self, number: u32) -> Triangle {
+        Triangle(self.corners_of(number).map(|vertex| self.vertices[vertex as usize]))
+    }
+
+    pub(super) fn corners_of(&self, number: u32) -> [u32; 3] {
+        self.corners[number as usize]
+    }
+
+    /// The triangles around a vertex.
+    pub(super) fn around(&self, vertex: u32) -> &[u32] {
+        self.around.at(vertex)
+    }
+}
+
+fn limits(triangle: Triangle) -> Limits {
+    triangle.0.into_iter().fold(NOWHERE, |sum, corner| joined(sum, [corner; 2]))
+}
+
+/// Edges with one fault.
+#[derive(Clone, Copy, Debug)]
+struct Faulty {
+    /// Their number, counted once for each triangle along them.
+    count: usize,
+    /// The first triangle that has one.
+    triangle: usize,
+    edge: [u32; 2],
+}
+
+/// Every edge must join two triangles, in opposite directions.
+fn check_edges(facets: &Facets, around: &Around) -> Result<(), Error> {
+    let [mut open, mut crowded, mut alike]: [Option<Faulty>; 3] = [None; 3];
+    for (triangle, corners) in facets.corners.iter().enumerate() {
+        for corner in 0..3 {
+            let edge = [corners[corner], corners[(corner + 1) % 3]];
+            // The end with fewer triangles: at the tip of a cone there are very many.
+            let [from, to] = edge.map(|end| around.at(end));
+            let (mut along, mut against) = (0, 0);
+            for &other in if from.len() < to.len() { from } else { to } {
+                let other = facets.corners[other as usize];
+                let runs = |[a, b]: [u32; 2]| (0..3).any(|corner| [other[corner], other[(corner + 1) % 3]] == [a, b]);
+                along += usize::from(runs(edge));
+                against += usize::from(runs([edge[1], edge[0]]));
+            }
+            let kind = match (along, against) {
+                (1, 1) => continue,
+                (1, 0) => &mut open,
+                (2, 0) => &mut alike,
+                _ => &mut crowded,
+            };
+            kind.get_or_insert(Faulty { count: 0, triangle, edge }).count += 1;
+        }
+    }
+    let edges = |count: usize| if count == 1 { "1 edge".into() } else { format!("{count} edges") };
+    let (found, message) = match (open, crowded, alike) {
+        (Some(found), _, _) => {
+            let many = if found.count == 1 { "belongs" } else { "belong" };
+            let message = format!(
+                "the surface is not closed, vertices of equal coordinates welded: {} {many} to one triangle only, but an \
+                 obstacle needs an inside",
+                edges(found.count)
+            );
+            (found, message)
+        }
+        (None, Some(found), _) => {
+            (found, "more than two triangles meet at an edge, so that inside and outside are not told apart".into())
+        }
+        (None, None, Some(found)) => {
+            let message = format!(
+                "triangles on both sides of {} run along them in the same direction, so that one of them faces inwards; \
+                 orient them alike",
+                edges(found.count / 2)
+            );
+            (found, message)
+        }
+        (None, None, None) => return Ok(()),
+    };
+    let [from, to] = found.edge.map(|vertex| facets.vertices[vertex as usize]);
+    let message = format!("{message}; the first runs from {from:?} to {to:?} at the triangle that begins here");
+    Err(facets.fault(facets.place(found.triangle), message))
+}

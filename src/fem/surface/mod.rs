@@ -1,0 +1,48 @@
+//! Closed surfaces of triangles from files: the closest point, the side of a point, the way of a line through them.
+//!
+//! The readers are short and refuse with a place; the tree is the contact search itself, and its triangles need what
+//! libraries of collision detection leave out: edges without leaks, and all closest points that tie.
+
+mod closed;
+mod closest;
+mod crossings;
+mod facets;
+mod obj;
+mod stl;
+mod tree;
+mod triangle;
+
+use std::path::Path;
+
+pub use closed::ClosedSurface;
+pub use closest::Closest;
+pub(crate) use crossings::Crossing;
+
+use crate::error::Error;
+use crate::file::{MOST_OF_SURFACE, read_capped};
+
+impl ClosedSurface {
+    /// Reads a surface from an STL file, binary or ASCII, or from an OBJ file, as its name ends; its coordinates are
+    /// multiplied by `scale` and moved by `origin`.
+    ///
+    /// # Errors
+    /// [`Error::File`] for a file that cannot be read, [`Error::Setting`] for a scale that is not positive and finite;
+    /// [`Error::FileSyntax`] with a line, or [`Error::FileBytes`] with an offset, for a file of another form, coordinates
+    /// that are not finite or too large, and triangles that do not close to the surface of a solid. No error quotes the file.
+    pub fn read(file: &Path, scale: f64, origin: [f64; 3]) -> Result<Self, Error> {
+        if !(scale.is_normal() && scale > 0.0) {
+            return Err(Error::Setting { name: "scale", value: scale, allowed: "positive and finite" });
+        }
+        let ending = file.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
+        let parse = match ending.as_deref() {
+            Some("stl") => stl::read,
+            Some("obj") => obj::read,
+            _ => {
+                let message = "its name must end in `.stl` or `.obj`, which says what it holds".to_string();
+                return Err(Error::FileSyntax { file: file.into(), line: 1, message });
+            }
+        };
+        let facets = parse(file, &read_capped(file, MOST_OF_SURFACE)?)?;
+        ClosedSurface::new(facets.placed(scale, origin)?)
+    }
+}

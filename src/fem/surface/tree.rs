@@ -1,0 +1,142 @@
+//! A tree of boxes around triangles, halved at the median along their longest extent.
+
+/// Triangles of a leaf: fewer make more boxes than they save.
+const LEAF: usize = 4;
+
+/// A box around things, and what is in it.
+#[derive(Clone, Copy, Debug)]
+struct Branch {
+    low: [f64; 3],
+    high: [f64; 3],
+    /// Of a leaf the place of its first thing in the order; else the place of its second half. The first half follows it.
+    next: u32,
+    /// Number of things of a leaf; zero for what has halves.
+    count: u32,
+}
+
+/// A tree of boxes.
+#[derive(Debug)]
+pub(super) struct Tree {
+    branches: Vec<Branch>,
+    order: Vec<u32>,
+}
+
+/// A thing while the tree is built: the middle of its box, relative to the box of all.
+#[derive(Clone, Copy, Debug)]
+struct Thing {
+    middle: [f32; 3],
+    number: u32,
+}
+
+/// Lowest and highest coordinates.
+pub(super) type Limits = [[f64; 3]; 2];
+
+/// The limits of nothing.
+pub(super) const NOWHERE: Limits = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+
+/// The limits of both.
+pub(super) fn joined(a: Limits, b: Limits) -> Limits {
+    [[0, 1, 2].map(|axis| a[0][axis].min(b[0][axis])), [0, 1, 2].map(|axis| a[1][axis].max(b[1][axis]))]
+}
+
+impl Tree {
+    /// The tree of things with these numbers.
+    pub fn new(numbers: &[u32], limits: impl Fn(u32) -> Limits) -> Self {
+        let [low, high] = numbers.iter().fold(NOWHERE, |sum, &number| joined(sum, limits(number)));
+        let widest = (0..3).map(|axis| high[axis] - low[axis]).fold(f64::MIN_POSITIVE, f64::max);
+        let thing = |&number: &u32| {
+            let [from, to] = limits(number);
+            Thing {
+                middle: [0, 1, 2].map(|axis| (((from[axis] + to[axis]) / 2.0 - low[axis]) / widest) as f32),
+                number,
+            }
+        };
+        let mut things: Vec<Thing> = numbers.iter().map(thing).collect();
+        let mut tree = Tree { branches: Vec::new(), order: Vec::with_capacity(numbers.len()) };
+        tree.grow(&mut things, &limits);
+        tree
+    }
+
+    /// Adds the branch of these things, and returns its limits. The median halves them, so that branches are few.
+    fn grow(&mut self, things: &mut [Thing], limits: &impl Fn(u32) -> Limits) -> Limits {
+        let own = self.branches.len();
+        let first = self.order.len() as u32;
+        self.branches.push(Branch { low: [0.0; 3], high: [0.0; 3], next: first, count: things.len() as u32 });
+        let [low, high] = if things.len() <= LEAF {
+            self.order.extend(things.iter().map(|thing| thing.number));
+            things.iter().fold(NOWHERE, |sum, thing| joined(sum, limits(thing.number)))
+        } else {
+            let (mut from, mut to) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+            for thing in things.iter() {
+                from = [0, 1, 2].map(|axis| from[axis].min(thing.middle[axis]));
+                to = [0, 1, 2].map(|axis| to[axis].max(thing.middle[axis]));
+            }
+            let wide = |axis: usize| to[axis] - from[axis];
+            let axis = (1..3).fold(0, |widest, axis| if wide(axis) > wide(widest) { axis } else { widest });
+            let half = things.len() / 2;
+            things.select_nth_unstable_by(half, |a, b| a.middle[axis].total_cmp(&b.middle[axis]));
+            let (before, after) = things.split_at_mut(half);
+            let first = self.grow(before, limits);
+            (self.branches[own].next, self.branches[own].count) = (self.branches.len() as u32, 0);
+            joined(first, self.grow(after, limits))
+        };
+        (self.branches[own].low, self.branches[own].high) = (low, high);
+        [low, high]
+    }
+
+    /// Limits of all.
+    pub fn limits(&self) -> Limits {
+        self.branches.first().map_or(NOWHERE, |all| [all.low, all.high])
+    }
+
+    /// Visits the things near a point, roughly from near to far; `visit` tells the square of the distance up to which the
+    /// next ones matter.
+    pub fn near(&self, point: [f64; 3], mut visit: impl FnMut(u32) -> f64) {
+        let mut reach = f64::INFINITY;
+        let far = |place: usize| self.branches[place].squared_distance(point);
+        let mut open = vec![(0, far(0))];
+        while let Some((place, distance)) = open.pop() {
+            if distance > reach {
+                continue;
+            }
+            let branch = self.branches[place];
+            for &number in self.things(branch) {
+                reach = visit(number);
+            }
+            if branch.count == 0 {
+                let halves = [place + 1, branch.next as usize].map(|half| (half, far(half)));
+                let [nearer, farther] = if halves[1].1 < halves[0].1 { [halves[1], halves[0]] } else { halves };
+                open.extend([farther, nearer]);
+            }
+        }
+    }
+
+    /// Visits all things whose boxes a line along `axis` through a point meets.
+    pub fn along(&self, axis: usize, point: [f64; 3], mut visit: impl FnMut(u32)) {
+        let across = [(axis + 1) % 3, (axis + 2) % 3];
+        let mut open = vec![0];
+        while let Some(place) = open.pop() {
+            let branch = self.branches[place];
+            if across.iter().any(|&axis| point[axis] < branch.low[axis] || point[axis] > branch.high[axis]) {
+                continue;
+            }
+            self.things(branch).iter().for_each(|&number| visit(number));
+            if branch.count == 0 {
+                open.extend([place + 1, branch.next as usize]);
+            }
+        }
+    }
+
+    /// The things of a leaf; none of what has halves.
+    fn things(&self, branch: Branch) -> &[u32] {
+        let (first, count) = (branch.next as usize, branch.count as usize);
+        if count == 0 { &[] } else { &self.order[first..first + count] }
+    }
+}
+
+impl Branch {
+    fn squared_distance(&self, point: [f64; 3]) -> f64 {
+        let beyond = [0, 1, 2].map(|axis| (self.low[axis] - point[axis]).max(point[axis] - self.high[axis]).max(0.0));
+        beyond.iter().map(|part| part * part).sum()
+    }
+}

@@ -1,0 +1,74 @@
+//! One triangle: its normal, and the point of it that is closest to a node.
+
+use crate::fem::geometry::{cross, distance, dot, length, minus, unit};
+
+/// A triangle that is lower than this share of its longest side is no more than its sides: rounding turns its normal by
+/// 1e-7, and no other choice moves a closest point by more.
+const FLAT: f64 = 1e-9;
+
+/// What of a triangle is closest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Part {
+    /// Its inside.
+    Face,
+    /// The inside of the side from this corner, 0 to 2, to the next.
+    Side(usize),
+    /// A corner, 0 to 2.
+    Corner(usize),
+}
+
+/// The corners of a triangle, counterclockwise seen from outside.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Triangle(pub [[f64; 3]; 3]);
+
+impl Triangle {
+    /// Normal to the outside, twice the area long.
+    pub fn area_normal(&self) -> [f64; 3] {
+        let [a, b, c] = self.0;
+        cross(minus(b, a), minus(c, a))
+    }
+
+    /// Unit normal to the outside; zero for a flat triangle.
+    pub fn normal(&self) -> [f64; 3] {
+        let (normal, [a, b, c]) = (self.area_normal(), self.0);
+        let longest = distance(a, b).max(distance(b, c)).max(distance(c, a));
+        if length(normal) <= FLAT * longest * longest { [0.0; 3] } else { unit(normal) }
+    }
+
+    /// The angle at a corner.
+    pub fn angle(&self, corner: usize) -> f64 {
+        let [at, next, last] = [0, 1, 2].map(|step| self.0[(corner + step) % 3]);
+        let (a, b) = (minus(next, at), minus(last, at));
+        length(cross(a, b)).atan2(dot(a, b))
+    }
+
+    /// The closest point to `node`, and the part on which it lies.
+    pub fn closest(&self, node: [f64; 3]) -> ([f64; 3], Part) {
+        let [a, b, c] = self.0;
+        let normal = self.normal();
+        if normal != [0.0; 3] {
+            let (to_node, ab, ac) = (minus(node, a), minus(b, a), minus(c, a));
+            let area = dot(cross(ab, ac), normal);
+            let (of_b, of_c) = (dot(cross(to_node, ac), normal) / area, dot(cross(ab, to_node), normal) / area);
+            if of_b > 0.0 && of_c > 0.0 && of_b + of_c < 1.0 {
+                return ([0, 1, 2].map(|axis| a[axis] + of_b * ab[axis] + of_c * ac[axis]), Part::Face);
+            }
+        }
+        let sides = [0, 1, 2].map(|corner| {
+            let (from, along) = (self.0[corner], minus(self.0[(corner + 1) % 3], self.0[corner]));
+            let share = dot(minus(node, from), along) / dot(along, along);
+            if share >= 1.0 {
+                return (self.0[(corner + 1) % 3], Part::Corner((corner + 1) % 3));
+            }
+            // A side so short that its square is zero has no share that is a number.
+            if share > 0.0 {
+                return ([0, 1, 2].map(|axis| from[axis] + share * along[axis]), Part::Side(corner));
+            }
+            (from, Part::Corner(corner))
+        });
+        let far = |at: [f64; 3]| dot(minus(at, node), minus(at, node));
+        let [first, second, third] = sides;
+        let nearer = if far(second.0) < far(first.0) { second } else { first };
+        if far(third.0) < far(nearer.0) { third } else { nearer }
+    }
+}

@@ -1,0 +1,150 @@
+//! A torus: the points at the distance `minor` from a ring of the radius `major`.
+
+use serde::{Deserialize, Serialize};
+
+use super::row::ObstacleRow;
+use super::ruled::RigidSurface;
+use super::shape::{About, Geometry, ObstacleShape, Site};
+use crate::error::Error;
+use crate::fem::geometry::{dot, minus, unit};
+use crate::scene::entry::{number, point, wrong};
+use crate::scene::schema::approach::Rule;
+
+/// An axis may lean by the rounding of its written components.
+const ALIGNED: f64 = 1e-9;
+
+/// A torus, a ring of round section.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct TorusSpec {
+    /// The centre.
+    pub centre: [f64; 3],
+    /// Direction of the axis, along the approach direction (the ring lies flat before the body) or perpendicular to it (the ring
+    /// stands upright). Of any length but zero.
+    pub axis: [f64; 3],
+    /// Radius of the ring in the middle of the tube.
+    pub major: f64,
+    /// Radius of the tube, positive and less than `major`.
+    pub minor: f64,
+}
+
+pub(super) const ABOUT: About = About { name: "torus", dimensions: &[3] };
+
+impl ObstacleShape for TorusSpec {
+    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+        let centre = site.point("centre", &self.centre)?;
+        let (axis, approach) = (unit(site.axis("axis", &self.axis)?), site.direction());
+        let lean = dot(axis, approach);
+        let (major, minor) = (site.positive("major", self.major)?, site.positive("minor", self.minor)?);
+        if minor >= major {
+            let message = format!(
+                "{} is not allowed: it must be less than `major`, {}, or else the tube meets itself in the middle of the ring",
+                number(minor),
+                number(major)
+            );
+            return Err(wrong(site.field("minor"), message));
+        }
+        let (axis, stands) = if lean.abs() <= ALIGNED {
+            (unit(minus(axis, approach.map(|part| lean * part))), Stands::Upright)
+        } else if 1.0 - lean.abs() <= ALIGNED {
+            (approach, Stands::Flat)
+        } else {
+            let (axis, approach) = (point(&self.axis), point(&approach));
+            let message = format!("{axis} must be parallel or perpendicular to the approach direction {approach}");
+            return Err(wrong(site.field("axis"), message));
+        };
+        let rounding = site.rounding();
+        Ok(Geometry::rigid(site, Torus { centre, axis, approach, stands, major, minor, rounding }))
+    }
+
+    fn radius(&self) -> f64 {
+        self.major + self.minor
+    }
+}
+
+/// How a ring stands before the body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stands {
+    /// Its axis along the approach direction.
+    Flat,
+    /// Its axis across.
+    Upright,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Torus {
+    centre: [f64; 3],
+    axis: [f64; 3],
+    approach: [f64; 3],
+    stands: Stands,
+    major: f64,
+    minor: f64,
+    rounding: f64,
+}
+
+impl Torus {
+    /// Along the approach direction from the centre to where the outside faces the body over a place.
+    fn height(&self, from_centre: [f64; 3]) -> Option<f64> {
+        let over = dot(from_centre, self.approach);
+        let across = minus(from_centre, self.approach.map(|part| over * part));
+        // The height of a circle over a place, or none beyond it.
+        let half = |radius: f64, at: f64| (at.abs() <= radius).then(|| ((radius - at) * (radius + at)).sqrt());
+        match self.stands {
+            Stands::Flat => half(self.minor, dot(across, across).sqrt() - self.major),
+            Stands::Upright => {
+                let along = dot(across, self.axis);
+                let aside = minus(across, self.axis.map(|part| along * part));
+                // The section across the axis is a ring, whose outer circle faces the body.
+                half(self.minor, along).and_then(|tube| half(self.major + tube, dot(aside, aside).sqrt()))
+            }
+        }
+        .map(|height| -height)
+    }
+
+    /// Unit normal into the torus at the closest point that faces the body, and the distance along it; `None` where none does.
+    fn closest(&self, from_centre: [f64; 3]) -> Result<Option<([f64; 3], f64)>, String> {
+        let along = dot(from_centre, self.axis);
+        let aside = minus(from_centre, self.axis.map(|part| along * part));
+        let radius = dot(aside, aside).sqrt();
+        let to_ring = (radius - self.major).hypot(along);
+        if to_ring <= self.rounding {
+            return Err("lies in the middle of the tube of the torus".into());
+        }
+        let distance = to_ring - self.minor;
+        if radius <= self.rounding && self.stands == Stands::Flat {
+            // On the axis the ring is equally close all around: straight on to where the planes through the closest points meet.
+            return Ok((along < -self.rounding).then(|| (self.approach, distance * to_ring / -along)));
+        }
+        // On the axis of a ring that stands upright the closest point lies straight on.
+        let outwards = if radius <= self.rounding { self.approach } else { aside.map(|part| part / radius) };
+        let part = |axis: usize| (radius - self.major) / to_ring * outwards[axis] + along / to_ring * self.axis[axis];
+        let normal = [0, 1, 2].map(|axis| -part(axis));
+        let facing = dot(normal, self.approach);
+        match (facing > 0.0, distance >= 0.0) {
+            (true, _) => Ok(Some((normal, distance))),
+            (false, true) => Ok(None),
+            // Level with the ring there is a closest point; rounding must not take it away.
+            (false, false) if -facing * to_ring <= self.rounding => Ok(Some((normal, distance))),
+            (false, false) => Err("lies deeper in the torus than the middle of its tube".into()),
+        }
+    }
+}
+
+impl RigidSurface for Torus {
+    fn approach(&self) -> [f64; 3] {
+        self.approach
+    }
+
+    fn row_by(&self, rule: Rule, node: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
+        let from_centre = [0, 1, 2].map(|axis| node[axis] - self.centre[axis] - shift * self.approach[axis]);
+        let row = |(normal, gap): ([f64; 3], f64)| ObstacleRow { normal, gap };
+        match rule {
+            Rule::Approach => {
+                let over = dot(from_centre, self.approach);
+                Ok(self.height(from_centre).map(|height| row((self.approach, height - over))))
+            }
+            Rule::ClosestPoint => Ok(self.closest(from_centre)?.map(row)),
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! A closed surface of triangles from a file: the outside of a solid, or the inside of a hole.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::row::ObstacleRow;
+use super::ruled::RigidSurface;
+use super::shape::{About, Geometry, ObstacleShape, Side, Site};
+use crate::error::Error;
+use crate::fem::geometry::minus;
+use crate::fem::surface::{ClosedSurface, Crossing};
+use crate::scene::entry::located;
+use crate::scene::files::Files;
+use crate::scene::schema::approach::{Approach, Rule};
+use crate::scene::schema::json::word;
+
+/// Bytes of memory for a byte of the file, about: 2.5 for a binary STL, the densest form.
+const OF_FILE: f64 = 3.0;
+
+/// A closed surface of triangles from an STL file, binary or ASCII, or an OBJ file; flat triangles, never smoothed.
+///
+/// Every edge must join two triangles. Which way a triangle faces is the order of its corners, counterclockwise seen from outside;
+/// if all run clockwise, all are turned.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct SurfaceSpec {
+    /// The file, `.stl` or `.obj`, below the folder of the scene unless that is allowed to read outside; a relative name starts
+    /// there.
+    pub file: String,
+    /// What the coordinates of the file are multiplied by, positive.
+    #[serde(default = "unchanged")]
+    pub scale: f64,
+    /// Where the origin of the file lies.
+    #[serde(default, skip_serializing_if = "is_origin")]
+    pub origin: [f64; 3],
+    /// Where the body lies: `outside` of a solid, or `inside` of a hole and all around is the obstacle.
+    #[serde(default, deserialize_with = "word", skip_serializing_if = "Side::is_outside")]
+    pub side: Side,
+}
+
+fn unchanged() -> f64 {
+    1.0
+}
+
+fn is_origin(at: &[f64; 3]) -> bool {
+    *at == [0.0; 3]
+}
+
+pub(super) const ABOUT: About = About { name: "surface", dimensions: &[3] };
+
+impl ObstacleShape for SurfaceSpec {
+    fn place(&self, site: &Site) -> Result<Geometry, Error> {
+        let origin = site.point("origin", &self.origin)?;
+        let file = site.files.named(&self.file, site.field("file"))?;
+        let surface =
+            ClosedSurface::read(&file, self.scale, origin).map_err(|error| located(error, &site.field("")))?;
+        let (approach, rounding) = (site.approach, site.rounding());
+        let direction = site.direction();
+        Ok(Geometry::rigid(
+            site,
+            Triangulated { surface: Arc::new(surface), side: self.side, approach, direction, rounding },
+        ))
+    }
+
+    fn bytes(&self, files: Files) -> f64 {
+        OF_FILE * files.length(&self.file)
+    }
+}
+
+/// A surface as an obstacle. A model of another gap shares it.
+#[derive(Clone, Debug)]
+struct Triangulated {
+    surface: Arc<ClosedSurface>,
+    side: Side,
+    approach: Approach,
+    direction: [f64; 3],
+    rounding: f64,
+}
+
+impl Triangulated {
+    /// The way along the approach direction from a node to where it enters the obstacle: the first place ahead, or the last one behind
+    /// for a node in the obstacle; `None` if there is none.
+    fn entry(&self, node: [f64; 3]) -> Option<f64> {
+        let (axis, sense) = self.approach.axis();
+        let mut crossings: Vec<Crossing> = self.surface.crossings(axis, node);
+        if sense < 0.0 {
+            crossings.reverse();
+        }
+        let is_obstacle = |solids: i32| (solids > 0) == self.side.is_outside();
+        let (mut solids, mut entry) = (0, None);
+        for crossing in crossings {
+            let before = is_obstacle(solids);
+            solids += if sense < 0.0 { -crossing.turns } else { crossing.turns };
+            let way = sense * (crossing.at - node[axis]);
+            match (before, is_obstacle(solids)) {
+                (false, true) if way >= 0.0 => return Some(way),
+                (false, true) => entry = Some(way),
+                (true, false) if way > 0.0 && entry.is_some() => return entry,
+                (true, false) => entry = None,
+                _ => {}
+            }
+        }
+        entry
+    }
+}
+
+impl RigidSurface for Triangulated {
+    fn approach(&self) -> [f64; 3] {
+        self.direction
+    }
+
+    fn row_by(&self, rule: Rule, node: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String> {
+        let node = minus(node, self.direction.map(|part| shift * part));
+        if rule == Rule::Approach {
+            return Ok(self.entry(node).map(|gap| ObstacleRow { normal: self.direction, gap }));
+        }
+        let sign = self.side.signed(1.0);
+        let closest = self.surface.closest(node, self.rounding, self.direction.map(|part| sign * part));
+        Ok(Some(ObstacleRow { normal: closest.outward.map(|part| -sign * part), gap: sign * closest.height }))
+    }
+}

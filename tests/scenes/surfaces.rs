@@ -1,0 +1,492 @@
+//! GOAL: obstacles from files of triangles: their rows against brute force, against the shapes that they approximate and against
+//! closed forms; one surface from all formats; what is refused, and where.
+//!
+//! BODY: clamped unit cube of 4 x 4 x 4 Hex8; candidates are the nodes of its top, z = 1. Other places are asked of the obstacle.
+
+use std::fs;
+use std::path::Path;
+
+use crate::triangles::Triangles;
+use serde_json::{Value, json};
+use signorini::scene::{ObstacleRow, PlacedObstacle};
+use signorini::{Error, Model, Scene, solve_qp};
+use tempfile::TempDir;
+
+/// Distances of order one, a handful of operations.
+const ROUNDING: f64 = 1e-14;
+
+fn scene(rule: &str, shape: Value, gap: f64) -> Value {
+    let axis = json!({"points": [0, 1], "divisions": [4]});
+    json!({
+        "model": "space",
+        "body": {"box": {"x": axis, "y": axis, "z": axis, "element": "hex8"}},
+        "material": {"young": 1000, "poisson": 0.3},
+        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0, "z": 0}],
+        "obstacles": [{"boundary": "top", "approach": "+z", "rule": rule, "shape": shape}],
+        "gap": gap
+    })
+}
+
+/// The model of a scene that stands in a folder.
+fn model_in(folder: &Path, scene: &Value) -> Result<Model, Error> {
+    Scene { folder: Some(folder.into()), ..Scene::from_json(&scene.to_string(), "scene")? }.build()
+}
+
+/// The model of a scene whose obstacle is this binary STL.
+fn with_surface(rule: &str, surface: &Triangles, side: &str, gap: f64) -> Model {
+    let desk = TempDir::new().unwrap();
+    fs::write(desk.path().join("die.stl"), surface.binary_stl()).unwrap();
+    model_in(desk.path(), &scene(rule, json!({"surface": {"file": "die.stl", "side": side}}), gap)).unwrap()
+}
+
+fn row(model: &Model, at: [f64; 3]) -> Option<ObstacleRow> {
+    model.obstacles().first().and_then(PlacedObstacle::rigid).unwrap().row(at).unwrap()
+}
+
+fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|axis| a[axis] - b[axis])
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|axis| a[axis] * b[axis]).sum()
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn length(a: [f64; 3]) -> f64 {
+    dot(a, a).sqrt()
+}
+
+/// Numbers from 0 to 1 from a seed.
+fn random(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
+    move || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+/// The distance of a point to a triangle by the regions of its corners, sides and inside.
+///
+/// # Source
+/// C. Ericson, *Real-Time Collision Detection*, 2005, section 5.1.5.
+fn distance_to([a, b, c]: [[f64; 3]; 3], p: [f64; 3]) -> f64 {
+    let (ab, ac, ap, bp, cp) = (minus(b, a), minus(c, a), minus(p, a), minus(p, b), minus(p, c));
+    let to = |q: [f64; 3]| length(minus(p, q));
+    let along = |from: [f64; 3], way: [f64; 3], t: f64| [0, 1, 2].map(|axis| from[axis] + t * way[axis]);
+    let (d1, d2, d3, d4) = (dot(ab, ap), dot(ac, ap), dot(ab, bp), dot(ac, bp));
+    let (d5, d6) = (dot(ab, cp), dot(ac, cp));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return to(a);
+    }
+    if d3 >= 0.0 && d4 <= d3 {
+        return to(b);
+    }
+    if d6 >= 0.0 && d5 <= d6 {
+        return to(c);
+    }
+    let (va, vb, vc) = (d3 * d6 - d5 * d4, d5 * d2 - d1 * d6, d1 * d4 - d3 * d2);
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        return to(along(a, ab, d1 / (d1 - d3)));
+    }
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        return to(along(a, ac, d2 / (d2 - d6)));
+    }
+    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
+        return to(along(b, minus(c, b), (d4 - d3) / ((d4 - d3) + (d5 - d6))));
+    }
+    let normal = cross(ab, ac);
+    dot(ap, normal).abs() / length(normal)
+}
+
+/// How often the surface goes around a point: the sum of the angles under which it sees the triangles.
+///
+/// # Source
+/// A. van Oosterom, J. Strackee, *The solid angle of a plane triangle*, IEEE Trans. Biomed. Eng. 30 (1983) 125-126.
+fn winding(surface: &Triangles, p: [f64; 3]) -> f64 {
+    let angle = |index: usize| {
+        let [a, b, c] = surface.triangle(index).map(|corner| minus(corner, p));
+        let (la, lb, lc) = (length(a), length(b), length(c));
+        2.0 * dot(a, cross(b, c)).atan2(la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb)
+    };
+    (0..surface.corners.len()).map(angle).sum::<f64>() / (4.0 * std::f64::consts::PI)
+}
+
+/// Rough bodies: a ball, a ring, and both through each other, every vertex moved.
+fn rough(seed: u64) -> Triangles {
+    let mut next = random(seed);
+    let ball = Triangles::sphere(0.6, 2);
+    let ring = Triangles::torus(0.5, 0.2, 24, 10);
+    let base = match seed % 3 {
+        0 => ball,
+        1 => ring,
+        _ => ball.moved(|[x, y, z]| [x + 0.3, y, z]).and(ring),
+    };
+    let mut moved = |at: [f64; 3], by: f64| at.map(|part| part + by * (next() - 0.5));
+    base.moved(|at| moved(at, 0.03)).moved(|[x, y, z]| [x + 0.5, y + 0.5, z + 1.4]).single()
+}
+
+/// GOAL: the tree finds what a search through all triangles finds, on the same side.
+#[test]
+fn distances_and_sides_are_those_of_a_search_through_all_triangles() {
+    let mut inside = 0;
+    for seed in 0..12 {
+        let surface = rough(seed);
+        let model = with_surface("closest-point", &surface, "outside", 0.0);
+        let mut next = random(100 + seed);
+        for _ in 0..150 {
+            let at = [0, 1, 2].map(|axis| if axis == 2 { 0.4 + 2.0 * next() } else { -0.5 + 2.0 * next() });
+            let found = row(&model, at).unwrap();
+            let distance = (0..surface.corners.len())
+                .map(|index| distance_to(surface.triangle(index), at))
+                .fold(f64::INFINITY, f64::min);
+            assert!((found.gap.abs() / distance - 1.0).abs() < 1e-12, "{seed} {at:?} {found:?} {distance}");
+            let turns = winding(&surface, at);
+            assert!((turns - turns.round()).abs() < 1e-9);
+            assert_eq!(found.gap < 0.0, turns > 0.5, "{seed} {at:?} {found:?} {turns}");
+            // The normal leads to a point of the surface.
+            let foot = [0, 1, 2].map(|axis| at[axis] + found.gap * found.normal[axis]);
+            let off = (0..surface.corners.len()).map(|index| distance_to(surface.triangle(index), foot));
+            assert!(off.fold(f64::INFINITY, f64::min) < 1e-14, "{seed} {at:?} {found:?}");
+            inside += usize::from(found.gap < 0.0);
+        }
+    }
+    assert!(inside > 100, "{inside} places inside");
+}
+
+/// GOAL: along the approach direction the row ends where the way enters the solid, next ahead, or behind from within.
+#[test]
+fn along_the_approach_direction_the_row_ends_where_a_walk_enters_the_solid() {
+    let mut met = 0;
+    for seed in 0..6 {
+        let surface = rough(seed);
+        let model = with_surface("approach", &surface, "outside", 0.0);
+        let within = |x: f64, y: f64, z: f64| winding(&surface, [x, y, z]) > 0.5;
+        let mut next = random(200 + seed);
+        for _ in 0..20 {
+            let [x, y, z] = [next() * 0.9, next() * 0.9, 0.6 + 1.4 * next()];
+            let found = row(&model, [x, y, z]);
+            // Steps shorter than the tubes are thick.
+            let sense = if within(x, y, z) { -1.0 } else { 1.0 };
+            let steps = (0..700).map(|step| z + sense * 0.003 * step as f64);
+            let change = steps.map(|z| (z, within(x, y, z))).find(|&(_, is_within)| is_within == (sense > 0.0));
+            let Some((beyond, _)) = change else {
+                assert!(found.is_none(), "{seed} {found:?}");
+                continue;
+            };
+            let (mut a, mut b) = (beyond - sense * 0.003, beyond);
+            for _ in 0..60 {
+                let middle = (a + b) / 2.0;
+                if within(x, y, middle) == (sense > 0.0) { b = middle } else { a = middle }
+            }
+            let found = found.unwrap();
+            assert_eq!(found.normal, [0.0, 0.0, 1.0]);
+            assert!((found.gap - (a - z)).abs() < 1e-9, "{seed} {found:?} {}", a - z);
+            met += 1;
+        }
+    }
+    assert!(met > 30, "{met} ways enter the solid");
+}
+
+/// The signed distance to the unit cube about the origin, positive outside.
+fn to_cube(at: [f64; 3]) -> f64 {
+    let beyond = at.map(|part| part.abs() - 0.5);
+    let outside = length(beyond.map(|part| part.max(0.0)));
+    if outside > 0.0 { outside } else { beyond.into_iter().fold(f64::NEG_INFINITY, f64::max) }
+}
+
+#[test]
+fn around_a_cube_rows_are_those_of_its_distance_function_from_outside_and_inside() {
+    let cube = Triangles::cuboid([-0.5; 3], [0.5; 3]);
+    for (side, sign) in [("outside", 1.0), ("inside", -1.0)] {
+        let model = with_surface("closest-point", &cube, side, 0.0);
+        let mut next = random(7);
+        for _ in 0..500 {
+            let at = [0, 1, 2].map(|_| 2.0 * next() - 1.0);
+            let found = row(&model, at).unwrap();
+            assert!((found.gap - sign * to_cube(at)).abs() < ROUNDING, "{side} {at:?} {found:?}");
+            assert!((length(found.normal) - 1.0).abs() < ROUNDING);
+            let foot = [0, 1, 2].map(|axis| at[axis] + found.gap * found.normal[axis]);
+            assert!(to_cube(foot).abs() < ROUNDING, "{side} {at:?} {found:?}");
+        }
+        // On a face, an edge and a corner: normals weighted by angles, which diagonals of the faces do not change.
+        for on in [[0.1, 0.2, -0.5], [0.5, 0.2, -0.5], [0.5, 0.5, -0.5]] {
+            let out = on.map(|part: f64| if part.abs() == 0.5 { part.signum() } else { 0.0 });
+            let found = row(&model, on).unwrap();
+            assert!(found.gap.abs() < ROUNDING, "{side} {on:?} {found:?}");
+            let expected = out.map(|part| -sign * part / length(out));
+            assert!(length(minus(found.normal, expected)) < ROUNDING, "{side} {on:?} {found:?}");
+        }
+    }
+}
+
+#[test]
+fn a_place_equally_close_to_several_faces_takes_their_mean_or_goes_along_the_approach_direction() {
+    let hole = with_surface("closest-point", &Triangles::cuboid([-0.5; 3], [0.5; 3]), "inside", 0.0);
+    // As close to the face x = 0.5 as to z = 0.5: half way between, to where their planes meet.
+    let found = row(&hole, [0.3, 0.0, 0.3]).unwrap();
+    let half = 0.5_f64.sqrt();
+    assert!(length(minus(found.normal, [half, 0.0, half])) < ROUNDING, "{found:?}");
+    assert!((found.gap - 0.2 * 2.0_f64.sqrt()).abs() < ROUNDING, "{found:?}");
+    // In the middle all six faces cancel.
+    let found = row(&hole, [0.0; 3]).unwrap();
+    assert!(length(minus(found.normal, [0.0, 0.0, 1.0])) < ROUNDING && (found.gap - 0.5).abs() < ROUNDING, "{found:?}");
+    let ball = with_surface("closest-point", &Triangles::sphere(0.5, 3), "inside", 0.0);
+    // Its flat triangles are not all equally close: of those that are one leads nearly up.
+    let found = row(&ball, [0.0; 3]).unwrap();
+    assert!(found.normal[2] > 0.9 && (found.gap - 0.5).abs() < 0.01, "{found:?}");
+}
+
+#[test]
+fn a_hole_has_rows_along_the_approach_direction_to_its_far_side() {
+    let hole = with_surface("approach", &Triangles::cuboid([0.0; 3], [1.0, 1.0, 2.0]), "inside", 0.0);
+    // Within the hole, beyond its far side, and before its near side.
+    for (z, gap) in [(1.5, 0.5), (2.25, -0.25), (-0.5, 2.5)] {
+        assert_eq!(row(&hole, [0.3, 0.4, z]).map(|row| row.gap), Some(gap), "{z}");
+    }
+    assert_eq!(row(&hole, [1.3, 0.4, 1.5]), None);
+}
+
+/// GOAL       a surface of triangles tends to the sphere that it approximates
+/// CONDITIONS a clamped cube under a sphere of radius 1.5 that starts 0.05 inside; both rules
+/// PARAMETERS icosahedra cut 3, 4 and 5 times: 1,280 to 20,480 triangles, whose sides halve
+/// REFERENCE  the shape `sphere`; what lies between chord and arc is quartered
+#[test]
+fn rows_and_force_of_a_sphere_of_triangles_tend_to_those_of_the_sphere_with_the_square_of_their_size() {
+    let centre = [0.43, 0.37, 2.5];
+    for rule in ["approach", "closest-point"] {
+        let exact = crate::bodies::built(&scene(rule, json!({"sphere": {"centre": centre, "radius": 1.5}}), -0.05));
+        let force = |model: &Model| solve_qp(model.problem()).unwrap().contact_force();
+        let expected = force(&exact);
+        let errors: Vec<[f64; 2]> = [3, 4, 5]
+            .map(|times| {
+                let ball = Triangles::sphere(1.5, times).moved(|at| [0, 1, 2].map(|axis| at[axis] + centre[axis]));
+                let model = with_surface(rule, &ball, "outside", -0.05);
+                assert_eq!(model.rows().len(), exact.rows().len());
+                let off =
+                    |(a, b): (&signorini::scene::ContactRow, &signorini::scene::ContactRow)| (a.gap - b.gap).powi(2);
+                let rows = model.rows().iter().zip(exact.rows()).map(off).sum::<f64>() / model.rows().len() as f64;
+                [rows.sqrt(), (force(&model) / expected - 1.0).abs()]
+            })
+            .into();
+        println!("{rule}: root mean square of gaps and relative error of the force {expected:.6e}: {errors:?}");
+        for errors in errors.windows(2) {
+            let ratio = [0, 1].map(|which| errors[0][which] / errors[1][which]);
+            assert!((3.4..4.6).contains(&ratio[0]), "{rule}: {ratio:?}");
+            assert!((2.5..6.5).contains(&ratio[1]), "{rule}: {ratio:?}");
+        }
+        assert!(errors[2][0] < 5e-4 && errors[2][1] < 0.02, "{rule}: {errors:?}");
+    }
+}
+
+#[test]
+fn all_formats_scales_and_orientations_make_the_same_rows() {
+    let desk = TempDir::new().unwrap();
+    let die = Triangles::sphere(0.75, 2).moved(|[x, y, z]| [x + 0.5, y + 0.5, z + 1.75]).single();
+    let clockwise = Triangles { corners: die.corners.iter().map(|&[a, b, c]| [a, c, b]).collect(), ..die.clone() };
+    let thousandfold = die.clone().moved(|at| minus(at, [0.5, 0.0, -4.0]).map(|part| 1024.0 * part));
+    let write = |name: &str, content: &[u8]| fs::write(desk.path().join(name), content).unwrap();
+    write("die.stl", &die.binary_stl());
+    write("solid.stl", &[b"solid".as_slice(), &die.binary_stl()[5..]].concat());
+    write("text.stl", die.ascii_stl().as_bytes());
+    write("die.OBJ", die.obj().as_bytes());
+    write("clockwise.obj", clockwise.obj().as_bytes());
+    write("large.obj", thousandfold.obj().as_bytes());
+    for rule in ["approach", "closest-point"] {
+        let rows = |surface: Value| {
+            let model = model_in(desk.path(), &scene(rule, json!({"surface": surface}), -0.02)).unwrap();
+            model.rows().iter().map(|row| (row.node, row.normal, row.gap)).collect::<Vec<_>>()
+        };
+        let expected = rows(json!({"file": "die.stl"}));
+        assert!(expected.len() > 15);
+        for file in ["solid.stl", "text.stl", "die.OBJ"] {
+            assert_eq!(rows(json!({"file": file})), expected, "{file}");
+        }
+        for other in [
+            json!({"file": "clockwise.obj"}),
+            json!({"file": "large.obj", "scale": 1.0 / 1024.0, "origin": [0.5, 0, -4]}),
+        ] {
+            for (found, expected) in rows(other.clone()).into_iter().zip(&expected) {
+                assert_eq!(found.0, expected.0);
+                assert!((found.2 - expected.2).abs() < ROUNDING, "{other} {found:?} {expected:?}");
+                assert!(length(minus(found.1, expected.1)) < 1e-12, "{other} {found:?} {expected:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_triangle_without_an_area_changes_nothing() {
+    let desk = TempDir::new().unwrap();
+    let cube = Triangles::cuboid([0.0, 0.0, 1.1], [1.0, 1.0, 2.1]);
+    // A corner of the cube is split in two at the same place, and an edge in two that lie on it: T-shaped, but closed.
+    let mut split = cube.clone();
+    split.vertices.push([0.5, 0.0, 1.1]);
+    let on_edge = |corners: &[usize; 3]| corners.contains(&0) && corners.contains(&1);
+    let place = split.corners.iter().position(on_edge).unwrap();
+    let [a, b, c] = split.corners[place];
+    let turned = if (a, b) == (0, 1) || (b, c) == (0, 1) || (c, a) == (0, 1) { [1, 0, 8] } else { [0, 1, 8] };
+    let third = [a, b, c].into_iter().find(|&corner| corner > 1).unwrap();
+    // The triangle is cut at the new vertex, and one without an area fills in between.
+    let [from, to] = if turned == [1, 0, 8] { [0, 1] } else { [1, 0] };
+    split.corners[place] = [from, 8, third];
+    split.corners.extend([[8, to, third], [from, to, 8], [2, 2, 3]]);
+    for (name, surface) in [("cube.obj", &cube), ("split.obj", &split)] {
+        fs::write(desk.path().join(name), surface.obj()).unwrap();
+    }
+    for rule in ["approach", "closest-point"] {
+        let [whole, cut] = ["cube.obj", "split.obj"]
+            .map(|file| model_in(desk.path(), &scene(rule, json!({"surface": {"file": file}}), 0.0)).unwrap());
+        let mut next = random(11);
+        for _ in 0..200 {
+            let at = [next() * 0.98 + 0.01, next() * 0.98 + 0.01, 0.5 + next()];
+            let (a, b) = (row(&whole, at).unwrap(), row(&cut, at).unwrap());
+            assert!((a.gap - b.gap).abs() < ROUNDING && length(minus(a.normal, b.normal)) < ROUNDING, "{a:?} {b:?}");
+        }
+    }
+}
+
+#[test]
+fn a_model_of_another_gap_has_the_surface_moved() {
+    let die = Triangles::sphere(0.75, 2).moved(|[x, y, z]| [x + 0.5, y + 0.5, z + 1.75]);
+    for rule in ["approach", "closest-point"] {
+        let model = with_surface(rule, &die, "outside", 0.0);
+        // The file is gone with its folder: nothing is read again.
+        let moved = model.with_gap(-0.04).unwrap();
+        let expected = with_surface(rule, &die.clone().moved(|[x, y, z]| [x, y, z - 0.04]), "outside", 0.0);
+        assert_eq!(moved.rows().len(), expected.rows().len());
+        for (found, expected) in moved.rows().iter().zip(expected.rows()) {
+            // What is moved before it is rounded to single precision is another surface by that.
+            assert!((found.gap - expected.gap).abs() < 1e-6, "{found:?} {expected:?}");
+        }
+    }
+}
+
+/// The error of a scene with this file.
+fn refusal(name: &str, content: &[u8], surface: Value) -> String {
+    let desk = TempDir::new().unwrap();
+    fs::write(desk.path().join(name), content).unwrap();
+    let error = model_in(desk.path(), &scene("approach", json!({"surface": surface}), 0.0)).map(drop).unwrap_err();
+    error.to_string().replace(desk.path().to_str().unwrap(), "")
+}
+
+#[test]
+fn a_file_that_holds_no_closed_surface_is_refused_at_its_place() {
+    let cube = Triangles::cuboid([0.0; 3], [1.0; 3]);
+    let without = |count: usize| {
+        let corners = cube.corners[..cube.corners.len() - count].to_vec();
+        Triangles { corners, ..cube.clone() }
+    };
+    let mut flipped = cube.clone();
+    flipped.corners[4].swap(0, 1);
+    // Two cubes that share an edge.
+    let crowded = cube.clone().and(cube.clone().moved(|[x, y, z]| [x + 1.0, y + 1.0, z]));
+    let mut apart = cube.clone();
+    apart.vertices.push([0.0, 0.0, 1e-9]);
+    apart.corners[0] = apart.corners[0].map(|corner| if corner == 0 { 8 } else { corner });
+    let sheet = Triangles { corners: vec![[0, 1, 2], [0, 2, 1]], ..cube.clone() };
+    let far = cube.clone().moved(|at| at.map(|part| 1e100 * part));
+    let mut nan = cube.binary_stl();
+    nan[84 + 50 + 12 + 12 + 4..][..4].copy_from_slice(&f32::NAN.to_le_bytes());
+    let mut long = cube.binary_stl();
+    long[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
+    let text = cube.ascii_stl();
+    let stl = json!({"file": "die.stl"});
+    let obj = json!({"file": "die.obj"});
+    for (surface, content, phrases) in [
+        (&stl, without(1).binary_stl(), vec!["/die.stl, byte 184", "not closed", "3 edges", "from [", "welded"]),
+        (&stl, without(3).ascii_stl().into_bytes(), vec!["/die.stl:", "not closed", "7 edges"]),
+        (&obj, without(1).obj().into_bytes(), vec!["/die.obj:", "3 edges"]),
+        (&obj, apart.obj().into_bytes(), vec!["/die.obj:", "not closed", "4 edges", "welded"]),
+        (&obj, flipped.obj().into_bytes(), vec!["/die.obj:", "3 edges", "in the same direction", "orient"]),
+        (&obj, crowded.obj().into_bytes(), vec!["/die.obj:", "more than two triangles"]),
+        (&obj, sheet.obj().into_bytes(), vec!["/die.obj:1:", "encloses no volume"]),
+        (&obj, far.obj().into_bytes(), vec!["/die.obj:12:", "beyond 1e90"]),
+        (&stl, b"solid nothing\nendsolid\n".to_vec(), vec!["/die.stl:1:", "no triangle"]),
+        (&obj, b"v 0 0 0\n".to_vec(), vec!["/die.obj:1:", "no triangle"]),
+        (&obj, Vec::new(), vec!["/die.obj:1:", "no triangle"]),
+        (&stl, Vec::new(), vec!["/die.stl, byte 0", "no STL", "0 bytes"]),
+        (&stl, nan, vec!["/die.stl, byte 158", "NaN", "finite"]),
+        (&stl, long, vec!["/die.stl, byte 80", "4294967295 triangles", "214748364834 bytes", "684"]),
+        (&stl, cube.binary_stl()[..300].to_vec(), vec!["/die.stl, byte 80", "12 triangles", "300"]),
+        (&stl, text.replace("endloop", "ending").into_bytes(), vec!["/die.stl:7:", "ASCII STL"]),
+        (&stl, text.replacen("vertex 0e0", "vertex zero", 1).into_bytes(), vec!["/die.stl:4:", "three numbers"]),
+        (&stl, text.replacen("vertex 0e0", "vertex inf", 1).into_bytes(), vec!["/die.stl:4:", "inf", "finite"]),
+        (&stl, text.replacen("vertex 0e0", "endfacet", 1).into_bytes(), vec!["/die.stl:4:", "after 0 vertices"]),
+        (&stl, text.replacen("endfacet", "", 1).into_bytes(), vec!["/die.stl:9:", "before the one of line 2"]),
+        (&stl, text.as_bytes()[..text.len() - 40].to_vec(), vec!["the file ends in the facet"]),
+        (&obj, b"v 0 0\n".to_vec(), vec!["/die.obj:1:", "three numbers"]),
+        (&obj, b"v 0 0 0\nf 1 1\n".to_vec(), vec!["/die.obj:2:", "this has 2"]),
+        (&obj, b"v 0 0 0\nf 1 2 0\n".to_vec(), vec!["/die.obj:2:", "among the 1 so far"]),
+        (&obj, b"v 0 0 0\nf 1 -2 1\n".to_vec(), vec!["/die.obj:2:", "from -1 backwards"]),
+        (&obj, b"v 0 0 nan\n".to_vec(), vec!["/die.obj:1:", "NaN", "finite"]),
+        (&json!({"file": "die.ply"}), b"ply".to_vec(), vec!["/die.ply:1:", "`.stl` or `.obj`"]),
+        (&json!({"file": "die.stl", "scale": 0}), cube.binary_stl(), vec!["surface.scale`", "positive and finite"]),
+        (&json!({"file": "die.stl", "scale": -1}), cube.binary_stl(), vec!["surface.scale`", "-1"]),
+        (&json!({"file": "die.stl", "side": "below"}), cube.binary_stl(), vec!["surface.side`", "inside"]),
+        (&json!({"file": "no.stl"}), cube.binary_stl(), vec!["cannot read /no.stl"]),
+        (&json!({"file": "../secret.stl"}), cube.binary_stl(), vec!["cannot read"]),
+    ] {
+        let name = surface["file"].as_str().filter(|name| name.starts_with("die.")).unwrap_or("die.stl");
+        let error = refusal(name, &content, surface.clone());
+        assert!(!error.contains('\n'), "{error}");
+        for phrase in phrases {
+            assert!(error.contains(phrase), "{error:?} lacks {phrase:?}");
+        }
+    }
+}
+
+#[test]
+fn a_surface_outside_the_folder_of_the_scene_is_read_only_where_that_is_allowed() {
+    let desk = TempDir::new().unwrap();
+    fs::create_dir(desk.path().join("s")).unwrap();
+    let die = Triangles::sphere(0.75, 2).moved(|[x, y, z]| [x + 0.5, y + 0.5, z + 1.75]);
+    fs::write(desk.path().join("die.stl"), die.binary_stl()).unwrap();
+    let text = scene("approach", json!({"surface": {"file": "../die.stl"}}), 0.0);
+    let error = model_in(&desk.path().join("s"), &text).map(drop).unwrap_err().to_string();
+    assert!(error.contains("`obstacles[0].shape.surface.file`") && error.contains("outside the folder"), "{error}");
+    let allowed = Scene {
+        folder: Some(desk.path().join("s")),
+        reads_outside: true,
+        ..Scene::from_json(&text.to_string(), "scene").unwrap()
+    };
+    assert_eq!(allowed.build().unwrap().rows().len(), 25);
+}
+
+/// Files cut short and changed at random are read or refused, and nothing else.
+#[test]
+fn a_damaged_file_is_read_or_refused() {
+    let desk = TempDir::new().unwrap();
+    let die = Triangles::sphere(0.75, 1).moved(|[x, y, z]| [x + 0.5, y + 0.5, z + 1.75]);
+    let mut next = random(3);
+    let (mut read, mut refused) = (0, 0);
+    for (name, whole) in
+        [("die.stl", die.binary_stl()), ("text.stl", die.ascii_stl().into_bytes()), ("die.obj", die.obj().into_bytes())]
+    {
+        for round in 0..150 {
+            let mut bytes = whole.clone();
+            for _ in 0..1 + round % 4 {
+                let place = (next() * bytes.len() as f64) as usize;
+                bytes[place] = (next() * 256.0) as u8;
+            }
+            if round % 5 == 0 {
+                bytes.truncate((next() * bytes.len() as f64) as usize);
+            }
+            fs::write(desk.path().join(name), bytes).unwrap();
+            for rule in ["approach", "closest-point"] {
+                match model_in(desk.path(), &scene(rule, json!({"surface": {"file": name}}), -0.1)) {
+                    Ok(_) => read += 1,
+                    Err(error) => {
+                        assert!(["file-syntax", "scene"].contains(&error.code()), "{name}: {error}");
+                        refused += 1;
+                    }
+                }
+            }
+        }
+    }
+    assert!(read > 10 && refused > 300, "{read} read, {refused} refused");
+}

@@ -1,0 +1,64 @@
+//! Seconds from a surface of a million triangles in a binary STL to the closest points of 50,000 places near it.
+//!
+//! `cargo run --release --example surface_speed`
+
+use std::fs;
+use std::time::Instant;
+
+use signorini::internals::ClosedSurface;
+
+/// Cells around a torus and across its tube: two triangles each.
+const CELLS: [usize; 2] = [1000, 500];
+
+/// Places whose closest points are sought, as candidates of a contact: near the tube, on both sides of it.
+const PLACES: usize = 50_000;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let folder = tempfile::tempdir()?;
+    let file = folder.path().join("torus.stl");
+    let on_tube = |u: f64, v: f64, minor: f64| {
+        let (a, b) = (std::f64::consts::TAU * u, std::f64::consts::TAU * v);
+        let radius = 1.0 + minor * b.cos();
+        [radius * a.cos(), radius * a.sin(), minor * b.sin()]
+    };
+    let mut bytes = vec![b' '; 80];
+    bytes.extend((2 * CELLS[0] as u32 * CELLS[1] as u32).to_le_bytes());
+    for i in 0..CELLS[0] {
+        for j in 0..CELLS[1] {
+            let at = |i: usize, j: usize| {
+                let [u, v] = [i % CELLS[0], j % CELLS[1]].map(|index| index as f64);
+                on_tube(u / CELLS[0] as f64, v / CELLS[1] as f64, 0.4)
+            };
+            let quad = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+            for corners in [[quad[0], quad[1], quad[2]], [quad[0], quad[2], quad[3]]] {
+                bytes.extend([0; 12]);
+                corners.iter().flatten().for_each(|&part| bytes.extend((part as f32).to_le_bytes()));
+                bytes.extend([0; 2]);
+            }
+        }
+    }
+    fs::write(&file, bytes)?;
+    let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
+    let place = |index: usize| {
+        let u = index as f64 / PLACES as f64;
+        on_tube(u, (golden * index as f64).fract(), 0.4 + 0.02 * (u - 0.5))
+    };
+
+    let start = Instant::now();
+    let surface = ClosedSurface::read(&file, 1.0, [0.0; 3])?;
+    let read = start.elapsed().as_secs_f64();
+    let start = Instant::now();
+    let [mut inside, mut off] = [0.0_f64; 2];
+    for index in 0..PLACES {
+        let at = place(index);
+        let height = surface.closest(at, 1e-12, [0.0, 0.0, -1.0]).height;
+        let exact = (at[0].hypot(at[1]) - 1.0).hypot(at[2]) - 0.4;
+        inside += f64::from(u8::from(height < 0.0));
+        off = off.max((height - exact).abs());
+    }
+    let sought = start.elapsed().as_secs_f64();
+    println!("{} triangles read, checked and sorted into boxes: {read:.2} s", 2 * CELLS[0] * CELLS[1]);
+    println!("{PLACES} closest points, {inside} of them inside: {sought:.2} s");
+    println!("whole: {:.2} s; off the distance to the smooth torus by at most {off:.1e}", read + sought);
+    Ok(())
+}
