@@ -107,7 +107,10 @@ def write_vtu(answer: Answer, problem: Problem, out: Path) -> None:
     points = np.column_stack([x.ravel(), y.ravel(), 0.0 * x.ravel()])
     u = np.zeros_like(points)
     u[BLOCK["columns"] + 1 :, :2] = answer.displacement.reshape(-1, 2)
-    arrays = {name: np.zeros(len(points)) for name in ("sigma_1", "sigma_2", "von_mises", "gap", "pressure", "contact")}
+    scalars = ("sigma_1", "sigma_2", "von_mises", "gap", "remaining_gap", "pressure", "contact")
+    arrays = {name: np.zeros(len(points)) for name in scalars}
+    arrays |= {name: np.zeros((len(points), 3)) for name in ("reaction", "contact_force", "normal")}
+    arrays["stress"] = np.zeros((len(points), 6))
     arrays["contact"][-problem.rows :] = contact_set(problem, answer)
     cell = [[0, 1, BLOCK["columns"] + 2, BLOCK["columns"] + 1]]
     meshio.Mesh(points, [("quad", cell)], point_data={"u": u, **arrays}).write(out / "scene.vtu")

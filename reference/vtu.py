@@ -13,7 +13,12 @@ ARRAYS = {
     "sigma_1": (1,),
     "sigma_2": (1,),
     "von_mises": (1,),
+    "stress": (6,),
+    "reaction": (2, 3),
+    "contact_force": (2, 3),
+    "normal": (2, 3),
     "gap": (1,),
+    "remaining_gap": (1,),
     "pressure": (1,),
     "contact": (1,),
 }

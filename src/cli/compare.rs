@@ -31,7 +31,7 @@ pub(super) fn run(options: &Compare, watch: &Watch) -> Result<Outcome, Error> {
     let text = compare_text(&input.title, &summaries, &agreement, &input.units);
     let report = Report::new(&json!({ "methods": summaries, "agreement": agreement }), text)?;
     let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, agreement.status())) };
-    gallery::write_answer(&folder, &summaries[0].solution)?;
+    gallery::write_answer(&folder, &summaries[0].solution, qp.as_ref())?;
     report.write(&folder)?;
     let outcome = report.outcome(common.format, agreement.status());
     let (Some(qp), Some(active_set), Some(penalty)) = (qp, active_set, penalty) else { return Ok(outcome) };

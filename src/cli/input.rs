@@ -1,6 +1,6 @@
 //! A scene or a problem directory: what is the same of both for the commands.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -12,6 +12,9 @@ use crate::scene::{Answer, Model, Scene, Units};
 use crate::solution::{Goal, Solution};
 use crate::study::scene::problem_summary;
 use crate::study::{Summary, scene_summary};
+
+/// Stands for standard input where a file is named.
+const STANDARD_INPUT: &str = "-";
 
 /// What there is to solve.
 pub(super) struct Input {
@@ -132,7 +135,12 @@ fn rests(scene: &Scene) -> Result<(), Error> {
 }
 
 fn scene_of(path: &Path, limits: &Limits) -> Result<Scene, Error> {
-    Ok(Scene { reads_outside: limits.allow_outside, ..Scene::read(path)? })
+    // What comes by a pipe stands in the folder in which the program runs.
+    let scene = match path == Path::new(STANDARD_INPUT) {
+        true => Scene { folder: Some(PathBuf::new()), ..Scene::read("/dev/stdin")? },
+        false => Scene::read(path)?,
+    };
+    Ok(Scene { reads_outside: limits.allow_outside, ..scene })
 }
 
 /// Reads a scene and makes sure that it fits into these `limits`.

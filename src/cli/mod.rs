@@ -7,6 +7,7 @@ mod failure;
 mod input;
 mod interrupt;
 mod memory;
+mod new;
 mod options;
 mod outcome;
 mod progress;
@@ -53,6 +54,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Sweep(options) => sweep::run(&options, &watch),
         Command::Tradeoff(options) => tradeoff::run(&options, &watch),
         Command::Export(options) => export::run(&options),
+        Command::New(options) => new::run(&options),
         Command::Verify(options) => verify::run(&options),
         Command::Schema => Ok(Outcome::done(format!("{:#}\n", Scene::json_schema()))),
     };

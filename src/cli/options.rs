@@ -25,6 +25,8 @@ pub(super) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
+    /// Write a first scene for a mesh of Gmsh: its groups, a support, a plate that a force presses
+    New(New),
     /// Solve a scene or a problem directory and certify the answer
     Solve(Solve),
     /// Solve by all three methods and say whether they agree
@@ -83,7 +85,7 @@ impl ValueEnum for Precision {
 
 #[derive(Debug, Args)]
 pub(super) struct Solve {
-    /// Scene (a JSON file) or problem directory (with K.mtx, f.mtx, B.mtx, g.mtx)
+    /// Scene (a JSON file, - for standard input) or problem directory (with K.mtx, f.mtx, B.mtx, g.mtx)
     pub input: PathBuf,
     /// Method that finds the contact set
     #[arg(long, value_enum, default_value_t = Method::Auto)]
@@ -116,6 +118,15 @@ pub(super) struct Solve {
     pub resume: bool,
     #[command(flatten)]
     pub common: Common,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct New {
+    /// Mesh (a .msh file of Gmsh)
+    pub mesh: PathBuf,
+    /// File for the scene; standard output where it is left out
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
@@ -343,7 +354,7 @@ impl Command {
             | Command::Sweep(Sweep { common, .. }) => common.format,
             Command::Tradeoff(options) => options.format,
             Command::Verify(options) => options.format,
-            Command::Export(_) | Command::Schema => Format::Text,
+            Command::New(_) | Command::Export(_) | Command::Schema => Format::Text,
         }
     }
 }

@@ -113,12 +113,14 @@ fn reported(input: &Input, solution: Solution, goal: Goal, common: &Common, watc
     if let Some(answer) = &answer
         && !watch.is_over()
     {
-        summary.discretisation_error = Some(answer.discretisation_error()?);
+        let of_mesh = answer.estimated_error()?;
+        summary.discretisation_error = Some(of_mesh.relative());
+        summary.strain_energy = Some(answer.model().parts_of_whole() * of_mesh.strain_energy());
     }
     let report = Report::new(&summary, solve_text(&input.title, &summary, &input.units))?;
     let status = summary.status;
     let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, status)) };
-    gallery::write_answer(&folder, &summary.solution)?;
+    gallery::write_answer(&folder, &summary.solution, answer.as_ref())?;
     report.write(&folder)?;
     let outcome = report.outcome(common.format, status);
     if watch.is_over() && !watch.is_stopped() {

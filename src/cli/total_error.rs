@@ -65,7 +65,7 @@ fn estimated(
     let Some(folder) = options.common.out.clone() else {
         return Ok(report.outcome(options.common.format, found.status));
     };
-    gallery::write_answer(&folder, &summary.solution)?;
+    gallery::write_answer(&folder, &summary.solution, Some(&found.answer))?;
     report.write_with_text(&folder, "total-error.txt")?;
     write_estimated_error(&folder, title, &found)?;
     let outcome = report.outcome(options.common.format, found.status);

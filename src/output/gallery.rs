@@ -3,12 +3,13 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use super::fields::fields;
+use super::tables;
 use super::{
-    Array, ContactPicture, ObstacleLine, Plot, Quantity, Series, Unstructured, common_limits, common_window,
-    line_plots, ticks::brief, write_atomically, write_files, write_picture,
+    ContactPicture, ObstacleLine, Plot, Quantity, Series, common_limits, common_window, line_plots, ticks::brief,
+    write_atomically, write_files, write_picture,
 };
 use crate::error::Error;
-use crate::fem::recovery::Stress;
 use crate::qp::matrix_market::solution_files;
 use crate::qp::with_contact_sets;
 use crate::scene::{Answer, Model};
@@ -21,15 +22,16 @@ const MOST_ITERATIONS: usize = 12;
 /// Pieces of the line of an obstacle.
 const OUTLINE_SEGMENTS: usize = 200;
 
-/// Flag of a node that is no candidate; candidates have 0 (open) or 1 (closed).
-const NO_CANDIDATE: f64 = -1.0;
-
-/// Writes `u.mtx` and `lambda.mtx`.
+/// Writes `u.mtx` and `lambda.mtx`; of a scene what their entries are those of, and what happens at each row (`dofs.csv`, `rows.csv`,
+/// `contact.csv`).
 ///
 /// # Errors
 /// [`Error::File`].
-pub fn write_answer(folder: &Path, solution: &Solution) -> Result<(), Error> {
-    write_files(folder, &solution_files(solution))
+pub fn write_answer(folder: &Path, solution: &Solution, answer: Option<&Answer>) -> Result<(), Error> {
+    write_files(folder, &solution_files(solution))?;
+    let Some(answer) = answer else { return Ok(()) };
+    write_files(folder, &tables::of_model(answer.model()))?;
+    write_files(folder, &[("contact.csv", tables::contact(answer))])
 }
 
 /// Writes the fields of an answer (`solution.vtu`), its picture (`contact`) and one picture for each iteration
@@ -297,60 +299,4 @@ fn draw_series(folder: &Path, series: &[(String, Scene)]) -> Result<(), Error> {
         write_picture(folder, stem, &picture.draw()?)?;
     }
     Ok(())
-}
-
-/// The text of the `.vtu` file: displacement, stresses, and at the candidates gap, pressure and contact flag.
-pub(super) fn fields(answer: &Answer, velocity: Option<&[f64]>) -> Result<String, Error> {
-    let model = answer.model();
-    let nodes = model.mesh().nodes();
-    let elements: Vec<Vec<usize>> = model.mesh().elements().map(<[usize]>::to_vec).collect();
-    let cell_types = vec![model.mesh().kind(); elements.len()];
-    let displacement = in_space(answer.displacement(), model.mesh().dimension());
-    let force = in_space(&answer.forces()?.contact, model.mesh().dimension());
-    let stress = answer.stress()?;
-    // A node between two obstacles shows the sum of its pressures and the smaller of its gaps.
-    let (mut pressure, mut gap) = (vec![0.0; nodes.len()], vec![0.0; nodes.len()]);
-    let mut flag = vec![NO_CANDIDATE; nodes.len()];
-    for (index, row) in model.rows().iter().enumerate() {
-        for (node, _) in row.ends() {
-            let is_first = flag[node] == NO_CANDIDATE;
-            gap[node] = if is_first { row.gap } else { row.gap.min(gap[node]) };
-            pressure[node] += answer.pressure()[index];
-            flag[node] = f64::from(answer.contact_set().contains(index)).max(flag[node]);
-        }
-    }
-    let components: [fn(&Stress) -> f64; 4] = [|s| s.sigma_1, |s| s.sigma_2, |s| s.von_mises, |s| s.sigma_3];
-    let of = |stresses: &[Stress]| components.map(|component| stresses.iter().map(component).collect::<Vec<f64>>());
-    let (at_nodes, in_elements) = (of(&stress.nodes), of(&stress.elements));
-    let velocity = velocity.map(|nodal| in_space(nodal, model.mesh().dimension()));
-    let mut point_data = vec![Array::Vectors("u", &displacement)];
-    point_data.extend(velocity.as_deref().map(|vectors| Array::Vectors("velocity", vectors)));
-    point_data.extend([
-        Array::Scalars("sigma_1", &at_nodes[0]),
-        Array::Scalars("sigma_2", &at_nodes[1]),
-        Array::Scalars("sigma_3", &at_nodes[3]),
-        Array::Scalars("von_mises", &at_nodes[2]),
-        Array::Scalars("gap", &gap),
-        Array::Scalars("pressure", &pressure),
-        Array::Scalars("contact", &flag),
-        Array::Vectors("contact_force", &force),
-    ]);
-    Unstructured {
-        nodes,
-        elements: &elements,
-        cell_types: &cell_types,
-        point_data: &point_data,
-        cell_data: &[
-            Array::Scalars("sigma_1", &in_elements[0]),
-            Array::Scalars("sigma_2", &in_elements[1]),
-            Array::Scalars("sigma_3", &in_elements[3]),
-            Array::Scalars("von_mises", &in_elements[2]),
-        ],
-    }
-    .to_vtu()
-}
-
-/// Nodal vectors of `dimension` components with three.
-fn in_space(nodal: &[f64], dimension: usize) -> Vec<f64> {
-    nodal.chunks(dimension).flat_map(|v| [0, 1, 2].map(|axis| v.get(axis).copied().unwrap_or(0.0))).collect()
 }

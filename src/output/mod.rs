@@ -13,6 +13,7 @@ mod contour;
 pub(crate) mod drawing;
 #[cfg(feature = "cli")]
 mod estimated_error;
+mod fields;
 pub(crate) mod file;
 // What the program leaves in its folders; of it a motion needs the fields and the scene of a picture only.
 #[cfg_attr(not(feature = "cli"), allow(dead_code))]
@@ -37,6 +38,8 @@ mod report;
 mod shape;
 mod style;
 mod svg;
+#[cfg_attr(not(feature = "cli"), allow(dead_code))]
+pub(crate) mod tables;
 pub(crate) mod ticks;
 #[cfg(feature = "cli")]
 mod total_error;

@@ -12,7 +12,8 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::animation::animate;
-use super::gallery::{Scene, fields};
+use super::fields::fields;
+use super::gallery::Scene;
 use super::motion_table::MotionTable;
 use super::{
     ContactPicture, Plot, Quantity, Series, common_limits, common_window, json::compact_json, line_plots,

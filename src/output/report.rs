@@ -76,7 +76,7 @@ pub fn solve_text(title: &str, summary: &Summary, units: &Units) -> String {
     text += &resultants_text(summary, units);
     text += &certificate_text(&solution.certificate, summary.goal);
     text += &warnings_text(&summary.warnings);
-    text += &mesh_text(summary);
+    text += &mesh_text(summary, units);
     text += &entry(
         "seconds",
         &format!(
@@ -218,9 +218,13 @@ pub(super) fn warnings_text(warnings: &[AnswerWarning]) -> String {
 }
 
 /// What the mesh is worth, and whether the algebra is worth more.
-fn mesh_text(summary: &Summary) -> String {
+fn mesh_text(summary: &Summary, units: &Units) -> String {
     let Some(of_mesh) = summary.discretisation_error else { return String::new() };
-    let mut text = entry("mesh", &format!("about {of_mesh:.1e} of the energy norm off, by its stresses"));
+    let energy = summary.strain_energy.map_or_else(String::new, |energy| {
+        let unit = format!("{} {}", units.force, units.length);
+        entry("energy", format!("strain energy {energy:.6e} {}", printable(&unit)).trim_end())
+    });
+    let mut text = energy + &entry("mesh", &format!("about {of_mesh:.1e} of the energy norm off, by its stresses"));
     let bound = summary.solution.certificate.energy_error_bound;
     if !of_mesh.is_finite() || !bound.is_finite() {
         let reason = match bound.is_finite() {

@@ -13,6 +13,8 @@ pub enum Array<'a> {
     Scalars(&'a str, &'a [f64]),
     /// A vector per entry, order `[x0, y0, z0, x1, ...]`.
     Vectors(&'a str, &'a [f64]),
+    /// A symmetric tensor per entry, six components in the order xx, yy, zz, xy, yz, xz.
+    Tensors(&'a str, &'a [f64]),
     /// A flag per entry, written as 0 or 1.
     Flags(&'a str, &'a [bool]),
 }
@@ -48,7 +50,7 @@ impl Unstructured<'_> {
         let _ = writeln!(text, "<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">");
         text.push_str("<Points>\n");
         let coordinates: Vec<f64> = self.nodes.iter().flatten().copied().collect();
-        vectors(&mut text, "Points", &coordinates)?;
+        tuples::<3>(&mut text, "Points", &coordinates)?;
         text.push_str("</Points>\n");
         self.write_cells(&mut text)?;
         write_data(&mut text, "PointData", self.point_data, points, "nodes")?;
@@ -98,6 +100,7 @@ fn write_data(text: &mut String, tag: &str, arrays: &[Array], expected: usize, o
         let (found, expected) = match array {
             Array::Scalars(_, values) => (values.len(), expected),
             Array::Vectors(_, values) => (values.len(), 3 * expected),
+            Array::Tensors(_, values) => (values.len(), 6 * expected),
             Array::Flags(_, values) => (values.len(), expected),
         };
         if found != expected {
@@ -112,7 +115,8 @@ fn write_data(text: &mut String, tag: &str, arrays: &[Array], expected: usize, o
                     .collect::<Result<Vec<_>, _>>()?;
                 write_array(text, "Float64", name, 1, &lines);
             }
-            Array::Vectors(name, values) => vectors(text, name, values)?,
+            Array::Vectors(name, values) => tuples::<3>(text, name, values)?,
+            Array::Tensors(name, values) => tuples::<6>(text, name, values)?,
             Array::Flags(name, values) => {
                 let lines: Vec<String> = values.iter().map(|&flag| u8::from(flag).to_string()).collect();
                 write_array(text, "UInt8", name, 1, &lines);
@@ -123,13 +127,14 @@ fn write_data(text: &mut String, tag: &str, arrays: &[Array], expected: usize, o
     Ok(())
 }
 
-fn vectors(text: &mut String, name: &str, values: &[f64]) -> Result<(), Error> {
-    let line = |(k, vector): (usize, &[f64])| {
-        let parts = vector.iter().map(|&value| finite(name, k, value)).collect::<Result<Vec<_>, _>>()?;
+/// Entries of `N` components each.
+fn tuples<const N: usize>(text: &mut String, name: &str, values: &[f64]) -> Result<(), Error> {
+    let line = |(k, tuple): (usize, &[f64])| {
+        let parts = tuple.iter().map(|&value| finite(name, k, value)).collect::<Result<Vec<_>, _>>()?;
         Ok(parts.join(" "))
     };
-    let lines = values.chunks_exact(3).enumerate().map(line).collect::<Result<Vec<_>, Error>>()?;
-    write_array(text, "Float64", name, 3, &lines);
+    let lines = values.chunks_exact(N).enumerate().map(line).collect::<Result<Vec<_>, Error>>()?;
+    write_array(text, "Float64", name, N, &lines);
     Ok(())
 }
 

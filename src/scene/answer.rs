@@ -5,8 +5,10 @@ use std::sync::{Arc, OnceLock};
 use super::Model;
 use super::resultants::{Resultant, without_rounding};
 use super::rigid_body_modes::RigidBodyModes;
+use super::rows::ContactRow;
 use crate::error::Error;
 use crate::fem::assembly::internal_force;
+use crate::fem::geometry::dot;
 #[cfg(feature = "cli")]
 use crate::fem::recovery::discretisation::EstimatedError;
 use crate::fem::recovery::{self, StressField};
@@ -103,6 +105,23 @@ impl Answer {
     /// The whole shift of an obstacle along its approach direction, in length: that of the scene, its own, less its travel.
     pub(crate) fn shift(&self, obstacle: usize) -> f64 {
         self.model.obstacles()[obstacle].shift(self.model.gap()) - self.travel(obstacle).unwrap_or(0.0)
+    }
+
+    /// What is left of the gap at the node of each row, in length, `>= 0` but for rounding.
+    pub fn remaining_gaps(&self) -> Vec<f64> {
+        let dimension = self.model.body().dimension();
+        let moved = |row: &ContactRow| -> f64 {
+            let of_node = |(node, sign): (usize, f64)| {
+                let own = &self.displacement[dimension * node..dimension * (node + 1)];
+                sign * own.iter().zip(row.normal).map(|(u, n)| u * n).sum::<f64>()
+            };
+            row.ends().map(of_node).sum()
+        };
+        let travelled = |row: &ContactRow| {
+            let approach = self.model.obstacles()[row.obstacle].approach();
+            self.travel(row.obstacle).unwrap_or(0.0) * dot(row.normal, approach)
+        };
+        self.model.rows().iter().map(|row| row.gap - moved(row) - travelled(row)).collect()
     }
 
     /// The multiplier of each row, in force, `<= 0`.

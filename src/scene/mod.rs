@@ -47,6 +47,8 @@ pub(crate) mod schema;
 mod segments;
 mod size;
 mod springs;
+#[cfg(feature = "cli")]
+mod start;
 mod suspect;
 mod symmetry;
 mod unknowns;
@@ -65,5 +67,9 @@ pub use schema::{Rule, Scene, Units};
 pub(crate) use segments::straight_cells;
 pub use segments::{ContactExtent, Segment};
 pub use size::Size;
+#[cfg(feature = "cli")]
+pub(crate) use start::start_scene;
+#[cfg(feature = "pictures")]
+pub(crate) use unknowns::Meaning;
 pub use warning::Warning;
 pub use watched::WatchedPoint;

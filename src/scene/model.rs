@@ -2,12 +2,16 @@
 
 use std::sync::Arc;
 
-use super::entry::{finite, wrong};
+#[cfg(feature = "cli")]
+use super::entry::finite;
+use super::entry::wrong;
 use super::obstacle::PlacedObstacle;
 use super::parts::Parts;
 use super::rigid_body_modes::RigidBodyModes;
 use super::rows::{self, ContactRow};
 use super::suspect::suspect_rows;
+#[cfg(feature = "pictures")]
+use super::unknowns::Meaning;
 use super::{Units, Warning};
 use crate::error::Error;
 use crate::fem::assembly::{DofMap, free_load, rigid_body_modes, stiffness};
@@ -106,6 +110,7 @@ impl Model {
     }
 
     /// The force on the one obstacle that a force presses; `None` where there is no such obstacle, or several.
+    #[cfg(feature = "pictures")]
     pub(crate) fn pressing_force(&self) -> Option<f64> {
         let &[obstacle] = self.parts.unknowns.pressed() else { return None };
         let parts = self.parts.symmetry.parts_of_obstacle(self.parts.obstacles[obstacle].approach());
@@ -116,6 +121,7 @@ impl Model {
     ///
     /// # Errors
     /// [`Error::Scene`] where a force presses no obstacle or several, or for a force that is not finite.
+    #[cfg(feature = "cli")]
     pub(crate) fn pressed_by(&self, force: f64) -> Result<Self, Error> {
         let parts = &self.parts;
         let &[obstacle] = parts.unknowns.pressed() else {
@@ -151,6 +157,13 @@ impl Model {
             solution.displacement[travel] = rows.map(|(row, lean)| -left[row] / lean).fold(f64::INFINITY, f64::min);
         }
         Ok(solution)
+    }
+
+    /// What each unknown of the problem is, in its order.
+    #[cfg(feature = "pictures")]
+    pub(crate) fn meanings(&self) -> Vec<Meaning> {
+        let parts = &self.parts;
+        parts.unknowns.meanings(&parts.dofs, parts.body.dimension(), &parts.rigid_faces)
     }
 
     /// How many times the modelled part makes the whole, by planes of symmetry.

@@ -1,5 +1,6 @@
 //! From text to a typed scene: every failure has a path, a line and a column.
 
+use std::borrow::Cow;
 use std::io;
 use std::path::Path;
 
@@ -9,14 +10,14 @@ use crate::error::Error;
 use crate::file::{MOST_OF_SCENE, read_text_capped};
 
 impl Scene {
-    /// Reads a scene from JSON text; `source_name` stands in the error's first words.
+    /// Reads a scene from JSON text, in which lines that begin with `//` are comments; `source_name` stands in the error's first words.
     ///
     /// # Errors
     /// [`Error::SceneSyntax`] for text that is no JSON, or does not have the form of a scene.
     pub fn from_json(text: &str, source_name: &str) -> Result<Scene, Error> {
         // Some editors put a byte order mark in front.
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let mut json = serde_json::Deserializer::from_str(text);
+        let text = without_comments(text.strip_prefix('\u{feff}').unwrap_or(text));
+        let mut json = serde_json::Deserializer::from_str(&text);
         let mut track = serde_path_to_error::Track::new();
         let scene = object(serde_path_to_error::Deserializer::new(&mut json, &mut track));
         let fail = |path: String, trailing: &str, error: serde_json::Error| Error::SceneSyntax {
@@ -52,6 +53,15 @@ impl Scene {
     pub fn json_schema() -> serde_json::Value {
         schemars::schema_for!(Scene).to_value()
     }
+}
+
+/// The text with lines of comment left empty, so that all others keep their numbers.
+fn without_comments(text: &str) -> Cow<'_, str> {
+    let is_comment = |line: &str| line.trim_start().starts_with("//");
+    if !text.lines().any(is_comment) {
+        return Cow::Borrowed(text);
+    }
+    Cow::Owned(text.split('\n').map(|line| if is_comment(line) { "" } else { line }).collect::<Vec<_>>().join("\n"))
 }
 
 /// Where the parser stood, without the key that it could not read.

@@ -38,6 +38,13 @@ pub(super) struct Motion {
     pub force: f64,
 }
 
+impl Motion {
+    /// As it is written.
+    pub fn name(&self) -> &'static str {
+        NAMES[self.kind]
+    }
+}
+
 impl Scene {
     /// The rigid faces; what holds their nodes besides is released, because the faces move them so.
     ///
@@ -130,7 +137,7 @@ impl RigidFace {
                 Some(motion) => format!(
                     "node {node} at {} is held by {by}, and moves with the face; prescribe `{}` too",
                     point(&at),
-                    NAMES[motion.kind]
+                    motion.name()
                 ),
                 None => format!("node {node} at {} is held by {by} otherwise than the face moves it", point(&at)),
             };

@@ -9,6 +9,8 @@
 //! to F.
 
 use std::borrow::Cow;
+#[cfg(feature = "pictures")]
+use std::collections::HashSet;
 
 use nalgebra::{DMatrix, DVector};
 
@@ -26,6 +28,35 @@ pub(super) struct Unknowns {
     ties: Option<Ties>,
     /// The pressed obstacles, in the order of their unknowns, which come last.
     pressed: Vec<usize>,
+}
+
+/// What an unknown is.
+#[cfg(feature = "pictures")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Meaning {
+    /// The displacement of a node along a unit vector, or the coefficient of a mid-side node.
+    Node {
+        /// The node.
+        node: usize,
+        /// The unit vector [x, y, z].
+        direction: [f64; 3],
+        /// As `displacement`.
+        quantity: &'static str,
+    },
+    /// A motion of a rigid face.
+    Face {
+        /// The face, from 0.
+        face: usize,
+        /// As `rotation.z`; a rotation is measured in `unit` radians.
+        motion: &'static str,
+        /// In length, or in radians.
+        unit: f64,
+    },
+    /// The travel of an obstacle that a force presses.
+    Travel {
+        /// The obstacle, from 0.
+        obstacle: usize,
+    },
 }
 
 /// How the free dofs follow the unknowns: u = R y + u_0.
@@ -135,6 +166,7 @@ impl Unknowns {
     }
 
     /// The same load with other forces on the pressed obstacles.
+    #[cfg(feature = "cli")]
     pub fn pressed_by(&self, mut load: Vec<f64>, force: impl Fn(usize) -> f64) -> Vec<f64> {
         load.truncate(self.of_body());
         load.extend(self.pressed.iter().map(|&obstacle| force(obstacle)));
@@ -176,6 +208,32 @@ impl Unknowns {
         let Some(ties) = &self.ties else { return (of_free.to_vec(), 0.0) };
         let entries = of_free.iter().flat_map(|&(dof, part)| ties.rows.column(dof).map(move |(q, r)| (q, part * r)));
         (entries.collect(), of_free.iter().map(|&(dof, part)| part * ties.offset[dof]).sum())
+    }
+
+    /// What each unknown is.
+    #[cfg(feature = "pictures")]
+    pub fn meanings(&self, dofs: &DofMap, dimension: usize, faces: &[RigidFace]) -> Vec<Meaning> {
+        let of_node = |dof: usize| {
+            let (node, axis) = (dof / dimension, dof % dimension);
+            let mut along = [0.0; 3];
+            along[axis] = 1.0;
+            let direction = dofs.frame(node).map_or(along, |frame| frame.axes()[axis]);
+            let quantity = if dofs.basis().ends(node).is_some() { "coefficient" } else { "displacement" };
+            Meaning::Node { node, direction, quantity }
+        };
+        let tied: HashSet<usize> = faces.iter().flat_map(RigidFace::nodes).copied().collect();
+        let mut meanings: Vec<Meaning> =
+            dofs.free().iter().filter(|&dof| !tied.contains(&(dof / dimension))).map(|&dof| of_node(dof)).collect();
+        for (index, face) in faces.iter().enumerate() {
+            let free = face.motions.iter().filter(|motion| motion.prescribed.is_none());
+            meanings.extend(free.map(|motion| Meaning::Face {
+                face: index,
+                motion: motion.name(),
+                unit: face.unit(motion),
+            }));
+        }
+        meanings.extend(self.pressed.iter().map(|&obstacle| Meaning::Travel { obstacle }));
+        meanings
     }
 
     /// The stiffness of the unknowns with a spring on each pressed obstacle, as stiff as the stiffest dof.

@@ -109,6 +109,7 @@ pub struct SweepPoint {
     pub answer: Answer,
 }
 
+#[cfg(feature = "pictures")]
 impl SweepPoint {
     /// How far the pressed obstacle has moved, in a sweep over forces.
     pub(crate) fn travel(&self) -> Option<f64> {

@@ -65,6 +65,9 @@ pub struct Summary {
     /// The error of the mesh, estimated, relative in energy; only in a scene, where it was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub discretisation_error: Option<f64>,
+    /// The strain energy of the body, in force times length; only in a scene, where it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub strain_energy: Option<f64>,
     /// Sizes of the model.
     pub model: ModelSize,
     /// What it cost.
@@ -180,6 +183,7 @@ impl Summary {
             segments: Vec::new(),
             force_basis: String::new(),
             discretisation_error: None,
+            strain_energy: None,
             model: ModelSize { condensed_dofs: solution.condensed_dofs, ..model },
             seconds: RunSeconds::of(assemble_seconds, solution.seconds),
             solution,

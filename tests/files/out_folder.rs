@@ -37,7 +37,21 @@ fn checked(folder: &Path) -> BTreeSet<String> {
                 let vtu = text();
                 let document = Document::parse(&vtu).unwrap_or_else(|error| panic!("{name}: {error}"));
                 let arrays: Vec<&str> = document.descendants().filter_map(|node| node.attribute("Name")).collect();
-                for array in ["u", "sigma_1", "sigma_2", "von_mises", "gap", "pressure", "contact"] {
+                let expected = [
+                    "u",
+                    "sigma_1",
+                    "sigma_2",
+                    "von_mises",
+                    "stress",
+                    "gap",
+                    "remaining_gap",
+                    "normal",
+                    "pressure",
+                    "contact",
+                    "contact_force",
+                    "body",
+                ];
+                for array in expected {
                     assert!(arrays.contains(&array), "{name} lacks {array}: {arrays:?}");
                 }
             }
@@ -46,6 +60,11 @@ fn checked(folder: &Path) -> BTreeSet<String> {
             }
             Some("mtx") => {}
             Some("json") => assert!(serde_json::from_slice::<Value>(&bytes).unwrap().is_object()),
+            Some("csv") => {
+                let csv = text();
+                let cells: BTreeSet<usize> = csv.lines().map(|line| line.split(',').count()).collect();
+                assert!(cells.len() == 1 && csv.lines().count() > 1, "{name}: {cells:?}");
+            }
             _ => panic!("what is {name}?"),
         }
         assert!(!bytes.is_empty(), "{name} is empty");
@@ -70,7 +89,8 @@ fn solve_leaves_answer_fields_pictures_and_report() {
         desk.run(&["solve", "block.json", "--method", "active-set", "--format", "json", "--out", "a/b"]).ends_with(0);
     let found = checked(&desk.path("a/b"));
     let steps = run.json()["history"].as_array().unwrap().len();
-    let mut expected = names(&["u.mtx", "lambda.mtx", "solution.vtu", "report.json"]);
+    let mut expected =
+        names(&["u.mtx", "lambda.mtx", "dofs.csv", "rows.csv", "contact.csv", "solution.vtu", "report.json"]);
     expected.extend(pictures((1..=steps).map(|step| format!("iteration-{step}")).chain(["contact".to_string()])));
     assert_eq!(found, expected);
     assert!(steps >= 2);
@@ -83,6 +103,52 @@ fn solve_leaves_answer_fields_pictures_and_report() {
     let along_y: f64 = numbers.map(|line| line.split_whitespace().nth(1).unwrap().parse::<f64>().unwrap()).sum();
     let resultant = report["resultants"][0]["force"][1].as_f64().unwrap();
     assert!(along_y < 0.0 && (along_y - resultant).abs() < 1e-12 * along_y.abs(), "{along_y} and {resultant}");
+}
+
+/// The columns of a table by their names, as numbers; empty cells are NaN.
+fn columns(csv: &str) -> std::collections::BTreeMap<String, Vec<f64>> {
+    let mut lines = csv.lines();
+    let names: Vec<String> = lines.next().unwrap().split(',').map(str::to_string).collect();
+    let rows: Vec<Vec<f64>> =
+        lines.map(|line| line.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect()).collect();
+    names.into_iter().enumerate().map(|(place, name)| (name, rows.iter().map(|row| row[place]).collect())).collect()
+}
+
+/// A pressed obstacle over quadratic faces, and a rigid face: every unknown and every row is told, in the order of the vectors.
+#[test]
+fn tables_tell_what_the_entries_of_the_vectors_are() {
+    let axis = |cells: usize| serde_json::json!({"points": [0, 1], "divisions": [cells]});
+    let scene = serde_json::json!({
+        "model": "space",
+        "body": {"box": {"x": axis(2), "y": axis(2), "z": axis(1), "element": "tet10"}},
+        "material": {"young": 1000, "poisson": 0.3},
+        "rigid-faces": [{"boundary": "bottom", "x": 0, "y": 0, "rotation": {"x": 0, "y": 0, "z": 0}, "force": [0, 0, 2]}],
+        "springs": [{"on": {"boundary": "bottom"}, "z": 5}],
+        "obstacles": [{"boundary": "top", "approach": "+z", "force": 3,
+                       "shape": {"sphere": {"apex": [0.5, 0.5, 1.01], "radius": 3}}}],
+    });
+    let desk = Desk::new();
+    desk.write("scene.json", scene.to_string());
+    let report = desk.run(&["solve", "scene.json", "--format", "json", "--out", "o"]).ends_with(0).json();
+    let read = |name: &str| fs::read_to_string(desk.path("o").join(name)).unwrap();
+    let (u, lambda) = (read_vector(&desk.path("o/u.mtx")).unwrap(), read_vector(&desk.path("o/lambda.mtx")).unwrap());
+    let dofs = read("dofs.csv");
+    let quantity = |of: &str| dofs.lines().filter(|line| line.split(',').nth(1) == Some(of)).count();
+    assert_eq!(dofs.lines().count() - 1, u.len());
+    // On top the mid-sides of 8 triangles: 16 edges.
+    assert_eq!((quantity("coefficient"), quantity("z"), quantity("travel")), (3 * 16, 1, 1));
+    assert!(dofs.lines().last().unwrap().contains("travel,obstacles[0],,,,0e0,0e0,-1e0"), "{dofs}");
+    assert_eq!(*u.last().unwrap(), report["resultants"][0]["travel"].as_f64().unwrap());
+    let (rows, contact) = (columns(&read("rows.csv")), columns(&read("contact.csv")));
+    assert_eq!((rows["row"].len(), contact["row"].len()), (lambda.len(), lambda.len()));
+    assert!((rows["tributary_area"].iter().sum::<f64>() - 1.0).abs() < 1e-12);
+    assert!((contact["force"].iter().sum::<f64>() - 3.0).abs() < 1e-9);
+    for (row, lambda) in lambda.iter().enumerate() {
+        assert_eq!(contact["force"][row], 0.0 - lambda);
+        assert!(contact["remaining_gap"][row] > -1e-12, "coefficients keep the nodes out of the obstacle");
+        assert!(contact["closed"][row] == 0.0 || contact["pressure"][row] >= 0.0);
+    }
+    assert!(report["strain_energy"].as_f64().unwrap() > 0.0);
 }
 
 #[test]
@@ -133,11 +199,12 @@ fn a_problem_directory_gets_its_answer_beside_its_files() {
 }
 
 #[test]
-fn export_leaves_five_files_that_read_back_as_the_problem() {
+fn export_leaves_files_that_read_back_as_the_problem_and_tell_what_they_hold() {
     let desk = Desk::new();
     desk.write("block.json", scene().to_string());
     desk.run(&["export", "block.json", "deep/er"]).ends_with(0);
-    assert_eq!(checked(&desk.path("deep/er")), names(&["K.mtx", "f.mtx", "B.mtx", "g.mtx", "near_null.mtx"]));
+    let expected = names(&["K.mtx", "f.mtx", "B.mtx", "g.mtx", "near_null.mtx", "dofs.csv", "rows.csv"]);
+    assert_eq!(checked(&desk.path("deep/er")), expected);
     let model = signorini::Scene::read(desk.path("block.json")).unwrap().build().unwrap();
     assert_eq!(&read_problem(&desk.path("deep/er")).unwrap(), model.problem());
 }

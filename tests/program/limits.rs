@@ -19,6 +19,12 @@ const REFUSAL_KILOBYTES: u32 = 20_000;
 /// The address space, in kB, in which hostile files are refused; one announces rows of 800 MB.
 const FILE_KILOBYTES: u32 = 400_000;
 
+/// The address space, in kB, that matrix products reserve: twice the cache of the third level, where the machine tells it.
+fn packed_kilobytes() -> u32 {
+    let size = fs::read_to_string("/sys/devices/system/cpu/cpu0/cache/index3/size").unwrap_or_default();
+    2 * size.trim().trim_end_matches('K').parse().unwrap_or(0)
+}
+
 /// Seconds of processor time in which a refusal ends that takes milliseconds; to look at 1e12 elements would take minutes.
 const REFUSAL_SECONDS: u32 = 10;
 
@@ -242,7 +248,8 @@ fn files_without_end_are_read_up_to_a_cap() {
         "mesh.json",
         clamped("plane-strain", body, "a", "b", "+y", json!({"body": {"boundary": ""}})).to_string(),
     );
-    confined(&desk, FILE_KILOBYTES, "solve mesh.json --allow-outside")
+    // A scene is held against what is left beside the blocks that matrix products reserve.
+    confined(&desk, FILE_KILOBYTES + packed_kilobytes(), "solve mesh.json --allow-outside")
         .fails_with(1, &["/dev/zero", "longer than 64 MB"]);
     // A sparse file of 1 GB takes no place on the disk.
     fs::File::create(desk.path("long.json")).unwrap().set_len(1 << 30).unwrap();

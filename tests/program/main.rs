@@ -14,6 +14,7 @@ mod files_read;
 mod limits;
 mod memory;
 mod motion_runs;
+mod new;
 mod process;
 mod promised;
 mod schema;

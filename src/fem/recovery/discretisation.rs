@@ -72,6 +72,12 @@ impl EstimatedError {
         Ok(EstimatedError { of_elements, whole })
     }
 
+    /// The strain energy of the displaced body, `1/2 ||sigma_h||^2`, in force times length.
+    #[cfg(feature = "cli")]
+    pub fn strain_energy(&self) -> f64 {
+        self.whole / 2.0
+    }
+
     /// The error over the norm of the exact stress, both estimated.
     pub fn relative(&self) -> f64 {
         let difference: f64 = self.of_elements.iter().sum();

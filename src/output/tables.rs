@@ -1,0 +1,64 @@
+//! Tables beside the numbers of an answer: what each unknown and each row is, and what happens at the contact.
+
+use std::fmt::Write;
+
+use crate::scene::{Answer, Meaning, Model};
+
+/// `dofs.csv` and `rows.csv`: the meaning of the entries of `u.mtx` and `lambda.mtx`, in their order, from 0.
+pub(crate) fn of_model(model: &Model) -> [(&'static str, String); 2] {
+    [("dofs.csv", dofs(model)), ("rows.csv", rows(model))]
+}
+
+/// A line for each unknown. A rigid face has no node: its rotations are measured by the displacement of its farthest node, and `unit`
+/// times the value is in radians.
+fn dofs(model: &Model) -> String {
+    let mut text = String::from("dof,quantity,of,x,y,z,direction_x,direction_y,direction_z,unit\n");
+    for (dof, meaning) in model.meanings().into_iter().enumerate() {
+        let (quantity, of, at, direction, unit) = match meaning {
+            Meaning::Node { node, direction, quantity } => {
+                (quantity, format!("node {node}"), model.mesh().nodes().get(node), Some(direction), 1.0)
+            }
+            Meaning::Face { face, motion, unit } => (motion, format!("rigid-faces[{face}]"), None, None, unit),
+            Meaning::Travel { obstacle } => {
+                let against = model.obstacles()[obstacle].approach().map(|part| 0.0 - part);
+                ("travel", format!("obstacles[{obstacle}]"), None, Some(against), 1.0)
+            }
+        };
+        let _ = writeln!(text, "{dof},{quantity},{of},{},{},{unit:e}", vector(at.copied()), vector(direction));
+    }
+    text
+}
+
+/// A line for each contact row: `normal . (u - u_partner) <= gap`.
+fn rows(model: &Model) -> String {
+    let mut text = String::from("row,obstacle,node,partner,x,y,z,normal_x,normal_y,normal_z,gap,tributary_area\n");
+    for (index, row) in model.rows().iter().enumerate() {
+        let partner = row.partner.map_or_else(String::new, |partner| partner.to_string());
+        let at = vector(model.mesh().nodes().get(row.node).copied());
+        let (normal, gap, area) = (vector(Some(row.normal)), row.gap, row.tributary_area);
+        let _ = writeln!(text, "{index},{},{},{partner},{at},{normal},{gap:e},{area:e}", row.obstacle, row.node);
+    }
+    text
+}
+
+/// `contact.csv`: force, pressure and remaining gap of each row, with the place of its node in the displaced body.
+pub(crate) fn contact(answer: &Answer) -> String {
+    let (model, remaining) = (answer.model(), answer.remaining_gaps());
+    let dimension = model.mesh().dimension();
+    let mut text = String::from("row,obstacle,node,x,y,z,closed,force,pressure,remaining_gap\n");
+    for (index, row) in model.rows().iter().enumerate() {
+        let mut at = model.mesh().nodes()[row.node];
+        (0..dimension).for_each(|axis| at[axis] += answer.displacement()[dimension * row.node + axis]);
+        let (force, pressure) = (0.0 - answer.multiplier()[index], answer.pressure()[index]);
+        let closed = u8::from(answer.contact_set().contains(index));
+        let (place, left) = (vector(Some(at)), remaining[index]);
+        let _ =
+            writeln!(text, "{index},{},{},{place},{closed},{force:e},{pressure:e},{left:e}", row.obstacle, row.node);
+    }
+    text
+}
+
+/// Three cells; empty ones where there is no vector.
+fn vector(vector: Option<[f64; 3]>) -> String {
+    vector.map_or_else(|| ",,".to_string(), |[x, y, z]| format!("{x:e},{y:e},{z:e}"))
+}

@@ -1,0 +1,223 @@
+//! A first scene for a mesh: what the file has, and a scene that runs, to be changed.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use super::entry::number;
+use crate::error::Error;
+use crate::fem::assembly::{node_normals, tributary_areas};
+use crate::fem::body::ElasticBody;
+use crate::fem::formulation::Formulation;
+use crate::fem::geometry::length;
+use crate::fem::material::Material;
+use crate::fem::mesh::gmsh::GmshFile;
+use crate::fem::mesh::{Boundary, Mesh};
+
+/// A body larger than this is taken to be given in millimetres: few parts are larger in metres.
+const LARGEST_IN_METRES: f64 = 5.0;
+
+/// Young's modulus of steel in pascals.
+const STEEL: f64 = 2.1e11;
+
+/// The force makes about this strain: far from large, far above rounding.
+const STRAIN: f64 = 1e-4;
+
+/// Words in the name of a boundary that is held, and of one that is pressed.
+const HELD: [&str; 9] = ["fix", "clamp", "support", "held", "base", "bottom", "root", "cut", "ground"];
+const PRESSED: [&str; 8] = ["contact", "touch", "press", "top", "upper", "seat", "round", "arc"];
+
+/// A mean normal shorter than this belongs to a boundary that faces all ways.
+const FACING: f64 = 0.5;
+
+/// A boundary, as it is listed.
+struct Listed {
+    name: String,
+    facets: usize,
+    area: f64,
+    /// The mean of the outward normals; short where they cancel.
+    normal: [f64; 3],
+    low: [f64; 3],
+    high: [f64; 3],
+}
+
+/// The text of a scene for the mesh `file`, with lines of comment; `named` is what the scene calls the file.
+///
+/// # Errors
+/// As [`GmshFile::read`] and [`GmshFile::mesh`].
+pub(crate) fn start_scene(file: &Path, named: &str) -> Result<String, Error> {
+    let content = GmshFile::read(file)?;
+    let groups = content.bodies();
+    let group = groups.first().filter(|_| groups.len() > 1);
+    let mesh = content.mesh(group.map(String::as_str), 1.0)?;
+    let millimetres = mesh.size() > LARGEST_IN_METRES;
+    let young = if millimetres { STEEL / 1e6 } else { STEEL };
+    let formulation = match mesh.dimension() {
+        1 => Formulation::Bar { area: 1.0 },
+        2 => Formulation::PlaneStrain { thickness: 1.0 },
+        _ => Formulation::Space,
+    };
+    let mut listed = listed(mesh.clone(), formulation)?;
+    let named_in_file = listed.len();
+    let whole = listed.pop_if(|last| last.name.is_empty() && named_in_file > 2);
+    let axis = mesh.dimension() - 1;
+    let mut text = head(named, &mesh, &listed, &groups, millimetres);
+    // Without two names, the sides that look up and down.
+    let by_sides = listed.iter().filter(|boundary| !boundary.name.is_empty()).count() < 2;
+    let (held, pressed) = match by_sides {
+        true => (String::from("lower"), String::from("upper")),
+        false => {
+            let pressed = chosen(&listed, &PRESSED, listed.len() - 1);
+            let held = chosen(&listed, &HELD, usize::from(pressed == 0));
+            let held = if held == pressed { usize::from(pressed == 0) } else { held };
+            (listed[held].name.clone(), listed[pressed].name.clone())
+        }
+    };
+    let of_pressed = listed.iter().find(|boundary| boundary.name == pressed).or(whole.as_ref()).or(listed.last());
+    let Some(of_pressed) = of_pressed else { return Ok(text) };
+    let (axis, sense) = match by_sides {
+        true => (axis, 1.0),
+        false => facing(of_pressed.normal, axis),
+    };
+    body(&mut text, named, &mesh, group, (young, millimetres));
+    if by_sides {
+        sides(&mut text, mesh.dimension());
+    }
+    rest(&mut text, &mesh, (&held, &pressed), of_pressed, (axis, sense, young));
+    Ok(text)
+}
+
+/// All boundaries, and behind them the whole surface, which has no name.
+fn listed(mesh: Mesh, formulation: Formulation) -> Result<Vec<Listed>, Error> {
+    let body = ElasticBody::new(mesh, Material::new(1.0, 0.3)?, formulation)?;
+    let mesh = body.mesh();
+    let surface = Boundary { name: String::new(), ..mesh.surface(0..mesh.element_count()) };
+    let of = |boundary: &Boundary| {
+        let areas = tributary_areas(&body, boundary);
+        let area: f64 = areas.iter().map(|(_, area)| area).sum();
+        let mut normal = [0.0; 3];
+        for ((_, of_node), (_, own)) in areas.iter().zip(node_normals(&body, boundary)) {
+            (0..3).for_each(|axis| normal[axis] += of_node / area * own[axis]);
+        }
+        let nodes: Vec<[f64; 3]> = boundary.nodes().into_iter().map(|node| mesh.nodes()[node]).collect();
+        let (low, high) = crate::fem::mesh::extent(&nodes);
+        Listed { name: boundary.name.clone(), facets: boundary.facet_count(), area, normal, low, high }
+    };
+    Ok(mesh.boundaries().iter().chain([&surface]).map(of).collect())
+}
+
+/// The first boundary with one of `words` in its name, or `otherwise`.
+fn chosen(listed: &[Listed], words: &[&str], otherwise: usize) -> usize {
+    let has = |boundary: &Listed| words.iter().any(|word| boundary.name.to_lowercase().contains(word));
+    listed.iter().position(has).unwrap_or(otherwise)
+}
+
+/// The axis and the sense in which a boundary looks; up where it looks all ways.
+fn facing(normal: [f64; 3], up: usize) -> (usize, f64) {
+    if length(normal) < FACING {
+        return (up, 1.0);
+    }
+    let axis = (0..3).max_by(|&a, &b| normal[a].abs().total_cmp(&normal[b].abs())).unwrap_or(up);
+    (axis, normal[axis].signum())
+}
+
+fn quoted(name: &str) -> String {
+    serde_json::Value::from(name).to_string()
+}
+
+fn vector(values: &[f64]) -> String {
+    let values: Vec<String> = values.iter().map(|&value| number(value + 0.0)).collect();
+    format!("[{}]", values.join(", "))
+}
+
+/// Comments: what the file has.
+fn head(named: &str, mesh: &Mesh, listed: &[Listed], groups: &[String], millimetres: bool) -> String {
+    let (dimension, (low, high)) = (mesh.dimension(), mesh.extent());
+    let size: Vec<f64> = (0..dimension).map(|axis| high[axis] - low[axis]).collect();
+    let mut text = format!(
+        "// A first scene for {named}: {} nodes, {} elements {}, size {}.\n// Lines that begin with // are comments.\n",
+        mesh.nodes().len(),
+        mesh.element_count(),
+        mesh.kind().name(),
+        vector(&size)
+    );
+    let unit = if millimetres { "millimetres: moduli are in N/mm2" } else { "metres" };
+    let _ = writeln!(text, "// By its size the mesh is taken to be in {unit}. `scale` multiplies its coordinates.");
+    if groups.len() > 1 {
+        let _ = writeln!(text, "// Groups of elements, of which the first is the body here: {}.", groups.join(", "));
+    }
+    for boundary in listed.iter().filter(|boundary| !boundary.name.is_empty()) {
+        let Listed { name, facets, area, low, high, .. } = boundary;
+        let (low, high) = (vector(&low[..dimension]), vector(&high[..dimension]));
+        let _ = writeln!(text, "// boundary {}: {facets} facets, area {area:.4e}, from {low} to {high}", quoted(name));
+    }
+    if listed.iter().all(|boundary| boundary.name.is_empty()) {
+        text += "// It names no boundary (physical groups in Gmsh); `parts` finds its lower and upper sides.\n";
+    }
+    text
+}
+
+/// Units, model, body, material.
+fn body(text: &mut String, named: &str, mesh: &Mesh, group: Option<&String>, (young, millimetres): (f64, bool)) {
+    let model = ["bar", "plane-strain", "space"][mesh.dimension() - 1];
+    let unit = if millimetres { "mm" } else { "m" };
+    let group = group.map_or_else(String::new, |group| format!(", \"group\": {}", quoted(group)));
+    let _ = write!(
+        text,
+        "{{\n  \"title\": {},\n  \"units\": {{\"length\": \"{unit}\", \"force\": \"N\"}},\n  \"model\": \"{model}\",\n  \
+         \"body\": {{\"gmsh\": {{\"file\": {}, \"scale\": 1{group}}}}},\n  // Steel.\n  \"material\": {{\"young\": {}, \"poisson\": \
+         0.3}},\n",
+        quoted(&format!("{named}, pressed")),
+        quoted(named),
+        number(young)
+    );
+}
+
+/// Parts that look down and up.
+fn sides(text: &mut String, dimension: usize) {
+    let direction = |sense: f64| {
+        let mut direction = vec![0.0; dimension];
+        direction[dimension - 1] = sense;
+        vector(&direction)
+    };
+    let _ = write!(
+        text,
+        "  \"parts\": [\n    {{\"name\": \"lower\", \"normal\": {{\"direction\": {}, \"within\": 45}}}},\n    \
+         {{\"name\": \"upper\", \"normal\": {{\"direction\": {}, \"within\": 45}}}}\n  ],\n",
+        direction(-1.0),
+        direction(1.0)
+    );
+}
+
+/// Supports, and an obstacle that a force presses.
+fn rest(
+    text: &mut String,
+    mesh: &Mesh,
+    (held, pressed): (&str, &str),
+    of_pressed: &Listed,
+    (axis, sense, young): (usize, f64, f64),
+) {
+    let dimension = mesh.dimension();
+    let components: Vec<String> = ["x", "y", "z"][..dimension].iter().map(|name| format!("\"{name}\": 0")).collect();
+    let at = if sense > 0.0 { of_pressed.high } else { of_pressed.low };
+    let mut point = [0, 1, 2].map(|other| (of_pressed.low[other] + of_pressed.high[other]) / 2.0);
+    point[axis] = at[axis];
+    let mut normal = [0.0; 3];
+    normal[axis] = sense;
+    let across = (0..dimension).filter(|&other| other != axis);
+    let area: f64 = across.map(|other| of_pressed.high[other] - of_pressed.low[other]).product();
+    // One significant digit.
+    let force: f64 = format!("{:.0e}", STRAIN * young * area).parse().unwrap_or(1.0);
+    let approach = format!("{}{}", if sense > 0.0 { "+" } else { "-" }, ["x", "y", "z"][axis]);
+    let _ = write!(
+        text,
+        "  \"supports\": [{{\"on\": {{\"boundary\": {}}}, {}}}],\n  // A plate comes along its approach direction, and presses with a \
+         force; `gap` instead moves it.\n  \"obstacles\": [\n    {{\"boundary\": {}, \"approach\": \"{approach}\", \"force\": {},\n     \
+         \"shape\": {{\"plane\": {{\"point\": {}, \"normal\": {}}}}}}}\n  ]\n}}\n",
+        quoted(held),
+        components.join(", "),
+        quoted(pressed),
+        number(force),
+        vector(&point[..dimension]),
+        vector(&normal[..dimension])
+    );
+}
