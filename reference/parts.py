@@ -3,8 +3,9 @@
     target/reference-venv/bin/python reference/parts.py FOLDER [NAME ...]
     cargo run --release --example kinds -- --scenes FOLDER
 
-The second line times the methods on them. Fourteen are of tetrahedra in space, six of quadratic triangles in the plane
-or about an axis; ten are graded towards the contact. They have 3,000 to 60,000 dofs. Lengths are in mm, forces in N.
+The second line times the methods on them. Fourteen are of tetrahedra in space, seven of these of ten nodes, six of quadratic
+triangles in the plane or about an axis; ten are graded towards the contact. They have 3,000 to 150,000 dofs. Lengths are in mm, forces
+in N.
 Every run writes the same files. meshes.py says which libraries Gmsh needs.
 """
 
@@ -306,6 +307,10 @@ PARTS = {part.__name__.replace("_", "-"): part for part in (
 )}
 
 
+QUADRATIC = {"bracket", "loose-liner", "lug", "bearing", "cantilever-stop", "beam", "stiffened-plate"}
+"""Parts in space of ten-node tetrahedra; parts in the plane and about an axis are quadratic always."""
+
+
 def write(name, folder):
     """Writes one part; Gmsh starts anew, so that it does not depend on the parts before it."""
     gmsh.initialize([], readConfigFiles=False, interruptible=False)
@@ -313,7 +318,7 @@ def write(name, folder):
         gmsh.option.setNumber(option, setting)
     part = PARTS[name]()
     dimension = gmsh.model.getDimension()
-    gmsh.option.setNumber("Mesh.ElementOrder", 2 if dimension == 2 else 1)
+    gmsh.option.setNumber("Mesh.ElementOrder", 2 if dimension == 2 or name in QUADRATIC else 1)
     gmsh.model.mesh.generate(dimension)
     gmsh.write(str(folder / f"{name}.msh"))
     gmsh.finalize()

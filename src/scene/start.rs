@@ -66,10 +66,8 @@ pub(crate) fn start_scene(file: &Path, named: &str) -> Result<String, Error> {
     let (held, pressed) = match by_sides {
         true => (String::from("lower"), String::from("upper")),
         false => {
-            let pressed = chosen(&listed, &PRESSED, listed.len() - 1);
-            let held = chosen(&listed, &HELD, usize::from(pressed == 0));
-            let held = if held == pressed { usize::from(pressed == 0) } else { held };
-            (listed[held].name.clone(), listed[pressed].name.clone())
+            let [held, pressed] = roles(&listed);
+            (held.to_string(), pressed.to_string())
         }
     };
     let of_pressed = listed.iter().find(|boundary| boundary.name == pressed).or(whole.as_ref()).or(listed.last());
@@ -105,10 +103,19 @@ fn listed(mesh: Mesh, formulation: Formulation) -> Result<Vec<Listed>, Error> {
     Ok(mesh.boundaries().iter().chain([&surface]).map(of).collect())
 }
 
-/// The first boundary with one of `words` in its name, or `otherwise`.
-fn chosen(listed: &[Listed], words: &[&str], otherwise: usize) -> usize {
-    let has = |boundary: &Listed| words.iter().any(|word| boundary.name.to_lowercase().contains(word));
-    listed.iter().position(has).unwrap_or(otherwise)
+/// The boundaries that are held and pressed, of two at least: by their names, or else the last one is pressed and the first held.
+fn roles(listed: &[Listed]) -> [&str; 2] {
+    let names: Vec<&str> =
+        listed.iter().map(|boundary| boundary.name.as_str()).filter(|name| !name.is_empty()).collect();
+    let by_word = |words: &[&str], other: Option<&str>| {
+        let has = |name: &&str| words.iter().any(|word| name.to_lowercase().contains(word)) && Some(*name) != other;
+        names.iter().copied().find(has)
+    };
+    let held = by_word(&HELD, None);
+    let last = names.iter().copied().rfind(|name| Some(*name) != held);
+    let pressed = by_word(&PRESSED, held).or(last).unwrap_or_default();
+    let first = names.iter().copied().find(|name| *name != pressed);
+    [held.or(first).unwrap_or_default(), pressed]
 }
 
 /// The axis and the sense in which a boundary looks; up where it looks all ways.
@@ -124,9 +131,15 @@ fn quoted(name: &str) -> String {
     serde_json::Value::from(name).to_string()
 }
 
+/// A vector as it is written in a scene: to the last digit, as a plane must touch the body.
 fn vector(values: &[f64]) -> String {
     let values: Vec<String> = values.iter().map(|&value| number(value + 0.0)).collect();
     format!("[{}]", values.join(", "))
+}
+
+/// A vector to be read, in six digits.
+fn shown(values: &[f64]) -> String {
+    vector(&values.iter().map(|value| format!("{value:.5e}").parse().unwrap_or(*value)).collect::<Vec<f64>>())
 }
 
 /// Comments: what the file has.
@@ -138,7 +151,7 @@ fn head(named: &str, mesh: &Mesh, listed: &[Listed], groups: &[String], millimet
         mesh.nodes().len(),
         mesh.element_count(),
         mesh.kind().name(),
-        vector(&size)
+        shown(&size)
     );
     let unit = if millimetres { "millimetres: moduli are in N/mm2" } else { "metres" };
     let _ = writeln!(text, "// By its size the mesh is taken to be in {unit}. `scale` multiplies its coordinates.");
@@ -147,7 +160,7 @@ fn head(named: &str, mesh: &Mesh, listed: &[Listed], groups: &[String], millimet
     }
     for boundary in listed.iter().filter(|boundary| !boundary.name.is_empty()) {
         let Listed { name, facets, area, low, high, .. } = boundary;
-        let (low, high) = (vector(&low[..dimension]), vector(&high[..dimension]));
+        let (low, high) = (shown(&low[..dimension]), shown(&high[..dimension]));
         let _ = writeln!(text, "// boundary {}: {facets} facets, area {area:.4e}, from {low} to {high}", quoted(name));
     }
     if listed.iter().all(|boundary| boundary.name.is_empty()) {
@@ -199,7 +212,10 @@ fn rest(
     let dimension = mesh.dimension();
     let components: Vec<String> = ["x", "y", "z"][..dimension].iter().map(|name| format!("\"{name}\": 0")).collect();
     let at = if sense > 0.0 { of_pressed.high } else { of_pressed.low };
-    let mut point = [0, 1, 2].map(|other| (of_pressed.low[other] + of_pressed.high[other]) / 2.0);
+    let size = mesh.size();
+    // Across its normal the plane may stand anywhere: in six digits of the size of the body.
+    let rounded = |value: f64| (value / size * 1e6).round() / 1e6 * size;
+    let mut point = [0, 1, 2].map(|other| rounded((of_pressed.low[other] + of_pressed.high[other]) / 2.0));
     point[axis] = at[axis];
     let mut normal = [0.0; 3];
     normal[axis] = sense;

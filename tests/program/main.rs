@@ -23,5 +23,6 @@ mod time;
 mod total_error;
 mod total_error_of_loads;
 mod tradeoff;
+mod tutorial;
 mod verify;
 mod warnings;

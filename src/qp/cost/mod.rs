@@ -76,13 +76,14 @@ pub(in crate::qp) enum Smooth {
     Constants,
     /// The same, of one whose ties to neighbours differ by orders of magnitude nearly everywhere.
     Uneven,
-    /// Nothing: constants make a poor hierarchy of a body.
+    /// Nothing: constants make a poor hierarchy of a body, and a smoother needs a stiffness of every dof.
     Unknown,
 }
 
 impl Smooth {
     fn of(problem: &ContactProblem) -> Self {
         match problem.near_null() {
+            Some(_) if problem.stiffness().diagonal().contains(&0.0) => Smooth::Unknown,
             Some(_) => Smooth::Given,
             None => Self::of_stiffness(problem.stiffness()),
         }
