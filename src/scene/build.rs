@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::elastic::locking;
+use super::elastic::{locking, stiffness_jumps};
 use super::entry::wrong;
 use super::model::Model;
 use super::obstacle::{Obstacle, PlacedObstacle};
@@ -54,6 +54,7 @@ impl Scene {
             obstacles.push(PlacedObstacle::of_user(boundary, obstacle.clone(), &path, &body)?);
         }
         let mut warnings: Vec<_> = locking(&body).into_iter().collect();
+        warnings.extend(stiffness_jumps(&body));
         warnings.extend(self.suspect(&body, &dofs)?);
         let (title, units) = (self.title.clone(), self.units.clone());
         let moves = self.analysis.is_some();

@@ -56,6 +56,8 @@ pub(in crate::scene) struct Site<'a> {
     pub folder: Option<&'a Path>,
     /// Files outside the folder may be read.
     pub reads_outside: bool,
+    /// The scene names groups of elements, which have materials of their own.
+    pub names_groups: bool,
 }
 
 impl Site<'_> {
