@@ -1,4 +1,4 @@
-//! Vectors in space, `[x, y, z]`: in the plane z is zero.
+//! Vectors in space, `[x, y, z]`, where in the plane z is zero; symmetric tensors.
 
 /// The scalar product.
 #[inline]
@@ -31,4 +31,22 @@ pub(crate) fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
 pub(crate) fn unit(vector: [f64; 3]) -> [f64; 3] {
     let length = length(vector);
     if length > 0.0 { vector.map(|component| component / length) } else { vector }
+}
+
+/// A symmetric tensor `[xx, yy, zz, xy, yz, zx]`; in a body of revolution zz is the hoop component.
+///
+/// Strains have the tensor's shear components, half of the engineering shear strains.
+pub type Symmetric = [f64; 6];
+
+/// The dilatation of a strain.
+#[inline]
+pub(crate) fn trace(strain: &Symmetric) -> f64 {
+    strain[0] + strain[1] + strain[2]
+}
+
+/// The components of a symmetric tensor along other axes, of unit length and at right angles.
+pub(crate) fn turned([xx, yy, zz, xy, yz, zx]: Symmetric, axes: &[[f64; 3]; 3]) -> Symmetric {
+    let rows = [[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]];
+    let along = |a: usize, b: usize| dot(axes[a], rows.map(|row| dot(row, axes[b])));
+    [along(0, 0), along(1, 1), along(2, 2), along(0, 1), along(1, 2), along(2, 0)]
 }

@@ -1,9 +1,10 @@
 //! Norms of the error against an exact solution: `||u - u_h||` in energy and in L2.
 
 use crate::error::Error;
-use crate::fem::body::{BodyElement, ElasticBody, Symmetric, trace};
+use crate::fem::body::{BodyElement, ElasticBody};
 use crate::fem::element::{Part, PerNode, QuadraturePoint, ReferenceElement, Tabulated};
-use crate::fem::material::Lame;
+use crate::fem::geometry::{Symmetric, trace};
+use crate::fem::material::Law;
 
 /// An exact solution at one point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -152,7 +153,7 @@ struct Squares<'a, F> {
 impl<F: Fn([f64; 3]) -> ExactState> Squares<'_, F> {
     /// Over the points of a table of one element with the given displacement of its nodes.
     fn over(&self, element: &BodyElement, local: &PerNode<[f64; 3]>, table: &Tabulated) -> Sums {
-        let BodyElement { cell, lame, .. } = element;
+        let (cell, law) = (&element.cell, element.phase.law());
         let scale = cell.unit().powi(self.body.dimension() as i32);
         let mut sums = Sums::default();
         for at in &table.points {
@@ -168,7 +169,7 @@ impl<F: Fn([f64; 3]) -> ExactState> Squares<'_, F> {
             let weight = point.weight * scale;
             let square = |vector: &[f64; 3]| vector.iter().map(|component| component * component).sum::<f64>();
             let here = Sums {
-                energy: [self.energy(*lame, &difference), self.energy(*lame, &exact.strain)],
+                energy: [energy(law, &difference), energy(law, &exact.strain)],
                 l2: [square(&away), square(&exact.displacement)],
             };
             sums = sums.plus(&here, weight);
@@ -196,10 +197,10 @@ impl<F: Fn([f64; 3]) -> ExactState> Squares<'_, F> {
         };
         Sums::total(&halves.parts.iter().zip(&parts).map(further).collect::<Vec<_>>())
     }
+}
 
-    /// Twice the density of the strain energy, `sigma : eps`.
-    fn energy(&self, lame: Lame, strain: &Symmetric) -> f64 {
-        let stress = self.body.stress(lame, strain, trace(strain));
-        (0..6).map(|axis| if axis < 3 { 1.0 } else { 2.0 } * stress[axis] * strain[axis]).sum()
-    }
+/// Twice the density of the strain energy, `sigma : eps`.
+fn energy(law: &Law, strain: &Symmetric) -> f64 {
+    let stress = law.stress(strain, trace(strain));
+    (0..6).map(|axis| if axis < 3 { 1.0 } else { 2.0 } * stress[axis] * strain[axis]).sum()
 }

@@ -11,6 +11,7 @@ use super::schema::{Place, Rule, Scene};
 use crate::continuum::{Circle, Condition, Distance, Enclosure, Facing, PlaneProblem, Point, Triangulation};
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
+use crate::fem::material::Stiffness;
 use crate::fem::mesh::Mesh;
 use crate::fem::mesh::triangle_pieces::TrianglePieces;
 
@@ -54,25 +55,33 @@ impl Scene {
                 return Err(wrong(field, "they have no guaranteed bound: supports alone have one"));
             }
         }
-        let [region] = body.regions() else {
+        let [_] = body.regions() else {
             return Err(wrong(
                 "further-bodies",
                 "several bodies have no guaranteed bound: only one body before rigid obstacles has one",
             ));
+        };
+        let [phase] = body.phases() else {
+            let message = "several materials in one body have no guaranteed bound: only a single one has";
+            return Err(wrong("materials", message));
+        };
+        let &Stiffness::Isotropic(lame) = phase.law().stiffness() else {
+            let message = "an orthotropic material has no guaranteed bound: only an isotropic one has";
+            return Err(wrong("material.orthotropic", message));
         };
         let mut body_force = [0.0; 2];
         for load in &self.loads {
             let (force, density) = match load {
                 LoadSpec::BodyForce(force) => (force, 1.0),
                 // The model is built: there is a density.
-                LoadSpec::Gravity(acceleration) => (acceleration, region.material().density().unwrap_or_default()),
+                LoadSpec::Gravity(acceleration) => (acceleration, phase.material().density().unwrap_or_default()),
                 _ => continue,
             };
             body_force.iter_mut().zip(force).for_each(|(sum, part)| *sum += density * part);
         }
         let obstacles = model.obstacles().iter().enumerate();
         let mut problem = PlaneProblem {
-            lame: region.material().lame(&formulation)?,
+            lame,
             thickness,
             body_force,
             conditions: Vec::new(),

@@ -8,7 +8,7 @@ use super::schema::{AnalysisSpec, DynamicSpec, FieldSpec, MassSpec, PenetrationS
 use super::{Model, Resultant, Warning, WatchedPoint};
 use crate::error::Error;
 use crate::fem::assembly::{MassForm, free_load, free_mass, internal_force, nodal_mass};
-use crate::fem::body::{ElasticBody, Region};
+use crate::fem::body::{ElasticBody, Phase};
 use crate::motion::{DynamicProblem, Integrator, MOST_IN_CONTACT, Scheme, SchemeSpec, stable_step};
 use crate::qp::linear::{SparseMatrix, SymmetricMatrix, dot};
 use crate::qp::problem::ContactProblem;
@@ -388,27 +388,26 @@ fn not_positive(field: &str, value: f64) -> Error {
 
 /// The shortest time in which a pressure wave goes from one node of an element to another.
 fn wave_time(body: &ElasticBody) -> f64 {
-    let (mesh, nodes) = (body.mesh(), body.mesh().nodes());
-    let of_region = body.regions().iter().map(|region| {
-        let away = |a: usize, b: usize| (0..3).map(|axis| (nodes[a][axis] - nodes[b][axis]).powi(2)).sum::<f64>();
-        let of_element = region.elements().map(|element| {
-            let around = mesh.element(element);
-            let pairs = around.iter().enumerate().flat_map(|(k, &a)| around[..k].iter().map(move |&b| (a, b)));
-            pairs.fold(f64::INFINITY, |least, (a, b)| least.min(away(a, b)))
-        });
-        of_element.fold(f64::INFINITY, f64::min).sqrt() / wave_speed(region)
-    });
-    of_region.fold(f64::INFINITY, f64::min)
+    let nodes = body.mesh().nodes();
+    let away = |a: usize, b: usize| (0..3).map(|axis| (nodes[a][axis] - nodes[b][axis]).powi(2)).sum::<f64>();
+    let mut squares = vec![f64::INFINITY; body.phases().len()];
+    for element in body.elements() {
+        let around = element.nodes;
+        let pairs = around.iter().enumerate().flat_map(|(k, &a)| around[..k].iter().map(move |&b| (a, b)));
+        let least = &mut squares[element.phase_number as usize];
+        *least = pairs.fold(*least, |least, (a, b)| least.min(away(a, b)));
+    }
+    let times = squares.iter().zip(body.phases()).map(|(square, phase)| square.sqrt() / wave_speed(phase));
+    times.fold(f64::INFINITY, f64::min)
 }
 
-/// The speed of pressure waves in a region with a density, in length over time.
-fn wave_speed(region: &Region) -> f64 {
-    let lame = region.lame();
-    ((lame.lambda + 2.0 * lame.mu) / region.material().density().unwrap_or(f64::NAN)).sqrt()
+/// The speed of pressure waves in a phase whose material has a density, in length over time.
+fn wave_speed(phase: &Phase) -> f64 {
+    (phase.law().wave_modulus() / phase.material().density().unwrap_or(f64::NAN)).sqrt()
 }
 
 /// The time in which a pressure wave crosses the body behind the row with the smallest gap, along its normal; of several
-/// obstacles the shortest. `None` without contact rows.
+/// obstacles the shortest, of several materials that of the fastest. `None` without contact rows.
 fn crossing_time(model: &Model) -> Option<f64> {
     let (body, nodes) = (model.body(), model.mesh().nodes());
     let of_obstacle = (0..model.obstacles().len()).filter_map(|obstacle| {
@@ -417,7 +416,7 @@ fn crossing_time(model: &Model) -> Option<f64> {
         let region = body.regions().iter().find(|region| region.nodes().contains(&nearest.node))?;
         let along = region.nodes().map(|node| dot(&nearest.normal, &nodes[node]));
         let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
-        Some((high - low) / wave_speed(region))
+        Some((high - low) / body.phases_of(region).iter().map(wave_speed).fold(0.0, f64::max))
     });
     of_obstacle.reduce(f64::min)
 }

@@ -1,23 +1,26 @@
-//! The bodies of a scene: mesh, material, formulation.
+//! The bodies of a scene: mesh, materials, formulation.
 
 use super::Warning;
 use super::body::{BodySpec, Site};
 use super::entry::{located, wrong};
-use super::schema::{MaterialSpec, ModelSpec, Scene};
+use super::materials::BodyMaterials;
+use super::schema::{ModelSpec, Scene};
 use crate::error::Error;
-use crate::fem::body::{ElasticBody, Integration};
+use crate::fem::body::{ElasticBody, Integration, Region};
 use crate::fem::formulation::Formulation;
-use crate::fem::material::Material;
 use crate::fem::mesh::Mesh;
 
 /// Above this ratio linear elements are known to lock noticeably; measured, quadratic ones do above the second.
 const LOCKING_POISSON: [f64; 2] = [0.49, 0.499];
 
+/// Young's moduli of one body that differ by more than this leave few digits of the soft part's strain, and make iterations slow.
+const STIFFNESS_JUMP: f64 = 1e4;
+
 /// A body as a scene describes it, and where.
 struct DescribedBody<'a> {
     scene: &'a Scene,
     spec: &'a BodySpec,
-    material: &'a MaterialSpec,
+    materials: BodyMaterials<'a>,
     /// What stands before its JSON paths.
     place: String,
 }
@@ -47,12 +50,19 @@ impl Scene {
     }
 
     fn described(&self) -> impl Iterator<Item = DescribedBody<'_>> {
-        let first = DescribedBody { scene: self, spec: &self.body, material: &self.material, place: String::new() };
-        let further = self.further_bodies.iter().enumerate().map(|(index, further)| DescribedBody {
-            scene: self,
-            spec: &further.body,
-            material: &further.material,
-            place: format!("further-bodies[{index}]."),
+        let of_body = |material, parts, place: &str| BodyMaterials {
+            material,
+            parts,
+            place: place.into(),
+            model: self.model,
+            moves: self.analysis.is_some(),
+        };
+        let materials = of_body(self.material.as_ref(), &self.materials, "");
+        let first = DescribedBody { scene: self, spec: &self.body, materials, place: String::new() };
+        let further = self.further_bodies.iter().enumerate().map(move |(index, further)| {
+            let place = format!("further-bodies[{index}].");
+            let materials = of_body(further.material.as_ref(), &further.materials, &place);
+            DescribedBody { scene: self, spec: &further.body, materials, place }
         });
         std::iter::once(first).chain(further)
     }
@@ -66,7 +76,12 @@ impl DescribedBody<'_> {
 
     /// The mesh of the shape.
     fn mesh(&self) -> Result<Mesh, Error> {
-        let site = Site { path: self.path(""), model: self.scene.model, files: self.scene.files() };
+        let site = Site {
+            path: self.path(""),
+            model: self.scene.model,
+            files: self.scene.files(),
+            names_groups: self.materials.name_groups(),
+        };
         self.spec.shape().mesh(&site).map_err(|error| self.at_body(error))
     }
 
@@ -104,53 +119,43 @@ impl DescribedBody<'_> {
     }
 
     fn elastic_body(&self) -> Result<ElasticBody, Error> {
-        let material = Material::new(self.material.young, self.material.poisson);
-        let material = material.map_err(|error| self.in_material(error))?;
-        let material = match self.material.density {
-            Some(density) => material.with_density(density).map_err(|error| self.in_material(error))?,
-            None if self.scene.analysis.is_some() => {
-                return Err(wrong(format!("{}material", self.place), "a dynamic analysis needs a `density`; give it"));
-            }
-            None => material,
-        };
+        let first = self.materials.first()?;
         let formulation = self.formulation()?;
-        material.lame(&formulation).map_err(|error| self.in_material(error))?;
+        self.materials.check(&formulation)?;
         let at_body = |error| match error {
             // A setting that stands beside the body: the thickness.
             Error::Setting { .. } => located(error, ""),
             other => self.at_body(other),
         };
-        let body = ElasticBody::new(self.mesh()?, material, formulation).map_err(at_body)?;
+        let body = ElasticBody::new(self.mesh()?, first, formulation).map_err(at_body)?;
+        let body = self.materials.placed(body)?;
         body.with_integration(self.spec.shape().integration()).map_err(|error| match error {
             Error::Mesh { message } => wrong(self.path(".integration"), message),
             other => other,
         })
-    }
-
-    /// An error of the material at its place; the allowed range is that of the model.
-    fn in_material(&self, error: Error) -> Error {
-        let prefix = format!("{}material.", self.place);
-        let allowed = match self.scene.model {
-            ModelSpec::Bar => "above -1 and at most 0.5 in a bar",
-            ModelSpec::PlaneStrain => "above -1 and below 0.5 in plane strain",
-            ModelSpec::PlaneStress => "above -1 and at most 0.5 in plane stress",
-            ModelSpec::Axisymmetric => "above -1 and below 0.5 in an axisymmetric body",
-            ModelSpec::Space => "above -1 and below 0.5 in space",
-        };
-        match error {
-            Error::Setting { name: "poisson", value, .. } => {
-                located(Error::Setting { name: "poisson", value, allowed }, &prefix)
-            }
-            other => located(other, &prefix),
-        }
     }
 }
 
 /// The warning of a body whose elements lock.
 pub(super) fn locking(body: &ElasticBody) -> Option<Warning> {
     let kind = body.mesh().kind();
-    let poisson = body.regions().iter().map(|region| region.material().poisson()).fold(f64::NEG_INFINITY, f64::max);
+    let ratios = body.phases().iter().filter_map(|phase| phase.material().poisson());
+    let poisson = ratios.fold(f64::NEG_INFINITY, f64::max);
     let limit = LOCKING_POISSON[usize::from(kind.is_quadratic())];
     let locks = body.formulation().can_lock() && body.integration() == Integration::Standard && poisson > limit;
     locks.then(|| Warning::NearlyIncompressible { poisson, element: kind.name() })
+}
+
+/// The warnings of bodies whose materials differ much in stiffness.
+pub(super) fn stiffness_jumps(body: &ElasticBody) -> Vec<Warning> {
+    let jump = |region: &Region| {
+        let [soft, stiff] = [f64::min, f64::max].map(|of| {
+            let moduli = body.materials(region).flat_map(|material| material.young());
+            moduli.reduce(of).unwrap_or(f64::NAN)
+        });
+        let name = region.name().to_string();
+        let is_jump = body.materials(region).count() > 1 && stiff > STIFFNESS_JUMP * soft;
+        is_jump.then_some(Warning::StiffnessJump { body: name, stiff, soft, ratio: stiff / soft })
+    };
+    body.regions().iter().filter_map(jump).collect()
 }

@@ -10,7 +10,7 @@ use crate::fem::assembly::{
     add_body_force, add_centrifugal, add_gravity, add_moment, add_pressure, add_traction, add_traction_with_kinks,
     tributary_areas,
 };
-use crate::fem::body::ElasticBody;
+use crate::fem::body::{ElasticBody, Region};
 use crate::fem::geometry::unit;
 use crate::fem::mesh::Boundary;
 
@@ -192,9 +192,10 @@ impl PlacedLoad<'_> {
         add_centrifugal(self.body, spec.omega, (axis, point), load)
     }
 
-    /// Every body needs a density.
+    /// Every material needs a density.
     fn check_density(&self) -> Result<(), Error> {
-        let without = self.body.regions().iter().position(|region| region.material().density().is_none());
+        let lacks = |region: &Region| self.body.materials(region).any(|material| material.density().is_none());
+        let without = self.body.regions().iter().position(lacks);
         let place = match without {
             None => return Ok(()),
             Some(0) => String::new(),

@@ -31,6 +31,7 @@ mod held;
 mod load;
 mod loads_in_time;
 mod locate;
+mod materials;
 mod model;
 mod moving_supports;
 mod obstacle;

@@ -1,6 +1,7 @@
 //! Parts of boundaries: facets chosen by where they lie and where they look.
 
 use super::entry::{PLACE_TOLERANCE, boundary, finite, number, point, vector, wrong};
+use super::schema::part::PartBoxSpec;
 use super::schema::{PartSpec, Scene};
 use crate::error::Error;
 use crate::fem::assembly::facet_centres;
@@ -53,6 +54,24 @@ impl PartSpec {
     }
 }
 
+impl PartBoxSpec {
+    /// The smallest and the largest coordinates of the box of what stands at `path`.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for a corner that is no point of the model, or a box without inside.
+    pub(super) fn corners(&self, path: &str, dimension: usize) -> Result<[[f64; 3]; 2], Error> {
+        let low = vector(&format!("{path}.box.min"), &self.min, dimension)?;
+        let high = vector(&format!("{path}.box.max"), &self.max, dimension)?;
+        match (0..dimension).find(|&axis| high[axis] < low[axis]) {
+            Some(axis) => {
+                let message = format!("{} lies below {}; no max may lie below its min", high[axis], low[axis]);
+                Err(wrong(format!("{path}.box.max[{axis}]"), message))
+            }
+            None => Ok([low, high]),
+        }
+    }
+}
+
 /// Where the facets of a part lie, and where they look.
 struct Region {
     /// The smallest and the largest coordinates.
@@ -83,13 +102,7 @@ impl Region {
     fn of(spec: &PartSpec, path: &str, dimension: usize) -> Result<Self, Error> {
         let mut region = Region { cuboid: None, sphere: None, normal: None };
         if let Some(cuboid) = &spec.cuboid {
-            let low = vector(&format!("{path}.box.min"), &cuboid.min, dimension)?;
-            let high = vector(&format!("{path}.box.max"), &cuboid.max, dimension)?;
-            if let Some(axis) = (0..dimension).find(|&axis| high[axis] < low[axis]) {
-                let message = format!("{} lies below {}; no max may lie below its min", high[axis], low[axis]);
-                return Err(wrong(format!("{path}.box.max[{axis}]"), message));
-            }
-            region.cuboid = Some([low, high]);
+            region.cuboid = Some(cuboid.corners(path, dimension)?);
         }
         if let Some(sphere) = &spec.sphere {
             let centre = vector(&format!("{path}.sphere.centre"), &sphere.centre, dimension)?;

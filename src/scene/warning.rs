@@ -19,6 +19,23 @@ pub enum Warning {
         /// The element, as `Q4`.
         element: &'static str,
     },
+    /// The materials of one body differ much in stiffness.
+    #[error(
+        "the materials {}have Young's moduli from {soft:e} to {stiff:e}, a factor of {ratio:.1e}: stresses and strains of the soft \
+         one lose digits next to the stiff one, and the error of the mesh gathers at their interface; compare with a finer mesh, or take \
+         the stiff part as a support or an obstacle",
+        if body.is_empty() { String::new() } else { format!("of `{body}` ") }
+    )]
+    StiffnessJump {
+        /// The name of a further body; empty for the first.
+        body: String,
+        /// The largest modulus, in force per area.
+        stiff: f64,
+        /// The smallest one.
+        soft: f64,
+        /// One over the other.
+        ratio: f64,
+    },
     /// No node of the candidate boundary faces the obstacle.
     #[error(
         "obstacles[{obstacle}] faces no node of its boundary: the body is solved without it; check its place, \
@@ -107,6 +124,7 @@ impl Warning {
     pub fn code(&self) -> &'static str {
         match self {
             Warning::NearlyIncompressible { .. } => "nearly-incompressible",
+            Warning::StiffnessJump { .. } => "stiffness-jump",
             Warning::NoContactRow { .. } => "no-contact-row",
             Warning::HeldCandidates { .. } => "held-candidates",
             Warning::DoubledObstacle { .. } => "doubled-obstacle",

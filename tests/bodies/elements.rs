@@ -34,7 +34,17 @@ fn mesh(kind: ElementKind) -> Mesh {
     }
 }
 
-/// Every element in every formulation, with both integrations where there are two.
+/// The orthotropic material with the numbers of E = 7, nu = 0.3, along axes that must not matter.
+fn twin(formulation: &Formulation) -> Material {
+    let material = Material::orthotropic([7.0; 3], [0.3; 3], [7.0 / 2.6; 3]).unwrap();
+    let (first, second) = match formulation {
+        Formulation::Space => ([1.0, 2.0, -1.0], [0.3, 1.0, 2.0]),
+        _ => ([0.8, 0.6, 0.0], [-0.6, 0.8, 0.0]),
+    };
+    material.along(first, second).unwrap()
+}
+
+/// Every element in every formulation, of an isotropic and of an orthotropic material, with both integrations where there are two.
 fn all() -> Vec<(String, ElasticBody)> {
     use ElementKind::{Hex8, Hex20, Line2, Q4, Q8, T3, T6, Tet4, Tet10};
     let mut cases = vec![(Line2, BAR)];
@@ -48,9 +58,12 @@ fn all() -> Vec<(String, ElasticBody)> {
         if let Ok(mean) = body.clone().with_integration(Integration::MeanDilatation) {
             found.push((format!("{kind:?} {formulation:?} mean dilatation"), mean));
         }
+        let everywhere: Vec<usize> = (0..body.mesh().element_count()).collect();
+        let turned = body.clone().with_material(&everywhere, twin(&formulation)).unwrap();
+        found.push((format!("{kind:?} {formulation:?} orthotropic"), turned));
         found.push((format!("{kind:?} {formulation:?}"), body));
     }
-    assert_eq!(found.len(), 20);
+    assert_eq!(found.len(), 37);
     found
 }
 

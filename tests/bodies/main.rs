@@ -21,6 +21,7 @@ mod gmsh_meshes;
 mod loads;
 mod manufactured;
 mod mass;
+mod materials;
 mod mesh;
 mod misfits;
 mod norms;

@@ -163,7 +163,7 @@ fn material_refuses_what_is_no_material() {
         (f64::INFINITY, 0.3, stress, false),
         (f64::NAN, 0.3, stress, false),
     ] {
-        let found = Material::new(young, poisson).and_then(|material| material.lame(&formulation)).is_ok();
+        let found = Material::new(young, poisson).and_then(|material| material.law(&formulation)).is_ok();
         assert_eq!(found, fits, "{young} {poisson} {formulation:?}");
     }
 }

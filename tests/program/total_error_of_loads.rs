@@ -88,3 +88,20 @@ fn a_part_is_found_again_on_bisected_tetrahedra() {
     let force = loads["force"][2].as_f64().unwrap();
     assert!((force / -1500.0 - 1.0).abs() < 1e-12, "{loads}");
 }
+
+/// Two materials, or an orthotropic one, have no guaranteed bound: the estimate stands for it, and says why.
+#[test]
+fn materials_without_a_guaranteed_bound_are_estimated_with_the_reason() {
+    let other = json!([{"box": {"min": [0, 0], "max": [0.5, 0.25]}, "material": {"young": 3e6, "poisson": 0.2}}]);
+    let orthotropic = json!({"young": [1e7, 3e6, 3e6], "poisson": [0.3, 0.3, 0.3], "shear": [2e6, 1e6, 2e6]});
+    for (key, value, reason) in [
+        ("materials", other, "several materials in one body"),
+        ("material", json!({"orthotropic": orthotropic}), "an orthotropic material"),
+    ] {
+        let mut scene = classical(0.3);
+        scene[key] = value;
+        let (code, report, message) = solved(&scene, &["--total-error", "0.3"]);
+        assert!(code == 0 && report["total_error"]["guaranteed"] == false, "{code} {message}");
+        assert!(report["reason"].as_str().unwrap().contains(reason), "{report}");
+    }
+}

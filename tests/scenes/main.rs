@@ -19,6 +19,7 @@ mod dimensions;
 mod inclined_frames;
 mod inclined_supports;
 mod loads;
+mod materials;
 mod mesh_scenes;
 mod obstacle_rows;
 mod obstacles_in_space;

@@ -1,81 +1,26 @@
 //! The stiffness of one element by the isotropic block formula: `K_ab[i][j] = sum_q w (lambda d_a[i] d_b[j] + mu g_a[j]
 //! g_b[i] + mu delta_ij g_a . g_b)`, g = grad N, d the dilatation of a unit displacement.
 
-use crate::fem::body::{ElasticBody, Integration, LocalPoint};
+use super::element_blocks::{Block, ElementStiffness, pair};
+use super::general_stiffness::general_stiffness;
+use crate::fem::body::{BodyElement, ElasticBody, Integration, LocalPoint};
 use crate::fem::element::{Cell, Tabulated};
-use crate::fem::material::Lame;
+use crate::fem::material::{Lame, Stiffness};
 
-/// A block of a pair of nodes: row axis, column axis.
-pub(super) type Block = [[f64; 3]; 3];
-
-/// The stiffness of one element, in force per length: a block for every pair of its nodes.
-#[derive(Clone, Debug)]
-pub struct ElementStiffness {
-    blocks: Vec<Block>,
+/// The stiffness of an element of `body`; `table` is the body's [`tabulated`](ElasticBody::tabulated) element.
+pub fn element_stiffness(body: &ElasticBody, element: &BodyElement, table: &Tabulated) -> ElementStiffness {
+    let blocks = match element.phase.law().stiffness() {
+        &Stiffness::Isotropic(lame) => isotropic_stiffness(body, lame, table, &element.cell),
+        Stiffness::General(matrices) => general_stiffness(body, &matrices.stiffness, table, &element.cell),
+    };
+    ElementStiffness::of(blocks)
 }
 
-impl ElementStiffness {
-    /// The block of local nodes `a >= b`: entry `[i][j]` is the force on `a` along axis i per displacement of `b` along
-    /// axis j. The block of (b, a) is its transpose.
-    #[inline]
-    pub fn block(&self, a: usize, b: usize) -> &Block {
-        &self.blocks[pair(a, b)]
-    }
-
-    /// Adds `factor` times the function of local node `other` to that of `node`: rows and columns of the stiffness alike.
-    pub(super) fn add_function(&mut self, node: usize, other: usize, factor: f64) {
-        let nodes = (0..).take_while(|&count| pair(count, 0) < self.blocks.len()).count();
-        let of = |blocks: &[Block], a: usize, b: usize| match a >= b {
-            true => blocks[pair(a, b)],
-            false => transposed(&blocks[pair(b, a)]),
-        };
-        let own = of(&self.blocks, node, node);
-        let (across, beyond) = (of(&self.blocks, node, other), of(&self.blocks, other, other));
-        for third in (0..nodes).filter(|&third| third != node) {
-            let (mut sum, part) = (of(&self.blocks, node, third), of(&self.blocks, other, third));
-            each(&mut sum, |i, j, entry| *entry += factor * part[i][j]);
-            match node >= third {
-                true => self.blocks[pair(node, third)] = sum,
-                false => self.blocks[pair(third, node)] = transposed(&sum),
-            }
-        }
-        let mut sum = own;
-        each(&mut sum, |i, j, entry| *entry += factor * (across[i][j] + across[j][i] + factor * beyond[i][j]));
-        self.blocks[pair(node, node)] = sum;
-    }
-
-    /// Multiplies the function of a local node.
-    pub(super) fn scale_function(&mut self, node: usize, factor: f64) {
-        let nodes = (0..).take_while(|&count| pair(count, 0) < self.blocks.len()).count();
-        for other in 0..nodes {
-            let square = if other == node { factor } else { 1.0 };
-            each(&mut self.blocks[pair(node.max(other), node.min(other))], |_, _, entry| *entry *= factor * square);
-        }
-    }
-}
-
-fn transposed(block: &Block) -> Block {
-    [0, 1, 2].map(|i| [0, 1, 2].map(|j| block[j][i]))
-}
-
-/// Changes every entry of a block, given with its row and its column.
-fn each(block: &mut Block, mut change: impl FnMut(usize, usize, &mut f64)) {
-    for (i, row) in block.iter_mut().enumerate() {
-        row.iter_mut().enumerate().for_each(|(j, entry)| change(i, j, entry));
-    }
-}
-
-/// The place of nodes a >= b among the pairs of an element.
-#[inline]
-fn pair(a: usize, b: usize) -> usize {
-    a * (a + 1) / 2 + b
-}
-
-/// The stiffness of the element `cell` of `body` in a material; `table` is the body's [`tabulated`](ElasticBody::tabulated) element.
+/// That of an isotropic material.
 ///
 /// In a body of revolution d_a has the hoop part N_a/r along r, which brings `2 mu h_a h_b`, h = N/r, too. With mean
 /// dilatation d is its mean over the element.
-pub fn element_stiffness(body: &ElasticBody, lame: Lame, table: &Tabulated, cell: &Cell) -> ElementStiffness {
+fn isotropic_stiffness(body: &ElasticBody, lame: Lame, table: &Tabulated, cell: &Cell) -> Vec<Block> {
     let nodes = table.reference.nodes.len();
     let dilatation = match body.integration() {
         Integration::MeanDilatation => Dilatation::Mean,
@@ -114,7 +59,7 @@ pub fn element_stiffness(body: &ElasticBody, lame: Lame, table: &Tabulated, cell
             finish(&mut products[place], lame, &dilatation, squares);
         }
     }
-    ElementStiffness { blocks: products }
+    products
 }
 
 /// Makes the stiffness of a pair of nodes out of the integral of grad N_a grad N_b, that of the dilatations, and that of

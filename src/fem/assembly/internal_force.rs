@@ -1,7 +1,7 @@
 //! The forces that hold a displaced body: f_a = sum_q w sigma grad N_a.
 
 use crate::error::Error;
-use crate::fem::body::{BodyElement, ElasticBody, trace};
+use crate::fem::body::ElasticBody;
 
 /// The nodal forces (length `dim * n_nodes`, in force) that hold the body in the nodal displacement `displacement`.
 ///
@@ -15,16 +15,16 @@ pub fn internal_force(body: &ElasticBody, displacement: &[f64]) -> Result<Vec<f6
     let dimension = body.dimension();
     let table = body.tabulated();
     let mut force = vec![0.0; displacement.len()];
-    for BodyElement { nodes, cell, lame } in body.elements() {
+    for element in body.elements() {
+        let (nodes, cell) = (element.nodes, &element.cell);
         let local = body.gather(displacement, nodes);
-        let mean = body.mean_dilatation(&cell, &table, &local);
+        let mean = body.mean_dilatation(cell, &table, &local);
         let scale = cell.unit().powi(dimension as i32 - 1);
         for at in &table.points {
-            let point = body.point(&cell, at);
+            let point = body.point(cell, at);
             let strain = point.strain(&local, cell.unit());
             let weight = point.weight * scale;
-            let [xx, yy, zz, xy, yz, zx] =
-                body.stress(lame, &strain, mean.unwrap_or_else(|| trace(&strain))).map(|component| component * weight);
+            let [xx, yy, zz, xy, yz, zx] = element.stress(&strain, mean).map(|component| component * weight);
             let rows = [[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]];
             for (local, &node) in nodes.iter().enumerate() {
                 let g = point.gradients[local];

@@ -6,8 +6,10 @@
 //! the axes of the frame.
 
 mod dofs;
+mod element_blocks;
 mod element_stiffness;
 mod frame;
+mod general_stiffness;
 mod internal_force;
 mod load;
 mod mass;

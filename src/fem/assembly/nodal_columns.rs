@@ -2,7 +2,7 @@
 
 use super::element_stiffness;
 use crate::error::Error;
-use crate::fem::body::{BodyElement, ElasticBody};
+use crate::fem::body::ElasticBody;
 use crate::qp::linear::SparseMatrix;
 
 /// Stands where a node is none of those that are asked for.
@@ -18,11 +18,12 @@ pub(crate) fn stiffness_columns(body: &ElasticBody, nodes: &[usize]) -> Result<S
     let place = places(body, nodes);
     let table = body.tabulated();
     let mut entries = Vec::new();
-    for BodyElement { nodes: around, cell, lame } in body.elements() {
+    for placed in body.elements() {
+        let around = placed.nodes;
         if around.iter().all(|&node| place[node] == OTHER) {
             continue;
         }
-        let element = element_stiffness(body, lame, &table, &cell);
+        let element = element_stiffness(body, &placed, &table);
         for (b, &column) in around.iter().enumerate().filter(|(_, column)| place[**column] != OTHER) {
             for (a, &row) in around.iter().enumerate() {
                 let block = element.block(a.max(b), a.min(b));

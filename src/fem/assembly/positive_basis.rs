@@ -14,7 +14,7 @@
 
 use std::collections::BTreeMap;
 
-use super::element_stiffness::ElementStiffness;
+use super::element_blocks::ElementStiffness;
 use crate::fem::body::ElasticBody;
 use crate::fem::mesh::Boundary;
 

@@ -1,10 +1,10 @@
 //! K = sum of the element stiffnesses, in the free dofs; straight into the lower triangle in compressed columns.
 
-use super::element_stiffness::Block;
+use super::element_blocks::Block;
 use super::pattern::lower_pattern;
 use super::{DofMap, Frame, element_stiffness};
 use crate::error::Error;
-use crate::fem::body::{BodyElement, ElasticBody};
+use crate::fem::body::ElasticBody;
 use crate::fem::element::MAX_NODES;
 use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
 
@@ -43,8 +43,9 @@ pub fn stiffness(body: &ElasticBody, dofs: &DofMap) -> Result<SymmetricMatrix, E
     let (starts, rows) = lower_pattern(body.mesh(), dofs);
     let mut values = vec![0.0; rows.len()];
     let table = body.tabulated();
-    for BodyElement { nodes, cell, lame } in body.elements() {
-        let mut element = element_stiffness(body, lame, &table, &cell);
+    for placed in body.elements() {
+        let nodes = placed.nodes;
+        let mut element = element_stiffness(body, &placed, &table);
         dofs.basis().change(nodes, &mut element);
         let mut free = [FreeAxes::default(); MAX_NODES];
         for (of_node, &node) in free.iter_mut().zip(nodes) {

@@ -1,10 +1,12 @@
-//! The elastic body: a mesh, its elements, a material, a formulation; strains and stresses in it.
+//! The elastic body: a mesh, its elements, their materials, a formulation; strains and stresses in it.
 
+mod phase;
+mod phases;
 mod point;
 mod region;
 
-pub use point::Symmetric;
-pub(crate) use point::{LocalPoint, trace};
+pub use phase::Phase;
+pub(crate) use point::LocalPoint;
 pub use region::Region;
 
 use serde::{Deserialize, Serialize};
@@ -12,7 +14,8 @@ use serde::{Deserialize, Serialize};
 use crate::error::Error;
 use crate::fem::element::{Cell, ElementKind, MAX_NODES, PerNode, Rule, Tabulated, TabulatedPoint};
 use crate::fem::formulation::Formulation;
-use crate::fem::material::{Lame, Material};
+use crate::fem::geometry::{Symmetric, trace};
+use crate::fem::material::{Material, Stiffness};
 use crate::fem::mesh::{Boundary, Mesh};
 
 /// Radii of a body of revolution above minus this times its size are rounding of zero.
@@ -31,7 +34,7 @@ pub enum Integration {
     MeanDilatation,
 }
 
-/// A homogeneous elastic body, or several that only contact joins, checked once, when it is built.
+/// An elastic body of one material or several, or several bodies that only contact joins; checked once, when it is built.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ElasticBody {
     mesh: Mesh,
@@ -39,6 +42,10 @@ pub struct ElasticBody {
     integration: Integration,
     /// In the order of their nodes and elements; one where there is one body.
     regions: Vec<Region>,
+    /// Those of a region follow each other; each has an element.
+    phases: Vec<Phase>,
+    /// The phase of each element.
+    of_elements: Vec<u32>,
 }
 
 /// An element in place.
@@ -48,8 +55,10 @@ pub struct BodyElement<'a> {
     pub nodes: &'a [usize],
     /// The element in place.
     pub cell: Cell,
-    /// The Lamé constants of its material in the formulation.
-    pub lame: Lame,
+    /// What it is made of.
+    pub phase: &'a Phase,
+    /// The number of that among the phases of the body.
+    pub phase_number: u32,
 }
 
 impl ElasticBody {
@@ -61,7 +70,7 @@ impl ElasticBody {
     /// positive, a node of a body of revolution at a negative radius.
     pub fn new(mesh: Mesh, material: Material, formulation: Formulation) -> Result<Self, Error> {
         formulation.check()?;
-        let lame = material.lame(&formulation)?;
+        let phase = Phase::new(material, &formulation)?;
         let fail = |message| Err(Error::Mesh { message });
         if mesh.dimension() != formulation.dimension() {
             let (element, name) = (mesh.kind().name(), formulation.name());
@@ -74,8 +83,9 @@ impl ElasticBody {
                 return fail(format!("node {node} lies at the radius x = {radius:e}; about the y axis x must be >= 0"));
             }
         }
-        let regions = vec![Region::whole(&mesh, material, lame)];
-        let body = ElasticBody { mesh, formulation, integration: Integration::Standard, regions };
+        let (regions, of_elements) = (vec![Region::whole(&mesh)], vec![0; mesh.element_count()]);
+        let integration = Integration::Standard;
+        let body = ElasticBody { mesh, formulation, integration, regions, phases: vec![phase], of_elements };
         let table = body.tabulated();
         for (index, BodyElement { nodes, cell, .. }) in body.elements().enumerate() {
             if let Err(reason) = cell.check(&table) {
@@ -104,7 +114,17 @@ impl ElasticBody {
             }
         }
         self.integration = integration;
+        self.check_integration()?;
         Ok(self)
+    }
+
+    /// The mean dilatation is that of the isotropic law.
+    fn check_integration(&self) -> Result<(), Error> {
+        let is_general = |phase: &Phase| matches!(phase.law().stiffness(), Stiffness::General(_));
+        match self.integration == Integration::MeanDilatation && self.phases.iter().any(is_general) {
+            true => Err(Error::Mesh { message: "mean dilatation is for isotropic materials alone".into() }),
+            false => Ok(()),
+        }
     }
 
     /// This body and `other` in one: two bodies that no element joins, so that nothing but contact can.
@@ -130,17 +150,21 @@ impl ElasticBody {
         let (nodes, elements) = (self.mesh.nodes().len(), self.mesh.element_count());
         self.mesh = self.mesh.beside(&other.mesh, name)?;
         self.regions.extend(other.regions.iter().map(|region| region.shifted(name, nodes, elements)));
+        let phases = self.phases.len() as u32;
+        self.phases.extend_from_slice(&other.phases);
+        self.of_elements.extend(other.of_elements.iter().map(|phase| phases + phase));
         Ok(self)
     }
 
-    /// The same single body on another mesh of its elements.
+    /// The same single body on a mesh of parts of its elements: for each element of that mesh the one that it is a part of.
     ///
     /// # Errors
     /// As [`ElasticBody::new`].
     #[cfg(feature = "cli")]
-    pub(crate) fn on(&self, mesh: Mesh) -> Result<Self, Error> {
-        let material = *self.regions[0].material();
-        Self::new(mesh, material, self.formulation)?.with_integration(self.integration)
+    pub(crate) fn on(&self, mesh: Mesh, parents: &[usize]) -> Result<Self, Error> {
+        let body = Self::new(mesh, *self.phases[0].material(), self.formulation)?;
+        let of_elements = parents.iter().map(|&parent| self.of_elements[parent]).collect();
+        ElasticBody { phases: self.phases.clone(), of_elements, ..body }.with_integration(self.integration)
     }
 
     /// The same body with another named boundary.
@@ -195,25 +219,10 @@ impl ElasticBody {
     /// Every element in place, region by region.
     pub fn elements(&self) -> impl Iterator<Item = BodyElement<'_>> + '_ {
         let reference = self.mesh.kind().reference();
-        let materials =
-            self.regions.iter().flat_map(|region| std::iter::repeat_n(region.lame(), region.elements().len()));
-        self.mesh.elements().zip(materials).map(move |(nodes, lame)| {
+        self.mesh.elements().zip(&self.of_elements).map(move |(nodes, &phase_number)| {
             let cell = Cell::new(reference, &self.coordinates(nodes));
-            BodyElement { nodes, cell, lame }
+            BodyElement { nodes, cell, phase: &self.phases[phase_number as usize], phase_number }
         })
-    }
-
-    /// The density of the material of every element, in the order of [`elements`](Self::elements).
-    ///
-    /// # Errors
-    /// [`Error::Setting`] for a material without density.
-    pub(crate) fn densities(&self) -> Result<Vec<f64>, Error> {
-        let mut densities = Vec::with_capacity(self.mesh.element_count());
-        for region in &self.regions {
-            let missing = Error::Setting { name: "density", value: f64::NAN, allowed: "positive and finite" };
-            densities.extend(std::iter::repeat_n(region.material().density().ok_or(missing)?, region.elements().len()));
-        }
-        Ok(densities)
     }
 
     /// The coordinates of up to [`MAX_NODES`] nodes.
@@ -285,16 +294,6 @@ impl ElasticBody {
         }
         Some(integral / volume)
     }
-    /// The stress of a strain in a material; `dilatation` stands for its trace, which a mean over the element may
-    /// replace.
-    pub fn stress(&self, Lame { lambda, mu }: Lame, strain: &Symmetric, dilatation: f64) -> Symmetric {
-        let mut stress = strain.map(|component| 2.0 * mu * component);
-        stress[..3].iter_mut().for_each(|normal| *normal += lambda * dilatation);
-        if let Formulation::PlaneStress { .. } = self.formulation {
-            stress[2] = 0.0;
-        }
-        stress
-    }
 
     /// Checks that a nodal vector has `dimension` entries per node.
     ///
@@ -306,5 +305,13 @@ impl ElasticBody {
             return Err(Error::Length { name, found, expected, of: "nodal dofs" });
         }
         Ok(())
+    }
+}
+
+impl BodyElement<'_> {
+    /// The stress of a strain; a mean `dilatation` replaces its trace.
+    #[inline]
+    pub fn stress(&self, strain: &Symmetric, dilatation: Option<f64>) -> Symmetric {
+        self.phase.law().stress(strain, dilatation.unwrap_or_else(|| trace(strain)))
     }
 }

@@ -1,11 +1,7 @@
 //! A point in an element: gradients, hoop terms, weight; strains there.
 
 use crate::fem::element::PerNode;
-
-/// A symmetric tensor `[xx, yy, zz, xy, yz, zx]`; in a body of revolution zz is the hoop component.
-///
-/// Strains have the tensor's shear components, half of the engineering shear strains.
-pub type Symmetric = [f64; 6];
+use crate::fem::geometry::Symmetric;
 
 /// The shape functions at a point of an element in place, in the unit of the cell.
 #[derive(Clone, Copy, Debug)]
@@ -41,10 +37,4 @@ impl LocalPoint {
         [slope[0][0], slope[1][1], slope[2][2] + hoop, shear(0, 1), shear(1, 2), shear(2, 0)]
             .map(|component| component / unit)
     }
-}
-
-/// The dilatation of a strain.
-#[inline]
-pub(crate) fn trace(strain: &Symmetric) -> f64 {
-    strain[0] + strain[1] + strain[2]
 }

@@ -1,8 +1,7 @@
-//! The bodies that one model holds: consecutive nodes and elements, a material.
+//! The bodies that one model holds: consecutive nodes and elements.
 
 use std::ops::Range;
 
-use crate::fem::material::{Lame, Material};
 use crate::fem::mesh::Mesh;
 
 /// One of the bodies that an [`ElasticBody`](super::ElasticBody) is made of; it shares no node with another.
@@ -11,21 +10,19 @@ pub struct Region {
     name: String,
     nodes: Range<usize>,
     elements: Range<usize>,
-    material: Material,
-    lame: Lame,
 }
 
 impl Region {
-    pub(super) fn whole(mesh: &Mesh, material: Material, lame: Lame) -> Self {
+    pub(super) fn whole(mesh: &Mesh) -> Self {
         let (nodes, elements) = (0..mesh.nodes().len(), 0..mesh.element_count());
-        Region { name: String::new(), nodes, elements, material, lame }
+        Region { name: String::new(), nodes, elements }
     }
 
     /// The same region called `name`, after `nodes` nodes and `elements` elements of other regions.
     pub(super) fn shifted(&self, name: &str, nodes: usize, elements: usize) -> Self {
         let behind = |range: &Range<usize>, count: usize| range.start + count..range.end + count;
         let (nodes, elements) = (behind(&self.nodes, nodes), behind(&self.elements, elements));
-        Region { name: name.into(), nodes, elements, ..self.clone() }
+        Region { name: name.into(), nodes, elements }
     }
 
     /// Its name; empty for the first.
@@ -41,15 +38,5 @@ impl Region {
     /// Its elements.
     pub fn elements(&self) -> Range<usize> {
         self.elements.clone()
-    }
-
-    /// Its material.
-    pub fn material(&self) -> &Material {
-        &self.material
-    }
-
-    /// The Lamé constants of its material in the body's formulation.
-    pub fn lame(&self) -> Lame {
-        self.lame
     }
 }

@@ -33,6 +33,8 @@ struct Marked {
     opposite: [[usize; 2]; 2],
     /// Did bisection make it of a tetrahedron whose marked edges lie in one face?
     is_second: bool,
+    /// The tetrahedron of the first mesh that it is a part of.
+    parent: usize,
 }
 
 impl Tetrahedra {
@@ -42,7 +44,7 @@ impl Tetrahedra {
             return None;
         }
         let nodes = mesh.nodes().to_vec();
-        let cells = mesh.elements().map(|element| Marked::of(&nodes, element)).collect();
+        let cells = mesh.elements().enumerate().map(|(parent, element)| Marked::of(&nodes, element, parent)).collect();
         let mut facets = BTreeMap::<_, Vec<_>>::new();
         for (number, boundary) in mesh.boundaries().iter().enumerate() {
             for facet in boundary.facets() {
@@ -52,6 +54,11 @@ impl Tetrahedra {
         }
         let names = mesh.boundaries().iter().map(|boundary| boundary.name.clone()).collect();
         Some(Tetrahedra { nodes, cells, facets, names })
+    }
+
+    /// For each tetrahedron the one of the first mesh that it is a part of.
+    pub fn parents(&self) -> Vec<usize> {
+        self.cells.iter().map(|cell| cell.parent).collect()
     }
 
     /// The mesh; its boundaries keep their names.
@@ -125,6 +132,7 @@ impl Tetrahedra {
                 nodes: [p, q, s, middle],
                 opposite: [face(q, s), face(p, s)],
                 is_second: is_flat && !cell.is_second,
+                parent: cell.parent,
             }
         })
     }
@@ -132,7 +140,7 @@ impl Tetrahedra {
 
 impl Marked {
     /// A tetrahedron of the first mesh, the longest edge of each face marked; of edges of one length that of the larger numbers.
-    fn of(places: &[[f64; 3]], element: &[usize]) -> Self {
+    fn of(places: &[[f64; 3]], element: &[usize], parent: usize) -> Self {
         let longest = |face: &[usize]| {
             let edges = face.iter().enumerate().flat_map(|(k, &a)| face[k + 1..].iter().map(move |&b| key(a, b)));
             let length = |edge: &[usize; 2]| distance(places[edge[0]], places[edge[1]]);
@@ -141,7 +149,7 @@ impl Marked {
         let [a, b] = longest(element);
         let others: Vec<usize> = element.iter().copied().filter(|&node| node != a && node != b).collect();
         let [c, d] = [others[0], others[1]];
-        Marked { nodes: [a, b, c, d], opposite: [longest(&[b, c, d]), longest(&[a, c, d])], is_second: false }
+        Marked { nodes: [a, b, c, d], opposite: [longest(&[b, c, d]), longest(&[a, c, d])], is_second: false, parent }
     }
 
     fn edges(&self) -> [[usize; 2]; 6] {

@@ -35,7 +35,7 @@ impl Mesh {
             }
             boundaries.push(Boundary::new(boundary.name.as_str(), facet, facets));
         }
-        Mesh::new(middles.nodes, kind, connectivity, boundaries)
+        Ok(Mesh::new(middles.nodes, kind, connectivity, boundaries)?.with_groups(self.groups().to_vec()))
     }
 
     /// The same with the nodes of a boundary moved along their radius onto a sphere.

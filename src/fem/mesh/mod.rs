@@ -7,6 +7,7 @@ mod boundary;
 mod elevation;
 mod faces;
 pub mod gmsh;
+mod group;
 pub(crate) mod lattice;
 mod outline;
 pub(crate) mod round;
@@ -17,6 +18,7 @@ mod zone;
 pub use crate::fem::element::{ElementKind, FacetKind};
 pub use axis::Axis;
 pub use boundary::Boundary;
+pub(crate) use group::ElementGroup;
 pub use zone::Zone;
 
 use crate::error::Error;
@@ -33,6 +35,7 @@ pub struct Mesh {
     kind: ElementKind,
     connectivity: Vec<usize>,
     boundaries: Vec<Boundary>,
+    groups: Vec<ElementGroup>,
 }
 
 impl Mesh {
@@ -52,7 +55,7 @@ impl Mesh {
         connectivity: Vec<usize>,
         boundaries: Vec<Boundary>,
     ) -> Result<Self, Error> {
-        let mesh = Mesh { nodes, kind, connectivity, boundaries };
+        let mesh = Mesh { nodes, kind, connectivity, boundaries, groups: Vec::new() };
         mesh.check_nodes()?;
         mesh.check_boundaries()?;
         Ok(mesh)
@@ -155,6 +158,16 @@ impl Mesh {
         self.boundaries.iter().find(|boundary| boundary.name == name)
     }
 
+    /// The groups of elements; a mesh that no file made has none.
+    pub(crate) fn groups(&self) -> &[ElementGroup] {
+        &self.groups
+    }
+
+    /// The same mesh with other groups of its elements.
+    fn with_groups(self, groups: Vec<ElementGroup>) -> Self {
+        Mesh { groups, ..self }
+    }
+
     /// The mirror image across the plane where the coordinate `axis` (0, 1, 2 for x, y, z) is `plane`; boundaries keep
     /// their names.
     pub fn mirrored(mut self, axis: usize, plane: f64) -> Self {
@@ -168,7 +181,7 @@ impl Mesh {
     }
 
     /// This mesh and `other` in one, sharing no node: nodes and elements of `other` follow those of this mesh, and its
-    /// boundaries are called `name.boundary`.
+    /// boundaries are called `name.boundary`, its groups of elements alike.
     ///
     /// # Errors
     /// [`Error::Mesh`] for meshes of two kinds, or a boundary name that exists.
@@ -184,7 +197,12 @@ impl Mesh {
         self.boundaries.extend(other.boundaries.iter().map(|boundary| {
             Boundary::new(format!("{name}.{}", boundary.name), boundary.kind, behind(&boundary.connectivity))
         }));
-        Self::new(self.nodes, self.kind, self.connectivity, self.boundaries)
+        let first = self.connectivity.len() / self.kind.nodes() - other.element_count();
+        self.groups.extend(other.groups.iter().map(|group| ElementGroup {
+            name: format!("{name}.{}", group.name),
+            elements: group.elements.iter().map(|element| first + element).collect(),
+        }));
+        Ok(Self::new(self.nodes, self.kind, self.connectivity, self.boundaries)?.with_groups(self.groups))
     }
 
     /// The same mesh with one boundary more, behind the others.

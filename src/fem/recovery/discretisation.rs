@@ -2,15 +2,14 @@
 
 use super::{Stress, StressField};
 use crate::error::Error;
-use crate::fem::body::{BodyElement, ElasticBody, Symmetric, trace};
+use crate::fem::body::ElasticBody;
 use crate::fem::element::{MAX_NODES, PerNode, Rule, Tabulated};
-use crate::fem::formulation::Formulation;
-use crate::fem::material::Lame;
+use crate::fem::geometry::Symmetric;
 
 /// Estimates the relative error in energy norm of the nodal displacement `displacement` (length `dim * n_nodes`), whose
 /// stress is `field`, against the solution of the continuum: `||sigma* - sigma_h|| / sqrt(||sigma_h||^2 + ||sigma* -
 /// sigma_h||^2)` in the norm of the complementary energy, where sigma* has the averaged stresses of the nodes and is
-/// carried inwards by the shape functions. Zero where there is no stress.
+/// carried inwards by the shape functions; where materials meet, by those within each. Zero where there is no stress.
 ///
 /// # Source
 /// O. C. Zienkiewicz, J. Z. Zhu, 1987, "A simple error estimator and adaptive procedure for practical engineering
@@ -47,25 +46,26 @@ impl EstimatedError {
         let standard = body.tabulated();
 
         let (mut of_elements, mut whole) = (Vec::with_capacity(body.mesh().element_count()), 0.0);
-        for BodyElement { nodes, cell, lame } in body.elements() {
+        for element in body.elements() {
+            let (nodes, cell, law) = (element.nodes, &element.cell, element.phase.law());
             let local = body.gather(displacement, nodes);
-            let mean = body.mean_dilatation(&cell, &standard, &local);
+            let mean = body.mean_dilatation(cell, &standard, &local);
             let mut recovered: PerNode<Symmetric> = [[0.0; 6]; MAX_NODES];
             for (stress, &node) in recovered.iter_mut().zip(nodes) {
-                *stress = components(&field.nodes[node]);
+                *stress = components(field.within(node, element.phase_number));
             }
             let volume = cell.unit().powi(body.dimension() as i32);
             let mut difference = 0.0;
             for at in &table.points {
-                let point = body.point(&cell, at);
+                let point = body.point(cell, at);
                 let strain = point.strain(&local, cell.unit());
-                let stress = body.stress(lame, &strain, mean.unwrap_or_else(|| trace(&strain)));
+                let stress = element.stress(&strain, mean);
                 let mut away = stress;
                 for (share, of_node) in at.shape.iter().zip(&recovered) {
                     away.iter_mut().zip(of_node).for_each(|(entry, component)| *entry -= share * component);
                 }
-                difference += volume * point.weight * complementary_energy(body.formulation(), lame, &away);
-                whole += volume * point.weight * complementary_energy(body.formulation(), lame, &stress);
+                difference += volume * point.weight * law.complementary_energy(&away);
+                whole += volume * point.weight * law.complementary_energy(&stress);
             }
             of_elements.push(difference);
         }
@@ -88,18 +88,4 @@ impl EstimatedError {
 
 fn components(stress: &Stress) -> Symmetric {
     [stress.sigma_xx, stress.sigma_yy, stress.sigma_zz, stress.sigma_xy, stress.sigma_yz, stress.sigma_zx]
-}
-
-/// `sigma : C^-1 : sigma` = (s : s - lambda/(2 mu + n lambda) (tr s)^2)/(2 mu) of the n normal components whose strain
-/// the formulation has.
-fn complementary_energy(formulation: &Formulation, Lame { lambda, mu }: Lame, stress: &Symmetric) -> f64 {
-    let normals = match formulation {
-        Formulation::Bar { .. } => 1,
-        Formulation::PlaneStrain { .. } | Formulation::PlaneStress { .. } => 2,
-        Formulation::Axisymmetric | Formulation::Space => 3,
-    };
-    let trace: f64 = stress[..normals].iter().sum();
-    let normal: f64 = stress[..normals].iter().map(|component| component * component).sum();
-    let shear: f64 = stress[3..].iter().map(|component| component * component).sum();
-    (normal + 2.0 * shear - lambda / (2.0 * mu + normals as f64 * lambda) * trace * trace) / (2.0 * mu)
 }

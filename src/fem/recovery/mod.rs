@@ -4,11 +4,14 @@ pub(crate) mod discretisation;
 
 pub use discretisation::discretisation_error;
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use nalgebra::Matrix3;
 
 use crate::error::Error;
-use crate::fem::body::{BodyElement, ElasticBody, Symmetric, trace};
+use crate::fem::body::ElasticBody;
 use crate::fem::formulation::Formulation;
+use crate::fem::geometry::Symmetric;
 
 /// The stress at a point, in force per area; tension is positive.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -68,8 +71,33 @@ impl Stress {
 pub struct StressField {
     /// One per element, at its centroid.
     pub elements: Vec<Stress>,
-    /// One per node: extrapolated from the quadrature points, averaged over the elements around the node.
+    /// One per node: extrapolated from the quadrature points, averaged over the elements around the node, of all materials.
     pub nodes: Vec<Stress>,
+    /// Where several phases meet, the average over the elements of each, by node and phase: there the stress jumps.
+    sides: BTreeMap<(usize, u32), Stress>,
+}
+
+impl StressField {
+    /// The stress of a node in a phase whose element it belongs to.
+    fn within(&self, node: usize, phase: u32) -> &Stress {
+        match self.sides.is_empty() {
+            true => &self.nodes[node],
+            false => self.sides.get(&(node, phase)).unwrap_or(&self.nodes[node]),
+        }
+    }
+}
+
+/// The nodes at which elements of several phases meet.
+fn interfaces(body: &ElasticBody) -> BTreeSet<usize> {
+    let mut found = BTreeSet::new();
+    if body.phases().len() > 1 {
+        let mut first = vec![None; body.mesh().nodes().len()];
+        for element in body.elements() {
+            let meets = |&&node: &&usize| *first[node].get_or_insert(element.phase_number) != element.phase_number;
+            found.extend(element.nodes.iter().filter(meets));
+        }
+    }
+    found
 }
 
 /// The stress in `body` at the nodal displacement `displacement` (length `dim * n_nodes`, order `[x_0, y_0, ...]`).
@@ -90,25 +118,38 @@ pub fn stress(body: &ElasticBody, displacement: &[f64]) -> Result<StressField, E
     };
     let mut elements = Vec::with_capacity(body.mesh().element_count());
     let mut sums: Vec<(Symmetric, usize)> = vec![([0.0; 6], 0); node_count];
-    for BodyElement { nodes, cell, lame } in body.elements() {
+    let (interfaces, mut sides) = (interfaces(body), BTreeMap::<(usize, u32), (Symmetric, usize)>::new());
+    for element in body.elements() {
+        let (nodes, cell) = (element.nodes, &element.cell);
         let local = body.gather(displacement, nodes);
-        let mean = body.mean_dilatation(&cell, &table, &local);
+        let mean = body.mean_dilatation(cell, &table, &local);
         let stress_at = |at| {
-            let strain = body.point(&cell, at).strain(&local, cell.unit());
-            body.stress(lame, &strain, mean.unwrap_or_else(|| trace(&strain)))
+            let strain = body.point(cell, at).strain(&local, cell.unit());
+            element.stress(&strain, mean)
         };
         elements.push(finished(stress_at(&table.centroid)));
         for (index, at) in table.points.iter().enumerate() {
             let at_point = stress_at(at);
             for (local, &node) in nodes.iter().enumerate() {
                 let weight = extrapolation[(local, index)];
-                for (sum, component) in sums[node].0.iter_mut().zip(at_point) {
-                    *sum += weight * component;
+                add(&mut sums[node].0, weight, &at_point);
+                if interfaces.contains(&node) {
+                    add(&mut sides.entry((node, element.phase_number)).or_default().0, weight, &at_point);
                 }
             }
         }
-        nodes.iter().for_each(|&node| sums[node].1 += 1);
+        for &node in nodes {
+            sums[node].1 += 1;
+            sides.get_mut(&(node, element.phase_number)).into_iter().for_each(|side| side.1 += 1);
+        }
     }
     let average = |(sum, count): &(Symmetric, usize)| finished(sum.map(|component| component / *count as f64));
-    Ok(StressField { elements, nodes: sums.iter().map(average).collect() })
+    let nodes = sums.iter().map(average).collect();
+    Ok(StressField { elements, nodes, sides: sides.iter().map(|(&side, sum)| (side, average(sum))).collect() })
+}
+
+fn add(sum: &mut Symmetric, weight: f64, stress: &Symmetric) {
+    for (sum, component) in sum.iter_mut().zip(stress) {
+        *sum += weight * component;
+    }
 }

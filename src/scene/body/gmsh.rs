@@ -25,7 +25,8 @@ pub struct GmshSpec {
     /// What the coordinates of the file are multiplied by, positive.
     #[serde(default = "unchanged")]
     pub scale: f64,
-    /// The physical group that is the body; may be left out if no more than one has elements of the highest dimension.
+    /// The physical group that is the body; may be left out if no more than one has elements of the highest dimension, or
+    /// if `materials` name the groups.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub group: Option<String>,
     /// How the stiffness is integrated.
@@ -47,11 +48,11 @@ impl BodyShape for GmshSpec {
     fn mesh(&self, site: &Site) -> Result<Mesh, Error> {
         let file = GmshFile::read(site.files.named(&self.file, format!("{}.file", site.path))?)?;
         let bodies = file.bodies();
-        if self.group.is_none() && bodies.len() > 1 {
+        if self.group.is_none() && bodies.len() > 1 && !site.names_groups {
             let names = bodies.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
             let message = format!(
                 "the mesh has {} groups of elements, {names}; without `group` they would be one body of one material: name the one \
-                 that is meant",
+                 that is meant, or give them `materials`",
                 bodies.len()
             );
             return Err(refused("several-groups", format!("{}.group", site.path), message));

@@ -53,6 +53,8 @@ pub(in crate::scene) struct Site<'a> {
     pub model: ModelSpec,
     /// The files of the scene.
     pub files: Files<'a>,
+    /// The scene names groups of elements, which have materials of their own.
+    pub names_groups: bool,
 }
 
 impl Site<'_> {

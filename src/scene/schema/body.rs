@@ -2,21 +2,66 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::json::{choice, given, object};
+use super::json::{choice, given, given_object, object, objects};
+use super::part::PartBoxSpec;
 use crate::scene::body::BodySpec;
 
-/// An isotropic linear elastic material.
+/// A linear elastic material: isotropic with `young` and `poisson`, or `orthotropic`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct MaterialSpec {
     /// Young's modulus, positive, in force per area.
-    pub young: f64,
+    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    pub young: Option<f64>,
     /// Poisson's ratio: above -1, at most 0.5 in a bar and in plane stress, below 0.5 elsewhere.
-    pub poisson: f64,
+    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    pub poisson: Option<f64>,
+    /// Elasticity with three planes of symmetry, instead of `young` and `poisson`.
+    #[serde(default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
+    pub orthotropic: Option<OrthotropicSpec>,
     /// Density, positive, in mass per volume; a dynamic analysis, gravity and centrifugal forces ask for it.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     pub density: Option<f64>,
+}
+
+/// Orthotropic elasticity, along the axes 1, 2, 3 of the material: x, y, z unless they are turned; about an axis the radius, y and the
+/// hoop. A bar lies along axis 1.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct OrthotropicSpec {
+    /// Young's moduli `[E1, E2, E3]`, positive, in force per area.
+    pub young: [f64; 3],
+    /// Poisson's ratios `[nu12, nu23, nu13]`: tension along i contracts the material along j by nu_ij times its extension, and nu_ij/E_i =
+    /// nu_ji/E_j. The stiffness must be positive definite.
+    pub poisson: [f64; 3],
+    /// Shear moduli `[G12, G23, G13]`, positive, in force per area.
+    pub shear: [f64; 3],
+    /// The angle from x to axis 1, counterclockwise, in degrees; in the plane and about an axis.
+    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    pub angle: Option<f64>,
+    /// In space a vector along axis 1, and a second one: axis 2 lies in the plane of both, at right angles to axis 1.
+    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    pub axes: Option<[Vec<f64>; 2]>,
+}
+
+/// The material of a part of a body: of the elements of a group, of those whose centroid lies in a box, or of those in both.
+///
+/// Of several parts that hold an element the last one counts. The elements are chosen on every mesh anew.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct MaterialPartSpec {
+    /// A physical group of the mesh file.
+    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    pub group: Option<String>,
+    /// A box along the coordinate axes.
+    #[serde(rename = "box", default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
+    pub cuboid: Option<PartBoxSpec>,
+    /// The material.
+    #[serde(deserialize_with = "object")]
+    pub material: MaterialSpec,
 }
 
 /// An elastic body beside the first: of the same model, thickness and element.
@@ -29,7 +74,10 @@ pub struct FurtherBodySpec {
     /// The body.
     #[serde(deserialize_with = "choice")]
     pub body: BodySpec,
-    /// Its material.
-    #[serde(deserialize_with = "object")]
-    pub material: MaterialSpec,
+    /// Its material; that of all that `materials` leave over.
+    #[serde(default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
+    pub material: Option<MaterialSpec>,
+    /// The materials of its parts.
+    #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
+    pub materials: Vec<MaterialPartSpec>,
 }

@@ -11,7 +11,7 @@ pub(super) mod json;
 pub(super) mod load;
 pub(super) mod model;
 pub(super) mod obstacle;
-mod part;
+pub(super) mod part;
 pub(super) mod profile;
 mod rigid_face;
 pub(super) mod spring;
@@ -21,7 +21,7 @@ pub use analysis::{
     AnalysisSpec, DynamicSpec, FactorSpec, FieldSpec, LoadInTimeSpec, MassSpec, PenetrationSpec, WatchSpec,
 };
 pub use approach::Rule;
-pub use body::{FurtherBodySpec, MaterialSpec};
+pub use body::{FurtherBodySpec, MaterialPartSpec, MaterialSpec, OrthotropicSpec};
 pub use condition::{Place, SupportSpec};
 pub use load::LoadSpec;
 pub use model::ModelSpec;
@@ -34,7 +34,7 @@ pub use symmetry::SymmetryPlane;
 use std::path::PathBuf;
 
 use super::body::BodySpec;
-use json::{choice, choices, object, objects, word, words};
+use json::{choice, choices, given_object, object, objects, word, words};
 
 /// A contact scene: an elastic body, its supports and loads, and the obstacles around it.
 ///
@@ -62,9 +62,12 @@ pub struct Scene {
     /// The elastic body.
     #[serde(deserialize_with = "choice")]
     pub body: BodySpec,
-    /// Its material.
-    #[serde(deserialize_with = "object")]
-    pub material: MaterialSpec,
+    /// Its material; that of all that `materials` leave over.
+    #[serde(default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
+    pub material: Option<MaterialSpec>,
+    /// The materials of its parts.
+    #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
+    pub materials: Vec<MaterialPartSpec>,
     /// Further elastic bodies, that only contact joins to the first and to each other.
     #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
     pub further_bodies: Vec<FurtherBodySpec>,

@@ -167,6 +167,7 @@ fn view(model: &Model) -> Vec<Vec<[f64; 2]>> {
 /// How finer meshes are made.
 enum Refinement {
     /// By bisection of the tetrahedra of each body.
+    /// Each as the scene has it, which knows the materials of its elements.
     Bisected(Vec<(ElasticBody, Tetrahedra)>, Answering),
     /// By cutting every cell of the scene into so many along each edge.
     Divided(usize),
@@ -251,12 +252,12 @@ impl Search<'_> {
                 let too_deep = goal.total_error * found.depths.pushed;
                 let deep = marked.iter_mut().zip(&found.depths.of_elements);
                 deep.for_each(|(marked, depth)| *marked |= *depth > too_deep);
-                for (region, (body, cells)) in found.answer.model().body().regions().iter().zip(bodies.iter_mut()) {
+                let regions = found.answer.model().body().regions();
+                let finer = regions.iter().zip(bodies.iter_mut()).map(|(region, (body, cells))| {
                     cells.refine(&marked[region.elements()]);
-                    *body = body.on(cells.mesh()?)?;
-                }
-                let bodies = bodies.iter().map(|(body, _)| body.clone()).collect();
-                self.scene.build_of(bodies, &[]).map(Some)
+                    body.on(cells.mesh()?, &cells.parents())
+                });
+                self.scene.build_of(finer.collect::<Result<_, _>>()?, &[]).map(Some)
             }
             Refinement::Divided(times) => {
                 let dimension = found.answer.model().body().dimension() as i32;

@@ -1,12 +1,12 @@
 //! The elements of the body: which they are, of which kind, in which plane, and which way round.
 
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashMap};
 
 use super::cells::CellType;
 use super::file::{Element, GmshFile};
 use crate::error::Error;
 use crate::fem::element::{Cell, ElementKind, MAX_NODES, Rule, Tabulated};
-use crate::fem::mesh::{Mesh, fail};
+use crate::fem::mesh::{ElementGroup, Mesh, fail};
 
 /// A node farther from the plane than this times the size of the body lies outside it: far above the rounding of a mesh
 /// generator, far below any cell.
@@ -19,6 +19,8 @@ pub(super) type Numbers = Vec<Option<usize>>;
 pub(super) struct Body<'a> {
     kind: ElementKind,
     elements: Vec<Element<'a>>,
+    /// Those that the elements belong to.
+    groups: Vec<ElementGroup>,
 }
 
 impl<'a> Body<'a> {
@@ -48,12 +50,29 @@ impl<'a> Body<'a> {
         };
         let mut elements = Vec::new();
         // Version 2.2 writes an element once for each of its groups.
-        let mut known: HashSet<&[usize]> = HashSet::new();
-        for block in file.blocks.iter().filter(|block| block.cell.dimension == dimension && chosen(&block.groups)) {
-            elements.extend(file.elements_of(block).filter(|element| known.insert(element.nodes)));
+        let mut known: HashMap<&[usize], usize> = HashMap::new();
+        let own = || file.blocks.iter().filter(|block| block.cell.dimension == dimension);
+        for element in own().filter(|block| chosen(&block.groups)).flat_map(|block| file.elements_of(block)) {
+            known.entry(element.nodes).or_insert_with(|| {
+                elements.push(element);
+                elements.len() - 1
+            });
         }
+        let mut groups: BTreeMap<u64, Vec<usize>> = BTreeMap::new();
+        for block in own() {
+            for tag in &block.groups {
+                let within = file.elements_of(block).filter_map(|element| known.get(element.nodes));
+                groups.entry(*tag).or_default().extend(within);
+            }
+        }
+        let group = |(tag, mut elements): (u64, Vec<usize>)| {
+            elements.sort_unstable();
+            elements.dedup();
+            ElementGroup { name: file.name_of(dimension, tag), elements }
+        };
+        let groups = groups.into_iter().filter(|(_, elements)| !elements.is_empty()).map(group).collect();
         let kind = kind(file, &elements)?;
-        Ok(Body { kind, elements })
+        Ok(Body { kind, elements, groups })
     }
 
     /// The mesh without boundaries, and the place of every node of the file in it.
@@ -76,7 +95,7 @@ impl<'a> Body<'a> {
             turn_if_clockwise(self.kind, &nodes, &mut connectivity);
         }
         self.check(file, &nodes, &connectivity)?;
-        Ok((Mesh::new(nodes, self.kind, connectivity, Vec::new())?, numbers))
+        Ok((Mesh::new(nodes, self.kind, connectivity, Vec::new())?.with_groups(self.groups.clone()), numbers))
     }
 
     /// Checks that the nodes lie in a plane z = const, or on a line along x, and puts them at 0 there.

@@ -1,0 +1,123 @@
+//! The phases of a body: which material each element has.
+
+use super::{ElasticBody, Phase, Region};
+use crate::error::Error;
+use crate::fem::material::Material;
+
+impl ElasticBody {
+    /// The same body with another material of some elements, from 0.
+    ///
+    /// # Errors
+    /// As [`ElasticBody::new`] for the material; [`Error::Mesh`] for an element that is not there, for a body that is several, for
+    /// an orthotropic material with mean dilatation.
+    pub fn with_material(self, elements: &[usize], material: Material) -> Result<Self, Error> {
+        let phase = Phase::new(material, &self.formulation)?;
+        let body = self.with_phase(elements, |_| Ok(phase.clone()))?;
+        body.check_integration()?;
+        Ok(body)
+    }
+
+    /// The same with another phase of some elements, made of their present one.
+    fn with_phase(mut self, elements: &[usize], make: impl Fn(&Phase) -> Result<Phase, Error>) -> Result<Self, Error> {
+        if self.regions.len() > 1 {
+            return Err(Error::Mesh { message: "bodies have their materials before they are joined".into() });
+        }
+        let mut made: Vec<Option<u32>> = vec![None; self.phases.len()];
+        for &element in elements {
+            let count = self.of_elements.len();
+            let Some(own) = self.of_elements.get_mut(element) else {
+                let message = format!("there is no element {element}; the mesh has {count}, from 0");
+                return Err(Error::Mesh { message });
+            };
+            // An element that is named twice has its new phase already.
+            let Some(place) = made.get_mut(*own as usize) else { continue };
+            if place.is_none() {
+                *place = Some(self.phases.len() as u32);
+                self.phases.push(make(&self.phases[*own as usize])?);
+            }
+            *own = place.unwrap_or(*own);
+        }
+        self.leave_out_empty_phases();
+        Ok(self)
+    }
+
+    fn leave_out_empty_phases(&mut self) {
+        let mut number = vec![None; self.phases.len()];
+        self.of_elements.iter().for_each(|&phase| number[phase as usize] = Some(0));
+        let mut next = 0..;
+        number.iter_mut().flatten().for_each(|number| *number = next.next().unwrap_or_default());
+        let mut is_used = number.iter().map(Option::is_some);
+        self.phases.retain(|_| is_used.next().unwrap_or_default());
+        self.of_elements.iter_mut().for_each(|phase| *phase = number[*phase as usize].unwrap_or_default());
+    }
+
+    /// All phases, region by region; each has an element.
+    pub(crate) fn phases(&self) -> &[Phase] {
+        &self.phases
+    }
+
+    /// The phases of the elements of a region.
+    pub(crate) fn phases_of(&self, region: &Region) -> &[Phase] {
+        let own = &self.of_elements[region.elements()];
+        let [first, last] = [own.iter().min(), own.iter().max()].map(|phase| phase.map_or(0, |&phase| phase as usize));
+        &self.phases[first..=last]
+    }
+
+    /// The materials of a region, one of the bodies.
+    pub fn materials(&self, region: &Region) -> impl Iterator<Item = &Material> {
+        self.phases_of(region).iter().map(Phase::material)
+    }
+
+    /// The density of the material of every element, in the order of [`elements`](Self::elements).
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for a material without density.
+    pub(crate) fn densities(&self) -> Result<Vec<f64>, Error> {
+        let missing = || Error::Setting { name: "density", value: f64::NAN, allowed: "positive and finite" };
+        let of_phases: Vec<f64> =
+            self.phases.iter().map(|phase| phase.material().density().ok_or_else(missing)).collect::<Result<_, _>>()?;
+        Ok(self.of_elements.iter().map(|&phase| of_phases[phase as usize]).collect())
+    }
+}
+
+#[cfg(all(test, feature = "cli"))]
+mod tests {
+    use super::*;
+    use crate::fem::formulation::Formulation;
+    use crate::fem::geometry::distance;
+    use crate::fem::mesh::bisection::Tetrahedra;
+    use crate::fem::mesh::gmsh::GmshFile;
+
+    /// The volume of each phase.
+    fn volumes(body: &ElasticBody) -> Vec<f64> {
+        let (table, mut volumes) = (body.tabulated(), vec![0.0; body.phases().len()]);
+        for element in body.elements() {
+            let scale = element.cell.unit().powi(3);
+            let parts = table.points.iter().map(|at| scale * body.point(&element.cell, at).weight);
+            volumes[element.phase_number as usize] += parts.sum::<f64>();
+        }
+        volumes
+    }
+
+    #[test]
+    fn bisection_leaves_every_place_its_material() {
+        let mesh = GmshFile::read("tests/meshes/box-tet4.msh").unwrap().mesh(None, 1.0).unwrap();
+        let [soft, stiff] = [1.0, 2.0].map(|young| Material::new(young, 0.3).unwrap());
+        let near: Vec<usize> = (0..mesh.element_count())
+            .filter(|&element| mesh.element(element).iter().any(|&node| distance(mesh.nodes()[node], [0.0; 3]) < 0.5))
+            .collect();
+        let mut cells = Tetrahedra::of(&mesh).unwrap();
+        let body = ElasticBody::new(mesh, soft, Formulation::Space).unwrap().with_material(&near, stiff).unwrap();
+        let expected = volumes(&body);
+        assert!(expected.len() == 2 && expected.iter().all(|volume| *volume > 0.01), "{expected:?}");
+        for round in 0..3 {
+            let count = cells.parents().len();
+            cells.refine(&(0..count).map(|cell| cell % 5 == round).collect::<Vec<_>>());
+            let finer = body.on(cells.mesh().unwrap(), &cells.parents()).unwrap();
+            assert!(finer.mesh().element_count() > count && finer.phases() == body.phases());
+            for (found, expected) in volumes(&finer).iter().zip(&expected) {
+                assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
+            }
+        }
+    }
+}

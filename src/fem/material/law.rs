@@ -1,0 +1,112 @@
+//! The law of stress and strain in a formulation: sigma = lambda tr(eps) I + 2 mu eps, or sigma = C eps.
+
+use crate::fem::formulation::Formulation;
+use crate::fem::geometry::Symmetric;
+
+/// A matrix between components `[xx, yy, zz, xy, yz, zx]` of stress and of engineering strain.
+pub type Matrix = [[f64; 6]; 6];
+
+/// The Lamé constants of a material in a formulation, in force per area.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lame {
+    /// lambda, for the trace of the strains that the formulation has.
+    pub lambda: f64,
+    /// mu, the shear modulus; half of Young's modulus in a bar, which has no shear.
+    pub mu: f64,
+}
+
+/// The stiffness of a material in a formulation.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Stiffness {
+    /// Of an isotropic one.
+    Isotropic(Lame),
+    /// Of any other.
+    General(Box<Matrices>),
+}
+
+/// A stiffness without symmetries, and its inverse.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Matrices {
+    /// From engineering strain to stress, in force per area: zero where the formulation has no stress.
+    pub stiffness: Matrix,
+    /// Back, for the components whose strain the formulation has; zero elsewhere.
+    pub compliance: Matrix,
+}
+
+/// The law of a material in a formulation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Law {
+    stiffness: Stiffness,
+    formulation: Formulation,
+}
+
+impl Law {
+    pub(super) fn new(stiffness: Stiffness, formulation: Formulation) -> Self {
+        Law { stiffness, formulation }
+    }
+
+    /// The stiffness.
+    #[inline]
+    pub fn stiffness(&self) -> &Stiffness {
+        &self.stiffness
+    }
+
+    /// The stress of a strain. In an isotropic material `dilatation` stands for its trace, which a mean over the element may
+    /// replace.
+    #[inline]
+    pub fn stress(&self, strain: &Symmetric, dilatation: f64) -> Symmetric {
+        match &self.stiffness {
+            Stiffness::Isotropic(Lame { lambda, mu }) => {
+                let mut stress = strain.map(|component| 2.0 * mu * component);
+                stress[..3].iter_mut().for_each(|normal| *normal += lambda * dilatation);
+                if let Formulation::PlaneStress { .. } = self.formulation {
+                    stress[2] = 0.0;
+                }
+                stress
+            }
+            Stiffness::General(matrices) => product(&matrices.stiffness, &engineering(strain)),
+        }
+    }
+
+    /// `sigma : C^-1 : sigma`, twice the density of the complementary energy, of the components whose strain the formulation has.
+    ///
+    /// In an isotropic material it is (s : s - lambda/(2 mu + n lambda) (tr s)^2)/(2 mu) of their n normal ones.
+    pub fn complementary_energy(&self, stress: &Symmetric) -> f64 {
+        let &Lame { lambda, mu } = match &self.stiffness {
+            Stiffness::Isotropic(lame) => lame,
+            Stiffness::General(matrices) => {
+                let strain = product(&matrices.compliance, stress);
+                return strain.iter().zip(stress).map(|(strain, stress)| strain * stress).sum();
+            }
+        };
+        let normals = match self.formulation {
+            Formulation::Bar { .. } => 1,
+            Formulation::PlaneStrain { .. } | Formulation::PlaneStress { .. } => 2,
+            Formulation::Axisymmetric | Formulation::Space => 3,
+        };
+        let trace: f64 = stress[..normals].iter().sum();
+        let normal: f64 = stress[..normals].iter().map(|component| component * component).sum();
+        let shear: f64 = stress[3..].iter().map(|component| component * component).sum();
+        (normal + 2.0 * shear - lambda / (2.0 * mu + normals as f64 * lambda) * trace * trace) / (2.0 * mu)
+    }
+
+    /// The stiffness to a strain along one direction alone, which the speed of pressure waves follows; of an orthotropic material
+    /// the largest along a coordinate axis.
+    pub fn wave_modulus(&self) -> f64 {
+        match &self.stiffness {
+            Stiffness::Isotropic(lame) => lame.lambda + 2.0 * lame.mu,
+            Stiffness::General(matrices) => (0..3).map(|axis| matrices.stiffness[axis][axis]).fold(0.0, f64::max),
+        }
+    }
+}
+
+/// Engineering strains: twice the shear components of the tensor.
+#[inline]
+fn engineering([xx, yy, zz, xy, yz, zx]: &Symmetric) -> Symmetric {
+    [*xx, *yy, *zz, 2.0 * xy, 2.0 * yz, 2.0 * zx]
+}
+
+#[inline]
+fn product(matrix: &Matrix, vector: &Symmetric) -> Symmetric {
+    matrix.map(|row| row.iter().zip(vector).map(|(entry, component)| entry * component).sum())
+}

@@ -1,0 +1,128 @@
+//! Homogeneous linear elasticity: materials, isotropic or orthotropic, with density and thermal expansion.
+
+mod law;
+mod orthotropic;
+
+pub use law::{Lame, Law, Stiffness};
+use orthotropic::Orthotropic;
+
+use crate::error::Error;
+use crate::fem::formulation::Formulation;
+
+/// A linear elastic material, checked once, when it is built.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Material {
+    elasticity: Elasticity,
+    density: Option<f64>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Elasticity {
+    Isotropic { young: f64, poisson: f64 },
+    Orthotropic(Orthotropic),
+}
+
+impl Material {
+    /// The isotropic material of Young's modulus (force per area) and Poisson's ratio.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for a modulus that is not positive and finite, or a ratio outside -1 < nu <= 0.5.
+    pub fn new(young: f64, poisson: f64) -> Result<Self, Error> {
+        if !(young.is_normal() && young > 0.0) {
+            return Err(Error::Setting { name: "young", value: young, allowed: "positive and finite" });
+        }
+        if !(poisson > -1.0 && poisson <= 0.5) {
+            return Err(Error::Setting { name: "poisson", value: poisson, allowed: "above -1 and at most 0.5" });
+        }
+        Ok(Material { elasticity: Elasticity::Isotropic { young, poisson }, density: None })
+    }
+
+    /// The orthotropic material of Young's moduli `[E1, E2, E3]`, Poisson's ratios `[nu12, nu23, nu13]` and shear moduli
+    /// `[G12, G23, G13]` along the coordinate axes.
+    ///
+    /// Tension along i contracts the material along j by nu_ij times its extension, and `nu_ij / E_i = nu_ji / E_j`.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for a modulus that is not positive and finite, or a stiffness that is not positive definite.
+    pub fn orthotropic(young: [f64; 3], poisson: [f64; 3], shear: [f64; 3]) -> Result<Self, Error> {
+        let elasticity = Elasticity::Orthotropic(Orthotropic::new(young, poisson, shear)?);
+        Ok(Material { elasticity, density: None })
+    }
+
+    /// The same material with its first axis along a vector, and its second one in the plane of both vectors (x, y, z; of any
+    /// length but zero) and at right angles to the first. An isotropic material has no axes, and stays as it is.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for vectors that span no plane.
+    pub fn along(self, first: [f64; 3], second: [f64; 3]) -> Result<Self, Error> {
+        let elasticity = match self.elasticity {
+            Elasticity::Orthotropic(own) => Elasticity::Orthotropic(own.along(first, second)?),
+            isotropic => isotropic,
+        };
+        Ok(Material { elasticity, ..self })
+    }
+
+    /// The same material with a density (mass per volume), which motions and forces of inertia ask for.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for a density that is not positive and finite.
+    pub fn with_density(self, density: f64) -> Result<Self, Error> {
+        if !(density.is_normal() && density > 0.0) {
+            return Err(Error::Setting { name: "density", value: density, allowed: "positive and finite" });
+        }
+        Ok(Material { density: Some(density), ..self })
+    }
+
+    /// The density, in mass per volume, where there is one.
+    pub fn density(&self) -> Option<f64> {
+        self.density
+    }
+
+    /// The smallest and the largest Young's modulus; those of an isotropic material are the same.
+    pub fn young(&self) -> [f64; 2] {
+        match &self.elasticity {
+            Elasticity::Isotropic { young, .. } => [*young; 2],
+            Elasticity::Orthotropic(own) => own.young_range(),
+        }
+    }
+
+    /// Poisson's ratio of an isotropic material.
+    pub fn poisson(&self) -> Option<f64> {
+        match self.elasticity {
+            Elasticity::Isotropic { poisson, .. } => Some(poisson),
+            Elasticity::Orthotropic(_) => None,
+        }
+    }
+
+    /// The law of stress and strain in `formulation`.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for nu = 0.5 where the volume would be kept: in plane strain, axisymmetric bodies and space; for
+    /// orthotropic axes that leave the plane of a plane model; for an orthotropic stiffness that overflows.
+    pub fn law(&self, formulation: &Formulation) -> Result<Law, Error> {
+        let stiffness = match &self.elasticity {
+            &Elasticity::Isotropic { young, poisson } => Stiffness::Isotropic(lame(young, poisson, formulation)?),
+            Elasticity::Orthotropic(own) => Stiffness::General(Box::new(own.matrices(formulation)?)),
+        };
+        Ok(Law::new(stiffness, *formulation))
+    }
+}
+
+/// The Lamé constants in `formulation`.
+///
+/// In plane stress lambda is E nu/(1 - nu^2), for the trace of the strains in the plane; in a bar lambda is 0 and mu is E/2, so that
+/// sigma = E eps.
+fn lame(young: f64, nu: f64, formulation: &Formulation) -> Result<Lame, Error> {
+    let mu = young / (1.0 + nu) / 2.0;
+    let volumetric = |allowed| match nu < 0.5 {
+        true => Ok(Lame { lambda: young * nu / (1.0 + nu) / (1.0 - 2.0 * nu), mu }),
+        false => Err(Error::Setting { name: "poisson", value: nu, allowed }),
+    };
+    match formulation {
+        Formulation::Bar { .. } => Ok(Lame { lambda: 0.0, mu: young / 2.0 }),
+        Formulation::PlaneStress { .. } => Ok(Lame { lambda: young * nu / ((1.0 - nu) * (1.0 + nu)), mu }),
+        Formulation::PlaneStrain { .. } => volumetric("above -1 and below 0.5 in plane strain"),
+        Formulation::Axisymmetric => volumetric("above -1 and below 0.5 in an axisymmetric body"),
+        Formulation::Space => volumetric("above -1 and below 0.5 in space"),
+    }
+}

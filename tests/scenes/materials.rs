@@ -1,0 +1,258 @@
+//! Bodies of several materials in scenes: layers and strips against closed forms, groups of mesh files, what is refused.
+
+use crate::bodies::built;
+use serde_json::{Value, json};
+use signorini::scene::Answer;
+use signorini::{Error, Scene, solve_qp};
+use std::sync::Arc;
+
+const ROUNDING: f64 = 1e-10;
+
+fn answer(scene: &Value) -> Answer {
+    let model = Scene::from_json(&scene.to_string(), "scene").unwrap();
+    let model = Scene { folder: Some("tests/meshes".into()), ..model }.build().unwrap();
+    let solution = solve_qp(model.problem()).unwrap();
+    Answer::of(Arc::new(model), &solution).unwrap()
+}
+
+/// A change of a scene at a JSON pointer.
+fn changed(scene: &Value, pointer: &str, value: Value) -> Value {
+    let mut scene = scene.clone();
+    match scene.pointer_mut(pointer) {
+        Some(place) => *place = value,
+        None => {
+            let (parent, key) = pointer.rsplit_once('/').unwrap();
+            scene.pointer_mut(parent).unwrap()[key] = value;
+        }
+    }
+    scene
+}
+
+fn refused(scene: &Value, path: &str, phrases: &[&str]) {
+    let scene = Scene::from_json(&scene.to_string(), "scene").unwrap();
+    let error = Scene { folder: Some("tests/meshes".into()), ..scene }.build().unwrap_err();
+    assert!(matches!(&error, Error::Scene { path: found, .. } if found == path), "{path}: {error}");
+    phrases.iter().for_each(|phrase| assert!(error.to_string().contains(phrase), "{error}"));
+}
+
+/// A bar of 3 m whose last metre is four times as stiff as the rest, pulled to 0.01 m: springs of 50 and 400 in a row.
+#[test]
+fn a_layered_bar_is_springs_in_a_row() {
+    let answer = answer(&json!({
+        "model": "bar",
+        "body": {"bar": {"x": {"points": [0, 2, 3], "divisions": [2, 3]}, "area": 1}},
+        "material": {"young": 100, "poisson": 0.3},
+        "materials": [{"box": {"min": [2], "max": [3]}, "material": {"young": 400, "poisson": 0.2}}],
+        "supports": [{"on": {"boundary": "left"}, "x": 0}, {"on": {"boundary": "right"}, "x": 0.01}]
+    }));
+    let force = 0.01 / (1.0 / 50.0 + 1.0 / 400.0);
+    let reactions = &answer.forces().unwrap().reactions;
+    assert!((reactions[0] + force).abs() < ROUNDING && (reactions[5] - force).abs() < ROUNDING, "{reactions:?}");
+    assert!((answer.displacement()[2] - force / 50.0).abs() < ROUNDING);
+    assert!(answer.stress().unwrap().elements.iter().all(|stress| (stress.sigma_xx - force).abs() < ROUNDING));
+}
+
+/// A strip of two layers, nu = 0, that is bent to the curvature 0.01 about its neutral axis: the moment of the parallel-axis theorem, no
+/// force.
+#[test]
+fn a_bent_strip_of_two_layers_has_the_stiffness_of_the_parallel_axis_theorem() {
+    let (layers, curvature, length) = ([(100.0, 0.0, 0.6), (700.0, 0.6, 1.0)], 0.01, 4.0);
+    let area: f64 = layers.iter().map(|(e, low, high)| e * (high - low)).sum();
+    let neutral = layers.iter().map(|(e, low, high)| e * (high * high - low * low) / 2.0).sum::<f64>() / area;
+    let bending: f64 = layers
+        .iter()
+        .map(|(e, low, high): &(f64, f64, f64)| {
+            e * ((high - low).powi(3) / 12.0 + (high - low) * ((low + high) / 2.0 - neutral).powi(2))
+        })
+        .sum();
+    let turned = json!({"along": [0, 1], "places": [0, 1], "factors": [-neutral, 1.0 - neutral]});
+    let answer = answer(&json!({
+        "model": "plane-stress",
+        "body": {"rectangle": {
+            "x": {"points": [0, length], "divisions": [5]}, "y": {"points": [0, 0.6, 1], "divisions": [2, 1]}, "element": "q8"
+        }},
+        "materials": [
+            {"box": {"min": [0, 0], "max": [4, 1]}, "material": {"young": 100, "poisson": 0}},
+            {"box": {"min": [0, 0.6], "max": [4, 1]}, "material": {"young": 700, "poisson": 0}}
+        ],
+        "supports": [
+            {"on": {"boundary": "left"}, "x": 0},
+            {"on": {"point": [0, 0]}, "y": 0},
+            {"on": {"boundary": "right"}, "x": curvature * length, "profile": turned}
+        ]
+    }));
+    let resultants = answer.resultants().unwrap();
+    let end = resultants.iter().find(|resultant| resultant.of == "supports[2]").unwrap();
+    assert!(
+        end.force[0].abs() < ROUNDING && (end.moment[0] / (-bending * curvature) - 1.0).abs() < ROUNDING,
+        "{end:?}"
+    );
+    assert!(answer.discretisation_error().unwrap() < ROUNDING);
+}
+
+/// Two blocks of 1 x 1 in one file, side by side, pulled apart: the compliances add up.
+#[test]
+fn groups_of_a_mesh_file_have_materials_of_their_own() {
+    let scene = json!({
+        "model": "plane-stress",
+        "body": {"gmsh": {"file": "two-parts-q8.msh"}},
+        "materials": [
+            {"group": "first", "material": {"young": 100, "poisson": 0}},
+            {"group": "second", "material": {"young": 300, "poisson": 0}}
+        ],
+        "supports": [
+            {"on": {"boundary": "left"}, "x": 0}, {"on": {"boundary": "bottom"}, "y": 0},
+            {"on": {"boundary": "right"}, "x": 0.04}
+        ]
+    });
+    for (scene, stress) in [
+        (scene.clone(), 3.0),
+        (changed(&changed(&scene, "/material", json!({"young": 300, "poisson": 0})), "/materials", json!([scene["materials"][0]])), 3.0),
+        // Of two entries the last one counts.
+        (changed(&scene, "/materials/0", json!({"group": "second", "box": {"min": [0, 0], "max": [9, 9]}, "material": {"young": 5, "poisson": 0}}))
+            .pointer("/materials")
+            .map(|materials| changed(&changed(&scene, "/material", json!({"young": 100, "poisson": 0})), "/materials", materials.clone()))
+            .unwrap(), 3.0),
+    ] {
+        for found in answer(&scene).stress().unwrap().nodes.iter() {
+            assert!((found.sigma_xx - stress).abs() < ROUNDING, "{scene} {found:?}");
+        }
+    }
+    refused(
+        &changed(&scene, "/materials", json!([scene["materials"][1]])),
+        "materials",
+        &["16 elements have no material", "of the group `first` with its centroid at (0.617134080579431"],
+    );
+    refused(
+        &changed(&scene, "/materials/0/group", json!("rubber")),
+        "materials[0].group",
+        &["`rubber`", "`first`, `second`"],
+    );
+    let mut without = scene.clone();
+    without.as_object_mut().unwrap().remove("materials");
+    without["material"] = json!({"young": 1, "poisson": 0});
+    let scene = Scene::from_json(&without.to_string(), "scene").unwrap();
+    let error = Scene { folder: Some("tests/meshes".into()), ..scene }.build().unwrap_err();
+    assert!(matches!(error, Error::Refused { code: "several-groups", .. }), "{error}");
+}
+
+/// A square whose right half is of another material.
+fn halves() -> Value {
+    json!({
+        "body": {"rectangle": {"x": {"points": [0, 2], "divisions": [4]}, "y": {"points": [0, 1], "divisions": [2]}}},
+        "material": {"young": 100, "poisson": 0.3, "density": 2},
+        "materials": [{"box": {"min": [1, 0], "max": [2, 1]}, "material": {"young": 50, "poisson": 0.2, "density": 7}}],
+        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}]
+    })
+}
+
+#[test]
+fn gravity_pulls_each_material_by_its_density() {
+    let mut scene = halves();
+    scene["loads"] = json!([{"gravity": [0, -10]}]);
+    let answer = answer(&scene);
+    let loads = answer.resultants().unwrap().iter().find(|resultant| resultant.of == "loads").unwrap().clone();
+    assert!((loads.force[1] + 90.0).abs() < ROUNDING, "{loads:?}");
+    assert!((loads.centre.unwrap()[0] - (2.0 * 0.5 + 7.0 * 1.5) / 9.0).abs() < ROUNDING);
+    scene["materials"][0]["material"].as_object_mut().unwrap().remove("density");
+    refused(&scene, "material", &["loads[0].gravity needs a `density`"]);
+}
+
+#[test]
+fn materials_that_are_none_are_refused_where_they_stand() {
+    let right = halves();
+    let material = |value: Value| changed(&right, "/materials/0/material", value);
+    let orthotropic = |change: &[(&str, Value)]| {
+        let mut value = json!({"young": [10, 5, 4], "poisson": [0.3, 0.2, 0.1], "shear": [2, 2, 2]});
+        change.iter().for_each(|(key, entry)| value[*key] = entry.clone());
+        material(json!({"orthotropic": value}))
+    };
+    let at = |field: &str| format!("materials[0].material{field}");
+    let cases = [
+        (
+            changed(&right, "/materials/0", json!({"material": {"young": 1, "poisson": 0}})),
+            "materials[0]".into(),
+            "has no place",
+        ),
+        (changed(&right, "/materials/0/box/max", json!([0.5, 1])), "materials[0].box.max[0]".into(), "lies below"),
+        (
+            changed(&right, "/materials/0/box", json!({"min": [3, 0], "max": [4, 1]})),
+            "materials[0]".into(),
+            "no element",
+        ),
+        (changed(&right, "/materials/0/box/min", json!([1])), "materials[0].box.min".into(), "2"),
+        (changed(&right, "/materials/0/group", json!("steel")), "materials[0].group".into(), "the body has none"),
+        (material(json!({})), at(""), "needs `young` and `poisson`, or `orthotropic`"),
+        (material(json!({"young": 3})), at(""), "`poisson` is missing"),
+        (material(json!({"poisson": 0.3})), at(""), "`young` is missing"),
+        (material(json!({"young": 3, "poisson": 0.5})), at(".poisson"), "below 0.5 in plane strain"),
+        (orthotropic(&[("young", json!([10, -5, 4]))]), at(".orthotropic.young[1]"), "-5 is not allowed"),
+        (orthotropic(&[("poisson", json!([0.3, 2, 0.1]))]), at(".orthotropic.poisson[1]"), "nu_ij^2 < E_i/E_j"),
+        (
+            orthotropic(&[("young", json!([1, 1, 1])), ("poisson", json!([0.6, 0.6, 0.6]))]),
+            at(".orthotropic.poisson"),
+            "2 nu21 nu32 nu13 is -0.51",
+        ),
+        (orthotropic(&[("axes", json!([[1, 0, 0], [0, 1, 0]]))]), at(".orthotropic.axes"), "give an `angle`"),
+        (
+            changed(&orthotropic(&[]), "/materials/0/material/young", json!(3)),
+            at(""),
+            "`orthotropic` beside `young` or `poisson`",
+        ),
+        (
+            changed(&orthotropic(&[]), "/body/rectangle/integration", json!("mean-dilatation")),
+            "body.rectangle.integration".into(),
+            "isotropic materials alone",
+        ),
+    ];
+    for (scene, path, phrase) in cases {
+        refused(&scene, &path, &[phrase]);
+    }
+    let mut without = right.clone();
+    ["material", "materials"].map(|key| without.as_object_mut().unwrap().remove(key));
+    refused(&without, "material", &["is missing; a body needs a material"]);
+    let bar = json!({
+        "model": "bar",
+        "body": {"bar": {"x": {"points": [0, 1], "divisions": [1]}, "area": 1}},
+        "material": {"orthotropic": {"young": [10, 5, 4], "poisson": [0, 0, 0], "shear": [1, 1, 1], "angle": 5}},
+        "supports": [{"on": {"boundary": "left"}, "x": 0}]
+    });
+    refused(&bar, "material.orthotropic.angle", &["no plane to turn in; leave it out"]);
+}
+
+#[test]
+fn a_jump_of_stiffness_is_named_with_its_numbers() {
+    let codes = |young: f64| {
+        let model = built(&changed(&halves(), "/materials/0/material/young", json!(young)));
+        let warnings: Vec<String> =
+            model.warnings().iter().map(|warning| format!("{}: {warning}", warning.code())).collect();
+        warnings
+    };
+    assert_eq!(codes(1e6), Vec::<String>::new());
+    let found = codes(3e-3);
+    assert!(found.len() == 1 && found[0].starts_with("stiffness-jump: "), "{found:?}");
+    assert!(found[0].contains("3e-3") && found[0].contains("1e2") && found[0].contains("3.3e4"), "{found:?}");
+}
+
+/// The same square twice, once as a further body: each has its own materials.
+#[test]
+fn further_bodies_have_parts_of_their_own() {
+    let mut scene = halves();
+    scene["further-bodies"] = json!([{
+        "name": "base",
+        "body": {"rectangle": {"x": {"points": [0, 2], "divisions": [4]}, "y": {"points": [-1, 0], "divisions": [2]}}},
+        "materials": [{"box": {"min": [0, -1], "max": [2, 0]}, "material": {"young": 9, "poisson": 0, "density": 1}}]
+    }]);
+    scene["supports"].as_array_mut().unwrap().push(json!({"on": {"boundary": "base.bottom"}, "x": 0, "y": 0}));
+    scene["loads"] = json!([{"gravity": [0, -10]}]);
+    let answer = answer(&scene);
+    let body = answer.model().body();
+    let young: Vec<Vec<f64>> = body
+        .regions()
+        .iter()
+        .map(|region| body.materials(region).map(|material| material.young()[0]).collect())
+        .collect();
+    assert_eq!(young, [vec![100.0, 50.0], vec![9.0]]);
+    let loads = answer.resultants().unwrap().iter().find(|resultant| resultant.of == "loads").unwrap();
+    assert!((loads.force[1] + 110.0).abs() < ROUNDING, "{loads:?}");
+}
