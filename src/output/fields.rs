@@ -73,6 +73,7 @@ pub(super) fn fields(answer: &Answer, velocity: Option<&[f64]>) -> Result<String
         .enumerate()
         .flat_map(|(index, region)| std::iter::repeat_n(index as f64, region.elements().len()))
         .collect();
+    let materials: Vec<f64> = model.body().elements().map(|element| f64::from(element.phase_number)).collect();
     let mut point_data = vec![Array::Vectors("u", &displacement)];
     match velocity.as_deref() {
         Some(velocity) => point_data.push(Array::Vectors("velocity", velocity)),
@@ -98,6 +99,7 @@ pub(super) fn fields(answer: &Answer, velocity: Option<&[f64]>) -> Result<String
         Array::Scalars("von_mises", &in_elements[2]),
         Array::Tensors("stress", &tensors[1]),
         Array::Scalars("body", &bodies),
+        Array::Scalars("material", &materials),
     ];
     let nodes = model.mesh().nodes();
     Unstructured { nodes, elements: &elements, cell_types: &cell_types, point_data: &point_data, cell_data: &cell_data }

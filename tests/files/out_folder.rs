@@ -50,6 +50,7 @@ fn checked(folder: &Path) -> BTreeSet<String> {
                     "contact",
                     "contact_force",
                     "body",
+                    "material",
                 ];
                 for array in expected {
                     assert!(arrays.contains(&array), "{name} lacks {array}: {arrays:?}");

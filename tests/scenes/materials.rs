@@ -209,7 +209,9 @@ fn materials_that_are_none_are_refused_where_they_stand() {
         refused(&scene, &path, &[phrase]);
     }
     let mut without = right.clone();
-    ["material", "materials"].map(|key| without.as_object_mut().unwrap().remove(key));
+    for key in ["material", "materials"] {
+        without.as_object_mut().unwrap().remove(key);
+    }
     refused(&without, "material", &["is missing; a body needs a material"]);
     let bar = json!({
         "model": "bar",

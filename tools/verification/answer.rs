@@ -76,9 +76,9 @@ impl Solved {
 
     /// The node of a contact row that is nearest to `x`, and the pressure there.
     pub fn pressure_near(&self, x: f64) -> [f64; 2] {
-        let at = self.model.rows().iter().map(|row| self.model.mesh().nodes()[row.node][0]);
-        let near = at.zip(&self.pressure).min_by(|a, b| (a.0 - x).abs().total_cmp(&(b.0 - x).abs()));
-        near.map_or([f64::NAN; 2], |(at, &pressure)| [at, pressure])
+        let away = |at: [f64; 3]| (at[0] - x).abs();
+        let near = self.pressures().min_by(|a, b| away(a.0).total_cmp(&away(b.0)));
+        near.map_or([f64::NAN; 2], |(at, pressure)| [at[0], pressure])
     }
 
     /// A line of the table.

@@ -79,11 +79,11 @@ impl Springs {
             dofs.displacement_along(node, &direction[..dimension]).free
         };
         for (a, b, block) in &self.pairs {
-            for i in 0..dimension {
-                for j in (0..dimension).filter(|&j| block[i][j] != 0.0) {
+            for (i, of_row) in block.iter().enumerate().take(dimension) {
+                for (j, &stiffness) in of_row.iter().enumerate().take(dimension).filter(|entry| *entry.1 != 0.0) {
                     let of_b = along(*b, j);
                     for (row, one) in along(*a, i) {
-                        let product = |&(column, other): &(usize, f64)| (row, column, block[i][j] * one * other);
+                        let product = |&(column, other): &(usize, f64)| (row, column, stiffness * one * other);
                         entries.extend(of_b.iter().filter(|entry| entry.0 <= row).map(product));
                     }
                 }
