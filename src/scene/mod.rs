@@ -44,9 +44,11 @@ mod rigid_body_modes;
 mod rows;
 pub(crate) mod schema;
 mod segments;
+mod selection;
 mod size;
 mod suspect;
 mod unknowns;
+mod unstrained;
 mod warning;
 mod watched;
 

@@ -27,6 +27,7 @@ mod rigid_body_modes;
 mod scene_errors;
 mod scene_model;
 mod slender;
+mod temperature;
 mod turned_bodies;
 mod two_bodies;
 mod user_obstacles;
