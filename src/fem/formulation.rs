@@ -48,6 +48,16 @@ impl Formulation {
         }
     }
 
+    /// The components of `[xx, yy, zz, xy, yz, zx]` in which there may be stress.
+    pub(crate) fn stresses(&self) -> &'static [usize] {
+        match self {
+            Formulation::Bar { .. } => &[0],
+            Formulation::PlaneStress { .. } => &[0, 1, 3],
+            Formulation::PlaneStrain { .. } | Formulation::Axisymmetric => &[0, 1, 2, 3],
+            Formulation::Space => &[0, 1, 2, 3, 4, 5],
+        }
+    }
+
     /// Number of coordinates, and of dofs per node.
     pub fn dimension(&self) -> usize {
         match self {

@@ -14,6 +14,10 @@ use crate::fem::recovery::discretisation::EstimatedError;
 use crate::fem::recovery::{self, StressField};
 use crate::solution::{ContactSet, Solution};
 
+/// Reactions below this times the largest nodal force of temperatures and initial stresses are what the solve leaves of these, which cancel
+/// where the body is free.
+const OWN_ROUNDING: f64 = 1e-10;
+
 /// Displacements, multipliers and closed rows of a model, and what follows from them: stresses, pressures, forces. Stresses
 /// and forces are computed if somebody asks for them, and only once.
 #[derive(Clone, Debug)]
@@ -245,11 +249,23 @@ impl Model {
         forces.iter_mut().zip(acting).for_each(|(force, (load, contact))| *force = *force - load - contact);
         let springs = self.parts().spring_forces(displacement);
         forces.iter_mut().zip(&springs).for_each(|(force, spring)| *force -= spring);
-        let reactions = self.dofs().supported_part(&forces)?;
+        let mut reactions = self.dofs().supported_part(&forces)?;
         let rigid_faces = self.force_of_faces(&forces, |_| true)?;
         let motions = RigidBodyModes::of(self.body());
-        let acting = [self.nodal_load(), &reactions, &contact, &springs, &rigid_faces];
-        let balance = motions.imbalance(self.mesh().nodes(), &acting);
+        let mut all = vec![self.nodal_load(), &contact, &springs, &rigid_faces];
+        let own = match self.body().has_own_stress() {
+            true => internal_force(self.body(), &vec![0.0; displacement.len()])?,
+            false => Vec::new(),
+        };
+        if !own.is_empty() {
+            // These balance each other: they are the scale of what a free body leaves of them.
+            all.push(&own);
+            let largest = own.iter().fold(0.0, |largest: f64, force| largest.max(force.abs()));
+            let is_rounding = |force: &&mut f64| force.abs() <= OWN_ROUNDING * largest;
+            reactions.iter_mut().filter(is_rounding).for_each(|force| *force = 0.0);
+        }
+        all.push(&reactions);
+        let balance = motions.imbalance(self.mesh().nodes(), &all);
         Ok(Forces { contact, reactions, springs, rigid_faces, balance })
     }
 }

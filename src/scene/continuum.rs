@@ -61,6 +61,11 @@ impl Scene {
                 "several bodies have no guaranteed bound: only one body before rigid obstacles has one",
             ));
         };
+        if body.has_own_stress() {
+            let path = if self.temperature.is_empty() { "initial-stress" } else { "temperature" };
+            let message = "a body with stress before any strain has no guaranteed bound: only one without has";
+            return Err(wrong(path, message));
+        }
         let [phase] = body.phases() else {
             let message = "several materials in one body have no guaranteed bound: only a single one has";
             return Err(wrong("materials", message));

@@ -5,6 +5,7 @@ use super::body::{BodySpec, Site};
 use super::entry::{located, wrong};
 use super::materials::BodyMaterials;
 use super::schema::{ModelSpec, Scene};
+use super::unstrained::Unstrained;
 use crate::error::Error;
 use crate::fem::body::{ElasticBody, Integration, Region};
 use crate::fem::formulation::Formulation;
@@ -21,6 +22,7 @@ struct DescribedBody<'a> {
     scene: &'a Scene,
     spec: &'a BodySpec,
     materials: BodyMaterials<'a>,
+    unstrained: Unstrained<'a>,
     /// What stands before its JSON paths.
     place: String,
 }
@@ -58,11 +60,13 @@ impl Scene {
             moves: self.analysis.is_some(),
         };
         let materials = of_body(self.material.as_ref(), &self.materials, "");
-        let first = DescribedBody { scene: self, spec: &self.body, materials, place: String::new() };
+        let unstrained = Unstrained { temperature: &self.temperature, stress: &self.initial_stress };
+        let first = DescribedBody { scene: self, spec: &self.body, materials, unstrained, place: String::new() };
         let further = self.further_bodies.iter().enumerate().map(move |(index, further)| {
             let place = format!("further-bodies[{index}].");
             let materials = of_body(further.material.as_ref(), &further.materials, &place);
-            DescribedBody { scene: self, spec: &further.body, materials, place }
+            let unstrained = Unstrained { temperature: &further.temperature, stress: &further.initial_stress };
+            DescribedBody { scene: self, spec: &further.body, materials, unstrained, place }
         });
         std::iter::once(first).chain(further)
     }
@@ -74,13 +78,21 @@ impl DescribedBody<'_> {
         format!("{}body.{}{field}", self.place, self.spec.about().name)
     }
 
+    /// Are groups of elements named?
+    fn names_groups(&self) -> bool {
+        let materials = self.materials.parts.iter().map(|part| &part.group);
+        let temperature = self.unstrained.temperature.iter().map(|entry| &entry.group);
+        let stress = self.unstrained.stress.iter().map(|entry| &entry.group);
+        materials.chain(temperature).chain(stress).any(Option::is_some)
+    }
+
     /// The mesh of the shape.
     fn mesh(&self) -> Result<Mesh, Error> {
         let site = Site {
             path: self.path(""),
             model: self.scene.model,
             files: self.scene.files(),
-            names_groups: self.materials.name_groups(),
+            names_groups: self.names_groups(),
         };
         self.spec.shape().mesh(&site).map_err(|error| self.at_body(error))
     }
@@ -128,7 +140,7 @@ impl DescribedBody<'_> {
             other => self.at_body(other),
         };
         let body = ElasticBody::new(self.mesh()?, first, formulation).map_err(at_body)?;
-        let body = self.materials.placed(body)?;
+        let body = self.unstrained.placed(self.materials.placed(body)?, &self.place, self.scene.analysis.as_ref())?;
         body.with_integration(self.spec.shape().integration()).map_err(|error| match error {
             Error::Mesh { message } => wrong(self.path(".integration"), message),
             other => other,

@@ -1,8 +1,8 @@
-//! The materials of a body of a scene, and the elements that each part of it has.
+//! The materials of a body of a scene.
 
 use super::entry::{located, number, point, vector, wrong};
-use super::schema::part::PartBoxSpec;
 use super::schema::{MaterialPartSpec, MaterialSpec, ModelSpec, OrthotropicSpec};
+use super::selection::{Selection, centroids};
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::fem::formulation::Formulation;
@@ -20,62 +20,7 @@ pub(super) struct BodyMaterials<'a> {
     pub moves: bool,
 }
 
-/// Which elements of a body are meant: those of a group, those whose centroid lies in a box, those in both; all if neither is given.
-pub(super) struct Selection<'a> {
-    pub group: Option<&'a str>,
-    pub cuboid: Option<&'a PartBoxSpec>,
-}
-
-impl Selection<'_> {
-    /// The elements, from 0, of what stands at `path`.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] for a group that does not exist, a box that is none, or if no element is meant.
-    pub fn elements(&self, body: &ElasticBody, path: &str) -> Result<Vec<usize>, Error> {
-        let mut elements: Vec<usize> = match self.group {
-            None => (0..body.mesh().element_count()).collect(),
-            Some(name) => of_group(body, name, path)?,
-        };
-        if let Some(cuboid) = self.cuboid {
-            let [low, high] = cuboid.corners(path, body.dimension())?;
-            let centroids = centroids(body);
-            let is_in = |at: &[f64; 3]| (0..3).all(|axis| low[axis] <= at[axis] && at[axis] <= high[axis]);
-            elements.retain(|&element| is_in(&centroids[element]));
-        }
-        if elements.is_empty() {
-            return Err(wrong(path, "no element has its centroid there; change the box, or refine the mesh"));
-        }
-        Ok(elements)
-    }
-}
-
-fn of_group(body: &ElasticBody, name: &str, path: &str) -> Result<Vec<usize>, Error> {
-    let groups = body.mesh().groups();
-    let own = groups.iter().filter(|group| group.name == name);
-    let elements: Vec<usize> = own.flat_map(|group| group.elements.iter().copied()).collect();
-    if elements.is_empty() {
-        let names: Vec<String> = groups.iter().map(|group| format!("`{}`", group.name)).collect();
-        let there = match names.is_empty() {
-            true => "the body has none".to_string(),
-            false => format!("there are {}", names.join(", ")),
-        };
-        return Err(wrong(format!("{path}.group"), format!("there is no group of elements `{name}`; {there}")));
-    }
-    Ok(elements)
-}
-
-/// The centroid of each element.
-fn centroids(body: &ElasticBody) -> Vec<[f64; 3]> {
-    let centroid = body.tabulated().centroid;
-    body.elements().map(|element| element.cell.place(&centroid.shape)).collect()
-}
-
 impl BodyMaterials<'_> {
-    /// Returns `true` if parts name groups of elements.
-    pub fn name_groups(&self) -> bool {
-        self.parts.iter().any(|part| part.group.is_some())
-    }
-
     /// The materials in the order of the scene with their JSON paths, that of all the rest first.
     fn given(&self) -> impl Iterator<Item = (&MaterialSpec, String)> {
         let rest = self.material.map(|spec| (spec, format!("{}material", self.place)));
@@ -165,6 +110,13 @@ impl BodyMaterials<'_> {
                 return Err(wrong(path, format!("`{missing}` is missing beside `{given}`; give both")));
             }
         };
+        let material = match spec.expansion {
+            Some(_) if spec.orthotropic.as_ref().is_some_and(|own| own.expansion.is_some()) => {
+                return Err(wrong(path, "has an `expansion` beside that of `orthotropic`; give one of them"));
+            }
+            Some(along) => material.with_expansion([along; 3]).map_err(at)?,
+            None => material,
+        };
         match spec.density {
             Some(density) => material.with_density(density).map_err(at),
             None if self.moves => Err(wrong(path, "a dynamic analysis needs a `density`; give it")),
@@ -174,7 +126,11 @@ impl BodyMaterials<'_> {
 
     fn orthotropic(&self, spec: &OrthotropicSpec, path: &str) -> Result<Material, Error> {
         let at = |error| self.in_material(error, path);
-        let material = Material::orthotropic(spec.young, spec.poisson, spec.shear).map_err(at)?;
+        let mut material = Material::orthotropic(spec.young, spec.poisson, spec.shear).map_err(at)?;
+        if let Some(along) = spec.expansion {
+            material =
+                material.with_expansion(along).map_err(|error| located(error, &format!("{path}.orthotropic.")))?;
+        }
         let (in_plane, in_space) = (self.model.dimension() == 2, self.model == ModelSpec::Space);
         let [angle_path, axes_path] = ["angle", "axes"].map(|field| format!("{path}.orthotropic.{field}"));
         let model = self.model.name();

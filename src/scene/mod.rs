@@ -46,6 +46,7 @@ mod rigid_face;
 mod rows;
 pub(crate) mod schema;
 mod segments;
+mod selection;
 mod size;
 mod springs;
 #[cfg(feature = "cli")]
@@ -53,6 +54,7 @@ mod start;
 mod suspect;
 mod symmetry;
 mod unknowns;
+mod unstrained;
 mod warning;
 mod watched;
 

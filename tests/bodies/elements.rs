@@ -45,7 +45,7 @@ fn twin(formulation: &Formulation) -> Material {
 }
 
 /// Every element in every formulation, of an isotropic and of an orthotropic material, with both integrations where there are two.
-fn all() -> Vec<(String, ElasticBody)> {
+pub fn all() -> Vec<(String, ElasticBody)> {
     use ElementKind::{Hex8, Hex20, Line2, Q4, Q8, T3, T6, Tet4, Tet10};
     let mut cases = vec![(Line2, BAR)];
     cases.extend([Tet4, Hex8, Tet10, Hex20].map(|kind| (kind, Formulation::Space)));

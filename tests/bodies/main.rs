@@ -26,3 +26,4 @@ mod mesh;
 mod misfits;
 mod norms;
 mod patch_test;
+mod temperature;

@@ -89,7 +89,7 @@ fn a_part_is_found_again_on_bisected_tetrahedra() {
     assert!((force / -1500.0 - 1.0).abs() < 1e-12, "{loads}");
 }
 
-/// Two materials, or an orthotropic one, have no guaranteed bound: the estimate stands for it, and says why.
+/// Two materials, an orthotropic one, or a temperature have no guaranteed bound: the estimate stands for it, and says why.
 #[test]
 fn materials_without_a_guaranteed_bound_are_estimated_with_the_reason() {
     let other = json!([{"box": {"min": [0, 0], "max": [0.5, 0.25]}, "material": {"young": 3e6, "poisson": 0.2}}]);
@@ -97,8 +97,10 @@ fn materials_without_a_guaranteed_bound_are_estimated_with_the_reason() {
     for (key, value, reason) in [
         ("materials", other, "several materials in one body"),
         ("material", json!({"orthotropic": orthotropic}), "an orthotropic material"),
+        ("temperature", json!([{"value": 10}]), "a body with stress before any strain"),
     ] {
         let mut scene = classical(0.3);
+        scene["material"]["expansion"] = json!(1e-5);
         scene[key] = value;
         let (code, report, message) = solved(&scene, &["--total-error", "0.3"]);
         assert!(code == 0 && report["total_error"]["guaranteed"] == false, "{code} {message}");

@@ -34,6 +34,7 @@ mod slender;
 mod springs;
 mod surfaces;
 mod symmetry;
+mod temperature;
 mod turned_bodies;
 mod two_bodies;
 mod user_obstacles;

@@ -8,7 +8,8 @@ use std::sync::Arc;
 
 const ROUNDING: f64 = 1e-10;
 
-fn answer(scene: &Value) -> Answer {
+/// The answer to a scene whose mesh files are those of the tests.
+pub fn answer(scene: &Value) -> Answer {
     let model = Scene::from_json(&scene.to_string(), "scene").unwrap();
     let model = Scene { folder: Some("tests/meshes".into()), ..model }.build().unwrap();
     let solution = solve_qp(model.problem()).unwrap();
@@ -16,7 +17,7 @@ fn answer(scene: &Value) -> Answer {
 }
 
 /// A change of a scene at a JSON pointer.
-fn changed(scene: &Value, pointer: &str, value: Value) -> Value {
+pub fn changed(scene: &Value, pointer: &str, value: Value) -> Value {
     let mut scene = scene.clone();
     match scene.pointer_mut(pointer) {
         Some(place) => *place = value,
@@ -28,7 +29,7 @@ fn changed(scene: &Value, pointer: &str, value: Value) -> Value {
     scene
 }
 
-fn refused(scene: &Value, path: &str, phrases: &[&str]) {
+pub fn refused(scene: &Value, path: &str, phrases: &[&str]) {
     let scene = Scene::from_json(&scene.to_string(), "scene").unwrap();
     let error = Scene { folder: Some("tests/meshes".into()), ..scene }.build().unwrap_err();
     assert!(matches!(&error, Error::Scene { path: found, .. } if found == path), "{path}: {error}");

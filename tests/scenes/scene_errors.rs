@@ -148,7 +148,7 @@ fn texts_that_are_no_scene_are_refused_at_path_line_and_column() {
         (
             with("/material/yuong", json!(1)),
             "material.yuong",
-            "expected one of `young`, `poisson`, `orthotropic`, `density`",
+            "expected one of `young`, `poisson`, `orthotropic`, `expansion`, `density`",
         ),
         (with("/material/young", json!("1000")), "material.young", "expected a number"),
         (with("/material/young", json!(null)), "material.young", "expected a number"),

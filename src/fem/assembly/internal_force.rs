@@ -6,7 +6,7 @@ use crate::fem::body::ElasticBody;
 /// The nodal forces (length `dim * n_nodes`, in force) that hold the body in the nodal displacement `displacement`.
 ///
 /// Computed from the strains, element by element: a rigid translation gives exactly zero, but for the radial one of a
-/// body of revolution, which is none.
+/// body of revolution, which is none; and but for temperatures and initial stresses, whose stress is there without strain.
 ///
 /// # Errors
 /// [`Error::Length`] where the displacement does not have `dim` entries per node.
@@ -24,7 +24,7 @@ pub fn internal_force(body: &ElasticBody, displacement: &[f64]) -> Result<Vec<f6
             let point = body.point(cell, at);
             let strain = point.strain(&local, cell.unit());
             let weight = point.weight * scale;
-            let [xx, yy, zz, xy, yz, zx] = element.stress(&strain, mean).map(|component| component * weight);
+            let [xx, yy, zz, xy, yz, zx] = element.stress(at, &strain, mean).map(|component| component * weight);
             let rows = [[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]];
             for (local, &node) in nodes.iter().enumerate() {
                 let g = point.gradients[local];

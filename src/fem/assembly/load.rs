@@ -179,13 +179,14 @@ fn add_force_at(body: &ElasticBody, table: &Tabulated, field: impl Fn(usize, [f6
 }
 
 /// The load of the free dofs: the nodal load (length `dim * n_nodes`) there, less the forces that hold the prescribed
-/// displacements.
+/// displacements, and those of temperatures and initial stresses.
 ///
 /// # Errors
 /// [`Error::Length`] where load or dofs do not belong to the mesh.
 pub fn free_load(body: &ElasticBody, dofs: &DofMap, nodal: &[f64]) -> Result<Vec<f64>, Error> {
     let mut load = nodal.to_vec();
-    if (0..dofs.nodal_count()).any(|dof| dofs.prescribed(dof).is_some_and(|value| value != 0.0)) {
+    let is_moved = || (0..dofs.nodal_count()).any(|dof| dofs.prescribed(dof).is_some_and(|value| value != 0.0));
+    if body.has_own_stress() || is_moved() {
         let lifted = dofs.expand(&vec![0.0; dofs.free().len()])?;
         let forces = internal_force(body, &lifted)?;
         load.iter_mut().zip(forces).for_each(|(load, force)| *load -= force);

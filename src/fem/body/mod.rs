@@ -5,7 +5,7 @@ mod phases;
 mod point;
 mod region;
 
-pub use phase::Phase;
+pub use phase::{Phase, Temperature};
 pub(crate) use point::LocalPoint;
 pub use region::Region;
 
@@ -309,9 +309,19 @@ impl ElasticBody {
 }
 
 impl BodyElement<'_> {
-    /// The stress of a strain; a mean `dilatation` replaces its trace.
+    /// The stress of a strain at a tabulated point: C (eps - alpha T) + sigma_0. A mean `dilatation` replaces the trace of the strain.
     #[inline]
-    pub fn stress(&self, strain: &Symmetric, dilatation: Option<f64>) -> Symmetric {
-        self.phase.law().stress(strain, dilatation.unwrap_or_else(|| trace(strain)))
+    pub fn stress(&self, at: &TabulatedPoint, strain: &Symmetric, dilatation: Option<f64>) -> Symmetric {
+        let stress = self.phase.law().stress(strain, dilatation.unwrap_or_else(|| trace(strain)));
+        match self.own_stress(at) {
+            None => stress,
+            Some(own) => [0, 1, 2, 3, 4, 5].map(|component| stress[component] + own[component]),
+        }
+    }
+
+    /// The stress at a tabulated point without any strain, where there is one.
+    #[inline]
+    pub fn own_stress(&self, at: &TabulatedPoint) -> Option<Symmetric> {
+        self.phase.own().map(|own| own.at(self.cell.place(&at.shape)))
     }
 }

@@ -1,7 +1,8 @@
 //! The phases of a body: which material each element has.
 
-use super::{ElasticBody, Phase, Region};
+use super::{ElasticBody, Phase, Region, Temperature};
 use crate::error::Error;
+use crate::fem::geometry::Symmetric;
 use crate::fem::material::Material;
 
 impl ElasticBody {
@@ -11,10 +12,37 @@ impl ElasticBody {
     /// As [`ElasticBody::new`] for the material; [`Error::Mesh`] for an element that is not there, for a body that is several, for
     /// an orthotropic material with mean dilatation.
     pub fn with_material(self, elements: &[usize], material: Material) -> Result<Self, Error> {
-        let phase = Phase::new(material, &self.formulation)?;
-        let body = self.with_phase(elements, |_| Ok(phase.clone()))?;
+        let formulation = self.formulation;
+        let body = self.with_phase(elements, |phase| phase.of(material, &formulation))?;
         body.check_integration()?;
         Ok(body)
+    }
+
+    /// The same body with some elements, from 0, warmer than without stress: by `value` at the origin (degrees) and `gradient` (x, y, z;
+    /// degrees per length) from there. Another temperature of an element counts no more.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for a material without coefficients of expansion, or numbers that are not finite; [`Error::Mesh`] as
+    /// [`with_material`](Self::with_material).
+    pub fn with_temperature(self, elements: &[usize], value: f64, gradient: [f64; 3]) -> Result<Self, Error> {
+        let temperature = Temperature { value, gradient };
+        self.with_phase(elements, |phase| phase.clone().with_temperature(temperature))
+    }
+
+    /// The same body with a stress `[xx, yy, zz, xy, yz, zx]` (force per area, tension positive) in some elements, from 0, that is there
+    /// without strain. Another one of an element counts no more.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for a component that is not finite, or that the formulation does not have; [`Error::Mesh`] as
+    /// [`with_material`](Self::with_material).
+    pub fn with_initial_stress(self, elements: &[usize], stress: Symmetric) -> Result<Self, Error> {
+        let formulation = self.formulation;
+        self.with_phase(elements, |phase| phase.clone().with_initial_stress(stress, &formulation))
+    }
+
+    /// Is there stress without strain?
+    pub(crate) fn has_own_stress(&self) -> bool {
+        self.phases.iter().any(|phase| phase.own().is_some())
     }
 
     /// The same with another phase of some elements, made of their present one.
@@ -66,6 +94,11 @@ impl ElasticBody {
     /// The materials of a region, one of the bodies.
     pub fn materials(&self, region: &Region) -> impl Iterator<Item = &Material> {
         self.phases_of(region).iter().map(Phase::material)
+    }
+
+    /// The material of an element, from 0.
+    pub(crate) fn material_of(&self, element: usize) -> &Material {
+        self.phases[self.of_elements[element] as usize].material()
     }
 
     /// The density of the material of every element, in the order of [`elements`](Self::elements).

@@ -1,7 +1,7 @@
 //! The law of stress and strain in a formulation: sigma = lambda tr(eps) I + 2 mu eps, or sigma = C eps.
 
 use crate::fem::formulation::Formulation;
-use crate::fem::geometry::Symmetric;
+use crate::fem::geometry::{Symmetric, trace};
 
 /// A matrix between components `[xx, yy, zz, xy, yz, zx]` of stress and of engineering strain.
 pub type Matrix = [[f64; 6]; 6];
@@ -66,6 +66,13 @@ impl Law {
             }
             Stiffness::General(matrices) => product(&matrices.stiffness, &engineering(strain)),
         }
+    }
+
+    /// The stress that holds a free strain back: minus that of the strain, without what the formulation leaves free.
+    pub fn holding(&self, free: &Symmetric) -> Symmetric {
+        let mut held = [0.0; 6];
+        self.formulation.stresses().iter().for_each(|&component| held[component] = free[component]);
+        self.stress(&held, trace(&held)).map(|component| -component)
     }
 
     /// `sigma : C^-1 : sigma`, twice the density of the complementary energy, of the components whose strain the formulation has.

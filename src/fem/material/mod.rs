@@ -8,12 +8,15 @@ use orthotropic::Orthotropic;
 
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
+use crate::fem::geometry::Symmetric;
 
 /// A linear elastic material, checked once, when it is built.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
     elasticity: Elasticity,
     density: Option<f64>,
+    /// Along x, y and z, or along the axes of the material.
+    expansion: Option<[f64; 3]>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +37,7 @@ impl Material {
         if !(poisson > -1.0 && poisson <= 0.5) {
             return Err(Error::Setting { name: "poisson", value: poisson, allowed: "above -1 and at most 0.5" });
         }
-        Ok(Material { elasticity: Elasticity::Isotropic { young, poisson }, density: None })
+        Ok(Material { elasticity: Elasticity::Isotropic { young, poisson }, density: None, expansion: None })
     }
 
     /// The orthotropic material of Young's moduli `[E1, E2, E3]`, Poisson's ratios `[nu12, nu23, nu13]` and shear moduli
@@ -46,7 +49,7 @@ impl Material {
     /// [`Error::Setting`] for a modulus that is not positive and finite, or a stiffness that is not positive definite.
     pub fn orthotropic(young: [f64; 3], poisson: [f64; 3], shear: [f64; 3]) -> Result<Self, Error> {
         let elasticity = Elasticity::Orthotropic(Orthotropic::new(young, poisson, shear)?);
-        Ok(Material { elasticity, density: None })
+        Ok(Material { elasticity, density: None, expansion: None })
     }
 
     /// The same material with its first axis along a vector, and its second one in the plane of both vectors (x, y, z; of any
@@ -71,6 +74,27 @@ impl Material {
             return Err(Error::Setting { name: "density", value: density, allowed: "positive and finite" });
         }
         Ok(Material { density: Some(density), ..self })
+    }
+
+    /// The same material with coefficients of thermal expansion (strain per degree) along its axes, those of an isotropic material along x,
+    /// y and z; a temperature asks for them.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for a coefficient that is not finite.
+    pub fn with_expansion(self, along: [f64; 3]) -> Result<Self, Error> {
+        match along.iter().find(|value| !value.is_finite()) {
+            Some(&value) => Err(Error::Setting { name: "expansion", value, allowed: "finite" }),
+            None => Ok(Material { expansion: Some(along), ..self }),
+        }
+    }
+
+    /// The strain of a body that is a degree warmer, where the material has coefficients of expansion.
+    pub(crate) fn expansion(&self) -> Option<Symmetric> {
+        let along = self.expansion?;
+        Some(match &self.elasticity {
+            Elasticity::Isotropic { .. } => [along[0], along[1], along[2], 0.0, 0.0, 0.0],
+            Elasticity::Orthotropic(own) => own.tensor(along),
+        })
     }
 
     /// The density, in mass per volume, where there is one.

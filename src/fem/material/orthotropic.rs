@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 use super::law::{Matrices, Matrix};
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
-use crate::fem::geometry::{cross, dot, length, turned, unit};
+use crate::fem::geometry::{Symmetric, cross, dot, length, turned, unit};
 
 /// Axes that lean by less than this, as a sine, lean by rounding.
 const SAME_DIRECTION: f64 = 1e-9;
@@ -88,13 +88,8 @@ impl Orthotropic {
         }
         let compliance = self.compliance();
         // Where the stress vanishes, the compliance of the rest is inverted; where the strain does, the stiffness of the rest.
-        let (stressed, strained): (&[usize], &[usize]) = match formulation {
-            Formulation::Bar { .. } => (&[0], &[0]),
-            Formulation::PlaneStress { .. } => (&[0, 1, 3], &[0, 1, 3]),
-            Formulation::PlaneStrain { .. } => (&[0, 1, 2, 3], &[0, 1, 3]),
-            Formulation::Axisymmetric => (&[0, 1, 2, 3], &[0, 1, 2, 3]),
-            Formulation::Space => (&[0, 1, 2, 3, 4, 5], &[0, 1, 2, 3, 4, 5]),
-        };
+        let stressed = formulation.stresses();
+        let strained = if let Formulation::PlaneStrain { .. } = formulation { &[0, 1, 3] } else { stressed };
         let stiffness = inverse(&compliance, stressed).ok_or_else(|| self.overflow())?;
         let compliance = inverse(&stiffness, strained).ok_or_else(|| self.overflow())?;
         Ok(Matrices { stiffness, compliance })
@@ -105,10 +100,20 @@ impl Orthotropic {
         Error::Setting { name: "orthotropic.young[0]", value: self.young[0], allowed }
     }
 
+    /// A tensor with these normal components along the axes of the material.
+    pub fn tensor(&self, [first, second, third]: [f64; 3]) -> Symmetric {
+        turned([first, second, third, 0.0, 0.0, 0.0], &self.back())
+    }
+
+    /// The coordinate axes along those of the material.
+    fn back(&self) -> [[f64; 3]; 3] {
+        [0, 1, 2].map(|i| self.axes.map(|axis| axis[i]))
+    }
+
     /// From stress to engineering strain, both along the coordinate axes.
     fn compliance(&self) -> Matrix {
         let ([e1, e2, e3], [nu12, nu23, nu13], [g12, g23, g13]) = (self.young, self.poisson, self.shear);
-        let back = [0, 1, 2].map(|i| self.axes.map(|axis| axis[i]));
+        let back = self.back();
         let mut compliance = [[0.0; 6]; 6];
         for column in 0..6 {
             let mut stress = [0.0; 6];

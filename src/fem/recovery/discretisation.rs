@@ -28,7 +28,12 @@ pub(crate) struct EstimatedError {
     pub of_elements: Vec<f64>,
     /// `||sigma_h||^2`.
     pub whole: f64,
+    /// Of the stress that there would be without strain: that of a free body cancels it but for rounding.
+    unstrained: f64,
 }
+
+/// Stresses below this times those without strain are rounding.
+const ROUNDING: f64 = 1e-12;
 
 impl EstimatedError {
     /// As [`discretisation_error`].
@@ -45,7 +50,8 @@ impl EstimatedError {
         let table = Tabulated::new(body.mesh().kind().reference(), Rule::Revolved);
         let standard = body.tabulated();
 
-        let (mut of_elements, mut whole) = (Vec::with_capacity(body.mesh().element_count()), 0.0);
+        let mut of_elements = Vec::with_capacity(body.mesh().element_count());
+        let (mut whole, mut unstrained) = (0.0, 0.0);
         for element in body.elements() {
             let (nodes, cell, law) = (element.nodes, &element.cell, element.phase.law());
             let local = body.gather(displacement, nodes);
@@ -59,17 +65,20 @@ impl EstimatedError {
             for at in &table.points {
                 let point = body.point(cell, at);
                 let strain = point.strain(&local, cell.unit());
-                let stress = element.stress(&strain, mean);
+                let stress = element.stress(at, &strain, mean);
                 let mut away = stress;
                 for (share, of_node) in at.shape.iter().zip(&recovered) {
                     away.iter_mut().zip(of_node).for_each(|(entry, component)| *entry -= share * component);
                 }
                 difference += volume * point.weight * law.complementary_energy(&away);
                 whole += volume * point.weight * law.complementary_energy(&stress);
+                if let Some(own) = element.own_stress(at) {
+                    unstrained += volume * point.weight * law.complementary_energy(&own);
+                }
             }
             of_elements.push(difference);
         }
-        Ok(EstimatedError { of_elements, whole })
+        Ok(EstimatedError { of_elements, whole, unstrained })
     }
 
     /// The strain energy of the displaced body, `1/2 ||sigma_h||^2`, in force times length.
@@ -82,7 +91,7 @@ impl EstimatedError {
     pub fn relative(&self) -> f64 {
         let difference: f64 = self.of_elements.iter().sum();
         let total = self.whole + difference;
-        if total > 0.0 { (difference / total).sqrt() } else { 0.0 }
+        if total > ROUNDING * ROUNDING * self.unstrained { (difference / total).sqrt() } else { 0.0 }
     }
 }
 

@@ -10,6 +10,7 @@ use nalgebra::Matrix3;
 
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
+use crate::fem::element::TabulatedPoint;
 use crate::fem::formulation::Formulation;
 use crate::fem::geometry::Symmetric;
 
@@ -123,9 +124,9 @@ pub fn stress(body: &ElasticBody, displacement: &[f64]) -> Result<StressField, E
         let (nodes, cell) = (element.nodes, &element.cell);
         let local = body.gather(displacement, nodes);
         let mean = body.mean_dilatation(cell, &table, &local);
-        let stress_at = |at| {
+        let stress_at = |at: &TabulatedPoint| {
             let strain = body.point(cell, at).strain(&local, cell.unit());
-            element.stress(&strain, mean)
+            element.stress(at, &strain, mean)
         };
         elements.push(finished(stress_at(&table.centroid)));
         for (index, at) in table.points.iter().enumerate() {

@@ -20,6 +20,9 @@ pub struct MaterialSpec {
     /// Elasticity with three planes of symmetry, instead of `young` and `poisson`.
     #[serde(default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
     pub orthotropic: Option<OrthotropicSpec>,
+    /// Thermal expansion in all directions, in strain per degree; a `temperature` asks for it.
+    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    pub expansion: Option<f64>,
     /// Density, positive, in mass per volume; a dynamic analysis, gravity and centrifugal forces ask for it.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     pub density: Option<f64>,
@@ -38,6 +41,9 @@ pub struct OrthotropicSpec {
     pub poisson: [f64; 3],
     /// Shear moduli `[G12, G23, G13]`, positive, in force per area.
     pub shear: [f64; 3],
+    /// Thermal expansion along axes 1, 2, 3, in strain per degree.
+    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    pub expansion: Option<[f64; 3]>,
     /// The angle from x to axis 1, counterclockwise, in degrees; in the plane and about an axis.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     pub angle: Option<f64>,
@@ -64,10 +70,63 @@ pub struct MaterialPartSpec {
     pub material: MaterialSpec,
 }
 
-/// An elastic body beside the first: of the same model, thickness and element.
+/// How much warmer a body is than without stress, or the part of it in a group, in a box, or in both: `value` plus the gradient times the
+/// place. Of several entries that hold an element the last one counts; elements in none are as warm as without stress.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
+pub struct TemperatureSpec {
+    /// A physical group of the mesh file.
+    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    pub group: Option<String>,
+    /// A box along the coordinate axes.
+    #[serde(rename = "box", default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
+    pub cuboid: Option<PartBoxSpec>,
+    /// The difference at the origin, in degrees.
+    pub value: f64,
+    /// Its gradient, in degrees per length; zero where it is left out.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub gradient: Vec<f64>,
+}
+
+/// A stress that is there without strain, in a body or in the part of it in a group, in a box, or in both, in force per area; tension is
+/// positive. Of several entries that hold an element the last one counts.
+///
+/// A bar has xx, plane stress xx, yy, xy, plane strain zz too, an axisymmetric body zz as its hoop stress, space all six.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct InitialStressSpec {
+    /// A physical group of the mesh file.
+    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    pub group: Option<String>,
+    /// A box along the coordinate axes.
+    #[serde(rename = "box", default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
+    pub cuboid: Option<PartBoxSpec>,
+    /// Normal stress along x.
+    #[serde(default)]
+    pub xx: f64,
+    /// Normal stress along y.
+    #[serde(default)]
+    pub yy: f64,
+    /// Normal stress along z; about an axis the hoop stress.
+    #[serde(default)]
+    pub zz: f64,
+    /// Shear stress between x and y.
+    #[serde(default)]
+    pub xy: f64,
+    /// Shear stress between y and z.
+    #[serde(default)]
+    pub yz: f64,
+    /// Shear stress between z and x.
+    #[serde(default)]
+    pub zx: f64,
+}
+
+/// An elastic body beside the first: of the same model, thickness and element.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct FurtherBodySpec {
     /// Its name; its boundaries are called `name.boundary`.
     pub name: String,
@@ -80,4 +139,10 @@ pub struct FurtherBodySpec {
     /// The materials of its parts.
     #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
     pub materials: Vec<MaterialPartSpec>,
+    /// How much warmer it is than without stress.
+    #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
+    pub temperature: Vec<TemperatureSpec>,
+    /// Stresses that are there without strain.
+    #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
+    pub initial_stress: Vec<InitialStressSpec>,
 }

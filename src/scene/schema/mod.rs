@@ -21,7 +21,7 @@ pub use analysis::{
     AnalysisSpec, DynamicSpec, FactorSpec, FieldSpec, LoadInTimeSpec, MassSpec, PenetrationSpec, WatchSpec,
 };
 pub use approach::Rule;
-pub use body::{FurtherBodySpec, MaterialPartSpec, MaterialSpec, OrthotropicSpec};
+pub use body::{FurtherBodySpec, InitialStressSpec, MaterialPartSpec, MaterialSpec, OrthotropicSpec, TemperatureSpec};
 pub use condition::{Place, SupportSpec};
 pub use load::LoadSpec;
 pub use model::ModelSpec;
@@ -68,6 +68,12 @@ pub struct Scene {
     /// The materials of its parts.
     #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
     pub materials: Vec<MaterialPartSpec>,
+    /// How much warmer it is than without stress.
+    #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
+    pub temperature: Vec<TemperatureSpec>,
+    /// Stresses that are there without strain.
+    #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
+    pub initial_stress: Vec<InitialStressSpec>,
     /// Further elastic bodies, that only contact joins to the first and to each other.
     #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
     pub further_bodies: Vec<FurtherBodySpec>,

@@ -1,0 +1,56 @@
+//! Elements of a body, chosen by group or by place.
+
+use super::entry::wrong;
+use super::schema::part::PartBoxSpec;
+use crate::error::Error;
+use crate::fem::body::ElasticBody;
+
+/// Which elements of a body are meant: those of a group, those whose centroid lies in a box, those in both; all if neither is given.
+pub(super) struct Selection<'a> {
+    pub group: Option<&'a str>,
+    pub cuboid: Option<&'a PartBoxSpec>,
+}
+
+impl Selection<'_> {
+    /// The elements, from 0, of what stands at `path`.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for a group that does not exist, a box that is none, or if no element is meant.
+    pub fn elements(&self, body: &ElasticBody, path: &str) -> Result<Vec<usize>, Error> {
+        let mut elements: Vec<usize> = match self.group {
+            None => (0..body.mesh().element_count()).collect(),
+            Some(name) => of_group(body, name, path)?,
+        };
+        if let Some(cuboid) = self.cuboid {
+            let [low, high] = cuboid.corners(path, body.dimension())?;
+            let centroids = centroids(body);
+            let is_in = |at: &[f64; 3]| (0..3).all(|axis| low[axis] <= at[axis] && at[axis] <= high[axis]);
+            elements.retain(|&element| is_in(&centroids[element]));
+        }
+        if elements.is_empty() {
+            return Err(wrong(path, "no element has its centroid there; change the box, or refine the mesh"));
+        }
+        Ok(elements)
+    }
+}
+
+fn of_group(body: &ElasticBody, name: &str, path: &str) -> Result<Vec<usize>, Error> {
+    let groups = body.mesh().groups();
+    let own = groups.iter().filter(|group| group.name == name);
+    let elements: Vec<usize> = own.flat_map(|group| group.elements.iter().copied()).collect();
+    if elements.is_empty() {
+        let names: Vec<String> = groups.iter().map(|group| format!("`{}`", group.name)).collect();
+        let there = match names.is_empty() {
+            true => "the body has none".to_string(),
+            false => format!("there are {}", names.join(", ")),
+        };
+        return Err(wrong(format!("{path}.group"), format!("there is no group of elements `{name}`; {there}")));
+    }
+    Ok(elements)
+}
+
+/// The centroid of each element.
+pub(super) fn centroids(body: &ElasticBody) -> Vec<[f64; 3]> {
+    let centroid = body.tabulated().centroid;
+    body.elements().map(|element| element.cell.place(&centroid.shape)).collect()
+}
