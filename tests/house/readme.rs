@@ -102,7 +102,7 @@ fn every_command_of_the_readme_is_one_of_the_program() {
         assert!(help.status.success(), "signorini {name} --help");
         found += 1;
     }
-    assert_eq!(found, 7);
+    assert_eq!(found, 8);
 }
 
 #[test]
