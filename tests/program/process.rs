@@ -50,6 +50,12 @@ fn whole(folder: &Path) -> usize {
                 let entries: usize = text.lines().nth(1).unwrap().split(' ').nth(2).unwrap().parse().unwrap();
                 assert!(text.lines().count() == entries + 2 && text.ends_with('\n'), "{name} is broken");
             }
+            Some("csv") => {
+                let text = String::from_utf8(bytes).unwrap();
+                let cells = |line: &str| line.split(',').count();
+                let first = text.lines().next().map_or(0, cells);
+                assert!(text.ends_with('\n') && text.lines().all(|line| cells(line) == first), "{name} is broken");
+            }
             _ => panic!("what is {name}?"),
         }
     }
@@ -201,8 +207,8 @@ fn an_interrupted_solve_tells_the_best_answer_that_it_has() {
     assert!(report["certificate"]["energy_error_bound"].as_f64().is_some_and(|bound| bound > 0.0), "{report}");
     assert!(report["contact"]["force"].as_f64().is_some_and(|force| force > 0.0), "{report}");
     assert!(run.stderr.ends_with("interrupted: the report is of what was found until then\n"), "{}", run.stderr);
-    // Answer and report; pictures would take too long.
-    assert_eq!(whole(&desk.path("o")), 3);
+    // Answer with its tables, and report; pictures would take too long.
+    assert_eq!(whole(&desk.path("o")), 6);
 }
 
 #[test]
