@@ -260,9 +260,14 @@ impl Model {
         if !own.is_empty() {
             // These balance each other: they are the scale of what a free body leaves of them.
             all.push(&own);
-            let largest = own.iter().fold(0.0, |largest: f64, force| largest.max(force.abs()));
-            let is_rounding = |force: &&mut f64| force.abs() <= OWN_ROUNDING * largest;
-            reactions.iter_mut().filter(is_rounding).for_each(|force| *force = 0.0);
+            // Each body has a scale of its own.
+            let dimension = self.body().dimension();
+            for region in self.body().regions() {
+                let dofs = dimension * region.nodes().start..dimension * region.nodes().end;
+                let largest = own[dofs.clone()].iter().fold(0.0, |largest: f64, force| largest.max(force.abs()));
+                let is_rounding = |force: &&mut f64| force.abs() <= OWN_ROUNDING * largest;
+                reactions[dofs].iter_mut().filter(is_rounding).for_each(|force| *force = 0.0);
+            }
         }
         all.push(&reactions);
         let balance = motions.imbalance(self.mesh().nodes(), &all);

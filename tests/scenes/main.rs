@@ -10,6 +10,8 @@ mod oracles;
 mod program;
 #[path = "../support/rollers.rs"]
 mod rollers;
+#[path = "../support/scenes.rs"]
+mod solved_scene;
 #[path = "../support/triangles.rs"]
 mod triangles;
 

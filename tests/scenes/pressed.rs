@@ -1,25 +1,15 @@
 //! Obstacles that a force presses: travel and force against closed forms, and against obstacles that are moved.
 
+use crate::solved_scene::{answer, built};
 use serde_json::{Value, json};
+use signorini::Error;
 use signorini::scene::{Answer, Resultant};
-use signorini::{Error, Model, Scene, solve_qp};
-use std::sync::Arc;
 
 use crate::exact_solutions::LineContact;
 use crate::program::Desk;
 
 /// Travel and force of two problems with the same answer: rounding, enlarged by condition numbers of up to 1e5.
 const SAME: f64 = 1e-10;
-
-fn model(scene: &Value) -> Model {
-    Scene::from_json(&scene.to_string(), "scene").and_then(|scene| scene.build()).unwrap_or_else(|e| panic!("{e}"))
-}
-
-fn answer(scene: &Value) -> Answer {
-    let model = model(scene);
-    let solution = solve_qp(model.problem()).unwrap_or_else(|error| panic!("{error}"));
-    Answer::of(Arc::new(model), &solution).unwrap()
-}
 
 /// The force along the approach direction on each obstacle.
 fn forces(answer: &Answer) -> Vec<f64> {
@@ -174,7 +164,7 @@ fn what_cannot_be_pressed_is_refused_where_it_stands() {
     let refused = |change: &dyn Fn(&mut Value), phrases: &[&str]| {
         let mut scene = plain();
         change(&mut scene);
-        let error = Scene::from_json(&scene.to_string(), "scene").and_then(|scene| scene.build()).unwrap_err();
+        let error = built(&scene).unwrap_err();
         assert!(matches!(error, Error::Scene { .. } | Error::UnderHeld { .. }), "{error:?}");
         phrases.iter().for_each(|phrase| assert!(error.to_string().contains(phrase), "{error}"));
     };

@@ -1,19 +1,8 @@
 //! Boundaries that move as rigid plates, held against beams and against each other.
 
+use crate::solved_scene::{answer, built};
 use serde_json::{Value, json};
 use signorini::scene::{Answer, Resultant};
-use signorini::{Error, Model, Scene, solve_qp};
-use std::sync::Arc;
-
-fn built(scene: &Value) -> Result<Model, Error> {
-    Scene::from_json(&scene.to_string(), "scene").and_then(|scene| scene.build())
-}
-
-fn answer(scene: &Value) -> Answer {
-    let model = built(scene).unwrap_or_else(|error| panic!("{error}"));
-    let solution = solve_qp(model.problem()).unwrap_or_else(|error| panic!("{error}"));
-    Answer::of(Arc::new(model), &solution).unwrap()
-}
 
 fn face(answer: &Answer) -> &Resultant {
     answer.resultants().unwrap().iter().find(|resultant| resultant.of == "rigid-faces[0]").unwrap()

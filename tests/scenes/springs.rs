@@ -1,19 +1,8 @@
 //! Springs and foundations, held against closed forms.
 
+use crate::solved_scene::{answer, built};
 use serde_json::{Value, json};
 use signorini::scene::Answer;
-use signorini::{Model, Scene, solve_qp};
-use std::sync::Arc;
-
-fn built(scene: &Value) -> Result<Model, signorini::Error> {
-    Scene::from_json(&scene.to_string(), "scene").and_then(|scene| scene.build())
-}
-
-fn answer(scene: &Value) -> Answer {
-    let model = built(scene).unwrap_or_else(|error| panic!("{error}"));
-    let solution = solve_qp(model.problem()).unwrap_or_else(|error| panic!("{error}"));
-    Answer::of(Arc::new(model), &solution).unwrap()
-}
 
 fn resultant(answer: &Answer, of: &str) -> Vec<f64> {
     let all = answer.resultants().unwrap();

@@ -1,24 +1,12 @@
 //! Planes of symmetry: a quarter, a half and the whole say the same.
 
+use crate::solved_scene::{answer, built};
 use serde_json::{Value, json};
-use signorini::scene::Answer;
-use signorini::{Error, Model, Scene, solve_qp};
-use std::sync::Arc;
 
 use crate::program::Desk;
 
 /// Answers to one problem on one mesh: rounding, enlarged by a condition number of 1e3.
 const SAME: f64 = 1e-10;
-
-fn built(scene: &Value) -> Result<Model, Error> {
-    Scene::from_json(&scene.to_string(), "scene").and_then(|scene| scene.build())
-}
-
-fn answer(scene: &Value) -> Answer {
-    let model = built(scene).unwrap_or_else(|error| panic!("{error}"));
-    let solution = solve_qp(model.problem()).unwrap_or_else(|error| panic!("{error}"));
-    Answer::of(Arc::new(model), &solution).unwrap()
-}
 
 /// A block [-1, 1]^2 x [0, 1], or what planes of symmetry leave of it, on a spring and a support, under a ball that a force presses.
 fn block(element: &str, planes: &[&str]) -> Value {
