@@ -64,6 +64,25 @@ fn a_quarter_a_half_and_the_whole_agree() {
     }
 }
 
+/// On a clamped bottom each part pushes sideways, and against its mirror image: of the whole nothing is left across the planes.
+#[test]
+fn forces_across_the_planes_cancel_and_those_along_them_add_up() {
+    let mut scene = block("hex8", &["x", "y"]);
+    scene["supports"][0] = json!({"on": {"boundary": "bottom"}, "x": 0, "y": 0, "z": 0});
+    scene["loads"] = json!([{"traction": {"boundary": "right", "value": [5, 0, 7]}}]);
+    let answer = answer(&scene);
+    let all = answer.resultants().unwrap();
+    let [support, loads] = ["supports[0]", "loads"].map(|of| all.iter().find(|resultant| resultant.of == of).unwrap());
+    // The side of the quarter has the area 1: the whole has four of them, two on each side.
+    for (axis, expected) in [0.0, 0.0, 28.0].into_iter().enumerate() {
+        assert!((loads.force[axis] - expected).abs() < SAME * 28.0, "{loads:?}");
+    }
+    for (axis, expected) in [0.0, 0.0, 40.0 - 28.0].into_iter().enumerate() {
+        assert!((support.force[axis] - expected).abs() < SAME * 40.0, "{support:?}");
+    }
+    assert!(support.moment.iter().all(|moment| moment.abs() < SAME * 40.0), "{support:?}");
+}
+
 #[test]
 fn the_report_says_what_the_forces_are_those_of() {
     let desk = Desk::new();
