@@ -49,7 +49,7 @@ pub(crate) fn contact(answer: &Answer) -> String {
     for (index, row) in model.rows().iter().enumerate() {
         let mut at = model.mesh().nodes()[row.node];
         (0..dimension).for_each(|axis| at[axis] += answer.displacement()[dimension * row.node + axis]);
-        let (force, pressure) = (0.0 - answer.multiplier()[index], answer.pressure()[index]);
+        let (force, pressure) = (0.0 - answer.multiplier()[index], 0.0 + answer.pressure()[index]);
         let closed = u8::from(answer.contact_set().contains(index));
         let (place, left) = (vector(Some(at)), remaining[index]);
         let _ =

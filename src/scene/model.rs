@@ -154,7 +154,9 @@ impl Model {
         for &obstacle in parts.unknowns.pressed() {
             let Some(travel) = parts.unknowns.travel(obstacle) else { continue };
             let rows = problem.contact().column(travel);
-            solution.displacement[travel] = rows.map(|(row, lean)| -left[row] / lean).fold(f64::INFINITY, f64::min);
+            // Adding zero takes the sign off a zero.
+            solution.displacement[travel] =
+                0.0 + rows.map(|(row, lean)| -left[row] / lean).fold(f64::INFINITY, f64::min);
         }
         Ok(solution)
     }
