@@ -1,9 +1,14 @@
-"""Holds displacements against those of CalculiX, on the same meshes and without contact.
+"""Holds displacements without contact, and contact forces, against those of CalculiX on the same meshes.
 
     python reference/parts.py FOLDER
     python reference/calculix.py target/release/signorini FOLDER NAME [NAME ...]
+    python reference/calculix.py --contact target/release/signorini FOLDER NAME [NAME ...]
 
-For each part the obstacles are left out, supports hold at zero and a body force pulls; the program's own fields give CalculiX
+With `--contact` a part whose obstacle is one plane is solved as it stands. In CalculiX the plane is a face of one element whose nodes
+are held, and contact is a linear relation of pressure and overclosure between the faces. Its stiffness is driven up: CONTACT_STIFFNESS
+times the modulus of the body over the length of a facet. What is compared is the total contact force.
+
+Without contact: for each part the obstacles are left out, supports hold at zero and a body force pulls; the program's own fields give CalculiX
 nodes, elements and loads. CalculiX is the Debian package calculix-ccx; its command is ccx. Its ten-node tetrahedra have four quadrature
 points, ours eight: on straight edges both are exact, on curved ones they differ (by 3e-4 on `bracket`). Its plane elements are wedges.
 """
@@ -18,6 +23,19 @@ import tempfile
 import meshio
 import numpy as np
 import scipy.io
+
+CONTACT_STIFFNESS = (10.0, 100.0)
+"""Contact stiffnesses of CalculiX, in moduli of the body over the length of a facet."""
+
+WEDGES = 180
+"""About an axis CalculiX computes a wedge of two degrees, and prints its forces."""
+
+FACES = {
+    "tetra": [(0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)],
+    "tetra10": [(0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)],
+    "triangle6": [(0, 1), (1, 2), (2, 0)],
+}
+"""Corners of the faces of an element, in the order in which CalculiX numbers them."""
 
 FORCES = {1: [3.0], 2: [3.0, -5.0], 3: [3.0, -5.0, 2.0]}
 """Force per volume, in no direction of its own; about an axis there is none along the radius."""
@@ -54,9 +72,8 @@ def numbers(values) -> str:
     return ", ".join(number(value) for value in values)
 
 
-def input_of(scene: dict, mesh: meshio.Mesh, load: np.ndarray, free: list[tuple[int, int]]) -> str:
-    """The input file of CalculiX: everything that is no free dof is held."""
-    dimension = 3 if scene.get("model") == "space" else 2
+def body_of(scene: dict, mesh: meshio.Mesh) -> list[str]:
+    """Nodes, elements and material of the body."""
     block = mesh.cells[0]
     kind = ELEMENTS[block.type, scene.get("model", "plane-strain")]
     lines = ["*NODE, NSET=ALL"] + [f"{node + 1}, {numbers(at)}" for node, at in enumerate(mesh.points)]
@@ -70,6 +87,13 @@ def input_of(scene: dict, mesh: meshio.Mesh, load: np.ndarray, free: list[tuple[
     lines.append("*SOLID SECTION, ELSET=BODY, MATERIAL=M")
     if kind.startswith("CP"):
         lines.append(number(scene.get("thickness", 1.0)))
+    return lines
+
+
+def input_of(scene: dict, mesh: meshio.Mesh, load: np.ndarray, free: list[tuple[int, int]]) -> str:
+    """The input file of CalculiX: everything that is no free dof is held."""
+    dimension = 3 if scene.get("model") == "space" else 2
+    lines = body_of(scene, mesh)
     lines.append("*BOUNDARY")
     held = {(node, axis) for node in range(len(mesh.points)) for axis in range(dimension)} - set(free)
     lines += [f"{node + 1}, {axis + 1}, {axis + 1}" for node, axis in sorted(held)]
@@ -121,9 +145,118 @@ def difference(program: str, held: pathlib.Path, scene: dict) -> tuple[int, floa
         return len(free), float(np.abs(ours - theirs[:, :dimension]).max() / np.abs(ours).max())
 
 
+def contact_input(scene: dict, mesh: meshio.Mesh, load: dict, held: dict, candidates: set[int], stiffness: float) -> str:
+    """The input file of CalculiX with the obstacle: `load` and `held` are values by node and axis."""
+    dimension = 3 if scene.get("model") == "space" else 2
+    block = mesh.cells[0]
+    faces = [
+        (element + 1, face + 1, corners)
+        for element, nodes in enumerate(block.data)
+        for face, corners in enumerate(FACES[block.type])
+        if all(int(nodes[corner]) in candidates for corner in corners)
+    ]
+    points = mesh.points[sorted(candidates)]
+    ends = np.array([[mesh.points[block.data[element - 1][corner]] for corner in corners[:2]] for element, _, corners in faces])
+    facet = float(np.median(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)))
+    obstacle = scene["obstacles"][0]
+    plane = obstacle["shape"]["plane"]
+    inward = np.array(plane["normal"] + [0.0] * (3 - dimension), dtype=float)
+    inward /= np.linalg.norm(inward)
+    approach = np.zeros(3)
+    approach["xyz".index(obstacle["approach"][1])] = 1.0 if obstacle["approach"][0] == "+" else -1.0
+    at = np.array(plane["point"] + [0.0] * (3 - dimension), dtype=float) + scene.get("gap", 0.0) * approach
+    # The face of the obstacle reaches beyond the candidates.
+    middle = points.mean(axis=0)
+    middle -= ((middle - at) @ inward) * inward
+    reach = 1.5 * float(np.ptp(points, axis=0).max())
+    first = len(mesh.points) + 1
+    if dimension == 3:
+        across = np.linalg.svd(inward[None])[2][1:]
+        if np.linalg.det(np.vstack([across, inward])) < 0:
+            across = across[::-1]
+        corners = [middle + reach * (a * across[0] + b * across[1]) for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+        corners += [corner + reach * inward for corner in corners]
+        kind = "C3D8"
+    else:
+        along = np.array([inward[1], -inward[0], 0.0])
+        corners = [middle - reach * along, middle + reach * along]
+        corners += [corner + reach * inward for corner in reversed(corners)]
+        kind = {"plane-strain": "CPE4", "plane-stress": "CPS4", "axisymmetric": "CAX4"}[scene["model"]]
+    lines = body_of(scene, mesh)
+    lines += ["*NODE, NSET=OBSTACLE"] + [f"{first + index}, {numbers(corner)}" for index, corner in enumerate(corners)]
+    element = len(block.data) + 1
+    lines += [f"*ELEMENT, TYPE={kind}, ELSET=OBSTACLE"]
+    lines += [", ".join(str(word) for word in [element] + [first + index for index in range(len(corners))])]
+    lines += ["*SOLID SECTION, ELSET=OBSTACLE, MATERIAL=M"] + ([number(scene.get("thickness", 1.0))] if kind.startswith("CP") else [])
+    lines += ["*SURFACE, NAME=SLAVE"] + [f"{body}, S{face}" for body, face, _ in faces]
+    lines += ["*SURFACE, NAME=MASTER", f"{element}, S1"]
+    lines += ["*SURFACE INTERACTION, NAME=CONTACT", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR"]
+    lines += [number(stiffness * scene["material"]["young"] / facet)]
+    lines += ["*CONTACT PAIR, INTERACTION=CONTACT, TYPE=SURFACE TO SURFACE", "SLAVE, MASTER"]
+    lines += ["*BOUNDARY", f"OBSTACLE, 1, {dimension}"]
+    lines += ["*STEP, INC=1000", "*STATIC, SOLVER=SPOOLES", "1.0, 1.0, 1e-5, 1.0", "*BOUNDARY"]
+    lines += [f"{node + 1}, {axis + 1}, {axis + 1}, {number(value)}" for (node, axis), value in sorted(held.items())]
+    lines += ["*CLOAD"] + [f"{node + 1}, {axis + 1}, {number(value)}" for (node, axis), value in load.items() if value]
+    return "\n".join(lines + ["*NODE PRINT, NSET=OBSTACLE, TOTALS=ONLY", "RF", "*END STEP", ""])
+
+
+def contact_forces(program: str, path: pathlib.Path) -> tuple[int, float, list[float]]:
+    """Unknowns of a part, our total contact force, and those of CalculiX for each contact stiffness."""
+    scene = json.loads(path.read_text())
+    dimension = 3 if scene.get("model") == "space" else 2
+    held_at_zero = json.loads(path.read_text())
+    for support in held_at_zero["supports"]:
+        support |= {axis: 0 for axis in ("x", "y", "z", "value") if axis in support}
+    loads = path.with_name(f"{path.stem}-loads.json")
+    loads.write_text(json.dumps(held_at_zero))
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        run = lambda *words: subprocess.run(words, cwd=folder, check=True, capture_output=True)
+        try:
+            run(program, "export", str(loads), "problem")
+        finally:
+            loads.unlink()
+        run(program, "solve", str(path), "--no-proof", "--out", "answer")
+        mesh = meshio.read(folder / "answer/solution.vtu")
+        displacement = np.asarray(mesh.point_data["u"])
+        free = free_dofs(folder / "problem/dofs.csv")
+        load = dict(zip(free, np.asarray(scipy.io.mmread(folder / "problem/f.mtx")).ravel().tolist()))
+        every = {(node, axis) for node in np.unique(mesh.cells[0].data).tolist() for axis in range(dimension)}
+        held = {(node, axis): float(displacement[node, axis]) for node, axis in every - set(free)}
+        with (folder / "answer/contact.csv").open() as text:
+            rows = list(csv.DictReader(text))
+        ours = sum(abs(float(row["force"])) for row in rows)
+        candidates = {int(row["node"]) for row in rows}
+        theirs = []
+        for stiffness in CONTACT_STIFFNESS:
+            (folder / "part.inp").write_text(contact_input(scene, mesh, load, held, candidates, stiffness))
+            solved = subprocess.run(["ccx", "part"], cwd=folder, capture_output=True, text=True)
+            printed = (folder / "part.dat").read_text().split() if solved.returncode == 0 else []
+            if len(printed) < 3:
+                sys.exit(f"{path.stem}: ccx ends with {solved.returncode}: {solved.stdout[-800:]}")
+            whole = WEDGES if scene.get("model") == "axisymmetric" else 1
+            theirs.append(whole * float(np.linalg.norm([float(word) for word in printed[-3:]])))
+        return len(free), ours, theirs
+
+
+def contact_table(program: str, folder: pathlib.Path, names: list[str]) -> int:
+    """Prints the contact forces of parts; the last stiffness counts."""
+    print(f"{'part':18} {'unknowns':>9} {'force':>12}" + "".join(f"  ccx at {stiffness:5g}" for stiffness in CONTACT_STIFFNESS))
+    worst = 0.0
+    for name in names:
+        unknowns, ours, theirs = contact_forces(program, folder / f"{name}.json")
+        worst = max(worst, abs(theirs[-1] / ours - 1))
+        print(f"{name:18} {unknowns:9} {ours:12.6g}" + "".join(f" {force / ours - 1:+12.2e}" for force in theirs), flush=True)
+    return int(worst > 0.01)
+
+
 def main(arguments: list[str]) -> int:
+    in_contact = arguments[:1] == ["--contact"]
+    arguments = arguments[int(in_contact) :]
     if len(arguments) < 3:
-        sys.exit("usage: calculix.py PROGRAM FOLDER NAME [NAME ...]")
+        sys.exit("usage: calculix.py [--contact] PROGRAM FOLDER NAME [NAME ...]")
+    if in_contact:
+        return contact_table(str(pathlib.Path(arguments[0]).resolve()), pathlib.Path(arguments[1]).resolve(), arguments[2:])
     program, folder = str(pathlib.Path(arguments[0]).resolve()), pathlib.Path(arguments[1]).resolve()
     print(f"{'part':18} {'unknowns':>9} {'difference':>11}")
     worst = 0.0

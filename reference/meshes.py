@@ -10,6 +10,7 @@ order; Gmsh itself numbers the nodes anew when it writes version 2.2. The cube i
 that ASCII holds to the last bit.
 """
 
+import math
 import pathlib
 import random
 
@@ -118,6 +119,22 @@ def half_ball():
     gmsh.option.setNumber("Mesh.MeshSizeMax", 0.7)
 
 
+def quarter_ball():
+    """A quarter of the lower half of the unit ball about (0, 0, 1), much finer where its lowest point will touch."""
+    occ = gmsh.model.occ
+    occ.intersect([(3, occ.addSphere(0, 0, 1, 1))], [(3, occ.addBox(0, 0, -0.5, 2, 2, 1.5))])
+    occ.synchronize()
+    for _, tag in gmsh.model.getEntities(2):
+        low, high = gmsh.model.getParametrizationBounds(2, tag)
+        x, y, z = gmsh.model.getValue(2, tag, [(start + end) / 2 for start, end in zip(low, high)])
+        name = "symmetry-x" if abs(x) < 1e-9 else "symmetry-y" if abs(y) < 1e-9 else "cut" if abs(z - 1) < 1e-9 else "round"
+        name_all(2, {name: [tag]})
+    name_all(3, {"ball": [tag for _, tag in gmsh.model.getEntities(3)]})
+    distance = lambda *point: math.sqrt(sum(value * value for value in point))
+    share = lambda *point: min(1, max(0, (distance(*point) - 0.065) / 0.635))
+    gmsh.model.mesh.setSizeCallback(lambda _, tag, x, y, z, size: 0.012 + 0.288 * share(x, y, z))
+
+
 def generate(name, dimension, build, **options):
     gmsh.clear()
     for option, value in (OPTIONS | options).items():
@@ -156,5 +173,9 @@ if __name__ == "__main__":
     write("box-tet10", 4.1, 3, lambda: box(0, False), **{"Mesh.ElementOrder": 2})
     write("box-hex20", 4.1, 3, lambda: box(2, True), **{"Mesh.ElementOrder": 2})
     write("half-ball-tet10", 2.2, 3, half_ball, **{"Mesh.ElementOrder": 2})
+    options = {"Mesh.ElementOrder": 2, "Mesh.Binary": 1, "Mesh.MeshSizeExtendFromBoundary": 0}
+    write("quarter-ball-tet10", 4.1, 3, quarter_ball, **options)
+    gmsh.model.mesh.removeSizeCallback()
+    gmsh.option.setNumber("Mesh.MeshSizeExtendFromBoundary", 1)
     write_forms("cube-tet4", 3, lambda: box(0, False, 2), **{"Mesh.MeshSizeMin": 2})
     gmsh.finalize()

@@ -136,7 +136,12 @@ impl PlacedLoad<'_> {
     }
 
     fn add_moment(&self, spec: &MomentSpec, load: &mut [f64]) -> Result<(), Error> {
-        let boundary = self.boundary(&spec.boundary)?;
+        if spec.at.is_some() {
+            let message = "a node of a solid has no rotation and carries no moment; give a `boundary`, over which a traction turns";
+            return Err(wrong(self.at("at"), message));
+        }
+        let Some(name) = &spec.boundary else { return Err(wrong(&*self.path, "acts nowhere; give a `boundary`")) };
+        let boundary = self.boundary(name)?;
         let carries = match self.model {
             ModelSpec::Bar | ModelSpec::Axisymmetric => 0,
             ModelSpec::PlaneStrain | ModelSpec::PlaneStress => 1,

@@ -360,6 +360,12 @@ fn loads_that_are_none_are_refused_at_their_path() {
         ),
         (plane(json!({"moment": {"boundary": "top", "value": [0, 0, 1]}})), "loads[0].moment.value", "it has 1: [m]"),
         (
+            plane(json!({"moment": {"at": [1, 1], "value": [1]}})),
+            "loads[0].moment.at",
+            "has no rotation and carries no moment",
+        ),
+        (plane(json!({"moment": {"value": [1]}})), "loads[0].moment", "acts nowhere; give a `boundary`"),
+        (
             model("space", json!({"moment": {"boundary": "top", "value": [1]}})),
             "loads[0].moment.value",
             "[m_x, m_y, m_z]",
@@ -402,8 +408,4 @@ fn loads_that_are_none_are_refused_at_their_path() {
         assert_eq!(found, path, "{error}");
         assert!(message.contains(phrase) && !message.contains('\n'), "{error}\n  lacks: {phrase}");
     }
-    // A moment at a node is not in the form of a scene.
-    let text = plane(json!({"moment": {"at": [1, 1], "value": [1]}})).to_string();
-    let error = Scene::from_json(&text, "scene").unwrap_err();
-    assert!(matches!(&error, Error::SceneSyntax { path, .. } if path == "loads[0].moment.at"), "{error}");
 }

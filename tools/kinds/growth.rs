@@ -6,6 +6,9 @@ use signorini::output::{Drawing, Plot, Quantity, Scale, Series, line_plots};
 pub struct Times {
     pub kind: String,
     pub unknowns: usize,
+    pub rows: usize,
+    /// What `auto` chose; empty if it was not asked, or found nothing.
+    pub way_of_auto: String,
     pub of_solvers: Vec<(String, f64)>,
 }
 

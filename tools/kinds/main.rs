@@ -2,6 +2,8 @@
 //! `cargo run --release --example kinds [-- --only NAME,NAME] [--methods auto,mprgp] [--seconds N] [--peers]`; with `--unseen` on
 //! kinds that nothing was fitted to, with `--scenes FOLDER` on the scenes of a folder, such as those of `reference/parts.py`.
 //!
+//! `--table` prints at the end what `auto` took beside the fastest method, in Markdown.
+//!
 //! `--plot FOLDER` draws the seconds over the unknowns of the membranes, `membrane.svg` and `membrane.png`.
 //!
 //! A line of `ratios` follows each kind: the time of `auto` over that of our fastest method and of one linear
@@ -13,6 +15,7 @@ mod floors;
 mod growth;
 mod peers;
 mod problems;
+mod table;
 mod unseen;
 
 use std::path::{Path, PathBuf};
@@ -61,6 +64,9 @@ fn main() -> ExitCode {
             }
         }
     }
+    if has("--table") {
+        println!("{}", table::markdown(&times));
+    }
     let folder = option("--plot", "");
     match folder.as_str() {
         "" => ExitCode::SUCCESS,
@@ -104,6 +110,7 @@ fn measure(task: &Task, names: &str, most: f64, interpreter: Option<&Interpreter
     let problem = (task.make)().map_err(|error| error.to_string())?;
     let mut reference: Option<ContactSet> = None;
     let mut certified: Vec<(Method, f64)> = Vec::new();
+    let mut way_of_auto = String::new();
     let methods = [Method::Auto, Method::Mprgp, Method::ActiveSet, Method::qp(), Method::penalty()];
     for method in methods.into_iter().filter(|method| names.split(',').any(|name| name == method.name())) {
         for proof in [false, true] {
@@ -120,6 +127,9 @@ fn measure(task: &Task, names: &str, most: f64, interpreter: Option<&Interpreter
                     print_answer(&start, solution, seconds, "", &mut reference);
                     if proof {
                         certified.push((method, seconds));
+                        if method == Method::Auto {
+                            way_of_auto.clone_from(&solution.method);
+                        }
                     }
                 }
                 Err(Error::NotCertified { solution, condition, value, .. }) => {
@@ -139,7 +149,8 @@ fn measure(task: &Task, names: &str, most: f64, interpreter: Option<&Interpreter
     let of_methods = certified.iter().map(|(method, seconds)| (method.name().to_string(), *seconds));
     let of_peers = found.iter().map(|peer| (format!("PETSc {}", peer.name), peer.seconds));
     let of_solvers = of_methods.chain(of_peers).collect();
-    Ok(Times { kind: task.name.clone(), unknowns: problem.dofs(), of_solvers })
+    let (kind, unknowns, rows) = (task.name.clone(), problem.dofs(), problem.rows());
+    Ok(Times { kind, unknowns, rows, way_of_auto, of_solvers })
 }
 
 /// Seconds of the same body without contact rows, by a factor; infinite if it does not end in time.

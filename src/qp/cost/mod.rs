@@ -1,31 +1,21 @@
 //! What a solve costs: the one model of seconds and bytes, and the limits that are held against it.
 
 pub mod bytes;
+mod direct;
 pub(in crate::qp) mod seconds;
+mod smooth;
 
-use super::linear::{SparseMatrix, SymmetricMatrix, Width, largest};
+use super::linear::{SparseMatrix, Width, largest};
 use super::problem::ContactProblem;
 use super::settings::Settings;
-use super::transform::Condensation;
 use crate::error::Error;
 use crate::watch::Watch;
+use direct::{BodyFactor, Direct};
 pub(crate) use seconds::assembly_seconds;
-use seconds::factor_seconds;
-
-/// Rigid-body modes of a body in space: its factor grows faster than that of a plane body.
-const MODES_IN_SPACE: usize = 6;
-
-/// Values of the factor of a bar for an unknown, about.
-const ALONG_A_LINE: f64 = 4.0;
+pub(in crate::qp) use smooth::Smooth;
 
 /// Entries of the contact rows for a dof beyond which the contact boundary is most of the body.
 const MANY: f64 = 0.25;
-
-/// Sets of closed rows, each with a factor, until one is settled: where contact is everywhere, and where it is not condensed.
-const SETS: [f64; 2] = [10.0, 5.0];
-
-/// The sets of a condensed problem take so many times the seconds of making it, about.
-const DENSE_STEPS: f64 = 3.0;
 
 /// Rows that are bounds only after turning take more cycles by this factor.
 const TURNED: f64 = 1.6;
@@ -36,14 +26,12 @@ pub(in crate::qp) const NEAR_CYCLES: f64 = 8.0;
 /// A stiffness that is singular takes so many times the seconds: factors for the start and for what the rows hold.
 const SINGULAR: f64 = 2.5;
 
+/// Where a cube would take less than this many times the seconds of multigrid, a slender body may take less than these: the order
+/// by minimum degree is looked at.
+const LOOK: f64 = 12.0;
+
 /// Forces of a mode below this share of their terms are rounding.
 const FREE: f64 = 1e-9;
-
-/// Row sums of a stiffness may be negative by this share of the diagonal: rounding.
-const ROW_SUM_ROUNDING: f64 = 1e-9;
-
-/// Neighbours of a dof of a diffusion whose ties differ by more than this slow multigrid down, if most dofs have such.
-const UNEVEN: f64 = 1e3;
 
 /// Returns `true` if a row has several entries, so that it is a bound only after turning.
 fn is_turned(contact: &SparseMatrix) -> bool {
@@ -55,11 +43,6 @@ fn is_everywhere(problem: &ContactProblem) -> bool {
     problem.contact().entries() as f64 > MANY * problem.dofs() as f64
 }
 
-/// Seconds of a factor in the plane; each part has its own.
-fn in_the_plane(problem: &ContactProblem) -> f64 {
-    3.7e-9 * problem.parts().sums(|_| 1.0).into_iter().map(|dofs| dofs.powf(1.5)).sum::<f64>()
-}
-
 /// Returns `true` if one of the rigid-body modes costs no energy.
 fn has_free_mode(problem: &ContactProblem) -> bool {
     let stiffness = problem.stiffness();
@@ -67,68 +50,10 @@ fn has_free_mode(problem: &ContactProblem) -> bool {
     problem.near_null().is_some_and(|modes| modes.vectors().iter().any(is_free))
 }
 
-/// What a hierarchy is told of the displacements that cost next to no energy.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::qp) enum Smooth {
-    /// The rigid-body modes are given.
-    Given,
-    /// Those of a scalar diffusion, the constants.
-    Constants,
-    /// The same, of one whose ties to neighbours differ by orders of magnitude nearly everywhere.
-    Uneven,
-    /// Nothing: constants make a poor hierarchy of a body, and a smoother needs a stiffness of every dof.
-    Unknown,
-}
-
-impl Smooth {
-    fn of(problem: &ContactProblem) -> Self {
-        match problem.near_null() {
-            Some(_) if problem.stiffness().diagonal().contains(&0.0) => Smooth::Unknown,
-            Some(_) => Smooth::Given,
-            None => Self::of_stiffness(problem.stiffness()),
-        }
-    }
-
-    /// A stiffness is that of a scalar diffusion if it has no positive entry off the diagonal and no negative row sum.
-    fn of_stiffness(stiffness: &SymmetricMatrix) -> Self {
-        let diagonal = stiffness.diagonal();
-        let mut sums = diagonal.clone();
-        let mut ties = vec![(f64::INFINITY, 0.0_f64); diagonal.len()];
-        for (row, column, value) in stiffness.lower().triplets().filter(|entry| entry.0 != entry.1 && entry.2 != 0.0) {
-            if value > 0.0 {
-                return Smooth::Unknown;
-            }
-            for dof in [row, column] {
-                sums[dof] += value;
-                ties[dof] = (ties[dof].0.min(-value), ties[dof].1.max(-value));
-            }
-        }
-        if sums.iter().zip(&diagonal).any(|(&sum, own)| sum < -ROW_SUM_ROUNDING * own) {
-            return Smooth::Unknown;
-        }
-        let uneven = ties.iter().filter(|(weakest, strongest)| *strongest > UNEVEN * weakest).count();
-        if 2 * uneven > ties.len() { Smooth::Uneven } else { Smooth::Constants }
-    }
-
-    /// Returns `true` if a few cycles tell the direct path where to start.
-    pub fn starts_sets(self) -> bool {
-        matches!(self, Smooth::Given | Smooth::Constants)
-    }
-
-    /// Cycles of an answer by multigrid.
-    fn cycles(self) -> f64 {
-        match self {
-            Smooth::Given => 25.0,
-            Smooth::Constants => 10.0,
-            Smooth::Uneven | Smooth::Unknown => 40.0,
-        }
-    }
-}
-
 /// Estimated time and memory of the two paths.
 ///
-/// Calibrated on blocks of Q4 and Hex8 (`cargo run --release --example multigrid`); good to a factor of two or so, since
-/// the shape of a body and the degree of its mesh count as well.
+/// Calibrated on blocks of Q4 and Hex8 (`cargo run --release --example multigrid`) and on parts of tetrahedra
+/// (`cargo run --release --example kinds -- --scenes FOLDER`, on what `reference/parts.py` writes); good to a factor of two or so.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// Bytes of the direct path at its peak, the problem itself included.
@@ -156,24 +81,26 @@ impl Estimate {
     pub fn of(problem: &ContactProblem) -> Self {
         let dofs = problem.dofs() as f64;
         let entries = problem.stiffness().lower().entries() as f64;
-        let both = 2.0 * entries - dofs;
         let smooth = Smooth::of(problem);
         let hierarchy_seconds = seconds::hierarchy(dofs, entries);
         let turned = if is_turned(problem.contact()) { TURNED } else { 1.0 };
         let cycles = turned * smooth.cycles();
         let multigrid_seconds = hierarchy_seconds + cycles * seconds::cycle(dofs, entries);
-        let direct = Direct::of(problem, smooth);
-        // Whether K is singular is looked at where it matters.
+        let mut direct = Direct::of(problem, smooth, BodyFactor::by_size(problem));
+        // What takes time to find is looked at where it matters.
+        if (1.0..LOOK).contains(&(direct.seconds / multigrid_seconds)) {
+            direct = Direct::of(problem, smooth, BodyFactor::by_degree(problem));
+        }
         let times_multigrid = direct.seconds / multigrid_seconds;
         let matters = times_multigrid < SINGULAR && times_multigrid * SINGULAR > 1.0;
         let times = if matters && has_free_mode(problem) { SINGULAR } else { 1.0 };
         Estimate {
             direct_bytes: bytes::START
-                + bytes::of_problem(dofs, both)
+                + bytes::of_problem(dofs, 2.0 * entries - dofs)
                 + bytes::of_factor(direct.factor_entries, size_of::<f64>()),
             factor_entries: direct.factor_entries,
             direct_seconds: times * direct.seconds,
-            multigrid_bytes: bytes::START + bytes::of_hierarchy(dofs, both),
+            multigrid_bytes: multigrid_bytes(problem),
             multigrid_seconds,
             hierarchy_seconds,
             shared_seconds: times * direct.shared_seconds,
@@ -183,44 +110,15 @@ impl Estimate {
     }
 }
 
-/// The direct path.
-struct Direct {
-    factor_entries: f64,
-    seconds: f64,
-    shared_seconds: f64,
-    /// Whether a few cycles of multigrid, which find a set near the last one, cost less than the sets on the way there.
-    starts_near: bool,
-}
-
 /// Returns `true` if the direct path starts from a few cycles of multigrid, which cost less than the sets on the way there.
 pub(in crate::qp) fn starts_near(problem: &ContactProblem) -> bool {
-    is_everywhere(problem) && Direct::of(problem, Smooth::of(problem)).starts_near
+    is_everywhere(problem) && Direct::of(problem, Smooth::of(problem), BodyFactor::by_size(problem)).starts_near
 }
 
-impl Direct {
-    fn of(problem: &ContactProblem, smooth: Smooth) -> Self {
-        let dofs = problem.dofs() as f64;
-        let entries = problem.stiffness().lower().entries() as f64;
-        let (factor_entries, of_body) = match problem.near_null().map(|near_null| near_null.count()) {
-            Some(1) => (ALONG_A_LINE * dofs, factor_seconds(0.0, (ALONG_A_LINE * dofs) as usize, Width::Double)),
-            Some(MODES_IN_SPACE..) => (23.0 * dofs.powf(4.0 / 3.0), 7.7e-10 * dofs.powi(2)),
-            _ => (6.0 * dofs * dofs.max(2.0).log2(), in_the_plane(problem)),
-        };
-        let boundary = Condensation::contact_dofs(problem.contact()).len();
-        let mut starts_near = false;
-        let (factor, sets) = if is_everywhere(problem) {
-            let near = seconds::hierarchy(dofs, entries) + NEAR_CYCLES * seconds::cycle(dofs, entries) + of_body;
-            let from_nothing = SETS[0] * of_body;
-            starts_near = smooth.starts_sets() && near < from_nothing;
-            (of_body, if starts_near { near } else { from_nothing })
-        } else {
-            let factor = of_body + seconds::last_block(boundary);
-            let is_condensed = Condensation::is_small(boundary, factor_entries);
-            (factor, if is_condensed { DENSE_STEPS * seconds::dense(boundary) } else { SETS[1] * factor })
-        };
-        let shared_seconds = seconds::ordering(problem) + factor;
-        Direct { factor_entries, seconds: shared_seconds + sets, shared_seconds, starts_near }
-    }
+/// Bytes of the iterative path at its peak, the problem itself included.
+fn multigrid_bytes(problem: &ContactProblem) -> f64 {
+    let (dofs, lower) = (problem.dofs() as f64, problem.stiffness().lower().entries() as f64);
+    bytes::START + bytes::of_hierarchy(dofs, 2.0 * lower - dofs)
 }
 
 /// What a solve keeps beside the problem.
@@ -280,7 +178,7 @@ pub(in crate::qp) fn check_memory(problem: &ContactProblem, kept: Kept, settings
         Kept::Multigrid => (0, 0.0),
     };
     let bytes = match kept {
-        Kept::Multigrid => Estimate::of(problem).multigrid_bytes,
+        Kept::Multigrid => multigrid_bytes(problem),
         _ => bytes::START + bytes::of_problem(dofs, stiffness_entries) + beside,
     };
     if bytes > allowed {

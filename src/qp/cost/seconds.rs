@@ -42,6 +42,9 @@ const ASSEMBLY: f64 = 3e-8;
 /// Seconds of ordering and analysis for an entry of the lower triangle, nested dissection included.
 const ORDERING: f64 = 1.3e-7;
 
+/// The same of minimum degree alone, which slender bodies are left with.
+const MINIMUM_DEGREE: f64 = 1.3e-8;
+
 /// Seconds of a hierarchy for an unknown, and for an entry of the lower triangle (`cargo run --release --example kinds`).
 const HIERARCHY: [f64; 2] = [5e-7, 5.3e-8];
 
@@ -77,6 +80,11 @@ pub(crate) fn assembly_seconds(entries: f64) -> f64 {
 /// Seconds of ordering and analysing the stiffness of `problem`.
 pub(in crate::qp) fn ordering(problem: &ContactProblem) -> f64 {
     ORDERING * problem.stiffness().lower().entries() as f64
+}
+
+/// The same where the order by minimum degree is kept without looking for a better one.
+pub(in crate::qp) fn minimum_degree(problem: &ContactProblem) -> f64 {
+    MINIMUM_DEGREE * problem.stiffness().lower().entries() as f64
 }
 
 /// Seconds of a hierarchy of so many unknowns and entries of the lower triangle.

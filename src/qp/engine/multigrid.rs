@@ -5,7 +5,7 @@ use std::time::Instant;
 use super::case::{Case, Engine};
 use crate::error::Error;
 use crate::qp::certificate::Examined;
-use crate::qp::cost::{Estimate, Kept, NEAR_CYCLES, check_memory, check_time, seconds};
+use crate::qp::cost::{Kept, NEAR_CYCLES, check_memory, check_time, seconds};
 use crate::qp::judged::{answer, judged};
 use crate::qp::linear::multigrid::{Multigrid, NearNullSpace};
 use crate::qp::method::mprgp::{Limits, Mprgp};
@@ -58,7 +58,8 @@ impl Hierarchical {
         }
         check_memory(problem, Kept::Multigrid, settings)?;
         seconds::learn(watch);
-        let estimate = Estimate::of(problem).hierarchy_seconds;
+        let entries = problem.stiffness().lower().entries();
+        let estimate = seconds::hierarchy(problem.dofs() as f64, entries as f64);
         check_time(watch, estimate + seconds::certificate(problem))?;
         watch.step("multigrid hierarchy", 0);
         let clock = Instant::now();

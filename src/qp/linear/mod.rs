@@ -31,6 +31,7 @@ pub use dependence::Dependence;
 pub use factor::{FactorError, Width};
 pub use forest::Forest;
 pub use null_space::{NullSpace, generic};
+pub use ordering::Fill;
 pub use orthogonal::inverse_lengths;
 pub use power_of_two::{Equilibration, exponent, ldexp};
 pub use selected_inverse::SelectedInverse;

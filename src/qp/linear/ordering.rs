@@ -7,8 +7,9 @@ use faer::sparse::linalg::amd;
 use feral_metis::{CscPattern, metis_order};
 
 use super::elimination::Elimination;
+use super::factor::call;
 use super::quotient::Quotient;
-use super::{FactorError, SparseMatrix};
+use super::{FactorError, SparseMatrix, SymmetricMatrix};
 
 /// Nested dissection takes about as long as this many multiplications of the factorisation for each edge of the graph;
 /// where minimum degree leaves a factorisation that costs several times as much, it is tried.
@@ -16,6 +17,30 @@ const WORTH_DISSECTING: f64 = 50_000.0;
 
 /// Diagonals for which minimum degree gets memory: more than it takes.
 const DIAGONALS: usize = 4;
+
+/// What a factorisation takes if the columns are eliminated by minimum degree.
+#[derive(Clone, Copy, Debug)]
+pub struct Fill {
+    /// Multiplications, about.
+    pub multiplications: f64,
+    /// Values of the factor, about.
+    pub entries: f64,
+    /// Whether the factorisation costs so much that [`order`] tries nested dissection as well.
+    pub is_dissected: bool,
+}
+
+impl Fill {
+    /// The fill of the factor of `matrix`, found without a factorisation.
+    ///
+    /// # Errors
+    /// [`FactorError::Failed`] when memory or the index range does not suffice.
+    pub fn by_minimum_degree(matrix: &SymmetricMatrix) -> Result<Self, FactorError> {
+        call(|| {
+            let quotient = Quotient::of(matrix.lower());
+            Ok(minimum_degree(&quotient)?.1)
+        })
+    }
+}
 
 /// A fill-reducing order of the columns of a symmetric matrix, given by its lower triangle: `order[i]` is the column
 /// that is eliminated as the i-th. The columns of `last` come last, as they are given.
@@ -27,10 +52,10 @@ const DIAGONALS: usize = 4;
 /// [`FactorError::Failed`] when memory or the index range does not suffice.
 pub(super) fn order(lower: &SparseMatrix, last: &[usize]) -> Result<Vec<usize>, FactorError> {
     let mut quotient = Quotient::of(lower);
-    let (by_degree, multiplications) = minimum_degree(&quotient)?;
+    let (by_degree, fill) = minimum_degree(&quotient)?;
     quotient.remove(last);
     let mut elimination = Elimination::of(&quotient, by_degree);
-    if multiplications > WORTH_DISSECTING * quotient.edges() as f64 {
+    if fill.is_dissected {
         let dissected = Elimination::of(&quotient, nested_dissection(&quotient)?);
         if dissected.multiplications(&quotient) < elimination.multiplications(&quotient) {
             elimination = dissected;
@@ -42,8 +67,8 @@ pub(super) fn order(lower: &SparseMatrix, last: &[usize]) -> Result<Vec<usize>, 
     Ok(columns)
 }
 
-/// Approximate minimum degree, with the multiplications of the factorisation, about, for groups of average size.
-fn minimum_degree(quotient: &Quotient) -> Result<(Vec<u32>, f64), FactorError> {
+/// Approximate minimum degree, with the fill, about, for groups of average size.
+fn minimum_degree(quotient: &Quotient) -> Result<(Vec<u32>, Fill), FactorError> {
     let count = quotient.count();
     let graph =
         SymbolicSparseColMatRef::new_unsorted_checked(count, count, quotient.starts(), None, quotient.all_neighbours());
@@ -54,7 +79,11 @@ fn minimum_degree(quotient: &Quotient) -> Result<(Vec<u32>, f64), FactorError> {
     let (mut order, mut place) = (vec![0; count], vec![0; count]);
     let stack = MemStack::new(&mut buffer);
     let work = amd::order_maybe_unsorted(&mut order, &mut place, graph, amd::Control::default(), stack)?;
-    Ok((order, work.n_mult_subs_ldl * quotient.mean_size().powi(3)))
+    let size = quotient.mean_size();
+    let multiplications = work.n_mult_subs_ldl * size.powi(3);
+    let entries = work.n_div * size.powi(2) + count as f64 * size * (size + 1.0) / 2.0;
+    let is_dissected = multiplications > WORTH_DISSECTING * quotient.edges() as f64;
+    Ok((order, Fill { multiplications, entries, is_dissected }))
 }
 
 /// Multilevel nested dissection.
@@ -66,4 +95,35 @@ fn nested_dissection(quotient: &Quotient) -> Result<Vec<u32>, FactorError> {
     let graph = CscPattern::new(quotient.count(), &starts, &neighbours).ok_or_else(failed)?;
     let order = metis_order(&graph).map_err(|_| failed())?;
     Ok(order.into_iter().map(|group| group as u32).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Fill;
+    use crate::qp::linear::{Analysis, SparseMatrix, SymmetricMatrix};
+
+    /// A lattice of so many columns along each side.
+    fn lattice(sides: [usize; 3]) -> SymmetricMatrix {
+        let columns = sides.iter().product();
+        let steps = [(0, 1), (1, sides[0]), (2, sides[0] * sides[1])];
+        let mut entries: Vec<_> = (0..columns).map(|column| (column, column, 7.0)).collect();
+        for (axis, step) in steps {
+            let is_inside = |column: &usize| column / step % sides[axis] + 1 < sides[axis];
+            entries.extend((0..columns).filter(is_inside).map(|column| (column + step, column, -1.0)));
+        }
+        SymmetricMatrix::from_lower(SparseMatrix::from_triplets(columns, columns, &entries).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn minimum_degree_tells_the_fill_of_the_factor() {
+        for sides in [[40, 40, 1], [400, 4, 1], [60, 6, 6], [12, 12, 12]] {
+            let matrix = lattice(sides);
+            let (fill, analysis) = (Fill::by_minimum_degree(&matrix).unwrap(), Analysis::of(&matrix).unwrap());
+            // Supernodes add zeros to the factor.
+            let entries = fill.entries / analysis.factor_entries() as f64;
+            let multiplications = fill.multiplications / analysis.multiplications();
+            assert!((0.25..=1.0).contains(&entries), "{sides:?}: {entries}");
+            assert!((0.3..=1.1).contains(&multiplications), "{sides:?}: {multiplications}");
+        }
+    }
 }

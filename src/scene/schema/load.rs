@@ -82,8 +82,14 @@ pub struct ForceSpec {
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct MomentSpec {
-    /// The boundary.
-    pub boundary: String,
+    /// The boundary; needed.
+    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "cli", schemars(required))]
+    pub boundary: Option<String>,
+    /// Refused: a node of a solid has no rotation, and carries no moment.
+    #[cfg_attr(feature = "cli", schemars(skip))]
+    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    pub at: Option<Vec<f64>>,
     /// The moment, in force times length: `[m]` about z in the plane, on the whole thickness, counterclockwise; three components in
     /// space.
     pub value: Vec<f64>,

@@ -1,0 +1,93 @@
+//! How many cycles an answer by multigrid takes, by what the hierarchy knows and by how well its smoother works.
+
+use crate::qp::linear::SymmetricMatrix;
+use crate::qp::problem::ContactProblem;
+
+/// Row sums of a stiffness may be negative by this share of the diagonal: rounding.
+const ROW_SUM_ROUNDING: f64 = 1e-9;
+
+/// Neighbours of a dof of a diffusion whose ties differ by more than this slow multigrid down, if most dofs have such.
+const UNEVEN: f64 = 1e3;
+
+/// A row whose entries off the diagonal add up to more than this many times the diagonal is smoothed slowly: the largest
+/// eigenvalue of D^-1 K may be as large as their sum. Linear elements stay below 3.2, quadratic ones reach 5.5 in a tenth of
+/// their rows.
+const HEAVY: f64 = 4.2;
+
+/// The share of such rows from which on a stiffness counts as heavy.
+const HEAVY_SHARE: f64 = 0.1;
+
+/// What a hierarchy is told of the displacements that cost next to no energy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::qp) enum Smooth {
+    /// The rigid-body modes are given.
+    Given,
+    /// The same; point smoothers need more cycles, because many rows outweigh their diagonal.
+    GivenHeavy,
+    /// Those of a scalar diffusion, the constants.
+    Constants,
+    /// The same, of one whose ties to neighbours differ by orders of magnitude nearly everywhere.
+    Uneven,
+    /// Nothing: constants make a poor hierarchy of a body, and a smoother needs a stiffness of every dof.
+    Unknown,
+}
+
+impl Smooth {
+    pub(super) fn of(problem: &ContactProblem) -> Self {
+        let stiffness = problem.stiffness();
+        match problem.near_null() {
+            Some(_) if stiffness.diagonal().contains(&0.0) => Smooth::Unknown,
+            Some(_) if is_heavy(stiffness) => Smooth::GivenHeavy,
+            Some(_) => Smooth::Given,
+            None => Self::of_stiffness(stiffness),
+        }
+    }
+
+    /// A stiffness is that of a scalar diffusion if it has no positive entry off the diagonal and no negative row sum.
+    fn of_stiffness(stiffness: &SymmetricMatrix) -> Self {
+        let diagonal = stiffness.diagonal();
+        let mut sums = diagonal.clone();
+        let mut ties = vec![(f64::INFINITY, 0.0_f64); diagonal.len()];
+        for (row, column, value) in stiffness.lower().triplets().filter(|entry| entry.0 != entry.1 && entry.2 != 0.0) {
+            if value > 0.0 {
+                return Smooth::Unknown;
+            }
+            for dof in [row, column] {
+                sums[dof] += value;
+                ties[dof] = (ties[dof].0.min(-value), ties[dof].1.max(-value));
+            }
+        }
+        if sums.iter().zip(&diagonal).any(|(&sum, own)| sum < -ROW_SUM_ROUNDING * own) {
+            return Smooth::Unknown;
+        }
+        let uneven = ties.iter().filter(|(weakest, strongest)| *strongest > UNEVEN * weakest).count();
+        if 2 * uneven > ties.len() { Smooth::Uneven } else { Smooth::Constants }
+    }
+
+    /// Returns `true` if a few cycles tell the direct path where to start.
+    pub fn starts_sets(self) -> bool {
+        matches!(self, Smooth::Given | Smooth::GivenHeavy | Smooth::Constants)
+    }
+
+    /// Cycles of an answer by multigrid.
+    pub(super) fn cycles(self) -> f64 {
+        match self {
+            Smooth::Given => 16.0,
+            Smooth::GivenHeavy => 45.0,
+            Smooth::Constants => 10.0,
+            Smooth::Uneven | Smooth::Unknown => 40.0,
+        }
+    }
+}
+
+/// Returns `true` if at least [`HEAVY_SHARE`] of the rows outweigh their diagonal [`HEAVY`] times.
+fn is_heavy(stiffness: &SymmetricMatrix) -> bool {
+    let diagonal = stiffness.diagonal();
+    let mut sums = vec![0.0; diagonal.len()];
+    for (row, column, value) in stiffness.lower().triplets().filter(|entry| entry.0 != entry.1) {
+        sums[row] += value.abs();
+        sums[column] += value.abs();
+    }
+    let heavy = sums.iter().zip(&diagonal).filter(|(sum, own)| **sum > HEAVY * **own).count();
+    heavy as f64 > HEAVY_SHARE * diagonal.len() as f64
+}
