@@ -2,7 +2,6 @@
 
 use super::seconds::{self, factor_seconds};
 use super::smooth::Smooth;
-use super::{NEAR_CYCLES, is_everywhere};
 use crate::qp::linear::{Fill, Width};
 use crate::qp::problem::ContactProblem;
 use crate::qp::transform::Condensation;
@@ -13,11 +12,22 @@ const MODES_IN_SPACE: usize = 6;
 /// Values of the factor of a bar for an unknown, about.
 const ALONG_A_LINE: f64 = 4.0;
 
+/// Entries of the contact rows for a dof beyond which the contact boundary is most of the body.
+const MANY: f64 = 0.25;
+
+/// Cycles of the start of the direct path.
+pub(in crate::qp) const NEAR_CYCLES: f64 = 8.0;
+
 /// Sets of closed rows, each with a factor, until one is settled: where contact is everywhere, and where it is not condensed.
 const SETS: [f64; 2] = [10.0, 5.0];
 
 /// The sets of a condensed problem take so many times the seconds of making it, about.
 const DENSE_STEPS: f64 = 3.0;
+
+/// Returns `true` if the contact boundary is most of the body, so that a front of closed rows has far to move.
+fn is_everywhere(problem: &ContactProblem) -> bool {
+    problem.contact().entries() as f64 > MANY * problem.dofs() as f64
+}
 
 /// The factor of the stiffness without its contact rows.
 #[derive(Clone, Copy)]
@@ -90,4 +100,9 @@ impl Direct {
         let shared_seconds = body.ordering_seconds + factor;
         Direct { factor_entries: body.entries, seconds: shared_seconds + sets, shared_seconds, starts_near }
     }
+}
+
+/// Returns `true` if the direct path starts from a few cycles of multigrid, which cost less than the sets on the way there.
+pub(in crate::qp) fn starts_near(problem: &ContactProblem) -> bool {
+    is_everywhere(problem) && Direct::of(problem, Smooth::of(problem), BodyFactor::by_size(problem)).starts_near
 }

@@ -11,17 +11,12 @@ use super::settings::Settings;
 use crate::error::Error;
 use crate::watch::Watch;
 use direct::{BodyFactor, Direct};
+pub(in crate::qp) use direct::{NEAR_CYCLES, starts_near};
 pub(crate) use seconds::assembly_seconds;
 pub(in crate::qp) use smooth::Smooth;
 
-/// Entries of the contact rows for a dof beyond which the contact boundary is most of the body.
-const MANY: f64 = 0.25;
-
 /// Rows that are bounds only after turning take more cycles by this factor.
 const TURNED: f64 = 1.6;
-
-/// Cycles of the start of the direct path.
-pub(in crate::qp) const NEAR_CYCLES: f64 = 8.0;
 
 /// A stiffness that is singular takes so many times the seconds: factors for the start and for what the rows hold.
 const SINGULAR: f64 = 2.5;
@@ -36,11 +31,6 @@ const FREE: f64 = 1e-9;
 /// Returns `true` if a row has several entries, so that it is a bound only after turning.
 fn is_turned(contact: &SparseMatrix) -> bool {
     contact.entries() > contact.rows()
-}
-
-/// Returns `true` if the contact boundary is most of the body, so that a front of closed rows has far to move.
-fn is_everywhere(problem: &ContactProblem) -> bool {
-    problem.contact().entries() as f64 > MANY * problem.dofs() as f64
 }
 
 /// Returns `true` if one of the rigid-body modes costs no energy.
@@ -108,11 +98,6 @@ impl Estimate {
             cycles,
         }
     }
-}
-
-/// Returns `true` if the direct path starts from a few cycles of multigrid, which cost less than the sets on the way there.
-pub(in crate::qp) fn starts_near(problem: &ContactProblem) -> bool {
-    is_everywhere(problem) && Direct::of(problem, Smooth::of(problem), BodyFactor::by_size(problem)).starts_near
 }
 
 /// Bytes of the iterative path at its peak, the problem itself included.
