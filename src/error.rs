@@ -366,10 +366,13 @@ pub(crate) fn nearly<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -
     if name.len() > LONGEST_NAME {
         return String::new();
     }
-    let most = name.chars().count().max(3) / 3;
+    let length = name.chars().count();
+    let most = length.max(3) / 3;
     let written = name.to_lowercase();
     let away = |other: &str| strsim::damerau_levenshtein(&written, &other.to_lowercase());
     let others = names.into_iter().filter(|other| !other.is_empty() && other.len() <= LONGEST_NAME);
-    let near = others.map(|other| (away(other), other)).filter(|(away, _)| *away <= most);
+    let near = others.map(|other| (away(other), other));
+    // Of names of one letter no letter is left.
+    let near = near.filter(|(away, other)| *away <= most && *away < length.max(other.chars().count()));
     near.min_by_key(|(away, _)| *away).map_or_else(String::new, |(_, other)| format!("; did you mean `{other}`?"))
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::builder::PossibleValue;
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
 use super::memory::{self, parse_size};
@@ -217,18 +217,18 @@ pub(super) struct Compare {
 }
 
 #[derive(Debug, Args)]
+#[command(group(ArgGroup::new("over").required(true).args(["gaps", "forces", "points"])))]
 pub(super) struct Sweep {
     /// Scene (a JSON file) or problem directory (with K.mtx, f.mtx, B.mtx, g.mtx, and g1.mtx or f1.mtx or both for its other end)
     pub scene: PathBuf,
     /// Gaps from the first to the last, and their number, as -0.01:-0.10:10
-    #[arg(long, value_name = "FIRST:LAST:COUNT", allow_hyphen_values = true, value_parser = parse_gaps,
-          required_unless_present_any = ["forces", "points"], conflicts_with_all = ["forces", "points"])]
+    #[arg(long, value_name = "FIRST:LAST:COUNT", allow_hyphen_values = true, value_parser = parse_gaps)]
     pub gaps: Option<Gaps>,
     /// Forces on the obstacle that a force presses, from the first to the last, and their number, as 0:10e3:11
     #[arg(long, value_name = "FIRST:LAST:COUNT", allow_hyphen_values = true, value_parser = parse_forces)]
     pub forces: Option<Gaps>,
     /// Points on the way of a problem directory, both ends included
-    #[arg(long, value_name = "COUNT", value_parser = parse_points, conflicts_with = "forces")]
+    #[arg(long, value_name = "COUNT", value_parser = parse_points)]
     pub points: Option<usize>,
     /// Method that finds the contact sets
     #[arg(long, value_enum, default_value_t = Method::Auto)]

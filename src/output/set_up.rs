@@ -52,7 +52,7 @@ pub(crate) fn set_up_picture(model: &Model) -> Result<Drawing, Error> {
     let picture = shown.picture(&lines);
     let title = headline(model, "set-up");
     let (frame, title) = framed(obstacle::window(shown.nodes.iter().copied(), &lines), &shown.length_unit, &title);
-    let arrows = arrows(model, &shown.nodes, &frame);
+    let arrows = arrows(model, &shown, &frame);
     let symbols = symbols(model.held_nodes(), &shown, &frame);
     let entries = entries(model, &symbols, !arrows.is_empty(), (&lines, &frame));
 
@@ -80,7 +80,8 @@ struct Shown {
     outlines: Vec<(Vec<[f64; 2]>, [f64; 2])>,
     candidates: Vec<usize>,
     open: Vec<bool>,
-    middle: [f64; 2],
+    /// From the middle of the cells around each node to the node: out of the body where that lies on its boundary.
+    out: Vec<[f64; 2]>,
 }
 
 impl Shown {
@@ -96,15 +97,15 @@ impl Shown {
             let [x, y, _] = model.obstacles()[index].approach();
             (model.obstacle_outline(index, OUTLINE_SEGMENTS), [x, y])
         };
-        let share = 1.0 / nodes.len().max(1) as f64;
+        let elements: Vec<Vec<usize>> = mesh.elements().map(|nodes| nodes[..corners].to_vec()).collect();
         Shown {
             length_unit: model.units().length.clone(),
-            elements: mesh.elements().map(|nodes| nodes[..corners].to_vec()).collect(),
+            out: outwards(&nodes, &mesh.elements().map(<[usize]>::to_vec).collect::<Vec<_>>()),
+            elements,
             nothing: vec![0.0; 2 * nodes.len()],
             outlines: rigid.map(outline).collect(),
             open: vec![false; candidates.len()],
             candidates,
-            middle: [0, 1].map(|axis| nodes.iter().map(|node| share * node[axis]).sum()),
             nodes,
         }
     }
@@ -127,6 +128,22 @@ impl Shown {
             window: None,
         }
     }
+}
+
+/// From the mean of the centroids of the cells around each node to the node.
+fn outwards(nodes: &[[f64; 2]], elements: &[Vec<usize>]) -> Vec<[f64; 2]> {
+    let (mut sums, mut counts) = (vec![[0.0; 2]; nodes.len()], vec![0.0_f64; nodes.len()]);
+    for element in elements {
+        let share = 1.0 / element.len().max(1) as f64;
+        let centroid = [0, 1].map(|axis| element.iter().map(|&node| share * nodes[node][axis]).sum::<f64>());
+        for &node in element {
+            counts[node] += 1.0;
+            (0..2).for_each(|axis| sums[node][axis] += centroid[axis]);
+        }
+    }
+    let out =
+        |((node, sum), count): ((&[f64; 2], [f64; 2]), f64)| [0, 1].map(|axis| node[axis] - sum[axis] / count.max(1.0));
+    nodes.iter().zip(sums).zip(counts).map(out).collect()
 }
 
 /// The frame of a window with room around it, under a title in lines.
@@ -153,23 +170,19 @@ fn framed(window: [[f64; 2]; 2], length_unit: &str, title: &str) -> (Frame, Vec<
 /// The arrows of the loads in pixels, from tail to tip: those of nodes that share a square are one.
 ///
 /// A force that leaves the body begins at its place, one that presses on it ends there.
-fn arrows(model: &Model, nodes: &[[f64; 2]], frame: &Frame) -> Vec<[[f64; 2]; 2]> {
+fn arrows(model: &Model, shown: &Shown, frame: &Frame) -> Vec<[[f64; 2]; 2]> {
     let mut squares = std::collections::BTreeMap::<[i64; 2], Gathered>::new();
-    for (node, load) in nodes.iter().zip(model.nodal_load().chunks_exact(2)) {
+    for ((node, out), load) in shown.nodes.iter().zip(&shown.out).zip(model.nodal_load().chunks_exact(2)) {
         let size = load[0].hypot(load[1]);
         let place = frame.place(*node);
         if size > 0.0 && place.iter().all(|part| part.is_finite()) {
-            squares.entry(place.map(|part| (part / APART).floor() as i64)).or_default().add(
-                place,
-                [load[0], load[1]],
-                size,
-            );
+            let square = place.map(|part| (part / APART).floor() as i64);
+            squares.entry(square).or_default().add(place, [load[0], load[1]], *out);
         }
     }
-    let middle = frame.place(Shown::of(model).middle);
     let longest = squares.values().map(Gathered::length).fold(0.0, f64::max);
     let shown = squares.values().filter(|gathered| gathered.length() > SHORTEST * longest);
-    shown.map(|gathered| gathered.arrow(LONGEST / longest, middle)).collect()
+    shown.map(|gathered| gathered.arrow(LONGEST / longest)).collect()
 }
 
 /// Loads of several nodes as one.
@@ -178,25 +191,28 @@ struct Gathered {
     force: [f64; 2],
     weight: f64,
     moment: [f64; 2],
+    /// Above zero where the forces lead out of the body.
+    outwards: f64,
 }
 
 impl Gathered {
-    fn add(&mut self, place: [f64; 2], force: [f64; 2], size: f64) {
+    fn add(&mut self, place: [f64; 2], force: [f64; 2], out: [f64; 2]) {
+        let size = force[0].hypot(force[1]);
         self.force = [self.force[0] + force[0], self.force[1] + force[1]];
         self.moment = [self.moment[0] + size * place[0], self.moment[1] + size * place[1]];
         self.weight += size;
+        self.outwards += force[0] * out[0] + force[1] * out[1];
     }
 
     fn length(&self) -> f64 {
         self.force[0].hypot(self.force[1])
     }
 
-    fn arrow(&self, pixels: f64, middle: [f64; 2]) -> [[f64; 2]; 2] {
+    fn arrow(&self, pixels: f64) -> [[f64; 2]; 2] {
         let place = self.moment.map(|part| part / self.weight);
         // Pixels count downwards.
         let along = [pixels * self.force[0], -pixels * self.force[1]];
-        let presses = along[0] * (place[0] - middle[0]) + along[1] * (place[1] - middle[1]) < 0.0;
-        match presses {
+        match self.outwards < 0.0 {
             true => [[place[0] - along[0], place[1] - along[1]], place],
             false => [place, [place[0] + along[0], place[1] + along[1]]],
         }
@@ -254,21 +270,21 @@ fn symbols(held: Vec<HeldNode>, shown: &Shown, frame: &Frame) -> Vec<Symbol> {
         if place.iter().any(|part| !part.is_finite()) || symbols.iter().any(is_near) {
             continue;
         }
-        symbols.push(Symbol { kind, place, towards: towards(shown.nodes[node], shown.middle, direction, kind) });
+        symbols.push(Symbol { kind, place, towards: towards(shown.out[node], direction, kind) });
     }
     symbols
 }
 
-/// From a node to what holds it, in pixels: along the direction, away from the middle of the body; where it is fixed, along the
-/// axis on which it lies farthest out.
-fn towards(node: [f64; 2], middle: [f64; 2], direction: [f64; 3], kind: Kind) -> [f64; 2] {
-    let out = [node[0] - middle[0], node[1] - middle[1]];
+/// From a node to what holds it, in pixels: along the direction, or, where both are held, out of the body.
+fn towards(out: [f64; 2], direction: [f64; 3], kind: Kind) -> [f64; 2] {
     let along = match kind {
         Kind::Roller | Kind::Spring => [direction[0], direction[1]],
-        Kind::Fixed | Kind::RigidFace if out[0].abs() > out[1].abs() => [1.0, 0.0],
-        Kind::Fixed | Kind::RigidFace => [0.0, 1.0],
+        Kind::Fixed | Kind::RigidFace => out,
     };
-    let length = along[0].hypot(along[1]).max(f64::MIN_POSITIVE);
+    let length = along[0].hypot(along[1]);
+    if length == 0.0 {
+        return [0.0, 1.0];
+    }
     let sense = if along[0] * out[0] + along[1] * out[1] < 0.0 { -1.0 } else { 1.0 };
     // Pixels count downwards.
     [sense * along[0] / length, -sense * along[1] / length]

@@ -134,21 +134,10 @@ fn an_answer_says_what_was_weighed_and_the_text_shows_the_same_numbers() {
 }
 
 #[test]
-fn why_changes_with_the_memory_that_is_allowed_and_with_the_method_asked_for() {
-    let desk = Desk::new();
-    let why = |arguments: &[&str]| -> Value {
-        let ball = example("ball");
-        let run = desk.run(&[&["solve", &ball, "--format", "json"], arguments].concat());
-        run.ends_with(0).json()["why"].clone()
-    };
-    let free = why(&[]);
-    let bytes = |of: usize| free["considered"][of]["bytes"].as_f64().unwrap();
-    let chosen = free["chosen"].as_str().unwrap();
-    assert_eq!(chosen, "mprgp", "the smaller of two estimates: {free:#}");
-    assert!(free["considered"][0]["seconds"].as_f64() > free["considered"][1]["seconds"].as_f64(), "{free:#}");
-    assert!(bytes(0) > bytes(1), "{free:#}");
-    let named = why(&["--method", "active-set"]);
-    assert_eq!(named, json!({"chosen": "active-set", "reason": "by active-set: it was asked for", "considered": []}));
+fn a_method_that_was_asked_for_is_why_enough() {
+    let run = Desk::new().run(&["solve", &example("ball"), "--format", "json", "--method", "active-set"]);
+    let expected = json!({"chosen": "active-set", "reason": "by active-set: it was asked for", "considered": []});
+    assert_eq!(run.ends_with(0).json()["why"], expected);
 }
 
 #[test]
@@ -223,7 +212,16 @@ fn a_group_that_is_nearly_right_is_answered_with_the_one_that_is_meant() {
     assert!(run.stderr.contains(&format!("did you mean `{name}`?")), "{}", run.stderr);
 }
 
-/// K = [[2, -1], [-1, 2]], f = (1, 1), u_2 <= g: lambda = min(0, (3 g - 3) / 2). It touches at g = 1.
+/// Four springs of stiffness 4 in a row, the end pushed with force 3 towards a wall at 4: it goes to 3 by itself, and a wall at g takes
+/// 3 - g of it.
+fn springs(desk: &Desk) {
+    let k = ["1 1 8", "2 1 -4", "2 2 8", "3 2 -4", "3 3 8", "4 3 -4", "4 4 4"];
+    let k = crate::program::matrix("symmetric", "4 4", &k);
+    let b = crate::program::matrix("general", "1 4", &["1 4 1"]);
+    desk.problem("p", &Problem { k, f: vector(&["0", "0", "0", "3"]), b, g: vector(&["4"]) });
+}
+
+/// K = [[2, -1], [-1, 2]], f = (1, 1), u_2 <= 2, which is out of reach.
 fn problem(desk: &Desk) {
     desk.problem("p", &Problem { g: vector(&["2"]), ..Problem::right() });
 }
@@ -231,18 +229,16 @@ fn problem(desk: &Desk) {
 #[test]
 fn a_problem_directory_is_swept_from_its_gaps_to_others() {
     let desk = Desk::new();
-    problem(&desk);
-    desk.write("p/g1.mtx", vector(&["0"]));
+    springs(&desk);
+    desk.write("p/g1.mtx", vector(&["2"]));
     let swept = desk.run(&["sweep", "p", "--points", "5", "--format", "json", "--out", "o"]).ends_with(0).json();
     let points = swept["points"].as_array().unwrap();
     assert_eq!(points.len(), 5);
-    for (point, t) in points.iter().zip([0.0, 0.25, 0.5, 0.75, 1.0]) {
-        let gap = 2.0 - 2.0 * t;
-        let force = (1.5 * (1.0 - gap)).max(0.0);
+    for (point, (t, force)) in points.iter().zip([(0.0, 0.0), (0.25, 0.0), (0.5, 0.0), (0.75, 0.5), (1.0, 1.0)]) {
         assert_eq!((&point["t"], &point["status"]), (&json!(t), &json!("certified")));
         assert!((point["contact"]["force"].as_f64().unwrap() - force).abs() < 1e-12, "{point:#}");
     }
-    // Gap 1 is half way.
+    // The wall is at 3 half way.
     let [event] = &swept["events"].as_array().unwrap()[..] else { panic!("{:#}", swept["events"]) };
     assert!((event["t"].as_f64().unwrap() - 0.5).abs() < 1e-12, "{event:#}");
     assert_eq!((&event["row"], &event["touches"]), (&json!(0), &json!(true)));
@@ -250,7 +246,7 @@ fn a_problem_directory_is_swept_from_its_gaps_to_others() {
         assert!(desk.path("o").join(file).exists(), "{file}");
     }
     let text = desk.run(&["sweep", "p", "--points", "5"]).ends_with(0).stdout;
-    assert!(text.contains("1.500000000e0") && text.contains("touches"), "{text}");
+    assert!(text.contains("1.000000000e0") && text.contains("row 0") && text.contains("touches"), "{text}");
     assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
 }
 
@@ -372,7 +368,6 @@ fn a_picture_of_another_kind_or_of_another_body_is_refused() {
     desk.run(&["draw", &example("indentation"), "--out", "set-up.jpg"]).ends_with(2);
     desk.run(&["draw", &example("indentation")]).ends_with(2);
     desk.run(&["draw", &example("ball"), "--out", "ball.png"]).fails_with(1, &["`model`", "a body in space"]);
-    desk.run(&["draw", &example("bar"), "--out", "bar.png"]).fails_with(1, &["`model`", "this is a bar"]);
     assert!(!desk.path("ball.png").exists());
 }
 
