@@ -76,7 +76,7 @@ pub use qp::{
     SparseMatrix, Start, SymmetricMatrix, solve, solve_qp,
 };
 pub use scene::{Model, Scene};
-pub use solution::{Attempt, Certificate, ContactSet, Expected, Goal, Iteration, ProvenSet, Seconds, Solution, Why};
+pub use solution::{Attempt, Certificate, ContactSet, Goal, Iteration, ProvenSet, Seconds, Solution};
 pub use watch::Watch;
 
 /// What the tests of this crate look at beside its interface; it may change at any time.
