@@ -12,7 +12,9 @@ use crate::study::{sweep, sweep_problem};
 use crate::watch::Watch;
 
 pub(super) fn run(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
-    match (options.scene.is_dir(), options.points) {
+    // Any other folder is refused as a scene.
+    let is_problem = options.scene.join("K.mtx").exists();
+    match (is_problem, options.points) {
         (true, Some(points)) => of_problem(options, points, watch),
         (true, None) => {
             let given = if options.gaps.is_some() { "--gaps" } else { "--forces" };
