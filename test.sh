@@ -54,6 +54,7 @@ step "answers, the same twice";     python3 reference/same_reports.py "$built/si
 
 step "reference, its own tests";    reference/environment.sh
 target/reference-venv/bin/python -m unittest discover --start-directory reference
+step "schema, scenes right and wrong"; target/reference-venv/bin/python reference/schema.py "$built/signorini"
 step "reference, live validation";  target/reference-venv/bin/python reference/validate.py --signorini "$built/signorini"
 
 step ""

@@ -355,3 +355,24 @@ fn lost_digits(solution: &Solution) -> String {
 pub(crate) fn memory(bytes: f64) -> String {
     if bytes < 1e9 { format!("{:.0} MB", bytes / 1e6) } else { format!("{:.1} GB", bytes / 1e9) }
 }
+
+/// Longer names than this are no slips of the pen.
+const LONGEST_NAME: usize = 100;
+
+/// `; did you mean ...?` for a name that is one of `names` but for a few letters, else nothing.
+///
+/// One letter in three may be another one, be missing, be there in addition, or have changed places with its neighbour.
+pub(crate) fn nearly<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> String {
+    if name.len() > LONGEST_NAME {
+        return String::new();
+    }
+    let length = name.chars().count();
+    let most = length.max(3) / 3;
+    let written = name.to_lowercase();
+    let away = |other: &str| strsim::damerau_levenshtein(&written, &other.to_lowercase());
+    let others = names.into_iter().filter(|other| !other.is_empty() && other.len() <= LONGEST_NAME);
+    let near = others.map(|other| (away(other), other));
+    // Of names of one letter no letter is left.
+    let near = near.filter(|(away, other)| *away <= most && *away < length.max(other.chars().count()));
+    near.min_by_key(|(away, _)| *away).map_or_else(String::new, |(_, other)| format!("; did you mean `{other}`?"))
+}

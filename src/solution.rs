@@ -321,6 +321,28 @@ fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }
 
+/// Why an answer was found the way it was: what was weighed before, and what decided.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Why {
+    /// What was chosen: one of those considered, or the method that was asked for by name.
+    pub chosen: String,
+    /// What decided, in words.
+    pub reason: String,
+    /// What was weighed against each other; empty where a method was asked for by name.
+    pub considered: Vec<Expected>,
+}
+
+/// A way to an answer with what it was expected to cost, before it was taken or left.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Expected {
+    /// `factor`, which stands for the methods that factorise (`active-set`, `qp`, `penalty`), or `mprgp`.
+    pub method: String,
+    /// Seconds from the problem to its answer, on one processor of 2024.
+    pub seconds: f64,
+    /// Bytes at the peak, the problem itself included.
+    pub bytes: f64,
+}
+
 /// A way that was tried beside the one that gave the answer.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Attempt {
@@ -364,6 +386,9 @@ pub struct Solution {
     /// Why no factor was taken, in words, where [`Method::Auto`](crate::Method::Auto) decided that.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
+    /// What was weighed before, and what decided; `None` of an answer that no choice of a method led to.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub why: Option<Why>,
     /// What else was tried, in order; its time is in `seconds`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub attempts: Vec<Attempt>,

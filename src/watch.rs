@@ -67,6 +67,8 @@ pub struct Activity {
     pub step: &'static str,
     /// The iteration of the step, from 1; 0 if the step has no iterations.
     pub iteration: usize,
+    /// When the work under way began that is [timed](Watch::timed), and how long it is expected to take.
+    pub timed: Option<(Instant, Duration)>,
 }
 
 /// One of several parts of the work.
@@ -197,11 +199,17 @@ impl Watch {
     /// Runs `work`, which is estimated to take `estimate` seconds, and measures the pace of this machine by it.
     pub fn timed<T>(&self, estimate: f64, work: impl FnOnce() -> T) -> T {
         let clock = Instant::now();
+        self.expect(Duration::try_from_secs_f64(self.needed(estimate)).ok().map(|time| (clock, time)));
         let done = work();
+        self.expect(None);
         if estimate >= TELLING_SECONDS {
             self.learn(clock.elapsed().as_secs_f64() / estimate);
         }
         done
+    }
+
+    fn expect(&self, timed: Option<(Instant, Duration)>) {
+        self.shared.activity.lock().unwrap_or_else(PoisonError::into_inner).timed = timed;
     }
 
     /// Sets the pace: from now on work is expected to take `pace` times its estimate.
@@ -227,7 +235,7 @@ impl Watch {
     /// Reports that a step of the work begins, with its iteration from 1, or 0 if it has none.
     pub fn step(&self, step: &'static str, iteration: usize) {
         let part = self.activity().part;
-        self.tell(Activity { part, step, iteration });
+        self.tell(Activity { part, step, iteration, timed: None });
     }
 
     fn tell(&self, activity: Activity) {

@@ -1,6 +1,7 @@
 //! The command line: arguments in, text or JSON out, and one exit code for each kind of ending.
 
 mod compare;
+mod draw;
 mod dynamic;
 mod export;
 mod failure;
@@ -12,6 +13,7 @@ mod options;
 mod outcome;
 mod progress;
 mod settings;
+mod shell;
 mod solve;
 mod sweep;
 mod total_error;
@@ -45,7 +47,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let watch = if arguments.progress { progress::told() } else { Watch::default() };
     interrupt::listen(&watch);
     watch.step("assembly", 0);
-    let line = || (!arguments.progress).then(|| Progress::of(&watch));
+    let line = || (!arguments.progress && !arguments.quiet).then(|| Progress::of(&watch));
     let shown = line();
     let format = arguments.command.format();
     let outcome = match arguments.command {
@@ -53,9 +55,12 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Compare(options) => compare::run(&options, &watch),
         Command::Sweep(options) => sweep::run(&options, &watch),
         Command::Tradeoff(options) => tradeoff::run(&options, &watch),
+        Command::Draw(options) => draw::run(&options),
         Command::Export(options) => export::run(&options),
         Command::New(options) => new::run(&options),
         Command::Verify(options) => verify::run(&options),
+        Command::Completions(options) => Ok(shell::completions(&options)),
+        Command::Man => Ok(shell::manual()),
         Command::Schema => Ok(Outcome::done(format!("{:#}\n", Scene::json_schema()))),
     };
     drop(shown);

@@ -1,9 +1,10 @@
-//! The arguments. Types of the argument parser stop here.
+//! The arguments. Types of the argument parser stop here, and in `shell`, which tells shells and manuals of them.
 
 use std::path::PathBuf;
 
 use clap::builder::PossibleValue;
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
 
 use super::memory::{self, parse_size};
 use crate::qp::{Method, Precision};
@@ -11,36 +12,108 @@ use crate::qp::{Method, Precision};
 /// Frictionless contact of elastic bodies with obstacles: a convex QP, cross-checked and certified.
 #[derive(Debug, Parser)]
 #[command(name = "signorini", version, arg_required_else_help = true)]
-#[command(
-    after_help = "Exit codes: 0 certified, 1 bad input or file, 2 usage, 3 infeasible, unbounded or under-held, \
-                        4 not certified or an unstable motion, 130 interrupted, with what was found until then."
-)]
+#[command(after_help = "\
+Exit codes: 0 certified, 1 bad input or file, 2 usage, 3 infeasible, unbounded or under-held,
+            4 not certified or an unstable motion, 130 interrupted, with what was found until then.
+
+Example: signorini compare examples/indentation.json --out indentation")]
 pub(super) struct Arguments {
     /// Print each step on a line of standard error as it begins
-    #[arg(long, global = true)]
+    #[arg(long, global = true, conflicts_with = "quiet")]
     pub progress: bool,
+    /// Show no progress on a terminal; warnings and errors remain
+    #[arg(long, global = true)]
+    pub quiet: bool,
     #[command(subcommand)]
     pub command: Command,
 }
 
+/// Which of three knobs is which.
+const KNOBS: &str = "\
+--tolerance is how well the conditions of contact hold, --accuracy how far off the displacement may be,
+--time when the program must be done.";
+
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
     /// Write a first scene for a mesh of Gmsh: its groups, a support, a plate that a force presses
+    #[command(after_help = "Example: signorini new part.msh --out part.json")]
     New(New),
+    /// Draw a scene before it is solved: body, mesh, supports, loads, obstacles, gap
+    #[command(after_help = "Example: signorini draw examples/indentation.json --out set-up.png")]
+    Draw(Draw),
     /// Solve a scene or a problem directory and certify the answer
+    #[command(after_help = format!("\
+Example: signorini solve examples/ball.json --accuracy 1e-3 --time 10 --out ball
+         signorini solve problem --explain --start earlier
+
+{KNOBS}"))]
     Solve(Solve),
     /// Solve by all three methods and say whether they agree
+    #[command(after_help = "Example: signorini compare examples/indentation.json --out indentation")]
     Compare(Compare),
-    /// Solve a scene at several gaps
+    /// Solve a scene at several gaps or forces, or a problem directory on the way to another end
+    #[command(after_help = "\
+Example: signorini sweep examples/indentation.json --gaps -0.01:-0.10:10 --out sweep
+         signorini sweep problem --points 11
+
+A problem directory is swept from g.mtx and f.mtx to g1.mtx and f1.mtx, on a straight line.")]
     Sweep(Sweep),
-    /// Solve a scene in every way, and say what each digit costs
+    /// Solve a scene or a problem directory in every way, and say what each digit costs
+    #[command(after_help = "Example: signorini tradeoff examples/indentation.json --refinements 2 --time 60")]
     Tradeoff(Tradeoff),
     /// Write the problem of a scene as Matrix Market files
+    #[command(after_help = "Example: signorini export examples/ball.json ball")]
     Export(Export),
     /// Certify an answer that came from elsewhere
+    #[command(after_help = "Example: signorini verify problem --displacement u.mtx --multiplier lambda.mtx")]
     Verify(Verify),
     /// Print the JSON Schema of a scene
+    #[command(after_help = "\
+Example: signorini schema > scene.schema.json
+An editor completes and checks a scene that begins with {\"$schema\": \"scene.schema.json\", ...")]
     Schema,
+    /// Print the completions of a shell
+    #[command(after_help = "\
+Example: signorini completions bash > ~/.local/share/bash-completion/completions/signorini")]
+    Completions(Completions),
+    /// Print the page of the manual, in roff
+    #[command(after_help = "\
+Example: signorini man > ~/.local/share/man/man1/signorini.1")]
+    Man,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Completions {
+    /// The shell
+    #[arg(value_enum)]
+    pub shell: Shell,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Draw {
+    /// Scene (a JSON file, - for standard input)
+    pub scene: PathBuf,
+    /// File for the picture; its ending, png or svg, says which
+    #[arg(long, value_name = "FILE", value_parser = parse_picture)]
+    pub out: Picture,
+    #[command(flatten)]
+    pub limits: Limits,
+}
+
+/// A file for a picture.
+#[derive(Clone, Debug)]
+pub(super) enum Picture {
+    Png(PathBuf),
+    Svg(PathBuf),
+}
+
+fn parse_picture(text: &str) -> Result<Picture, String> {
+    let path = PathBuf::from(text);
+    match path.extension().map(|ending| ending.to_ascii_lowercase()) {
+        Some(ending) if ending == "png" => Ok(Picture::Png(path)),
+        Some(ending) if ending == "svg" => Ok(Picture::Svg(path)),
+        _ => Err("the name must end in .png or .svg".to_string()),
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -96,6 +169,12 @@ pub(super) struct Solve {
     /// Seconds after which the best answer so far is returned, or a motion ends
     #[arg(long, visible_alias = "time-limit", value_name = "T", allow_negative_numbers = true, value_parser = parse_seconds)]
     pub time: Option<f64>,
+    /// Tell what was weighed when the method was chosen, and what decided
+    #[arg(long, conflicts_with = "total_error")]
+    pub explain: bool,
+    /// Start from the answer that an earlier --out left in this folder (u.mtx, lambda.mtx)
+    #[arg(long, value_name = "FOLDER", conflicts_with_all = ["total_error", "resume"])]
+    pub start: Option<PathBuf>,
     /// Precision of the sparse factor
     #[arg(long, value_enum, default_value_t = Precision::Auto)]
     pub precision: Precision,
@@ -138,16 +217,19 @@ pub(super) struct Compare {
 }
 
 #[derive(Debug, Args)]
+#[command(group(ArgGroup::new("over").required(true).args(["gaps", "forces", "points"])))]
 pub(super) struct Sweep {
-    /// Scene (a JSON file)
+    /// Scene (a JSON file) or problem directory (with K.mtx, f.mtx, B.mtx, g.mtx, and g1.mtx or f1.mtx or both for its other end)
     pub scene: PathBuf,
     /// Gaps from the first to the last, and their number, as -0.01:-0.10:10
-    #[arg(long, value_name = "FIRST:LAST:COUNT", allow_hyphen_values = true, value_parser = parse_gaps,
-          required_unless_present = "forces", conflicts_with = "forces")]
+    #[arg(long, value_name = "FIRST:LAST:COUNT", allow_hyphen_values = true, value_parser = parse_gaps)]
     pub gaps: Option<Gaps>,
     /// Forces on the obstacle that a force presses, from the first to the last, and their number, as 0:10e3:11
     #[arg(long, value_name = "FIRST:LAST:COUNT", allow_hyphen_values = true, value_parser = parse_forces)]
     pub forces: Option<Gaps>,
+    /// Points on the way of a problem directory, both ends included
+    #[arg(long, value_name = "COUNT", value_parser = parse_points)]
+    pub points: Option<usize>,
     /// Method that finds the contact sets
     #[arg(long, value_enum, default_value_t = Method::Auto)]
     pub method: Method,
@@ -168,6 +250,13 @@ const MOST_GAPS: usize = 10_000;
 
 fn parse_gaps(text: &str) -> Result<Gaps, String> {
     parse_range(text, "gap", "it must be FIRST:LAST:COUNT, as -0.01:-0.10:10")
+}
+
+fn parse_points(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(points) if (2..=MOST_GAPS).contains(&points) => Ok(points),
+        _ => Err(format!("it must be a whole number from 2 to {MOST_GAPS}")),
+    }
 }
 
 fn parse_forces(text: &str) -> Result<Gaps, String> {
@@ -354,7 +443,8 @@ impl Command {
             | Command::Sweep(Sweep { common, .. }) => common.format,
             Command::Tradeoff(options) => options.format,
             Command::Verify(options) => options.format,
-            Command::New(_) | Command::Export(_) | Command::Schema => Format::Text,
+            Command::New(_) | Command::Draw(_) | Command::Export(_) => Format::Text,
+            Command::Schema | Command::Completions(_) | Command::Man => Format::Text,
         }
     }
 }

@@ -1,5 +1,5 @@
-//! What is being done: a line for each step on standard error if asked for, or one line that is redrawn, with the time that
-//! it takes, if that is a terminal.
+//! What is being done: a line for each step on standard error if asked for, or one line that is redrawn, with the share that
+//! is done and the time that is left, if that is a terminal.
 
 use std::io::{self, IsTerminal, Write};
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
@@ -17,6 +17,9 @@ const QUIET: Duration = Duration::from_secs(1);
 
 /// Places of the bar.
 const BAR: usize = 20;
+
+/// What takes longer than expected is not done before it is.
+const ALMOST: f64 = 0.99;
 
 /// Fewer parts say little of those to come.
 const TELLING_PARTS: usize = 5;
@@ -96,14 +99,43 @@ impl Pace {
 
 fn line(activity: &Activity, elapsed: Duration, left: Option<Duration>) -> String {
     let step = Activity { part: None, ..activity.clone() };
-    let Some(part) = &activity.part else { return format!("{} s: {step}", elapsed.as_secs()) };
-    let filled = (BAR as u128 * part.number.saturating_sub(1) as u128 / part.of.max(1) as u128) as usize;
+    let passed = format!("{} passed", time(elapsed));
+    if let Some(part) = &activity.part {
+        let done = part.number.saturating_sub(1) as f64 / part.of.max(1) as f64;
+        let time = left.map_or(passed, |left| format!("{} left", time(left)));
+        return format!("{} {part}, {time}: {step}", bar(done));
+    }
+    match activity.timed.filter(|(_, expected)| *expected >= QUIET) {
+        Some((began, expected)) => {
+            let (done, left) = of_expected(began.elapsed(), expected);
+            let time = left.map_or(passed, |left| format!("about {} left of this", time(left)));
+            format!("{} {time}: {step}", bar(done))
+        }
+        None => format!("{passed}: {step}"),
+    }
+}
+
+/// The share of work that is done after so much of the time that it is expected to take, and the time left; `None` if it takes
+/// longer than expected.
+fn of_expected(passed: Duration, expected: Duration) -> (f64, Option<Duration>) {
+    let share = passed.as_secs_f64() / expected.as_secs_f64();
+    (share.min(ALMOST), expected.checked_sub(passed))
+}
+
+/// A bar with the share of it that is filled.
+fn bar(done: f64) -> String {
+    let filled = (BAR as f64 * done) as usize;
     let bar: String = (0..BAR).map(|place| if place < filled { '#' } else { '.' }).collect();
-    let time = match left {
-        Some(left) => format!("{:.0} s left", left.as_secs_f64()),
-        None => format!("{} s", elapsed.as_secs()),
-    };
-    format!("[{bar}] {part}, {time}: {step}")
+    format!("[{bar}] {:.0} %", (100.0 * done).floor())
+}
+
+/// A time as a reader says it.
+fn time(time: Duration) -> String {
+    match time.as_secs_f64().round() as u64 {
+        seconds @ 0..60 => format!("{seconds} s"),
+        seconds @ 60..3600 => format!("{} min {} s", seconds / 60, seconds % 60),
+        seconds => format!("{} h {} min", seconds / 3600, seconds / 60 % 60),
+    }
 }
 
 #[cfg(test)]
@@ -111,16 +143,35 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_says_what_is_done_and_how_long_it_takes() {
+    fn a_line_says_what_is_done_what_share_of_it_and_how_long_it_takes() {
         let seconds = Duration::from_secs;
-        let alone = Activity { part: None, step: "active set", iteration: 3 };
-        assert_eq!(line(&alone, seconds(12), None), "12 s: active set, iteration 3");
+        let alone = Activity { step: "active set", iteration: 3, ..Activity::default() };
+        assert_eq!(line(&alone, seconds(12), None), "12 s passed: active set, iteration 3");
         let part = Some(Part { name: "gap", number: 16, of: 30 });
-        let one_of_many = Activity { part, step: "factorisation", iteration: 0 };
-        let bar = "[##########..........] gap 16 of 30";
-        assert_eq!(line(&one_of_many, seconds(12), None), format!("{bar}, 12 s: factorisation"));
-        assert_eq!(line(&one_of_many, seconds(12), Some(seconds(7))), format!("{bar}, 7 s left: factorisation"));
+        let one_of_many = Activity { part, step: "factorisation", ..Activity::default() };
+        let bar = "[##########..........] 50 % gap 16 of 30";
+        assert_eq!(line(&one_of_many, seconds(12), None), format!("{bar}, 12 s passed: factorisation"));
+        assert_eq!(
+            line(&one_of_many, seconds(12), Some(seconds(77))),
+            format!("{bar}, 1 min 17 s left: factorisation")
+        );
         assert_eq!(one_of_many.to_string(), "gap 16 of 30: factorisation");
         assert_eq!(Activity { step: "", ..one_of_many }.to_string(), "gap 16 of 30");
+    }
+
+    #[test]
+    fn work_of_a_known_length_shows_its_share_and_never_all_of_it() {
+        let seconds = Duration::from_secs;
+        assert_eq!(of_expected(seconds(3), seconds(12)), (0.25, Some(seconds(9))));
+        assert_eq!(of_expected(seconds(13), seconds(12)), (ALMOST, None));
+        let timed = Some((Instant::now(), seconds(3600)));
+        let one = Activity { step: "factorisation", timed, ..Activity::default() };
+        let shown = line(&one, seconds(2), None);
+        assert!(shown.starts_with("[....................] 0 % about "), "{shown}");
+        assert!(shown.ends_with(" left of this: factorisation"), "{shown}");
+        let short = Activity { timed: Some((Instant::now(), QUIET / 2)), ..one };
+        assert_eq!(line(&short, seconds(2), None), "2 s passed: factorisation");
+        let times = [59, 60, 3599, 3600, 7325].map(|length| time(seconds(length)));
+        assert_eq!(times, ["59 s", "1 min 0 s", "59 min 59 s", "1 h 0 min", "2 h 2 min"]);
     }
 }

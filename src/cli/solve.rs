@@ -1,14 +1,16 @@
 //! `signorini solve`: one answer.
 
+use std::path::Path;
+
 use super::dynamic;
 use super::input::{Input, Source};
-use super::options::{Accuracy, Common, Solve};
+use super::options::{Accuracy, Solve};
 use super::outcome::{Outcome, Report, warn};
 use super::settings::settings;
 use super::total_error;
 use crate::error::Error;
-use crate::output::{gallery, solve_text};
-use crate::qp::{Method, Settings, solve};
+use crate::output::{gallery, solve_text, why_text};
+use crate::qp::{Method, Settings, Start, read_vector, solve_from};
 use crate::scene::Scene;
 use crate::solution::{Goal, Solution};
 use crate::study::total_error::TotalErrorGoal;
@@ -28,7 +30,7 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
     if let Source::Scene(scene, _) = &source {
         report_seconds = REPORT * assembly_seconds(scene, options, watch)?;
         if scene.analysis.is_some() {
-            return dynamic::run(options, scene, watch);
+            return motion(options, scene, watch);
         }
     }
     if let Some(bound) = options.total_error {
@@ -67,14 +69,33 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
     if let Method::Penalty(ladder) = &mut settings.method {
         ladder.extrapolate = options.extrapolate;
     }
-    let solution = best_of(&input, &settings)?;
+    let start = options.start.as_deref().map_or_else(|| Ok(Start::default()), earlier)?;
+    let solution = best_of(&input, start, &settings)?;
     if options.extrapolate && !matches!(settings.method, Method::Penalty(_)) {
         let method = &solution.method;
         warn(&format!(
             "warning: --extrapolate changes nothing: the method is {method}; it goes with --method penalty\n"
         ));
     }
-    reported(&input, solution, settings.goal(), &options.common, watch)
+    reported(&input, solution, settings.goal(), options, watch)
+}
+
+/// The motion of a scene, without what is for one solve.
+fn motion(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outcome, Error> {
+    if options.start.is_some() {
+        let message = "a motion starts from its initial state, not from an answer; --resume goes on with one";
+        return Err(Error::Scene { path: "--start".into(), message: message.into() });
+    }
+    if options.explain {
+        warn("warning: --explain tells nothing of a motion: it is of one solve\n");
+    }
+    dynamic::run(options, scene, watch)
+}
+
+/// The answer that an earlier run left in a folder, to start from.
+fn earlier(folder: &Path) -> Result<Start, Error> {
+    let [displacement, multiplier] = ["u.mtx", "lambda.mtx"].map(|name| read_vector(&folder.join(name)));
+    Ok(Start::earlier(displacement?, &multiplier?))
 }
 
 /// Refuses a scene that does not fit into memory or time; the seconds that its assembly will take.
@@ -94,8 +115,8 @@ fn assembly_seconds(scene: &Scene, options: &Solve, watch: &Watch) -> Result<f64
 }
 
 /// The answer, certified or not.
-fn best_of(input: &Input, settings: &Settings) -> Result<Solution, Error> {
-    match solve(input.problem(), settings) {
+fn best_of(input: &Input, start: Start, settings: &Settings) -> Result<Solution, Error> {
+    match solve_from(input.problem(), start, settings) {
         Err(error @ Error::NotCertified { .. }) => {
             warn(&format!("error: {error}\n"));
             let Error::NotCertified { solution, .. } = error else { return Err(error) };
@@ -106,7 +127,8 @@ fn best_of(input: &Input, settings: &Settings) -> Result<Solution, Error> {
 }
 
 /// Reports an answer, and leaves what `--out` asks for.
-fn reported(input: &Input, solution: Solution, goal: Goal, common: &Common, watch: &Watch) -> Result<Outcome, Error> {
+fn reported(input: &Input, solution: Solution, goal: Goal, options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
+    let common = &options.common;
     watch.step("report", 0);
     let answer = input.answer(&solution)?;
     let mut summary = input.summary(solution, answer.as_ref(), goal)?;
@@ -117,7 +139,11 @@ fn reported(input: &Input, solution: Solution, goal: Goal, common: &Common, watc
         summary.discretisation_error = Some(of_mesh.relative());
         summary.strain_energy = Some(answer.model().parts_of_whole() * of_mesh.strain_energy());
     }
-    let report = Report::new(&summary, solve_text(&input.title, &summary, &input.units))?;
+    let mut text = solve_text(&input.title, &summary, &input.units);
+    if let Some(why) = summary.solution.why.as_ref().filter(|_| options.explain) {
+        text += &why_text(why);
+    }
+    let report = Report::new(&summary, text)?;
     let status = summary.status;
     let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, status)) };
     gallery::write_answer(&folder, &summary.solution, answer.as_ref())?;

@@ -1,16 +1,37 @@
-//! `signorini sweep`: one scene at several gaps.
+//! `signorini sweep`: one scene at several gaps or forces, or one problem directory on the way to its other end.
 
-use super::input::{scene_title, still_model, warnings};
+use super::input::{Input, scene_title, still_model, warnings};
 use super::options::{Gaps, Sweep};
 use super::outcome::{Outcome, Report, warn};
 use super::settings::settings;
 use crate::error::Error;
-use crate::output::{gallery, sweep_text};
+use crate::output::{draw_problem_sweep, gallery, problem_sweep_text, sweep_text, write_points};
+use crate::qp::matrix_market::read_other_end;
 use crate::study::scene::{even_gaps, sweep_forces};
-use crate::study::sweep;
+use crate::study::{sweep, sweep_problem};
 use crate::watch::Watch;
 
 pub(super) fn run(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
+    // Any other folder is refused as a scene.
+    let is_problem = options.scene.join("K.mtx").exists();
+    match (is_problem, options.points) {
+        (true, Some(points)) => of_problem(options, points, watch),
+        (true, None) => {
+            let given = if options.gaps.is_some() { "--gaps" } else { "--forces" };
+            let name = options.scene.display();
+            let message = format!("{name} is a problem directory, whose other end is g1.mtx, f1.mtx: give --points");
+            Err(Error::Scene { path: given.into(), message })
+        }
+        (false, Some(_)) => {
+            let name = options.scene.display();
+            let message = format!("{name} is no problem directory; a scene is swept over --gaps or --forces");
+            Err(Error::Scene { path: "--points".into(), message })
+        }
+        (false, None) => of_scene(options, watch),
+    }
+}
+
+fn of_scene(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
     let common = &options.common;
     let model = still_model(&options.scene, &common.limits)?;
     warn(&warnings(&model));
@@ -28,4 +49,20 @@ pub(super) fn run(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
     report.write(&folder)?;
     let outcome = report.outcome(common.format, status);
     Ok(outcome.with_pictures(move || gallery::write_sweep(&folder, &swept)))
+}
+
+fn of_problem(options: &Sweep, points: usize, watch: &Watch) -> Result<Outcome, Error> {
+    let common = &options.common;
+    let input = Input::read(&options.scene, &common.limits)?;
+    let last = read_other_end(&options.scene, input.problem())?;
+    let settings = settings(options.method, common, watch);
+    let swept = sweep_problem(input.problem(), &last, points, &settings)?;
+    watch.step("report", 0);
+    let report = Report::new(&swept, problem_sweep_text(&input.title, &swept))?;
+    let status = swept.points.iter().map(|point| point.summary.status).collect();
+    let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, status)) };
+    write_points(&folder, &swept)?;
+    report.write(&folder)?;
+    let outcome = report.outcome(common.format, status);
+    Ok(outcome.with_pictures(move || draw_problem_sweep(&folder, &input.title, &swept)))
 }

@@ -20,7 +20,7 @@ use crate::study::{Summary, Sweep, SweepCorner, SweepPoint};
 const MOST_ITERATIONS: usize = 12;
 
 /// Pieces of the line of an obstacle.
-const OUTLINE_SEGMENTS: usize = 200;
+pub(super) const OUTLINE_SEGMENTS: usize = 200;
 
 /// Writes `u.mtx` and `lambda.mtx`; of a scene what their entries are those of, and what happens at each row (`dofs.csv`, `rows.csv`,
 /// `contact.csv`).
@@ -173,7 +173,7 @@ pub fn write_sweep(folder: &Path, sweep: &Sweep) -> Result<(), Error> {
 /// A number of something that is plotted.
 type Value<'a, T> = &'a dyn Fn(&T) -> f64;
 
-fn headline(model: &Model, what: &str) -> String {
+pub(super) fn headline(model: &Model, what: &str) -> String {
     let gap = match model.pressing_force() {
         Some(force) => format!("force {} {}", brief(force), model.units().force),
         None => format!("gap {} {}", brief(model.gap()), model.units().length),

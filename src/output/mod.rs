@@ -33,8 +33,12 @@ mod obstacle;
 mod paint;
 mod panels;
 pub(crate) mod plot;
+#[cfg(feature = "cli")]
+mod problem_sweep;
 mod raster;
 mod report;
+#[cfg(feature = "cli")]
+mod set_up;
 mod shape;
 mod style;
 mod svg;
@@ -62,8 +66,12 @@ pub use motion_report::MotionReport;
 pub use motion_tradeoff::{motion_tradeoff_csv, motion_tradeoff_plot, motion_tradeoff_text};
 pub use plot::{Plot, Series, line_plots};
 #[cfg(feature = "cli")]
-pub(crate) use report::printable;
+pub(crate) use problem_sweep::{draw_problem_sweep, problem_sweep_text, write_points};
 pub use report::{compare_text, solve_text, sweep_text, verify_text};
+#[cfg(feature = "cli")]
+pub(crate) use report::{printable, why_text};
+#[cfg(feature = "cli")]
+pub(crate) use set_up::set_up_picture;
 pub use ticks::{Quantity, Scale};
 #[cfg(feature = "cli")]
 pub(crate) use total_error::{total_error_text, write_total_error};

@@ -1,6 +1,10 @@
 //! Answers as text and as JSON.
 
+#[cfg(feature = "cli")]
+use crate::error::memory;
 use crate::scene::{Resultant, Rule, Segment, Units};
+#[cfg(feature = "cli")]
+use crate::solution::Why;
 use crate::solution::{Certificate, Goal, ProvenSet};
 use crate::study::{Agreement, AnswerWarning, ContactSummary, Summary, Sweep, SweepEvent, SweepPoint, Verification};
 
@@ -84,6 +88,19 @@ pub fn solve_text(title: &str, summary: &Summary, units: &Units) -> String {
             seconds.assemble, seconds.factor, seconds.solve, seconds.proof, seconds.total
         ),
     );
+    text
+}
+
+/// What was weighed before a solve, and what decided, in lines of at most 100 characters.
+#[cfg(feature = "cli")]
+pub fn why_text(why: &Why) -> String {
+    let mut text = listed("why", vec![why.reason.clone()]);
+    for (number, expected) in why.considered.iter().enumerate() {
+        let name = if number == 0 { "expected" } else { "" };
+        let taken = if expected.method == why.chosen { ", chosen" } else { "" };
+        let (seconds, memory) = (expected.seconds, memory(expected.bytes));
+        text += &entry(name, &format!("{:<8}{seconds:.1e} s, {memory}{taken}", expected.method));
+    }
     text
 }
 
@@ -301,7 +318,7 @@ pub fn verify_text(title: &str, verification: &Verification) -> String {
 }
 
 /// Events of a sweep that its text shows; the rest is in the JSON form.
-const MOST_EVENTS: usize = 40;
+pub(super) const MOST_EVENTS: usize = 40;
 
 /// The table of a sweep, and what happens between its gaps.
 pub fn sweep_text(title: &str, sweep: &Sweep, units: &Units) -> String {
@@ -350,7 +367,7 @@ fn in_unit(name: &str, unit: &str) -> String {
     if unit.is_empty() { name.to_string() } else { format!("{name} [{}]", printable(unit)) }
 }
 
-fn conditions(certificate: &Certificate) -> [(&'static str, &'static str, String); 6] {
+pub(super) fn conditions(certificate: &Certificate) -> [(&'static str, &'static str, String); 6] {
     let bound = match certificate.energy_error_bound {
         bound if bound.is_finite() && certificate.bound_is_measured => format!("{}, measured", number(bound)),
         bound if bound.is_finite() => number(bound),

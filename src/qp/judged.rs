@@ -21,6 +21,7 @@ pub(super) fn answer(outcome: Outcome, name: &str, certificate: Certificate) -> 
         refinements: None,
         lost_pivot: None,
         reason: None,
+        why: None,
         attempts: Vec::new(),
         seconds: Seconds::default(),
     }

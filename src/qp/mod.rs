@@ -70,6 +70,17 @@ pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, 
     claims::rechecked(problem, settings, attempts::solved(problem, settings))
 }
 
+/// The same from what is known of the answer, as that of a problem nearby.
+///
+/// # Errors
+/// As [`solve`]; [`Error::Length`] for a start that does not fit.
+#[cfg(feature = "cli")]
+pub(crate) fn solve_from(problem: &ContactProblem, start: Start, settings: &Settings) -> Result<Solution, Error> {
+    start.check(problem.dofs(), problem.rows())?;
+    let settings = &settings.started()?;
+    claims::rechecked(problem, settings, attempts::solved_from(start, problem, settings))
+}
+
 /// Solves a contact problem as a QP by the interior-point method, polished, certified to 1e-9.
 ///
 /// # Errors

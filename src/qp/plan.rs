@@ -31,10 +31,13 @@ use super::problem::ContactProblem;
 use super::settings::{Condense, Method, Precision, Settings};
 use super::transform::{Condensation, Pieces, Scaling};
 use crate::error::{Error, memory as written};
-use crate::solution::Certificate;
+use crate::solution::{Certificate, Expected, Why};
 
 /// The direct path is exact and its bound proven: it is left only if it takes this many times as long.
 const CLEARLY: f64 = 1.15;
+
+/// What the methods that factorise are called where they are weighed against multigrid.
+const WITH_FACTOR: &str = "factor";
 
 /// Cycles beyond those that a factorisation is worth: an answer may be near.
 const MARGIN: usize = 10;
@@ -46,7 +49,7 @@ const UNSURE: f64 = 2.0;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Choice {
     /// The direct path.
-    Factor,
+    Factor { reason: String },
     /// Multigrid: it is much the faster, unless it takes more cycles than this.
     Speed { reason: String, most_cycles: usize },
     /// Multigrid: nothing else fits into the memory.
@@ -56,7 +59,7 @@ pub(super) enum Choice {
 impl Estimate {
     /// Is the iterative path the better one: much the faster, or the only one within `most_bytes`?
     pub fn prefers_multigrid(&self, most_bytes: f64) -> bool {
-        !matches!(self.choose(most_bytes), Ok(Choice::Factor) | Err(_))
+        !matches!(self.choose(most_bytes), Ok(Choice::Factor { .. }) | Err(_))
     }
 
     /// The path to take within `most_bytes`; whether a factor fits that is not clearly too large, its analysis tells.
@@ -76,7 +79,34 @@ impl Estimate {
         if self.direct_bytes > UNSURE * most_bytes {
             return self.without_factor(self.direct_bytes, most_bytes).map(|reason| Choice::Room { reason });
         }
-        Ok(Choice::Factor)
+        let slower = 1.0 / ratio;
+        let reason = match self.smooth {
+            Smooth::Unknown => {
+                "with a factor: nothing tells multigrid which motions cost next to no energy".to_string()
+            }
+            _ if self.multigrid_bytes > most_bytes => {
+                let [of_multigrid, allowed] = [self.multigrid_bytes, most_bytes].map(written);
+                format!("with a factor: multigrid would take about {of_multigrid}, {allowed} are allowed")
+            }
+            _ if slower > 1.0 => format!("with a factor: multigrid would take about {slower:.1} times as long"),
+            _ => format!("with a factor: its bound is proven, and multigrid is not {CLEARLY} times as fast"),
+        };
+        Ok(Choice::Factor { reason })
+    }
+
+    /// What was weighed for a choice, and what decided it.
+    pub(super) fn why(&self, choice: &Choice) -> Why {
+        let mprgp = Method::Mprgp.name();
+        let (chosen, reason) = match choice {
+            Choice::Factor { reason } => (WITH_FACTOR, reason),
+            Choice::Speed { reason, .. } | Choice::Room { reason } => (mprgp, reason),
+        };
+        let expected = |method: &str, seconds, bytes| Expected { method: method.to_string(), seconds, bytes };
+        let considered = vec![
+            expected(WITH_FACTOR, self.direct_seconds, self.direct_bytes),
+            expected(mprgp, self.multigrid_seconds, self.multigrid_bytes),
+        ];
+        Why { chosen: chosen.to_string(), reason: reason.clone(), considered }
     }
 
     /// The same for each of many gaps, which share the first factor, and the hierarchy.
@@ -105,13 +135,25 @@ impl Estimate {
     }
 }
 
-/// The method that so many gaps of `problem` are prepared for, where it is left to the program.
-pub(super) fn method_for(problem: &ContactProblem, gaps: usize, settings: &Settings) -> Method {
-    let choice = Estimate::of(problem).of_many(gaps).choose(settings.memory.unwrap_or(f64::INFINITY));
-    match (settings.method, choice) {
-        (Method::Auto, Ok(Choice::Speed { .. } | Choice::Room { .. })) => Method::Mprgp,
-        (method, _) => method,
+/// The method that so many gaps of `problem` are prepared for, where it is left to the program, and why.
+pub(super) fn method_for(problem: &ContactProblem, gaps: usize, settings: &Settings) -> (Method, Option<Why>) {
+    if settings.method != Method::Auto {
+        return (settings.method, Some(by_name(settings.method)));
     }
+    let estimate = Estimate::of(problem).of_many(gaps);
+    // Where neither path fits, the preparation says so.
+    let Ok(choice) = estimate.choose(settings.memory.unwrap_or(f64::INFINITY)) else { return (Method::Auto, None) };
+    let why = Some(estimate.why(&choice));
+    match choice {
+        Choice::Speed { .. } | Choice::Room { .. } => (Method::Mprgp, why),
+        Choice::Factor { .. } => (Method::Auto, why),
+    }
+}
+
+/// Why a method is taken that was asked for.
+pub(super) fn by_name(method: Method) -> Why {
+    let reason = format!("by {}: it was asked for", method.name());
+    Why { chosen: method.name().to_string(), reason, considered: Vec::new() }
 }
 
 /// A piece has at least this number of unknowns, if all parts together have twice as many: parts with fewer are solved sooner
@@ -419,6 +461,18 @@ pub(super) struct Tried {
 }
 
 impl Tried {
+    /// Which of the methods with a factor is taken, in words, where the choice was left to the program.
+    pub fn in_words(&self, multiplications: f64) -> String {
+        let on = match self.condensed_dofs {
+            Some(dofs) => format!("condensed to {dofs} dofs"),
+            None => "on all dofs".to_string(),
+        };
+        let method = self.method.name();
+        format!(
+            "of such methods {method}, {on}, by the rules fitted for {multiplications:.1e} multiplications of a factor"
+        )
+    }
+
     /// A method on all dofs that is no shortcut.
     pub fn on_all_dofs(method: Method) -> Self {
         Tried { method, condensed_dofs: None, is_shortcut: false }

@@ -6,7 +6,7 @@ use super::moving_supports::MovingSupports;
 use super::resultants::without_rounding;
 use super::schema::{AnalysisSpec, DynamicSpec, FieldSpec, MassSpec, PenetrationSpec, Scene};
 use super::{Model, Resultant, Warning, WatchedPoint};
-use crate::error::Error;
+use crate::error::{Error, nearly};
 use crate::fem::assembly::{MassForm, free_load, free_mass, internal_force, nodal_mass};
 use crate::fem::body::{ElasticBody, Phase};
 use crate::motion::{DynamicProblem, Integrator, MOST_IN_CONTACT, Scheme, SchemeSpec, stable_step};
@@ -318,7 +318,10 @@ impl DynamicSpec {
                 None => 0..body.mesh().nodes().len(),
                 Some(name) => {
                     let region = body.regions().iter().find(|region| region.name() == name && !name.is_empty());
-                    let missing = || wrong(format!("{path}.body"), format!("there is no further body `{name}`"));
+                    let missing = || {
+                        let meant = nearly(name, body.regions().iter().map(|region| region.name()));
+                        wrong(format!("{path}.body"), format!("there is no further body `{name}`{meant}"))
+                    };
                     region.ok_or_else(missing)?.nodes()
                 }
             };

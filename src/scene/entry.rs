@@ -1,6 +1,6 @@
 //! Entries of a scene: how they are checked, and named in messages.
 
-use crate::error::Error;
+use crate::error::{Error, nearly};
 use crate::fem::geometry::distance;
 use crate::fem::mesh::{Boundary, Mesh};
 
@@ -86,7 +86,8 @@ pub(super) fn located(error: Error, prefix: &str) -> Error {
 pub(super) fn boundary<'a>(mesh: &'a Mesh, name: &str, path: &str) -> Result<&'a Boundary, Error> {
     mesh.boundary(name).ok_or_else(|| {
         let names: Vec<&str> = mesh.boundaries().iter().map(|boundary| boundary.name.as_str()).collect();
-        wrong(path, format!("there is no boundary `{name}`; there are {}", names.join(", ")))
+        let meant = nearly(name, names.iter().copied());
+        wrong(path, format!("there is no boundary `{name}`; there are {}{meant}", names.join(", ")))
     })
 }
 

@@ -112,6 +112,21 @@ impl Held {
 }
 
 impl Held {
+    /// The held nodes with the directions along which they are held, each once.
+    #[cfg(feature = "cli")]
+    pub fn directions(&self) -> impl Iterator<Item = (usize, Vec<[f64; 3]>)> {
+        self.nodes.iter().map(|(&node, components)| {
+            let mut directions: Vec<[f64; 3]> = Vec::new();
+            for component in components {
+                let is_new = |known: &[f64; 3]| dot(*known, component.direction).abs() < 1.0 - DEPENDENT_NORMAL;
+                if directions.iter().all(is_new) {
+                    directions.push(component.direction);
+                }
+            }
+            (node, directions)
+        })
+    }
+
     /// The force at each held node, shared among those who hold it: each along its own direction, the first of those who hold the
     /// same one.
     pub fn shares(&self, force: impl Fn(usize) -> [f64; 3]) -> impl Iterator<Item = (usize, Vec<(Holder, [f64; 3])>)> {

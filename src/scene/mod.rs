@@ -28,6 +28,8 @@ mod entry;
 mod explain;
 mod files;
 mod held;
+#[cfg(feature = "cli")]
+mod json_schema;
 mod load;
 mod loads_in_time;
 mod locate;
@@ -47,6 +49,8 @@ mod rows;
 pub(crate) mod schema;
 mod segments;
 mod selection;
+#[cfg(feature = "cli")]
+mod set_up;
 mod size;
 mod springs;
 #[cfg(feature = "cli")]
@@ -69,6 +73,8 @@ pub use rows::ContactRow;
 pub use schema::{Rule, Scene, Units};
 pub(crate) use segments::straight_cells;
 pub use segments::{ContactExtent, Segment};
+#[cfg(feature = "cli")]
+pub(crate) use set_up::{HeldNode, Hold};
 pub use size::Size;
 #[cfg(feature = "cli")]
 pub(crate) use start::start_scene;

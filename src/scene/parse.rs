@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::Scene;
 use super::schema::json::object;
-use crate::error::Error;
+use crate::error::{Error, nearly};
 use crate::file::{MOST_OF_SCENE, read_text_capped};
 
 impl Scene {
@@ -47,12 +47,6 @@ impl Scene {
         let scene = Self::from_json(&text, &path.display().to_string())?;
         Ok(Scene { folder: path.parent().map(Path::to_path_buf), ..scene })
     }
-
-    /// The JSON Schema of scenes.
-    #[cfg(feature = "cli")]
-    pub fn json_schema() -> serde_json::Value {
-        schemars::schema_for!(Scene).to_value()
-    }
 }
 
 /// The text with lines of comment left empty, so that all others keep their numbers.
@@ -91,5 +85,16 @@ fn in_words(error: &serde_json::Error) -> String {
     for (rust, json) in WORDS {
         message = message.replace(rust, json);
     }
-    message
+    let meant = meant(&message);
+    message + &meant
+}
+
+/// What may be meant by a field or a choice that the parser does not know; it names all that it knows.
+fn meant(message: &str) -> String {
+    let unknown = ["unknown field `", "unknown choice `"].iter().find_map(|start| message.strip_prefix(start));
+    let Some((name, known)) = unknown.and_then(|unknown| unknown.split_once("`, expected ")) else {
+        return String::new();
+    };
+    // Of the pieces between marks every second one is a name.
+    nearly(name, known.split('`').skip(1).step_by(2))
 }

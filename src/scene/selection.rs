@@ -2,7 +2,7 @@
 
 use super::entry::wrong;
 use super::schema::part::PartBoxSpec;
-use crate::error::Error;
+use crate::error::{Error, nearly};
 use crate::fem::body::ElasticBody;
 
 /// Which elements of a body are meant: those of a group, those whose centroid lies in a box, those in both; all if neither is given.
@@ -44,7 +44,8 @@ fn of_group(body: &ElasticBody, name: &str, path: &str) -> Result<Vec<usize>, Er
             true => "the body has none".to_string(),
             false => format!("there are {}", names.join(", ")),
         };
-        return Err(wrong(format!("{path}.group"), format!("there is no group of elements `{name}`; {there}")));
+        let meant = nearly(name, groups.iter().map(|group| group.name.as_str()));
+        return Err(wrong(format!("{path}.group"), format!("there is no group of elements `{name}`; {there}{meant}")));
     }
     Ok(elements)
 }

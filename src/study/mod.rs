@@ -4,6 +4,8 @@ mod compare;
 mod motion;
 mod motion_tradeoff;
 mod moving_mean;
+#[cfg(feature = "cli")]
+mod problem_sweep;
 pub(crate) mod scene;
 mod summary;
 #[cfg(feature = "cli")]
@@ -14,6 +16,8 @@ mod warnings;
 pub use compare::{Agreement, Comparison, Difference, MethodAnswer, compare};
 pub use motion::MotionSummary;
 pub use motion_tradeoff::{MotionPoint, MotionTradeoff, motion_tradeoff};
+#[cfg(feature = "cli")]
+pub(crate) use problem_sweep::{ProblemPoint, ProblemSweep, sweep_problem};
 pub use scene::{Sweep, SweepCorner, SweepEvent, SweepPoint, scene_summary, sweep};
 pub use summary::{ContactSummary, ModelSize, RunSeconds, Status, Summary, Verification};
 #[cfg(feature = "cli")]

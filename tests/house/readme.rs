@@ -93,16 +93,25 @@ fn the_readme_stays_short() {
 }
 
 #[test]
-fn every_command_of_the_readme_is_one_of_the_program() {
+fn the_commands_of_the_readme_are_those_of_the_program() {
     let readme = read("README.md");
-    let mut found = 0;
-    for line in readme.lines().filter_map(|line| line.strip_prefix("| `signorini ")) {
-        let name = line.split([' ', '`']).next().unwrap();
-        let help = Command::new(env!("CARGO_BIN_EXE_signorini")).args([name, "--help"]).output().unwrap();
-        assert!(help.status.success(), "signorini {name} --help");
-        found += 1;
+    let program = |arguments: &[&str]| {
+        let output = Command::new(env!("CARGO_BIN_EXE_signorini")).args(arguments).output().unwrap();
+        (output.status.success(), String::from_utf8(output.stdout).unwrap())
+    };
+    let rows = readme.lines().filter(|line| line.starts_with("| `signorini "));
+    let named = rows.flat_map(|row| row.split('|').nth(1).unwrap().split("`signorini ").skip(1));
+    let mut named: Vec<&str> = named.map(|rest| rest.split([' ', '`']).next().unwrap()).collect();
+    for name in &named {
+        assert!(program(&[name, "--help"]).0, "signorini {name} --help");
     }
-    assert_eq!(found, 8);
+    let help = program(&["--help"]).1;
+    let of_program = help.split("Commands:\n").nth(1).unwrap().split("\n\n").next().unwrap();
+    let mut of_program: Vec<&str> = of_program.lines().filter_map(|line| line.split_whitespace().next()).collect();
+    of_program.retain(|name| *name != "help");
+    named.sort_unstable();
+    of_program.sort_unstable();
+    assert_eq!(named, of_program, "the commands of README.md and those of the program");
 }
 
 #[test]

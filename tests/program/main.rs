@@ -11,6 +11,7 @@ mod auto;
 mod blocks;
 mod exit_codes;
 mod files_read;
+mod habits;
 mod limits;
 mod memory;
 mod motion_runs;

@@ -1,6 +1,7 @@
-//! The printed schema of a scene: every example conforms to it.
+//! The printed schema of a scene: every example conforms to it, and what it refuses the program refuses too.
 
 use std::fs;
+use std::path::Path;
 
 use crate::program::{Desk, example, examples, scene};
 use serde_json::{Value, json};
@@ -11,6 +12,7 @@ fn conforms(value: &Value, schema: &Value, root: &Value) -> Result<(), String> {
     for word in keys(schema) {
         let known = [
             "$defs",
+            "$id",
             "$ref",
             "$schema",
             "title",
@@ -18,6 +20,9 @@ fn conforms(value: &Value, schema: &Value, root: &Value) -> Result<(), String> {
             "default",
             "format",
             "minimum",
+            "exclusiveMinimum",
+            "maximum",
+            "minLength",
             "type",
             "const",
             "enum",
@@ -49,6 +54,18 @@ fn conforms(value: &Value, schema: &Value, root: &Value) -> Result<(), String> {
         if !kinds.as_array().map_or_else(|| is(kinds), |kinds| kinds.iter().any(is)) {
             return Err(format!("{value} is not of type {kinds}"));
         }
+    }
+    if let Some(number) = value.as_f64() {
+        let bound = |word: &str| schema[word].as_f64();
+        let is_within = bound("minimum").is_none_or(|least| number >= least)
+            && bound("exclusiveMinimum").is_none_or(|least| number > least)
+            && bound("maximum").is_none_or(|most| number <= most);
+        if !is_within {
+            return Err(format!("{number} is out of its range"));
+        }
+    }
+    if value.as_str().is_some_and(|text| (text.len() as u64) < schema["minLength"].as_u64().unwrap_or(0)) {
+        return Err("the text is too short".into());
     }
     if schema.get("const").is_some_and(|constant| constant != value) {
         return Err(format!("{value} is not {}", schema["const"]));
@@ -105,4 +122,51 @@ fn every_example_conforms_to_the_printed_schema_and_a_misspelt_one_does_not() {
         *wrong.pointer_mut(pointer).unwrap() = value;
         assert!(conforms(&wrong, &schema, &schema).is_err(), "{pointer}");
     }
+}
+
+/// The scenes of `tests/wrong_scenes.json`: what is wrong, and the scene.
+fn wrong_scenes() -> Vec<(String, Value)> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/wrong_scenes.json");
+    let file: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
+    let change = |change: &Value| {
+        let mut scene = file["base"].clone();
+        let (place, key) = change["at"].as_str().unwrap().rsplit_once('/').unwrap();
+        let place = scene.pointer_mut(place).unwrap();
+        match (place, change.get("value")) {
+            (Value::Array(items), Some(value)) => items[key.parse::<usize>().unwrap()] = value.clone(),
+            (Value::Object(fields), Some(value)) => drop(fields.insert(key.to_string(), value.clone())),
+            (Value::Object(fields), None) => drop(fields.remove(key).unwrap()),
+            (place, _) => panic!("{place} has no {key}"),
+        }
+        (change["wrong"].as_str().unwrap().to_string(), scene)
+    };
+    file["changes"].as_array().unwrap().iter().map(change).collect()
+}
+
+#[test]
+fn what_the_schema_refuses_the_program_refuses_too() {
+    let desk = Desk::new();
+    let schema = desk.run(&["schema"]).ends_with(0).json();
+    let file = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/wrong_scenes.json")).unwrap();
+    let base = &serde_json::from_str::<Value>(&file).unwrap()["base"];
+    conforms(base, &schema, &schema).unwrap();
+    desk.write("base.json", base.to_string());
+    desk.run(&["solve", "base.json"]).ends_with(0);
+    let wrong = wrong_scenes();
+    assert!(wrong.len() >= 20, "{}", wrong.len());
+    for (what, scene) in wrong {
+        assert!(conforms(&scene, &schema, &schema).is_err(), "the schema takes {what}");
+        desk.write("wrong.json", scene.to_string());
+        let run = desk.run(&["solve", "wrong.json"]);
+        assert_eq!(run.code, 1, "the program takes {what}: {}{}", run.stdout, run.stderr);
+    }
+}
+
+#[test]
+fn the_schema_has_a_name_and_no_null() {
+    let schema = Desk::new().run(&["schema"]).ends_with(0).json();
+    assert_eq!(schema["$id"], format!("urn:signorini:scene:{}", env!("CARGO_PKG_VERSION")));
+    assert_eq!(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
+    assert!(schema["properties"]["$schema"]["description"].as_str().unwrap().contains("for editors"));
+    assert!(!schema.to_string().contains("null"));
 }

@@ -7,7 +7,7 @@ use std::process::Stdio;
 use crate::program::{Desk, example, scene};
 use serde_json::json;
 
-const COMMANDS: [&str; 6] = ["solve", "compare", "sweep", "export", "verify", "schema"];
+const COMMANDS: [&str; 9] = ["solve", "compare", "sweep", "draw", "export", "verify", "schema", "completions", "man"];
 
 #[test]
 fn no_arguments_show_the_help() {

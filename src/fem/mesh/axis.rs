@@ -10,11 +10,14 @@ use super::MAX_NODES;
 #[serde(deny_unknown_fields)]
 pub struct Axis {
     /// Breakpoints, at least two, increasing.
+    #[cfg_attr(feature = "cli", schemars(extend("minItems" = 2)))]
     pub points: Vec<f64>,
     /// Cells of each interval between breakpoints, at least 1.
+    #[cfg_attr(feature = "cli", schemars(extend("minItems" = 1, "items" = {"type": "integer", "format": "uint", "minimum": 1})))]
     pub divisions: Vec<usize>,
     /// Last cell size over first cell size of each interval, positive; all 1 where left out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[cfg_attr(feature = "cli", schemars(extend("items" = {"type": "number", "format": "double", "exclusiveMinimum": 0})))]
     pub ratios: Vec<f64>,
 }
 

@@ -12,11 +12,14 @@ use crate::error::Error;
 pub struct Zone {
     /// How far the cells of one size reach from the lowest point, to each side and into the body: positive, at most the
     /// radius. Twice the expected contact half-width is a good choice.
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub width: f64,
     /// Cells on this width, at least 1.
+    #[cfg_attr(feature = "cli", schemars(extend("minimum" = 1)))]
     pub divisions: usize,
     /// Size of each further cell over that of its neighbour towards the zone, from 1 to 10.
     #[serde(default = "growth")]
+    #[cfg_attr(feature = "cli", schemars(extend("minimum" = 1, "maximum" = 10)))]
     pub growth: f64,
 }
 

@@ -7,12 +7,22 @@ use std::time::Instant;
 use super::cost::Estimate;
 use super::engine::Prepared;
 use super::judged::{judged, out_of_time, with_solution};
-use super::plan::{Choice, Tried, pieces_of, safer, starts_by_multigrid};
+use super::plan::{Choice, Tried, by_name, pieces_of, safer, starts_by_multigrid};
 use super::problem::ContactProblem;
 use super::settings::{Method, Settings};
 use crate::error::Error;
 use crate::qp::method::Start;
-use crate::solution::{Attempt, Seconds, Solution};
+use crate::solution::{Attempt, Seconds, Solution, Why};
+
+/// The same from what is known of the answer of the whole problem, which is then solved in one piece.
+///
+/// # Errors
+/// As [`solved`].
+#[cfg(feature = "cli")]
+pub(super) fn solved_from(start: Start, problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
+    let settings = &settings.started()?;
+    if start.is_unknown() { solved(problem, settings) } else { in_one_piece_from(start, problem, settings) }
+}
 
 /// How the ways that are tried end by themselves.
 ///
@@ -45,11 +55,20 @@ pub(super) fn solved(problem: &ContactProblem, settings: &Settings) -> Result<So
 
 /// The same, of all parts together.
 fn in_one_piece(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
-    let mut attempts = Attempts { clock: Instant::now(), made: Vec::new(), factor_seconds: 0.0 };
+    in_one_piece_from(Start::default(), problem, settings)
+}
+
+/// The same from what is known of the answer.
+fn in_one_piece_from(start: Start, problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
+    let mut attempts = Attempts { clock: Instant::now(), start, made: Vec::new(), factor_seconds: 0.0 };
     let found = match settings.method {
         Method::Auto => attempts.choose(problem, settings),
-        Method::Mprgp => by_multigrid(problem, settings),
+        Method::Mprgp => attempts.by_multigrid(problem, settings),
         _ => attempts.with_factor(problem, settings),
+    };
+    let found = match settings.method {
+        Method::Auto => found,
+        method => with_solution(found, |solution| Solution { why: Some(by_name(method)), ..solution }),
     };
     let found = match found {
         Err(Error::OutOfTime { needed, time }) => Err(out_of_time(problem, needed, time)?),
@@ -61,6 +80,8 @@ fn in_one_piece(problem: &ContactProblem, settings: &Settings) -> Result<Solutio
 /// What was tried so far.
 struct Attempts {
     clock: Instant,
+    /// What was known of the answer beforehand.
+    start: Start,
     made: Vec<Attempt>,
     /// Seconds of the factorisations in it.
     factor_seconds: f64,
@@ -70,10 +91,31 @@ impl Attempts {
     /// The answer on the way that memory, time and size suggest; where it leads nowhere, on the other one.
     fn choose(&mut self, problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
         let estimate = Estimate::of(problem);
+        let choice = estimate.choose(settings.memory.unwrap_or(f64::INFINITY))?;
+        let why = estimate.why(&choice);
+        with_solution(self.chosen(problem, settings, &estimate, choice), |solution| {
+            let reason = match (&solution.why, &solution.reason) {
+                // Of the methods with a factor one was chosen by itself.
+                (Some(of_way), _) => format!("{}; {}", why.reason, of_way.reason),
+                (None, Some(other)) if *other != why.reason => format!("{}; in the end {other}", why.reason),
+                _ => why.reason.clone(),
+            };
+            Solution { why: Some(Why { reason, ..why }), ..solution }
+        })
+    }
+
+    /// The answer on the way of `choice`; where it leads nowhere, on the other one.
+    fn chosen(
+        &mut self,
+        problem: &ContactProblem,
+        settings: &Settings,
+        estimate: &Estimate,
+        choice: Choice,
+    ) -> Result<Solution, Error> {
         let (allowed, watch) = (settings.memory.unwrap_or(f64::INFINITY), &settings.watch);
         let (mut refused, mut worth_cycles) = (None, usize::MAX);
-        let reason = match estimate.choose(allowed)? {
-            Choice::Factor => match self.with_factor(problem, settings) {
+        let reason = match choice {
+            Choice::Factor { .. } => match self.with_factor(problem, settings) {
                 Err(Error::TooLarge { bytes, .. }) => {
                     refused = Some(bytes);
                     estimate.without_factor(bytes, allowed)?
@@ -94,8 +136,10 @@ impl Attempts {
         };
         let clock = Instant::now();
         let expected = Settings { worth_cycles, ..settings.clone() };
-        let answered =
-            with_solution(by_multigrid(problem, &expected), |solution| Solution { reason: Some(reason), ..solution });
+        let answered = with_solution(self.by_multigrid(problem, &expected), |solution| Solution {
+            reason: Some(reason),
+            ..solution
+        });
         let fell_short = match answered {
             Err(error @ (Error::NotCertified { .. } | Error::Numerical { .. } | Error::NotConvex { .. }))
                 if !watch.is_over() =>
@@ -105,16 +149,28 @@ impl Attempts {
             decided => return decided,
         };
         let seconds = clock.elapsed().as_secs_f64();
-        let (multigrid, ended) = (estimate.multigrid_bytes, Some(ending(&fell_short)));
-        let no_room = |factor| Err(Error::NoRoom { factor, multigrid, allowed, ended });
         // What the iteration cannot take, the direct path may; if it was refused, with one factor at a time.
         let direct = match refused {
             Some(_) => Settings { method: Method::ActiveSet, ..settings.clone() },
             None => settings.clone(),
         };
+        let (multigrid, ended) = (estimate.multigrid_bytes, Some(ending(&fell_short)));
+        match self.after_multigrid(problem, &direct, (fell_short, seconds)) {
+            Err(Error::TooLarge { bytes: factor, .. }) => Err(Error::NoRoom { factor, multigrid, allowed, ended }),
+            decided => decided,
+        }
+    }
+
+    /// The answer on the direct path, after so many seconds of an iteration that ended with `fell_short`.
+    fn after_multigrid(
+        &mut self,
+        problem: &ContactProblem,
+        direct: &Settings,
+        (fell_short, seconds): (Error, f64),
+    ) -> Result<Solution, Error> {
         let clock = Instant::now();
-        match self.with_factor(problem, &direct) {
-            Err(Error::TooLarge { bytes, .. }) => no_room(bytes),
+        match self.with_factor(problem, direct) {
+            Err(error @ Error::TooLarge { .. }) => Err(error),
             Err(error @ (Error::OutOfTime { .. } | Error::Interrupted)) => {
                 self.add(Tried::on_all_dofs(Method::ActiveSet), clock.elapsed().as_secs_f64(), &error);
                 Err(fell_short)
@@ -129,7 +185,8 @@ impl Attempts {
     /// The answer with a factor; where a shortcut falls short, by the active set in double precision, and where a condensed
     /// problem does, on all dofs.
     fn with_factor(&mut self, problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
-        self.with_factor_from(start(problem, settings), problem, settings)
+        let start = if self.start.is_unknown() { start(problem, settings) } else { self.start.clone() };
+        self.with_factor_from(start, problem, settings)
     }
 
     /// The same, the active-set steps starting from `start`.
@@ -141,7 +198,11 @@ impl Attempts {
     ) -> Result<Solution, Error> {
         let clock = Instant::now();
         let prepared = Prepared::by_method(problem, settings)?.starting_from(start);
-        let fell_short = match solved_with(&prepared, problem) {
+        let ending = with_solution(solved_with(&prepared, problem), |solution| match settings.method {
+            Method::Auto => Solution { why: Some(of_way(&prepared)), ..solution },
+            _ => solution,
+        });
+        let fell_short = match ending {
             Err(error @ (Error::NotCertified { .. } | Error::Numerical { .. })) => error,
             decided => return decided,
         };
@@ -164,6 +225,16 @@ impl Attempts {
         }
     }
 
+    /// The answer without a factor.
+    ///
+    /// # Errors
+    /// As [`Prepared::by_method`] and [`Prepared::solve`].
+    fn by_multigrid(&self, problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
+        let settings = Settings { method: Method::Mprgp, ..settings.clone() };
+        let prepared = Prepared::by_method(problem, &settings)?.starting_from(self.start.clone());
+        solved_with(&prepared, problem)
+    }
+
     /// Notes an attempt on some way that took so many seconds and ended with `error`.
     fn add(&mut self, tried: Tried, seconds: f64, error: &Error) {
         let mut method = tried.method.name().to_string();
@@ -184,6 +255,13 @@ impl Attempts {
         solution.seconds.solve = self.clock.elapsed().as_secs_f64();
         Solution { attempts: self.made, ..solution }
     }
+}
+
+/// Which of the methods with a factor was chosen, and why.
+fn of_way(prepared: &Prepared) -> Why {
+    let tried = prepared.tried();
+    let reason = tried.in_words(prepared.multiplications());
+    Why { chosen: tried.method.name().to_string(), reason, considered: Vec::new() }
 }
 
 /// Where the direct path starts: where contact is everywhere, from what a few cycles of a hierarchy find, since a front of closed
@@ -215,15 +293,6 @@ fn ending(error: &Error) -> String {
         }
         error => error.to_string(),
     }
-}
-
-/// The answer without a factor.
-///
-/// # Errors
-/// As [`Prepared::by_method`] and [`Prepared::solve`].
-fn by_multigrid(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
-    let settings = Settings { method: Method::Mprgp, ..settings.clone() };
-    solved_with(&Prepared::by_method(problem, &settings)?, problem)
 }
 
 /// The answer at the gaps of `problem`, whose time is that of its preparation too.

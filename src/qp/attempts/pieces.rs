@@ -7,7 +7,7 @@ use crate::qp::cost::bytes;
 use crate::qp::problem::ContactProblem;
 use crate::qp::settings::Settings;
 use crate::qp::transform::Pieces;
-use crate::solution::{Attempt, ContactSet, Iteration, ProvenSet, Seconds, Solution};
+use crate::solution::{ContactSet, Iteration, ProvenSet, Seconds, Solution, Why};
 
 /// The answer whose pieces are each found by `solve`, not judged yet.
 ///
@@ -51,7 +51,6 @@ pub(super) fn solved(
     names.sort_unstable();
     names.dedup();
     let sum = |of: fn(&Seconds) -> f64| answers.iter().map(|answer| of(&answer.seconds)).sum();
-    let attempts: Vec<Attempt> = answers.iter().flat_map(|answer| answer.attempts.clone()).collect();
     Ok(Solution {
         contact_set: pieces.join_sets(answers.iter().map(|answer| Some(&answer.contact_set))),
         method: names.join(" + "),
@@ -60,6 +59,7 @@ pub(super) fn solved(
         proven: proven(pieces, &answers),
         refinements: answers.iter().filter_map(|answer| answer.refinements).max(),
         reason: answers.iter().find_map(|answer| answer.reason.clone()),
+        why: why(&answers),
         lost_pivot: answers.iter().filter_map(|answer| answer.lost_pivot).min_by(f64::total_cmp),
         condensed_dofs: answers.iter().map(|answer| answer.condensed_dofs).sum(),
         seconds: Seconds {
@@ -71,8 +71,17 @@ pub(super) fn solved(
         displacement,
         multiplier,
         certificate,
-        attempts,
+        attempts: answers.into_iter().flat_map(|answer| answer.attempts).collect(),
     })
+}
+
+/// Why the largest piece was solved the way it was.
+fn why(answers: &[Solution]) -> Option<Why> {
+    let largest = answers.iter().max_by_key(|answer| answer.displacement.len())?;
+    let of_piece = largest.why.clone()?;
+    let count = answers.len();
+    let reason = format!("in {count} pieces, because nothing couples them; the largest {}", of_piece.reason);
+    Some(Why { reason, ..of_piece })
 }
 
 /// The sets of all pieces side by side, iteration by iteration; a piece that needed fewer stays at its last.

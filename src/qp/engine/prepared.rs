@@ -8,12 +8,13 @@ use super::factored::Factored;
 use super::loading::Load;
 use super::multigrid::Hierarchical;
 use crate::error::Error;
+use crate::qp::judged::with_solution;
 use crate::qp::linear::multigrid::Multigrid;
 use crate::qp::method::Start;
 use crate::qp::plan::{Tried, method_for};
 use crate::qp::problem::{ContactProblem, check_load};
 use crate::qp::settings::{Method, Settings};
-use crate::solution::{Seconds, Solution};
+use crate::solution::{Seconds, Solution, Why};
 
 /// A contact problem prepared once for many gaps, loads and starts: its stiffness is factorised, or a multigrid hierarchy is
 /// built for it, depending on the method.
@@ -43,6 +44,8 @@ pub struct Prepared {
     pub(super) settings: Settings,
     load: Arc<Load>,
     start: Start,
+    /// Why it was prepared this way; `None` where that was decided elsewhere.
+    why: Option<Arc<Why>>,
 }
 
 /// Gaps that a problem is prepared for where their number is not known.
@@ -79,9 +82,9 @@ impl Prepared {
     /// # Errors
     /// As [`Prepared::new`].
     pub fn for_gaps(problem: &ContactProblem, gaps: usize, settings: &Settings) -> Result<Self, Error> {
-        let method = method_for(problem, gaps, settings);
+        let (method, why) = method_for(problem, gaps, settings);
         let prepared = Self::by_method(problem, &Settings { method, ..settings.clone() })?;
-        Ok(Prepared { settings: settings.clone(), ..prepared })
+        Ok(Prepared { settings: settings.clone(), why: why.map(Arc::new), ..prepared })
     }
 
     /// The same for the method of `settings`, with a factor where that leaves the choice.
@@ -90,7 +93,7 @@ impl Prepared {
     /// As [`Prepared::new`].
     pub(in crate::qp) fn by_method(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
         let (engine, load) = (engine_of(problem, settings)?, Arc::new(Load::new(problem.load().to_vec())));
-        Ok(Prepared { engine, settings: settings.clone(), load, start: Start::default() })
+        Ok(Prepared { engine, settings: settings.clone(), load, start: Start::default(), why: None })
     }
 
     /// The same problem under other settings. What was prepared is kept if their method works on it, with its condensation,
@@ -101,10 +104,11 @@ impl Prepared {
     pub fn with_settings(&self, settings: &Settings) -> Result<Self, Error> {
         let (settings, start) = (settings.clone(), self.start.clone());
         if self.engine.serves(settings.method) {
-            return Ok(Prepared { settings, start, engine: self.engine.clone(), load: self.load.clone() });
+            return Ok(Prepared { settings, start, ..self.clone() });
         }
         let engine = engine_of(self.engine.problem(), &settings)?;
-        Ok(Prepared { engine, settings, start, load: Arc::new(Load::new(self.load.force().to_vec())) })
+        let load = Arc::new(Load::new(self.load.force().to_vec()));
+        Ok(Prepared { engine, settings, start, load, why: None })
     }
 
     /// The same problem under another load, length n, in N; a factor is swept once for it.
@@ -129,7 +133,8 @@ impl Prepared {
     /// first factorisation.
     pub fn solve(&self, gap: &[f64]) -> Result<Solution, Error> {
         let settings = &self.settings.started()?;
-        self.engine.solve(&self.case(gap, settings))
+        let solved = self.engine.solve(&self.case(gap, settings));
+        with_solution(solved, |solution| Solution { why: self.why.as_deref().cloned(), ..solution })
     }
 
     /// Solves with another load, length n, in N, and the gaps of the problem that was prepared.

@@ -40,6 +40,42 @@ pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
     }
 }
 
+/// The other end of the problem of a directory: its gaps in `g1.mtx`, its load in `f1.mtx`; what has no file stays as it is.
+///
+/// # Errors
+/// As [`read_problem`]; [`Error::FileSyntax`] where there is neither file, for a vector of another length, and for gaps that are
+/// infinite in other rows.
+#[cfg(feature = "cli")]
+pub fn read_other_end(directory: &Path, problem: &ContactProblem) -> Result<ContactProblem, Error> {
+    let [gap_file, load_file] = ["g1.mtx", "f1.mtx"].map(|name| directory.join(name));
+    if !gap_file.exists() && !load_file.exists() {
+        let message =
+            "it is missing, and so is f1.mtx: a sweep needs the gaps or the load of the other end".to_string();
+        return Err(fault(gap_file, message));
+    }
+    let end = |file: &Path, values: Values, own: &[f64], of: &str| {
+        if !file.exists() {
+            return Ok(own.to_vec());
+        }
+        let end = vector(file, values)?;
+        if end.len() == own.len() {
+            return Ok(end);
+        }
+        Err(fault(file.to_path_buf(), format!("it has length {}, but there are {} {of}", end.len(), own.len())))
+    };
+    let gap = end(&gap_file, Values::FiniteOrInfinite, problem.gap(), "contact rows")?;
+    let load = end(&load_file, Values::Finite, problem.load(), "dofs")?;
+    let last = problem.with(load, gap)?;
+    let mut rows = problem.gap().iter().zip(last.gap()).enumerate();
+    match rows.find(|(_, (first, last))| first.is_finite() != last.is_finite()) {
+        Some((row, (first, last))) => Err(fault(
+            gap_file,
+            format!("the gap of row {row} goes from {first} to {last}; a row without an obstacle stays one on the way"),
+        )),
+        None => Ok(last),
+    }
+}
+
 /// What `near_null.mtx` says of the body, one column for each vector, or `coordinates.mtx`, one row for each node whose dofs
 /// follow each other, all of them free.
 fn near_null(directory: &Path, dofs: usize) -> Result<Option<NearNullSpace>, Error> {

@@ -3,6 +3,7 @@
 //! A problem directory holds `K.mtx` (symmetric), `f.mtx`, `B.mtx` and `g.mtx`; an answer adds `u.mtx` and `lambda.mtx`.
 //! Indices are the free dofs. A gap may be `inf`: a row without obstacle. Multigrid reads `near_null.mtx` (one column for
 //! each displacement that costs next to no energy, as the rigid-body modes) or `coordinates.mtx` (one row for each node).
+//! A sweep goes to other gaps, `g1.mtx`, another load, `f1.mtx`, or both.
 //!
 //! # Source
 //! R. F. Boisvert, R. Pozo, K. A. Remington, *The Matrix Market Exchange Formats: Initial Design*, NISTIR 5935 (1996).
@@ -11,7 +12,7 @@ mod directory;
 mod parse;
 
 #[cfg(feature = "cli")]
-pub use directory::near_null_file;
+pub use directory::{near_null_file, read_other_end};
 pub use directory::{problem_files, read_problem, read_vector, solution_files};
 
 use std::fmt::Write;

@@ -1,5 +1,7 @@
 //! Where an iteration starts.
 
+#[cfg(feature = "cli")]
+use crate::error::Error;
 use crate::solution::{ContactSet, Solution};
 
 /// What is known of the answer beforehand: nothing, a contact set, a displacement, or both.
@@ -23,8 +25,33 @@ pub struct Start {
 
 impl Start {
     /// Returns `true` if nothing is known.
-    pub(super) fn is_unknown(&self) -> bool {
+    pub(in crate::qp) fn is_unknown(&self) -> bool {
         self.displacement.is_none() && self.contact_set.is_none()
+    }
+
+    /// An answer that was found earlier, one entry per dof and one per row: the rows that press are closed.
+    #[cfg(feature = "cli")]
+    pub(crate) fn earlier(displacement: Vec<f64>, multiplier: &[f64]) -> Self {
+        let closed = multiplier.iter().map(|&force| force < 0.0).collect();
+        Start { displacement: Some(displacement), contact_set: Some(closed) }
+    }
+
+    /// Refuses a start that is none of a problem with so many dofs and rows.
+    ///
+    /// # Errors
+    /// [`Error::Length`].
+    #[cfg(feature = "cli")]
+    pub(crate) fn check(&self, dofs: usize, rows: usize) -> Result<(), Error> {
+        let lengths = [
+            ("the displacement to start from", self.displacement.as_ref().map(Vec::len), dofs, "dofs"),
+            ("the multiplier to start from", self.contact_set.as_ref().map(ContactSet::rows), rows, "contact rows"),
+        ];
+        for (name, found, expected, of) in lengths {
+            if let Some(found) = found.filter(|&found| found != expected) {
+                return Err(Error::Length { name, found, expected, of });
+            }
+        }
+        Ok(())
     }
 
     /// A displacement near the answer, one entry per dof.

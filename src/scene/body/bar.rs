@@ -19,6 +19,7 @@ pub struct BarSpec {
     pub x: Axis,
     /// Cross-section, positive.
     #[serde(default = "unit_area")]
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub area: f64,
 }
 

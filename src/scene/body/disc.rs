@@ -20,6 +20,7 @@ pub struct DiscSpec {
     #[serde(default)]
     pub centre: [f64; 2],
     /// Radius, positive.
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub radius: f64,
     /// The finely meshed zone around the lowest and the highest point.
     #[serde(deserialize_with = "object")]

@@ -24,6 +24,7 @@ pub struct GmshSpec {
     pub file: String,
     /// What the coordinates of the file are multiplied by, positive.
     #[serde(default = "unchanged")]
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub scale: f64,
     /// The physical group that is the body; may be left out if no more than one has elements of the highest dimension, or
     /// if `materials` name the groups.

@@ -28,6 +28,7 @@ pub struct HalfBallSpec {
     #[serde(default, deserialize_with = "word", skip_serializing_if = "HalfSpec::is_lower")]
     pub half: HalfSpec,
     /// Radius, positive.
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub radius: f64,
     /// The finely meshed zone around the lowest (highest) point.
     #[serde(deserialize_with = "object")]

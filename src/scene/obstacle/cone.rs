@@ -17,6 +17,7 @@ pub struct ConeSpec {
     /// The point nearest to the body.
     pub apex: [f64; 3],
     /// Slope of the flank away from the body, positive.
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub slope: f64,
 }
 

@@ -27,6 +27,7 @@ pub struct CylinderSpec {
     /// Direction of the axis, perpendicular to the approach direction. Of any length but zero.
     pub axis: [f64; 3],
     /// Radius, positive. Nodes beyond its reach have no contact row.
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub radius: f64,
     /// Where the body lies: `outside`, or `inside` as a pin in a hole and all around is the obstacle.
     #[serde(default, deserialize_with = "word", skip_serializing_if = "Side::is_outside")]

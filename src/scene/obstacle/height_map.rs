@@ -25,10 +25,13 @@ const SAME_NORMAL: f64 = 1e-12;
 pub struct HeightMapSpec {
     /// Grid lines of the first coordinate across the approach direction (x, or y where that is along x): at least two,
     /// increasing, from the first candidate to the last or further.
+    #[cfg_attr(feature = "cli", schemars(extend("minItems" = 2)))]
     pub x: Vec<f64>,
     /// Grid lines of the second coordinate across it (z, or y where the approach direction is along z), likewise.
+    #[cfg_attr(feature = "cli", schemars(extend("minItems" = 2)))]
     pub y: Vec<f64>,
     /// `heights[i][j]`: the surface's coordinate along the axis of the approach direction over `x[i]`, `y[j]`.
+    #[cfg_attr(feature = "cli", schemars(extend("minItems" = 2)))]
     pub heights: Vec<Vec<f64>>,
 }
 

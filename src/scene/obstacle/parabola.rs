@@ -21,6 +21,7 @@ pub struct ParabolaSpec {
     /// The point nearest to the body.
     pub apex: [f64; 2],
     /// Radius of curvature at the apex, positive.
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub radius: f64,
 }
 

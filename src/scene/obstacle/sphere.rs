@@ -20,6 +20,7 @@ pub struct SphereSpec {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub apex: Option<[f64; 3]>,
     /// Radius, positive. Nodes beyond its reach have no contact row.
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub radius: f64,
     /// Where the body lies: `outside`, or `inside` as a ball in a cup and all around is the obstacle.
     #[serde(default, deserialize_with = "word", skip_serializing_if = "Side::is_outside")]

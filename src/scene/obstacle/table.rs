@@ -19,6 +19,7 @@ use crate::scene::entry::{PLACE_TOLERANCE, finite_pair, number, point, wrong};
 pub struct TableSpec {
     /// At least two points [x, y], increasing in the coordinate across the approach direction, from the first
     /// candidate to the last or further.
+    #[cfg_attr(feature = "cli", schemars(extend("minItems" = 2)))]
     pub points: Vec<[f64; 2]>,
 }
 

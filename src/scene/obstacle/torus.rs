@@ -24,8 +24,10 @@ pub struct TorusSpec {
     /// stands upright). Of any length but zero.
     pub axis: [f64; 3],
     /// Radius of the ring in the middle of the tube.
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub major: f64,
     /// Radius of the tube, positive and less than `major`.
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub minor: f64,
 }
 

@@ -31,6 +31,7 @@ pub struct SurfaceSpec {
     pub file: String,
     /// What the coordinates of the file are multiplied by, positive.
     #[serde(default = "unchanged")]
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub scale: f64,
     /// Where the origin of the file lies.
     #[serde(default, skip_serializing_if = "is_origin")]

@@ -17,6 +17,7 @@ pub struct WedgeSpec {
     /// The point nearest to the body.
     pub apex: [f64; 2],
     /// Slope of both flanks away from the body, positive.
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub slope: f64,
 }
 

@@ -20,14 +20,17 @@ pub enum AnalysisSpec {
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct DynamicSpec {
     /// How long, positive, in time.
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub duration: f64,
     /// Time step, positive. Where it is left out, `courant` chooses it.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub step: Option<f64>,
     /// Time step over the time in which a pressure wave crosses the shortest distance between two nodes of an element,
     /// 0.5 where it is left out; with `central-difference` the step over the largest stable one, at most 1 and 0.9
     /// where it is left out.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub courant: Option<f64>,
     /// The scheme.
     #[serde(default, deserialize_with = "word")]
@@ -38,17 +41,21 @@ pub struct DynamicSpec {
     pub mass: Option<MassSpec>,
     /// Damping of `hht`: from -1/3 to 0, -0.1 where it is left out.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "cli", schemars(extend("minimum" = -1.0 / 3.0, "maximum" = 0)))]
     pub alpha: Option<f64>,
     /// Stiffness of `penalty` in multiples of the local stiffness of a step, positive; 10 where it is left out.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub penalty: Option<f64>,
     /// Penetration at which the loop of `penalty-loop` ends, as the norm over all closed rows, relative to the largest
     /// displacement of the body; positive and at most 0.1, 1e-6 where it is left out.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0, "maximum" = 0.1)))]
     pub threshold: Option<f64>,
     /// Velocity of a node after over before its blow in `central-difference`, from 0 to 1; 0 where it is left out.
     /// Above 0 the energy of a mesh can grow, the less the smaller the step.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "cli", schemars(extend("minimum" = 0, "maximum" = 1)))]
     pub restitution: Option<f64>,
     /// Rayleigh damping.
     #[serde(default, deserialize_with = "object")]
@@ -65,6 +72,7 @@ pub struct DynamicSpec {
     pub loads_in_time: Vec<LoadInTimeSpec>,
     /// States of the body that are written and shown, evenly over the duration, beside the first; at most 10000.
     #[serde(default = "frames")]
+    #[cfg_attr(feature = "cli", schemars(extend("minimum" = 1, "maximum" = 10000)))]
     pub frames: usize,
     /// Points whose time, displacement, velocity and contact force are written at every step, into `watch.csv` of `--out`.
     #[serde(default, deserialize_with = "choices", skip_serializing_if = "Vec::is_empty")]
@@ -105,8 +113,10 @@ pub enum MassSpec {
 #[serde(deny_unknown_fields, default)]
 pub struct DampingSpec {
     /// Share of the mass, zero or positive, in one over time.
+    #[cfg_attr(feature = "cli", schemars(extend("minimum" = 0)))]
     pub mass: f64,
     /// Share of the stiffness, zero or positive, in time.
+    #[cfg_attr(feature = "cli", schemars(extend("minimum" = 0)))]
     pub stiffness: f64,
 }
 
@@ -183,8 +193,10 @@ pub enum FactorSpec {
 #[serde(deny_unknown_fields)]
 pub struct FactorTableSpec {
     /// Times, at least one, increasing.
+    #[cfg_attr(feature = "cli", schemars(extend("minItems" = 1)))]
     pub times: Vec<f64>,
     /// The factor at each.
+    #[cfg_attr(feature = "cli", schemars(extend("minItems" = 1)))]
     pub factors: Vec<f64>,
 }
 
@@ -194,6 +206,7 @@ pub struct FactorTableSpec {
 #[serde(deny_unknown_fields)]
 pub struct SineSpec {
     /// Frequency, positive, in one over time.
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub frequency: f64,
     /// Phase at t = 0, in radians.
     #[serde(default)]

@@ -13,9 +13,11 @@ use crate::scene::body::BodySpec;
 pub struct MaterialSpec {
     /// Young's modulus, positive, in force per area.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub young: Option<f64>,
     /// Poisson's ratio: above -1, at most 0.5 in a bar and in plane stress, below 0.5 elsewhere.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = -1, "maximum" = 0.5)))]
     pub poisson: Option<f64>,
     /// Elasticity with three planes of symmetry, instead of `young` and `poisson`.
     #[serde(default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
@@ -25,6 +27,7 @@ pub struct MaterialSpec {
     pub expansion: Option<f64>,
     /// Density, positive, in mass per volume; a dynamic analysis, gravity and centrifugal forces ask for it.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub density: Option<f64>,
 }
 
@@ -35,11 +38,13 @@ pub struct MaterialSpec {
 #[serde(deny_unknown_fields)]
 pub struct OrthotropicSpec {
     /// Young's moduli `[E1, E2, E3]`, positive, in force per area.
+    #[cfg_attr(feature = "cli", schemars(extend("items" = {"type": "number", "format": "double", "exclusiveMinimum": 0})))]
     pub young: [f64; 3],
     /// Poisson's ratios `[nu12, nu23, nu13]`: tension along i contracts the material along j by nu_ij times its extension, and nu_ij/E_i =
     /// nu_ji/E_j. The stiffness must be positive definite.
     pub poisson: [f64; 3],
     /// Shear moduli `[G12, G23, G13]`, positive, in force per area.
+    #[cfg_attr(feature = "cli", schemars(extend("items" = {"type": "number", "format": "double", "exclusiveMinimum": 0})))]
     pub shear: [f64; 3],
     /// Thermal expansion along axes 1, 2, 3, in strain per degree.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
@@ -129,6 +134,7 @@ pub struct InitialStressSpec {
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct FurtherBodySpec {
     /// Its name; its boundaries are called `name.boundary`.
+    #[cfg_attr(feature = "cli", schemars(extend("minLength" = 1)))]
     pub name: String,
     /// The body.
     #[serde(deserialize_with = "choice")]

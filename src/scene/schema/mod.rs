@@ -44,7 +44,7 @@ use json::{choice, choices, given_object, object, objects, word, words};
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Scene {
-    /// Address of the JSON Schema of scenes, for editors.
+    /// Where the JSON Schema of scenes stands, for editors: a file that `signorini schema` printed. The program does not read it.
     #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
     pub schema: Option<String>,
     /// What the scene shows.
@@ -58,6 +58,7 @@ pub struct Scene {
     pub model: ModelSpec,
     /// Depth across the plane, positive; only in plane strain and plane stress.
     #[serde(default = "one")]
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub thickness: f64,
     /// The elastic body.
     #[serde(deserialize_with = "choice")]

@@ -25,6 +25,7 @@ pub struct ObstacleSpec {
     /// The force, positive, that presses the obstacle against its approach direction, along which alone it moves: in force, on a body
     /// of revolution that of the full circle. Its travel is found.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub force: Option<f64>,
     /// The surface of the obstacle.
     #[serde(deserialize_with = "choice")]

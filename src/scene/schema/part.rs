@@ -13,6 +13,7 @@ use super::json::{given, given_object};
 #[serde(deny_unknown_fields)]
 pub struct PartSpec {
     /// Its name: a boundary for supports, loads, obstacles and the parts behind it.
+    #[cfg_attr(feature = "cli", schemars(extend("minLength" = 1)))]
     pub name: String,
     /// The boundary, or the further body whose whole surface is meant; the whole surface of the first body where it is left out.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
@@ -47,6 +48,7 @@ pub struct PartSphereSpec {
     /// Its centre.
     pub centre: Vec<f64>,
     /// Its radius, positive.
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub radius: f64,
 }
 
@@ -58,5 +60,6 @@ pub struct PartNormalSpec {
     /// The direction in their middle, of any length but zero.
     pub direction: Vec<f64>,
     /// The largest angle to it, in degrees, from 0 to 180.
+    #[cfg_attr(feature = "cli", schemars(extend("minimum" = 0, "maximum" = 180)))]
     pub within: f64,
 }

@@ -10,7 +10,9 @@ pub struct ProfileSpec {
     /// The direction, of any length but zero.
     pub along: Vec<f64>,
     /// Places along it, at least one, increasing: lengths from the plane through the origin at right angles to it.
+    #[cfg_attr(feature = "cli", schemars(extend("minItems" = 1)))]
     pub places: Vec<f64>,
     /// The factor at each.
+    #[cfg_attr(feature = "cli", schemars(extend("minItems" = 1)))]
     pub factors: Vec<f64>,
 }

@@ -17,15 +17,19 @@ pub struct SpringSpec {
     pub on: Place,
     /// Stiffness along x, positive.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub x: Option<f64>,
     /// Stiffness along y, positive.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub y: Option<f64>,
     /// Stiffness along z, positive.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub z: Option<f64>,
     /// Stiffness along the normal of the boundary at every place, positive.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub normal: Option<f64>,
     /// What the stiffnesses are those of.
     #[serde(default, deserialize_with = "word")]

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::cells::CellType;
 use super::file::{Element, GmshFile};
-use crate::error::Error;
+use crate::error::{Error, nearly};
 use crate::fem::element::{Cell, ElementKind, MAX_NODES, Rule, Tabulated};
 use crate::fem::mesh::{ElementGroup, Mesh, fail};
 
@@ -41,7 +41,11 @@ impl<'a> Body<'a> {
                 names.into_iter().filter(|(dimension, _)| *dimension > 0).map(|(_, n)| n).collect();
             return fail(match names.is_empty() {
                 true => format!("there is no physical group `{name}`; the file has none"),
-                false => format!("there is no physical group `{name}` of elements; there are {}", names.join(", ")),
+                false => {
+                    let meant = nearly(name, names.iter().map(String::as_str));
+                    let there = names.join(", ");
+                    format!("there is no physical group `{name}` of elements; there are {there}{meant}")
+                }
             });
         };
         let chosen = |groups: &[u64]| match domain {

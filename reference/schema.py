@@ -1,0 +1,78 @@
+"""Holds scenes against the JSON Schema that the program prints, by check-jsonschema: every scene of the project conforms, and
+what is wrong in `tests/wrong_scenes.json` is refused by the schema and by the program.
+
+    python reference/schema.py target/debug/signorini
+"""
+
+import copy
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+
+
+def scenes():
+    """All scenes that the project has; lines that begin with `//` are comments, which JSON has not."""
+    for folder in ["examples", "examples/first-part", "tools/guarantee", "tools/impact"]:
+        for file in sorted((ROOT / folder).glob("*.json")):
+            lines = file.read_text().splitlines()
+            yield file, json.loads("\n".join(line for line in lines if not line.lstrip().startswith("//")))
+
+
+def wrong_scenes():
+    """What is wrong, and the scene: a change of the base for each."""
+    kept = json.loads((ROOT / "tests/wrong_scenes.json").read_text())
+    for change in kept["changes"]:
+        scene = copy.deepcopy(kept["base"])
+        *keys, last = change["at"].split("/")[1:]
+        place = scene
+        for key in keys:
+            place = place[int(key) if isinstance(place, list) else key]
+        if "value" in change:
+            place[last] = change["value"]
+        else:
+            del place[last]
+        yield change["wrong"], scene
+
+
+def conforms(schema, scene):
+    """Whether check-jsonschema takes a file for a scene."""
+    command = [sys.executable, "-m", "check_jsonschema", "--schemafile", schema, scene]
+    run = subprocess.run(command, capture_output=True, text=True, check=False)
+    if run.returncode == 0:
+        return True
+    if "Schema validation errors" not in run.stdout:
+        sys.exit(f"check-jsonschema failed: {run.stdout}{run.stderr}")
+    return False
+
+
+def main(program):
+    """Checks all scenes."""
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        schema = folder / "scene.schema.json"
+        schema.write_bytes(subprocess.run([program, "schema"], capture_output=True, check=True).stdout)
+        file = folder / "scene.json"
+        right = list(scenes())
+        for name, scene in right:
+            file.write_text(json.dumps(scene))
+            if not conforms(schema, file):
+                sys.exit(f"the schema refuses {name}")
+        wrong = list(wrong_scenes())
+        for what, scene in wrong:
+            file.write_text(json.dumps(scene))
+            if conforms(schema, file):
+                sys.exit(f"the schema takes {what}")
+            code = subprocess.run([program, "solve", file], capture_output=True, check=False).returncode
+            if code != 1:
+                sys.exit(f"the program ends with {code} for {what}")
+    if len(right) < 10 or len(wrong) < 20:
+        sys.exit(f"{len(right)} scenes and {len(wrong)} wrong ones are too few")
+    print(f"{len(right)} scenes conform, {len(wrong)} wrong ones are refused by the schema and by the program")
+
+
+if __name__ == "__main__":
+    main(pathlib.Path(sys.argv[1]).resolve())

@@ -1,0 +1,363 @@
+//! The picture of a scene before it is solved: body and mesh, what holds and loads it, the obstacles at their gap.
+
+use super::{
+    ContactPicture, ObstacleLine, Quantity,
+    axes::{Axis, Frame, LINE, Labels, MARGIN, ROOM_BELOW, TITLE, draw_heading},
+    colour::{Colour, PALETTE, WHITE},
+    drawing::{Drawing, Paint},
+    gallery::{OUTLINE_SEGMENTS, headline},
+    legend::{self, Entry},
+    mark::Candidate,
+    obstacle::{self, Look},
+    ticks::{Scale, brief, common_exponent},
+    typeface::{self, Weight},
+};
+use crate::error::Error;
+use crate::scene::{HeldNode, Hold, Model};
+
+/// Largest width and height of the panel in pixels.
+const PANEL: [f64; 2] = [860.0, 640.0];
+/// A slender body gets white space around it rather than a smaller panel.
+const SMALLEST: [f64; 2] = [560.0, 260.0];
+/// White space on every side for symbols and arrows, as a share of the larger side.
+const ROOM: f64 = 0.09;
+/// Length of the longest arrow in pixels.
+const LONGEST: f64 = 52.0;
+/// Arrows below this share of the longest one are left out.
+const SHORTEST: f64 = 0.02;
+/// Nodes that share a square of this many pixels share their arrow, and symbols are no closer than this.
+const APART: f64 = 22.0;
+/// Size of a symbol in pixels.
+const SYMBOL: f64 = 11.0;
+
+const SUPPORT: Colour = PALETTE[2];
+const SPRING: Colour = PALETTE[3];
+const FACE: Colour = PALETTE[5];
+const LOAD: Colour = PALETTE[1];
+
+/// Draws the scene of a model in the plane as it is before it is solved.
+///
+/// # Errors
+/// [`Error::Scene`] for a bar and for a body in space, which have no such picture.
+pub(crate) fn set_up_picture(model: &Model) -> Result<Drawing, Error> {
+    let dimension = model.mesh().dimension();
+    if dimension != 2 {
+        let of = if dimension == 1 { "a bar" } else { "a body in space" };
+        let message = format!("the picture of a set-up is one of a body in the plane or about an axis; this is {of}");
+        return Err(Error::Scene { path: "model".into(), message });
+    }
+    let shown = Shown::of(model);
+    let lines: Vec<ObstacleLine> =
+        shown.outlines.iter().map(|(points, inside)| ObstacleLine { points, inside: *inside }).collect();
+    let picture = shown.picture(&lines);
+    let title = headline(model, "set-up");
+    let (frame, title) = framed(obstacle::window(shown.nodes.iter().copied(), &lines), &shown.length_unit, &title);
+    let arrows = arrows(model, &shown, &frame);
+    let symbols = symbols(model.held_nodes(), &shown, &frame);
+    let entries = entries(model, &symbols, !arrows.is_empty(), (&lines, &frame));
+
+    let width = frame.corner[0] + frame.size[0] + MARGIN + frame.x.overhang();
+    let below = frame.corner[1] + frame.size[1] + ROOM_BELOW + 18.0;
+    let available = width - 2.0 * MARGIN;
+    let mut drawing = Drawing::new(width, below + legend::rows_height(&entries, available) + MARGIN);
+    draw_heading(&mut drawing, &title, 0.5 * width, MARGIN);
+    picture.draw_moved(&mut drawing, &frame, &shown.nodes);
+    drawing.clipped(frame.corner, frame.size, |drawing| {
+        symbols.iter().for_each(|symbol| symbol.draw(drawing));
+        arrows.iter().for_each(|[from, to]| draw_arrow(drawing, *from, *to));
+    });
+    frame.draw_axes(&mut drawing, Labels::Both);
+    legend::draw_rows(&mut drawing, &entries, [0.5 * width, below], available);
+    Ok(drawing)
+}
+
+/// What is drawn, as plain data.
+struct Shown {
+    length_unit: String,
+    nodes: Vec<[f64; 2]>,
+    elements: Vec<Vec<usize>>,
+    nothing: Vec<f64>,
+    outlines: Vec<(Vec<[f64; 2]>, [f64; 2])>,
+    candidates: Vec<usize>,
+    open: Vec<bool>,
+    /// From the middle of the cells around each node to the node: out of the body where that lies on its boundary.
+    out: Vec<[f64; 2]>,
+}
+
+impl Shown {
+    fn of(model: &Model) -> Self {
+        let mesh = model.mesh();
+        let nodes: Vec<[f64; 2]> = mesh.nodes().iter().map(|&[x, y, _]| [x, y]).collect();
+        let corners = mesh.kind().corners();
+        let mut candidates: Vec<usize> = model.rows().iter().map(|row| row.node).collect();
+        candidates.sort_unstable();
+        candidates.dedup();
+        let rigid = (0..model.obstacles().len()).filter(|&index| model.obstacles()[index].rigid().is_some());
+        let outline = |index: usize| {
+            let [x, y, _] = model.obstacles()[index].approach();
+            (model.obstacle_outline(index, OUTLINE_SEGMENTS), [x, y])
+        };
+        let elements: Vec<Vec<usize>> = mesh.elements().map(|nodes| nodes[..corners].to_vec()).collect();
+        Shown {
+            length_unit: model.units().length.clone(),
+            out: outwards(&nodes, &mesh.elements().map(<[usize]>::to_vec).collect::<Vec<_>>()),
+            elements,
+            nothing: vec![0.0; 2 * nodes.len()],
+            outlines: rigid.map(outline).collect(),
+            open: vec![false; candidates.len()],
+            candidates,
+            nodes,
+        }
+    }
+
+    /// The mesh with its candidates under the obstacles; of a picture of an answer it is the moved mesh.
+    fn picture<'a>(&'a self, obstacles: &'a [ObstacleLine<'a>]) -> ContactPicture<'a> {
+        ContactPicture {
+            title: "",
+            length_unit: &self.length_unit,
+            nodes: &self.nodes,
+            elements: &self.elements,
+            displacement: &self.nothing,
+            magnification: 1.0,
+            field: &self.nothing[..self.nodes.len()],
+            quantity: Quantity::default(),
+            limits: [0.0; 2],
+            obstacles,
+            candidates: &self.candidates,
+            closed: &self.open,
+            window: None,
+        }
+    }
+}
+
+/// From the mean of the centroids of the cells around each node to the node.
+fn outwards(nodes: &[[f64; 2]], elements: &[Vec<usize>]) -> Vec<[f64; 2]> {
+    let (mut sums, mut counts) = (vec![[0.0; 2]; nodes.len()], vec![0.0_f64; nodes.len()]);
+    for element in elements {
+        let share = 1.0 / element.len().max(1) as f64;
+        let centroid = [0, 1].map(|axis| element.iter().map(|&node| share * nodes[node][axis]).sum::<f64>());
+        for &node in element {
+            counts[node] += 1.0;
+            (0..2).for_each(|axis| sums[node][axis] += centroid[axis]);
+        }
+    }
+    let out =
+        |((node, sum), count): ((&[f64; 2], [f64; 2]), f64)| [0, 1].map(|axis| node[axis] - sum[axis] / count.max(1.0));
+    nodes.iter().zip(sums).zip(counts).map(out).collect()
+}
+
+/// The frame of a window with room around it, under a title in lines.
+fn framed(window: [[f64; 2]; 2], length_unit: &str, title: &str) -> (Frame, Vec<String>) {
+    let longest = window.iter().map(|[low, high]| high - low).fold(0.0, f64::max);
+    let [mut x, mut y] = window.map(|[low, high]| [low - ROOM * longest, high + ROOM * longest]);
+    let scale = (PANEL[0] / (x[1] - x[0])).min(PANEL[1] / (y[1] - y[0]));
+    for (range, smallest) in [(&mut x, SMALLEST[0]), (&mut y, SMALLEST[1])] {
+        let missing = 0.5 * (smallest / scale - (range[1] - range[0])).max(0.0);
+        *range = [range[0] - missing, range[1] + missing];
+    }
+    let size = [x, y].map(|range| scale * (range[1] - range[0]));
+    let names = ["x", "y"].map(|name| Quantity::new(name, length_unit));
+    // One factor for both axes, or the same length would carry two different numbers.
+    let exponent = common_exponent([x, y].as_flattened().iter().fold(0.0, |largest, end| end.abs().max(largest)));
+    let horizontal = Axis::horizontal(&names[0], Scale::Linear, x, size[0]).in_powers_of(&names[0], exponent);
+    let vertical = Axis::vertical(&names[1], Scale::Linear, y, size[1]).in_powers_of(&names[1], exponent);
+    let left = MARGIN + vertical.room_left();
+    let title = typeface::wrapped(title, TITLE, Weight::Bold, left + size[0]);
+    let top = MARGIN + TITLE * LINE * title.len() as f64 + 8.0;
+    (Frame { corner: [left, top], size, x: horizontal, y: vertical }, title)
+}
+
+/// The arrows of the loads in pixels, from tail to tip: those of nodes that share a square are one.
+///
+/// A force that leaves the body begins at its place, one that presses on it ends there.
+fn arrows(model: &Model, shown: &Shown, frame: &Frame) -> Vec<[[f64; 2]; 2]> {
+    let mut squares = std::collections::BTreeMap::<[i64; 2], Gathered>::new();
+    for ((node, out), load) in shown.nodes.iter().zip(&shown.out).zip(model.nodal_load().chunks_exact(2)) {
+        let size = load[0].hypot(load[1]);
+        let place = frame.place(*node);
+        if size > 0.0 && place.iter().all(|part| part.is_finite()) {
+            let square = place.map(|part| (part / APART).floor() as i64);
+            squares.entry(square).or_default().add(place, [load[0], load[1]], *out);
+        }
+    }
+    let longest = squares.values().map(Gathered::length).fold(0.0, f64::max);
+    let shown = squares.values().filter(|gathered| gathered.length() > SHORTEST * longest);
+    shown.map(|gathered| gathered.arrow(LONGEST / longest)).collect()
+}
+
+/// Loads of several nodes as one.
+#[derive(Default)]
+struct Gathered {
+    force: [f64; 2],
+    weight: f64,
+    moment: [f64; 2],
+    /// Above zero where the forces lead out of the body.
+    outwards: f64,
+}
+
+impl Gathered {
+    fn add(&mut self, place: [f64; 2], force: [f64; 2], out: [f64; 2]) {
+        let size = force[0].hypot(force[1]);
+        self.force = [self.force[0] + force[0], self.force[1] + force[1]];
+        self.moment = [self.moment[0] + size * place[0], self.moment[1] + size * place[1]];
+        self.weight += size;
+        self.outwards += force[0] * out[0] + force[1] * out[1];
+    }
+
+    fn length(&self) -> f64 {
+        self.force[0].hypot(self.force[1])
+    }
+
+    fn arrow(&self, pixels: f64) -> [[f64; 2]; 2] {
+        let place = self.moment.map(|part| part / self.weight);
+        // Pixels count downwards.
+        let along = [pixels * self.force[0], -pixels * self.force[1]];
+        match self.outwards < 0.0 {
+            true => [[place[0] - along[0], place[1] - along[1]], place],
+            false => [place, [place[0] + along[0], place[1] + along[1]]],
+        }
+    }
+}
+
+fn draw_arrow(drawing: &mut Drawing, from: [f64; 2], to: [f64; 2]) {
+    let [along, down] = [to[0] - from[0], to[1] - from[1]];
+    let length = along.hypot(down);
+    if length < 1.0 {
+        return;
+    }
+    let unit = [along / length, down / length];
+    let head = (0.4 * length).clamp(3.0, 9.0);
+    let base = [to[0] - head * unit[0], to[1] - head * unit[1]];
+    let aside = [-0.4 * head * unit[1], 0.4 * head * unit[0]];
+    drawing.line(from, base, &Paint::stroke(LOAD, 1.6));
+    let corners = [to, [base[0] + aside[0], base[1] + aside[1]], [base[0] - aside[0], base[1] - aside[1]]];
+    drawing.polygon(&corners, &Paint::fill(LOAD));
+}
+
+/// How a held node is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// Held in both directions.
+    Fixed,
+    /// Held along one direction.
+    Roller,
+    Spring,
+    RigidFace,
+}
+
+/// The symbol of a held node, in pixels.
+#[derive(Clone, Copy, Debug)]
+struct Symbol {
+    kind: Kind,
+    place: [f64; 2],
+    /// Unit vector from the node to what holds it.
+    towards: [f64; 2],
+}
+
+/// One symbol for each held node, as long as they are apart.
+fn symbols(held: Vec<HeldNode>, shown: &Shown, frame: &Frame) -> Vec<Symbol> {
+    let mut symbols: Vec<Symbol> = Vec::new();
+    for HeldNode { node, hold, directions, direction } in held {
+        let kind = match hold {
+            Hold::Support if directions > 1 => Kind::Fixed,
+            Hold::Support => Kind::Roller,
+            Hold::Spring => Kind::Spring,
+            Hold::RigidFace => Kind::RigidFace,
+        };
+        let place = frame.place(shown.nodes[node]);
+        let is_near =
+            |other: &Symbol| other.kind == kind && (other.place[0] - place[0]).hypot(other.place[1] - place[1]) < APART;
+        if place.iter().any(|part| !part.is_finite()) || symbols.iter().any(is_near) {
+            continue;
+        }
+        symbols.push(Symbol { kind, place, towards: towards(shown.out[node], direction, kind) });
+    }
+    symbols
+}
+
+/// From a node to what holds it, in pixels: along the direction, or, where both are held, out of the body.
+fn towards(out: [f64; 2], direction: [f64; 3], kind: Kind) -> [f64; 2] {
+    let along = match kind {
+        Kind::Roller | Kind::Spring => [direction[0], direction[1]],
+        Kind::Fixed | Kind::RigidFace => out,
+    };
+    let length = along[0].hypot(along[1]);
+    if length == 0.0 {
+        return [0.0, 1.0];
+    }
+    let sense = if along[0] * out[0] + along[1] * out[1] < 0.0 { -1.0 } else { 1.0 };
+    // Pixels count downwards.
+    [sense * along[0] / length, -sense * along[1] / length]
+}
+
+impl Symbol {
+    fn draw(&self, drawing: &mut Drawing) {
+        let [x, y] = self.place;
+        let [along, down] = self.towards;
+        let at = |out: f64, aside: f64| [x + out * along - aside * down, y + out * down + aside * along];
+        let half = 0.5 * SYMBOL;
+        let triangle = [at(0.0, 0.0), at(SYMBOL, half), at(SYMBOL, -half)];
+        match self.kind {
+            Kind::Fixed => drawing.polygon(&triangle, &Paint::fill(SUPPORT).with_stroke(WHITE, 0.6)),
+            Kind::Roller => {
+                drawing.polygon(&triangle, &Paint::fill(WHITE).with_stroke(SUPPORT, 1.4));
+                drawing.line(at(SYMBOL + 3.0, half), at(SYMBOL + 3.0, -half), &Paint::stroke(SUPPORT, 1.4));
+            }
+            Kind::Spring => {
+                let turns: Vec<[f64; 2]> = (0..=6)
+                    .map(|turn| {
+                        let aside = if turn % 6 == 0 { 0.0 } else { half * if turn % 2 == 0 { 1.0 } else { -1.0 } };
+                        at(1.5 * SYMBOL * f64::from(turn) / 6.0, aside)
+                    })
+                    .collect();
+                drawing.polyline(&turns, &Paint::stroke(SPRING, 1.4));
+            }
+            Kind::RigidFace => {
+                drawing.rect([x - 0.4 * SYMBOL, y - 0.4 * SYMBOL], [0.8 * SYMBOL; 2], &Paint::fill(FACE))
+            }
+        }
+    }
+}
+
+/// The legend: what is shown, with its numbers.
+fn entries<'a>(
+    model: &Model,
+    symbols: &[Symbol],
+    has_loads: bool,
+    (lines, frame): (&[ObstacleLine], &Frame),
+) -> Vec<Entry<'a>> {
+    let mut entries: Vec<Entry> = Vec::new();
+    for (kind, name) in [
+        (Kind::Fixed, "held in both directions"),
+        (Kind::Roller, "held along one direction"),
+        (Kind::Spring, "spring"),
+        (Kind::RigidFace, "rigid face"),
+    ] {
+        if symbols.iter().any(|symbol| symbol.kind == kind) {
+            let key = Box::new(move |drawing: &mut Drawing, [x, y]: [f64; 2]| {
+                Symbol { kind, place: [x, y - 0.5 * SYMBOL], towards: [0.0, 1.0] }.draw(drawing);
+            });
+            entries.push(Entry { name: name.to_owned(), key, key_width: 1.4 * SYMBOL });
+        }
+    }
+    if has_loads {
+        let key = Box::new(|drawing: &mut Drawing, [x, y]: [f64; 2]| draw_arrow(drawing, [x - 14.0, y], [x + 14.0, y]));
+        entries.push(Entry { name: "load".to_owned(), key, key_width: 30.0 });
+    }
+    let candidates = model.rows().len();
+    if candidates > 0 {
+        let key = Box::new(|drawing: &mut Drawing, centre| Candidate::Open.draw(drawing, centre, 5.0));
+        entries.push(Entry { name: format!("candidates for contact ({candidates})"), key, key_width: 12.0 });
+    }
+    if !lines.is_empty() {
+        let unit = &model.units().length;
+        let place = match model.pressing_force() {
+            Some(force) => format!("pressed by {} {}", brief(force), model.units().force),
+            None => format!("at gap {} {unit}", brief(model.gap())),
+        };
+        let seen = if lines.iter().any(|line| line.is_seen(frame)) { "" } else { ": outside the picture" };
+        let key = Box::new(|drawing: &mut Drawing, centre| obstacle::draw_key(drawing, centre, Look::Solid));
+        entries.push(Entry { name: format!("obstacle {}{seen}", place.trim_end()), key, key_width: 30.0 });
+    }
+    entries
+}

@@ -1,0 +1,102 @@
+//! A problem on its way to another end: gaps, load or both change on a straight line.
+
+use serde::Serialize;
+
+use super::Summary;
+use super::scene::{even_gaps, problem_summary};
+use crate::error::Error;
+use crate::qp::problem::ContactProblem;
+use crate::qp::{Method, Prepared, Settings, Start, solve};
+use crate::solution::Solution;
+
+/// One point of the way.
+#[derive(Clone, Debug, Serialize)]
+pub struct ProblemPoint {
+    /// How far: 0 for the problem itself, 1 for its other end.
+    pub t: f64,
+    /// The solution with its numbers.
+    #[serde(flatten)]
+    pub summary: Summary,
+}
+
+/// A row that touches or releases on the way.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ProblemEvent {
+    /// Where, exactly.
+    pub t: f64,
+    /// The contact row.
+    pub row: usize,
+    /// `true` if the row touches, `false` if it releases.
+    pub touches: bool,
+}
+
+/// A problem at several points of the way.
+#[derive(Clone, Debug, Serialize)]
+pub struct ProblemSweep {
+    /// The answers at the points, from 0 to 1.
+    pub points: Vec<ProblemPoint>,
+    /// What happens between; `None` where that is not known: the load changes, or the problem is not condensed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub events: Option<Vec<ProblemEvent>>,
+}
+
+/// Solves `first` at `count` points of the way to `last`, the same body and rows with other gaps, another load, or both; an
+/// answer that is not certified is an answer here.
+///
+/// The body is factorised once, or a hierarchy is built once, and every solve starts from the last answer. A sweep that is
+/// interrupted has the points that were done until then.
+///
+/// # Errors
+/// As [`solve`]; [`Error::Interrupted`] where not one point was done.
+pub(crate) fn sweep_problem(
+    first: &ContactProblem,
+    last: &ContactProblem,
+    count: usize,
+    settings: &Settings,
+) -> Result<ProblemSweep, Error> {
+    let prepared = Prepared::for_gaps(first, count, settings)?;
+    let is_by_choice = settings.method == Method::Auto && prepared.hierarchy().is_some();
+    let same_load = first.load() == last.load();
+    let mut points: Vec<ProblemPoint> = Vec::with_capacity(count);
+    for (index, t) in even_gaps(0.0, 1.0, count).into_iter().enumerate() {
+        settings.watch.part("point", index + 1, count);
+        let known = points.last().map_or_else(Start::default, |point| Start::from(&point.summary.solution));
+        let problem = first.with(between(first.load(), last.load(), t), between(first.gap(), last.gap(), t))?;
+        let prepared = match same_load {
+            true => prepared.starting_from(known),
+            false => prepared.with_load(problem.load().to_vec())?.starting_from(known),
+        };
+        let solved = match prepared.solve(problem.gap()) {
+            Err(Error::NotCertified { .. }) if is_by_choice => solve(&problem, settings),
+            solved => solved,
+        };
+        let solution = match solved {
+            Ok(solution) => solution,
+            // What was cut short is no answer to this point.
+            Err(_) if settings.watch.is_stopped() => break,
+            Err(Error::NotCertified { solution, .. }) => *solution,
+            Err(error) => return Err(error),
+        };
+        points.push(point(&problem, t, solution, settings));
+        if settings.watch.is_stopped() {
+            break;
+        }
+    }
+    if points.is_empty() {
+        return Err(Error::Interrupted);
+    }
+    let is_known = same_load && !settings.watch.is_stopped() && prepared.hierarchy().is_none();
+    let path = if is_known { prepared.path(first.gap(), last.gap()).ok() } else { None };
+    let event = |event: &crate::qp::Event| ProblemEvent { t: event.at, row: event.row, touches: event.touches };
+    Ok(ProblemSweep { points, events: path.map(|path| path.events().iter().map(event).collect()) })
+}
+
+fn point(problem: &ContactProblem, t: f64, solution: Solution, settings: &Settings) -> ProblemPoint {
+    ProblemPoint { t, summary: problem_summary(problem, solution, settings.goal(), 0.0) }
+}
+
+/// Entry by entry `(1 - t) first + t last`; what is the same at both ends, as an infinite gap, stays as it is.
+fn between(first: &[f64], last: &[f64], t: f64) -> Vec<f64> {
+    let mix = |(&first, &last): (&f64, &f64)| if first == last { first } else { (1.0 - t) * first + t * last };
+    first.iter().zip(last).map(mix).collect()
+}

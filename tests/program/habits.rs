@@ -1,0 +1,418 @@
+//! Habits of a good command: it tells shells and manuals of itself, says why it does what it does, and guesses what is meant.
+
+use std::process::Command;
+
+use crate::program::{Desk, Problem, example, scene, vector};
+use serde_json::{Value, json};
+
+/// The names behind `Commands:` in the help.
+fn commands(desk: &Desk) -> Vec<String> {
+    let help = desk.run(&["--help"]).ends_with(0).stdout;
+    let list = help.split("Commands:\n").nth(1).unwrap().split("\n\n").next().unwrap().to_string();
+    list.lines().map(|line| line.split_whitespace().next().unwrap().to_string()).filter(|name| name != "help").collect()
+}
+
+/// The long options in the help of a command.
+fn options(desk: &Desk, command: &str) -> Vec<String> {
+    let help = desk.run(&[command, "--help"]).ends_with(0).stdout;
+    let lines = help.lines().map(str::trim_start).filter(|line| line.starts_with('-'));
+    let words = lines.filter_map(|line| line.split(' ').find(|word| word.starts_with("--")));
+    words.map(|word| word.trim_end_matches(',').to_string()).collect()
+}
+
+#[test]
+fn completions_of_every_shell_know_commands_and_options() {
+    let desk = Desk::new();
+    for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
+        let script = desk.run(&["completions", shell]).ends_with(0).stdout;
+        for word in commands(&desk).iter().map(String::as_str).chain(["total-error", "max-memory"]) {
+            assert!(script.contains(word), "{shell} lacks {word}");
+        }
+    }
+    desk.run(&["completions", "tcsh"]).ends_with(2);
+}
+
+#[test]
+fn bash_completes_commands_options_and_methods() {
+    let desk = Desk::new();
+    desk.write("signorini.bash", desk.run(&["completions", "bash"]).ends_with(0).stdout);
+    for (words, expected) in [
+        ("signorini so", "solve"),
+        ("signorini solve --total", "--total-error"),
+        ("signorini solve --method act", "active-set"),
+        ("signorini completions z", "zsh"),
+    ] {
+        let words: Vec<String> = words.split(' ').map(|word| format!("'{word}'")).collect();
+        let script = format!(
+            "source signorini.bash; COMP_WORDS=({}); COMP_CWORD={}; _signorini signorini {} {}; echo \"${{COMPREPLY[@]}}\"",
+            words.join(" "),
+            words.len() - 1,
+            words[words.len() - 1],
+            words[words.len() - 2],
+        );
+        let output = Command::new("bash").args(["-c", &script]).current_dir(desk.path(".")).output().unwrap();
+        let reply = String::from_utf8(output.stdout).unwrap();
+        assert!(reply.split_whitespace().any(|word| word == expected), "{words:?}: {reply:?}, {:?}", output.stderr);
+    }
+}
+
+#[test]
+fn the_page_of_the_manual_has_every_command_with_its_options() {
+    let desk = Desk::new();
+    let page = desk.run(&["man"]).ends_with(0).stdout;
+    let plain = page.replace("\\-", "-");
+    assert_eq!(page.lines().filter(|line| line.starts_with(".TH ")).count(), 1, "one page");
+    assert_eq!(page.lines().filter(|line| line.starts_with(".ie ")).count(), 1, "set up once");
+    for command in commands(&desk) {
+        let title = format!(".SH \"SIGNORINI {}\"\n", command.to_uppercase());
+        let section = plain.split(&title).nth(1).unwrap_or_else(|| panic!("no section for {command}"));
+        let section = section.split("\n.SH ").next().unwrap();
+        for option in options(&desk, &command) {
+            assert!(section.contains(&option), "{command} lacks {option}: {section}");
+        }
+        assert!(section.contains("Example: signorini "), "{command}");
+    }
+    assert!(plain.contains(".SH \"EXIT STATUS\"\n.nf\n\\&Exit codes: 0 certified"));
+    // A line that begins with a dot is a request of roff.
+    let known = [".TH", ".SH", ".SS", ".TP", ".PP", ".IP", ".RS", ".RE", ".br", ".nf", ".fi", ".ie", ".el"];
+    for line in page.lines().filter(|line| line.starts_with('.')) {
+        assert!(known.iter().any(|request| line.starts_with(request)), "{line:?}");
+    }
+}
+
+#[test]
+fn the_help_of_every_command_has_an_example_that_the_program_takes() {
+    let desk = Desk::new();
+    for command in commands(&desk) {
+        let help = desk.run(&[&command, "--help"]).ends_with(0).stdout;
+        let lines: Vec<&str> = help.lines().map(str::trim).collect();
+        let calls = lines.iter().map(|line| line.strip_prefix("Example: ").unwrap_or(line));
+        let calls: Vec<&str> = calls.filter(|call| call.starts_with(&format!("signorini {command}"))).collect();
+        assert!(!calls.is_empty(), "{command}: {help}");
+        for call in calls {
+            let call = call.split(" > ").next().unwrap();
+            // Files that are missing end with 1, words that are none with 2.
+            let arguments: Vec<&str> = call.split(' ').skip(1).collect();
+            let run = desk.run(&arguments);
+            assert!(run.code <= 1, "{call}: {}", run.stderr);
+        }
+    }
+}
+
+#[test]
+fn the_help_of_solve_tells_three_knobs_apart() {
+    let help = Desk::new().run(&["solve", "--help"]).ends_with(0).stdout;
+    let words = ["--tolerance is how well", "--accuracy how far off", "--time when"];
+    for word in words {
+        assert!(help.contains(word), "{help}");
+    }
+}
+
+#[test]
+fn an_answer_says_what_was_weighed_and_the_text_shows_the_same_numbers() {
+    let desk = Desk::new();
+    let scene = example("indentation");
+    let why = desk.run(&["solve", &scene, "--format", "json"]).ends_with(0).json()["why"].clone();
+    let [factor, mprgp] = &why["considered"].as_array().unwrap()[..] else { panic!("{why:#}") };
+    assert_eq!(
+        (&factor["method"], &mprgp["method"], &why["chosen"]),
+        (&json!("factor"), &json!("mprgp"), &json!("factor"))
+    );
+    let (direct, cycles) = (factor["seconds"].as_f64().unwrap(), mprgp["seconds"].as_f64().unwrap());
+    assert!(direct > 0.0 && cycles > direct && factor["bytes"].as_f64().unwrap() > 1e6, "{why:#}");
+    let reason = why["reason"].as_str().unwrap();
+    assert!(reason.contains("with a factor") && reason.contains("of such methods"), "{reason}");
+
+    let plain = desk.run(&["solve", &scene]).ends_with(0).stdout;
+    assert!(!plain.contains("  why "), "{plain}");
+    let text = desk.run(&["solve", &scene, "--explain"]).ends_with(0).stdout;
+    let shown: Vec<&str> = text.lines().skip_while(|line| !line.starts_with("  why ")).collect();
+    let words = |text: &str| text.split_whitespace().map(str::to_string).collect::<Vec<_>>().join(" ");
+    assert!(words(&shown.join(" ")).contains(reason), "{shown:?}");
+    assert!(shown.iter().any(|line| line.contains(&format!("factor  {direct:.1e} s")) && line.ends_with("chosen")));
+    assert!(shown.iter().any(|line| line.contains(&format!("mprgp   {cycles:.1e} s")) && !line.ends_with("chosen")));
+    assert!(shown.iter().all(|line| line.chars().count() <= 100), "{shown:?}");
+}
+
+#[test]
+fn a_method_that_was_asked_for_is_why_enough() {
+    let run = Desk::new().run(&["solve", &example("ball"), "--format", "json", "--method", "active-set"]);
+    let expected = json!({"chosen": "active-set", "reason": "by active-set: it was asked for", "considered": []});
+    assert_eq!(run.ends_with(0).json()["why"], expected);
+}
+
+#[test]
+fn a_sweep_says_why_for_all_its_points() {
+    let desk = Desk::new();
+    desk.write("block.json", scene().to_string());
+    let swept = desk.run(&["sweep", "block.json", "--gaps", "0:-0.01:3", "--format", "json"]).ends_with(0).json();
+    for point in swept["points"].as_array().unwrap() {
+        assert_eq!(point["why"]["considered"].as_array().unwrap().len(), 2, "{point:#}");
+    }
+}
+
+#[test]
+fn a_name_that_is_nearly_right_is_answered_with_the_one_that_is_meant() {
+    let desk = Desk::new();
+    let wrong = |pointer: &str, value: Value| {
+        let mut scene = scene();
+        let (place, key) = pointer.rsplit_once('/').unwrap();
+        match key.parse::<usize>() {
+            Ok(index) => scene.pointer_mut(place).unwrap()[index] = value,
+            Err(_) => scene.pointer_mut(place).unwrap()[key] = value,
+        }
+        desk.write("wrong.json", scene.to_string());
+        desk.run(&["solve", "wrong.json"])
+    };
+    let meant = |name: &str| format!("; did you mean `{name}`?");
+    for (pointer, value, name) in [
+        ("/supports/0/on", json!({"boundary": "botom"}), "bottom"),
+        ("/supports/0/on", json!({"boundary": "Bottom"}), "bottom"),
+        ("/obstacles/0/boundary", json!("tpo"), "top"),
+        ("/loads/0", json!({"tracton": {"boundary": "top", "value": [0, 1]}}), "traction"),
+        ("/suports", json!([]), "supports"),
+        ("/model", json!("plane-stran"), "plane-strain"),
+        ("/obstacles/0/shape", json!({"parabel": {"apex": [0.5, 0.5], "radius": 1}}), "parabola"),
+        ("/material/youngs", json!(1), "young"),
+        ("/body", json!({"rectangel": {}}), "rectangle"),
+    ] {
+        let run = wrong(pointer, value).ends_with(1);
+        assert!(run.stderr.trim_end().ends_with(&meant(name)), "{pointer}: {}", run.stderr);
+    }
+    for (pointer, value) in [("/supports/0/on", json!({"boundary": "floor"})), ("/colour", json!("red"))] {
+        let run = wrong(pointer, value).ends_with(1);
+        assert!(!run.stderr.contains("did you mean"), "{}", run.stderr);
+    }
+    let long = "x".repeat(1_000_000);
+    assert!(!wrong("/supports/0/on", json!({"boundary": long})).ends_with(1).stderr.contains("did you mean"));
+    // A group of elements, of a mesh and of a body without groups.
+    let run = wrong("/materials", json!([{"group": "stel", "material": {"young": 1, "poisson": 0}}]));
+    assert!(run.ends_with(1).stderr.contains("the body has none"));
+    // Options and methods are those of the command line.
+    let run = desk.run(&["solve", "wrong.json", "--method", "activ-set"]).ends_with(2);
+    assert!(run.stderr.contains("a similar value exists: 'active-set'"), "{}", run.stderr);
+}
+
+#[test]
+fn a_group_that_is_nearly_right_is_answered_with_the_one_that_is_meant() {
+    let desk = Desk::new();
+    let mesh = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes/two-parts-q8.msh");
+    std::fs::copy(mesh, desk.path("part.msh")).unwrap();
+    let text = std::fs::read_to_string(desk.path("part.msh")).unwrap();
+    let names = text.split("$PhysicalNames").nth(1).unwrap().lines().skip(2);
+    let of_elements =
+        names.map(|line| line.split('"').nth(1).unwrap_or("").to_string()).filter(|name| !name.is_empty());
+    let name = of_elements.last().unwrap();
+    let nearly = format!("{name}x");
+    let mut scene = scene();
+    scene["body"] = json!({"gmsh": {"file": "part.msh", "group": nearly}});
+    desk.write("part.json", scene.to_string());
+    let run = desk.run(&["solve", "part.json"]).ends_with(1);
+    assert!(run.stderr.contains(&format!("did you mean `{name}`?")), "{}", run.stderr);
+    scene["body"] = json!({"gmsh": {"file": "part.msh"}});
+    scene["materials"] = json!([{"group": nearly, "material": {"young": 1e7, "poisson": 0.3}}]);
+    desk.write("part.json", scene.to_string());
+    let run = desk.run(&["solve", "part.json"]).ends_with(1);
+    assert!(run.stderr.contains(&format!("did you mean `{name}`?")), "{}", run.stderr);
+}
+
+/// Four springs of stiffness 4 in a row, the end pushed with force 3 towards a wall at 4: it goes to 3 by itself, and a wall at g takes
+/// 3 - g of it.
+fn springs(desk: &Desk) {
+    let k = ["1 1 8", "2 1 -4", "2 2 8", "3 2 -4", "3 3 8", "4 3 -4", "4 4 4"];
+    let k = crate::program::matrix("symmetric", "4 4", &k);
+    let b = crate::program::matrix("general", "1 4", &["1 4 1"]);
+    desk.problem("p", &Problem { k, f: vector(&["0", "0", "0", "3"]), b, g: vector(&["4"]) });
+}
+
+/// K = [[2, -1], [-1, 2]], f = (1, 1), u_2 <= 2, which is out of reach.
+fn problem(desk: &Desk) {
+    desk.problem("p", &Problem { g: vector(&["2"]), ..Problem::right() });
+}
+
+#[test]
+fn a_problem_directory_is_swept_from_its_gaps_to_others() {
+    let desk = Desk::new();
+    springs(&desk);
+    desk.write("p/g1.mtx", vector(&["2"]));
+    let swept = desk.run(&["sweep", "p", "--points", "5", "--format", "json", "--out", "o"]).ends_with(0).json();
+    let points = swept["points"].as_array().unwrap();
+    assert_eq!(points.len(), 5);
+    for (point, (t, force)) in points.iter().zip([(0.0, 0.0), (0.25, 0.0), (0.5, 0.0), (0.75, 0.5), (1.0, 1.0)]) {
+        assert_eq!((&point["t"], &point["status"]), (&json!(t), &json!("certified")));
+        assert!((point["contact"]["force"].as_f64().unwrap() - force).abs() < 1e-12, "{point:#}");
+    }
+    // The wall is at 3 half way.
+    let [event] = &swept["events"].as_array().unwrap()[..] else { panic!("{:#}", swept["events"]) };
+    assert!((event["t"].as_f64().unwrap() - 0.5).abs() < 1e-12, "{event:#}");
+    assert_eq!((&event["row"], &event["touches"]), (&json!(0), &json!(true)));
+    for file in ["report.json", "force.svg", "force.png", "point-01/u.mtx", "point-05/lambda.mtx"] {
+        assert!(desk.path("o").join(file).exists(), "{file}");
+    }
+    let text = desk.run(&["sweep", "p", "--points", "5"]).ends_with(0).stdout;
+    assert!(text.contains("1.000000000e0") && text.contains("row 0") && text.contains("touches"), "{text}");
+    assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
+}
+
+#[test]
+fn a_problem_directory_is_swept_to_another_load_and_to_both() {
+    let desk = Desk::new();
+    problem(&desk);
+    desk.write("p/f1.mtx", vector(&["5", "5"]));
+    // Without contact u = f; u_2 <= 2 closes at f = 2; then lambda = (3 g - 3 f) / 2.
+    let force_at = |points: &str| -> Vec<f64> {
+        let swept = desk.run(&["sweep", "p", "--points", points, "--format", "json"]).ends_with(0).json();
+        assert!(swept.get("events").is_none(), "nothing is known between");
+        swept["points"].as_array().unwrap().iter().map(|point| point["contact"]["force"].as_f64().unwrap()).collect()
+    };
+    let near = |found: &[f64], expected: &[f64]| {
+        assert_eq!(found.len(), expected.len());
+        assert!(found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-11), "{found:?}");
+    };
+    near(&force_at("5"), &[0.0, 0.0, 1.5, 3.0, 4.5]);
+    desk.write("p/g1.mtx", vector(&["0"]));
+    near(&force_at("3"), &[0.0, 3.0, 7.5]);
+}
+
+#[test]
+fn what_a_sweep_of_a_problem_directory_lacks_is_named() {
+    let desk = Desk::new();
+    problem(&desk);
+    desk.run(&["sweep", "p", "--points", "3"]).fails_with(1, &["p/g1.mtx", "it is missing, and so is f1.mtx"]);
+    desk.run(&["sweep", "p", "--gaps", "0:1:2"]).fails_with(1, &["--gaps", "problem directory", "give --points"]);
+    desk.write("block.json", scene().to_string());
+    desk.run(&["sweep", "block.json", "--points", "3"]).fails_with(1, &["--points", "no problem directory"]);
+    desk.run(&["sweep", "p"]).ends_with(2);
+    desk.run(&["sweep", "p", "--points", "1"]).ends_with(2);
+    desk.run(&["sweep", "p", "--points", "3", "--gaps", "0:1:2"]).ends_with(2);
+    desk.write("p/g1.mtx", vector(&["0", "1"]));
+    desk.run(&["sweep", "p", "--points", "3"]).fails_with(1, &["p/g1.mtx", "length 2, but there are 1 contact rows"]);
+    desk.write("p/g1.mtx", vector(&["inf"]));
+    desk.run(&["sweep", "p", "--points", "3"]).fails_with(1, &["p/g1.mtx", "row 0 goes from 2 to inf"]);
+}
+
+#[test]
+fn a_solve_starts_from_the_answer_of_an_earlier_one() {
+    let desk = Desk::new();
+    desk.run(&["export", &example("indentation"), "p"]).ends_with(0);
+    let solve = |more: &[&str]| {
+        let arguments = [&["solve", "p", "--method", "active-set", "--format", "json"], more].concat();
+        desk.run(&arguments).ends_with(0).json()
+    };
+    let first = solve(&["--out", "o"]);
+    let again = solve(&["--start", "o"]);
+    assert!(first["iterations"].as_u64().unwrap() > 2, "{first:#}");
+    assert_eq!(again["iterations"], 1, "{again:#}");
+    assert_eq!(again["contact"]["count"], first["contact"]["count"]);
+    // The other ways take it too: multigrid needs fewer cycles, the QP settles its set at once.
+    let cycles = |more: &[&str]| {
+        let arguments = [&["solve", "p", "--method", "mprgp", "--format", "json"], more].concat();
+        desk.run(&arguments).ends_with(0).json()["iterations"].as_u64().unwrap()
+    };
+    assert!(cycles(&["--start", "o"]) < cycles(&[]));
+    let qp = desk.run(&["solve", "p", "--method", "qp", "--start", "o", "--format", "json"]).ends_with(0).json();
+    assert_eq!(qp["method"], "qp-warm");
+}
+
+#[test]
+fn a_start_that_does_not_fit_is_refused() {
+    let desk = Desk::new();
+    problem(&desk);
+    desk.run(&["solve", "p", "--start", "nowhere"]).fails_with(1, &["nowhere/u.mtx"]);
+    desk.write("o/u.mtx", vector(&["1", "1", "1"]));
+    desk.write("o/lambda.mtx", vector(&["0"]));
+    desk.run(&["solve", "p", "--start", "o"]).fails_with(1, &["displacement to start from has length 3", "2 dofs"]);
+    desk.write("o/u.mtx", vector(&["1", "1"]));
+    desk.write("o/lambda.mtx", vector(&["0", "0"]));
+    desk.run(&["solve", "p", "--start", "o"])
+        .fails_with(1, &["multiplier to start from has length 2", "1 contact rows"]);
+    let mut moving = scene();
+    moving["material"]["density"] = json!(1000);
+    moving["gap"] = json!(0.1);
+    moving["analysis"] = json!({"dynamic": {"duration": 1e-4}});
+    desk.write("moving.json", moving.to_string());
+    desk.run(&["solve", "moving.json", "--start", "o"])
+        .fails_with(1, &["--start", "a motion starts from its initial state"]);
+}
+
+#[test]
+fn a_scene_is_drawn_before_it_is_solved() {
+    let desk = Desk::new();
+    let mut scene = scene();
+    scene["springs"] = json!([{"on": {"boundary": "left"}, "x": 1000}]);
+    scene["supports"] = json!([{"on": {"boundary": "bottom"}, "y": 0}, {"on": {"point": [1, 0]}, "x": 0}]);
+    desk.write("block.json", scene.to_string());
+    desk.run(&["draw", "block.json", "--out", "set-up.svg"]).ends_with(0);
+    let svg = std::fs::read_to_string(desk.path("set-up.svg")).unwrap();
+    for words in [
+        "Small block, gap −0.01 m, set-up",
+        "held along one direction",
+        "held in both directions",
+        "spring",
+        "load",
+        "candidates for contact (5)",
+        "obstacle at gap −0.01 m",
+    ] {
+        assert!(svg.contains(words), "no {words}");
+    }
+    desk.run(&["draw", "block.json", "--out", "set-up.PNG"]).ends_with(0);
+    assert!(std::fs::read(desk.path("set-up.PNG")).unwrap().starts_with(b"\x89PNG"));
+    // What is not there is not in the legend.
+    scene["loads"] = json!([]);
+    scene.as_object_mut().unwrap().remove("springs");
+    desk.write("block.json", scene.to_string());
+    desk.run(&["draw", "block.json", "--out", "set-up.svg"]).ends_with(0);
+    let svg = std::fs::read_to_string(desk.path("set-up.svg")).unwrap();
+    assert!(!svg.contains("spring") && !svg.contains(">load<"));
+}
+
+#[test]
+fn a_picture_of_another_kind_or_of_another_body_is_refused() {
+    let desk = Desk::new();
+    desk.run(&["draw", &example("indentation"), "--out", "set-up.jpg"]).ends_with(2);
+    desk.run(&["draw", &example("indentation")]).ends_with(2);
+    desk.run(&["draw", &example("ball"), "--out", "ball.png"]).fails_with(1, &["`model`", "a body in space"]);
+    assert!(!desk.path("ball.png").exists());
+}
+
+/// Runs the program on a terminal of its own, tells what the terminal shows, and ends it once that has `phrase`.
+#[cfg(target_os = "linux")]
+fn on_terminal(desk: &Desk, arguments: &[&str], phrase: &str) -> String {
+    let script = "import os, pty, sys
+child, terminal = pty.fork()
+if child == 0:
+    os.execv(sys.argv[1], [sys.argv[1]] + sys.argv[3:])
+shown = b''
+while sys.argv[2].encode() not in shown or not sys.argv[2]:
+    try:
+        piece = os.read(terminal, 65536)
+    except OSError:
+        break
+    if not piece:
+        break
+    shown += piece
+os.kill(child, 9)
+os.waitpid(child, 0)
+sys.stdout.buffer.write(shown)";
+    let program = env!("CARGO_BIN_EXE_signorini");
+    let mut python = Command::new("python3");
+    let output =
+        python.args(["-c", script, program, phrase]).args(arguments).current_dir(desk.path(".")).output().unwrap();
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_terminal_shows_the_share_that_is_done_and_the_time_left_unless_it_shall_be_quiet() {
+    let desk = Desk::new();
+    desk.write("block.json", scene().to_string());
+    let shown = on_terminal(&desk, &["sweep", "block.json", "--gaps", "0:-0.1:10000", "--out", "o"], " left: ");
+    let line = shown.rsplit("\r\x1b[K").find(|line| line.contains(" left: ")).expect("a line of progress").to_string();
+    assert!(line.starts_with('[') && line.contains(" % gap ") && line.contains(" of 10000, "), "{line:?}");
+    // As many gaps again take as long as it took until then, and show nothing.
+    let gap: usize = line.split("gap ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+    let gaps = format!("0:-0.1:{}", (2 * gap).min(10_000));
+    let quiet = on_terminal(&desk, &["sweep", "block.json", "--gaps", &gaps, "--format", "json", "--quiet"], "");
+    assert!(quiet.contains("\"points\"") && !quiet.contains('\x1b') && !quiet.contains(" % gap"), "{}", &quiet[..500]);
+    desk.run(&["sweep", "block.json", "--gaps", "0:0:1", "--quiet", "--progress"]).ends_with(2);
+}
