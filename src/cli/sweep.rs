@@ -5,7 +5,8 @@ use super::options::{Gaps, Sweep};
 use super::outcome::{Outcome, Report, warn};
 use super::settings::settings;
 use crate::error::Error;
-use crate::output::{gallery, sweep_text};
+use crate::output::gallery::{self, Pictures};
+use crate::output::sweep_text;
 use crate::study::scene::{even_gaps, sweep_forces};
 use crate::study::sweep;
 use crate::watch::Watch;
@@ -27,5 +28,6 @@ pub(super) fn run(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
     let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, status)) };
     report.write(&folder)?;
     let outcome = report.outcome(common.format, status);
-    Ok(outcome.with_pictures(move || gallery::write_sweep(&folder, &swept)))
+    let wanted = common.wanted(Pictures::All);
+    Ok(outcome.with_pictures(move || gallery::write_sweep(&folder, &swept, wanted)))
 }
