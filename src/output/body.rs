@@ -201,6 +201,7 @@ impl ContactPicture<'_> {
     fn moved_title(&self) -> String {
         let times = brief(self.magnification);
         match (self.is_displaced(), self.magnification == 1.0, self.obstacles.is_empty()) {
+            (false, false, false) => format!("mesh, gap × {times}"),
             (false, _, _) => "mesh".into(),
             (true, true, _) => "displaced mesh, to scale".into(),
             (true, false, true) => format!("displaced mesh, displacement × {times}"),

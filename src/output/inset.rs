@@ -55,7 +55,7 @@ impl Inset {
         });
         let reach = if extent > 1e-9 * largest { extent } else { 2.0 * near.fold(f64::INFINITY, f64::min) };
         let half = 0.5 * AROUND * reach.max(largest / MOST_TIMES);
-        if !(half < 0.25 * largest) {
+        if half >= 0.25 * largest {
             return None;
         }
         let side = (SIDE * frame.size[0].min(frame.size[1])).min(MOST_SIDE);

@@ -37,6 +37,7 @@ mod obstacle;
 mod paint;
 mod panels;
 mod pdf;
+mod plan;
 mod plane_scene;
 pub(crate) mod plot;
 #[cfg_attr(not(feature = "cli"), allow(dead_code))]

@@ -27,13 +27,15 @@ impl ContactPicture<'_> {
             let place = frame.place(self.nodes[node]);
             place[0].is_finite().then_some(place)
         };
-        let body = Field::new(self.elements, |node| Some((place(node)?, 0.0)));
         let field = Field::new(self.elements, |node| {
             let value = values[node];
             Some((place(node)?, Scale::Linear.shows(value).then_some(value)?))
         });
-        let missing = field.count() < body.count();
-        let outline = body.at_least(f64::NEG_INFINITY);
+        let missing = self.elements.iter().flatten().any(|&node| !Scale::Linear.shows(values[node]));
+        let outline = match missing {
+            true => Field::new(self.elements, |node| Some((place(node)?, 0.0))).at_least(f64::NEG_INFINITY),
+            false => field.at_least(f64::NEG_INFINITY),
+        };
         drawing.clipped(frame.corner, frame.size, |drawing| {
             if missing {
                 drawing.polygons(&outline, &Paint::fill(NO_VALUE));

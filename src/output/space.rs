@@ -1,24 +1,21 @@
 //! The picture of a body in space: its surface in colour, obstacles one can see through, and the contact in plan view.
 
 use super::{
-    arrows::Arrow,
-    axes::{Axis, Frame, LARGE, LINE, Labels, ROOM_BELOW, SMALL, TITLE, draw_heading},
-    body::{ContactPicture, FieldPanel},
+    axes::{LARGE, LINE, ROOM_BELOW, SMALL, TITLE, draw_heading},
+    body::FieldPanel,
     colour::{Colour, INK},
     colour_bar::{self, ColourRange},
     drawing::{Anchor, Drawing, Paint},
     legend::{self, Entry},
-    mark::Candidate,
     medium::Medium,
-    ticks::{Quantity, Scale, amount, common_exponent},
+    plan::Plan,
+    ticks::{Scale, amount},
     typeface::{self, Weight},
 };
-use crate::error::Error;
 use crate::fem::geometry::{cross, dot, length, minus};
 
-/// Room for the body, and for the plan view; on a screen and on paper.
+/// Room for the body, on a screen and on paper.
 const VIEWS: [[f64; 2]; 2] = [[700.0, 560.0], [470.0, 420.0]];
-const PLANS: [[f64; 2]; 2] = [[460.0, 560.0], [370.0, 420.0]];
 /// A column is at least this wide.
 const COLUMNS: [f64; 2] = [460.0, 370.0];
 const BETWEEN: f64 = 40.0;
@@ -33,6 +30,8 @@ const ALL_PARTS: usize = 12_000;
 const FINEST_MESH: f64 = 5.0;
 
 const EDGE: Colour = Colour(0x2c, 0x33, 0x3d);
+/// Of an obstacle: 1 would be invisible.
+const TRANSPARENCY: f64 = 0.72;
 const OBSTACLE: Colour = Colour(0x80, 0x86, 0x90);
 const OBSTACLE_EDGE: Colour = Colour(0x5c, 0x63, 0x6e);
 
@@ -52,23 +51,6 @@ pub(super) struct Sheet {
     pub polygons: Vec<Vec<[f64; 3]>>,
     /// From the body to the obstacle.
     pub approach: [f64; 3],
-}
-
-/// The contact with one obstacle, seen along its approach direction.
-#[derive(Clone, Debug)]
-pub(super) struct Plan {
-    pub title: String,
-    /// Names of the two coordinates.
-    pub axes: [&'static str; 2],
-    pub nodes: Vec<[f64; 2]>,
-    pub cells: Vec<Vec<usize>>,
-    /// Pressure at the nodes.
-    pub pressure: Vec<f64>,
-    pub unit: String,
-    pub candidates: Vec<usize>,
-    pub closed: Vec<bool>,
-    /// What is shown: the contact and a little around it.
-    pub window: [[f64; 2]; 2],
 }
 
 /// A body in space with a field, as plain data.
@@ -124,10 +106,7 @@ impl Place {
 
 impl SpacePicture<'_> {
     /// Draws the picture.
-    ///
-    /// # Errors
-    /// As [`ContactPicture::draw`] for the plan view.
-    pub fn draw(&self) -> Result<Drawing, Error> {
+    pub fn draw(&self) -> Drawing {
         let view = View::from(self.eye);
         let points = || self.nodes.iter().copied().chain(self.sheets.iter().flat_map(|sheet| sheet.polygons.concat()));
         let ends = |axis: usize| {
@@ -150,7 +129,10 @@ impl SpacePicture<'_> {
         let top = margin + TITLE * LINE * title.len() as f64 + LARGE * LINE + 14.0;
         let down = (size[1] + TRIAD).max(plan.as_ref().map_or(0.0, |(_, frame)| frame.size[1] + ROOM_BELOW));
         let below = top + down + 18.0;
-        let entries = plan.as_ref().map_or_else(Vec::new, |(plan, _)| plan.entries(self.sheets));
+        let mut entries = plan.as_ref().map_or_else(Vec::new, |(plan, _)| plan.entries());
+        if !self.sheets.is_empty() {
+            entries.push(Entry { name: "obstacle".into(), key: Box::new(draw_obstacle_key), key_width: 30.0 });
+        }
         let legend = legend::rows_height(&entries, self.column());
         let mut drawing = Drawing::new(width, below + colour_bar::ROOM + legend + 12.0 + margin);
         draw_heading(&mut drawing, &title, 0.5 * width, margin);
@@ -182,7 +164,7 @@ impl SpacePicture<'_> {
             plan.draw(&mut drawing, &frame, self.length_unit, [middle - 0.5 * bar, below], bar);
             legend::draw_rows(&mut drawing, &entries, [middle, below + colour_bar::ROOM + 8.0], self.column());
         }
-        Ok(drawing.on_paper(self.medium.millimetres(2)))
+        drawing.on_paper(self.medium.millimetres(2))
     }
 
     fn column(&self) -> f64 {
@@ -199,7 +181,7 @@ impl SpacePicture<'_> {
         for face in self.faces {
             let corners: Vec<[f64; 3]> = face.outline.iter().map(|&node| self.nodes[node]).collect();
             let normal = normal(&corners);
-            if !(dot(normal, view.eye) > 0.0) || corners.iter().flatten().any(|x| !Scale::Linear.shows(*x)) {
+            if dot(normal, view.eye) <= 0.0 || corners.iter().flatten().any(|x| !Scale::Linear.shows(*x)) {
                 continue;
             }
             let depth = corners.iter().map(|&corner| dot(corner, view.eye)).sum::<f64>() / corners.len() as f64;
@@ -287,7 +269,7 @@ impl SpacePicture<'_> {
             polygons.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
             for polygon in polygons {
                 let flat: Vec<[f64; 2]> = polygon.iter().map(|&point| place.of(view.flat(point))).collect();
-                drawing.polygon(&flat, &Paint { transparency: 0.72, ..Paint::fill(OBSTACLE) });
+                drawing.polygon(&flat, &Paint { transparency: TRANSPARENCY, ..Paint::fill(OBSTACLE) });
                 drawing.polygon(&flat, &Paint::stroke(OBSTACLE_EDGE, 0.35));
             }
         }
@@ -307,81 +289,10 @@ impl SpacePicture<'_> {
     }
 }
 
-impl Plan {
-    /// The frame of the plan view; its corner tells the room left of it.
-    fn frame(&self, length_unit: &str, medium: Medium) -> Frame {
-        let [x, y] = self.window;
-        let room = PLANS[medium as usize];
-        let scale = (room[0] / (x[1] - x[0])).min((room[1] - ROOM_BELOW) / (y[1] - y[0]));
-        let size = [scale * (x[1] - x[0]), scale * (y[1] - y[0])];
-        let names = self.axes.map(|name| Quantity::new(name, length_unit));
-        let exponent = common_exponent([x, y].as_flattened().iter().fold(0.0, |largest, end| end.abs().max(largest)));
-        let horizontal = Axis::horizontal(&names[0], Scale::Linear, x, size[0]).in_powers_of(&names[0], exponent);
-        let vertical = Axis::vertical(&names[1], Scale::Linear, y, size[1]).in_powers_of(&names[1], exponent);
-        Frame { corner: [vertical.room_left(), 0.0], size, x: horizontal, y: vertical }
-    }
-
-    fn picture<'a>(
-        &'a self,
-        fields: &'a [FieldPanel<'a>],
-        displacement: &'a [f64],
-        length_unit: &'a str,
-    ) -> ContactPicture<'a> {
-        let arrows: &[Arrow] = &[];
-        ContactPicture {
-            title: "",
-            axes: self.axes,
-            length_unit,
-            nodes: &self.nodes,
-            elements: &self.cells,
-            displacement,
-            magnification: 1.0,
-            fields,
-            obstacles: &[],
-            candidates: &self.candidates,
-            closed: &self.closed,
-            arrows,
-            medium: Medium::Screen,
-            window: Some(self.window),
-        }
-    }
-
-    fn draw(&self, drawing: &mut Drawing, frame: &Frame, length_unit: &str, bar_at: [f64; 2], bar: f64) {
-        let quantity = Quantity::new("contact pressure p", &self.unit);
-        let fields = [FieldPanel { values: &self.pressure, quantity, limits: [f64::NAN; 2] }];
-        let still = vec![0.0; 2 * self.nodes.len()];
-        let picture = self.picture(&fields, &still, length_unit);
-        let limits = fields[0].shown_limits();
-        let range = ColourRange::new(&fields[0].quantity, [limits[0].min(0.0), limits[1]], bar);
-        picture.draw_field(drawing, frame, &self.pressure, &range);
-        picture.draw_plan(drawing, frame);
-        frame.draw_axes(drawing, Labels::Both);
-        range.draw(drawing, bar_at, bar, fields[0].outside(limits));
-    }
-
-    fn entries(&self, sheets: &[Sheet]) -> Vec<Entry<'_>> {
-        let closed = self.closed.iter().filter(|&&closed| closed).count();
-        let counts = [
-            ("closed nodes", closed, Candidate::Closed),
-            ("open candidates", self.closed.len() - closed, Candidate::Open),
-        ];
-        let shown = counts.into_iter().filter(|&(_, count, _)| count > 0);
-        let mut entries: Vec<Entry> = shown
-            .map(|(name, count, mark)| Entry {
-                name: format!("{name} ({count})"),
-                key_width: 12.0,
-                key: Box::new(move |drawing, centre| mark.draw(drawing, centre, 5.0)),
-            })
-            .collect();
-        if !sheets.is_empty() {
-            let key = |drawing: &mut Drawing, [x, y]: [f64; 2]| {
-                let paint = Paint { transparency: 0.72, ..Paint::fill(OBSTACLE) }.with_stroke(OBSTACLE_EDGE, 0.6);
-                drawing.rect([x - 14.0, y - 6.0], [28.0, 12.0], &paint);
-            };
-            entries.push(Entry { name: "obstacle".into(), key: Box::new(key), key_width: 30.0 });
-        }
-        entries
-    }
+/// The key of an obstacle that is seen through.
+fn draw_obstacle_key(drawing: &mut Drawing, [x, y]: [f64; 2]) {
+    let paint = Paint { transparency: TRANSPARENCY, ..Paint::fill(OBSTACLE) }.with_stroke(OBSTACLE_EDGE, 0.6);
+    drawing.rect([x - 14.0, y - 6.0], [28.0, 12.0], &paint);
 }
 
 fn panel_title(drawing: &mut Drawing, title: &str, at: [f64; 2], room: f64) {

@@ -4,8 +4,9 @@ use std::path::Path;
 
 use super::body::{FieldPanel, ROUNDING};
 use super::medium::Medium;
+use super::plan::Plan;
 use super::plane_scene::{has_pairs, rounded_down, ways_to_obstacle};
-use super::space::{Face, Plan, Sheet, SpacePicture};
+use super::space::{Face, Sheet, SpacePicture};
 use super::ticks::{Quantity, brief};
 use super::write_picture;
 use crate::error::Error;
@@ -81,7 +82,7 @@ pub(super) fn draw_space(folder: &Path, stem: &str, title: &str, answer: &Answer
         plan: plan.as_ref(),
         medium,
     };
-    write_picture(folder, stem, &picture.draw()?)?;
+    write_picture(folder, stem, &picture.draw())?;
     Ok(())
 }
 
@@ -166,9 +167,8 @@ fn plan_window(nodes: &[[f64; 2]], cells: &[Vec<usize>], is_closed: &[bool]) -> 
     let bounds = |chosen: &dyn Fn(&Vec<usize>) -> bool| {
         let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
         for &node in cells.iter().filter(|cell| chosen(cell)).flatten() {
-            for axis in 0..2 {
-                bounds[axis][0] = bounds[axis][0].min(nodes[node][axis]);
-                bounds[axis][1] = bounds[axis][1].max(nodes[node][axis]);
+            for (ends, &at) in bounds.iter_mut().zip(&nodes[node]) {
+                *ends = [ends[0].min(at), ends[1].max(at)];
             }
         }
         bounds
