@@ -14,7 +14,7 @@ const HEIGHT: f64 = 600.0;
 /// An error below this is rounding: the answer is the exact one of its mesh.
 pub(super) const EXACT: f64 = 3e-16;
 /// Room under the smallest error for those that are exact.
-const EXACT_ROOM: f64 = 44.0;
+const EXACT_ROOM: f64 = 56.0;
 
 /// Where a name may stand beside a point: to the right in pixels (negative to the left, zero in the middle), and its upper edge
 /// below the point in multiples of its height.
@@ -227,7 +227,9 @@ impl Taken {
     fn cost(&self, low: [f64; 2], high: [f64; 2]) -> f64 {
         let outside = (0..2).any(|axis| low[axis] < self.low[axis] + 4.0 || high[axis] > self.high[axis] - 4.0);
         let crosses = |other: &&[[f64; 2]; 2]| {
-            (0..2).all(|axis| low[axis] < other[1][axis] + 3.0 && other[0][axis] < high[axis] + 3.0)
+            // Lines of text have room in them: they may touch above each other, and not beside each other.
+            let apart = [4.0, -2.0];
+            (0..2).all(|axis| low[axis] < other[1][axis] + apart[axis] && other[0][axis] < high[axis] + apart[axis])
         };
         let covers = |point: &&[f64; 2]| (0..2).all(|axis| (low[axis] - 5.0..high[axis] + 5.0).contains(&point[axis]));
         let boxes = self.boxes.iter().filter(crosses).count();

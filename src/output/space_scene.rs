@@ -65,9 +65,9 @@ pub(super) fn draw_space(folder: &Path, stem: &str, title: &str, answer: &Answer
     let plan = obstacle.map(|obstacle| plan(answer, obstacle));
     let times = brief(magnification);
     let heading = match magnification == 1.0 {
-        true => "von Mises stress on the displaced body, to scale".to_string(),
-        false if sheets.is_empty() => format!("von Mises stress on the displaced body, displacement × {times}"),
-        false => format!("von Mises stress on the displaced body, displacement and gap × {times}"),
+        true => "displaced body, to scale".to_string(),
+        false if sheets.is_empty() => format!("displaced body, displacement × {times}"),
+        false => format!("displaced body, displacement and gap × {times}"),
     };
     let quantity = Quantity::new("von Mises stress", model.units().pressure());
     let picture = SpacePicture {

@@ -134,7 +134,7 @@ fn a_body_in_space_is_drawn_with_its_contact_in_plan_view() {
     for expected in ["contact on `top` seen along z", "obstacle", "x (m)", "y (m)"] {
         assert!(words.iter().any(|text| text == expected), "`{expected}` is not among {words:?}");
     }
-    assert!(words.iter().any(|text| text.starts_with("von Mises stress on the displaced body")), "{words:?}");
+    assert!(words.iter().any(|text| text.starts_with("displaced body, displacement and gap × ")), "{words:?}");
     assert!(words.iter().any(|text| text.starts_with("contact pressure p (")), "{words:?}");
     // The obstacle lets the body be seen.
     let svg = fs::read_to_string(desk.path("o/contact.svg")).unwrap();
