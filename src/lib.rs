@@ -86,9 +86,13 @@ pub mod internals {
     pub use crate::fem::norms::error_norms_by;
     pub use crate::fem::surface::{ClosedSurface, Closest};
     #[cfg(feature = "pictures")]
-    pub use crate::output::body::{ContactPicture, ObstacleLine, common_limits, common_window};
+    pub use crate::output::arrows::{Arrow, ArrowKind};
+    #[cfg(feature = "pictures")]
+    pub use crate::output::body::{ContactPicture, FieldPanel, ObstacleLine, common_limits, common_window};
     #[cfg(feature = "pictures")]
     pub use crate::output::file::write_atomically;
+    #[cfg(feature = "pictures")]
+    pub use crate::output::medium::Medium;
     #[cfg(feature = "pictures")]
     pub use crate::output::ticks::{Ticks, brief, decimal, power_of_ten};
     pub use crate::qp::barrier::guarded;

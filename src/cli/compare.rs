@@ -7,7 +7,8 @@ use super::options::Compare;
 use super::outcome::{Outcome, Report, warn};
 use super::settings::settings;
 use crate::error::Error;
-use crate::output::{compare_text, gallery};
+use crate::output::compare_text;
+use crate::output::gallery::{self, Pictures};
 use crate::qp::Method;
 use crate::scene::Answer;
 use crate::study::{Comparison, Summary, compare};
@@ -36,5 +37,6 @@ pub(super) fn run(options: &Compare, watch: &Watch) -> Result<Outcome, Error> {
     let outcome = report.outcome(common.format, agreement.status());
     let (Some(qp), Some(active_set), Some(penalty)) = (qp, active_set, penalty) else { return Ok(outcome) };
     let answers = [qp, active_set, penalty];
-    Ok(outcome.with_pictures(move || gallery::write_compare(&folder, &answers, &summaries)))
+    let wanted = common.wanted(Pictures::All);
+    Ok(outcome.with_pictures(move || gallery::write_compare(&folder, &answers, &summaries, wanted)))
 }

@@ -10,6 +10,7 @@ use super::outcome::{Outcome, Report, warn};
 use super::settings::settings;
 use crate::error::Error;
 use crate::motion::Integrator;
+use crate::output::gallery::{Pictures, Wanted};
 use crate::output::{MotionFolder, MotionReport, compact_json};
 use crate::scene::{Dynamics, Model, Scene};
 use crate::study::{MotionSummary, RunSeconds};
@@ -52,7 +53,12 @@ pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outco
         return Ok(report.outcome(format, status));
     };
     report.write(path)?;
-    Ok(report.outcome(format, status).with_pictures(move || folder.draw(&model)))
+    let outcome = report.outcome(format, status);
+    let Wanted { pictures, medium } = options.common.wanted(Pictures::Answer);
+    match pictures {
+        Pictures::None => Ok(outcome),
+        _ => Ok(outcome.with_pictures(move || folder.draw_for(&model, medium))),
+    }
 }
 
 /// The steps of a motion, and what they leave.

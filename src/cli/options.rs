@@ -7,6 +7,8 @@ use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
 use super::memory::{self, parse_size};
+use crate::output::gallery::{Pictures, Wanted};
+use crate::output::medium::Medium;
 use crate::qp::{Method, Precision};
 
 /// Frictionless contact of elastic bodies with obstacles: a convex QP, cross-checked and certified.
@@ -153,6 +155,42 @@ impl ValueEnum for Precision {
             Precision::Mixed => ("mixed", "Single precision, half the memory, refined in double precision"),
         };
         Some(PossibleValue::new(name).help(help))
+    }
+}
+
+impl ValueEnum for Pictures {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Pictures::None, Pictures::Answer, Pictures::All]
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        let (name, help) = match self {
+            Pictures::None => ("none", "No picture"),
+            Pictures::Answer => ("answer", "What the command ends with"),
+            Pictures::All => ("all", "Each iteration, penalty, gap and force as well"),
+        };
+        Some(PossibleValue::new(name).help(help))
+    }
+}
+
+impl ValueEnum for Medium {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Medium::Screen, Medium::Paper]
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        let (name, help) = match self {
+            Medium::Screen => ("screen", "SVG and PNG, with a title"),
+            Medium::Paper => ("paper", "PDF and SVG, 85 or 170 mm wide, with letters on the panels and no title"),
+        };
+        Some(PossibleValue::new(name).help(help))
+    }
+}
+
+impl Common {
+    /// What is drawn; `usual` if nothing is said.
+    pub fn wanted(&self, usual: Pictures) -> Wanted {
+        Wanted { pictures: self.pictures.unwrap_or(usual), medium: self.style }
     }
 }
 
@@ -375,6 +413,12 @@ pub(super) struct Common {
     /// Folder for pictures, fields and answers
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Pictures in that folder [default: answer; of compare and sweep: all]
+    #[arg(long, value_enum, value_name = "WHICH")]
+    pub pictures: Option<Pictures>,
+    /// What the pictures are for
+    #[arg(long, value_enum, default_value_t = Medium::Screen)]
+    pub style: Medium,
     /// Form of the report
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
@@ -398,9 +442,15 @@ pub(super) struct Tradeoff {
     pub most_full_dofs: usize,
     #[command(flatten)]
     pub limits: Limits,
-    /// Folder for the table, its values and the picture
+    /// Folder for the table, its values and the pictures
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Pictures in that folder; answer and all are the same here
+    #[arg(long, value_enum, value_name = "WHICH", default_value_t = Pictures::Answer)]
+    pub pictures: Pictures,
+    /// What the pictures are for
+    #[arg(long, value_enum, default_value_t = Medium::Screen)]
+    pub style: Medium,
     /// Form of the report
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,

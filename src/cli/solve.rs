@@ -9,7 +9,8 @@ use super::outcome::{Outcome, Report, warn};
 use super::settings::settings;
 use super::total_error;
 use crate::error::Error;
-use crate::output::{gallery, solve_text, why_text};
+use crate::output::gallery::{self, Pictures};
+use crate::output::{solve_text, why_text};
 use crate::qp::{Method, Settings, Start, read_vector, solve_from};
 use crate::scene::Scene;
 use crate::solution::{Goal, Solution};
@@ -154,5 +155,6 @@ fn reported(input: &Input, solution: Solution, goal: Goal, options: &Solve, watc
         return Ok(outcome);
     }
     let Some(answer) = answer else { return Ok(outcome) };
-    Ok(outcome.with_pictures(move || gallery::write_solve(&folder, &answer, &summary.solution.history)))
+    let wanted = common.wanted(Pictures::Answer);
+    Ok(outcome.with_pictures(move || gallery::write_solve(&folder, &answer, &summary.solution.history, wanted)))
 }

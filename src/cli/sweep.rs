@@ -5,7 +5,8 @@ use super::options::{Gaps, Sweep};
 use super::outcome::{Outcome, Report, warn};
 use super::settings::settings;
 use crate::error::Error;
-use crate::output::{draw_problem_sweep, gallery, problem_sweep_text, sweep_text, write_points};
+use crate::output::gallery::{self, Pictures};
+use crate::output::{draw_problem_sweep, problem_sweep_text, sweep_text, write_points};
 use crate::qp::matrix_market::read_other_end;
 use crate::study::scene::{even_gaps, sweep_forces};
 use crate::study::{sweep, sweep_problem};
@@ -48,7 +49,8 @@ fn of_scene(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
     let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, status)) };
     report.write(&folder)?;
     let outcome = report.outcome(common.format, status);
-    Ok(outcome.with_pictures(move || gallery::write_sweep(&folder, &swept)))
+    let wanted = common.wanted(Pictures::All);
+    Ok(outcome.with_pictures(move || gallery::write_sweep(&folder, &swept, wanted)))
 }
 
 fn of_problem(options: &Sweep, points: usize, watch: &Watch) -> Result<Outcome, Error> {
@@ -64,5 +66,6 @@ fn of_problem(options: &Sweep, points: usize, watch: &Watch) -> Result<Outcome, 
     write_points(&folder, &swept)?;
     report.write(&folder)?;
     let outcome = report.outcome(common.format, status);
-    Ok(outcome.with_pictures(move || draw_problem_sweep(&folder, &input.title, &swept)))
+    let wanted = common.wanted(Pictures::All);
+    Ok(outcome.with_pictures(move || draw_problem_sweep(&folder, &input.title, &swept, wanted)))
 }

@@ -10,7 +10,8 @@ use super::options::Solve;
 use super::outcome::{Outcome, Report, warn};
 use super::settings::settings;
 use crate::error::Error;
-use crate::output::{estimated_error_text, gallery, total_error_text, write_estimated_error, write_total_error};
+use crate::output::gallery::{self, Pictures};
+use crate::output::{estimated_error_text, total_error_text, write_estimated_error, write_total_error};
 use crate::qp::Settings;
 use crate::scene::Scene;
 use crate::solution::Goal;
@@ -27,13 +28,14 @@ pub(super) fn run(options: &Solve, scene: &Scene, goal: TotalErrorGoal, watch: &
     let seconds = clock.elapsed().as_secs_f64();
     warn(&warnings(&model));
     let settings = settings(options.method, &options.common, &watch.keeping(REPORT * options.time.unwrap_or(0.0)));
+    let wanted = options.common.wanted(Pictures::Answer);
     let (title, units) = (scene_title(&model, &options.input), model.units().clone());
     match total_error(scene, &model, goal, &settings).map_err(|error| model.explain(error))? {
         Found::Guaranteed(found) => {
             let report = Report::new(&found, total_error_text(&title, &found, &units))?;
             if let Some(folder) = &options.common.out {
                 report.write_with_text(folder, "total-error.txt")?;
-                write_total_error(folder, &title, &found, &units)?;
+                write_total_error(folder, &title, &found, &units, wanted)?;
             }
             Ok(report.outcome(options.common.format, found.status))
         }
@@ -67,7 +69,8 @@ fn estimated(
     };
     gallery::write_answer(&folder, &summary.solution, Some(&found.answer))?;
     report.write_with_text(&folder, "total-error.txt")?;
-    write_estimated_error(&folder, title, &found)?;
+    let wanted = options.common.wanted(Pictures::Answer);
+    write_estimated_error(&folder, title, &found, wanted)?;
     let outcome = report.outcome(options.common.format, found.status);
-    Ok(outcome.with_pictures(move || gallery::write_solve(&folder, &found.answer, &summary.solution.history)))
+    Ok(outcome.with_pictures(move || gallery::write_solve(&folder, &found.answer, &summary.solution.history, wanted)))
 }

@@ -6,9 +6,10 @@ use super::input::{Input, build, read_scene, scene_title, warnings};
 use super::options::Tradeoff;
 use super::outcome::{Outcome, Report, warn};
 use crate::error::Error;
+use crate::output::gallery::Pictures;
 use crate::output::{
-    Drawing, motion_tradeoff_csv, motion_tradeoff_plot, motion_tradeoff_text, total_error_plot, tradeoff_csv,
-    tradeoff_plot, tradeoff_text, write_files, write_picture,
+    Drawing, motion_tradeoff_csv, motion_tradeoff_plot_for, motion_tradeoff_text, total_error_plot, tradeoff_csv,
+    tradeoff_plot_for, tradeoff_text, write_files, write_picture,
 };
 use crate::qp::Settings;
 use crate::study::{TradeoffGrid, motion_tradeoff, problem_tradeoff, tradeoff};
@@ -28,7 +29,7 @@ pub(super) fn run(options: &Tradeoff, watch: &Watch) -> Result<Outcome, Error> {
         let input = Input::read(&options.input, &options.limits)?;
         let measured = problem_tradeoff(input.problem(), &grid, watch)?;
         let (text, csv) = (tradeoff_text(&input.title, &measured), tradeoff_csv(&measured));
-        let plots = || vec![("tradeoff", tradeoff_plot(&input.title, &measured))];
+        let plots = || vec![("tradeoff", tradeoff_plot_for(options.style, &input.title, &measured))];
         return reported(options, watch, &measured, text, &csv, plots);
     }
     let scene = read_scene(&options.input, &options.limits)?;
@@ -40,13 +41,17 @@ pub(super) fn run(options: &Tradeoff, watch: &Watch) -> Result<Outcome, Error> {
         let settings = Settings { watch: watch.clone(), ..Settings::default() };
         let measured = motion_tradeoff(&scene, &settings)?;
         let (text, csv) = (motion_tradeoff_text(title, &measured), motion_tradeoff_csv(&measured));
-        let plots = || vec![("tradeoff", motion_tradeoff_plot(title, &measured))];
+        let plots = || vec![("tradeoff", motion_tradeoff_plot_for(options.style, title, &measured))];
         return reported(options, watch, &measured, text, &csv, plots);
     }
     let measured = tradeoff(&scene, &grid, watch)?;
     let (text, csv) = (tradeoff_text(title, &measured), tradeoff_csv(&measured));
-    let plots =
-        || vec![("tradeoff", tradeoff_plot(title, &measured)), ("total-error", total_error_plot(title, &measured))];
+    let plots = || {
+        vec![
+            ("tradeoff", tradeoff_plot_for(options.style, title, &measured)),
+            ("total-error", total_error_plot(options.style, title, &measured)),
+        ]
+    };
     reported(options, watch, &measured, text, &csv, plots)
 }
 
@@ -64,8 +69,10 @@ fn reported(
     if let Some(folder) = &options.out {
         report.write_with_text(folder, "tradeoff.txt")?;
         write_files(folder, &[("tradeoff.csv", csv)])?;
-        for (stem, drawing) in plots() {
-            write_picture(folder, stem, &drawing)?;
+        if options.pictures != Pictures::None {
+            for (stem, drawing) in plots() {
+                write_picture(folder, stem, &drawing)?;
+            }
         }
     }
     Ok(report.printed(options.format))

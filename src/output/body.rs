@@ -1,12 +1,16 @@
-//! The picture of a contact answer: a field on the body as it was, and the moved mesh under its obstacle.
+//! The picture of a contact answer: fields on the body as it was, and the displaced mesh under its obstacle.
+
+use std::borrow::Cow;
 
 use super::{
-    axes::{Axis, Frame, LARGE, LINE, Labels, MARGIN, ROOM_BELOW, TITLE, draw_heading},
+    arrows::{self, Arrow},
+    axes::{Axis, Frame, LARGE, LINE, Labels, ROOM_BELOW, TITLE, draw_heading},
     colour_bar::{self, ColourRange, Outside},
     drawing::{Anchor, Drawing},
     legend::{self, Entry},
     mark::Candidate,
-    obstacle::{self, Look},
+    medium::Medium,
+    obstacle,
     ticks::{Quantity, Scale, brief, common_exponent},
     typeface::{self, Weight},
 };
@@ -14,44 +18,62 @@ use crate::error::Error;
 
 pub use super::obstacle::ObstacleLine;
 
-/// Largest width and height of a panel in pixels.
-const PANEL: [f64; 2] = [580.0, 600.0];
+/// Largest width and height of a panel in pixels, of two panels and of three.
+const PANELS: [[f64; 2]; 2] = [[580.0, 600.0], [440.0, 520.0]];
+/// The same on paper, where two stand side by side.
+const PAPER_PANEL: [f64; 2] = [400.0, 420.0];
 /// A slender body gets white space around it rather than a panel smaller than this.
 const SMALLEST: [f64; 2] = [180.0, 130.0];
 /// A column is at least this wide, for the colour bar and the legend.
 const COLUMN: f64 = 440.0;
-/// A contact answer as plain data, to be drawn as two panels of the same scale.
-///
-/// Left a nodal field (usually the second principal stress) on the undeformed body with its colour bar; right the mesh
-/// moved by its displacement, with the obstacles, the closed candidates as filled dots and the open ones as hollow
-/// dots.
+/// Values that differ by less than this share of the largest differ by rounding: a picture would show noise as data.
+pub(crate) const ROUNDING: f64 = 1e-9;
+
+/// A nodal field, to be painted on the body.
 #[derive(Clone, Debug)]
-pub struct ContactPicture<'a> {
-    /// What the picture shows: scene, gap, iteration, number of closed nodes.
-    pub title: &'a str,
-    /// Unit of length of the nodes; empty where there is none.
-    pub length_unit: &'a str,
-    /// Coordinates of the nodes.
-    pub nodes: &'a [[f64; 2]],
-    /// The corner nodes of every element in order around it, indices from 0.
-    pub elements: &'a [Vec<usize>],
-    /// Nodal displacements, length `2 * n_nodes`, order `[u_x0, u_y0, u_x1, ...]`, in the unit of length.
-    pub displacement: &'a [f64],
-    /// By what the displacement is multiplied before it is drawn; 1 shows it as it is. Only then do body and obstacle
-    /// touch where they touch; otherwise the obstacle is drawn as a dashed line that says so.
-    pub magnification: f64,
-    /// The field, one value per node.
-    pub field: &'a [f64],
+pub struct FieldPanel<'a> {
+    /// One value per node.
+    pub values: &'a [f64],
     /// What the field is, with its unit.
     pub quantity: Quantity,
     /// Values at the two ends of the colours; see [`common_limits`]. Where they are not finite, the field sets them.
     pub limits: [f64; 2],
-    /// Obstacles; let their edges reach beyond the body at both sides, where the picture ends.
+}
+
+/// A contact answer as plain data, to be drawn as panels of the same scale side by side.
+///
+/// Left nodal fields (usually the second principal stress, then the von Mises stress), each on the undeformed body with its colour
+/// bar; right the mesh displaced, with the obstacles, the forces, the closed candidates as filled dots and the open ones as hollow
+/// dots. A contact that is small beside the body is shown enlarged in a corner.
+#[derive(Clone, Debug)]
+pub struct ContactPicture<'a> {
+    /// What the picture shows: scene, gap, iteration, number of closed nodes.
+    pub title: &'a str,
+    /// Names of the two coordinates.
+    pub axes: [&'a str; 2],
+    /// Unit of length of the nodes; empty where there is none.
+    pub length_unit: &'a str,
+    /// Coordinates of the nodes.
+    pub nodes: &'a [[f64; 2]],
+    /// The nodes of every element in order around it, indices from 0; of curved edges some between the corners.
+    pub elements: &'a [Vec<usize>],
+    /// Nodal displacements, length `2 * n_nodes`, order `[u_x0, u_y0, u_x1, ...]`, in the unit of length.
+    pub displacement: &'a [f64],
+    /// By what the displacement is multiplied before it is drawn; 1 shows it as it is.
+    pub magnification: f64,
+    /// The fields, a panel each.
+    pub fields: &'a [FieldPanel<'a>],
+    /// Obstacles; let their edges reach beyond the body at both sides, where the picture ends. Beside a magnified displacement their
+    /// gaps must be magnified as well.
     pub obstacles: &'a [ObstacleLine<'a>],
     /// Candidate nodes, indices from 0.
     pub candidates: &'a [usize],
     /// Which candidates are closed, one flag per candidate.
     pub closed: &'a [bool],
+    /// Forces on the body.
+    pub arrows: &'a [Arrow],
+    /// What it is drawn for.
+    pub medium: Medium,
     /// The visible rectangle `[[x from, x to], [y from, y to]]`; `None` for body and obstacle with a margin. A series
     /// of pictures shares the [`common_window`] of its [windows](ContactPicture::window).
     pub window: Option<[[f64; 2]; 2]>,
@@ -104,50 +126,48 @@ impl ContactPicture<'_> {
         self.check()?;
         let moved: Vec<[f64; 2]> =
             self.displacement.chunks_exact(2).zip(self.nodes).map(|(u, node)| self.move_by(node, u)).collect();
-        let frames = self.frames(self.window());
-        let [left, right] = &frames.panels;
-        let entries = self.legend(right);
+        let Layout { title, panels, column, width, pitch } = self.layout(self.window());
+        let [fields @ .., mesh] = &panels[..] else { return Ok(Drawing::new(width, pitch)) };
+        let entries = self.legend(mesh);
+        let room = legend::rows_height(&entries, column).max(if fields.is_empty() { 0.0 } else { colour_bar::ROOM });
+        let under = |frame: &Frame| frame.corner[1] + frame.size[1] + ROOM_BELOW + 18.0;
+        let margin = self.medium.margin();
+        let mut drawing = Drawing::new(width, under(mesh) + room + margin);
+        draw_heading(&mut drawing, &title, 0.5 * width, margin);
 
-        let below = left.corner[1] + left.size[1] + ROOM_BELOW + 18.0;
-        let room = legend::rows_height(&entries, frames.column).max(colour_bar::ROOM);
-        let mut drawing = Drawing::new(frames.width, below + room + MARGIN);
-        draw_heading(&mut drawing, &frames.title, 0.5 * frames.width, MARGIN);
-
-        let bar = (frames.column - 90.0).min(460.0);
-        let limits =
-            if self.limits.iter().all(|limit| limit.is_finite()) { self.limits } else { common_limits([self.field]) };
-        let range = ColourRange::new(&self.quantity, Scale::Linear.range(limits, 0.0), bar);
-        let missing = self.draw_field(&mut drawing, left, &range);
-        self.draw_moved(&mut drawing, right, &moved);
-        for (frame, text) in [(left, self.field_title()), (right, self.moved_title())] {
-            let (text, size) = typeface::fitted(&text, LARGE, Weight::Regular, frames.column);
-            let middle = frame.corner[0] + 0.5 * frame.size[0];
-            drawing.text([middle, frame.corner[1] - 12.0], &text, size, Anchor::Middle);
+        let bar = (column - 90.0).min(460.0);
+        let labels = |index: usize| if index % self.columns() == 0 { Labels::Both } else { Labels::Horizontal };
+        let middle = |frame: &Frame| frame.corner[0] + 0.5 * frame.size[0];
+        for (index, (field, frame)) in self.fields.iter().zip(fields).enumerate() {
+            let limits = field.shown_limits();
+            let range = ColourRange::new(&field.quantity, limits, bar);
+            let missing = self.draw_field(&mut drawing, frame, &field.shown_values(limits), &range);
+            self.draw_panel_title(&mut drawing, frame, index, &self.field_title(field), column);
+            frame.draw_axes(&mut drawing, labels(index));
+            let outside = Outside { missing, ..field.outside(limits) };
+            range.draw(&mut drawing, [middle(frame) - 0.5 * bar, under(frame)], bar, outside);
         }
-        left.draw_axes(&mut drawing, Labels::Both);
-        right.draw_axes(&mut drawing, Labels::Horizontal);
+        self.draw_moved(&mut drawing, mesh, &moved);
+        self.draw_panel_title(&mut drawing, mesh, fields.len(), &self.moved_title(), column);
+        mesh.draw_axes(&mut drawing, labels(fields.len()));
+        legend::draw_rows(&mut drawing, &entries, [middle(mesh), under(mesh) - 4.0], column);
+        Ok(drawing.on_paper(self.medium.millimetres(self.fields.len() + 1)))
+    }
 
-        let [under_left, under_right] = [left, right].map(|frame| frame.corner[0] + 0.5 * frame.size[0]);
-        let [low, high] = common_limits([self.field]);
-        let slack = 1e-9 * (limits[1] - limits[0]).abs();
-        let outside = Outside {
-            below: low < limits[0].min(limits[1]) - slack,
-            above: high > limits[1].max(limits[0]) + slack,
-            missing,
-        };
-        range.draw(&mut drawing, [under_left - 0.5 * bar, below], bar, outside);
-        legend::draw_rows(&mut drawing, &entries, [under_right, below - 4.0], frames.column);
-        Ok(drawing)
+    fn draw_panel_title(&self, drawing: &mut Drawing, frame: &Frame, index: usize, title: &str, column: f64) {
+        let title = self.medium.panel_title(index, self.fields.len() + 1, title);
+        let (text, size) = typeface::fitted(&title, LARGE, Weight::Regular, column);
+        drawing.text([frame.corner[0] + 0.5 * frame.size[0], frame.corner[1] - 12.0], &text, size, Anchor::Middle);
     }
 
     fn check(&self) -> Result<(), Error> {
         let nodes = self.nodes.len();
-        let lengths = [
-            ("displacement of a picture", self.displacement.len(), 2 * nodes, "nodal displacements (two per node)"),
-            ("field of a picture", self.field.len(), nodes, "nodes"),
-            ("closed flags of a picture", self.closed.len(), self.candidates.len(), "candidate nodes"),
-        ];
-        for (name, found, expected, of) in lengths {
+        let displaced =
+            ("displacement of a picture", self.displacement.len(), 2 * nodes, "nodal displacements (two per node)");
+        let fields = self.fields.iter().map(|field| ("field of a picture", field.values.len(), nodes, "nodes"));
+        let lengths =
+            [displaced, ("closed flags of a picture", self.closed.len(), self.candidates.len(), "candidate nodes")];
+        for (name, found, expected, of) in lengths.into_iter().chain(fields) {
             if found != expected {
                 return Err(Error::Length { name, found, expected, of });
             }
@@ -169,51 +189,74 @@ impl ContactPicture<'_> {
         self.displacement.iter().any(|&component| component != 0.0)
     }
 
-    pub(crate) fn obstacle_look(&self) -> Look {
-        if self.magnification == 1.0 { Look::Solid } else { Look::Dashed }
-    }
-
-    fn field_title(&self) -> String {
+    fn field_title(&self, field: &FieldPanel) -> String {
         // Where nothing is displaced, the nodes are where the body is.
-        let of = if self.is_displaced() { "the undeformed body" } else { "the body" };
-        format!("{} on {of}", self.quantity.name)
-    }
-
-    fn moved_title(&self) -> String {
-        match self.is_displaced() {
-            true => format!("moved mesh, displacement × {}", brief(self.magnification)),
-            false => "mesh".into(),
+        let of = if self.is_displaced() { "on the undeformed body" } else { "on the body" };
+        match self.fields.len() {
+            1 => format!("{} {of}", field.quantity.name),
+            _ => field.quantity.name.clone(),
         }
     }
 
-    /// Two frames with the same window and the same scale in both directions.
-    fn frames(&self, [mut x, mut y]: [[f64; 2]; 2]) -> Layout {
-        let scale = (PANEL[0] / (x[1] - x[0])).min(PANEL[1] / (y[1] - y[0]));
+    fn moved_title(&self) -> String {
+        let times = brief(self.magnification);
+        match (self.is_displaced(), self.magnification == 1.0, self.obstacles.is_empty()) {
+            (false, false, false) => format!("mesh, gap × {times}"),
+            (false, _, _) => "mesh".into(),
+            (true, true, _) => "displaced mesh, to scale".into(),
+            (true, false, true) => format!("displaced mesh, displacement × {times}"),
+            (true, false, false) => format!("displaced mesh, displacement and gap × {times}"),
+        }
+    }
+
+    /// Panels side by side: on a screen all of them, on paper two.
+    fn columns(&self) -> usize {
+        match self.medium {
+            Medium::Screen => self.fields.len() + 1,
+            Medium::Paper => 2,
+        }
+    }
+
+    /// Frames with the same window and the same scale in both directions: one for each field, then that of the displaced mesh.
+    fn layout(&self, [mut x, mut y]: [[f64; 2]; 2]) -> Layout {
+        let (count, columns, margin) = (self.fields.len() + 1, self.columns(), self.medium.margin());
+        let most = match self.medium {
+            Medium::Screen => PANELS[usize::from(count > 2)],
+            Medium::Paper => PAPER_PANEL,
+        };
+        let scale = (most[0] / (x[1] - x[0])).min(most[1] / (y[1] - y[0]));
         for (range, smallest) in [(&mut x, SMALLEST[0]), (&mut y, SMALLEST[1])] {
             let missing = 0.5 * (smallest / scale - (range[1] - range[0])).max(0.0);
             *range = [range[0] - missing, range[1] + missing];
         }
         let size = [x, y].map(|range| scale * (range[1] - range[0]));
-        let names = ["x", "y"].map(|name| Quantity::new(name, self.length_unit));
+        let names = self.axes.map(|name| Quantity::new(name, self.length_unit));
         // One factor for both axes, or the same length would carry two different numbers.
         let exponent = common_exponent([x, y].as_flattened().iter().fold(0.0, |largest, end| end.abs().max(largest)));
         let horizontal = Axis::horizontal(&names[0], Scale::Linear, x, size[0]).in_powers_of(&names[0], exponent);
         let vertical = Axis::vertical(&names[1], Scale::Linear, y, size[1]).in_powers_of(&names[1], exponent);
         let overhang = horizontal.overhang();
-        let column = size[0].max(COLUMN);
+        let column = size[0].max(if self.medium == Medium::Paper { PAPER_PANEL[0] } else { COLUMN });
         let aside = 0.5 * (column - size[0]);
-        let before = MARGIN + (vertical.room_left() - aside).max(0.0);
+        let before = margin + (vertical.room_left() - aside).max(0.0);
         let between = (2.0 * (overhang - aside) + 12.0).max(48.0);
-        let width = before + column + between + column + MARGIN.max(overhang - aside + 8.0);
-        let title = typeface::wrapped(self.title, TITLE, Weight::Bold, width - 2.0 * MARGIN);
-        let top = MARGIN + TITLE * LINE * title.len() as f64 + LARGE * LINE + 14.0;
-        let panels = [before + aside, before + column + between + aside].map(|x| Frame {
-            corner: [x, top],
+        let needed = before + columns as f64 * (column + between) - between + margin.max(overhang - aside + 8.0);
+        let width = self.medium.width(count, needed).max(needed);
+        let title = self.medium.title(typeface::wrapped(self.title, TITLE, Weight::Bold, width - 2.0 * margin));
+        let over = LARGE * LINE + 14.0;
+        let top = margin + TITLE * LINE * title.len() as f64 + over;
+        let pitch = size[1] + ROOM_BELOW + 18.0 + colour_bar::ROOM + over + 6.0;
+        let before = before + 0.5 * (width - needed);
+        let frame = |panel: usize| Frame {
+            corner: [
+                before + aside + (panel % columns) as f64 * (column + between),
+                top + (panel / columns) as f64 * pitch,
+            ],
             size,
             x: horizontal.clone(),
             y: vertical.clone(),
-        });
-        Layout { title, panels, column, width }
+        };
+        Layout { title, panels: (0..count).map(frame).collect(), column, width, pitch }
     }
 
     fn legend(&self, frame: &Frame) -> Vec<Entry<'_>> {
@@ -230,22 +273,50 @@ impl ContactPicture<'_> {
             })
             .collect();
         if !self.obstacles.is_empty() {
-            let look = self.obstacle_look();
-            let name = match self.obstacles.iter().any(|obstacle| obstacle.is_seen(frame)) {
-                true if look == Look::Solid => "obstacle",
-                true => "obstacle, where it is without magnification",
-                false => "obstacle: outside the picture",
-            };
-            let key = Box::new(move |drawing: &mut Drawing, centre| obstacle::draw_key(drawing, centre, look));
-            entries.push(Entry { name: name.to_owned(), key, key_width: 30.0 });
+            let is_seen = self.obstacles.iter().any(|obstacle| obstacle.is_seen(frame));
+            let name = if is_seen { "obstacle" } else { "obstacle: outside the picture" };
+            entries.push(Entry { name: name.to_owned(), key: Box::new(obstacle::draw_key), key_width: 30.0 });
         }
+        entries.extend(arrows::entries(self.arrows));
         entries
+    }
+}
+
+impl FieldPanel<'_> {
+    /// The ends of the colours: the limits, or those of the values; of values that are all the same something around them.
+    pub(crate) fn shown_limits(&self) -> [f64; 2] {
+        let limits =
+            if self.limits.iter().all(|limit| limit.is_finite()) { self.limits } else { common_limits([self.values]) };
+        let largest = limits[0].abs().max(limits[1].abs());
+        match (limits[1] - limits[0]).abs() <= ROUNDING * largest {
+            true => Scale::Linear.range([0.5 * limits[0], 1.5 * limits[0]], 0.0),
+            false => Scale::Linear.range(limits, 0.0),
+        }
+    }
+
+    /// The values; where they differ by rounding alone, all the same, so that no edge of a band runs through noise.
+    fn shown_values(&self, limits: [f64; 2]) -> Cow<'_, [f64]> {
+        let [low, high] = common_limits([self.values]);
+        if high - low > ROUNDING * limits[0].abs().max(limits[1].abs()) {
+            return Cow::Borrowed(self.values);
+        }
+        let same = |&value: &f64| if Scale::Linear.shows(value) { low } else { value };
+        Cow::Owned(self.values.iter().map(same).collect())
+    }
+
+    /// What lies outside the limits.
+    pub(crate) fn outside(&self, limits: [f64; 2]) -> Outside {
+        let [low, high] = common_limits([self.values]);
+        let slack = ROUNDING * (limits[1] - limits[0]).abs();
+        Outside { below: low < limits[0] - slack, above: high > limits[1] + slack, missing: false }
     }
 }
 
 struct Layout {
     title: Vec<String>,
-    panels: [Frame; 2],
+    panels: Vec<Frame>,
     column: f64,
     width: f64,
+    /// From a row of panels to the next.
+    pitch: f64,
 }

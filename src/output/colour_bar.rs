@@ -2,7 +2,7 @@
 
 use super::{
     axes::{Axis, LINE, NORMAL, SMALL},
-    colour::{Colour, FAINT, INK, field_colour},
+    colour::{Colour, FAINT, INK, NO_VALUE, field_colour},
     drawing::{Anchor, Drawing, Paint},
     ticks::{Quantity, Scale},
     typeface::{self, Weight},
@@ -28,8 +28,8 @@ pub(crate) struct Outside {
 /// A range of values with its bands of colour, whose edges include the ticks of the bar.
 pub(crate) struct ColourRange {
     axis: Axis,
-    /// The lower edge of every band after the first.
-    edges: Vec<f64>,
+    /// Every band as the level above which it is painted over the lower ones, with its colour; the first is everything.
+    bands: Vec<(f64, Colour)>,
 }
 
 impl ColourRange {
@@ -47,27 +47,33 @@ impl ColourRange {
         let first = ((limits[0] - origin) / width).floor();
         let edges = (1..=3 * BANDS as usize).map(|k| origin + (first + k as f64) * width);
         let slack = 1e-6 * width;
-        let edges = edges.filter(|edge| (limits[0] + slack..limits[1] - slack).contains(edge)).collect();
-        ColourRange { axis, edges }
-    }
-
-    /// Every band as the level above which it is painted over the lower ones, with its colour; the first is everything.
-    pub fn bands(&self) -> Vec<(f64, Colour)> {
-        let [low, high] = self.axis.range;
-        let lower = std::iter::once(low).chain(self.edges.iter().copied());
-        let upper = self.edges.iter().copied().chain(std::iter::once(high));
+        let edges: Vec<f64> = edges.filter(|edge| (limits[0] + slack..limits[1] - slack).contains(edge)).collect();
+        let lower = std::iter::once(limits[0]).chain(edges.iter().copied());
+        let upper = edges.iter().copied().chain(std::iter::once(limits[1]));
         let colours = lower.zip(upper).map(|(lower, upper)| {
-            let middle = Scale::Linear.fraction(0.5 * lower + 0.5 * upper, [low, high]);
+            let middle = Scale::Linear.fraction(0.5 * lower + 0.5 * upper, limits);
             field_colour(middle)
         });
-        std::iter::once(f64::NEG_INFINITY).chain(self.edges.iter().copied()).zip(colours).collect()
+        let bands = std::iter::once(f64::NEG_INFINITY).chain(edges.iter().copied()).zip(colours).collect();
+        ColourRange { axis, bands }
+    }
+
+    /// The bands, from low to high.
+    pub fn bands(&self) -> &[(f64, Colour)] {
+        &self.bands
+    }
+
+    /// The colour of the band in which a value lies.
+    pub fn colour(&self, value: f64) -> Colour {
+        let bands = self.bands.iter();
+        bands.rev().find(|band| value >= band.0).map_or(NO_VALUE, |band| band.1)
     }
 
     /// Draws the bar with its left end at `corner`.
     pub fn draw(&self, drawing: &mut Drawing, [x, y]: [f64; 2], length: f64, outside: Outside) {
         let range = self.axis.range;
         let at = |value: f64| x + length * Scale::Linear.fraction(value, range);
-        let bands = self.bands();
+        let bands = &self.bands;
         for (k, &(level, colour)) in bands.iter().enumerate() {
             // Each reaches to the end, so that no seam shows between neighbours.
             let from = if k == 0 { x } else { at(level) };

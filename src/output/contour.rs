@@ -21,8 +21,7 @@ impl Field {
     pub fn new(elements: &[Vec<usize>], node: impl Fn(usize) -> Option<Corner>) -> Self {
         let mut field = Field { triangles: Vec::new(), boundary: Vec::new() };
         // A directed edge that no neighbour runs the other way bounds the mesh.
-        let mut edges: HashMap<(usize, usize), i32> = HashMap::new();
-        let mut order = Vec::new();
+        let mut edges: Vec<([usize; 2], i32)> = Vec::with_capacity(4 * elements.len());
         for element in elements {
             let Some(mut corners) = element.iter().map(|&index| node(index)).collect::<Option<Vec<Corner>>>() else {
                 continue;
@@ -37,17 +36,14 @@ impl Field {
             }
             for (k, &from) in indices.iter().enumerate() {
                 let to = indices[(k + 1) % indices.len()];
-                let (edge, way) = if from < to { ((from, to), 1) } else { ((to, from), -1) };
-                *edges.entry(edge).or_insert_with(|| {
-                    order.push(edge);
-                    0
-                }) += way;
+                edges.push(if from < to { ([from, to], 1) } else { ([to, from], -1) });
             }
             field.add(&corners);
         }
-        for edge in order {
-            let way = edges.get(&edge).copied().unwrap_or(0);
-            if let (true, Some(low), Some(high)) = (way != 0, node(edge.0), node(edge.1)) {
+        edges.sort_unstable();
+        for same in edges.chunk_by(|a, b| a.0 == b.0) {
+            let (edge, way) = (same[0].0, same.iter().map(|edge| edge.1).sum::<i32>());
+            if let (true, Some(low), Some(high)) = (way != 0, node(edge[0]), node(edge[1])) {
                 field.boundary.push(if way > 0 { [low, high] } else { [high, low] });
             }
         }
@@ -65,11 +61,6 @@ impl Field {
         for (k, &corner) in corners.iter().enumerate() {
             self.triangles.push([corner, corners[(k + 1) % corners.len()], centre]);
         }
-    }
-
-    /// Number of triangles.
-    pub fn count(&self) -> usize {
-        self.triangles.len()
     }
 
     /// Outlines of the region where the field is at least `level`; of the whole mesh for minus infinity.

@@ -2,10 +2,11 @@
 
 use tiny_skia::Pixmap;
 
+use super::colour::{Colour, INK};
 pub(crate) use super::paint::{Anchor, Paint};
 use super::shape::{Line, Shape, Text};
 use super::typeface::Weight;
-use super::{raster, svg};
+use super::{pdf, raster, svg};
 use crate::error::Error;
 
 /// Coordinates beyond this are no part of a picture; renderers compute in single precision.
@@ -16,6 +17,8 @@ const FARTHEST: f64 = 1e6;
 pub struct Drawing {
     width: f64,
     height: f64,
+    /// Width on paper in millimetres; none on a screen.
+    millimetres: Option<f64>,
     shapes: Vec<Shape>,
 }
 
@@ -23,7 +26,17 @@ impl Drawing {
     /// An empty drawing of `width` times `height` pixels; at least one pixel each way.
     pub fn new(width: f64, height: f64) -> Self {
         let side = |length: f64| if length.is_finite() { length.clamp(1.0, 20_000.0).round() } else { 1.0 };
-        Drawing { width: side(width), height: side(height), shapes: Vec::new() }
+        Drawing { width: side(width), height: side(height), millimetres: None, shapes: Vec::new() }
+    }
+
+    /// The same for paper, so many millimetres wide; for a screen where there is no number.
+    pub(crate) fn on_paper(self, millimetres: Option<f64>) -> Self {
+        Drawing { millimetres, ..self }
+    }
+
+    /// Returns `true` if it is written for paper: as PDF and SVG.
+    pub(crate) fn is_for_paper(&self) -> bool {
+        self.millimetres.is_some()
     }
 
     /// Width in pixels.
@@ -85,17 +98,54 @@ impl Drawing {
 
     /// A text in the colour of axes with its baseline at `position`.
     pub(crate) fn text(&mut self, position: [f64; 2], text: &str, size: f64, anchor: Anchor) {
-        self.any_text(Text { position, text: text.to_owned(), size, anchor, weight: Weight::Regular, upward: false });
+        self.any_text(Text {
+            position,
+            text: text.to_owned(),
+            size,
+            anchor,
+            weight: Weight::Regular,
+            upward: false,
+            ink: INK,
+        });
+    }
+
+    /// The same in a colour of its own.
+    pub(crate) fn coloured_text(&mut self, position: [f64; 2], text: &str, size: f64, anchor: Anchor, ink: Colour) {
+        self.any_text(Text {
+            position,
+            text: text.to_owned(),
+            size,
+            anchor,
+            weight: Weight::Regular,
+            upward: false,
+            ink,
+        });
     }
 
     /// A bold text with its baseline at `position`.
     pub(crate) fn bold_text(&mut self, position: [f64; 2], text: &str, size: f64, anchor: Anchor) {
-        self.any_text(Text { position, text: text.to_owned(), size, anchor, weight: Weight::Bold, upward: false });
+        self.any_text(Text {
+            position,
+            text: text.to_owned(),
+            size,
+            anchor,
+            weight: Weight::Bold,
+            upward: false,
+            ink: INK,
+        });
     }
 
     /// A text that reads upwards, with its baseline through `position`.
     pub(crate) fn upward_text(&mut self, position: [f64; 2], text: &str, size: f64, anchor: Anchor) {
-        self.any_text(Text { position, text: text.to_owned(), size, anchor, weight: Weight::Regular, upward: true });
+        self.any_text(Text {
+            position,
+            text: text.to_owned(),
+            size,
+            anchor,
+            weight: Weight::Regular,
+            upward: true,
+            ink: INK,
+        });
     }
 
     fn any_text(&mut self, text: Text) {
@@ -112,9 +162,14 @@ impl Drawing {
         self.shapes.push(Shape::Clipped { corner, size: size.map(|side| side.max(0.0)), shapes });
     }
 
-    /// The drawing as SVG text, with a white background.
+    /// The drawing as SVG text, with a white background; for paper in millimetres and with its letters.
     pub fn svg(&self) -> String {
-        svg::written([self.width, self.height], &self.shapes)
+        svg::written([self.width, self.height], &self.shapes, self.millimetres)
+    }
+
+    /// The drawing as a page of PDF with its letters, as wide as it is on paper; 170 mm if it is for a screen.
+    pub fn pdf(&self) -> Vec<u8> {
+        pdf::written([self.width, self.height], &self.shapes, self.millimetres.unwrap_or(170.0))
     }
 
     /// The same picture as PNG, with `scale` pixels of the image for one pixel of the drawing.

@@ -3,11 +3,14 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use super::gallery::{Pictures, Wanted};
+use super::medium::Medium;
 use super::mesh_series::{MeshPanel, mesh_series};
 use super::msh::msh;
+use super::plot::line_plots_for;
 use super::report::{columns, entry, plural, printable, solve_text, wrapped};
 use super::total_error::{percent, verdict};
-use super::{Drawing, Plot, Quantity, Scale, Series, line_plots, write_files, write_picture};
+use super::{Drawing, Plot, Quantity, Scale, Series, write_files, write_picture};
 use crate::error::Error;
 use crate::scene::Units;
 use crate::study::Summary;
@@ -71,7 +74,12 @@ fn needed(found: &Estimated) -> String {
 }
 
 /// Leaves the last mesh, the table of meshes and the plot of the errors in a folder.
-pub(crate) fn write_estimated_error(folder: &Path, title: &str, found: &Estimated) -> Result<(), Error> {
+pub(crate) fn write_estimated_error(
+    folder: &Path,
+    title: &str,
+    found: &Estimated,
+    wanted: Wanted,
+) -> Result<(), Error> {
     let body = found.answer.model().body();
     let bodies: Vec<_> = body
         .regions()
@@ -79,7 +87,10 @@ pub(crate) fn write_estimated_error(folder: &Path, title: &str, found: &Estimate
         .map(|region| (if region.name().is_empty() { "body" } else { region.name() }, region.elements()))
         .collect();
     write_files(folder, &[("mesh.msh", &msh(body.mesh(), &bodies)), ("meshes.csv", &csv(found))])?;
-    write_picture(folder, "total-error", &plot(title, found))?;
+    if wanted.pictures == Pictures::None {
+        return Ok(());
+    }
+    write_picture(folder, "total-error", &plot(wanted.medium, title, found))?;
     let panel = |(cells, level): (&Vec<Vec<[f64; 2]>>, &EstimatedLevel)| MeshPanel {
         heading: format!("{} elements, estimated {:.2} %", level.elements, 100.0 * level.total_error),
         cells: cells.clone(),
@@ -118,11 +129,11 @@ fn csv(found: &Estimated) -> String {
 }
 
 /// The errors over the unknowns.
-fn plot(title: &str, found: &Estimated) -> Drawing {
+fn plot(medium: Medium, title: &str, found: &Estimated) -> Drawing {
     let line = |name: &str, value: &dyn Fn(&EstimatedLevel) -> f64| {
         Series::new(name, found.levels.iter().map(|level| [level.dofs as f64, value(level)]).collect())
     };
     let series = vec![line("estimated", &|level| level.total_error), line("asked for", &|_| found.goal.total_error)];
     let (x, y) = (Quantity::new("unknowns", ""), Quantity::new("total error, relative", ""));
-    line_plots(title, &[Plot { scales: [Scale::Logarithmic; 2], ..Plot::new(x, y, series) }])
+    line_plots_for(medium, title, &[Plot { scales: [Scale::Logarithmic; 2], ..Plot::new(x, y, series) }])
 }

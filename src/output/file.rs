@@ -42,16 +42,19 @@ fn write(folder: &Path, path: &Path, contents: &[u8]) -> io::Result<()> {
     file.persist(path).map(drop).map_err(|error| error.error)
 }
 
-/// Writes a drawing as `stem.svg` and `stem.png` into `folder`, and tells both paths.
+/// Writes a drawing as `stem.svg` and `stem.png` (for paper `stem.svg` and `stem.pdf`) into `folder`, and tells both paths.
 ///
 /// # Errors
 /// [`Error::File`] where the system refuses, [`Error::Numerical`] where the rasteriser fails (then neither file is
 /// written).
 pub fn write_picture(folder: &Path, stem: &str, drawing: &Drawing) -> Result<[PathBuf; 2], Error> {
-    let png = drawing.png(1.0)?;
-    let paths = ["svg", "png"].map(|extension| folder.join(format!("{stem}.{extension}")));
+    let (other, bytes) = match drawing.is_for_paper() {
+        true => ("pdf", drawing.pdf()),
+        false => ("png", drawing.png(1.0)?),
+    };
+    let paths = ["svg", other].map(|extension| folder.join(format!("{stem}.{extension}")));
     write_atomically(&paths[0], drawing.svg().as_bytes())?;
-    write_atomically(&paths[1], &png)?;
+    write_atomically(&paths[1], &bytes)?;
     Ok(paths)
 }
 

@@ -4,23 +4,40 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::fields::fields;
+use super::medium::Medium;
+use super::plane_scene::{PlaneScene, draw_series, state};
+use super::plot::line_plots_for;
+use super::pressure::pressure_plots;
+use super::space_scene::draw_space;
 use super::tables;
-use super::{
-    ContactPicture, ObstacleLine, Plot, Quantity, Series, common_limits, common_window, line_plots, ticks::brief,
-    write_atomically, write_files, write_picture,
-};
+use super::{Plot, Quantity, Series, ticks::brief, write_atomically, write_files, write_picture};
 use crate::error::Error;
 use crate::qp::matrix_market::solution_files;
-use crate::qp::with_contact_sets;
+use crate::qp::{Method, Penalty, Settings, solve, with_contact_sets};
 use crate::scene::{Answer, Model};
 use crate::solution::{ContactSet, Iteration, Solution};
 use crate::study::{Summary, Sweep, SweepCorner, SweepPoint};
 
-/// More iterations than this are not drawn one by one.
+/// Of more iterations than this some are left out.
 const MOST_ITERATIONS: usize = 12;
 
-/// Pieces of the line of an obstacle.
-pub(super) const OUTLINE_SEGMENTS: usize = 200;
+/// Which pictures a command draws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pictures {
+    /// None.
+    None,
+    /// That of the answer: one for each command.
+    Answer,
+    /// Those of iterations and gaps as well.
+    All,
+}
+
+/// What a command draws, and for what.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wanted {
+    pub pictures: Pictures,
+    pub medium: Medium,
+}
 
 /// Writes `u.mtx` and `lambda.mtx`; of a scene what their entries are those of, and what happens at each row (`dofs.csv`, `rows.csv`,
 /// `contact.csv`).
@@ -34,45 +51,89 @@ pub fn write_answer(folder: &Path, solution: &Solution, answer: Option<&Answer>)
     write_files(folder, &[("contact.csv", tables::contact(answer))])
 }
 
-/// Writes the fields of an answer (`solution.vtu`), its picture (`contact`) and one picture for each iteration
-/// (`iteration-1`, ...), as long as these are no more than twelve. A bar and a body in space have no pictures.
+/// Writes the fields of an answer (`solution.vtu`) and its picture (`contact`); with all pictures of a plane body also one for each
+/// iteration (`iteration-1`, ...) or each penalty (`rung-1`, ...), of more than twelve some. A bar has no picture.
 ///
 /// # Errors
 /// [`Error::File`], and those of the recovery of stresses.
-pub fn write_solve(folder: &Path, answer: &Answer, history: &[Iteration]) -> Result<(), Error> {
+pub fn write_solve(folder: &Path, answer: &Answer, history: &[Iteration], wanted: Wanted) -> Result<(), Error> {
     write_atomically(&folder.join("solution.vtu"), fields(answer, None)?.as_bytes())?;
-    let model = answer.model();
-    if !is_plane(model) {
+    let (model, Wanted { pictures, medium }) = (answer.model(), wanted);
+    if pictures == Pictures::None {
         return Ok(());
     }
-    let title = format!("{}, {}", headline(model, "the answer"), closed_nodes(answer.contact_set()));
-    draw_series(folder, &[("contact".to_string(), Scene::new(answer, title)?)])?;
-    write_iterations(folder, model, history)
-}
-
-/// Returns `true` if the model has a picture in the plane.
-fn is_plane(model: &Model) -> bool {
-    model.mesh().dimension() == 2
-}
-
-/// One picture for each set of the history, the displacement being that with the rows of the set held at their gaps.
-fn write_iterations(folder: &Path, model: &Arc<Model>, history: &[Iteration]) -> Result<(), Error> {
-    let with_penalty = history.iter().any(|step| step.penalty > 0.0);
-    if with_penalty || history.is_empty() || history.len() > MOST_ITERATIONS {
-        return Ok(());
+    let title = format!("{}, {}", headline(model), closed_nodes(model, answer.contact_set()));
+    match model.mesh().dimension() {
+        2 => {
+            let mut series = vec![("contact".to_string(), PlaneScene::new(answer, title)?)];
+            if pictures == Pictures::All {
+                series.extend(iterations(model, history)?);
+            }
+            draw_series(folder, &series, 1, medium)
+        }
+        3 => draw_space(folder, "contact", &title, answer, medium),
+        _ => Ok(()),
     }
-    let Ok(held_at) = with_contact_sets(model.problem()) else { return Ok(()) };
+}
+
+/// The displacement and the multiplier that an iteration worked with; `None` where it had none.
+type Found = Option<(Vec<f64>, Vec<f64>)>;
+
+/// A scene for each set of the history, the displacement being that with the rows of the set held at their gaps; of a penalty loop one
+/// for each penalty, with its settled set.
+fn iterations(model: &Arc<Model>, history: &[Iteration]) -> Result<Vec<(String, PlaneScene)>, Error> {
+    let mut rungs: Vec<Iteration> = history.iter().filter(|step| step.penalty > 0.0).cloned().collect();
+    rungs.reverse();
+    rungs.dedup_by(|later, earlier| later.penalty == earlier.penalty);
+    rungs.reverse();
+    let (steps, name) = if rungs.is_empty() { (history, "iteration") } else { (&rungs[..], "rung") };
+    let held_at = if rungs.is_empty() { with_contact_sets(model.problem()).ok() } else { None };
+    let find = |step: &Iteration| -> Found {
+        if let Some(held_at) = &held_at {
+            // A set that does not hold the body by itself has no displacement to show.
+            return held_at(&step.contact_set).ok();
+        }
+        of_penalty(model, step.penalty)
+    };
+    let chosen = evenly(steps.len(), MOST_ITERATIONS);
     let mut series = Vec::new();
-    for (index, step) in history.iter().enumerate() {
-        // A set that does not hold the body by itself has no displacement to show.
-        let Ok((displacement, multiplier)) = held_at(&step.contact_set) else { continue };
+    for &index in &chosen {
+        let step = &steps[index];
+        let Some((displacement, multiplier)) = find(step) else { continue };
         let number = index + 1;
-        let what = format!("search for contact segments, iteration {number}");
-        let title = format!("{}, {}", headline(model, &what), closed_nodes(&step.contact_set));
+        let mut what = match step.penalty > 0.0 {
+            true => format!("penalty {} times the local stiffness", brief(step.penalty)),
+            false => format!("iteration {number} of {}", steps.len()),
+        };
+        if chosen.len() < steps.len() {
+            what += &format!(" ({} of them drawn)", chosen.len());
+        }
+        let title = format!("{}, {what}, {}", headline(model), closed_nodes(model, &step.contact_set));
         let shown = Answer::new(model.clone(), &displacement, &multiplier, &step.contact_set)?;
-        series.push((format!("iteration-{number}"), Scene::new(&shown, title)?));
+        series.push((format!("{name}-{number}"), PlaneScene::new(&shown, title)?));
     }
-    draw_series(folder, &series)
+    Ok(series)
+}
+
+/// The settled answer of the penalty loop at one penalty.
+fn of_penalty(model: &Model, penalty: f64) -> Found {
+    let ladder = Penalty { first: penalty, last: penalty, ..Penalty::default() };
+    let settings = Settings { prove: false, ..Settings::with_method(Method::Penalty(ladder)) };
+    let solution = match solve(model.problem(), &settings) {
+        Ok(solution) => solution,
+        // Certified or not: no rung but the last is exact.
+        Err(Error::NotCertified { solution, .. }) => *solution,
+        Err(_) => return None,
+    };
+    Some((solution.displacement, solution.multiplier))
+}
+
+/// At most `most` indices below `count`, the first and the last among them, at even distances.
+fn evenly(count: usize, most: usize) -> Vec<usize> {
+    if count <= most {
+        return (0..count).collect();
+    }
+    (0..most).map(|k| k * (count - 1) / (most - 1)).collect()
 }
 
 /// Draws the answer of the QP as [`write_solve`] does, with the iterations of the active-set loop, and the pressure of
@@ -80,34 +141,22 @@ fn write_iterations(folder: &Path, model: &Arc<Model>, history: &[Iteration]) ->
 ///
 /// # Errors
 /// As [`write_solve`].
-pub fn write_compare(folder: &Path, answers: &[Answer; 3], summaries: &[Summary; 3]) -> Result<(), Error> {
+pub fn write_compare(
+    folder: &Path,
+    answers: &[Answer; 3],
+    summaries: &[Summary; 3],
+    wanted: Wanted,
+) -> Result<(), Error> {
     let [_, active_set, _] = summaries;
-    write_solve(folder, &answers[0], &active_set.solution.history)?;
+    write_solve(folder, &answers[0], &active_set.solution.history, wanted)?;
     let model = answers[0].model();
-    if !is_plane(model) {
+    if model.mesh().dimension() != 2 || wanted.pictures == Pictures::None {
         return Ok(());
     }
-    let mut plots = Vec::new();
-    for obstacle in 0..model.obstacles().len() {
-        let mut series = Vec::new();
-        for (answer, Summary { solution, .. }) in answers.iter().zip(summaries) {
-            series.push(Series::new(solution.method.clone(), pressure_line(answer, obstacle)));
-        }
-        if series[0].points.is_empty() {
-            continue;
-        }
-        let units = model.units();
-        let along = ["x", "y"][along_axis(model, obstacle)];
-        let pressure = Quantity::new("contact pressure p", units.pressure());
-        let mut plot = Plot::new(Quantity::new(along, &units.length), pressure, series);
-        plot.nested = true;
-        if model.obstacles().len() > 1 {
-            plot.title = format!("obstacle {} on {}", obstacle + 1, model.obstacles()[obstacle].boundary());
-        }
-        plots.push(plot);
-    }
+    let plots = pressure_plots(answers, summaries);
     if !plots.is_empty() {
-        write_picture(folder, "pressure", &line_plots(&headline(model, "three methods"), &plots))?;
+        let title = format!("{}, contact pressure of three methods", headline(model));
+        write_picture(folder, "pressure", &line_plots_for(wanted.medium, &title, &plots))?;
     }
     Ok(())
 }
@@ -117,17 +166,20 @@ pub fn write_compare(folder: &Path, answers: &[Answer; 3], summaries: &[Summary;
 ///
 /// # Errors
 /// As [`write_solve`].
-pub fn write_sweep(folder: &Path, sweep: &Sweep) -> Result<(), Error> {
+pub fn write_sweep(folder: &Path, sweep: &Sweep, wanted: Wanted) -> Result<(), Error> {
+    let Wanted { pictures, medium } = wanted;
     let points = &sweep.points;
-    let mut series = Vec::new();
-    for (index, SweepPoint { answer, .. }) in
-        points.iter().enumerate().filter(|(_, point)| is_plane(point.answer.model()))
-    {
-        let title = format!("{}, {}", headline(answer.model(), ""), closed_nodes(answer.contact_set()));
-        let name = if points[index].force.is_some() { "force" } else { "gap" };
-        series.push((format!("{name}-{:02}", index + 1), Scene::new(answer, title)?));
+    if pictures == Pictures::None {
+        return Ok(());
     }
-    draw_series(folder, &series)?;
+    let mut series = Vec::new();
+    let is_drawn = |point: &SweepPoint| pictures == Pictures::All && point.answer.model().mesh().dimension() == 2;
+    for (index, SweepPoint { answer, .. }) in points.iter().enumerate().filter(|(_, point)| is_drawn(point)) {
+        let title = format!("{}, {}", headline(answer.model()), closed_nodes(answer.model(), answer.contact_set()));
+        let name = if points[index].force.is_some() { "force" } else { "gap" };
+        series.push((format!("{name}-{:02}", index + 1), PlaneScene::new(answer, title)?));
+    }
+    draw_series(folder, &series, series.len(), medium)?;
     let Some(first) = points.first() else { return Ok(()) };
     let units = first.answer.model().units();
     let (swept, swept_in) = match first.force {
@@ -147,6 +199,7 @@ pub fn write_sweep(folder: &Path, sweep: &Sweep) -> Result<(), Error> {
         }
         let mut plot = Plot::new(Quantity::new(swept, swept_in), Quantity::new(name, unit), series);
         plot.nested = true;
+        plot.y_from_zero = true;
         plot
     };
     let contact = |point: &SweepPoint| point.summary.contact.clone();
@@ -166,137 +219,40 @@ pub fn write_sweep(folder: &Path, sweep: &Sweep) -> Result<(), Error> {
         extent,
         over_gap("peak pressure", &units.pressure(), &|p| contact(p).pressure_max.unwrap_or(0.0), &|c| c.pressure_max),
     ];
-    write_picture(folder, "force-width", &line_plots(first.answer.model().title(), &plots))?;
+    write_picture(folder, "force-width", &line_plots_for(medium, first.answer.model().title(), &plots))?;
     Ok(())
 }
 
 /// A number of something that is plotted.
 type Value<'a, T> = &'a dyn Fn(&T) -> f64;
 
-pub(super) fn headline(model: &Model, what: &str) -> String {
-    let gap = match model.pressing_force() {
-        Some(force) => format!("force {} {}", brief(force), model.units().force),
-        None => format!("gap {} {}", brief(model.gap()), model.units().length),
-    };
-    let parts = [model.title(), gap.trim_end(), what];
-    parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
+/// What all pictures of a model say first.
+pub(super) fn headline(model: &Model) -> String {
+    [model.title(), &state(model)].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
 }
 
-fn closed_nodes(set: &ContactSet) -> String {
-    match set.count() {
+/// The closed nodes, as the legend counts them: a node between two obstacles once.
+fn closed_nodes(model: &Model, set: &ContactSet) -> String {
+    let mut nodes: Vec<usize> = set.iter().map(|row| model.rows()[row].node).collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    match nodes.len() {
         1 => "1 closed node".to_string(),
         count => format!("{count} closed nodes"),
     }
 }
 
-/// The axis along which the candidates of an obstacle lie: across its approach direction.
-fn along_axis(model: &Model, obstacle: usize) -> usize {
-    usize::from(model.obstacles()[obstacle].approach()[0] != 0.0)
-}
+#[cfg(test)]
+mod tests {
+    use super::evenly;
 
-/// Points [position along the boundary, pressure] of one obstacle.
-fn pressure_line(answer: &Answer, obstacle: usize) -> Vec<[f64; 2]> {
-    let model = answer.model();
-    let axis = along_axis(model, obstacle);
-    let rows = model.rows().iter().zip(answer.pressure()).filter(|(row, _)| row.obstacle == obstacle);
-    let mut line: Vec<[f64; 2]> =
-        rows.map(|(row, &pressure)| [model.mesh().nodes()[row.node][axis], pressure]).collect();
-    line.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    line
-}
-
-/// What one picture shows, as plain data that it owns.
-pub(super) struct Scene {
-    title: String,
-    length_unit: String,
-    stress_unit: String,
-    nodes: Vec<[f64; 2]>,
-    elements: Vec<Vec<usize>>,
-    displacement: Vec<f64>,
-    field: Vec<f64>,
-    outlines: Vec<(Vec<[f64; 2]>, [f64; 2])>,
-    candidates: Vec<usize>,
-    closed: Vec<bool>,
-}
-
-impl Scene {
-    pub(super) fn new(answer: &Answer, title: String) -> Result<Self, Error> {
-        let (model, set) = (answer.model(), answer.contact_set());
-        let candidates: Vec<usize> = {
-            let mut nodes: Vec<usize> = model.rows().iter().map(|row| row.node).collect();
-            nodes.sort_unstable();
-            nodes.dedup();
-            nodes
-        };
-        let closed_nodes: Vec<usize> = set.iter().map(|row| model.rows()[row].node).collect();
-        let outline = |i: usize| {
-            let [x, y, _] = model.obstacles()[i].approach();
-            (model.obstacles()[i].outline(answer.shift(i), OUTLINE_SEGMENTS), [x, y])
-        };
-        let corners = model.mesh().kind().corners();
-        Ok(Scene {
-            title,
-            length_unit: model.units().length.clone(),
-            stress_unit: model.units().pressure(),
-            nodes: model.mesh().nodes().iter().map(|&[x, y, _]| [x, y]).collect(),
-            elements: model.mesh().elements().map(|nodes| nodes[..corners].to_vec()).collect(),
-            displacement: answer.displacement().to_vec(),
-            field: answer.stress()?.nodes.iter().map(|stress| stress.sigma_2).collect(),
-            outlines: (0..model.obstacles().len())
-                .filter(|&i| model.obstacles()[i].rigid().is_some())
-                .map(outline)
-                .collect(),
-            closed: candidates.iter().map(|node| closed_nodes.contains(node)).collect(),
-            candidates,
-        })
-    }
-
-    /// The same with the body where it has moved to in both panels: for one that flies.
-    pub(super) fn in_place(mut self) -> Self {
-        for (node, moved) in self.nodes.iter_mut().zip(self.displacement.chunks_exact(2)) {
-            *node = [node[0] + moved[0], node[1] + moved[1]];
-        }
-        self.displacement.fill(0.0);
-        self
-    }
-
-    pub(super) fn field(&self) -> &[f64] {
-        &self.field
-    }
-
-    pub(super) fn obstacles(&self) -> Vec<ObstacleLine<'_>> {
-        self.outlines.iter().map(|(points, inside)| ObstacleLine { points, inside: *inside }).collect()
-    }
-
-    pub(super) fn picture<'a>(&'a self, obstacles: &'a [ObstacleLine<'a>]) -> ContactPicture<'a> {
-        ContactPicture {
-            title: &self.title,
-            length_unit: &self.length_unit,
-            nodes: &self.nodes,
-            elements: &self.elements,
-            displacement: &self.displacement,
-            magnification: 1.0,
-            field: &self.field,
-            quantity: Quantity::new("σ₂, second principal stress", &self.stress_unit),
-            limits: [f64::NAN; 2],
-            obstacles,
-            candidates: &self.candidates,
-            closed: &self.closed,
-            window: None,
+    #[test]
+    fn of_many_iterations_twelve_are_drawn_with_the_first_and_the_last() {
+        assert_eq!(evenly(5, 12), [0, 1, 2, 3, 4]);
+        for count in [13, 14, 40, 1000] {
+            let chosen = evenly(count, 12);
+            assert_eq!((chosen.len(), chosen[0], chosen[11]), (12, 0, count - 1));
+            assert!(chosen.is_sorted_by(|a, b| a < b), "{chosen:?}");
         }
     }
-}
-
-/// Draws a series with common colour limits and a common window.
-fn draw_series(folder: &Path, series: &[(String, Scene)]) -> Result<(), Error> {
-    let limits = common_limits(series.iter().map(|(_, scene)| &scene.field[..]));
-    let obstacles: Vec<_> = series.iter().map(|(_, scene)| scene.obstacles()).collect();
-    let pictures: Vec<_> = series.iter().zip(&obstacles).map(|((_, scene), lines)| scene.picture(lines)).collect();
-    let window = common_window(pictures.iter().map(ContactPicture::window));
-    for ((stem, _), mut picture) in series.iter().zip(pictures) {
-        picture.limits = limits;
-        picture.window = Some(window);
-        write_picture(folder, stem, &picture.draw()?)?;
-    }
-    Ok(())
 }

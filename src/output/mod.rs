@@ -5,11 +5,13 @@
 //! same shapes are written as SVG and painted as PNG with an embedded typeface, so that both show the same on every machine.
 
 mod animation;
+pub(crate) mod arrows;
 mod axes;
 pub(crate) mod body;
 mod colour;
 mod colour_bar;
 mod contour;
+mod curves;
 pub(crate) mod drawing;
 #[cfg(feature = "cli")]
 mod estimated_error;
@@ -18,9 +20,11 @@ pub(crate) mod file;
 // What the program leaves in its folders; of it a motion needs the fields and the scene of a picture only.
 #[cfg_attr(not(feature = "cli"), allow(dead_code))]
 pub(crate) mod gallery;
+mod inset;
 mod json;
 mod legend;
 mod mark;
+pub(crate) mod medium;
 #[cfg(feature = "cli")]
 mod mesh_series;
 mod motion;
@@ -32,7 +36,12 @@ mod msh;
 mod obstacle;
 mod paint;
 mod panels;
+mod pdf;
+mod plan;
+mod plane_scene;
 pub(crate) mod plot;
+#[cfg_attr(not(feature = "cli"), allow(dead_code))]
+mod pressure;
 #[cfg(feature = "cli")]
 mod problem_sweep;
 mod raster;
@@ -40,6 +49,8 @@ mod report;
 #[cfg(feature = "cli")]
 mod set_up;
 mod shape;
+mod space;
+mod space_scene;
 mod style;
 mod svg;
 #[cfg_attr(not(feature = "cli"), allow(dead_code))]
@@ -48,10 +59,11 @@ pub(crate) mod ticks;
 #[cfg(feature = "cli")]
 mod total_error;
 mod tradeoff;
+mod tradeoff_plot;
 mod typeface;
 pub(crate) mod vtu;
 
-pub(crate) use body::{ContactPicture, ObstacleLine, common_limits, common_window};
+pub(crate) use body::{ContactPicture, common_limits, common_window};
 pub use drawing::Drawing;
 #[cfg(feature = "cli")]
 pub(crate) use estimated_error::{estimated_error_text, write_estimated_error};
@@ -63,6 +75,8 @@ pub(crate) use json::compact_json;
 pub(crate) use json::report_json;
 pub use motion::MotionFolder;
 pub use motion_report::MotionReport;
+#[cfg(feature = "cli")]
+pub(crate) use motion_tradeoff::motion_tradeoff_plot_for;
 pub use motion_tradeoff::{motion_tradeoff_csv, motion_tradeoff_plot, motion_tradeoff_text};
 pub use plot::{Plot, Series, line_plots};
 #[cfg(feature = "cli")]
@@ -75,7 +89,8 @@ pub(crate) use set_up::set_up_picture;
 pub use ticks::{Quantity, Scale};
 #[cfg(feature = "cli")]
 pub(crate) use total_error::{total_error_text, write_total_error};
+pub use tradeoff::{tradeoff_csv, tradeoff_text};
+pub use tradeoff_plot::tradeoff_plot;
 #[cfg(feature = "cli")]
-pub(crate) use tradeoff::total_error_plot;
-pub use tradeoff::{tradeoff_csv, tradeoff_plot, tradeoff_text};
+pub(crate) use tradeoff_plot::{total_error_plot, tradeoff_plot_for};
 pub use vtu::{Array, Unstructured};

@@ -12,12 +12,16 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::animation::animate;
+use super::body::FieldPanel;
 use super::fields::fields;
-use super::gallery::Scene;
+use super::medium::Medium;
 use super::motion_table::MotionTable;
+use super::plane_scene::{PlaneScene, lines};
+use super::plot::line_plots_for;
+use super::ticks::amount;
 use super::{
-    ContactPicture, Plot, Quantity, Series, common_limits, common_window, json::compact_json, line_plots,
-    write_atomically, write_picture,
+    ContactPicture, Plot, Quantity, Series, common_limits, common_window, json::compact_json, write_atomically,
+    write_picture,
 };
 use crate::error::Error;
 use crate::file::{MOST_OF_TABLE, read_text_capped};
@@ -242,41 +246,52 @@ impl MotionFolder {
     /// # Errors
     /// [`Error::File`], and those of the recovery of stresses and of the rasteriser.
     pub fn draw(&self, model: &Arc<Model>) -> Result<(), Error> {
+        self.draw_for(model, Medium::Screen)
+    }
+
+    /// The same for a screen or for paper, where the animation is as on a screen.
+    pub(crate) fn draw_for(&self, model: &Arc<Model>, medium: Medium) -> Result<(), Error> {
         let history = self.read_history()?;
         let line =
             |name: &str, column: usize| Series::new(name, history.iter().map(|row| [row[0], row[column]]).collect());
         let units = model.units();
         let work = format!("{} {}", units.force, units.length);
         let energies = vec![line("kinetic", 4), line("strain", 5), line("potential", 6), line("total", 7)];
-        let time = || Quantity::new("time", "");
+        let time = || Quantity::new("time t", units.time());
         let plots = [
             Plot::new(time(), Quantity::new("contact force F", &units.force), vec![line("force", 1)]),
             Plot::new(time(), Quantity::new("energy", work.trim()), energies),
         ];
-        write_picture(&self.folder, "history", &line_plots(model.title(), &plots))?;
+        write_picture(&self.folder, "history", &line_plots_for(medium, model.title(), &plots))?;
         if model.mesh().dimension() != 2 {
             return Ok(());
         }
-        let scene = |number: usize| -> Result<Scene, Error> {
+        let scene = |number: usize| -> Result<PlaneScene, Error> {
             let frame = self.read_frame(number)?;
             let set = closed_of(model.rows().len(), &frame.closed);
-            let title = format!("{}, t = {:.4}", model.title(), frame.time);
+            let time = amount(frame.time, model.units().time());
+            let title = format!("{}, t = {time}", model.title());
             let shown = Answer::new(model.clone(), &frame.displacement, &frame.multiplier, &set)?;
-            Ok(Scene::new(&shown, title)?.in_place())
+            Ok(PlaneScene::new(&shown, title)?.in_place())
         };
         // First what all frames share, then one after another: no two are in memory together.
         let (mut limits, mut window) = ([f64::INFINITY, f64::NEG_INFINITY], None);
         for number in 0..self.times.len() {
             let shown = scene(number)?;
-            let [low, high] = common_limits([shown.field()]);
+            let fields = shown.fields();
+            let [low, high] = common_limits([fields[0].values]);
             limits = [limits[0].min(low), limits[1].max(high)];
-            let lines = shown.obstacles();
-            window = Some(common_window(window.into_iter().chain([shown.picture(&lines).window()])));
+            let outlines = shown.obstacles(1.0);
+            let lines = lines(&outlines);
+            window = Some(common_window(window.into_iter().chain([shown.picture(&[], &lines, 1.0).window()])));
         }
         let animation = animate(self.times.len(), SCALE, MILLISECONDS, |number| {
             let shown = scene(number)?;
-            let lines = shown.obstacles();
-            ContactPicture { limits, window, ..shown.picture(&lines) }.draw()
+            let outlines = shown.obstacles(1.0);
+            let lines = lines(&outlines);
+            let field = shown.fields().into_iter().take(1).map(|field| FieldPanel { limits, ..field });
+            let fields: Vec<FieldPanel> = field.collect();
+            ContactPicture { window, ..shown.picture(&fields, &lines, 1.0) }.draw()
         })?;
         write_atomically(&self.folder.join("motion.png"), &animation)
     }

@@ -1,7 +1,9 @@
 //! What each scheme of a motion costs, as a table, as comma-separated values, and as a picture of error over time.
 
+use super::medium::Medium;
+use super::plot::line_plots_for;
 use super::report::{columns, number, printable};
-use super::{Drawing, Plot, Quantity, Scale, Series, line_plots};
+use super::{Drawing, Plot, Quantity, Scale, Series};
 use crate::study::{MotionPoint, MotionTradeoff};
 
 const HEADING: [&str; 8] =
@@ -55,6 +57,11 @@ pub fn motion_tradeoff_csv(tradeoff: &MotionTradeoff) -> String {
 
 /// Error over time, a line for each scheme.
 pub fn motion_tradeoff_plot(title: &str, tradeoff: &MotionTradeoff) -> Drawing {
+    motion_tradeoff_plot_for(Medium::Screen, title, tradeoff)
+}
+
+/// The same for a screen or for paper.
+pub(crate) fn motion_tradeoff_plot_for(medium: Medium, title: &str, tradeoff: &MotionTradeoff) -> Drawing {
     let mut series: Vec<Series> = Vec::new();
     for point in &tradeoff.points {
         let place = [point.seconds, point.displacement_error];
@@ -65,5 +72,5 @@ pub fn motion_tradeoff_plot(title: &str, tradeoff: &MotionTradeoff) -> Drawing {
     }
     let mut plot = Plot::new(Quantity::new("time", "s"), Quantity::new("displacement error, relative", ""), series);
     plot.scales = [Scale::Logarithmic; 2];
-    line_plots(title, &[plot])
+    line_plots_for(medium, title, &[plot])
 }

@@ -10,15 +10,6 @@ use super::{
 const EDGE: Colour = Colour(0x3c, 0x40, 0x48);
 const INSIDE: Colour = Colour(0x80, 0x86, 0x90);
 
-/// How an obstacle is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Look {
-    /// Filled: body and obstacle touch in the picture where they touch.
-    Solid,
-    /// A dashed edge: the displacement of the body is magnified, and the obstacle is not moved with it.
-    Dashed,
-}
-
 /// The visible edge of an obstacle and the side on which it is solid.
 #[derive(Clone, Copy, Debug)]
 pub struct ObstacleLine<'a> {
@@ -56,15 +47,15 @@ impl ObstacleLine<'_> {
     }
 
     /// The fill of a solid obstacle, and the edge.
-    pub(crate) fn draw(&self, drawing: &mut Drawing, frame: &Frame, look: Look) {
+    pub(crate) fn draw(&self, drawing: &mut Drawing, frame: &Frame) {
         let places: Vec<[f64; 2]> = self.points.iter().map(|&point| frame.place(point)).collect();
         let ([left, top], [width, height]) = (frame.corner, frame.size);
         // What lies far outside the frame is cut off here: renderers compute in single precision.
         let far = 3.0 * (width + height);
         let pieces = visible(&places, [left - far, top - far], [left + width + far, top + height + far]);
-        if look == Look::Solid && self.is_closed() {
+        if self.is_closed() {
             drawing.polygon(&places, &inside_paint());
-        } else if look == Look::Solid {
+        } else {
             let [right, up] = self.direction([[0.0; 2]; 2]);
             let offset = [8.0 * far * right, -8.0 * far * up];
             for piece in &pieces {
@@ -73,17 +64,14 @@ impl ObstacleLine<'_> {
                 drawing.polygon(&region, &inside_paint());
             }
         }
-        drawing.polylines(&pieces, &edge_paint(look));
+        drawing.polylines(&pieces, &edge_paint());
     }
 }
 
 /// The key of an obstacle in a legend.
-pub(crate) fn draw_key(drawing: &mut Drawing, [x, y]: [f64; 2], look: Look) {
-    if look == Look::Solid {
-        drawing.rect([x - 14.0, y - 4.0], [28.0, 10.0], &inside_paint());
-    }
-    let edge = if look == Look::Solid { y - 4.0 } else { y };
-    drawing.line([x - 14.0, edge], [x + 14.0, edge], &edge_paint(look));
+pub(crate) fn draw_key(drawing: &mut Drawing, [x, y]: [f64; 2]) {
+    drawing.rect([x - 14.0, y - 4.0], [28.0, 10.0], &inside_paint());
+    drawing.line([x - 14.0, y - 4.0], [x + 14.0, y - 4.0], &edge_paint());
 }
 
 fn inside_paint() -> Paint {
@@ -91,9 +79,8 @@ fn inside_paint() -> Paint {
     Paint { transparency: 0.55, ..Paint::fill(INSIDE) }
 }
 
-fn edge_paint(look: Look) -> Paint {
-    let paint = Paint::stroke(EDGE, 1.8);
-    if look == Look::Solid { paint } else { paint.dashed(&[7.0, 4.0]) }
+fn edge_paint() -> Paint {
+    Paint::stroke(EDGE, 1.8)
 }
 
 /// The box of the picture: the body, a margin, and room for the obstacles on their side as far as they are near.

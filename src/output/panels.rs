@@ -1,42 +1,46 @@
-//! What the two panels of a contact picture show: the field, and the moved mesh with its candidates.
+//! What the panels of a contact picture show: a field, and the displaced mesh with its candidates and forces.
 
 use super::{
+    arrows,
     axes::Frame,
     body::ContactPicture,
     colour::{Colour, NO_VALUE},
     colour_bar::ColourRange,
     contour::Field,
     drawing::{Drawing, Paint},
+    inset::Inset,
     mark::Candidate,
     ticks::Scale,
 };
 
 /// Mesh lines closer than this many pixels would only darken the body.
-const FINEST_MESH: f64 = 1.6;
+const FINEST_MESH: f64 = 3.0;
 
 const BODY: Colour = Colour(0xf1, 0xf4, 0xf8);
 const MESH: Colour = Colour(0x9a, 0xa4, 0xb2);
 const OUTLINE: Colour = Colour(0x3a, 0x42, 0x4e);
 
 impl ContactPicture<'_> {
-    /// Left: paints the field level over level; says whether some elements have no value.
-    pub(crate) fn draw_field(&self, drawing: &mut Drawing, frame: &Frame, range: &ColourRange) -> bool {
+    /// Paints a field level over level; says whether some elements have no value.
+    pub(crate) fn draw_field(&self, drawing: &mut Drawing, frame: &Frame, values: &[f64], range: &ColourRange) -> bool {
         let place = |node: usize| {
             let place = frame.place(self.nodes[node]);
             place[0].is_finite().then_some(place)
         };
-        let body = Field::new(self.elements, |node| Some((place(node)?, 0.0)));
         let field = Field::new(self.elements, |node| {
-            let value = self.field[node];
+            let value = values[node];
             Some((place(node)?, Scale::Linear.shows(value).then_some(value)?))
         });
-        let missing = field.count() < body.count();
-        let outline = body.at_least(f64::NEG_INFINITY);
+        let missing = self.elements.iter().flatten().any(|&node| !Scale::Linear.shows(values[node]));
+        let outline = match missing {
+            true => Field::new(self.elements, |node| Some((place(node)?, 0.0))).at_least(f64::NEG_INFINITY),
+            false => field.at_least(f64::NEG_INFINITY),
+        };
         drawing.clipped(frame.corner, frame.size, |drawing| {
             if missing {
                 drawing.polygons(&outline, &Paint::fill(NO_VALUE));
             }
-            for (level, colour) in range.bands() {
+            for &(level, colour) in range.bands() {
                 drawing.polygons(&field.at_least(level), &Paint::fill(colour));
             }
             drawing.polygons(&outline, &Paint::stroke(OUTLINE, 1.4));
@@ -44,23 +48,50 @@ impl ContactPicture<'_> {
         missing
     }
 
-    /// Right: the moved mesh, the obstacles over it, and the candidates.
+    /// The displaced mesh, the obstacles over it, the candidates and the forces; a small contact enlarged in a corner.
     pub(crate) fn draw_moved(&self, drawing: &mut Drawing, frame: &Frame, moved: &[[f64; 2]]) {
+        self.draw_mesh(drawing, frame, moved);
+        arrows::draw(drawing, frame, self.arrows, self.magnification);
+        let closed: Vec<[f64; 2]> =
+            self.candidates.iter().zip(self.closed).filter(|entry| *entry.1).map(|entry| moved[*entry.0]).collect();
+        let open = self.candidates.iter().map(|&node| moved[node]);
+        if let Some(inset) = Inset::of(frame, &closed, open, moved) {
+            inset.draw_ground(drawing, frame);
+            self.draw_mesh(drawing, &inset.frame, moved);
+            inset.draw_frame(drawing, self.length_unit);
+        }
+    }
+
+    fn draw_mesh(&self, drawing: &mut Drawing, frame: &Frame, moved: &[[f64; 2]]) {
         let places: Vec<[f64; 2]> = moved.iter().map(|&point| frame.place(point)).collect();
         let place = |node: usize| places[node][0].is_finite().then_some((places[node], 0.0));
         let outline = Field::new(self.elements, place).at_least(f64::NEG_INFINITY);
         drawing.clipped(frame.corner, frame.size, |drawing| {
             drawing.polygons(&outline, &Paint::fill(BODY));
-            let (lines, spacing) = mesh_lines(self.elements, &places);
+            let (lines, spacing) = mesh_lines(self.elements, &places, frame);
             drawing.polylines(&lines, &Paint::stroke(MESH, (0.08 * spacing).clamp(0.3, 0.8)));
             drawing.polygons(&outline, &Paint::stroke(OUTLINE, 1.4));
             for obstacle in self.obstacles {
-                obstacle.draw(drawing, frame, self.obstacle_look());
+                obstacle.draw(drawing, frame);
             }
         });
-        let radius = self.dot_radius(&places);
+        self.draw_candidates(drawing, frame, &places);
+    }
+
+    /// Over the field of a plan view: cells and candidates.
+    pub(crate) fn draw_plan(&self, drawing: &mut Drawing, frame: &Frame) {
+        let places: Vec<[f64; 2]> = self.nodes.iter().map(|&point| frame.place(point)).collect();
+        drawing.clipped(frame.corner, frame.size, |drawing| {
+            let (lines, spacing) = mesh_lines(self.elements, &places, frame);
+            drawing.polylines(&lines, &Paint::stroke(MESH, (0.05 * spacing).clamp(0.2, 0.6)));
+        });
+        self.draw_candidates(drawing, frame, &places);
+    }
+
+    fn draw_candidates(&self, drawing: &mut Drawing, frame: &Frame, places: &[[f64; 2]]) {
         let seen =
             |place: [f64; 2]| (0..2).all(|axis| (0.0..=frame.size[axis]).contains(&(place[axis] - frame.corner[axis])));
+        let radius = self.dot_radius(places, &seen);
         // Closed nodes last, so that no open one covers them.
         for (mark, shown) in [(Candidate::Open, false), (Candidate::Closed, true)] {
             for (&node, _) in self
@@ -75,21 +106,34 @@ impl ContactPicture<'_> {
     }
 
     /// Dots as large as the distance of the candidates allows.
-    fn dot_radius(&self, places: &[[f64; 2]]) -> f64 {
-        let steps = self.candidates.windows(2).map(|pair| {
-            let [from, to] = [places[pair[0]], places[pair[1]]];
-            (to[0] - from[0]).hypot(to[1] - from[1])
-        });
+    fn dot_radius(&self, places: &[[f64; 2]], seen: &impl Fn([f64; 2]) -> bool) -> f64 {
+        let steps = self.candidates.windows(2).map(|pair| [places[pair[0]], places[pair[1]]]);
+        let steps = steps.filter(|pair| pair.iter().all(|&place| seen(place)));
+        let steps = steps.map(|[from, to]| (to[0] - from[0]).hypot(to[1] - from[1]));
         let mut steps: Vec<f64> = steps.filter(|step| step.is_finite()).collect();
         steps.sort_by(f64::total_cmp);
         steps.get(steps.len() / 2).map_or(5.0, |median| (0.42 * median).clamp(1.8, 5.0))
     }
 }
 
-/// Every edge of the mesh once, none where they would be too dense to be seen apart, and their mean length.
-fn mesh_lines(elements: &[Vec<usize>], places: &[[f64; 2]]) -> (Vec<[[f64; 2]; 2]>, f64) {
-    let mut edges: Vec<[usize; 2]> = elements
-        .iter()
+/// Every edge of the mesh once that the frame may show, none where they would be too dense to be seen apart, and the mean size of
+/// an element there.
+fn mesh_lines(elements: &[Vec<usize>], places: &[[f64; 2]], frame: &Frame) -> (Vec<[[f64; 2]; 2]>, f64) {
+    let far = [0, 1].map(|axis| frame.corner[axis] + frame.size[axis]);
+    let is_seen = |element: &&Vec<usize>| {
+        let spans = [0, 1].map(|axis| {
+            let along = element.iter().map(|&node| places[node][axis]);
+            along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)])
+        });
+        (0..2).all(|axis| spans[axis][0] <= far[axis] && spans[axis][1] >= frame.corner[axis])
+    };
+    let shown: Vec<&Vec<usize>> = elements.iter().filter(is_seen).collect();
+    let mean = (frame.size[0] * frame.size[1] / shown.len().max(1) as f64).sqrt();
+    if mean < FINEST_MESH {
+        return (Vec::new(), mean);
+    }
+    let mut edges: Vec<[usize; 2]> = shown
+        .into_iter()
         .flat_map(|element| element.iter().enumerate().map(|(k, &from)| [from, element[(k + 1) % element.len()]]))
         .map(|[from, to]| [from.min(to), from.max(to)])
         .collect();
@@ -100,7 +144,5 @@ fn mesh_lines(elements: &[Vec<usize>], places: &[[f64; 2]]) -> (Vec<[[f64; 2]; 2
         .map(|edge| edge.map(|node| places[node]))
         .filter(|ends| ends.iter().flatten().all(|coordinate| coordinate.is_finite()))
         .collect();
-    let total: f64 = lines.iter().map(|[from, to]| (to[0] - from[0]).hypot(to[1] - from[1])).sum();
-    let mean = total / lines.len().max(1) as f64;
-    if mean < FINEST_MESH { (Vec::new(), mean) } else { (lines, mean) }
+    (lines, mean)
 }

@@ -1,10 +1,11 @@
 //! Line plots: named series on linear or logarithmic axes, one panel or several side by side.
 
 use super::{
-    axes::{Axis, Frame, LARGE, LINE, Labels, MARGIN, NORMAL, ROOM_BELOW, TITLE, draw_heading},
+    axes::{Axis, Frame, LARGE, LINE, Labels, NORMAL, ROOM_BELOW, TITLE, draw_heading},
     colour::{GRID, WHITE},
     drawing::{Anchor, Drawing, Paint},
-    legend::{self, Entry},
+    legend::{self, Entry, Key},
+    medium::Medium,
     style::{self, Style},
     ticks::{Quantity, Scale},
     typeface::{self, Weight},
@@ -13,6 +14,7 @@ use super::{
 /// Width of a picture with one panel, and of one with several.
 const WIDTH: [f64; 2] = [1200.0, 1400.0];
 const HEIGHT: f64 = 520.0;
+const PAPER_HEIGHT: f64 = 300.0;
 /// Markers closer than this many pixels would hide the line.
 const MARKER_DISTANCE: f64 = 16.0;
 /// Space between a legend and the frame.
@@ -48,6 +50,8 @@ pub struct Plot {
     pub scales: [Scale; 2],
     /// The lines. A legend names them where there are several.
     pub series: Vec<Series>,
+    /// The linear vertical axis begins, or ends, at zero.
+    pub y_from_zero: bool,
     /// Draws the lines from wide and pale to thin and dark, so that lines that coincide can all be seen.
     pub nested: bool,
 }
@@ -81,7 +85,13 @@ impl Plot {
             let style = self.style(index);
             let has_points = series.points.iter().any(|&point| self.shows(point));
             let name = if has_points { series.name.clone() } else { format!("{} (no data)", series.name) };
-            Entry { name, key_width: style::KEY, key: Box::new(move |drawing, centre| style.key(drawing, centre)) }
+            // Marks that nothing joins have no line in the legend either.
+            let joins = |pair: &[[f64; 2]]| pair.iter().all(|&point| self.shows(point));
+            let key: Key = match series.points.windows(2).any(joins) {
+                true => Box::new(move |drawing, centre| style.key(drawing, centre)),
+                false => Box::new(move |drawing, centre| style.mark(drawing, centre)),
+            };
+            Entry { name, key_width: style::KEY, key }
         };
         named.map(entry).collect()
     }
@@ -91,11 +101,17 @@ impl Plot {
     }
 
     fn axes(&self, size: [f64; 2]) -> [Axis; 2] {
-        let [x, y] = [0, 1].map(|axis| self.scales[axis].range(self.values(axis), [0.03, 0.06][axis]));
+        let [x, mut y] = [0, 1].map(|axis| self.scales[axis].range(self.values(axis), [0.03, 0.06][axis]));
+        if self.y_from_zero && self.scales[1] == Scale::Linear && !self.is_empty() {
+            let (low, high) = self.values(1).fold((0.0, 0.0), |(low, high): (f64, f64), v| (low.min(v), high.max(v)));
+            if low < high {
+                y = [low, high].map(|end| 1.06 * end);
+            }
+        }
         [Axis::horizontal(&self.x, self.scales[0], x, size[0]), Axis::vertical(&self.y, self.scales[1], y, size[1])]
     }
 
-    fn draw(&self, drawing: &mut Drawing, frame: &Frame) {
+    fn draw(&self, drawing: &mut Drawing, frame: &Frame, title: &str) {
         frame.draw_grid(drawing);
         for (index, series) in self.series.iter().enumerate() {
             let places: Vec<[f64; 2]> = series.points.iter().map(|&point| frame.place(point)).collect();
@@ -107,7 +123,7 @@ impl Plot {
             drawing.text(middle, "no data", NORMAL, Anchor::Middle);
         }
         frame.draw_axes(drawing, Labels::Both);
-        let (title, size) = typeface::fitted(&self.title, LARGE, Weight::Regular, frame.size[0]);
+        let (title, size) = typeface::fitted(title, LARGE, Weight::Regular, frame.size[0]);
         drawing.text([frame.corner[0] + 0.5 * frame.size[0], frame.corner[1] - 12.0], &title, size, Anchor::Middle);
     }
 
@@ -153,25 +169,34 @@ impl Plot {
 ///
 /// let force = Series::new("force", vec![[-0.01, 1.0e4], [-0.02, 2.5e4]]);
 /// let plot = Plot::new(Quantity::new("gap", "m"), Quantity::new("contact force", "N/m"), vec![force]);
-/// assert!(line_plots("Indentation", &[plot]).svg().contains("contact force (10³ N/m)"));
+/// assert!(line_plots("Indentation", &[plot]).svg().contains("contact force (kN/m)"));
 /// ```
 pub fn line_plots(title: &str, plots: &[Plot]) -> Drawing {
-    let width = if plots.len() < 2 { WIDTH[0] } else { WIDTH[1] };
-    let title = typeface::wrapped(title, TITLE, Weight::Bold, width - 2.0 * MARGIN);
-    let heading = if plots.iter().any(|plot| !plot.title.trim().is_empty()) { LARGE * LINE + 14.0 } else { 14.0 };
-    let top = MARGIN + TITLE * LINE * title.len() as f64 + heading;
-    let column = (width - 2.0 * MARGIN) / plots.len().max(1) as f64;
+    line_plots_for(Medium::Screen, title, plots)
+}
+
+/// The same for a screen or for paper.
+pub(crate) fn line_plots_for(medium: Medium, title: &str, plots: &[Plot]) -> Drawing {
+    let margin = medium.margin();
+    let width = medium.width(plots.len(), WIDTH[usize::from(plots.len() > 1)]);
+    let height = if medium == Medium::Paper { PAPER_HEIGHT } else { HEIGHT };
+    let title = medium.title(typeface::wrapped(title, TITLE, Weight::Bold, width - 2.0 * margin));
+    let titles: Vec<String> =
+        plots.iter().enumerate().map(|(k, plot)| medium.panel_title(k, plots.len(), &plot.title)).collect();
+    let heading = if titles.iter().any(|title| !title.trim().is_empty()) { LARGE * LINE + 14.0 } else { 14.0 };
+    let top = margin + TITLE * LINE * title.len() as f64 + heading;
+    let column = (width - 2.0 * margin) / plots.len().max(1) as f64;
     let panels: Vec<(&Plot, Frame)> = plots
         .iter()
         .enumerate()
         .map(|(k, plot)| {
             // The room for the tick labels depends on the ticks, and those only on the height.
-            let [x, y] = plot.axes([column, HEIGHT]);
+            let [x, y] = plot.axes([column, height]);
             let room = y.room_left() + if k > 0 { 26.0 } else { 0.0 };
             let across = (column - room - x.overhang().max(12.0)).max(120.0);
-            let [x, y] = plot.axes([across, HEIGHT]);
-            let corner = [MARGIN + column * k as f64 + room, top];
-            (plot, Frame { corner, size: [across, HEIGHT], x, y })
+            let [x, y] = plot.axes([across, height]);
+            let corner = [margin + column * k as f64 + room, top];
+            (plot, Frame { corner, size: [across, height], x, y })
         })
         .collect();
     let mut below = 0.0f64;
@@ -185,11 +210,11 @@ pub fn line_plots(title: &str, plots: &[Plot]) -> Drawing {
         }
         legends.push((entries, place));
     }
-    let under = top + HEIGHT + ROOM_BELOW + 12.0;
-    let mut drawing = Drawing::new(width, under - 12.0 + below + MARGIN);
-    draw_heading(&mut drawing, &title, 0.5 * width, MARGIN);
-    for ((plot, frame), (entries, place)) in panels.iter().zip(&legends) {
-        plot.draw(&mut drawing, frame);
+    let under = top + height + ROOM_BELOW + 12.0;
+    let mut drawing = Drawing::new(width, under - 12.0 + below + margin);
+    draw_heading(&mut drawing, &title, 0.5 * width, margin);
+    for (((plot, frame), (entries, place)), panel_title) in panels.iter().zip(&legends).zip(&titles) {
+        plot.draw(&mut drawing, frame, panel_title);
         match place {
             _ if entries.is_empty() => {}
             Some([x, y]) => {
@@ -204,5 +229,5 @@ pub fn line_plots(title: &str, plots: &[Plot]) -> Drawing {
             }
         }
     }
-    drawing
+    drawing.on_paper(medium.millimetres(plots.len()))
 }

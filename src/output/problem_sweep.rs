@@ -2,8 +2,10 @@
 
 use std::path::Path;
 
+use super::gallery::{Pictures, Wanted};
+use super::plot::line_plots_for;
 use super::report::{MOST_EVENTS, columns, conditions, plural, printable};
-use super::{Plot, Quantity, Series, line_plots, write_files, write_picture};
+use super::{Plot, Quantity, Series, write_files, write_picture};
 use crate::error::Error;
 use crate::qp::solution_files;
 use crate::study::{ProblemPoint, ProblemSweep};
@@ -60,7 +62,15 @@ pub(crate) fn write_points(folder: &Path, sweep: &ProblemSweep) -> Result<(), Er
 ///
 /// # Errors
 /// [`Error::File`], [`Error::Numerical`].
-pub(crate) fn draw_problem_sweep(folder: &Path, title: &str, sweep: &ProblemSweep) -> Result<(), Error> {
+pub(crate) fn draw_problem_sweep(
+    folder: &Path,
+    title: &str,
+    sweep: &ProblemSweep,
+    wanted: Wanted,
+) -> Result<(), Error> {
+    if wanted.pictures == Pictures::None {
+        return Ok(());
+    }
     let over_way = |name: &str, of: fn(&ProblemPoint) -> f64| {
         let points = sweep.points.iter().map(|point| [point.t, of(point)]).collect();
         Plot::new(Quantity::new("way t", ""), Quantity::new(name, ""), vec![Series::new(name, points)])
@@ -69,5 +79,5 @@ pub(crate) fn draw_problem_sweep(folder: &Path, title: &str, sweep: &ProblemSwee
         over_way("sum of multipliers", |point| point.summary.contact.force),
         over_way("closed rows", |point| point.summary.contact.count as f64),
     ];
-    write_picture(folder, "force", &line_plots(title, &plots)).map(drop)
+    write_picture(folder, "force", &line_plots_for(wanted.medium, title, &plots)).map(drop)
 }

@@ -4,7 +4,7 @@ use tiny_skia::{
     Color, FillRule, LineJoin, Mask, Paint as Ink, Path, PathBuilder, Pixmap, Rect, Stroke, StrokeDash, Transform,
 };
 
-use super::colour::{Colour, INK};
+use super::colour::Colour;
 use super::paint::{Anchor, Paint};
 use super::shape::{Line, Shape, Text};
 use super::typeface;
@@ -55,11 +55,15 @@ impl Canvas<'_> {
                 }
                 Shape::Text(text) => {
                     let Some(path) = outline(text) else { continue };
-                    self.paint(&path, &Paint::fill(INK), FillRule::Winding, mask);
+                    self.paint(&path, &Paint::fill(text.ink), FillRule::Winding, mask);
                 }
                 Shape::Clipped { corner, size, shapes } => {
                     let Some(inner) = self.cut(*corner, *size, mask) else { continue };
-                    self.draw(shapes, Some(&inner));
+                    // A mask costs more than the shape: what lies inside needs none.
+                    for shape in shapes {
+                        let cut = if lies_in(shape, *corner, *size) { mask } else { Some(&inner) };
+                        self.draw(std::slice::from_ref(shape), cut);
+                    }
                 }
             }
         }
@@ -94,6 +98,21 @@ impl Canvas<'_> {
             };
             self.pixels.stroke_path(path, &ink(colour, 255), &stroke, self.transform, mask);
         }
+    }
+}
+
+/// Returns `true` if a shape, its line included, lies in a rectangle.
+fn lies_in(shape: &Shape, corner: [f64; 2], size: [f64; 2]) -> bool {
+    let holds = |point: [f64; 2], margin: f64| {
+        (0..2).all(|axis| (margin..=size[axis] - margin).contains(&(point[axis] - corner[axis])))
+    };
+    match shape {
+        Shape::Path { pieces, paint, .. } => {
+            let margin = if paint.stroke.is_some() { 0.5 * paint.width } else { 0.0 };
+            pieces.iter().flatten().all(|point| holds(point.map(|hundredths| 0.01 * hundredths as f64), margin))
+        }
+        Shape::Circle { centre, radius, paint } => holds(*centre, radius + 0.5 * paint.width),
+        Shape::Text(_) | Shape::Clipped { .. } => false,
     }
 }
 

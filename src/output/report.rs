@@ -323,13 +323,19 @@ pub(super) const MOST_EVENTS: usize = 40;
 /// The table of a sweep, and what happens between its gaps.
 pub fn sweep_text(title: &str, sweep: &Sweep, units: &Units) -> String {
     let is_of_forces = sweep.points.first().is_some_and(|point| point.force.is_some());
+    // Outside plane strain and plane stress a contact has an area.
+    let has_width = sweep.points.first().is_none_or(|point| point.summary.contact.width.is_some());
+    let extent = match has_width {
+        true => in_unit("width", &units.length),
+        false => in_unit("area", &if units.length.is_empty() { String::new() } else { format!("{}²", units.length) }),
+    };
     let header = [
         if is_of_forces { in_unit("travel", &units.length) } else { in_unit("gap", &units.length) },
         "iterations".to_string(),
         "contact".to_string(),
         in_unit("-sum(lambda)", &units.force),
         in_unit("peak pressure", &units.pressure()),
-        in_unit("width", &units.length),
+        extent,
         "energy error <=".to_string(),
         "status".to_string(),
     ];
@@ -341,7 +347,11 @@ pub fn sweep_text(title: &str, sweep: &Sweep, units: &Units) -> String {
             contact.count.to_string(),
             format!("{:.9e}", contact.force),
             format!("{:.6e}", contact.pressure_max.unwrap_or(0.0)),
-            contact.width.map_or_else(|| "-".to_string(), |width| format!("{width:.6}")),
+            match (contact.width, contact.area) {
+                (Some(width), _) => format!("{width:.6}"),
+                (None, Some(area)) => format!("{area:.6e}"),
+                _ => "-".to_string(),
+            },
             conditions(&solution.certificate)[5].2.clone(),
             point.summary.status.words().to_owned(),
         ]

@@ -1,14 +1,16 @@
 //! The picture of a scene before it is solved: body and mesh, what holds and loads it, the obstacles at their gap.
 
 use super::{
-    ContactPicture, ObstacleLine, Quantity,
+    ContactPicture, Quantity,
     axes::{Axis, Frame, LINE, Labels, MARGIN, ROOM_BELOW, TITLE, draw_heading},
     colour::{Colour, PALETTE, WHITE},
     drawing::{Drawing, Paint},
-    gallery::{OUTLINE_SEGMENTS, headline},
+    gallery::headline,
     legend::{self, Entry},
     mark::Candidate,
-    obstacle::{self, Look},
+    medium::Medium,
+    obstacle::{self, ObstacleLine},
+    plane_scene::{OUTLINE_SEGMENTS, axes},
     ticks::{Scale, brief, common_exponent},
     typeface::{self, Weight},
 };
@@ -50,8 +52,8 @@ pub(crate) fn set_up_picture(model: &Model) -> Result<Drawing, Error> {
     let lines: Vec<ObstacleLine> =
         shown.outlines.iter().map(|(points, inside)| ObstacleLine { points, inside: *inside }).collect();
     let picture = shown.picture(&lines);
-    let title = headline(model, "set-up");
-    let (frame, title) = framed(obstacle::window(shown.nodes.iter().copied(), &lines), &shown.length_unit, &title);
+    let title = format!("{}, set-up", headline(model));
+    let (frame, title) = framed(obstacle::window(shown.nodes.iter().copied(), &lines), &shown, &title);
     let arrows = arrows(model, &shown, &frame);
     let symbols = symbols(model.held_nodes(), &shown, &frame);
     let entries = entries(model, &symbols, !arrows.is_empty(), (&lines, &frame));
@@ -73,6 +75,7 @@ pub(crate) fn set_up_picture(model: &Model) -> Result<Drawing, Error> {
 
 /// What is drawn, as plain data.
 struct Shown {
+    axes: [&'static str; 2],
     length_unit: String,
     nodes: Vec<[f64; 2]>,
     elements: Vec<Vec<usize>>,
@@ -99,6 +102,7 @@ impl Shown {
         };
         let elements: Vec<Vec<usize>> = mesh.elements().map(|nodes| nodes[..corners].to_vec()).collect();
         Shown {
+            axes: axes(model),
             length_unit: model.units().length.clone(),
             out: outwards(&nodes, &mesh.elements().map(<[usize]>::to_vec).collect::<Vec<_>>()),
             elements,
@@ -119,12 +123,13 @@ impl Shown {
             elements: &self.elements,
             displacement: &self.nothing,
             magnification: 1.0,
-            field: &self.nothing[..self.nodes.len()],
-            quantity: Quantity::default(),
-            limits: [0.0; 2],
+            axes: self.axes,
+            fields: &[],
             obstacles,
             candidates: &self.candidates,
             closed: &self.open,
+            arrows: &[],
+            medium: Medium::Screen,
             window: None,
         }
     }
@@ -147,7 +152,7 @@ fn outwards(nodes: &[[f64; 2]], elements: &[Vec<usize>]) -> Vec<[f64; 2]> {
 }
 
 /// The frame of a window with room around it, under a title in lines.
-fn framed(window: [[f64; 2]; 2], length_unit: &str, title: &str) -> (Frame, Vec<String>) {
+fn framed(window: [[f64; 2]; 2], shown: &Shown, title: &str) -> (Frame, Vec<String>) {
     let longest = window.iter().map(|[low, high]| high - low).fold(0.0, f64::max);
     let [mut x, mut y] = window.map(|[low, high]| [low - ROOM * longest, high + ROOM * longest]);
     let scale = (PANEL[0] / (x[1] - x[0])).min(PANEL[1] / (y[1] - y[0]));
@@ -156,7 +161,7 @@ fn framed(window: [[f64; 2]; 2], length_unit: &str, title: &str) -> (Frame, Vec<
         *range = [range[0] - missing, range[1] + missing];
     }
     let size = [x, y].map(|range| scale * (range[1] - range[0]));
-    let names = ["x", "y"].map(|name| Quantity::new(name, length_unit));
+    let names = shown.axes.map(|name| Quantity::new(name, &shown.length_unit));
     // One factor for both axes, or the same length would carry two different numbers.
     let exponent = common_exponent([x, y].as_flattened().iter().fold(0.0, |largest, end| end.abs().max(largest)));
     let horizontal = Axis::horizontal(&names[0], Scale::Linear, x, size[0]).in_powers_of(&names[0], exponent);
@@ -356,7 +361,7 @@ fn entries<'a>(
             None => format!("at gap {} {unit}", brief(model.gap())),
         };
         let seen = if lines.iter().any(|line| line.is_seen(frame)) { "" } else { ": outside the picture" };
-        let key = Box::new(|drawing: &mut Drawing, centre| obstacle::draw_key(drawing, centre, Look::Solid));
+        let key = Box::new(|drawing: &mut Drawing, centre| obstacle::draw_key(drawing, centre));
         entries.push(Entry { name: format!("obstacle {}{seen}", place.trim_end()), key, key_width: 30.0 });
     }
     entries

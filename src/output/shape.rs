@@ -1,5 +1,6 @@
 //! What a drawing consists of.
 
+use super::colour::Colour;
 use super::paint::{Anchor, Paint};
 use super::typeface::Weight;
 
@@ -42,4 +43,5 @@ pub(super) struct Text {
     pub anchor: Anchor,
     pub weight: Weight,
     pub upward: bool,
+    pub ink: Colour,
 }

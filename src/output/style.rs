@@ -10,9 +10,14 @@ pub(crate) const KEY: f64 = 42.0;
 
 const DASHES: [&[f64]; 5] = [&[], &[9.0, 4.0], &[2.5, 3.5], &[12.0, 4.0, 2.5, 4.0], &[5.0, 3.0]];
 
-/// Widths of nested lines, the first drawn the widest; a fourth repeats the last.
-const NESTED: [(Colour, f64, f64); 3] =
-    [(Colour(0x8c, 0xc9, 0xee), 9.0, 9.0), (Colour(0xe0, 0x6c, 0x10), 4.2, 5.2), (Colour(0x15, 0x15, 0x15), 1.5, 2.6)];
+/// Widths of nested lines and their markers, the first drawn the widest; a fifth repeats the last. The fourth, a formula, has no
+/// markers.
+const NESTED: [(Colour, f64, f64); 4] = [
+    (Colour(0x8c, 0xc9, 0xee), 9.0, 9.0),
+    (Colour(0xe0, 0x6c, 0x10), 4.2, 5.2),
+    (Colour(0x15, 0x15, 0x15), 1.5, 2.6),
+    (Colour(0x00, 0x8a, 0x5e), 2.4, 0.0),
+];
 
 /// The look of one line.
 #[derive(Clone, Copy, Debug)]
@@ -65,6 +70,11 @@ impl Style {
     pub fn key(self, drawing: &mut Drawing, [x, y]: [f64; 2]) {
         drawing.line([x - 0.5 * KEY, y], [x + 0.5 * KEY, y], &self.line());
         self.marker(drawing, [x, y]);
+    }
+
+    /// The key of marks that no line joins.
+    pub fn mark(self, drawing: &mut Drawing, centre: [f64; 2]) {
+        self.marker(drawing, centre);
     }
 
     fn marker(self, drawing: &mut Drawing, [x, y]: [f64; 2]) {

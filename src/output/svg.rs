@@ -2,21 +2,49 @@
 
 use std::fmt::Write;
 
-use super::colour::INK;
 use super::paint::{Anchor, hex, hundredths, number};
 use super::shape::{Line, Shape, Text};
 use super::typeface::{self, Weight};
 
-/// The SVG text of a picture of `width` times `height` pixels, on white.
-pub(super) fn written([width, height]: [f64; 2], shapes: &[Shape]) -> String {
+/// The SVG text of a picture of `width` times `height` pixels, on white; on paper so many millimetres wide and with the typeface.
+pub(super) fn written([width, height]: [f64; 2], shapes: &[Shape], millimetres: Option<f64>) -> String {
     let mut body = String::new();
     write_shapes(&mut body, shapes, &mut 0);
+    let size = match millimetres {
+        Some(wide) => format!("width=\"{wide}mm\" height=\"{}mm\"", number(wide * height / width)),
+        None => format!("width=\"{width}\" height=\"{height}\""),
+    };
+    if millimetres.is_some() {
+        body = typeface_style() + &body;
+    }
     format!(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" \
-         height=\"{height}\" viewBox=\"0 0 {width} {height}\" font-family=\"{}\">\n\
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" {size} viewBox=\"0 0 {width} {height}\" font-family=\"{}\">\n\
          <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n{body}</svg>\n",
         typeface::FAMILY,
     )
+}
+
+/// Both faces of the typeface, for a viewer that does not have them.
+fn typeface_style() -> String {
+    let face = |weight: Weight, name: &str| {
+        let file = base64(typeface::file(weight));
+        format!("@font-face{{font-family:'Signorini Sans';font-weight:{name};src:url(data:font/ttf;base64,{file})}}\n")
+    };
+    format!("<style>\n{}{}</style>\n", face(Weight::Regular, "normal"), face(Weight::Bold, "bold"))
+}
+
+/// Bytes in the 64 letters of base64.
+fn base64(bytes: &[u8]) -> String {
+    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::with_capacity(4 * bytes.len().div_ceil(3));
+    for chunk in bytes.chunks(3) {
+        let bits = (0..3).fold(0_u32, |bits, place| bits << 8 | u32::from(chunk.get(place).copied().unwrap_or(0)));
+        for place in 0..4 {
+            let letter = LETTERS[(bits >> (18 - 6 * place)) as usize & 63];
+            text.push(if place <= chunk.len() { char::from(letter) } else { '=' });
+        }
+    }
+    text
 }
 
 /// Writes the shapes; `clips` counts the clip paths, whose names must differ.
@@ -62,7 +90,7 @@ fn write_text(body: &mut String, text: &Text) {
         false => format!(" x=\"{x}\" y=\"{y}\""),
         true => format!(" transform=\"translate({x} {y}) rotate(-90)\""),
     };
-    let (ink, size, words) = (hex(INK), number(text.size), typeface::escape(&text.text));
+    let (ink, size, words) = (hex(text.ink), number(text.size), typeface::escape(&text.text));
     let _ = writeln!(body, "<text{place} font-size=\"{size}\"{anchor}{weight} fill=\"{ink}\">{words}</text>");
 }
 

@@ -15,8 +15,12 @@ impl Quantity {
         Quantity { name: name.into(), unit: unit.into() }
     }
 
-    /// The label of an axis whose ticks count multiples of ten to the `exponent`: `contact pressure p (10⁶ Pa)`.
+    /// The label of an axis whose ticks count multiples of ten to the `exponent`: `contact pressure p (MPa)` of pascals and 6,
+    /// and with the power of ten where the unit takes no prefix.
     pub fn label(&self, exponent: i32) -> String {
+        if let Some(unit) = prefixed(&self.unit, exponent).filter(|_| exponent != 0) {
+            return format!("{} ({unit})", self.name);
+        }
         let factor = if exponent == 0 { String::new() } else { power_of_ten(exponent) };
         match (self.unit.is_empty(), factor.is_empty()) {
             (true, true) => self.name.clone(),
@@ -24,6 +28,32 @@ impl Quantity {
             (false, true) => format!("{} ({})", self.name, self.unit),
             (false, false) => format!("{} ({factor} {})", self.name, self.unit),
         }
+    }
+}
+
+/// The prefixes of a unit with their exponents of ten.
+const PREFIXES: [(&str, i32); 8] = [("n", -9), ("µ", -6), ("m", -3), ("", 0), ("k", 3), ("M", 6), ("G", 9), ("T", 12)];
+
+/// Units that take prefixes, with the largest exponent in use: nobody writes megametres.
+const BASES: [(&str, i32); 5] = [("Pa", 12), ("N", 12), ("J", 12), ("m", 3), ("s", 0)];
+
+/// `unit` times ten to the `exponent` as a unit with a prefix: `Pa` and 6 are `MPa`, `kN/m` and 3 `MN/m`. `None` where the unit has no
+/// such prefix.
+fn prefixed(unit: &str, exponent: i32) -> Option<String> {
+    let end = unit.find(['/', ' ', '·']).unwrap_or(unit.len());
+    let (head, rest) = unit.split_at(end);
+    let parts = PREFIXES.iter().flat_map(|prefix| BASES.iter().map(move |base| (prefix, base)));
+    let (&(_, own), &(base, most)) = parts.clone().find(|(prefix, base)| format!("{}{}", prefix.0, base.0) == head)?;
+    let (prefix, _) = PREFIXES.into_iter().find(|&(_, power)| power == own + exponent && power <= most)?;
+    Some(format!("{prefix}{base}{rest}"))
+}
+
+/// A value with its unit, as a reader wants it: `70.77 kN`.
+pub(crate) fn amount(value: f64, unit: &str) -> String {
+    let exponent = common_exponent(value.abs());
+    match prefixed(unit, exponent) {
+        Some(unit) => format!("{} {unit}", brief(value / 10f64.powi(exponent))),
+        None => format!("{} {unit}", brief(value)).trim_end().to_owned(),
     }
 }
 
@@ -154,6 +184,20 @@ fn logarithmic([from, to]: [f64; 2], count: usize) -> Ticks {
         let labels = positions.iter().map(|&position| brief(position)).collect();
         let minor = multiples(&[3.0, 4.0, 6.0, 7.0, 8.0, 9.0]).collect();
         return Ticks { positions, labels, minor, ..Ticks::default() };
+    }
+    if decades.clone().count() < 2 {
+        // A single power of ten tells no scale.
+        let whole = low.floor() as i32..=high.floor() as i32;
+        let multiples = |factors: &'static [f64]| -> Vec<f64> {
+            let all = whole.clone().flat_map(|k| factors.iter().map(move |factor| factor * 10f64.powi(k)));
+            all.filter(within).collect()
+        };
+        let positions = [&[1.0, 2.0, 5.0][..], &[1.0, 3.0], &[1.0]].map(multiples);
+        if let Some(positions) = positions.into_iter().find(|found| (2..=count.max(3)).contains(&found.len())) {
+            let labels = positions.iter().map(|&position| brief(position)).collect();
+            let minor = multiples(&[2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]);
+            return Ticks { positions, labels, minor, ..Ticks::default() };
+        }
     }
     let every = ((decades.clone().count() as f64 / count as f64).ceil() as i32).max(1);
     let (labelled, rest): (Vec<i32>, Vec<i32>) = decades.clone().partition(|k| k.rem_euclid(every) == 0);

@@ -4,9 +4,12 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use super::{
-    Array, Drawing, Plot, Quantity, Scale, Series, Unstructured, line_plots,
+    Array, Drawing, Plot, Quantity, Scale, Series, Unstructured,
+    gallery::{Pictures, Wanted},
+    medium::Medium,
     mesh_series::{MeshPanel, mesh_series},
     msh::msh,
+    plot::line_plots_for,
     report::{columns, entry, plural, printable, quantity},
     write_files, write_picture,
 };
@@ -115,14 +118,23 @@ pub(super) fn unknowns_needed(rate: f64, times: f64, dofs: usize) -> String {
 }
 
 /// Leaves the fields, the last mesh, the table of meshes and two pictures in a folder.
-pub(crate) fn write_total_error(folder: &Path, title: &str, found: &TotalError, units: &Units) -> Result<(), Error> {
+pub(crate) fn write_total_error(
+    folder: &Path,
+    title: &str,
+    found: &TotalError,
+    units: &Units,
+    wanted: Wanted,
+) -> Result<(), Error> {
     let mesh = mesh(&found.answer)?;
     let msh = msh(&mesh, &[("body", 0..mesh.element_count())]);
     write_files(
         folder,
         &[("answer.vtu", &fields(&mesh, &found.answer)?), ("mesh.msh", &msh), ("meshes.csv", &csv(found))],
     )?;
-    write_picture(folder, "total-error", &plot(title, found))?;
+    if wanted.pictures == Pictures::None {
+        return Ok(());
+    }
+    write_picture(folder, "total-error", &plot(wanted.medium, title, found))?;
     let panel = |(mesh, level): (&Triangulation, &TotalErrorLevel)| MeshPanel {
         heading: format!("{} triangles, guaranteed {:.2} %", level.triangles, 100.0 * level.bound),
         cells: (0..mesh.triangles.len()).map(|triangle| mesh.corners(triangle).to_vec()).collect(),
@@ -179,7 +191,7 @@ fn fields(mesh: &Mesh, answer: &PlaneAnswer) -> Result<String, Error> {
 }
 
 /// The bounds over the unknowns.
-fn plot(title: &str, found: &TotalError) -> Drawing {
+fn plot(medium: Medium, title: &str, found: &TotalError) -> Drawing {
     let line = |name: &str, value: &dyn Fn(&TotalErrorLevel) -> Option<f64>| {
         let point = |level: &TotalErrorLevel| Some([level.dofs as f64, value(level)?]);
         Series::new(name, found.levels.iter().filter_map(point).collect())
@@ -196,5 +208,5 @@ fn plot(title: &str, found: &TotalError) -> Drawing {
     ];
     let series = series.into_iter().filter(|series| !series.points.is_empty()).collect();
     let (x, y) = (Quantity::new("unknowns of the displacement", ""), Quantity::new("guaranteed relative error", ""));
-    line_plots(title, &[Plot { scales: [Scale::Logarithmic; 2], ..Plot::new(x, y, series) }])
+    line_plots_for(medium, title, &[Plot { scales: [Scale::Logarithmic; 2], ..Plot::new(x, y, series) }])
 }

@@ -1,18 +1,10 @@
-//! A trade-off as a table, as comma-separated values, and as a picture of error over time.
+//! A trade-off as a table and as comma-separated values.
 
 use super::report::{columns, number, plural, printable};
-use super::{Drawing, Plot, Quantity, Scale, Series, line_plots};
-use crate::study::{Tradeoff, TradeoffMesh, TradeoffPoint};
-
-/// Errors below this are shown as this on a logarithmic axis: they are below the resolution of doubles.
-const LEAST_SHOWN_ERROR: f64 = 1e-16;
+use crate::study::{Tradeoff, TradeoffPoint};
 
 /// The energy error of an answer that is called loose.
 const LOOSE: f64 = 1e-2;
-
-/// An answer counts as one of its mesh if its total error is at most this times that of the mesh.
-#[cfg(feature = "cli")]
-const NEARLY: f64 = 1.05;
 
 /// A relative error of the force below this is rounding.
 const LEAST_LOST: f64 = 1e-10;
@@ -82,7 +74,7 @@ fn row(point: &TradeoffPoint) -> Vec<String> {
     ]
 }
 
-fn unknowns(point: &TradeoffPoint) -> &'static str {
+pub(super) fn unknowns(point: &TradeoffPoint) -> &'static str {
     if point.condensed { "contact" } else { "all" }
 }
 
@@ -199,60 +191,4 @@ pub fn tradeoff_csv(tradeoff: &Tradeoff) -> String {
         );
     }
     text
-}
-
-/// Error over time, a panel a mesh, a line a method, and the Pareto front.
-pub fn tradeoff_plot(title: &str, tradeoff: &Tradeoff) -> Drawing {
-    let panel = |(index, mesh): (usize, &TradeoffMesh)| {
-        let of_mesh = || tradeoff.points.iter().filter(move |point| point.mesh == index);
-        let place = |point: &TradeoffPoint| [point.seconds, point.energy_error.max(LEAST_SHOWN_ERROR)];
-        let mut series: Vec<Series> = Vec::new();
-        for point in of_mesh() {
-            let mixed = if point.mixed { ", mixed" } else { "" };
-            let name = format!("{}, {} dofs{mixed}", point.method, unknowns(point));
-            match series.iter_mut().find(|series| series.name == name) {
-                Some(series) => series.points.push(place(point)),
-                None => series.push(Series::new(name, vec![place(point)])),
-            }
-        }
-        let mut front: Vec<[f64; 2]> = of_mesh().filter(|point| point.best).map(place).collect();
-        front.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        series.push(Series::new("Pareto front", front));
-        let (x, y) = (Quantity::new("time", "s"), Quantity::new("relative energy error of the algebra", ""));
-        let title = format!("{} dofs, {}", mesh.dofs, plural(mesh.contact_rows, "contact row"));
-        Plot { title, scales: [Scale::Logarithmic; 2], ..Plot::new(x, y, series) }
-    };
-    let plots: Vec<Plot> = tradeoff.meshes.iter().enumerate().map(panel).collect();
-    line_plots(title, &plots)
-}
-
-/// Total error over time: a line a method, a point a mesh, of each the cheapest answer that is hardly further off than its mesh.
-#[cfg(feature = "cli")]
-pub(crate) fn total_error_plot(title: &str, tradeoff: &Tradeoff) -> Drawing {
-    let mut series: Vec<Series> = Vec::new();
-    for (index, mesh) in tradeoff.meshes.iter().enumerate() {
-        let mut cheapest: Vec<(String, &TradeoffPoint)> = Vec::new();
-        let Some(of_mesh) = mesh.discretisation_error else { continue };
-        let near = |point: &&TradeoffPoint| {
-            point.mesh == index && point.total_error.is_some_and(|total| total <= NEARLY * of_mesh)
-        };
-        for point in tradeoff.points.iter().filter(|point| !point.mixed).filter(near) {
-            let name = format!("{}, {} dofs", point.method, unknowns(point));
-            match cheapest.iter_mut().find(|entry| entry.0 == name) {
-                Some(entry) if entry.1.seconds <= point.seconds => {}
-                Some(entry) => entry.1 = point,
-                None => cheapest.push((name, point)),
-            }
-        }
-        for (name, point) in cheapest {
-            let place = [point.seconds, point.total_error.unwrap_or(of_mesh)];
-            match series.iter_mut().find(|series| series.name == name) {
-                Some(series) => series.points.push(place),
-                None => series.push(Series::new(name, vec![place])),
-            }
-        }
-    }
-    let (x, y) = (Quantity::new("time", "s"), Quantity::new("relative total error, mesh estimated", ""));
-    let subtitle = format!("a point for each of the {} meshes", tradeoff.meshes.len());
-    line_plots(title, &[Plot { scales: [Scale::Logarithmic; 2], title: subtitle, ..Plot::new(x, y, series) }])
 }

@@ -16,10 +16,58 @@ pub(crate) enum Weight {
 }
 
 /// The faces in the order of [`Weight`]. They have no tables for kerning and ligatures: a text is its letters side by side.
-static FACES: LazyLock<[Option<Face<'static>>; 2]> = LazyLock::new(|| {
-    let files: [&[u8]; 2] = [include_bytes!("font/signorini-sans.ttf"), include_bytes!("font/signorini-sans-bold.ttf")];
-    files.map(|file| Face::parse(file, 0).ok())
-});
+static FACES: LazyLock<[Option<Face<'static>>; 2]> = LazyLock::new(|| FILES.map(|file| Face::parse(file, 0).ok()));
+
+static FILES: [&[u8]; 2] = [include_bytes!("font/signorini-sans.ttf"), include_bytes!("font/signorini-sans-bold.ttf")];
+
+/// What a document says of a face that it embeds; lengths in thousandths of the size.
+pub(crate) struct About {
+    pub file: &'static [u8],
+    /// The width of each glyph, from 0.
+    pub widths: Vec<f32>,
+    /// Left, bottom, right and top of all letters.
+    pub bounds: [f32; 4],
+    pub ascent: f32,
+    pub descent: f32,
+    /// Glyphs with the letters that they show.
+    pub letters: Vec<(u16, char)>,
+}
+
+/// What a document says of a face; `None` where it cannot be read.
+pub(crate) fn about(weight: Weight) -> Option<About> {
+    let face = face(weight)?;
+    let unit = 1000.0 / f32::from(face.units_per_em());
+    let width = |glyph: u16| unit * f32::from(face.glyph_hor_advance(GlyphId(glyph)).unwrap_or(0));
+    let bounds = face.global_bounding_box();
+    let mut letters: Vec<(u16, char)> = Vec::new();
+    for table in face.tables().cmap.iter().flat_map(|cmap| cmap.subtables).filter(|table| table.is_unicode()) {
+        table.codepoints(|code| {
+            if let (Some(letter), Some(glyph)) = (char::from_u32(code), table.glyph_index(code)) {
+                letters.push((glyph.0, letter));
+            }
+        });
+    }
+    letters.sort_unstable();
+    letters.dedup_by_key(|letter| letter.0);
+    Some(About {
+        file: FILES[weight as usize],
+        widths: (0..face.number_of_glyphs()).map(width).collect(),
+        bounds: [bounds.x_min, bounds.y_min, bounds.x_max, bounds.y_max].map(|end| unit * f32::from(end)),
+        ascent: unit * f32::from(face.ascender()),
+        descent: unit * f32::from(face.descender()),
+        letters,
+    })
+}
+
+/// The file of a face.
+pub(crate) fn file(weight: Weight) -> &'static [u8] {
+    FILES[weight as usize]
+}
+
+/// The glyphs of a text.
+pub(crate) fn glyphs(text: &str, weight: Weight) -> Vec<u16> {
+    face(weight).map_or_else(Vec::new, |face| letters(face, text).map(|(glyph, _)| glyph.0).collect())
+}
 
 fn face(weight: Weight) -> Option<&'static Face<'static>> {
     FACES[weight as usize].as_ref()

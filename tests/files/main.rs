@@ -9,6 +9,7 @@ mod program;
 
 mod bad_input;
 mod corpus;
+mod drawn_answers;
 mod faults;
 mod matrix_market;
 mod out_folder;

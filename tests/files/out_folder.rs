@@ -5,9 +5,28 @@ use std::fs;
 use std::path::Path;
 
 use crate::program::{Desk, Problem, example, scene};
+use resvg::tiny_skia::Pixmap;
 use resvg::usvg::roxmltree::Document;
 use serde_json::{Value, json};
 use signorini::qp::{read_problem, read_vector};
+
+/// The share of the width or of the height inside its margins that a picture fills.
+const FILLED: f64 = 0.85;
+/// Margins of a picture, in pixels.
+const MARGIN: f64 = 24.0;
+
+/// The shares of the width and the height inside the margins over which something is drawn.
+fn filled(path: &Path) -> [f64; 2] {
+    let pixels = Pixmap::load_png(path).unwrap();
+    let is_ink = |place: usize| pixels.pixels()[place].demultiply().red().min(pixels.pixels()[place].green()) < 250;
+    let width = pixels.width() as usize;
+    let places = (0..pixels.pixels().len()).filter(|&place| is_ink(place)).map(|place| [place % width, place / width]);
+    let start = [[usize::MAX, 0], [usize::MAX, 0]];
+    let ends =
+        places.fold(start, |ends, at| [0, 1].map(|axis| [ends[axis][0].min(at[axis]), ends[axis][1].max(at[axis])]));
+    let sides = [f64::from(pixels.width()), f64::from(pixels.height())];
+    [0, 1].map(|axis| (ends[axis][1] as f64 - ends[axis][0] as f64 + 1.0) / (sides[axis] - 2.0 * MARGIN))
+}
 
 /// The names in a folder, each file read once in the way of its kind.
 fn checked(folder: &Path) -> BTreeSet<String> {
@@ -86,8 +105,19 @@ fn pictures(stems: impl IntoIterator<Item = String>) -> BTreeSet<String> {
 fn solve_leaves_answer_fields_pictures_and_report() {
     let desk = Desk::new();
     desk.write("block.json", scene().to_string());
-    let run =
-        desk.run(&["solve", "block.json", "--method", "active-set", "--format", "json", "--out", "a/b"]).ends_with(0);
+    let run = desk.run(&[
+        "solve",
+        "block.json",
+        "--method",
+        "active-set",
+        "--format",
+        "json",
+        "--pictures",
+        "all",
+        "--out",
+        "a/b",
+    ]);
+    let run = run.ends_with(0);
     let found = checked(&desk.path("a/b"));
     let steps = run.json()["history"].as_array().unwrap().len();
     let mut expected =
@@ -180,11 +210,12 @@ fn every_example_of_every_shape_is_drawn() {
     let desk = Desk::new();
     for name in crate::program::examples() {
         desk.run(&["compare", &example(&name), "--out", &name]).ends_with(0);
-        let (files, scene) = (checked(&desk.path(&name)), fs::read_to_string(example(&name)).unwrap());
-        // A body in space has fields for ParaView, and no picture of its own.
-        let is_in_space = serde_json::from_str::<Value>(&scene).unwrap()["model"] == "space";
-        let is_shown = if is_in_space { files.contains("solution.vtu") } else { files.len() >= 6 };
-        assert!(is_shown, "{name}: {files:?}");
+        let files = checked(&desk.path(&name));
+        assert!(files.contains("contact.svg") && files.contains("contact.png"), "{name}: {files:?}");
+        for stem in ["contact", "pressure"].iter().filter(|stem| files.contains(&format!("{stem}.png"))) {
+            let [across, down] = filled(&desk.path(&name).join(format!("{stem}.png")));
+            assert!(across.max(down) >= FILLED, "{name}/{stem}: {across:.2} of the width, {down:.2} of the height");
+        }
     }
 }
 
@@ -273,4 +304,65 @@ fn titles_and_units_of_any_characters_make_pictures_that_parse() {
     desk.run(&["sweep", "odd.json", "--gaps", "0:-0.01:2", "--out", "s"]).ends_with(0);
     checked(&desk.path("o"));
     checked(&desk.path("s"));
+}
+
+#[test]
+fn pictures_are_drawn_as_far_as_they_are_wanted() {
+    let desk = Desk::new();
+    desk.write("block.json", scene().to_string());
+    let drawn = |arguments: &[&str], out: &str| {
+        desk.run(&[arguments, &["--out", out]].concat()).ends_with(0);
+        checked(&desk.path(out)).into_iter().filter(|name| name.ends_with(".png")).collect::<Vec<_>>()
+    };
+    assert_eq!(drawn(&["solve", "block.json"], "usual"), ["contact.png"]);
+    assert!(drawn(&["solve", "block.json", "--pictures", "none"], "none").is_empty());
+    assert!(desk.path("none/solution.vtu").exists());
+    assert_eq!(drawn(&["compare", "block.json", "--pictures", "answer"], "compare"), ["contact.png", "pressure.png"]);
+    let sweep = ["sweep", "block.json", "--gaps", "-0.01:-0.02:2"];
+    assert_eq!(drawn(&[&sweep[..], &["--pictures", "answer"]].concat(), "sweep"), ["force-width.png"]);
+    assert!(drawn(&[&sweep[..], &["--pictures", "none"]].concat(), "bare").is_empty());
+    desk.run(&["solve", "block.json", "--pictures", "some"]).ends_with(2);
+}
+
+/// The penalty loop has a picture for each penalty; of many iterations twelve are drawn, and each says so.
+#[test]
+fn penalties_have_pictures_with_common_colours() {
+    let desk = Desk::new();
+    desk.write("block.json", scene().to_string());
+    desk.run(&["solve", "block.json", "--method", "penalty", "--pictures", "all", "--out", "o"]);
+    let files = checked(&desk.path("o"));
+    let rungs: Vec<&String> = files.iter().filter(|name| name.starts_with("rung-") && name.ends_with(".svg")).collect();
+    assert!((3..=12).contains(&rungs.len()), "{files:?}");
+    // What a colour bar says lies under the first panel; it is the same in all pictures.
+    let label = |name: &str| {
+        let svg = fs::read_to_string(desk.path("o").join(name)).unwrap();
+        let (before, _) = svg.split_once(">second principal stress σ₂ (").map(|(a, b)| (a.to_string(), b)).unwrap();
+        let ticks = before.rsplit("<path").next().unwrap().to_string();
+        ticks
+    };
+    for rung in &rungs {
+        assert_eq!(label(rung), label("contact.svg"), "{rung}");
+    }
+}
+
+/// A page of PDF with its letters, as wide as a journal has it, and letters on its panels.
+#[test]
+fn pictures_for_paper_are_pdf_of_the_right_width() {
+    let desk = Desk::new();
+    desk.write("block.json", scene().to_string());
+    desk.run(&["compare", "block.json", "--pictures", "answer", "--style", "paper", "--out", "o"]).ends_with(0);
+    for (stem, millimetres) in [("contact", 170.0), ("pressure", 85.0)] {
+        let pdf = fs::read(desk.path(&format!("o/{stem}.pdf"))).unwrap();
+        assert!(pdf.starts_with(b"%PDF-") && pdf.ends_with(b"%%EOF"), "{stem}");
+        let text = String::from_utf8_lossy(&pdf);
+        assert!(text.contains("/FontFile2") && text.contains("/Identity-H"), "{stem} has no letters of its own");
+        let sides = text.split_once("/MediaBox [").unwrap().1.split(']').next().unwrap().to_string();
+        let width: f64 = sides.split_whitespace().nth(2).unwrap().parse().unwrap();
+        assert!((width - millimetres * 72.0 / 25.4).abs() < 0.1, "{stem} is {width} points wide");
+        let svg = fs::read_to_string(desk.path(&format!("o/{stem}.svg"))).unwrap();
+        assert!(svg.contains(&format!("width=\"{millimetres}mm\"")) && svg.contains("@font-face"), "{stem}");
+    }
+    let svg = fs::read_to_string(desk.path("o/contact.svg")).unwrap();
+    assert!(["(a) ", "(b) ", "(c) "].iter().all(|letter| svg.contains(letter)));
+    assert!(!desk.path("o/contact.png").exists());
 }

@@ -6,7 +6,7 @@ use crate::output_fixture::{
 };
 use resvg::tiny_skia::{Pixmap, Transform};
 use signorini::Error;
-use signorini::internals::{ContactPicture, ObstacleLine, common_limits, common_window};
+use signorini::internals::{Arrow, ArrowKind, ContactPicture, FieldPanel, ObstacleLine, common_limits, common_window};
 use signorini::output::Drawing;
 
 fn colour_at(drawing: &Drawing, x: u32, y: u32) -> [u8; 3] {
@@ -35,12 +35,12 @@ fn panel_centre(drawing: &Drawing) -> (u32, u32) {
 fn picture_of_an_indented_body_is_readable_and_names_what_it_shows() {
     let body = Indented::new([1.0, 0.5], [40, 20]);
     let obstacle = body.obstacle();
-    let drawing = body.picture("Gap −0.01 m, iteration 3, 15 closed nodes", &obstacle).draw().unwrap();
+    let drawing = body.picture("Gap −0.01 m, iteration 3, 15 closed nodes", &body.field(), &obstacle).draw().unwrap();
     assert_readable(&drawing);
     let texts: Vec<String> = texts_of(&drawing).into_iter().map(|(text, _)| text).collect();
     for expected in [
         "Gap −0.01 m, iteration 3, 15 closed nodes",
-        "second principal stress σ₂ (10⁶ Pa)",
+        "second principal stress σ₂ (MPa)",
         "closed nodes (15)",
         "open candidates (26)",
         "obstacle",
@@ -60,7 +60,7 @@ fn png_shows_what_the_svg_says() {
     const FEW: usize = 1;
     let body = Indented::new([1.0, 0.5], [40, 20]);
     let obstacle = body.obstacle();
-    let drawing = body.picture("Gap −0.01 m, iteration 3, 15 closed nodes", &obstacle).draw().unwrap();
+    let drawing = body.picture("Gap −0.01 m, iteration 3, 15 closed nodes", &body.field(), &obstacle).draw().unwrap();
     let ours = Pixmap::decode_png(&drawing.png(1.0).unwrap()).expect("a PNG");
     let mut theirs = Pixmap::new(ours.width(), ours.height()).unwrap();
     resvg::render(&tree_of(&drawing), Transform::default(), &mut theirs.as_mut());
@@ -72,7 +72,7 @@ fn png_shows_what_the_svg_says() {
 #[test]
 fn png_has_the_size_of_the_drawing_times_its_scale() {
     let body = Indented::new([1.0, 0.5], [4, 2]);
-    let drawing = body.picture("Two scales", &[]).draw().unwrap();
+    let drawing = body.picture("Two scales", &body.field(), &[]).draw().unwrap();
     for scale in [0.5, 1.0, 2.0] {
         let pixels = Pixmap::decode_png(&drawing.png(scale).unwrap()).expect("a PNG");
         let expected = [drawing.width(), drawing.height()].map(|side| (side * scale).round() as u32);
@@ -89,9 +89,7 @@ fn equal_values_are_painted_in_the_middle_of_the_colours_and_limits_at_their_end
     for (value, expected) in [(-2.0, [0x44, 0x01, 0x54]), (0.0, [0x21, 0x91, 0x8c]), (2.0, [0xfd, 0xe7, 0x25])] {
         let mut body = Indented::new([1.0, 0.5], [3, 3]);
         body.stress.fill(value);
-        let mut picture = body.picture("One colour", &[]);
-        picture.limits = [-1.0, 1.0];
-        let drawing = picture.draw().unwrap();
+        let drawing = body.picture("One colour", &body.field_within([-1.0, 1.0]), &[]).draw().unwrap();
         let (x, y) = panel_centre(&drawing);
         let found = colour_at(&drawing, x, y);
         let distance = found.iter().zip(expected).map(|(a, b)| a.abs_diff(b)).max().unwrap();
@@ -105,9 +103,8 @@ fn pictures_stay_readable_at_extreme_shapes_and_magnitudes() {
         for (length, stress) in [(1.0, 1.0), (1e-12, 1e-12), (1e12, 1e12), (1e-3, 1e-30), (123.456, -1.0)] {
             let body = Indented::new(size, [8, 8]).scaled(length, stress);
             let obstacle = body.obstacle();
-            let mut picture = body.picture("Extreme", &obstacle);
-            picture.limits = common_limits([&body.stress[..]]);
-            assert_readable(&picture.draw().unwrap());
+            let fields = body.field_within(common_limits([&body.stress[..]]));
+            assert_readable(&body.picture("Extreme", &fields, &obstacle).draw().unwrap());
         }
     }
 }
@@ -117,11 +114,11 @@ fn long_titles_are_broken_and_markup_in_them_is_text() {
     let body = Indented::new([1.0, 0.5], [4, 2]);
     let long = "a body <under> \"pressure\" & more ".repeat(20) + &"endless".repeat(60);
     for title in [long.as_str(), "", "\u{0}\u{8}control\n\tcharacters\u{fffe}", "漢字 😀 ü", "</text><script>"] {
-        let drawing = body.picture(title, &[]).draw().unwrap();
+        let drawing = body.picture(title, &body.field(), &[]).draw().unwrap();
         assert_readable(&drawing);
         drawing.png(1.0).unwrap();
     }
-    let texts = texts_of(&body.picture("a < b & c > 'd' \"e\"", &[]).draw().unwrap());
+    let texts = texts_of(&body.picture("a < b & c > 'd' \"e\"", &body.field(), &[]).draw().unwrap());
     assert!(texts.iter().any(|(text, _)| text == "a < b & c > 'd' \"e\""), "{texts:?}");
 }
 
@@ -129,7 +126,7 @@ fn long_titles_are_broken_and_markup_in_them_is_text() {
 fn values_that_are_no_numbers_leave_grey_elements_and_say_so() {
     let mut body = Indented::new([1.0, 0.5], [3, 3]);
     body.stress.fill(f64::NAN);
-    let drawing = body.picture("No values", &[]).draw().unwrap();
+    let drawing = body.picture("No values", &body.field(), &[]).draw().unwrap();
     let (x, y) = panel_centre(&drawing);
     assert_eq!(colour_at(&drawing, x, y), [0xb9, 0xbd, 0xc4]);
     assert!(drawing.svg().contains("grey: no value"));
@@ -140,9 +137,9 @@ fn values_that_are_no_numbers_leave_grey_elements_and_say_so() {
         (body.nodes[1], body.displacement[20], body.stress[9], body.parabola[40]) =
             ([value; 2], value, value, [value; 2]);
         let obstacles = [ObstacleLine { points: &body.parabola, inside: [value, 1.0] }];
-        let mut picture = body.picture("Hostile", &obstacles);
-        (picture.limits, picture.magnification, picture.window) =
-            ([value; 2], value, Some([[value, 1.0], [0.0, value]]));
+        let fields = body.field_within([value; 2]);
+        let mut picture = body.picture("Hostile", &fields, &obstacles);
+        (picture.magnification, picture.window) = (value, Some([[value, 1.0], [0.0, value]]));
         let drawing = picture.draw().unwrap();
         assert_readable(&drawing);
         drawing.png(0.5).unwrap();
@@ -153,22 +150,24 @@ fn values_that_are_no_numbers_leave_grey_elements_and_say_so() {
 fn body_without_nodes_elements_or_candidates_is_an_empty_picture() {
     let mut body = Indented::new([1.0, 0.5], [2, 2]);
     body.elements = vec![vec![], vec![0], vec![0, 1], vec![0, 0, 0]];
-    assert_readable(&body.picture("Degenerate elements", &[]).draw().unwrap());
+    assert_readable(&body.picture("Degenerate elements", &body.field(), &[]).draw().unwrap());
     (body.candidates, body.closed) = (vec![], vec![]);
-    let drawing = body.picture("No candidates", &[]).draw().unwrap();
+    let drawing = body.picture("No candidates", &body.field(), &[]).draw().unwrap();
     assert!(!drawing.svg().contains("closed nodes") && !drawing.svg().contains("open candidates"));
     let nothing = Indented { nodes: vec![], elements: vec![], displacement: vec![], stress: vec![], ..body };
-    assert_readable(&nothing.picture("Nothing", &[]).draw().unwrap());
+    assert_readable(&nothing.picture("Nothing", &nothing.field(), &[]).draw().unwrap());
 }
 
 #[test]
 fn arrays_that_do_not_fit_are_refused_with_both_lengths() {
     let body = Indented::new([1.0, 0.5], [2, 2]);
-    let good = body.picture("Refused", &[]);
+    let fields = body.field();
+    let good = body.picture("Refused", &fields, &[]);
     let short = ContactPicture { displacement: &body.displacement[1..], ..good.clone() };
     let sentence = short.draw().unwrap_err().to_string();
     assert!(sentence.contains("has length 17") && sentence.contains("18"), "{sentence}");
-    let short = ContactPicture { field: &body.stress[1..], ..good.clone() };
+    let short_field = [FieldPanel { values: &body.stress[1..], ..fields[0].clone() }];
+    let short = ContactPicture { fields: &short_field, ..good.clone() };
     assert!(matches!(short.draw(), Err(Error::Length { found: 8, expected: 9, .. })));
     let short = ContactPicture { closed: &body.closed[1..], ..good.clone() };
     assert!(matches!(short.draw(), Err(Error::Length { found: 2, expected: 3, .. })));
@@ -191,7 +190,7 @@ fn obstacle_is_grey_on_its_inside_and_leaves_the_other_side_white() {
         ([[-0.04, 9.0], [-0.04, -9.0]], [-1.0, 0.0], [0.0, 0.5]),
     ];
     for (points, inside, at) in sides {
-        let drawing = body.picture("Side", &[ObstacleLine { points: &points, inside }]).draw().unwrap();
+        let drawing = body.picture("Side", &body.field(), &[ObstacleLine { points: &points, inside }]).draw().unwrap();
         let [x, y, width, height] = panel(&drawing, 2);
         let pixel = |share: [f64; 2]| {
             let place = |from: f64, length: f64, share: f64| (from + 6.0 + share * (length - 12.0)) as u32;
@@ -208,7 +207,7 @@ fn tick_labels_of_a_body_far_from_the_origin_do_not_cover_each_other() {
     for offset in [1e4, 123_456.0, 1e9, -1e9] {
         let mut body = Indented::new([1.0, 0.5], [8, 4]);
         body.nodes.iter_mut().for_each(|node| *node = node.map(|coordinate| coordinate + offset));
-        assert_readable(&body.picture("Far from the origin", &[]).draw().unwrap());
+        assert_readable(&body.picture("Far from the origin", &body.field(), &[]).draw().unwrap());
     }
 }
 
@@ -216,7 +215,8 @@ fn tick_labels_of_a_body_far_from_the_origin_do_not_cover_each_other() {
 fn obstacle_out_of_reach_is_said_to_be_outside_the_picture() {
     let body = Indented::new([1.0, 0.5], [4, 2]);
     let plane = [[-1.0, 7.0], [2.0, 7.0]];
-    let drawing = body.picture("Far", &[ObstacleLine { points: &plane, inside: [0.0, 1.0] }]).draw().unwrap();
+    let drawing =
+        body.picture("Far", &body.field(), &[ObstacleLine { points: &plane, inside: [0.0, 1.0] }]).draw().unwrap();
     assert!(drawing.svg().contains("obstacle: outside the picture"));
     assert_readable(&drawing);
 }
@@ -229,10 +229,10 @@ fn pictures_with_a_common_window_have_the_same_size() {
         body.parabola.iter_mut().for_each(|point| point[1] += 0.06 * (1.0 - depth));
         body
     });
-    let window = common_window(bodies.iter().map(|body| body.picture("", &body.obstacle()).window()));
+    let window = common_window(bodies.iter().map(|body| body.picture("", &[], &body.obstacle()).window()));
     let sizes = bodies.each_ref().map(|body| {
         let obstacle = body.obstacle();
-        let drawing = ContactPicture { window: Some(window), ..body.picture("Series", &obstacle) }.draw().unwrap();
+        let drawing = ContactPicture { window: Some(window), ..body.picture("Series", &[], &obstacle) }.draw().unwrap();
         [drawing.width(), drawing.height()]
     });
     assert_eq!(sizes[0], sizes[1]);
@@ -241,6 +241,72 @@ fn pictures_with_a_common_window_have_the_same_size() {
 #[test]
 fn picture_of_twenty_thousand_elements_stays_below_two_megabytes() {
     let body = Indented::new([1.0, 0.5], [200, 100]);
-    let svg = body.picture("Fine", &body.obstacle()).draw().unwrap().svg();
+    let svg = body.picture("Fine", &body.field(), &body.obstacle()).draw().unwrap().svg();
     assert!(svg.len() < 2_000_000, "{} bytes", svg.len());
+}
+
+/// A picture of three panels holds the width of the page, and its fields carry one name each.
+#[test]
+fn two_fields_stand_beside_each_other_with_a_bar_each() {
+    let body = Indented::new([1.0, 0.5], [40, 20]);
+    let mises: Vec<f64> = body.stress.iter().map(|stress| 0.7 * stress.abs()).collect();
+    let quantity = signorini::output::Quantity::new("von Mises stress", "Pa");
+    let [first] = body.field();
+    let fields = [first, FieldPanel { values: &mises, quantity, limits: [f64::NAN; 2] }];
+    let obstacle = body.obstacle();
+    let drawing = body.picture("Two fields", &fields, &obstacle).draw().unwrap();
+    assert_readable(&drawing);
+    let texts: Vec<String> = texts_of(&drawing).into_iter().map(|(text, _)| text).collect();
+    for expected in ["second principal stress σ₂ (MPa)", "von Mises stress (MPa)", "von Mises stress"] {
+        assert!(texts.iter().any(|text| text == expected), "`{expected}` is not among {texts:?}");
+    }
+    assert!(drawing.width() <= 1600.0, "{}", drawing.width());
+}
+
+/// Rounding of 1e-12 beside a uniform stress is painted in one colour, and the bar shows the stress and not its noise.
+#[test]
+fn noise_on_a_uniform_stress_is_one_colour() {
+    let mut body = Indented::new([1.0, 0.5], [6, 6]);
+    let noise = |node: usize| -1e8 * (1.0 + 1e-12 * ((node * 7919 % 13) as f64 - 6.0));
+    (0..body.stress.len()).for_each(|node| body.stress[node] = noise(node));
+    let drawing = body.picture("Uniform", &body.field_within([f64::NAN; 2]), &[]).draw().unwrap();
+    let [x, y, width, height] = panel(&drawing, 1);
+    let colours: Vec<[u8; 3]> = (2..9)
+        .map(|k| 0.1 * f64::from(k))
+        .map(|share| colour_at(&drawing, (x + share * width) as u32, (y + share * height) as u32))
+        .collect();
+    assert!(colours.iter().all(|colour| *colour == colours[0]), "{colours:?}");
+    let texts: Vec<String> = texts_of(&drawing).into_iter().map(|(text, _)| text).collect();
+    assert!(texts.iter().any(|text| text == "−100"), "{texts:?}");
+}
+
+/// A contact of 2 % of the body is enlarged; one of 40 % is not.
+#[test]
+fn small_contact_is_enlarged_in_a_corner() {
+    let mut body = Indented::new([1.0, 0.5], [400, 20]);
+    let count = |drawing: &Drawing| drawing.svg().matches("<clipPath").count();
+    let large = body.picture("Large", &[], &[]).draw().unwrap();
+    for (k, closed) in body.closed.iter_mut().enumerate() {
+        *closed = (196..=204).contains(&k);
+    }
+    let obstacle = body.obstacle();
+    let small = body.picture("Small", &[], &obstacle).draw().unwrap();
+    assert_readable(&small);
+    assert_eq!(count(&large), 1);
+    assert!(count(&small) > 1);
+    let texts: Vec<String> = texts_of(&small).into_iter().map(|(text, _)| text).collect();
+    assert!(texts.iter().any(|text| text.starts_with("× ") && text.ends_with(" wide")), "{texts:?}");
+}
+
+/// Each kind of force has its arrow and its largest size; a force that is rounding has none.
+#[test]
+fn forces_have_arrows_and_sizes() {
+    let body = Indented::new([1.0, 0.5], [8, 4]);
+    let arrow = |kind, force: [f64; 2]| Arrow { kind, at: [0.5, 0.5], moved: [0.0; 2], force, unit: "N".into() };
+    let arrows = [arrow(ArrowKind::Contact, [0.0, -70772.0]), arrow(ArrowKind::Load, [1e-9, 0.0])];
+    let drawing = ContactPicture { arrows: &arrows, ..body.picture("Forces", &[], &[]) }.draw().unwrap();
+    assert_readable(&drawing);
+    let texts: Vec<String> = texts_of(&drawing).into_iter().map(|(text, _)| text).collect();
+    assert!(texts.iter().any(|text| text == "contact force 70.77 kN"), "{texts:?}");
+    assert!(!texts.iter().any(|text| text.starts_with("load")), "{texts:?}");
 }

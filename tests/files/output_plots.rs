@@ -92,3 +92,16 @@ fn plots_without_data_say_so_and_hostile_data_do_not_stop_them() {
     assert_readable(&drawing);
     drawing.png(1.0).unwrap();
 }
+
+/// Marks that nothing joins have no line in the legend, and an axis that is asked to begins at zero.
+#[test]
+fn legend_of_marks_has_no_line_and_forces_begin_at_zero() {
+    let marks: Vec<[f64; 2]> = (1..5).flat_map(|k| [[f64::from(k), 10.0 + f64::from(k)], [f64::NAN; 2]]).collect();
+    let path = (1..5).map(|k| [f64::from(k), 10.0 + f64::from(k)]).collect();
+    let series = vec![Series::new("exact path", path), Series::new("gaps of the sweep", marks)];
+    let drawing = line_plots("Force", &[Plot { nested: true, y_from_zero: true, ..plot(series) }]);
+    assert_readable(&drawing);
+    // The line of the second look is dashed: neither in the plot nor in the legend.
+    assert!(!drawing.svg().contains("stroke-dasharray"));
+    assert!(texts_of(&drawing).iter().any(|(text, _)| text == "0"));
+}

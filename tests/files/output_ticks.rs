@@ -125,7 +125,29 @@ fn numbers_carry_true_minus_signs_and_superscripts() {
     for (value, text) in cases {
         assert_eq!(brief(value), text);
     }
-    assert_eq!(Quantity::new("p", "Pa").label(6), "p (10⁶ Pa)");
+    for (unit, exponent, label) in [
+        ("Pa", 6, "p (MPa)"),
+        ("Pa", 3, "p (kPa)"),
+        ("MPa", 3, "p (GPa)"),
+        ("MPa", -3, "p (kPa)"),
+        ("N/m", 3, "p (kN/m)"),
+        ("mm", -3, "p (µm)"),
+        ("m", 6, "p (10⁶ m)"),
+        ("m²", -6, "p (10⁻⁶ m²)"),
+        ("lbf", 3, "p (10³ lbf)"),
+        ("Pa", -15, "p (10⁻¹⁵ Pa)"),
+    ] {
+        assert_eq!(Quantity::new("p", unit).label(exponent), label);
+    }
     assert_eq!(Quantity::new("p", "").label(6), "p (×10⁶)");
     assert_eq!(Quantity::new("error", "").label(0), "error");
+}
+
+#[test]
+fn logarithmic_axis_of_one_power_of_ten_has_several_ticks() {
+    for range in [[1.1e-3, 3e-2], [4.5e-3, 0.21], [0.8, 13.0]] {
+        let ticks = Ticks::new(Scale::Logarithmic, range, 8);
+        assert!(ticks.positions.len() >= 2, "{range:?}: {:?}", ticks.labels);
+        assert!(ticks.positions.iter().all(|at| (range[0]..=range[1]).contains(at)), "{range:?}: {:?}", ticks.labels);
+    }
 }

@@ -141,6 +141,13 @@ impl Units {
         Units { length: String::new(), force: String::new() }
     }
 
+    /// The unit of time in which motions are told: `s` of newtons and metres or millimetres, with a mass that fits; else none.
+    #[cfg(feature = "pictures")]
+    pub(crate) fn time(&self) -> &'static str {
+        let is_metric = ["N", "kN", "MN"].contains(&self.force.as_str()) && ["m", "mm"].contains(&self.length.as_str());
+        if is_metric { "s" } else { "" }
+    }
+
     /// The unit of pressure and stress: `Pa`, `MPa`, or force over length squared.
     pub fn pressure(&self) -> String {
         match (self.force.as_str(), self.length.as_str()) {

@@ -5,7 +5,7 @@
 
 pub mod page;
 
-use signorini::internals::{ContactPicture, ObstacleLine};
+use signorini::internals::{ContactPicture, FieldPanel, Medium, ObstacleLine};
 use signorini::output::Quantity;
 
 /// Everything a [`ContactPicture`] borrows.
@@ -74,20 +74,35 @@ impl Indented {
         [ObstacleLine { points: &self.parabola, inside: [0.0, 1.0] }]
     }
 
-    pub fn picture<'a>(&'a self, title: &'a str, obstacles: &'a [ObstacleLine<'a>]) -> ContactPicture<'a> {
+    /// The stress, with the ends of its colours.
+    pub fn field(&self) -> [FieldPanel<'_>; 1] {
+        self.field_within([-1.7e6, 0.1e6])
+    }
+
+    pub fn field_within(&self, limits: [f64; 2]) -> [FieldPanel<'_>; 1] {
+        [FieldPanel { values: &self.stress, quantity: Quantity::new("second principal stress σ₂", "Pa"), limits }]
+    }
+
+    pub fn picture<'a>(
+        &'a self,
+        title: &'a str,
+        fields: &'a [FieldPanel<'a>],
+        obstacles: &'a [ObstacleLine<'a>],
+    ) -> ContactPicture<'a> {
         ContactPicture {
             title,
+            axes: ["x", "y"],
             length_unit: "m",
             nodes: &self.nodes,
             elements: &self.elements,
             displacement: &self.displacement,
             magnification: 1.0,
-            field: &self.stress,
-            quantity: Quantity::new("second principal stress σ₂", "Pa"),
-            limits: [-1.7e6, 0.1e6],
+            fields,
             obstacles,
             candidates: &self.candidates,
             closed: &self.closed,
+            arrows: &[],
+            medium: Medium::Screen,
             window: None,
         }
     }

@@ -1,0 +1,142 @@
+//! Forces on the body as arrows.
+
+use super::axes::Frame;
+use super::colour::{Colour, WHITE};
+use super::drawing::{Drawing, Paint};
+use super::legend::Entry;
+use super::ticks::amount;
+
+/// Length of the arrow of the largest force, as a share of the shorter side of the panel, and of the smallest one in pixels.
+const LONGEST: f64 = 0.17;
+const SHORTEST: f64 = 16.0;
+/// Arrows nearer to each other would be one, in pixels.
+const BESIDE: f64 = 13.0;
+/// A force below this share of the largest has no arrow.
+const NOTHING: f64 = 1e-9;
+
+/// What a force comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ArrowKind {
+    /// An obstacle, or another body.
+    Contact,
+    /// A load.
+    Load,
+    /// A support, a spring or a rigid face.
+    Support,
+}
+
+impl ArrowKind {
+    const ALL: [ArrowKind; 3] = [ArrowKind::Contact, ArrowKind::Load, ArrowKind::Support];
+
+    fn name(self) -> &'static str {
+        match self {
+            ArrowKind::Contact => "contact force",
+            ArrowKind::Load => "load",
+            ArrowKind::Support => "support force",
+        }
+    }
+
+    fn colour(self) -> Colour {
+        match self {
+            ArrowKind::Contact => Colour(0x8e, 0x12, 0x6b),
+            ArrowKind::Load => Colour(0x00, 0x5f, 0x9e),
+            ArrowKind::Support => Colour(0x00, 0x7a, 0x55),
+        }
+    }
+}
+
+/// A force on the body.
+#[derive(Clone, Debug)]
+pub struct Arrow {
+    /// What it comes from.
+    pub kind: ArrowKind,
+    /// Where it acts on the undeformed body, in length.
+    pub at: [f64; 2],
+    /// The displacement there, in length.
+    pub moved: [f64; 2],
+    /// Its components, in force.
+    pub force: [f64; 2],
+    /// The unit of the components.
+    pub unit: String,
+}
+
+impl Arrow {
+    fn size(&self) -> f64 {
+        let size = self.force[0].hypot(self.force[1]);
+        if size.is_finite() { size } else { 0.0 }
+    }
+}
+
+fn largest(arrows: &[Arrow]) -> f64 {
+    arrows.iter().map(Arrow::size).fold(0.0, f64::max)
+}
+
+/// Draws the forces that are more than rounding; pushes stand outside the body as long as there is room in the frame.
+pub(super) fn draw(drawing: &mut Drawing, frame: &Frame, arrows: &[Arrow], magnification: f64) {
+    let largest = largest(arrows);
+    let mut drawn: Vec<[f64; 2]> = Vec::new();
+    for arrow in arrows.iter().filter(|arrow| arrow.size() > NOTHING * largest) {
+        let share = arrow.size() / largest;
+        let length = (LONGEST * frame.size[0].min(frame.size[1]) * share).max(SHORTEST);
+        let at = frame.place([0, 1].map(|axis| arrow.at[axis] + magnification * arrow.moved[axis]));
+        let direction = [arrow.force[0] / arrow.size(), -arrow.force[1] / arrow.size()];
+        let along = |from: [f64; 2], by: f64| [0, 1].map(|axis| from[axis] + by * direction[axis]);
+        let middle = [0, 1].map(|axis| frame.corner[axis] + 0.5 * frame.size[axis]);
+        let far = |point: [f64; 2]| (point[0] - middle[0]).hypot(point[1] - middle[1]);
+        let inside =
+            |point: [f64; 2]| (0..2).all(|axis| (0.0..=frame.size[axis]).contains(&(point[axis] - frame.corner[axis])));
+        // With its tip where it acts, or with its tail there: what lies farther from the middle of the body, and in the frame.
+        let [push, pull] = [[along(at, -length), at], [at, along(at, length)]];
+        let is_push = match (inside(push[0]), inside(pull[1])) {
+            (true, false) => true,
+            (false, true) => false,
+            _ => far(push[0]) >= far(pull[1]),
+        };
+        let ends = if is_push { push } else { pull };
+        // Arrows that would cover each other stand side by side.
+        let aside = |by: f64| ends.map(|[x, y]| [x - by * direction[1], y + by * direction[0]]);
+        let middle_of = |[tail, tip]: [[f64; 2]; 2]| [0, 1].map(|axis| 0.5 * (tail[axis] + tip[axis]));
+        let is_free = |by: &f64| {
+            let [x, y] = middle_of(aside(*by));
+            drawn.iter().all(|other| (x - other[0]).hypot(y - other[1]) > BESIDE)
+        };
+        let by = [0.0, 1.0, -1.0, 2.0, -2.0].map(|times| times * BESIDE * 1.1).into_iter().find(is_free).unwrap_or(0.0);
+        drawn.push(middle_of(aside(by)));
+        let [tail, tip] = aside(by);
+        draw_one(drawing, tail, tip, arrow.kind.colour());
+    }
+}
+
+fn draw_one(drawing: &mut Drawing, tail: [f64; 2], tip: [f64; 2], colour: Colour) {
+    let length = (tip[0] - tail[0]).hypot(tip[1] - tail[1]);
+    let [right, down] = [(tip[0] - tail[0]) / length, (tip[1] - tail[1]) / length];
+    let head = (0.4 * length).clamp(8.0, 13.0);
+    let neck = [tip[0] - head * right, tip[1] - head * down];
+    let wing = 0.42 * head;
+    let corners =
+        [tip, [neck[0] - wing * down, neck[1] + wing * right], [neck[0] + wing * down, neck[1] - wing * right]];
+    // A white seam, so that an arrow is seen on any ground.
+    drawing.line(tail, neck, &Paint::stroke(WHITE, 5.5));
+    drawing.polygon(&corners, &Paint::fill(WHITE).with_stroke(WHITE, 3.0));
+    drawing.line(tail, neck, &Paint::stroke(colour, 3.0));
+    drawing.polygon(&corners, &Paint::fill(colour));
+}
+
+/// An entry for each kind of force, with the largest of its kind.
+pub(super) fn entries(arrows: &[Arrow]) -> Vec<Entry<'static>> {
+    let floor = NOTHING * largest(arrows);
+    let entry = |kind: ArrowKind| {
+        let own: Vec<&Arrow> = arrows.iter().filter(|arrow| arrow.kind == kind && arrow.size() > floor).collect();
+        let largest = own.iter().max_by(|a, b| a.size().total_cmp(&b.size()))?;
+        let amount = amount(largest.size(), &largest.unit);
+        let name = match own.len() {
+            1 => format!("{} {amount}", kind.name()),
+            _ => format!("{}s, at most {amount}", kind.name()),
+        };
+        let key = move |drawing: &mut Drawing, [x, y]: [f64; 2]| {
+            draw_one(drawing, [x - 14.0, y], [x + 14.0, y], kind.colour());
+        };
+        Some(Entry { name, key: Box::new(key), key_width: 30.0 })
+    };
+    ArrowKind::ALL.into_iter().filter_map(entry).collect()
+}

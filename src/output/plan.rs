@@ -1,0 +1,100 @@
+//! The contact of a body in space with an obstacle, in plan view.
+
+use super::{
+    axes::{Axis, Frame, Labels, ROOM_BELOW},
+    body::{ContactPicture, FieldPanel},
+    colour_bar::ColourRange,
+    drawing::Drawing,
+    legend::Entry,
+    mark::Candidate,
+    medium::Medium,
+    ticks::{Quantity, Scale, common_exponent},
+};
+
+/// Room for the plan view, on a screen and on paper.
+const PLANS: [[f64; 2]; 2] = [[460.0, 560.0], [370.0, 420.0]];
+
+/// The contact with one obstacle, seen along its approach direction.
+#[derive(Clone, Debug)]
+pub(super) struct Plan {
+    pub title: String,
+    /// Names of the two coordinates.
+    pub axes: [&'static str; 2],
+    pub nodes: Vec<[f64; 2]>,
+    pub cells: Vec<Vec<usize>>,
+    /// Pressure at the nodes.
+    pub pressure: Vec<f64>,
+    pub unit: String,
+    pub candidates: Vec<usize>,
+    pub closed: Vec<bool>,
+    /// What is shown: the contact and a little around it.
+    pub window: [[f64; 2]; 2],
+}
+
+impl Plan {
+    /// The frame of the plan view; its corner tells the room left of it.
+    pub fn frame(&self, length_unit: &str, medium: Medium) -> Frame {
+        let [x, y] = self.window;
+        let room = PLANS[medium as usize];
+        let scale = (room[0] / (x[1] - x[0])).min((room[1] - ROOM_BELOW) / (y[1] - y[0]));
+        let size = [scale * (x[1] - x[0]), scale * (y[1] - y[0])];
+        let names = self.axes.map(|name| Quantity::new(name, length_unit));
+        let exponent = common_exponent([x, y].as_flattened().iter().fold(0.0, |largest, end| end.abs().max(largest)));
+        let horizontal = Axis::horizontal(&names[0], Scale::Linear, x, size[0]).in_powers_of(&names[0], exponent);
+        let vertical = Axis::vertical(&names[1], Scale::Linear, y, size[1]).in_powers_of(&names[1], exponent);
+        Frame { corner: [vertical.room_left(), 0.0], size, x: horizontal, y: vertical }
+    }
+
+    fn picture<'a>(
+        &'a self,
+        fields: &'a [FieldPanel<'a>],
+        displacement: &'a [f64],
+        length_unit: &'a str,
+    ) -> ContactPicture<'a> {
+        ContactPicture {
+            title: "",
+            axes: self.axes,
+            length_unit,
+            nodes: &self.nodes,
+            elements: &self.cells,
+            displacement,
+            magnification: 1.0,
+            fields,
+            obstacles: &[],
+            candidates: &self.candidates,
+            closed: &self.closed,
+            arrows: &[],
+            medium: Medium::Screen,
+            window: Some(self.window),
+        }
+    }
+
+    pub fn draw(&self, drawing: &mut Drawing, frame: &Frame, length_unit: &str, bar_at: [f64; 2], bar: f64) {
+        let quantity = Quantity::new("contact pressure p", &self.unit);
+        let fields = [FieldPanel { values: &self.pressure, quantity, limits: [f64::NAN; 2] }];
+        let still = vec![0.0; 2 * self.nodes.len()];
+        let picture = self.picture(&fields, &still, length_unit);
+        let limits = fields[0].shown_limits();
+        let range = ColourRange::new(&fields[0].quantity, [limits[0].min(0.0), limits[1]], bar);
+        picture.draw_field(drawing, frame, &self.pressure, &range);
+        picture.draw_plan(drawing, frame);
+        frame.draw_axes(drawing, Labels::Both);
+        range.draw(drawing, bar_at, bar, fields[0].outside(limits));
+    }
+
+    pub fn entries(&self) -> Vec<Entry<'_>> {
+        let closed = self.closed.iter().filter(|&&closed| closed).count();
+        let counts = [
+            ("closed nodes", closed, Candidate::Closed),
+            ("open candidates", self.closed.len() - closed, Candidate::Open),
+        ];
+        let shown = counts.into_iter().filter(|&(_, count, _)| count > 0);
+        shown
+            .map(|(name, count, mark)| Entry {
+                name: format!("{name} ({count})"),
+                key_width: 12.0,
+                key: Box::new(move |drawing, centre| mark.draw(drawing, centre, 5.0)),
+            })
+            .collect()
+    }
+}

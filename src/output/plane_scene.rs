@@ -1,0 +1,334 @@
+//! What the picture of a body in the plane shows, as plain data that it owns.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use super::arrows::{Arrow, ArrowKind};
+use super::body::{ContactPicture, FieldPanel, ROUNDING, common_limits, common_window};
+use super::medium::Medium;
+use super::obstacle::ObstacleLine;
+use super::ticks::{Quantity, brief};
+use super::write_picture;
+use crate::error::Error;
+use crate::fem::mesh::Mesh;
+use crate::scene::{Answer, Model};
+
+/// Pieces of the line of an obstacle.
+pub(super) const OUTLINE_SEGMENTS: usize = 200;
+
+/// The largest displacement is drawn about this share of the size of the body.
+const SEEN: f64 = 0.05;
+
+/// What one picture shows.
+pub(super) struct PlaneScene {
+    title: String,
+    axes: [&'static str; 2],
+    length_unit: String,
+    quantities: [Quantity; 2],
+    nodes: Vec<[f64; 2]>,
+    elements: Vec<Vec<usize>>,
+    displacement: Vec<f64>,
+    /// Second principal stress and von Mises stress.
+    fields: [Vec<f64>; 2],
+    /// The largest stress.
+    largest: f64,
+    /// Another body is no obstacle that could be drawn nearer than it is: displacements between bodies are drawn as they are.
+    has_pairs: bool,
+    obstacles: Vec<Outline>,
+    candidates: Vec<usize>,
+    closed: Vec<bool>,
+    arrows: Vec<Arrow>,
+}
+
+/// The surface of a rigid obstacle: as it is, and as it stands over the candidates, from which it can be magnified.
+struct Outline {
+    line: Vec<[f64; 2]>,
+    inside: [f64; 2],
+    /// Places of the candidates in the order of the boundary, and the way from each to the obstacle.
+    over: Vec<[[f64; 2]; 2]>,
+}
+
+impl PlaneScene {
+    pub(super) fn new(answer: &Answer, title: String) -> Result<Self, Error> {
+        let (model, set) = (answer.model(), answer.contact_set());
+        let mut candidates: Vec<usize> = model.rows().iter().map(|row| row.node).collect();
+        candidates.sort_unstable();
+        candidates.dedup();
+        let mut is_closed = vec![false; model.mesh().nodes().len()];
+        set.iter().for_each(|row| is_closed[model.rows()[row].node] = true);
+        let stress = &answer.stress()?.nodes;
+        let largest = stress.iter().fold(0.0, |largest: f64, of| largest.max(of.sigma_1.abs()).max(of.sigma_2.abs()));
+        // What is that small beside the largest stress is rounding.
+        let without_rounding = |value: f64| if value.abs() <= ROUNDING * largest { 0.0 } else { value };
+        let stress_unit = model.units().pressure();
+        let mut scene = PlaneScene {
+            title,
+            axes: axes(model),
+            length_unit: model.units().length.clone(),
+            quantities: ["second principal stress σ₂", "von Mises stress"]
+                .map(|name| Quantity::new(name, &stress_unit)),
+            nodes: model.mesh().nodes().iter().map(|&[x, y, _]| [x, y]).collect(),
+            elements: Vec::new(),
+            displacement: answer.displacement().to_vec(),
+            fields: [
+                stress.iter().map(|of| without_rounding(of.sigma_2)).collect(),
+                stress.iter().map(|of| without_rounding(of.von_mises)).collect(),
+            ],
+            largest,
+            has_pairs: has_pairs(model),
+            obstacles: outlines(answer),
+            closed: candidates.iter().map(|&node| is_closed[node]).collect(),
+            candidates,
+            arrows: arrows(answer)?,
+        };
+        scene.elements = scene.polygons(model.mesh());
+        Ok(scene)
+    }
+
+    /// The elements as polygons around them. The edges of quadratic elements are curves: each is cut at its mid-side and halfway to
+    /// it, where nodes are added with what the shape functions say there.
+    fn polygons(&mut self, mesh: &Mesh) -> Vec<Vec<usize>> {
+        let kind = mesh.kind();
+        if !kind.is_quadratic() {
+            return mesh.elements().map(<[usize]>::to_vec).collect();
+        }
+        let mid_sides = kind.reference().mid_sides;
+        let mut quarters: HashMap<[usize; 2], usize> = HashMap::new();
+        let mut polygons = Vec::with_capacity(mesh.element_count());
+        for nodes in mesh.elements() {
+            let mut polygon = Vec::with_capacity(4 * mid_sides.len());
+            for (place, &[from, to]) in mid_sides.iter().enumerate() {
+                let [from, middle, to] = [nodes[from], nodes[kind.corners() + place], nodes[to]];
+                let mut quarter = |near: usize, far: usize| {
+                    *quarters.entry([near, middle]).or_insert_with(|| self.add_between(near, middle, far))
+                };
+                polygon.extend([from, quarter(from, to), middle, quarter(to, from)]);
+            }
+            polygons.push(polygon);
+        }
+        polygons
+    }
+
+    /// Adds the node halfway from a corner to a mid-side node.
+    fn add_between(&mut self, near: usize, middle: usize, far: usize) -> usize {
+        const WEIGHTS: [f64; 3] = [0.375, 0.75, -0.125];
+        let ends = [near, middle, far];
+        let mean =
+            |value: &dyn Fn(usize) -> f64| ends.iter().zip(WEIGHTS).map(|(&end, weight)| weight * value(end)).sum();
+        let place = [0, 1].map(|axis| mean(&|node| self.nodes[node][axis]));
+        let moved: [f64; 2] = [0, 1].map(|axis| mean(&|node| self.displacement[2 * node + axis]));
+        let values: [f64; 2] = [0, 1].map(|field| mean(&|node| self.fields[field][node]));
+        self.nodes.push(place);
+        self.displacement.extend(moved);
+        self.fields.iter_mut().zip(values).for_each(|(field, value)| field.push(value));
+        self.nodes.len() - 1
+    }
+
+    /// The same with the body where it has moved to in all panels: for one that flies.
+    pub(super) fn in_place(mut self) -> Self {
+        for (node, moved) in self.nodes.iter_mut().zip(self.displacement.chunks_exact(2)) {
+            *node = [node[0] + moved[0], node[1] + moved[1]];
+        }
+        self.displacement.fill(0.0);
+        self
+    }
+
+    /// By what the displacement is multiplied so that it is seen: 1, 2 or 5 times a power of ten, and never less than 1.
+    fn magnification(&self) -> f64 {
+        if self.has_pairs {
+            return 1.0;
+        }
+        let extent = |axis: usize| {
+            let ends = common_limits([&self.nodes.iter().map(|node| node[axis]).collect::<Vec<f64>>()[..]]);
+            ends[1] - ends[0]
+        };
+        let moved = self.displacement.chunks_exact(2).map(|u| u[0].hypot(u[1])).filter(|moved| moved.is_finite());
+        rounded_down(SEEN * extent(0).max(extent(1)) / moved.fold(0.0, f64::max))
+    }
+
+    /// The fields, each with the ends of its colours: those of its own values.
+    pub(super) fn fields(&self) -> Vec<FieldPanel<'_>> {
+        let panels = self.fields.iter().zip(&self.quantities);
+        panels
+            .map(|(values, quantity)| FieldPanel { values, quantity: quantity.clone(), limits: [f64::NAN; 2] })
+            .collect()
+    }
+
+    /// The obstacles beside a body whose displacement is magnified: each gap is magnified with it, so that body and obstacle touch
+    /// in the picture where they touch.
+    pub(super) fn obstacles(&self, magnification: f64) -> Vec<(Vec<[f64; 2]>, [f64; 2])> {
+        self.obstacles.iter().map(|outline| (outline.magnified(magnification), outline.inside)).collect()
+    }
+
+    pub(super) fn picture<'a>(
+        &'a self,
+        fields: &'a [FieldPanel<'a>],
+        obstacles: &'a [ObstacleLine<'a>],
+        magnification: f64,
+    ) -> ContactPicture<'a> {
+        ContactPicture {
+            title: &self.title,
+            axes: self.axes,
+            length_unit: &self.length_unit,
+            nodes: &self.nodes,
+            elements: &self.elements,
+            displacement: &self.displacement,
+            magnification,
+            fields,
+            obstacles,
+            candidates: &self.candidates,
+            closed: &self.closed,
+            arrows: &self.arrows,
+            medium: Medium::Screen,
+            window: None,
+        }
+    }
+}
+
+impl Outline {
+    fn magnified(&self, magnification: f64) -> Vec<[f64; 2]> {
+        if magnification == 1.0 || self.over.len() < 2 {
+            return self.line.clone();
+        }
+        let mut points: Vec<[f64; 2]> =
+            self.over.iter().map(|[at, way]| [0, 1].map(|axis| at[axis] + magnification * way[axis])).collect();
+        // It goes on straight beyond the candidates.
+        let beyond =
+            |last: [f64; 2], before: [f64; 2]| [0, 1].map(|axis| last[axis] + 50.0 * (last[axis] - before[axis]));
+        let (first, last) = (beyond(points[0], points[1]), beyond(points[points.len() - 1], points[points.len() - 2]));
+        points.insert(0, first);
+        points.push(last);
+        points
+    }
+}
+
+/// 1, 2 or 5 times a power of ten, at most `value`; 1 where that is less, or is no number.
+pub(super) fn rounded_down(value: f64) -> f64 {
+    if value.is_finite() && value >= 2.0 { rounded_length(value) } else { 1.0 }
+}
+
+/// 1, 2 or 5 times a power of ten, at most `value`, which is positive.
+pub(super) fn rounded_length(value: f64) -> f64 {
+    let power = 10f64.powf(value.log10().floor());
+    let factor = [5.0, 2.0, 1.0].into_iter().find(|factor| factor * power <= value * 1.000001).unwrap_or(1.0);
+    factor * power
+}
+
+/// The names of the coordinates: of a body of revolution the radius and the axis.
+pub(super) fn axes(model: &Model) -> [&'static str; 2] {
+    if model.body().formulation().is_axisymmetric() { ["r", "z"] } else { ["x", "y"] }
+}
+
+/// Returns `true` if an obstacle of the model is another of its bodies.
+pub(super) fn has_pairs(model: &Model) -> bool {
+    model.obstacles().iter().any(|obstacle| obstacle.rigid().is_none())
+}
+
+fn outlines(answer: &Answer) -> Vec<Outline> {
+    let model = answer.model();
+    let rigid = (0..model.obstacles().len()).filter(|&index| model.obstacles()[index].rigid().is_some());
+    let outline = |index: usize| {
+        let [x, y, _] = model.obstacles()[index].approach();
+        let over = ways_to_obstacle(answer, index).into_iter().map(|(node, way)| {
+            let [at_x, at_y, _] = model.mesh().nodes()[node];
+            [[at_x, at_y], [way[0], way[1]]]
+        });
+        Outline {
+            line: model.obstacles()[index].outline(answer.shift(index), OUTLINE_SEGMENTS),
+            inside: [x, y],
+            over: over.collect(),
+        }
+    };
+    rigid.map(outline).collect()
+}
+
+/// The nodes of the rows of an obstacle, each with the way from it, where the body has not moved, to the obstacle where it is now.
+pub(super) fn ways_to_obstacle(answer: &Answer, obstacle: usize) -> Vec<(usize, [f64; 3])> {
+    let model = answer.model();
+    let approach = model.obstacles()[obstacle].approach();
+    let travel = answer.travel(obstacle).unwrap_or(0.0);
+    let rows = model.rows().iter().filter(|row| row.obstacle == obstacle);
+    rows.map(|row| {
+        let leans: f64 = row.normal.iter().zip(approach).map(|(n, a)| n * a).sum();
+        let gap = row.gap - travel * leans;
+        (row.node, row.normal.map(|part| gap * part))
+    })
+    .collect()
+}
+
+/// Contact forces, reactions of supports and loads, each where it acts, with the displacement there.
+fn arrows(answer: &Answer) -> Result<Vec<Arrow>, Error> {
+    let model = answer.model();
+    let unit = &model.units().force;
+    let mut arrows = Vec::new();
+    for resultant in answer.resultants()? {
+        let kind = match resultant.of.as_str() {
+            of if of.starts_with("obstacles") || of.starts_with("pair") => ArrowKind::Contact,
+            of if of.starts_with("loads") => ArrowKind::Load,
+            _ => ArrowKind::Support,
+        };
+        let (&[x, y], Some(centre)) = (&resultant.force[..], &resultant.centre) else { continue };
+        let at = [centre[0], centre.get(1).copied().unwrap_or(0.0)];
+        let node = model.mesh().nearest_node([at[0], at[1], 0.0]).map_or(0, |(node, _)| node);
+        let moved = answer.displacement().get(2 * node..2 * node + 2).map_or([0.0; 2], |u| [u[0], u[1]]);
+        // Of a body of revolution the radial part cancels around the circle.
+        let force = if model.body().formulation().is_axisymmetric() { [0.0, y] } else { [x, y] };
+        arrows.push(Arrow { kind, at, moved, force, unit: unit.clone() });
+    }
+    Ok(arrows)
+}
+
+/// Draws a series with common colours, a common window and a common magnification: those of its first `leading` pictures. What lies
+/// outside the colours is said to, by the ends of their bar.
+///
+/// # Errors
+/// As [`ContactPicture::draw`] and [`write_picture`].
+pub(super) fn draw_series(
+    folder: &Path,
+    series: &[(String, PlaneScene)],
+    leading: usize,
+    medium: Medium,
+) -> Result<(), Error> {
+    let leading_scenes = || series.iter().take(leading).map(|(_, scene)| scene);
+    let magnification = leading_scenes().map(PlaneScene::magnification).fold(f64::INFINITY, f64::min);
+    let limits = [0, 1].map(|field| match common_limits(leading_scenes().map(|scene| &scene.fields[field][..])) {
+        // Without any stress in this field the others tell what little would be.
+        [low, high] if low == 0.0 && high == 0.0 => {
+            let largest = leading_scenes().map(|scene| scene.largest).fold(0.0, f64::max);
+            [-largest, largest]
+        }
+        limits => limits,
+    });
+    let outlines: Vec<_> = series.iter().map(|(_, scene)| scene.obstacles(magnification)).collect();
+    let lines: Vec<Vec<ObstacleLine>> = outlines.iter().map(|outlines| lines(outlines)).collect();
+    let fields: Vec<Vec<FieldPanel>> = series
+        .iter()
+        .map(|(_, scene)| {
+            scene.fields().into_iter().zip(limits).map(|(field, limits)| FieldPanel { limits, ..field }).collect()
+        })
+        .collect();
+    let pictures: Vec<ContactPicture> = series
+        .iter()
+        .zip(fields.iter().zip(&lines))
+        .map(|((_, scene), (fields, lines))| scene.picture(fields, lines, magnification))
+        .collect();
+    let window = common_window(pictures.iter().take(leading).map(ContactPicture::window));
+    for ((stem, _), mut picture) in series.iter().zip(pictures) {
+        (picture.window, picture.medium) = (Some(window), medium);
+        write_picture(folder, stem, &picture.draw()?)?;
+    }
+    Ok(())
+}
+
+/// Lines that borrow their points.
+pub(super) fn lines(outlines: &[(Vec<[f64; 2]>, [f64; 2])]) -> Vec<ObstacleLine<'_>> {
+    outlines.iter().map(|(points, inside)| ObstacleLine { points, inside: *inside }).collect()
+}
+
+/// Where the scene stands: its gap, or the force that presses.
+pub(super) fn state(model: &Model) -> String {
+    match model.pressing_force() {
+        Some(force) => format!("force {}", super::ticks::amount(force, &model.units().force)),
+        None => format!("gap {} {}", brief(model.gap()), model.units().length).trim_end().to_owned(),
+    }
+}

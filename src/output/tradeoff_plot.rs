@@ -1,0 +1,121 @@
+//! A trade-off as a picture: error over time, a curve for each way.
+
+use super::Drawing;
+use super::curves::{Curve, CurvePanel, EXACT, draw_curves};
+use super::medium::Medium;
+use super::report::plural;
+use super::ticks::Quantity;
+use super::tradeoff::unknowns;
+use crate::study::{Tradeoff, TradeoffMesh, TradeoffPoint};
+
+/// Curves of one panel: more could not be told apart.
+const MOST_CURVES: usize = 6;
+
+/// An answer counts as one of its mesh if its total error is at most this times that of the mesh.
+#[cfg(feature = "cli")]
+const NEARLY: f64 = 1.05;
+
+fn way(point: &TradeoffPoint) -> String {
+    let mixed = if point.mixed { ", mixed" } else { "" };
+    format!("{}, {} dofs{mixed}", point.method, unknowns(point))
+}
+
+/// The points of each way, in the order of the ways.
+fn by_way<'a>(points: impl Iterator<Item = &'a TradeoffPoint>) -> Vec<(String, Vec<&'a TradeoffPoint>)> {
+    let mut ways: Vec<(String, Vec<&TradeoffPoint>)> = Vec::new();
+    for point in points {
+        let name = way(point);
+        match ways.iter_mut().find(|entry| entry.0 == name) {
+            Some(entry) => entry.1.push(point),
+            None => ways.push((name, vec![point])),
+        }
+    }
+    ways
+}
+
+/// The ways that are worth a curve: those on the Pareto front, then the fastest; drawn with the best last, over all others.
+fn chosen(mut ways: Vec<(String, Vec<&TradeoffPoint>)>) -> Vec<(String, Vec<&TradeoffPoint>)> {
+    let best = |points: &[&TradeoffPoint]| points.iter().filter(|point| point.best).count();
+    let fastest = |points: &[&TradeoffPoint]| points.iter().map(|point| point.seconds).fold(f64::INFINITY, f64::min);
+    // The fastest way to the exact answer is told, whatever else there is.
+    let exact = |points: &[&TradeoffPoint]| {
+        let exact = points.iter().filter(|point| point.energy_error <= EXACT).map(|point| point.seconds);
+        exact.fold(f64::INFINITY, f64::min)
+    };
+    let soonest = ways.iter().map(|way| exact(&way.1)).fold(f64::INFINITY, f64::min);
+    let rank = |points: &[&TradeoffPoint]| (best(points), usize::from(soonest.is_finite() && exact(points) == soonest));
+    ways.sort_by(|a, b| rank(&b.1).cmp(&rank(&a.1)).then(fastest(&a.1).total_cmp(&fastest(&b.1))));
+    ways.truncate(MOST_CURVES);
+    ways.reverse();
+    ways
+}
+
+/// Error over time, a panel a mesh, a curve a way, and the Pareto front as a band. A line shows the error of the mesh: an error of
+/// the algebra far below it buys nothing.
+pub fn tradeoff_plot(title: &str, tradeoff: &Tradeoff) -> Drawing {
+    tradeoff_plot_for(Medium::Screen, title, tradeoff)
+}
+
+/// The same for a screen or for paper.
+pub(crate) fn tradeoff_plot_for(medium: Medium, title: &str, tradeoff: &Tradeoff) -> Drawing {
+    let panel = |(index, mesh): (usize, &TradeoffMesh)| {
+        let of_mesh = || tradeoff.points.iter().filter(move |point| point.mesh == index);
+        let place = |point: &TradeoffPoint| [point.seconds, point.energy_error];
+        let all = by_way(of_mesh());
+        let count = all.len();
+        let curve = |(name, points): (String, Vec<&TradeoffPoint>)| Curve {
+            name,
+            points: points.into_iter().map(place).collect(),
+        };
+        let curves: Vec<Curve> = chosen(all).into_iter().map(curve).collect();
+        let mut band: Vec<[f64; 2]> = of_mesh().filter(|point| point.best).map(place).collect();
+        band.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let rest = if curves.len() < count { format!(", {} of {count} ways", curves.len()) } else { String::new() };
+        CurvePanel {
+            title: format!("{} dofs, {}{rest}", mesh.dofs, plural(mesh.contact_rows, "contact row")),
+            x: Quantity::new("time", "s"),
+            y: Quantity::new("relative energy error of the algebra", ""),
+            curves,
+            band: ("Pareto front".into(), band),
+            level: mesh.discretisation_error.map(|error| ("error of the mesh".into(), error)),
+        }
+    };
+    let panels: Vec<CurvePanel> = tradeoff.meshes.iter().enumerate().map(panel).collect();
+    draw_curves(medium, title, &panels)
+}
+
+/// Total error over time: a curve a way, a point a mesh, of each the cheapest answer that is hardly further off than its mesh.
+#[cfg(feature = "cli")]
+pub(crate) fn total_error_plot(medium: Medium, title: &str, tradeoff: &Tradeoff) -> Drawing {
+    let near = |point: &&TradeoffPoint| {
+        let of_mesh = tradeoff.meshes.get(point.mesh).and_then(|mesh| mesh.discretisation_error);
+        let is_near = of_mesh.zip(point.total_error).is_some_and(|(of_mesh, total)| total <= NEARLY * of_mesh);
+        is_near && !point.mixed
+    };
+    let mut ways = by_way(tradeoff.points.iter().filter(near));
+    for (_, points) in &mut ways {
+        points
+            .sort_by(|a, b| (a.mesh, a.seconds).partial_cmp(&(b.mesh, b.seconds)).unwrap_or(std::cmp::Ordering::Equal));
+        points.dedup_by_key(|point| point.mesh);
+    }
+    let place = |point: &TradeoffPoint| [point.seconds, point.total_error.unwrap_or(f64::NAN)];
+    let mut all: Vec<[f64; 2]> = ways.iter().flat_map(|way| &way.1).map(|point| place(point)).collect();
+    all.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut band: Vec<[f64; 2]> = Vec::new();
+    for point in all {
+        if band.last().is_none_or(|last| point[1] < last[1]) {
+            band.push(point);
+        }
+    }
+    let curve =
+        |(name, points): (String, Vec<&TradeoffPoint>)| Curve { name, points: points.into_iter().map(place).collect() };
+    let panel = CurvePanel {
+        title: format!("a point for each of the {} meshes", tradeoff.meshes.len()),
+        x: Quantity::new("time", "s"),
+        y: Quantity::new("relative total error, mesh estimated", ""),
+        curves: chosen(ways).into_iter().map(curve).collect(),
+        band: ("Pareto front".into(), band),
+        level: None,
+    };
+    draw_curves(medium, title, &[panel])
+}

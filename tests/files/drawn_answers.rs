@@ -1,0 +1,187 @@
+//! Pictures of answers, as the program leaves them: true to the body, in the units of the scene, and the same in title and legend.
+
+use std::fs;
+
+use crate::program::{Desk, example};
+use resvg::usvg::roxmltree::Document;
+use serde_json::{Value, json};
+
+/// The words of a picture that a command leaves.
+fn words(desk: &Desk, picture: &str) -> Vec<String> {
+    let svg = fs::read_to_string(desk.path(picture)).unwrap();
+    let document = Document::parse(&svg).unwrap();
+    let texts = document.descendants().filter(|node| node.tag_name().name() == "text");
+    texts.filter_map(|node| node.text().map(str::to_string)).collect()
+}
+
+fn drawn(desk: &Desk, scene: &Value, command: &[&str]) {
+    desk.write("scene.json", scene.to_string());
+    desk.run(&[&[command[0], "scene.json"], &command[1..], &["--out", "o"]].concat()).ends_with(0);
+}
+
+/// A ring held inside and pressed at its lowest point against a plane; its outer boundary is closed.
+fn ring() -> Value {
+    json!({
+        "title": "Ring", "units": {"length": "mm", "force": "N"},
+        "body": {"ring": {"centre": [0, 1], "element": "q8", "radius": {"points": [0.2, 1], "divisions": [6]},
+                          "angle": {"points": [0, 255, 285, 360], "divisions": [16, 60, 6]}}},
+        "material": {"young": 210000, "poisson": 0.3},
+        "supports": [{"on": {"boundary": "inner"}, "x": 0, "y": 0}],
+        "obstacles": [{"boundary": "outer", "approach": "-y",
+                       "shape": {"plane": {"point": [0, 0], "normal": [0, -1]}}}],
+        "gap": -0.002
+    })
+}
+
+/// The horizontal steps of the path of a stroke as wide as this.
+fn steps(svg: &str, width: &str) -> Vec<f64> {
+    let line = svg.lines().find(|line| line.contains(&format!("stroke-width=\"{width}\""))).expect("the line");
+    let data = line.split(" d=\"").nth(1).unwrap().split('"').next().unwrap();
+    let mut steps = Vec::new();
+    let mut rest = &data[data.find(['l', 'h', 'v']).unwrap_or(data.len())..];
+    while let Some(kind) = rest.chars().next() {
+        let end = rest[1..].find(['l', 'h', 'v', 'M', 'z']).map_or(rest.len(), |at| at + 1);
+        let numbers = rest[1..end].trim();
+        // Two numbers stand side by side where the second is negative.
+        let cut = numbers[1..].find([' ', '-']).map_or(numbers.len(), |at| at + 1);
+        match kind {
+            'v' => steps.push(0.0),
+            _ => steps.push(numbers[..cut].parse().unwrap()),
+        }
+        rest = &rest[end..];
+    }
+    steps
+}
+
+#[test]
+fn pressure_on_a_closed_boundary_runs_along_it_without_turning_back() {
+    let desk = Desk::new();
+    drawn(&desk, &ring(), &["compare", "--pictures", "answer"]);
+    let svg = fs::read_to_string(desk.path("o/pressure.svg")).unwrap();
+    let steps = steps(&svg, "9");
+    assert!(steps.len() > 6 && steps.iter().all(|&step| step > 0.0), "{steps:?}");
+    let words = words(&desk, "o/pressure.svg");
+    assert!(words.iter().any(|text| text.starts_with("arc length s along `outer`")), "{words:?}");
+    assert!(words.iter().any(|text| text == "Hertz, same force"), "{words:?}");
+}
+
+/// Eight elements around a ring have eight corners and eight mid-sides outside: curves have more points.
+#[test]
+fn edges_of_quadratic_elements_are_curves() {
+    let desk = Desk::new();
+    let mut scene = ring();
+    scene["body"]["ring"]["angle"] = json!({"points": [0, 360], "divisions": [8]});
+    scene["body"]["ring"]["radius"] = json!({"points": [0.2, 1], "divisions": [1]});
+    drawn(&desk, &scene, &["solve"]);
+    let svg = fs::read_to_string(desk.path("o/contact.svg")).unwrap();
+    let outline = svg.lines().find(|line| line.contains("stroke-width=\"1.4\"")).expect("the outline");
+    let corners = outline.split(" d=\"").nth(1).unwrap().split('"').next().unwrap().matches(['l', 'h', 'v']).count();
+    let elements = fs::read_to_string(desk.path("o/report.json")).unwrap();
+    let elements = serde_json::from_str::<Value>(&elements).unwrap()["model"]["elements"].as_u64().unwrap();
+    assert!(elements == 8 && corners >= 50, "{corners} corners of {elements} elements");
+}
+
+#[test]
+fn rounding_beside_the_largest_stress_is_no_stress() {
+    let desk = Desk::new();
+    desk.run(&["solve", &example("bar"), "--out", "o"]).ends_with(0);
+    let words = words(&desk, "o/contact.svg");
+    assert!(words.iter().all(|text| !text.contains("10⁻")), "{words:?}");
+    assert!(words.iter().any(|text| text == "−500"), "the largest stress is the scale of what is none: {words:?}");
+}
+
+#[test]
+fn a_body_of_revolution_has_axes_r_and_z() {
+    let desk = Desk::new();
+    let scene = json!({
+        "title": "Punch", "model": "axisymmetric",
+        "body": {"rectangle": {"x": {"points": [0, 1], "divisions": [12]}, "y": {"points": [0, 1], "divisions": [8]}}},
+        "material": {"young": 1e9, "poisson": 0.3},
+        "supports": [{"on": {"boundary": "bottom"}, "y": 0}],
+        "obstacles": [{"boundary": "top", "approach": "+y", "shape": {"parabola": {"apex": [0, 1], "radius": 2}}}],
+        "gap": -0.01
+    });
+    drawn(&desk, &scene, &["solve"]);
+    let words = words(&desk, "o/contact.svg");
+    assert!(words.contains(&"r (m)".to_string()) && words.contains(&"z (m)".to_string()), "{words:?}");
+}
+
+/// A node between two obstacles, both of which close, is one node in the title as in the legend.
+#[test]
+fn title_and_legend_count_the_same_nodes() {
+    let desk = Desk::new();
+    let plane = |boundary: &str, approach: &str, point: [f64; 2], normal: [f64; 2]| json!({"boundary": boundary, "approach": approach, "shape": {"plane": {"point": point, "normal": normal}}});
+    let scene = json!({
+        "title": "Corner",
+        "body": {"rectangle": {"x": {"points": [0, 1], "divisions": [4]}, "y": {"points": [0, 1], "divisions": [4]}}},
+        "material": {"young": 1e9, "poisson": 0.3},
+        "supports": [{"on": {"boundary": "left"}, "x": 0}, {"on": {"boundary": "bottom"}, "y": 0}],
+        "obstacles": [plane("right", "+x", [1.0, 0.0], [1.0, 0.0]), plane("top", "+y", [0.0, 1.0], [0.0, 1.0])],
+        "gap": -0.001
+    });
+    drawn(&desk, &scene, &["solve"]);
+    let words = words(&desk, "o/contact.svg");
+    let count = |text: &String| text.chars().filter(char::is_ascii_digit).collect::<String>();
+    let legend = words.iter().find(|text| text.starts_with("closed nodes (")).map(count).unwrap();
+    assert!(words.iter().any(|text| text.ends_with(&format!("{legend} closed nodes"))), "{legend}: {words:?}");
+}
+
+#[test]
+fn a_body_in_space_is_drawn_with_its_contact_in_plan_view() {
+    let desk = Desk::new();
+    desk.run(&["solve", &example("ball"), "--out", "o"]).ends_with(0);
+    let words = words(&desk, "o/contact.svg");
+    for expected in ["contact on `top` seen along z", "obstacle", "x (m)", "y (m)"] {
+        assert!(words.iter().any(|text| text == expected), "`{expected}` is not among {words:?}");
+    }
+    assert!(words.iter().any(|text| text.starts_with("displaced body, displacement and gap × ")), "{words:?}");
+    assert!(words.iter().any(|text| text.starts_with("contact pressure p (")), "{words:?}");
+    // The obstacle lets the body be seen.
+    let svg = fs::read_to_string(desk.path("o/contact.svg")).unwrap();
+    assert!(svg.contains("fill-opacity=\".28\""));
+}
+
+#[test]
+fn a_sweep_in_space_tells_the_contact_area() {
+    let desk = Desk::new();
+    let run = desk.run(&["sweep", &example("ball"), "--gaps", "-0.01:-0.02:2", "--pictures", "none", "--out", "o"]);
+    let text = run.ends_with(0).stdout;
+    assert!(text.contains("area [m²]") && !text.contains("width"), "{text}");
+}
+
+#[test]
+fn the_history_of_a_motion_tells_the_unit_of_time() {
+    let desk = Desk::new();
+    let scene = json!({
+        "title": "Block falling",
+        "body": {"rectangle": {"x": {"points": [0, 1], "divisions": [3]}, "y": {"points": [0, 1], "divisions": [3]}}},
+        "material": {"young": 1e6, "poisson": 0.3, "density": 1000},
+        "loads": [{"body-force": [0, -9810]}],
+        "obstacles": [{"boundary": "bottom", "approach": "-y", "shape": {"plane": {"point": [0, -0.1], "normal": [0, -1]}}}],
+        "analysis": {"dynamic": {"duration": 0.02, "frames": 2}}
+    });
+    drawn(&desk, &scene, &["solve"]);
+    let in_seconds = words(&desk, "o/history.svg");
+    assert_eq!(in_seconds.iter().filter(|text| text.starts_with("time t (")).count(), 2, "{in_seconds:?}");
+    // Of units that are not named nobody knows the time.
+    let mut unnamed = scene;
+    unnamed["units"] = json!({"length": "inch", "force": "lbf"});
+    drawn(&desk, &unnamed, &["solve"]);
+    assert!(words(&desk, "o/history.svg").iter().any(|text| text == "time t"));
+}
+
+/// At most six curves with their names beside them; the error of the mesh is a line, and the exact answer has its own place.
+#[test]
+fn a_tradeoff_is_drawn_as_six_curves_at_most() {
+    let desk = Desk::new();
+    desk.write("block.json", crate::program::scene().to_string());
+    let run = ["tradeoff", "block.json", "--runs", "1", "--refinements", "0", "--out", "o"];
+    desk.run(&run).ends_with(0);
+    let words = words(&desk, "o/tradeoff.svg");
+    let ways = words.iter().filter(|text| text.contains(" dofs") && !text.contains("contact row")).count();
+    assert!((3..=6).contains(&ways), "{words:?}");
+    for expected in ["Pareto front", "error of the mesh", "exact"] {
+        assert!(words.iter().any(|text| text == expected), "`{expected}` is not among {words:?}");
+    }
+    assert!(!words.iter().any(|text| text == "10⁻¹⁶"), "{words:?}");
+}
