@@ -2,11 +2,13 @@
 
 use serde_json::json;
 
+use super::about::about;
 use super::input::Input;
 use super::options::Compare;
 use super::outcome::{Outcome, Report, warn};
 use super::settings::settings;
 use crate::error::Error;
+use crate::output::page::write_comparison_page;
 use crate::output::{compare_text, gallery};
 use crate::qp::Method;
 use crate::scene::Answer;
@@ -36,5 +38,9 @@ pub(super) fn run(options: &Compare, watch: &Watch) -> Result<Outcome, Error> {
     let outcome = report.outcome(common.format, agreement.status());
     let (Some(qp), Some(active_set), Some(penalty)) = (qp, active_set, penalty) else { return Ok(outcome) };
     let answers = [qp, active_set, penalty];
-    Ok(outcome.with_pictures(move || gallery::write_compare(&folder, &answers, &summaries)))
+    let about = about(&input.title, "compare", &options.input, common.threads);
+    Ok(outcome.with_pictures(move || {
+        write_comparison_page(&folder, &about, &answers, &summaries, &agreement)?;
+        gallery::write_compare(&folder, &answers, &summaries)
+    }))
 }

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
+use super::about::about;
 use super::input::{scene_title, warnings};
 use super::options::Solve;
 use super::outcome::{Outcome, Report, warn};
@@ -52,7 +53,12 @@ pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outco
         return Ok(report.outcome(format, status));
     };
     report.write(path)?;
-    Ok(report.outcome(format, status).with_pictures(move || folder.draw(&model)))
+    let about = about(&scene_title(&model, &options.input), "solve", &options.input, options.common.threads);
+    let value = report.value()?;
+    Ok(report.outcome(format, status).with_pictures(move || {
+        folder.write_page(&model, &about, value)?;
+        folder.draw(&model)
+    }))
 }
 
 /// The steps of a motion, and what they leave.

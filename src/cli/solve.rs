@@ -1,12 +1,14 @@
 //! `signorini solve`: one answer.
 
+use super::about::about;
 use super::dynamic;
 use super::input::{Input, Source};
-use super::options::{Accuracy, Common, Solve};
+use super::options::{Accuracy, Solve};
 use super::outcome::{Outcome, Report, warn};
 use super::settings::settings;
 use super::total_error;
 use crate::error::Error;
+use crate::output::page::{write_answer_page, write_problem_page};
 use crate::output::{gallery, solve_text};
 use crate::qp::{Method, Settings, solve};
 use crate::scene::Scene;
@@ -74,7 +76,7 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
             "warning: --extrapolate changes nothing: the method is {method}; it goes with --method penalty\n"
         ));
     }
-    reported(&input, solution, settings.goal(), &options.common, watch)
+    reported(&input, solution, settings.goal(), options, watch)
 }
 
 /// Refuses a scene that does not fit into memory or time; the seconds that its assembly will take.
@@ -106,8 +108,9 @@ fn best_of(input: &Input, settings: &Settings) -> Result<Solution, Error> {
 }
 
 /// Reports an answer, and leaves what `--out` asks for.
-fn reported(input: &Input, solution: Solution, goal: Goal, common: &Common, watch: &Watch) -> Result<Outcome, Error> {
+fn reported(input: &Input, solution: Solution, goal: Goal, options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
     watch.step("report", 0);
+    let common = &options.common;
     let answer = input.answer(&solution)?;
     let mut summary = input.summary(solution, answer.as_ref(), goal)?;
     if let Some(answer) = &answer
@@ -127,6 +130,13 @@ fn reported(input: &Input, solution: Solution, goal: Goal, common: &Common, watc
         warn("warning: no fields and no pictures: the time is over\n");
         return Ok(outcome);
     }
-    let Some(answer) = answer else { return Ok(outcome) };
-    Ok(outcome.with_pictures(move || gallery::write_solve(&folder, &answer, &summary.solution.history)))
+    let about = about(&input.title, "solve", &options.input, common.threads);
+    let Some(answer) = answer else {
+        write_problem_page(&folder, &about, &summary)?;
+        return Ok(outcome);
+    };
+    Ok(outcome.with_pictures(move || {
+        write_answer_page(&folder, &about, &answer, &summary)?;
+        gallery::write_solve(&folder, &answer, &summary.solution.history)
+    }))
 }

@@ -1,10 +1,12 @@
 //! `signorini sweep`: one scene at several gaps.
 
+use super::about::about;
 use super::input::{scene_title, still_model, warnings};
 use super::options::{Gaps, Sweep};
 use super::outcome::{Outcome, Report, warn};
 use super::settings::settings;
 use crate::error::Error;
+use crate::output::page::write_sweep_page;
 use crate::output::{gallery, sweep_text};
 use crate::study::scene::{even_gaps, sweep_forces};
 use crate::study::sweep;
@@ -27,5 +29,9 @@ pub(super) fn run(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
     let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, status)) };
     report.write(&folder)?;
     let outcome = report.outcome(common.format, status);
-    Ok(outcome.with_pictures(move || gallery::write_sweep(&folder, &swept)))
+    let about = about(&scene_title(&model, &options.scene), "sweep", &options.scene, common.threads);
+    Ok(outcome.with_pictures(move || {
+        write_sweep_page(&folder, &about, &swept)?;
+        gallery::write_sweep(&folder, &swept)
+    }))
 }

@@ -2,10 +2,12 @@
 
 use serde::Serialize;
 
+use super::about::about;
 use super::input::{Input, build, read_scene, scene_title, warnings};
 use super::options::Tradeoff;
 use super::outcome::{Outcome, Report, warn};
 use crate::error::Error;
+use crate::output::page::write_tradeoff_page;
 use crate::output::{
     Drawing, motion_tradeoff_csv, motion_tradeoff_plot, motion_tradeoff_text, total_error_plot, tradeoff_csv,
     tradeoff_plot, tradeoff_text, write_files, write_picture,
@@ -29,7 +31,7 @@ pub(super) fn run(options: &Tradeoff, watch: &Watch) -> Result<Outcome, Error> {
         let measured = problem_tradeoff(input.problem(), &grid, watch)?;
         let (text, csv) = (tradeoff_text(&input.title, &measured), tradeoff_csv(&measured));
         let plots = || vec![("tradeoff", tradeoff_plot(&input.title, &measured))];
-        return reported(options, watch, &measured, text, &csv, plots);
+        return reported(options, watch, &input.title, &measured, text, &csv, plots);
     }
     let scene = read_scene(&options.input, &options.limits)?;
     let moves = scene.analysis.is_some();
@@ -41,19 +43,20 @@ pub(super) fn run(options: &Tradeoff, watch: &Watch) -> Result<Outcome, Error> {
         let measured = motion_tradeoff(&scene, &settings)?;
         let (text, csv) = (motion_tradeoff_text(title, &measured), motion_tradeoff_csv(&measured));
         let plots = || vec![("tradeoff", motion_tradeoff_plot(title, &measured))];
-        return reported(options, watch, &measured, text, &csv, plots);
+        return reported(options, watch, title, &measured, text, &csv, plots);
     }
     let measured = tradeoff(&scene, &grid, watch)?;
     let (text, csv) = (tradeoff_text(title, &measured), tradeoff_csv(&measured));
     let plots =
         || vec![("tradeoff", tradeoff_plot(title, &measured)), ("total-error", total_error_plot(title, &measured))];
-    reported(options, watch, &measured, text, &csv, plots)
+    reported(options, watch, title, &measured, text, &csv, plots)
 }
 
 /// Reports what was measured, with its values and its pictures in the folder of the options.
 fn reported(
     options: &Tradeoff,
     watch: &Watch,
+    title: &str,
     measured: &impl Serialize,
     text: String,
     csv: &str,
@@ -64,7 +67,10 @@ fn reported(
     if let Some(folder) = &options.out {
         report.write_with_text(folder, "tradeoff.txt")?;
         write_files(folder, &[("tradeoff.csv", csv)])?;
-        for (stem, drawing) in plots() {
+        let plots = plots();
+        let about = about(title, "tradeoff", &options.input, 1);
+        write_tradeoff_page(folder, &about, measured, plots.first().map(|(_, drawing)| drawing))?;
+        for (stem, drawing) in plots {
             write_picture(folder, stem, &drawing)?;
         }
     }

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::fields::fields;
+use super::iterations::iterations;
 use super::tables;
 use super::{
     ContactPicture, ObstacleLine, Plot, Quantity, Series, common_limits, common_window, line_plots, ticks::brief,
@@ -11,13 +12,9 @@ use super::{
 };
 use crate::error::Error;
 use crate::qp::matrix_market::solution_files;
-use crate::qp::with_contact_sets;
 use crate::scene::{Answer, Model};
 use crate::solution::{ContactSet, Iteration, Solution};
 use crate::study::{Summary, Sweep, SweepCorner, SweepPoint};
-
-/// More iterations than this are not drawn one by one.
-const MOST_ITERATIONS: usize = 12;
 
 /// Pieces of the line of an obstacle.
 const OUTLINE_SEGMENTS: usize = 200;
@@ -57,19 +54,10 @@ fn is_plane(model: &Model) -> bool {
 
 /// One picture for each set of the history, the displacement being that with the rows of the set held at their gaps.
 fn write_iterations(folder: &Path, model: &Arc<Model>, history: &[Iteration]) -> Result<(), Error> {
-    let with_penalty = history.iter().any(|step| step.penalty > 0.0);
-    if with_penalty || history.is_empty() || history.len() > MOST_ITERATIONS {
-        return Ok(());
-    }
-    let Ok(held_at) = with_contact_sets(model.problem()) else { return Ok(()) };
     let mut series = Vec::new();
-    for (index, step) in history.iter().enumerate() {
-        // A set that does not hold the body by itself has no displacement to show.
-        let Ok((displacement, multiplier)) = held_at(&step.contact_set) else { continue };
-        let number = index + 1;
+    for (number, shown) in iterations(model, history)? {
         let what = format!("search for contact segments, iteration {number}");
-        let title = format!("{}, {}", headline(model, &what), closed_nodes(&step.contact_set));
-        let shown = Answer::new(model.clone(), &displacement, &multiplier, &step.contact_set)?;
+        let title = format!("{}, {}", headline(model, &what), closed_nodes(shown.contact_set()));
         series.push((format!("iteration-{number}"), Scene::new(&shown, title)?));
     }
     draw_series(folder, &series)

@@ -7,6 +7,7 @@
 mod animation;
 mod axes;
 pub(crate) mod body;
+mod certificate;
 mod colour;
 mod colour_bar;
 mod contour;
@@ -18,6 +19,9 @@ pub(crate) mod file;
 // What the program leaves in its folders; of it a motion needs the fields and the scene of a picture only.
 #[cfg_attr(not(feature = "cli"), allow(dead_code))]
 pub(crate) mod gallery;
+// Only what the program leaves in its folders shows them.
+#[cfg_attr(not(feature = "cli"), allow(dead_code))]
+mod iterations;
 mod json;
 mod legend;
 mod mark;
@@ -30,6 +34,8 @@ mod motion_tradeoff;
 #[cfg(feature = "cli")]
 mod msh;
 mod obstacle;
+#[cfg(feature = "cli")]
+pub(crate) mod page;
 mod paint;
 mod panels;
 pub(crate) mod plot;

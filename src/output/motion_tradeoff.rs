@@ -1,6 +1,7 @@
 //! What each scheme of a motion costs, as a table, as comma-separated values, and as a picture of error over time.
 
-use super::report::{columns, number, printable};
+use super::certificate::number;
+use super::report::{columns, printable};
 use super::{Drawing, Plot, Quantity, Scale, Series, line_plots};
 use crate::study::{MotionPoint, MotionTradeoff};
 

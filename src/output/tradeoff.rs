@@ -1,6 +1,7 @@
 //! A trade-off as a table, as comma-separated values, and as a picture of error over time.
 
-use super::report::{columns, number, plural, printable};
+use super::certificate::number;
+use super::report::{columns, plural, printable};
 use super::{Drawing, Plot, Quantity, Scale, Series, line_plots};
 use crate::study::{Tradeoff, TradeoffMesh, TradeoffPoint};
 
