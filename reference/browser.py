@@ -32,7 +32,8 @@ class Browser:
     """One page at a time."""
 
     def __init__(self) -> None:
-        self.profile = tempfile.TemporaryDirectory()
+        # Processes of the browser may still write there when it ends.
+        self.profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         ours_in, theirs_out = os.pipe()
         theirs_in, ours_out = os.pipe()
         options = [
@@ -107,7 +108,7 @@ class Browser:
         self.events.clear()
         began = time.monotonic()
         self.send("Page.navigate", url=page.resolve().as_uri() + fragment)
-        while not self.ask("document.documentElement.dataset.ready ?? ''"):
+        while not self.ask("document.documentElement?.dataset.ready ?? ''"):
             if time.monotonic() > began + PATIENCE:
                 raise NoBrowser(f"{page} is not ready: {self.ask('document.body.innerText')[:500]}; {self.faults()}")
             time.sleep(0.01)

@@ -1,7 +1,7 @@
 //! What a page says of where it comes from.
 
 use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::file::{MOST_OF_TABLE, read_capped};
 use crate::output::page::About;
@@ -9,10 +9,11 @@ use crate::output::page::About;
 /// The files of a problem directory, in the order in which they are hashed.
 const PROBLEM_FILES: [&str; 4] = ["K.mtx", "f.mtx", "B.mtx", "g.mtx"];
 
-/// The page of `command` on the scene file or problem directory `input`.
-pub(super) fn about(title: &str, command: &'static str, input: &Path, threads: usize) -> About {
+/// The page of `command` on the scene file or problem directory `input`, which is hashed as it stands now, if there is a folder for
+/// the page.
+pub(super) fn about(title: &str, command: &'static str, input: &Path, out: Option<&PathBuf>, threads: usize) -> About {
     let name = input.file_name().map_or_else(|| "-".to_string(), |name| name.to_string_lossy().into_owned());
-    About::new(title.to_string(), command, name, hash_of(input), threads)
+    About::new(title.to_string(), command, name, out.and_then(|_| hash_of(input)), threads)
 }
 
 /// SHA-256 in hexadecimal digits; none of what cannot be read twice, as standard input.

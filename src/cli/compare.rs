@@ -19,6 +19,7 @@ pub(super) fn run(options: &Compare, watch: &Watch) -> Result<Outcome, Error> {
     let common = &options.common;
     let input = Input::read(&options.input, &common.limits)?;
     warn(&input.warnings());
+    let about = about(&input.title, "compare", &options.input, common.out.as_ref(), common.threads);
     let settings = settings(Method::Auto, common, watch);
     let Comparison { answers, agreement } =
         compare(input.problem(), &settings).map_err(|error| input.explain(error))?;
@@ -38,7 +39,6 @@ pub(super) fn run(options: &Compare, watch: &Watch) -> Result<Outcome, Error> {
     let outcome = report.outcome(common.format, agreement.status());
     let (Some(qp), Some(active_set), Some(penalty)) = (qp, active_set, penalty) else { return Ok(outcome) };
     let answers = [qp, active_set, penalty];
-    let about = about(&input.title, "compare", &options.input, common.threads);
     Ok(outcome.with_pictures(move || {
         write_comparison_page(&folder, &about, &answers, &summaries, &agreement)?;
         gallery::write_compare(&folder, &answers, &summaries)

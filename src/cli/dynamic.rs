@@ -22,6 +22,8 @@ pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outco
     let Some(dynamics) = scene.dynamics(&model)? else { return Ok(Outcome::done(String::new())) };
     warn(&warnings(&model));
     warn(&dynamics.warnings.iter().map(|warning| format!("warning: {warning}\n")).collect::<String>());
+    let (title, common) = (scene_title(&model, &options.input), &options.common);
+    let about = about(&title, "solve", &options.input, common.out.as_ref(), common.threads);
     let assemble = clock.elapsed().as_secs_f64();
 
     let clock = Instant::now();
@@ -47,13 +49,12 @@ pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outco
     let seconds = RunSeconds::new(assemble, factor, clock.elapsed().as_secs_f64());
     let motion =
         MotionReport { model: &model, dynamics: &dynamics, method: settings.method, summary: &summary, seconds };
-    let report = Report::new(&motion, motion.text(&scene_title(&model, &options.input)))?;
+    let report = Report::new(&motion, motion.text(&title))?;
     let (format, status) = (options.common.format, motion.status());
     let (Some(folder), Some(path)) = (folder, &options.common.out) else {
         return Ok(report.outcome(format, status));
     };
     report.write(path)?;
-    let about = about(&scene_title(&model, &options.input), "solve", &options.input, options.common.threads);
     let value = report.value()?;
     Ok(report.outcome(format, status).with_pictures(move || {
         folder.write_page(&model, &about, value)?;

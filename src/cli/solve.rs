@@ -3,12 +3,12 @@
 use super::about::about;
 use super::dynamic;
 use super::input::{Input, Source};
-use super::options::{Accuracy, Solve};
+use super::options::{Accuracy, Common, Solve};
 use super::outcome::{Outcome, Report, warn};
 use super::settings::settings;
 use super::total_error;
 use crate::error::Error;
-use crate::output::page::{write_answer_page, write_problem_page};
+use crate::output::page::{About, write_answer_page, write_problem_page};
 use crate::output::{gallery, solve_text};
 use crate::qp::{Method, Settings, solve};
 use crate::scene::Scene;
@@ -69,6 +69,7 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
     if let Method::Penalty(ladder) = &mut settings.method {
         ladder.extrapolate = options.extrapolate;
     }
+    let about = about(&input.title, "solve", &options.input, options.common.out.as_ref(), options.common.threads);
     let solution = best_of(&input, &settings)?;
     if options.extrapolate && !matches!(settings.method, Method::Penalty(_)) {
         let method = &solution.method;
@@ -76,7 +77,7 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
             "warning: --extrapolate changes nothing: the method is {method}; it goes with --method penalty\n"
         ));
     }
-    reported(&input, solution, settings.goal(), options, watch)
+    reported(&input, solution, settings.goal(), (about, &options.common), watch)
 }
 
 /// Refuses a scene that does not fit into memory or time; the seconds that its assembly will take.
@@ -108,9 +109,14 @@ fn best_of(input: &Input, settings: &Settings) -> Result<Solution, Error> {
 }
 
 /// Reports an answer, and leaves what `--out` asks for.
-fn reported(input: &Input, solution: Solution, goal: Goal, options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
+fn reported(
+    input: &Input,
+    solution: Solution,
+    goal: Goal,
+    (about, common): (About, &Common),
+    watch: &Watch,
+) -> Result<Outcome, Error> {
     watch.step("report", 0);
-    let common = &options.common;
     let answer = input.answer(&solution)?;
     let mut summary = input.summary(solution, answer.as_ref(), goal)?;
     if let Some(answer) = &answer
@@ -130,7 +136,6 @@ fn reported(input: &Input, solution: Solution, goal: Goal, options: &Solve, watc
         warn("warning: no fields and no pictures: the time is over\n");
         return Ok(outcome);
     }
-    let about = about(&input.title, "solve", &options.input, common.threads);
     let Some(answer) = answer else {
         write_problem_page(&folder, &about, &summary)?;
         return Ok(outcome);

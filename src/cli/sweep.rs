@@ -16,6 +16,8 @@ pub(super) fn run(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
     let common = &options.common;
     let model = still_model(&options.scene, &common.limits)?;
     warn(&warnings(&model));
+    let title = scene_title(&model, &options.scene);
+    let about = about(&title, "sweep", &options.scene, common.out.as_ref(), common.threads);
     let settings = settings(options.method, common, watch);
     let even = |range: &Gaps| even_gaps(range.first, range.last, range.count);
     let swept = match (&options.gaps, &options.forces) {
@@ -23,13 +25,12 @@ pub(super) fn run(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
         (gaps, None) => sweep(&model, &gaps.as_ref().map_or_else(Vec::new, even), &settings)?,
     };
     watch.step("report", 0);
-    let text = sweep_text(&scene_title(&model, &options.scene), &swept, model.units());
+    let text = sweep_text(&title, &swept, model.units());
     let report = Report::new(&swept, text)?;
     let status = swept.points.iter().map(|point| point.summary.status).collect();
     let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, status)) };
     report.write(&folder)?;
     let outcome = report.outcome(common.format, status);
-    let about = about(&scene_title(&model, &options.scene), "sweep", &options.scene, common.threads);
     Ok(outcome.with_pictures(move || {
         write_sweep_page(&folder, &about, &swept)?;
         gallery::write_sweep(&folder, &swept)

@@ -7,7 +7,7 @@ use super::input::{Input, build, read_scene, scene_title, warnings};
 use super::options::Tradeoff;
 use super::outcome::{Outcome, Report, warn};
 use crate::error::Error;
-use crate::output::page::write_tradeoff_page;
+use crate::output::page::{About, write_tradeoff_page};
 use crate::output::{
     Drawing, motion_tradeoff_csv, motion_tradeoff_plot, motion_tradeoff_text, total_error_plot, tradeoff_csv,
     tradeoff_plot, tradeoff_text, write_files, write_picture,
@@ -26,37 +26,40 @@ pub(super) fn run(options: &Tradeoff, watch: &Watch) -> Result<Outcome, Error> {
         most_full_dofs: options.most_full_dofs,
         seconds: options.time.unwrap_or(f64::INFINITY),
     };
+    let about = |title: &str| about(title, "tradeoff", &options.input, options.out.as_ref(), 1);
     if options.input.is_dir() {
         let input = Input::read(&options.input, &options.limits)?;
+        let about = &about(&input.title);
         let measured = problem_tradeoff(input.problem(), &grid, watch)?;
         let (text, csv) = (tradeoff_text(&input.title, &measured), tradeoff_csv(&measured));
         let plots = || vec![("tradeoff", tradeoff_plot(&input.title, &measured))];
-        return reported(options, watch, &input.title, &measured, text, &csv, plots);
+        return reported(options, watch, about, &measured, text, &csv, plots);
     }
     let scene = read_scene(&options.input, &options.limits)?;
     let moves = scene.analysis.is_some();
     let model = if moves { scene.build()? } else { build(&scene, &options.input)? };
     warn(&warnings(&model));
     let title = &scene_title(&model, &options.input);
+    let about = &about(title);
     if moves {
         let settings = Settings { watch: watch.clone(), ..Settings::default() };
         let measured = motion_tradeoff(&scene, &settings)?;
         let (text, csv) = (motion_tradeoff_text(title, &measured), motion_tradeoff_csv(&measured));
         let plots = || vec![("tradeoff", motion_tradeoff_plot(title, &measured))];
-        return reported(options, watch, title, &measured, text, &csv, plots);
+        return reported(options, watch, about, &measured, text, &csv, plots);
     }
     let measured = tradeoff(&scene, &grid, watch)?;
     let (text, csv) = (tradeoff_text(title, &measured), tradeoff_csv(&measured));
     let plots =
         || vec![("tradeoff", tradeoff_plot(title, &measured)), ("total-error", total_error_plot(title, &measured))];
-    reported(options, watch, title, &measured, text, &csv, plots)
+    reported(options, watch, about, &measured, text, &csv, plots)
 }
 
 /// Reports what was measured, with its values and its pictures in the folder of the options.
 fn reported(
     options: &Tradeoff,
     watch: &Watch,
-    title: &str,
+    about: &About,
     measured: &impl Serialize,
     text: String,
     csv: &str,
@@ -68,8 +71,7 @@ fn reported(
         report.write_with_text(folder, "tradeoff.txt")?;
         write_files(folder, &[("tradeoff.csv", csv)])?;
         let plots = plots();
-        let about = about(title, "tradeoff", &options.input, 1);
-        write_tradeoff_page(folder, &about, measured, plots.first().map(|(_, drawing)| drawing))?;
+        write_tradeoff_page(folder, about, measured, plots.first().map(|(_, drawing)| drawing))?;
         for (stem, drawing) in plots {
             write_picture(folder, stem, &drawing)?;
         }

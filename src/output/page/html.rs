@@ -15,7 +15,7 @@ const SHELL: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
 
 /// In the order in which they are read.
-const SCRIPTS: [&str; 10] = [
+const SCRIPTS: [&str; 14] = [
     include_str!("unpack.js"),
     include_str!("numbers.js"),
     include_str!("surface.js"),
@@ -25,6 +25,10 @@ const SCRIPTS: [&str; 10] = [
     include_str!("plot.js"),
     include_str!("tables.js"),
     include_str!("panel.js"),
+    include_str!("frames.js"),
+    include_str!("question.js"),
+    include_str!("series.js"),
+    include_str!("tradeoff.js"),
     include_str!("page.js"),
 ];
 

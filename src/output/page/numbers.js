@@ -17,9 +17,9 @@ function inUnit(value, unit, digits) {
   return `${shown(value, digits)} ${unit}`.trim();
 }
 
-function vectorShown(values, unit, digits = 5) {
+/** A vector; components that are rounding beside the largest are shown as the zeros that they stand for. */
+function vectorShown(values, unit, digits = 5, largest = Math.max(...(values ?? []).map(Math.abs))) {
   if (!values) return "-";
-  const largest = Math.max(...values.map(Math.abs));
   const parts = values.map(value => shown(Math.abs(value) <= 1e-11 * largest ? 0 : value, digits));
   return `${parts.length === 1 ? parts[0] : `(${parts.join(", ")})`} ${unit}`.trim();
 }

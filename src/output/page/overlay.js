@@ -72,7 +72,8 @@ function paintSupports(view, brush, { fixed, guided }, dimension) {
     colour = view.ink("held"),
     size = 3.2;
   brush.fillStyle = brush.strokeStyle = colour;
-  for (const i of some(fixed.length, 4000)) {
+  // In space the surface hides those behind it: they are marks of the view.
+  for (const i of view.shape.flat ? some(fixed.length, 4000) : []) {
     const [x, y] = view.place(view.vertex(fixed[i]), at);
     brush.fillRect(x - size, y - size, 2 * size, 2 * size);
   }
@@ -119,7 +120,7 @@ function paintLoads(view, brush, loads, resultant, dimension) {
         1.4,
       );
     }
-  } else if (resultant && resultant.centre) paintForce(view, brush, resultant, colour, 60);
+  } else paintForce(view, brush, resultant?.centre ? resultant : wholeLoad(view, loads, dimension), colour, 60);
 }
 
 /** The arrow of a resultant, so many pixels long, that ends at its centre. */
@@ -144,21 +145,20 @@ function paintScale(view, brush, unit) {
   const at = view.measure(),
     colour = view.ink("ink"),
     y = at.height - 12;
-  if (view.shape.dimension > 0) {
-    const length = ticks(0, (0.3 * Math.min(at.width, 500)) / at.scale, 2)[1] || 1 / at.scale;
-    const wide = length * at.scale;
-    brush.strokeStyle = colour;
-    brush.lineWidth = 1.5;
-    brush.beginPath();
-    [
-      [12, y - 4],
-      [12, y],
-      [12 + wide, y],
-      [12 + wide, y - 4],
-    ].forEach(([x, v], i) => (i ? brush.lineTo(x, v) : brush.moveTo(x, v)));
-    brush.stroke();
-    paintText(view, brush, inUnit(length, unit), 16, y - 6, colour);
-  }
+  const length = ticks(0, (0.3 * Math.min(at.width, 500)) / at.scale, 4).at(-1),
+    wide = length * at.scale;
+  brush.strokeStyle = colour;
+  brush.lineWidth = 1.5;
+  brush.beginPath();
+  const rule = [
+    [12, y - 4],
+    [12, y],
+    [12 + wide, y],
+    [12 + wide, y - 4],
+  ];
+  rule.forEach(([x, v], i) => (i ? brush.lineTo(x, v) : brush.moveTo(x, v)));
+  brush.stroke();
+  paintText(view, brush, inUnit(length, unit), 16, y - 6, colour);
   const corner = [at.width - 44, at.height - 34];
   ["x", "y", "z"].slice(0, view.shape.flat ? 2 : 3).forEach((name, axis) => {
     const way = [view.axes[0][axis], -view.axes[1][axis]].map(part => 26 * part);
@@ -195,7 +195,35 @@ function paintGap(view, brush, rows, unit, dimension) {
     brush,
     `smallest gap ${inUnit(gap, unit, 4)}`,
     Math.max(a[0], b[0]) + 10,
-    (a[1] + b[1]) / 2 + (a[1] < 40 ? 22 : 4),
+    Math.abs(a[1] - b[1]) > 30 ? (a[1] + b[1]) / 2 + 4 : Math.max(a[1], b[1]) + 18,
     colour,
   );
+}
+
+/** The sum of nodal forces of a body that is loaded everywhere, at its middle. */
+function wholeLoad(view, { vertices, forces }, dimension) {
+  const force = Array.from({ length: dimension }, () => 0);
+  for (let i = 0; i < dimension * vertices.length; i++) force[i % dimension] += forces[i];
+  return { force, centre: view.shape.low.map((value, k) => (value + view.shape.high[k]) / 2) };
+}
+
+/** Contact rows in the plane, over the obstacle that they touch. */
+function paintMarks(view, brush, vertices, kinds) {
+  const at = view.measure();
+  vertices.forEach((vertex, i) => {
+    const [x, y] = view.place(view.vertex(vertex), at),
+      closed = kinds[i] === 1 || kinds[i] === 3,
+      undecided = kinds[i] >= 2,
+      size = closed ? 4.5 : 3.4;
+    brush.fillStyle = closed ? view.ink(undecided ? "undecided" : "closed") : view.ink("paper");
+    brush.strokeStyle = view.ink(undecided ? "undecided" : closed ? "paper" : "open");
+    brush.lineWidth = 1.1;
+    brush.beginPath();
+    if (undecided)
+      [0, 1, 2, 3].forEach(k => brush.lineTo(x + 1.3 * size * [1, 0, -1, 0][k], y + 1.3 * size * [0, 1, 0, -1][k]));
+    else brush.arc(x, y, size, 0, 7);
+    brush.closePath();
+    brush.fill();
+    brush.stroke();
+  });
 }

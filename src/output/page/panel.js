@@ -3,6 +3,12 @@
 /** Rows beyond this number are marked where they are closed or undecided only, until all are asked for. */
 const MOST_OPEN_MARKS = 3000;
 
+/** More marks than these are small. */
+const MANY_MARKS = 300;
+
+/** Ends of the lines of a mesh beyond which it hides what it lies on, and is left out until it is asked for. */
+const MOST_LINES = 200000;
+
 /** Displacement (three a vertex) and stress between two states. */
 function mixed(data, shape, [lower, upper, share]) {
   const { dimension, count } = shape,
@@ -59,16 +65,13 @@ class Panel {
       asked: vertex => this.told(vertex),
     });
     this.view.coloured = true;
+    this.view.mesh = shape.lines.length < MOST_LINES;
     this.marksOpen = (data.rows?.count ?? 0) <= MOST_OPEN_MARKS;
-    this.addPatches();
+    addPatches(this.view, data);
     this.bar = element("div", host, null, "bar");
     this.addLegend();
     this.addControls();
     this.fit();
-  }
-
-  addPatches() {
-    addPatches(this.view, this.data);
   }
 
   /** The window holds body and moved body, and the near part of the obstacles. */
@@ -97,16 +100,22 @@ class Panel {
     const most = largest > 0 ? Number(((0.25 * size) / largest).toPrecision(2)) : 1;
     this.most = Math.max(2, most);
     this.scale.max = this.most;
-    this.scale.step = this.most / 200;
+    this.scale.step = "any";
     this.scale.value = 1;
   }
 
   range(quantity) {
     if (!this.ranges[quantity]) {
-      const all = this.frames.map(frame =>
-        rangeOf(valuesOf(quantity, this.shape, mixed(this.data, this.shape, frame.states), frame, this.data)),
-      );
-      this.ranges[quantity] = [Math.min(...all.map(range => range[0])), Math.max(...all.map(range => range[1]))];
+      const ranges = of =>
+        this.frames.map(frame =>
+          rangeOf(valuesOf(of, this.shape, mixed(this.data, this.shape, frame.states), frame, this.data)),
+        );
+      const all = ranges(quantity),
+        low = Math.min(...all.map(range => range[0])),
+        high = Math.max(...all.map(range => range[1]));
+      // A stress that is rounding beside the whole stress has one colour.
+      const least = quantity === "sigma-2" ? 1e-9 * Math.max(...ranges("von-mises").map(range => range[1])) : 0;
+      this.ranges[quantity] = high - low < least ? [low - least, high + least] : [low, high];
     }
     return this.ranges[quantity];
   }
@@ -154,7 +163,9 @@ class Panel {
       vertices.push(rows.vertices[row]);
       kinds.push(kind);
     }
-    this.view.setMarks(vertices, kinds);
+    this.marks = [vertices, kinds];
+    this.view.markSize = vertices.length > MANY_MARKS ? 5 : 9;
+    if (!this.shape.flat) this.view.setMarks(vertices, kinds);
   }
 
   paint(view, brush) {
@@ -168,6 +179,7 @@ class Panel {
           along = x * obstacle.approach[0] + y * obstacle.approach[1];
         paintOutline(view, brush, obstacle, along, dashed);
       });
+    if (shape.flat && this.marks) paintMarks(view, brush, ...this.marks);
     if (this.showsForces)
       for (const resultant of this.resultants ?? []) {
         const from = paintForce(view, brush, resultant, view.ink("force"), 70);
@@ -261,7 +273,6 @@ class Panel {
     const button = element("button", slider, "as it is");
     button.type = "button";
     button.addEventListener("click", () => {
-      this.scale.step = "any";
       this.scale.value = 1;
       moved();
     });
@@ -275,7 +286,7 @@ class Panel {
         again();
       });
     };
-    check("mesh", true, on => {
+    check("mesh", this.view.mesh, on => {
       this.view.mesh = on;
     });
     if (this.data.question.obstacles.some(obstacle => !obstacle.is_body))

@@ -170,7 +170,8 @@ function axis(values, { log }, from, to, most) {
   const of = log ? Math.log10 : value => value;
   let low = values.length ? Math.min(...values.map(of)) : 0,
     high = values.length ? Math.max(...values.map(of)) : 1;
-  if (!(high > low))
+  // What differs by rounding alone is one value.
+  if (!(high - low > 1e-9 * Math.max(Math.abs(low), Math.abs(high))))
     [low, high] = log
       ? [low - 0.5, high + 0.5]
       : [low - 0.5 * (Math.abs(low) || 1), high + 0.5 * (Math.abs(high) || 1)];

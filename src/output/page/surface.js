@@ -55,19 +55,19 @@ void main() {
   gl_PointSize = (kind == 1 || kind == 3) ? size : 0.8 * size;
 }`;
 
-// 0 open, 1 closed, 2 open and undecided, 3 closed and undecided.
+// 0 open, 1 closed, 2 open and undecided, 3 closed and undecided, 4 a support.
 const MARKED = `#version 300 es
 precision highp float;
 flat in int kind;
-uniform vec3 closed, open, undecided, paper;
+uniform vec3 closed, open, undecided, paper, held;
 out vec4 drawn;
 void main() {
   vec2 off = 2.0 * gl_PointCoord - 1.0;
-  float away = kind >= 2 ? abs(off.x) + abs(off.y) : length(off);
+  float away = kind == 4 ? 0.0 : kind >= 2 ? abs(off.x) + abs(off.y) : length(off);
   if (away > 1.0) discard;
-  vec3 ring = kind >= 2 ? undecided : (kind == 1 ? paper : open);
-  vec3 inside = kind == 1 ? closed : (kind == 3 ? undecided : paper);
-  drawn = vec4(away > 0.62 ? ring : inside, 1.0);
+  vec3 ring = kind == 4 ? held : kind >= 2 ? undecided : (kind == 1 ? paper : open);
+  vec3 inside = kind == 4 ? held : kind == 1 ? closed : (kind == 3 ? undecided : paper);
+  drawn = vec4(away > (kind == 1 ? 0.82 : 0.62) ? ring : inside, 1.0);
 }`;
 
 class Surface {
@@ -144,7 +144,7 @@ class Surface {
       camera,
       magnification: look.magnification,
       size: look.markSize,
-      nearer: 4e-5,
+      nearer: 0.004,
       ...look.marks,
     });
     this.drawPart("marks", gl.POINTS, {}, "marks");

@@ -134,6 +134,7 @@ function certificateSection(page, { certificate }) {
 function resultantSection(page, summary, { units }) {
   if (!summary?.resultants?.length) return;
   const own = section(page, "Resultants", "resultants"),
+    largest = Math.max(...summary.resultants.flatMap(resultant => resultant.force.map(Math.abs))),
     moment = `${units.force} ${units.length}`.trim();
   table(
     own,
@@ -147,8 +148,8 @@ function resultantSection(page, summary, { units }) {
     ],
     summary.resultants.map(resultant => [
       `${resultant.of}${resultant.on ? ` on ${resultant.on}` : ""}${resultant.rule ? `, rule ${resultant.rule}` : ""}`,
-      shown(resultant.nodes),
-      vectorShown(resultant.force, ""),
+      String(resultant.nodes),
+      vectorShown(resultant.force, "", 5, largest),
       resultant.moment.length ? vectorShown(resultant.moment, "") : "-",
       resultant.centre ? vectorShown(resultant.centre, "") : "-",
       resultant.travel !== undefined
@@ -176,7 +177,7 @@ function segmentSection(page, summary, { units }) {
     ],
     summary.segments.map(segment => [
       `obstacles[${segment.obstacle}]`,
-      shown(segment.nodes.length),
+      String(segment.nodes.length),
       vectorShown(segment.force, ""),
       shown(segment.pressure_max),
       segment.width !== undefined && segment.width !== null
@@ -207,7 +208,7 @@ function comparisonSection(page, data) {
       method.method,
       STATUS[method.status],
       shown(method.iterations),
-      shown(method.contact.count),
+      String(method.contact.count),
       shown(method.contact.force, 10),
       shown(method.contact.pressure_max),
       shown(method.certificate.energy_error_bound, 2),

@@ -7,56 +7,81 @@ function shapeOf(body) {
     count = body.nodes.length;
   const places = new Float32Array(3 * count);
   for (let i = 0; i < count; i++) for (let k = 0; k < width; k++) places[3 * i + k] = body.places[width * i + k];
-  const each = body.corners + body.mids.length,
-    faces = [],
-    edges = new Set(),
-    lines = [];
-  const edge = (a, b) => {
-    const key = a < b ? a * count + b : b * count + a;
-    if (!edges.has(key)) {
-      edges.add(key);
-      lines.push(a, b);
-    }
-  };
-  const middle = Array.from({ length: body.corners }, (_, corner) => {
-    const next = (corner + 1) % body.corners;
-    return body.mids.findIndex(([a, b]) => (a === corner && b === next) || (a === next && b === corner));
-  });
-  for (let first = 0; first < body.cells.length; first += each) {
-    const corner = k => body.cells[first + (k % body.corners)];
-    const mid = k => body.cells[first + body.corners + middle[k % body.corners]];
-    if (body.mids.length) {
-      for (let k = 0; k < body.corners; k++) {
-        faces.push(mid(k + body.corners - 1), corner(k), mid(k));
-        edge(corner(k), mid(k));
-        edge(mid(k), corner(k + 1));
-        if (k > 1) faces.push(mid(0), mid(k - 1), mid(k));
-      }
-    } else {
-      for (let k = 0; k < body.corners; k++) {
-        edge(corner(k), corner(k + 1));
-        if (k > 1) faces.push(corner(0), corner(k - 1), corner(k));
-      }
-    }
-  }
+  const { faces, edges } = cutCells(body, count);
   return {
     flat,
     dimension: body.dimension,
     count,
     places,
     nodes: body.nodes,
-    faces: new Uint32Array(faces),
-    lines: new Uint32Array(lines),
+    faces,
+    lines: linesOf(edges, count),
     ...boxOf(places),
   };
 }
 
+/** Triangles, and the key of every edge of every cell. */
+function cutCells({ cells, corners, mids }, count) {
+  const each = corners + mids.length,
+    number = cells.length / each;
+  const perCell = mids.length ? 2 * corners - 2 : corners - 2,
+    edgesPerCell = mids.length ? 2 * corners : corners;
+  const faces = new Uint32Array(3 * perCell * number),
+    edges = new Float64Array(edgesPerCell * number);
+  let [face, edge] = [0, 0];
+  const triangle = (a, b, c) => {
+    faces[face++] = a;
+    faces[face++] = b;
+    faces[face++] = c;
+  };
+  const side = (a, b) => {
+    edges[edge++] = a < b ? a * count + b : b * count + a;
+  };
+  const middle = Array.from({ length: corners }, (_, corner) => {
+    const next = (corner + 1) % corners;
+    return mids.findIndex(([a, b]) => (a === corner && b === next) || (a === next && b === corner));
+  });
+  for (let first = 0; first < cells.length; first += each) {
+    const corner = k => cells[first + (k % corners)],
+      mid = k => cells[first + corners + middle[k % corners]];
+    for (let k = 0; k < corners; k++) {
+      if (mids.length) {
+        triangle(mid(k + corners - 1), corner(k), mid(k));
+        side(corner(k), mid(k));
+        side(mid(k), corner(k + 1));
+        if (k > 1) triangle(mid(0), mid(k - 1), mid(k));
+      } else {
+        side(corner(k), corner(k + 1));
+        if (k > 1) triangle(corner(0), corner(k - 1), corner(k));
+      }
+    }
+  }
+  return { faces, edges };
+}
+
+/** The ends of each edge, once. */
+function linesOf(edges, count) {
+  edges.sort();
+  const lines = new Uint32Array(2 * edges.length);
+  let filled = 0;
+  for (let i = 0; i < edges.length; i++) {
+    if (i > 0 && edges[i] === edges[i - 1]) continue;
+    const low = Math.floor(edges[i] / count);
+    lines[filled++] = low;
+    lines[filled++] = edges[i] - low * count;
+  }
+  return lines.subarray(0, filled);
+}
+
 function boxOf(places) {
   const low = [Infinity, Infinity, Infinity],
-    high = low.map(value => -value);
-  for (let i = 0; i < places.length; i++) {
-    low[i % 3] = Math.min(low[i % 3], places[i]);
-    high[i % 3] = Math.max(high[i % 3], places[i]);
+    high = [-Infinity, -Infinity, -Infinity];
+  for (let i = 0; i < places.length; i += 3) {
+    for (let k = 0; k < 3; k++) {
+      const value = places[i + k];
+      if (value < low[k]) low[k] = value;
+      if (value > high[k]) high[k] = value;
+    }
   }
   return { low, high, size: Math.hypot(...high.map((value, k) => value - low[k])) };
 }
@@ -76,6 +101,7 @@ class View {
       coloured: false,
       range: [0, 1],
       mesh: true,
+      markSize: 9,
       drawn: 0,
       patches: [],
       obstacles: true,
@@ -242,8 +268,14 @@ class View {
       body: of("body"),
       mesh: this.mesh,
       meshColour: [...of("mesh"), this.shape.flat ? 0.28 : 0.2],
-      markSize: 9 * dense,
-      marks: { closed: of("closed"), open: of("open"), undecided: of("undecided"), paper: of("paper") },
+      markSize: this.markSize * dense,
+      marks: {
+        closed: of("closed"),
+        open: of("open"),
+        undecided: of("undecided"),
+        paper: of("paper"),
+        held: of("held"),
+      },
       patches: this.obstacles ? this.patches.map(patch => ({ ...patch, colour: [...of("solid"), 0.4] })) : [],
     });
     const brush = this.over.getContext("2d");

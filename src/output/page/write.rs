@@ -31,7 +31,7 @@ use crate::study::{Agreement, Summary, Sweep};
 pub(crate) fn write_answer_page(folder: &Path, about: &About, answer: &Answer, summary: &Summary) -> Result<(), Error> {
     let (mut packer, shape) = (Packer::default(), Shape::of(answer.model()));
     let page = of_answer(about, answer, summary, &summary.solution.history, (&shape, &mut packer))?;
-    let page = Page { report: value(summary)?, ..page };
+    let page = Page { report: timeless(value(summary)?), ..page };
     write_page(folder, &page, packer, still(answer)?.as_ref())
 }
 
@@ -40,7 +40,7 @@ pub(crate) fn write_answer_page(folder: &Path, about: &About, answer: &Answer, s
 /// # Errors
 /// [`Error::File`].
 pub(crate) fn write_problem_page(folder: &Path, about: &About, summary: &Summary) -> Result<(), Error> {
-    let page = Page { report: value(summary)?, ..judged(Page::new(about, &Units::unnamed()), summary) };
+    let page = Page { report: timeless(value(summary)?), ..judged(Page::new(about, &Units::unnamed()), summary) };
     write_page(folder, &page, Packer::default(), None)
 }
 
@@ -59,7 +59,7 @@ pub(crate) fn write_comparison_page(
     let history = &summaries[1].solution.history;
     let page = of_answer(about, &answers[0], &summaries[0], history, (&shape, &mut packer))?;
     let pressures = answers.iter().map(|answer| packer.exact(answer.pressure(), 1)).collect();
-    let report = json!({ "methods": value(summaries)?, "agreement": value(agreement)? });
+    let report = json!({ "methods": timeless(value(summaries)?), "agreement": value(agreement)? });
     write_page(folder, &Page { report, pressures, ..page }, packer, still(&answers[0])?.as_ref())
 }
 
@@ -89,7 +89,7 @@ pub(crate) fn write_motion_page(
     let (mut packer, shape) = (Packer::default(), Shape::of(model));
     let page = Page::of_model(about, model, &shape, &mut packer);
     let (motion, states) = MotionShown::of(frames, &shape, model.mesh().dimension(), &mut packer)?;
-    write_page(folder, &Page { report, motion: Some(motion), states, ..page }, packer, None)
+    write_page(folder, &Page { report: timeless(report), motion: Some(motion), states, ..page }, packer, None)
 }
 
 /// The page of a trade-off, whose picture is the `still`.
@@ -135,6 +135,19 @@ fn still(answer: &Answer) -> Result<Option<Drawing>, Error> {
     let scene = Scene::new(answer, answer.model().title().to_string())?;
     let lines = scene.obstacles();
     scene.picture(&lines).draw().map(Some)
+}
+
+/// A report without its seconds: the same question makes the same page, byte by byte.
+fn timeless(mut report: Value) -> Value {
+    match &mut report {
+        Value::Object(fields) => {
+            fields.remove("seconds");
+            fields.values_mut().for_each(|value| *value = timeless(value.take()));
+        }
+        Value::Array(values) => values.iter_mut().for_each(|value| *value = timeless(value.take())),
+        _ => {}
+    }
+    report
 }
 
 fn value(of: &(impl Serialize + ?Sized)) -> Result<Value, Error> {
