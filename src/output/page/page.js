@@ -22,6 +22,8 @@ async function assemble() {
     data = await unpackedData();
   const summary = data.report?.methods ? data.report.methods[0] : data.report,
     notes = data.body ? [EXACTNESS] : [];
+  // Black would not be seen where the page is dark.
+  data.colours.lines = data.colours.lines.map(colour => (colour === "#000000" ? "var(--ink)" : colour));
   window.signorini = { data };
   document.getElementById("loading").remove();
   document.getElementById("still")?.remove();

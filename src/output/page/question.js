@@ -63,14 +63,15 @@ function questionSection(page, data, shape, summary) {
       `${is_body ? "another body" : "rigid"}, faces the boundary ${boundary} in the direction ${vectorShown(approach.slice(0, shape.dimension), "")}`,
     ]),
     ["loads", loads ? `${vectorShown(loads.force, units.force)} in all` : null],
-    ["supports", supportWords(question)],
+    ["supports", supportWords(question, shape.dimension)],
   ]);
   return view;
 }
 
-function supportWords({ fixed, guided }) {
+function supportWords({ fixed, guided }, dimension) {
   const parts = [];
-  if (fixed.length) parts.push(`${counted(fixed.length, "node")} held in all directions`);
+  if (fixed.length)
+    parts.push(`${counted(dimension === 1 ? fixed.length / 2 : fixed.length, "node")} held in all directions`);
   if (guided.vertices.length) parts.push(`${counted(guided.vertices.length, "direction")} of nodes held`);
   return parts.length ? parts.join(", ") : "none";
 }

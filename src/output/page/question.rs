@@ -10,6 +10,9 @@ use crate::scene::{Model, straight_cells};
 /// Pieces of the line of an obstacle.
 const OUTLINE_SEGMENTS: usize = 200;
 
+/// Half of the height of a wall before a bar, over its length.
+const WALL: f64 = 0.12;
+
 #[derive(Debug, Serialize)]
 pub(super) struct Question {
     /// The scene-wide gap, in length.
@@ -127,7 +130,9 @@ fn loads(model: &Model, shape: &Shape, packer: &mut Packer) -> Loads {
 fn obstacle(model: &Model, index: usize, packer: &mut Packer) -> ObstacleShown {
     let obstacle = &model.obstacles()[index];
     let shift = obstacle.shift(model.gap());
-    let points: Vec<f64> = obstacle.outline(shift, OUTLINE_SEGMENTS).into_iter().flatten().collect();
+    let line =
+        if model.mesh().dimension() == 1 { wall(model, index) } else { obstacle.outline(shift, OUTLINE_SEGMENTS) };
+    let points: Vec<f64> = line.into_iter().flatten().collect();
     ObstacleShown {
         boundary: obstacle.boundary().to_string(),
         approach: obstacle.approach(),
@@ -137,6 +142,16 @@ fn obstacle(model: &Model, index: usize, packer: &mut Packer) -> ObstacleShown {
         outline: (!points.is_empty()).then(|| packer.exact(&points, 2)),
         patch: if obstacle.rigid().is_some() { patch(model, index, packer) } else { None },
     }
+}
+
+/// The wall that a bar meets, a line across it where the row of its end meets the obstacle; empty for another body.
+fn wall(model: &Model, index: usize) -> Vec<[f64; 2]> {
+    let rigid = model.obstacles()[index].rigid();
+    let row = model.rows().iter().find(|row| row.obstacle == index).filter(|_| rigid.is_some());
+    row.map_or_else(Vec::new, |row| {
+        let (x, half) = (model.mesh().nodes()[row.node][0] + row.gap * row.normal[0], WALL * model.mesh().size());
+        vec![[x, -half], [x, half]]
+    })
 }
 
 /// The part of an obstacle in space that faces the candidates: each facet moved to where the rows of its nodes meet the obstacle.
