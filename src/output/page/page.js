@@ -56,14 +56,13 @@ function failed(error) {
 }
 
 // Paper is light, whatever the screen.
-window.addEventListener("beforeprint", () => {
-  document.documentElement.dataset.print = "";
+function onPaper(prints) {
+  document.documentElement.toggleAttribute("data-print", prints);
   View.all.forEach(view => view.drawNow());
-});
-window.addEventListener("afterprint", () => {
-  delete document.documentElement.dataset.print;
-  View.all.forEach(view => view.redraw());
-});
+}
+window.addEventListener("beforeprint", () => onPaper(true));
+window.addEventListener("afterprint", () => onPaper(false));
+matchMedia("print").addEventListener("change", event => onPaper(event.matches));
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => View.all.forEach(view => view.redraw()));
 
 assemble().catch(failed);

@@ -281,6 +281,10 @@ class View {
     const brush = this.over.getContext("2d");
     brush.setTransform(dense, 0, 0, dense, 0, 0);
     brush.clearRect(0, 0, width, height);
+    // What WebGL has drawn does not reach the paper by itself.
+    const prints = document.documentElement.hasAttribute("data-print");
+    this.under.style.visibility = prints ? "hidden" : "";
+    if (prints) brush.drawImage(this.under, 0, 0, width, height);
     brush.font = "12px system-ui, sans-serif";
     brush.lineJoin = brush.lineCap = "round";
     this.paint(this, brush);
