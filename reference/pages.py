@@ -188,6 +188,22 @@ class Answers(Pages):
             self.assertLessEqual(browser.ask("document.documentElement.scrollWidth"), PHONE[0])
         self.assertIn("penalty", self.text("#methods"))
 
+    def test_paper_is_light_and_shows_the_surfaces(self) -> None:
+        page, _ = self.page("solve", EXAMPLES / "ball.json")
+        browser = self.opened(page, scheme="dark")
+        paper = "getComputedStyle(document.documentElement).getPropertyValue('--paper')"
+        middle = (
+            "(() => { const o = View.all[0].over, d = o.getContext('2d').getImageData(o.width / 2, o.height * 0.8, 1, 1).data;"
+            " return d[0] + d[1] + d[2]; })()"
+        )
+        self.assertNotEqual(browser.ask(paper), "#ffffff")
+        self.assertEqual(browser.ask(middle), 0)
+        browser.ask("window.dispatchEvent(new Event('beforeprint')); 1")
+        self.assertEqual(browser.ask(paper), "#ffffff")
+        self.assertGreater(browser.ask(middle), 300)
+        browser.ask("window.dispatchEvent(new Event('afterprint')); 1")
+        self.assertEqual(browser.ask(middle), 0)
+
     def test_a_page_of_every_example_opens(self) -> None:
         for scene in sorted(EXAMPLES.glob("*.json")):
             with self.subTest(scene.name):
