@@ -11,7 +11,8 @@ pub(crate) struct About {
     pub command: &'static str,
     /// The name of the scene file or problem directory, without its folder.
     pub input: String,
-    /// SHA-256 of the scene file, or of K.mtx, f.mtx, B.mtx and g.mtx one after another, in hexadecimal digits; none of standard input.
+    /// SHA-256 of the scene file, or of K.mtx, f.mtx, B.mtx and g.mtx one after another, in hexadecimal digits; none of
+    /// standard input.
     pub sha256: Option<String>,
     /// Threads of the sparse factorisations and of multigrid.
     pub threads: usize,

@@ -90,7 +90,8 @@ fn escaped(text: &str) -> String {
     safe
 }
 
-/// JSON that no parser of HTML takes for a tag or a comment: these characters stand in texts only, where their escapes mean the same.
+/// JSON that no parser of HTML takes for a tag or a comment: these characters stand in texts only, where their escapes
+/// mean the same.
 fn safe_json(json: &str) -> String {
     let mut safe = String::with_capacity(json.len());
     for character in json.chars() {

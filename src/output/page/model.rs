@@ -25,7 +25,8 @@ pub(super) struct Page<'a> {
     pub about: &'a About,
     pub units: PageUnits,
     pub colours: Colours,
-    /// The object of `report.json`, without seconds but for a trade-off; none of a sweep, whose points stand in `sweep`.
+    /// The object of `report.json`, without seconds but for a trade-off; none of a sweep, whose points stand in
+    /// `sweep`.
     #[serde(skip_serializing_if = "Value::is_null")]
     pub report: Value,
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -12,7 +12,8 @@ use crate::scene::Answer;
 
 /// What a motion has left.
 pub(crate) struct MotionFrames<'a> {
-    /// Time, contact force, number of closed rows, penetration, kinetic, strain, potential and total energy, step after step.
+    /// Time, contact force, number of closed rows, penetration, kinetic, strain, potential and total energy, step after
+    /// step.
     pub history: &'a [[f64; 8]],
     /// The times of the frames.
     pub times: &'a [f64],

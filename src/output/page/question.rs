@@ -154,7 +154,8 @@ fn wall(model: &Model, index: usize) -> Vec<[f64; 2]> {
     })
 }
 
-/// The part of an obstacle in space that faces the candidates: each facet moved to where the rows of its nodes meet the obstacle.
+/// The part of an obstacle in space that faces the candidates: each facet moved to where the rows of its nodes meet the
+/// obstacle.
 fn patch(model: &Model, index: usize, packer: &mut Packer) -> Option<Patch> {
     if model.mesh().dimension() != 3 {
         return None;

@@ -19,7 +19,8 @@ pub(super) struct SweepShown<'a> {
     points: Vec<Point<'a>>,
     events: &'a [SweepEvent],
     corners: &'a [SweepCorner],
-    /// Of each piece of the exact path the closed rows, with the pressures at both ends; of a sweep without a path those of each point.
+    /// Of each piece of the exact path the closed rows, with the pressures at both ends; of a sweep without a path
+    /// those of each point.
     closed: ClosedShown,
     /// The multiplier of the contact force of the model that makes that of the whole.
     parts: f64,
