@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Everything that can be checked, in one command; needs cargo (with rustfmt and clippy) and python3 >= 3.11 with venv.
+# Everything that can be checked, in one command; needs cargo (with rustfmt and clippy), python3 >= 3.11 with venv, and Chromium.
 # The Python packages of the reference are installed into target/reference-venv.
 #
 # One profile (dev: the crate with overflow checks, dependencies as in release) serves all steps, and every test runs once.
@@ -9,6 +9,7 @@ cd "$(dirname "$0")"
 need() { command -v "$1" >/dev/null || { echo "test.sh needs $1: $2" >&2; exit 1; }; }
 need cargo "the Rust toolchain"
 need python3 "version 3.11 or later, with the venv module, for the reference validation"
+need "${CHROMIUM:-chromium}" "a headless browser, in which the pages are opened; on Debian apt-get install chromium"
 
 out=$(mktemp -d)
 name="" began=0 times=""
@@ -56,6 +57,7 @@ step "reference, its own tests";    reference/environment.sh
 target/reference-venv/bin/python -m unittest discover --start-directory reference
 step "schema, scenes right and wrong"; target/reference-venv/bin/python reference/schema.py "$built/signorini"
 step "reference, live validation";  target/reference-venv/bin/python reference/validate.py --signorini "$built/signorini"
+step "pages, in a real browser";    (cd reference && SIGNORINI="../$built/signorini" ../target/reference-venv/bin/python -m unittest pages)
 
 step ""
 printf '\n%s%6d s  in all\n== all checks passed\n' "$times" $SECONDS

@@ -20,6 +20,9 @@ FOLDERS = ("examples", "tools/impact", "tests/corpus", "tests/faults")
 SECONDS = re.compile(r"[0-9.e+-]+ s\b")
 """A duration inside a sentence, as in the reason of an attempt."""
 
+DATA = re.compile(rb'(?<=id="data">)[^<]*')
+"""The JSON of a page."""
+
 
 def targets(path: Path) -> list[Path]:
     """The scenes and problem directories at or below a path, in order."""
@@ -67,6 +70,8 @@ def stripped(name: str, content: bytes) -> bytes:
             return json.dumps(timeless(json.loads(content))).encode()
         except ValueError:
             return content
+    if name.endswith(".html"):
+        return DATA.sub(lambda data: json.dumps(timeless(json.loads(data[0]))).encode(), content, count=1)
     return content
 
 

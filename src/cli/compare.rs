@@ -2,6 +2,7 @@
 
 use serde_json::json;
 
+use super::about::about;
 use super::input::Input;
 use super::options::Compare;
 use super::outcome::{Outcome, Report, warn};
@@ -9,6 +10,7 @@ use super::settings::settings;
 use crate::error::Error;
 use crate::output::compare_text;
 use crate::output::gallery::{self, Pictures};
+use crate::output::page::write_comparison_page;
 use crate::qp::Method;
 use crate::scene::Answer;
 use crate::study::{Comparison, Summary, compare};
@@ -18,6 +20,7 @@ pub(super) fn run(options: &Compare, watch: &Watch) -> Result<Outcome, Error> {
     let common = &options.common;
     let input = Input::read(&options.input, &common.limits)?;
     warn(&input.warnings());
+    let about = about(&input.title, "compare", &options.input, common.out.as_ref(), common.threads);
     let settings = settings(Method::Auto, common, watch);
     let Comparison { answers, agreement } =
         compare(input.problem(), &settings).map_err(|error| input.explain(error))?;
@@ -38,5 +41,8 @@ pub(super) fn run(options: &Compare, watch: &Watch) -> Result<Outcome, Error> {
     let (Some(qp), Some(active_set), Some(penalty)) = (qp, active_set, penalty) else { return Ok(outcome) };
     let answers = [qp, active_set, penalty];
     let wanted = common.wanted(Pictures::All);
-    Ok(outcome.with_pictures(move || gallery::write_compare(&folder, &answers, &summaries, wanted)))
+    Ok(outcome.with_pictures(move || {
+        write_comparison_page(&folder, &about, &answers, &summaries, &agreement)?;
+        gallery::write_compare(&folder, &answers, &summaries, wanted)
+    }))
 }

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
+use super::about::about;
 use super::input::{scene_title, warnings};
 use super::options::Solve;
 use super::outcome::{Outcome, Report, warn};
@@ -22,6 +23,8 @@ pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outco
     let Some(dynamics) = scene.dynamics(&model)? else { return Ok(Outcome::done(String::new())) };
     warn(&warnings(&model));
     warn(&dynamics.warnings.iter().map(|warning| format!("warning: {warning}\n")).collect::<String>());
+    let (title, common) = (scene_title(&model, &options.input), &options.common);
+    let about = about(&title, "solve", &options.input, common.out.as_ref(), common.threads);
     let assemble = clock.elapsed().as_secs_f64();
 
     let clock = Instant::now();
@@ -47,18 +50,21 @@ pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outco
     let seconds = RunSeconds::new(assemble, factor, clock.elapsed().as_secs_f64());
     let motion =
         MotionReport { model: &model, dynamics: &dynamics, method: settings.method, summary: &summary, seconds };
-    let report = Report::new(&motion, motion.text(&scene_title(&model, &options.input)))?;
+    let report = Report::new(&motion, motion.text(&title))?;
     let (format, status) = (options.common.format, motion.status());
     let (Some(folder), Some(path)) = (folder, &options.common.out) else {
         return Ok(report.outcome(format, status));
     };
     report.write(path)?;
-    let outcome = report.outcome(format, status);
+    let value = report.value()?;
     let Wanted { pictures, medium } = options.common.wanted(Pictures::Answer);
-    match pictures {
-        Pictures::None => Ok(outcome),
-        _ => Ok(outcome.with_pictures(move || folder.draw_for(&model, medium))),
-    }
+    Ok(report.outcome(format, status).with_pictures(move || {
+        folder.write_page(&model, &about, value)?;
+        match pictures {
+            Pictures::None => Ok(()),
+            _ => folder.draw_for(&model, medium),
+        }
+    }))
 }
 
 /// The steps of a motion, and what they leave.

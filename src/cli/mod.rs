@@ -1,5 +1,6 @@
 //! The command line: arguments in, text or JSON out, and one exit code for each kind of ending.
 
+mod about;
 mod compare;
 mod draw;
 mod dynamic;

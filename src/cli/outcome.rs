@@ -53,6 +53,12 @@ impl Report {
         Ok(Report { text, json: report_json(value)? })
     }
 
+    /// The object of `report.json`.
+    pub fn value(&self) -> Result<serde_json::Value, Error> {
+        let failed = |error: serde_json::Error| Error::Numerical { step: "reading JSON", reason: error.to_string() };
+        serde_json::from_str(&self.json).map_err(failed)
+    }
+
     /// Writes `report.json` into the folder.
     pub fn write(&self, folder: &Path) -> Result<(), Error> {
         write_files(folder, &[("report.json", &self.json)])

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::about::about;
 use super::dynamic;
 use super::input::{Input, Source};
 use super::options::{Accuracy, Solve};
@@ -10,6 +11,7 @@ use super::settings::settings;
 use super::total_error;
 use crate::error::Error;
 use crate::output::gallery::{self, Pictures};
+use crate::output::page::{About, write_answer_page, write_problem_page};
 use crate::output::{solve_text, why_text};
 use crate::qp::{Method, Settings, Start, read_vector, solve_from};
 use crate::scene::Scene;
@@ -71,6 +73,7 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
         ladder.extrapolate = options.extrapolate;
     }
     let start = options.start.as_deref().map_or_else(|| Ok(Start::default()), earlier)?;
+    let about = about(&input.title, "solve", &options.input, options.common.out.as_ref(), options.common.threads);
     let solution = best_of(&input, start, &settings)?;
     if options.extrapolate && !matches!(settings.method, Method::Penalty(_)) {
         let method = &solution.method;
@@ -78,7 +81,7 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
             "warning: --extrapolate changes nothing: the method is {method}; it goes with --method penalty\n"
         ));
     }
-    reported(&input, solution, settings.goal(), options, watch)
+    reported(&input, solution, settings.goal(), (about, options), watch)
 }
 
 /// The motion of a scene, without what is for one solve.
@@ -128,7 +131,13 @@ fn best_of(input: &Input, start: Start, settings: &Settings) -> Result<Solution,
 }
 
 /// Reports an answer, and leaves what `--out` asks for.
-fn reported(input: &Input, solution: Solution, goal: Goal, options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
+fn reported(
+    input: &Input,
+    solution: Solution,
+    goal: Goal,
+    (about, options): (About, &Solve),
+    watch: &Watch,
+) -> Result<Outcome, Error> {
     let common = &options.common;
     watch.step("report", 0);
     let answer = input.answer(&solution)?;
@@ -154,7 +163,13 @@ fn reported(input: &Input, solution: Solution, goal: Goal, options: &Solve, watc
         warn("warning: no fields and no pictures: the time is over\n");
         return Ok(outcome);
     }
-    let Some(answer) = answer else { return Ok(outcome) };
+    let Some(answer) = answer else {
+        write_problem_page(&folder, &about, &summary)?;
+        return Ok(outcome);
+    };
     let wanted = common.wanted(Pictures::Answer);
-    Ok(outcome.with_pictures(move || gallery::write_solve(&folder, &answer, &summary.solution.history, wanted)))
+    Ok(outcome.with_pictures(move || {
+        write_answer_page(&folder, &about, &answer, &summary)?;
+        gallery::write_solve(&folder, &answer, &summary.solution.history, wanted)
+    }))
 }

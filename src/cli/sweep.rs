@@ -1,11 +1,13 @@
 //! `signorini sweep`: one scene at several gaps or forces, or one problem directory on the way to its other end.
 
+use super::about::about;
 use super::input::{Input, scene_title, still_model, warnings};
 use super::options::{Gaps, Sweep};
 use super::outcome::{Outcome, Report, warn};
 use super::settings::settings;
 use crate::error::Error;
 use crate::output::gallery::{self, Pictures};
+use crate::output::page::write_sweep_page;
 use crate::output::{draw_problem_sweep, problem_sweep_text, sweep_text, write_points};
 use crate::qp::matrix_market::read_other_end;
 use crate::study::scene::{even_gaps, sweep_forces};
@@ -36,6 +38,8 @@ fn of_scene(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
     let common = &options.common;
     let model = still_model(&options.scene, &common.limits)?;
     warn(&warnings(&model));
+    let title = scene_title(&model, &options.scene);
+    let about = about(&title, "sweep", &options.scene, common.out.as_ref(), common.threads);
     let settings = settings(options.method, common, watch);
     let even = |range: &Gaps| even_gaps(range.first, range.last, range.count);
     let swept = match (&options.gaps, &options.forces) {
@@ -43,14 +47,17 @@ fn of_scene(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
         (gaps, None) => sweep(&model, &gaps.as_ref().map_or_else(Vec::new, even), &settings)?,
     };
     watch.step("report", 0);
-    let text = sweep_text(&scene_title(&model, &options.scene), &swept, model.units());
+    let text = sweep_text(&title, &swept, model.units());
     let report = Report::new(&swept, text)?;
     let status = swept.points.iter().map(|point| point.summary.status).collect();
     let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, status)) };
     report.write(&folder)?;
     let outcome = report.outcome(common.format, status);
     let wanted = common.wanted(Pictures::All);
-    Ok(outcome.with_pictures(move || gallery::write_sweep(&folder, &swept, wanted)))
+    Ok(outcome.with_pictures(move || {
+        write_sweep_page(&folder, &about, &swept)?;
+        gallery::write_sweep(&folder, &swept, wanted)
+    }))
 }
 
 fn of_problem(options: &Sweep, points: usize, watch: &Watch) -> Result<Outcome, Error> {

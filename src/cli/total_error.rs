@@ -5,12 +5,14 @@ use std::time::Instant;
 
 use serde::Serialize;
 
+use super::about::about;
 use super::input::{build, scene_title, warnings};
 use super::options::Solve;
 use super::outcome::{Outcome, Report, warn};
 use super::settings::settings;
 use crate::error::Error;
 use crate::output::gallery::{self, Pictures};
+use crate::output::page::{About, write_answer_page};
 use crate::output::{estimated_error_text, total_error_text, write_estimated_error, write_total_error};
 use crate::qp::Settings;
 use crate::scene::Scene;
@@ -30,6 +32,7 @@ pub(super) fn run(options: &Solve, scene: &Scene, goal: TotalErrorGoal, watch: &
     let settings = settings(options.method, &options.common, &watch.keeping(REPORT * options.time.unwrap_or(0.0)));
     let wanted = options.common.wanted(Pictures::Answer);
     let (title, units) = (scene_title(&model, &options.input), model.units().clone());
+    let about = about(&title, "solve", &options.input, options.common.out.as_ref(), options.common.threads);
     match total_error(scene, &model, goal, &settings).map_err(|error| model.explain(error))? {
         Found::Guaranteed(found) => {
             let report = Report::new(&found, total_error_text(&title, &found, &units))?;
@@ -39,7 +42,7 @@ pub(super) fn run(options: &Solve, scene: &Scene, goal: TotalErrorGoal, watch: &
             }
             Ok(report.outcome(options.common.format, found.status))
         }
-        Found::Estimated(found) => estimated(options, *found, &title, &settings, seconds),
+        Found::Estimated(found) => estimated(options, *found, about, &settings, seconds),
     }
 }
 
@@ -54,7 +57,7 @@ struct EstimatedReport<'a> {
 fn estimated(
     options: &Solve,
     found: Estimated,
-    title: &str,
+    about: About,
     settings: &Settings,
     seconds: f64,
 ) -> Result<Outcome, Error> {
@@ -62,7 +65,7 @@ fn estimated(
     let mut summary = scene_summary(&found.answer, found.solution.clone(), goal, seconds)?;
     summary.discretisation_error = found.levels.last().map(|level| level.discretisation_error);
     let units = found.answer.model().units();
-    let text = estimated_error_text(title, &found, &summary, units);
+    let text = estimated_error_text(&about.title, &found, &summary, units);
     let report = Report::new(&EstimatedReport { found: &found, answer: &summary }, text)?;
     let Some(folder) = options.common.out.clone() else {
         return Ok(report.outcome(options.common.format, found.status));
@@ -70,7 +73,10 @@ fn estimated(
     gallery::write_answer(&folder, &summary.solution, Some(&found.answer))?;
     report.write_with_text(&folder, "total-error.txt")?;
     let wanted = options.common.wanted(Pictures::Answer);
-    write_estimated_error(&folder, title, &found, wanted)?;
+    write_estimated_error(&folder, &about.title, &found, wanted)?;
     let outcome = report.outcome(options.common.format, found.status);
-    Ok(outcome.with_pictures(move || gallery::write_solve(&folder, &found.answer, &summary.solution.history, wanted)))
+    Ok(outcome.with_pictures(move || {
+        write_answer_page(&folder, &about, &found.answer, &summary)?;
+        gallery::write_solve(&folder, &found.answer, &summary.solution.history, wanted)
+    }))
 }

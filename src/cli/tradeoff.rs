@@ -2,11 +2,13 @@
 
 use serde::Serialize;
 
+use super::about::about;
 use super::input::{Input, build, read_scene, scene_title, warnings};
 use super::options::Tradeoff;
 use super::outcome::{Outcome, Report, warn};
 use crate::error::Error;
 use crate::output::gallery::Pictures;
+use crate::output::page::{About, write_tradeoff_page};
 use crate::output::{
     Drawing, motion_tradeoff_csv, motion_tradeoff_plot_for, motion_tradeoff_text, total_error_plot, tradeoff_csv,
     tradeoff_plot_for, tradeoff_text, write_files, write_picture,
@@ -25,24 +27,27 @@ pub(super) fn run(options: &Tradeoff, watch: &Watch) -> Result<Outcome, Error> {
         most_full_dofs: options.most_full_dofs,
         seconds: options.time.unwrap_or(f64::INFINITY),
     };
+    let about = |title: &str| about(title, "tradeoff", &options.input, options.out.as_ref(), 1);
     if options.input.is_dir() {
         let input = Input::read(&options.input, &options.limits)?;
+        let about = &about(&input.title);
         let measured = problem_tradeoff(input.problem(), &grid, watch)?;
         let (text, csv) = (tradeoff_text(&input.title, &measured), tradeoff_csv(&measured));
         let plots = || vec![("tradeoff", tradeoff_plot_for(options.style, &input.title, &measured))];
-        return reported(options, watch, &measured, text, &csv, plots);
+        return reported(options, watch, about, &measured, text, &csv, plots);
     }
     let scene = read_scene(&options.input, &options.limits)?;
     let moves = scene.analysis.is_some();
     let model = if moves { scene.build()? } else { build(&scene, &options.input)? };
     warn(&warnings(&model));
     let title = &scene_title(&model, &options.input);
+    let about = &about(title);
     if moves {
         let settings = Settings { watch: watch.clone(), ..Settings::default() };
         let measured = motion_tradeoff(&scene, &settings)?;
         let (text, csv) = (motion_tradeoff_text(title, &measured), motion_tradeoff_csv(&measured));
         let plots = || vec![("tradeoff", motion_tradeoff_plot_for(options.style, title, &measured))];
-        return reported(options, watch, &measured, text, &csv, plots);
+        return reported(options, watch, about, &measured, text, &csv, plots);
     }
     let measured = tradeoff(&scene, &grid, watch)?;
     let (text, csv) = (tradeoff_text(title, &measured), tradeoff_csv(&measured));
@@ -52,13 +57,14 @@ pub(super) fn run(options: &Tradeoff, watch: &Watch) -> Result<Outcome, Error> {
             ("total-error", total_error_plot(options.style, title, &measured)),
         ]
     };
-    reported(options, watch, &measured, text, &csv, plots)
+    reported(options, watch, about, &measured, text, &csv, plots)
 }
 
 /// Reports what was measured, with its values and its pictures in the folder of the options.
 fn reported(
     options: &Tradeoff,
     watch: &Watch,
+    about: &About,
     measured: &impl Serialize,
     text: String,
     csv: &str,
@@ -69,10 +75,10 @@ fn reported(
     if let Some(folder) = &options.out {
         report.write_with_text(folder, "tradeoff.txt")?;
         write_files(folder, &[("tradeoff.csv", csv)])?;
-        if options.pictures != Pictures::None {
-            for (stem, drawing) in plots() {
-                write_picture(folder, stem, &drawing)?;
-            }
+        let plots = if options.pictures == Pictures::None { Vec::new() } else { plots() };
+        write_tradeoff_page(folder, about, measured, plots.first().map(|(_, drawing)| drawing))?;
+        for (stem, drawing) in plots {
+            write_picture(folder, stem, &drawing)?;
         }
     }
     Ok(report.printed(options.format))

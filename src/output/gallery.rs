@@ -1,25 +1,21 @@
 //! What `--out` leaves in a folder: answers, fields and pictures of a scene.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use super::fields::fields;
+use super::iterations::iterations;
 use super::medium::Medium;
 use super::plane_scene::{PlaneScene, draw_series, state};
 use super::plot::line_plots_for;
 use super::pressure::pressure_plots;
 use super::space_scene::draw_space;
 use super::tables;
-use super::{Plot, Quantity, Series, ticks::brief, write_atomically, write_files, write_picture};
+use super::{Plot, Quantity, Series, write_atomically, write_files, write_picture};
 use crate::error::Error;
 use crate::qp::matrix_market::solution_files;
-use crate::qp::{Method, Penalty, Settings, solve, with_contact_sets};
 use crate::scene::{Answer, Model};
 use crate::solution::{ContactSet, Iteration, Solution};
 use crate::study::{Summary, Sweep, SweepCorner, SweepPoint};
-
-/// Of more iterations than this some are left out.
-const MOST_ITERATIONS: usize = 12;
 
 /// Which pictures a command draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,73 +63,17 @@ pub fn write_solve(folder: &Path, answer: &Answer, history: &[Iteration], wanted
         2 => {
             let mut series = vec![("contact".to_string(), PlaneScene::new(answer, title)?)];
             if pictures == Pictures::All {
-                series.extend(iterations(model, history)?);
+                for step in iterations(model, history)? {
+                    let set = step.answer.contact_set();
+                    let title = format!("{}, {}, {}", headline(model), step.what, closed_nodes(model, set));
+                    series.push((step.name, PlaneScene::new(&step.answer, title)?));
+                }
             }
             draw_series(folder, &series, 1, medium)
         }
         3 => draw_space(folder, "contact", &title, answer, medium),
         _ => Ok(()),
     }
-}
-
-/// The displacement and the multiplier that an iteration worked with; `None` where it had none.
-type Found = Option<(Vec<f64>, Vec<f64>)>;
-
-/// A scene for each set of the history, the displacement being that with the rows of the set held at their gaps; of a penalty loop one
-/// for each penalty, with its settled set.
-fn iterations(model: &Arc<Model>, history: &[Iteration]) -> Result<Vec<(String, PlaneScene)>, Error> {
-    let mut rungs: Vec<Iteration> = history.iter().filter(|step| step.penalty > 0.0).cloned().collect();
-    rungs.reverse();
-    rungs.dedup_by(|later, earlier| later.penalty == earlier.penalty);
-    rungs.reverse();
-    let (steps, name) = if rungs.is_empty() { (history, "iteration") } else { (&rungs[..], "rung") };
-    let held_at = if rungs.is_empty() { with_contact_sets(model.problem()).ok() } else { None };
-    let find = |step: &Iteration| -> Found {
-        if let Some(held_at) = &held_at {
-            // A set that does not hold the body by itself has no displacement to show.
-            return held_at(&step.contact_set).ok();
-        }
-        of_penalty(model, step.penalty)
-    };
-    let chosen = evenly(steps.len(), MOST_ITERATIONS);
-    let mut series = Vec::new();
-    for &index in &chosen {
-        let step = &steps[index];
-        let Some((displacement, multiplier)) = find(step) else { continue };
-        let number = index + 1;
-        let mut what = match step.penalty > 0.0 {
-            true => format!("penalty {} times the local stiffness", brief(step.penalty)),
-            false => format!("iteration {number} of {}", steps.len()),
-        };
-        if chosen.len() < steps.len() {
-            what += &format!(" ({} of them drawn)", chosen.len());
-        }
-        let title = format!("{}, {what}, {}", headline(model), closed_nodes(model, &step.contact_set));
-        let shown = Answer::new(model.clone(), &displacement, &multiplier, &step.contact_set)?;
-        series.push((format!("{name}-{number}"), PlaneScene::new(&shown, title)?));
-    }
-    Ok(series)
-}
-
-/// The settled answer of the penalty loop at one penalty.
-fn of_penalty(model: &Model, penalty: f64) -> Found {
-    let ladder = Penalty { first: penalty, last: penalty, ..Penalty::default() };
-    let settings = Settings { prove: false, ..Settings::with_method(Method::Penalty(ladder)) };
-    let solution = match solve(model.problem(), &settings) {
-        Ok(solution) => solution,
-        // Certified or not: no rung but the last is exact.
-        Err(Error::NotCertified { solution, .. }) => *solution,
-        Err(_) => return None,
-    };
-    Some((solution.displacement, solution.multiplier))
-}
-
-/// At most `most` indices below `count`, the first and the last among them, at even distances.
-fn evenly(count: usize, most: usize) -> Vec<usize> {
-    if count <= most {
-        return (0..count).collect();
-    }
-    (0..most).map(|k| k * (count - 1) / (most - 1)).collect()
 }
 
 /// Draws the answer of the QP as [`write_solve`] does, with the iterations of the active-set loop, and the pressure of

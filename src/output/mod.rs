@@ -8,6 +8,7 @@ mod animation;
 pub(crate) mod arrows;
 mod axes;
 pub(crate) mod body;
+mod certificate;
 mod colour;
 mod colour_bar;
 mod contour;
@@ -21,6 +22,9 @@ pub(crate) mod file;
 #[cfg_attr(not(feature = "cli"), allow(dead_code))]
 pub(crate) mod gallery;
 mod inset;
+// Only what the program leaves in its folders shows them.
+#[cfg_attr(not(feature = "cli"), allow(dead_code))]
+mod iterations;
 mod json;
 mod legend;
 mod mark;
@@ -34,6 +38,8 @@ mod motion_tradeoff;
 #[cfg(feature = "cli")]
 mod msh;
 mod obstacle;
+#[cfg(feature = "cli")]
+pub(crate) mod page;
 mod paint;
 mod panels;
 mod pdf;

@@ -10,12 +10,16 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
+#[cfg(feature = "cli")]
+use serde_json::Value;
 
 use super::animation::animate;
 use super::body::FieldPanel;
 use super::fields::fields;
 use super::medium::Medium;
 use super::motion_table::MotionTable;
+#[cfg(feature = "cli")]
+use super::page::{About, MotionFrames, write_motion_page};
 use super::plane_scene::{PlaneScene, lines};
 use super::plot::line_plots_for;
 use super::ticks::amount;
@@ -294,6 +298,22 @@ impl MotionFolder {
             ContactPicture { window, ..shown.picture(&fields, &lines, 1.0) }.draw()
         })?;
         write_atomically(&self.folder.join("motion.png"), &animation)
+    }
+
+    /// Writes `report.html`, with the object of the report as it stands in `report.json`.
+    ///
+    /// # Errors
+    /// [`Error::File`], and those of the recovery of stresses.
+    #[cfg(feature = "cli")]
+    pub(crate) fn write_page(&self, model: &Arc<Model>, about: &About, report: Value) -> Result<(), Error> {
+        let answer = |number: usize| -> Result<Answer, Error> {
+            let frame = self.read_frame(number)?;
+            let set = closed_of(model.rows().len(), &frame.closed);
+            Answer::new(model.clone(), &frame.displacement, &frame.multiplier, &set)
+        };
+        let history = self.read_history()?;
+        let frames = MotionFrames { history: &history, times: &self.times, answer: &answer };
+        write_motion_page(&self.folder, about, model, report, &frames)
     }
 
     /// The rows of the history; of a long one only some, each with the largest force since the row before.

@@ -1,8 +1,9 @@
 //! What each scheme of a motion costs, as a table, as comma-separated values, and as a picture of error over time.
 
+use super::certificate::number;
 use super::medium::Medium;
 use super::plot::line_plots_for;
-use super::report::{columns, number, printable};
+use super::report::{columns, printable};
 use super::{Drawing, Plot, Quantity, Scale, Series};
 use crate::study::{MotionPoint, MotionTradeoff};
 

@@ -1,5 +1,9 @@
 //! Shapes as a PDF page with the letters of the embedded typeface.
 
+use std::io::Write;
+
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
 use pdf_writer::types::{CidFontType, FontFlags, LineJoinStyle, SystemInfo, UnicodeCmap};
 use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, Str};
 
@@ -15,7 +19,7 @@ const POINTS: f64 = 72.0 / 25.4;
 const QUARTER: f64 = 0.552_284_75;
 
 /// What a compressed stream may cost: nothing is gained beyond the usual level.
-const LEVEL: u8 = 6;
+const LEVEL: u32 = 6;
 
 const WEIGHTS: [Weight; 2] = [Weight::Regular, Weight::Bold];
 const FONTS: [&[u8]; 2] = [b"F0", b"F1"];
@@ -179,7 +183,7 @@ impl Page {
         states.finish();
         resources.finish();
         page.finish();
-        let data = miniz_oxide::deflate::compress_to_vec_zlib(&self.content.finish(), LEVEL);
+        let data = deflated(&self.content.finish());
         pdf.stream(content, &data).filter(Filter::FlateDecode);
         for (index, weight) in WEIGHTS.into_iter().enumerate() {
             write_font(&mut pdf, weight, font(index).get());
@@ -225,9 +229,19 @@ fn write_font(pdf: &mut Pdf, weight: Weight, first: i32) {
         .cap_height(about.ascent)
         .stem_v(80.0)
         .font_file2(file);
-    let data = miniz_oxide::deflate::compress_to_vec_zlib(about.file, LEVEL);
+    let data = deflated(about.file);
     pdf.stream(file, &data).filter(Filter::FlateDecode).pair(Name(b"Length1"), about.file.len() as i32);
     let mut map = UnicodeCmap::new(Name(b"Signorini"), INFO);
     about.letters.iter().for_each(|&(glyph, letter)| map.pair(glyph, letter));
     pdf.cmap(unicode, &map.finish());
+}
+
+/// `bytes` in the zlib format, as a PDF file holds them.
+fn deflated(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::new(LEVEL));
+    // Memory takes all that is written to it.
+    match encoder.write_all(bytes) {
+        Ok(()) => encoder.finish().unwrap_or_default(),
+        Err(_) => Vec::new(),
+    }
 }

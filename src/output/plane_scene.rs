@@ -154,6 +154,17 @@ impl PlaneScene {
             .collect()
     }
 
+    /// The scene by itself, with its own magnification.
+    ///
+    /// # Errors
+    /// As [`ContactPicture::draw`].
+    #[cfg(feature = "cli")]
+    pub(super) fn draw(&self) -> Result<super::Drawing, Error> {
+        let magnification = self.magnification();
+        let (fields, outlines) = (self.fields(), self.obstacles(magnification));
+        self.picture(&fields, &lines(&outlines), magnification).draw()
+    }
+
     /// The obstacles beside a body whose displacement is magnified: each gap is magnified with it, so that body and obstacle touch
     /// in the picture where they touch.
     pub(super) fn obstacles(&self, magnification: f64) -> Vec<(Vec<[f64; 2]>, [f64; 2])> {
@@ -186,12 +197,36 @@ impl PlaneScene {
 }
 
 impl Outline {
+    /// The candidates around the nearest one, as far as the boundary goes on across the approach direction: those of a closed boundary
+    /// that turn away from the obstacle have no part of it before them.
+    fn facing(&self) -> &[[[f64; 2]; 2]] {
+        let across = |[[x, y], _]: &[[f64; 2]; 2]| self.inside[0] * y - self.inside[1] * x;
+        let distance = |[_, way]: &[[f64; 2]; 2]| way[0] * self.inside[0] + way[1] * self.inside[1];
+        let nearest = (0..self.over.len()).min_by(|&a, &b| distance(&self.over[a]).total_cmp(&distance(&self.over[b])));
+        let Some(nearest) = nearest else { return &self.over };
+        let goes_on =
+            |from: usize, to: usize, sign: f64| sign * (across(&self.over[to]) - across(&self.over[from])) > 0.0;
+        let (mut first, mut last) = (nearest, nearest);
+        let beside = (nearest + 1).min(self.over.len() - 1).max(1);
+        let sign = if across(&self.over[beside]) > across(&self.over[beside - 1]) { 1.0 } else { -1.0 };
+        while last + 1 < self.over.len() && goes_on(last, last + 1, sign) {
+            last += 1;
+        }
+        while first > 0 && goes_on(first - 1, first, sign) {
+            first -= 1;
+        }
+        &self.over[first..=last]
+    }
+
     fn magnified(&self, magnification: f64) -> Vec<[f64; 2]> {
         if magnification == 1.0 || self.over.len() < 2 {
             return self.line.clone();
         }
         let mut points: Vec<[f64; 2]> =
-            self.over.iter().map(|[at, way]| [0, 1].map(|axis| at[axis] + magnification * way[axis])).collect();
+            self.facing().iter().map(|[at, way]| [0, 1].map(|axis| at[axis] + magnification * way[axis])).collect();
+        if points.len() < 2 {
+            return self.line.clone();
+        }
         // It goes on straight beyond the candidates.
         let beyond =
             |last: [f64; 2], before: [f64; 2]| [0, 1].map(|axis| last[axis] + 50.0 * (last[axis] - before[axis]));

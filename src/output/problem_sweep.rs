@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
+use super::certificate::conditions;
 use super::gallery::{Pictures, Wanted};
 use super::plot::line_plots_for;
-use super::report::{MOST_EVENTS, columns, conditions, plural, printable};
+use super::report::{MOST_EVENTS, columns, plural, printable};
 use super::{Plot, Quantity, Series, write_files, write_picture};
 use crate::error::Error;
 use crate::qp::solution_files;

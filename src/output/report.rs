@@ -1,5 +1,6 @@
 //! Answers as text and as JSON.
 
+use super::certificate::{CertificateWords, conditions};
 #[cfg(feature = "cli")]
 use crate::error::memory;
 use crate::scene::{Resultant, Rule, Segment, Units};
@@ -11,11 +12,6 @@ use crate::study::{Agreement, AnswerWarning, ContactSummary, Summary, Sweep, Swe
 /// Text on one line, without characters that would steer a terminal.
 pub fn printable(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { c.escape_default().to_string() } else { c.to_string() }).collect()
-}
-
-/// A number in two digits.
-pub(super) fn number(value: f64) -> String {
-    if value == 0.0 { "0".to_string() } else { format!("{value:.1e}") }
 }
 
 /// A number with its unit.
@@ -209,7 +205,7 @@ fn listed(name: &str, sentences: Vec<String>) -> String {
 const NAMED_ROWS: usize = 8;
 
 /// How much of the contact set is proven.
-fn proven_text(proven: &ProvenSet) -> String {
+pub(super) fn proven_text(proven: &ProvenSet) -> String {
     let (open, closed) = (proven.open.count(), proven.closed.count());
     let undecided: Vec<usize> = proven.undecided().collect();
     let of = format!("{closed} proven closed, {open} proven open by the bound below");
@@ -280,31 +276,10 @@ pub(super) fn entry(name: &str, content: &str) -> String {
 
 /// What an answer was held against, and how it did.
 fn certificate_text(certificate: &Certificate, goal: Goal) -> String {
-    let certified = goal.is_met_by(certificate);
-    let verdict = if certified { "certified to" } else { "NOT certified to" };
-    let bound = certificate.energy_error_bound;
-    if let Some(accuracy) = goal.accuracy.filter(|_| bound.is_finite()) {
-        let measured = if certificate.bound_is_measured { ", measured" } else { "" };
-        let what = format!("{verdict} {accuracy:.1e} of the energy norm: the error is at most {bound:.1e}{measured}");
-        return entry("certificate", &what);
-    }
-    let mut text = entry("certificate", &format!("{verdict} {:.1e}, each relative:", goal.tolerance));
-    for (name, formula, value) in conditions(certificate) {
-        text += &entry("", &format!("{name:<18}{formula:<38}{value}"));
-    }
-    if certificate.parts > 1 {
-        text += &entry(
-            "",
-            &format!("of {} parts the worst is at most {:.1e} off", certificate.parts, certificate.part_error_bound),
-        );
-    }
-    if certified && certificate.part_error_bound > goal.tolerance {
-        text += &entry("", "what is above the tolerance is explained by rounding the displacement to double precision");
-    }
-    if bound.is_infinite() {
-        text += &entry("", "no error bound: the conditions alone do not tell how far off the displacement is");
-    }
-    text
+    let CertificateWords { verdict, conditions, notes } = CertificateWords::of(certificate, goal);
+    let condition = |(name, formula, value): &(&str, &str, String)| format!("{name:<18}{formula:<38}{value}");
+    let lines = conditions.iter().map(condition).chain(notes);
+    entry("certificate", &verdict) + &lines.map(|line| entry("", &line)).collect::<String>()
 }
 
 /// The report of a verification.
@@ -375,22 +350,6 @@ pub fn sweep_text(title: &str, sweep: &Sweep, units: &Units) -> String {
 
 fn in_unit(name: &str, unit: &str) -> String {
     if unit.is_empty() { name.to_string() } else { format!("{name} [{}]", printable(unit)) }
-}
-
-pub(super) fn conditions(certificate: &Certificate) -> [(&'static str, &'static str, String); 6] {
-    let bound = match certificate.energy_error_bound {
-        bound if bound.is_finite() && certificate.bound_is_measured => format!("{}, measured", number(bound)),
-        bound if bound.is_finite() => number(bound),
-        _ => "unknown".to_string(),
-    };
-    [
-        ("stationarity", "|K u - f - B' lambda|", number(certificate.stationarity)),
-        ("penetration", "max (B u - g)", number(certificate.penetration)),
-        ("adhesion", "max lambda", number(certificate.adhesion)),
-        ("complementarity", "|lambda (B u - g)|", number(certificate.complementarity)),
-        ("duality gap", "u'K u - f'u - lambda'g", number(certificate.duality_gap)),
-        ("energy error", "|u - u*|_K / |u|_K is at most", bound),
-    ]
 }
 
 /// The table of a comparison, and the line that says whether the methods agree.

@@ -1,6 +1,7 @@
 //! A trade-off as a table and as comma-separated values.
 
-use super::report::{columns, number, plural, printable};
+use super::certificate::number;
+use super::report::{columns, plural, printable};
 use crate::study::{Tradeoff, TradeoffPoint};
 
 /// The energy error of an answer that is called loose.

@@ -1,6 +1,7 @@
 //! What is learnt from more than one solve, and the numbers that a report shows.
 
 mod compare;
+mod exact_path;
 mod motion;
 mod motion_tradeoff;
 mod moving_mean;

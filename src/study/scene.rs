@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use serde::Serialize;
 
+use super::exact_path::ExactPath;
 #[cfg(feature = "cli")]
 use super::warnings::untouched;
 use super::warnings::{check_approach, of_scene, point_support};
@@ -156,6 +157,10 @@ pub struct Sweep {
     pub events: Vec<SweepEvent>,
     /// Force, width and pressure between, exactly; empty where the events are.
     pub corners: Vec<SweepCorner>,
+    /// The answers between, if the events are known.
+    #[serde(skip)]
+    #[cfg_attr(not(feature = "cli"), allow(dead_code))]
+    pub(crate) path: Option<ExactPath>,
 }
 
 /// Solves a scene at every one of `gaps`; an answer that is not certified is an answer here.
@@ -192,8 +197,9 @@ pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, 
     if settings.watch.is_stopped() {
         return Ok(Sweep { points, ..Sweep::default() });
     }
-    let (events, corners) = between(&prepared, &at_first, first, last)?;
-    Ok(Sweep { points, events, corners })
+    let Some(path) = between(&prepared, &at_first, last)? else { return Ok(Sweep { points, ..Sweep::default() }) };
+    let (events, corners) = (events(&path, &at_first), corners(&path, &at_first)?);
+    Ok(Sweep { points, events, corners, path: Some(path) })
 }
 
 /// Solves a scene at every one of `forces`, 0 or positive, of the one obstacle that a force presses. Without a force the obstacle
@@ -256,13 +262,9 @@ fn points(
     if points.is_empty() { Err(Error::Interrupted) } else { Ok(points) }
 }
 
-/// Events and corners between two gaps; none where the rows turn on the way, or where the body is not condensed.
-fn between(
-    prepared: &Prepared,
-    at_first: &Model,
-    first: f64,
-    last: f64,
-) -> Result<(Vec<SweepEvent>, Vec<SweepCorner>), Error> {
+/// The exact path between two gaps; none where the rows turn on the way, or where the body is not condensed.
+fn between(prepared: &Prepared, at_first: &Model, last: f64) -> Result<Option<ExactPath>, Error> {
+    let first = at_first.gap();
     let (at_last, at_middle) = (at_first.with_gap(last)?, at_first.with_gap((first + last) / 2.0)?);
     let rows = at_first.problem().contact();
     let (from, to) = (at_first.problem().gap(), at_last.problem().gap());
@@ -274,30 +276,37 @@ fn between(
             });
     // Without a factor there is no path.
     if first == last || !is_straight || prepared.hierarchy().is_some() {
-        return Ok((Vec::new(), Vec::new()));
+        return Ok(None);
     }
-    let Ok(path) = prepared.path(from, to) else { return Ok((Vec::new(), Vec::new())) };
-    let gap_at = |t: f64| (1.0 - t) * first + t * last;
+    Ok(prepared.path(from, to).ok().map(|path| ExactPath::new(path, at_first.clone(), last)))
+}
+
+/// The rows that touch or release on an exact path.
+fn events(path: &ExactPath, model: &Model) -> Vec<SweepEvent> {
     let event = |event: &Event| {
-        let node = at_first.rows()[event.row].node;
-        SweepEvent { gap: gap_at(event.at), row: event.row, node, touches: event.touches }
+        let node = model.rows()[event.row].node;
+        SweepEvent { gap: path.gap(event.at), row: event.row, node, touches: event.touches }
     };
+    path.path().events().iter().map(event).collect()
+}
+
+/// Force, width and pressure at both ends of every stretch of an exact path.
+fn corners(path: &ExactPath, model: &Model) -> Result<Vec<SweepCorner>, Error> {
     let mut corners = Vec::new();
-    for piece in path.pieces() {
-        for t in [piece.from, piece.to] {
-            let multiplier = path.multiplier_on(piece, t);
-            let pressure_max = at_first.pressure(&multiplier)?.into_iter().fold(0.0, f64::max);
-            let closed = path.contact_set_on(piece);
+    for piece in 0..path.pieces() {
+        let (closed, multipliers, pressures) =
+            (path.contact_set(piece), path.multipliers(piece), path.pressures(piece)?);
+        for ((share, multiplier), pressure) in path.ends(piece).into_iter().zip(&multipliers).zip(pressures) {
             corners.push(SweepCorner {
-                gap: gap_at(t),
-                force: -multiplier.iter().sum::<f64>() * at_first.parts_of_whole(),
-                width: contact_width(at_first, &closed),
-                area: contact_area(at_first, &closed),
-                pressure_max,
+                gap: path.gap(share),
+                force: -multiplier.iter().sum::<f64>() * model.parts_of_whole(),
+                width: contact_width(model, &closed),
+                area: contact_area(model, &closed),
+                pressure_max: pressure.into_iter().fold(0.0, f64::max),
             });
         }
     }
-    Ok((path.events().iter().map(event).collect(), corners))
+    Ok(corners)
 }
 
 /// `count` gaps from `first` to `last`, both included.

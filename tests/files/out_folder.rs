@@ -28,6 +28,19 @@ fn filled(path: &Path) -> [f64; 2] {
     [0, 1].map(|axis| (ends[axis][1] as f64 - ends[axis][0] as f64 + 1.0) / (sides[axis] - 2.0 * MARGIN))
 }
 
+/// A page holds its data as JSON, asks for nothing from anywhere, and has nothing in it that ends its scripts early.
+fn check_page(name: &str, page: &str) {
+    let (_, data) = page.split_once("<script type=\"application/json\" id=\"data\">").expect(name);
+    let (data, rest) = data.split_once("</script>").expect(name);
+    let data: Value = serde_json::from_str(data).unwrap_or_else(|error| panic!("{name}: {error}"));
+    assert!(data["about"]["version"].is_string() && data["units"].is_object(), "{name}");
+    assert_eq!(rest.matches("</script>").count(), 2, "{name}: arrays and scripts");
+    for address in ["http://", "https://", "src=\"/", "@import", "fetch(", "XMLHttpRequest"] {
+        let own = page.replace("http://www.w3.org/2000/svg", "");
+        assert!(!own.contains(address), "{name} names {address}");
+    }
+}
+
 /// The names in a folder, each file read once in the way of its kind.
 fn checked(folder: &Path) -> BTreeSet<String> {
     let mut names = BTreeSet::new();
@@ -79,6 +92,7 @@ fn checked(folder: &Path) -> BTreeSet<String> {
                 assert!(!read_vector(&path).unwrap().is_empty())
             }
             Some("mtx") => {}
+            Some("html") => check_page(&name, &text()),
             Some("json") => assert!(serde_json::from_slice::<Value>(&bytes).unwrap().is_object()),
             Some("csv") => {
                 let csv = text();
@@ -122,6 +136,7 @@ fn solve_leaves_answer_fields_pictures_and_report() {
     let steps = run.json()["history"].as_array().unwrap().len();
     let mut expected =
         names(&["u.mtx", "lambda.mtx", "dofs.csv", "rows.csv", "contact.csv", "solution.vtu", "report.json"]);
+    expected.insert("report.html".into());
     expected.extend(pictures((1..=steps).map(|step| format!("iteration-{step}")).chain(["contact".to_string()])));
     assert_eq!(found, expected);
     assert!(steps >= 2);
@@ -188,7 +203,8 @@ fn compare_leaves_the_pressure_of_three_methods_too() {
     desk.write("block.json", scene().to_string());
     let run = desk.run(&["compare", "block.json", "--format", "json", "--out", "o"]).ends_with(0);
     let found = checked(&desk.path("o"));
-    let wanted = names(&["pressure.svg", "pressure.png", "contact.svg", "iteration-1.png", "solution.vtu", "u.mtx"]);
+    let wanted =
+        names(&["pressure.svg", "pressure.png", "contact.svg", "iteration-1.png", "solution.vtu", "report.html"]);
     assert!(found.is_superset(&wanted), "{found:?}");
     let report: Value = serde_json::from_slice(&fs::read(desk.path("o/report.json")).unwrap()).unwrap();
     assert_eq!(report, run.json());
@@ -201,7 +217,7 @@ fn sweep_leaves_a_picture_for_each_gap_and_the_curves() {
     desk.run(&["sweep", "block.json", "--gaps", "-0.01:-0.03:3", "--out", "o"]).ends_with(0);
     let stems = ["gap-01", "gap-02", "gap-03", "force-width"].map(String::from);
     let mut expected = pictures(stems);
-    expected.insert("report.json".into());
+    expected.extend(names(&["report.json", "report.html"]));
     assert_eq!(checked(&desk.path("o")), expected);
 }
 
@@ -226,7 +242,7 @@ fn a_problem_directory_gets_its_answer_beside_its_files() {
     desk.run(&["solve", "p", "--out", "p"]).ends_with(0);
     assert_eq!(
         checked(&desk.path("p")),
-        names(&["K.mtx", "f.mtx", "B.mtx", "g.mtx", "u.mtx", "lambda.mtx", "report.json"])
+        names(&["K.mtx", "f.mtx", "B.mtx", "g.mtx", "u.mtx", "lambda.mtx", "report.json", "report.html"])
     );
 }
 

@@ -85,6 +85,15 @@ impl Path {
         self.prepared.starting_from(self.contact_set(t)).solve(&self.gap(t))
     }
 
+    /// The displacement at `t`, length n, in length, without a certificate of its own.
+    ///
+    /// # Errors
+    /// As [`Prepared::boundary`].
+    #[cfg(feature = "cli")]
+    pub(crate) fn displacement(&self, t: f64) -> Result<Vec<f64>, Error> {
+        Ok(self.prepared.starting_from(self.contact_set(t)).boundary(&self.gap(t))?.displacement())
+    }
+
     fn piece(&self, t: f64) -> Option<&Piece> {
         let index = self.walk.pieces.partition_point(|piece| piece.to < t);
         self.walk.pieces.get(index).or(self.walk.pieces.last())

@@ -1,0 +1,275 @@
+"""Opens `report.html` in a real browser: `SIGNORINI=target/debug/signorini python -m unittest reference/pages.py`.
+
+Every kind of page is made by the program and opened in a headless Chromium: no error, no request to anywhere, sliders that change what
+is shown, numbers that are those of the report, and a body that looks like the picture that the program draws itself.
+"""
+
+import base64
+import hashlib
+import json
+import os
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+from browser import Browser
+
+ROOT = Path(__file__).resolve().parent.parent
+PROGRAM = Path(os.environ.get("SIGNORINI", ROOT / "target/debug/signorini")).resolve()
+EXAMPLES = ROOT / "examples"
+PHONE = (390, 844)
+
+
+def run(*arguments: object) -> dict:
+    """The JSON report of the program; it must end well, or with an answer that is not certified."""
+    done = subprocess.run([PROGRAM, *map(str, arguments), "--format", "json"], capture_output=True, text=True, check=False)
+    if done.returncode not in (0, 4):
+        raise AssertionError(f"exit code {done.returncode}: {done.stderr}")
+    return json.loads(done.stdout)
+
+
+LOOK = """
+(async () => {
+  const image = new Image();
+  image.src = "data:image/png;base64,%s";
+  await image.decode();
+  const canvas = new OffscreenCanvas(image.width, image.height), brush = canvas.getContext("2d");
+  brush.drawImage(image, 0, 0);
+  const { data } = brush.getImageData(0, 0, image.width, image.height), right = Math.round(image.width * %f);
+  // Saturated pixels belong to the field; frames, meshes and texts are grey.
+  let box = [1e9, 1e9, -1, -1];
+  const rows = new Map(), columns = new Map(), add = (map, key) => map.set(key, (map.get(key) || 0) + 1);
+  const coloured = (x, y) => {
+    const [r, g, b] = data.subarray(4 * (y * image.width + x));
+    return Math.max(r, g, b) - Math.min(r, g, b) > 50 && !(r > 190 && g < 130 && b < 130);
+  };
+  for (let y = 0; y < image.height * %f; y++) for (let x = 0; x < right; x++) if (coloured(x, y)) { add(rows, y); add(columns, x); }
+  const many = [...rows.values()].reduce((a, b) => Math.max(a, b), 0), tall = [...columns.values()].reduce((a, b) => Math.max(a, b), 0);
+  const ys = [...rows].filter(([, n]) => n > 0.3 * many).map(([y]) => y), xs = [...columns].filter(([, n]) => n > 0.3 * tall).map(([x]) => x);
+  box = [Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)];
+  const colours = [];
+  for (const v of [0.15, 0.4, 0.65, 0.9]) for (const u of [0.1, 0.3, 0.5, 0.7, 0.9]) {
+    const sum = [0, 0, 0];
+    for (let j = -3; j <= 3; j++) for (let i = -3; i <= 3; i++) {
+      const x = Math.round(box[0] + u * (box[2] - box[0])) + i, y = Math.round(box[1] + v * (box[3] - box[1])) + j;
+      for (let k = 0; k < 3; k++) sum[k] += data[4 * (y * image.width + x) + k] / 49;
+    }
+    colours.push(sum);
+  }
+  return { width: box[2] - box[0] + 1, height: box[3] - box[1] + 1, colours };
+})()
+"""
+
+
+class Pages(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls) -> None:
+        cls.browser = Browser()
+        cls.addClassCleanup(cls.browser.close)
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = Path(folder.name)
+        cls.made = {}
+
+    def page(self, command: str, scene: Path, *options: object) -> tuple[Path, dict]:
+        """The page that a command leaves, and its report."""
+        key = (command, str(scene), options)
+        if key not in self.made:
+            out = self.folder / f"out-{len(self.made)}"
+            self.made[key] = (out / "report.html", run(command, scene, *options, "--out", out))
+        return self.made[key]
+
+    def opened(self, page: Path, **how: object) -> Browser:
+        self.browser.open(page, **how)
+        self.assertEqual(self.browser.faults(), [])
+        return self.browser
+
+    def slide(self, selector: str, value: float) -> None:
+        """Moves a slider as a user does."""
+        self.browser.ask(
+            f"(() => {{ const it = document.querySelector({json.dumps(selector)}); it.value = {value};"
+            " it.dispatchEvent(new Event('input', { bubbles: true })); })()"
+        )
+        self.browser.frame()
+
+    def drawn(self, view: str) -> str:
+        """The surface in a view, without what is drawn over it."""
+        self.browser.frame()
+        return self.browser.ask(f"View.all.find(view => view.host.matches({json.dumps(view)})).under.toDataURL()")
+
+    def text(self, selector: str) -> str:
+        return self.browser.ask(f"document.querySelector({json.dumps(selector)}).textContent")
+
+    def look(self, png: bytes, share: float, height: float = 1.0) -> dict:
+        """Where the coloured body stands in a picture, and its colours."""
+        # On a page without rules of its own.
+        self.browser.send("Page.navigate", url="about:blank")
+        return self.browser.ask(LOOK % (base64.b64encode(png).decode(), share, height))
+
+
+class Answers(Pages):
+    def test_the_page_of_an_answer_says_what_the_report_says(self) -> None:
+        scene = EXAMPLES / "indentation.json"
+        page, report = self.page("solve", scene)
+        browser = self.opened(page)
+        text = browser.ask("document.body.innerText")
+        self.assertIn(f"{report['contact']['count']} closed rows", text)
+        self.assertIn(hashlib.sha256(scene.read_bytes()).hexdigest(), text)
+        for name in ("stationarity", "penetration", "supports[0]", "linux"):
+            self.assertIn(name, text)
+        self.assertEqual(browser.ask("signorini.data.report.contact.force"), report["contact"]["force"])
+        closed = browser.ask("Array.from(signorini.data.contact.closed)")
+        self.assertEqual(sum(closed), report["contact"]["count"])
+        peak = browser.ask("Math.max(...signorini.data.contact.pressure)")
+        self.assertEqual(peak, report["contact"]["pressure_max"])
+
+    def test_sliders_change_what_is_drawn(self) -> None:
+        page, _ = self.page("solve", EXAMPLES / "indentation.json", "--method", "active-set")
+        browser = self.opened(page)
+        before = self.drawn("#answer .view")
+        self.slide("#answer input[aria-label='scale of the displacement']", 3)
+        self.assertEqual(self.text("#answer .controls output"), "3")
+        self.assertNotEqual(self.drawn("#answer .view"), before)
+        words, picture = self.text("#search-facts"), self.drawn("#search .view")
+        self.slide("#search .slider input[type=range]", 1)
+        self.assertNotEqual(self.text("#search-facts"), words)
+        self.assertNotEqual(self.drawn("#search .view"), picture)
+        self.assertEqual(browser.faults(), [])
+
+    def test_keys_turn_a_body_in_space_and_the_pointer_asks_it(self) -> None:
+        page, _ = self.page("solve", EXAMPLES / "ball.json")
+        browser = self.opened(page)
+        before = self.drawn("#answer .view")
+        browser.ask("document.querySelector('#answer .top').focus()")
+        browser.send("Input.dispatchKeyEvent", type="keyDown", key="ArrowRight")
+        browser.frame()
+        self.assertNotEqual(self.drawn("#answer .view"), before)
+        place = browser.ask(
+            "(() => { const v = signorini.answer.view, p = v.place(v.vertex(0)), b = v.over.getBoundingClientRect();"
+            " v.over.scrollIntoView(); const c = v.over.getBoundingClientRect(); return [c.x + p[0], c.y + p[1]]; })()"
+        )
+        browser.send("Input.dispatchMouseEvent", type="mouseMoved", x=place[0], y=place[1])
+        self.assertIn("node ", self.text("#answer .view .tip"))
+        self.assertIn("von Mises", self.text("#answer .view .tip"))
+        self.assertEqual(browser.faults(), [])
+
+    def test_the_body_looks_like_the_still_picture_with_and_without_webgl(self) -> None:
+        page, _ = self.page("solve", EXAMPLES / "indentation.json")
+        still = self.look((page.parent / "contact.png").read_bytes(), 0.5, 0.8)
+        for fragment in ("", "#painter"):
+            with self.subTest(fragment):
+                browser = self.opened(page, fragment=fragment)
+                browser.ask("signorini.answer.view.mesh = false; signorini.answer.marksOpen = false; 1")
+                self.slide("#answer input[aria-label='scale of the displacement']", 0)
+                seen = self.look(browser.picture("#answer .view"), 1.0)
+                self.assertGreater(seen["width"], 300)
+                ratio = seen["width"] / seen["height"] * still["height"] / still["width"]
+                self.assertAlmostEqual(ratio, 1.0, delta=0.04)
+                off = [max(abs(a - b) for a, b in zip(*pair, strict=True)) for pair in zip(seen["colours"], still["colours"], strict=True)]
+                # Under the obstacle and its shade a point or two may differ.
+                self.assertLess(sorted(off)[len(off) * 3 // 4], 24, off)
+
+    def test_titles_and_names_are_text(self) -> None:
+        scene = json.loads((EXAMPLES / "indentation.json").read_text())
+        scene["title"] = "</script><img src=x onerror=alert(1)> {{arrays}} & \"quoted\" <!--"
+        scene["units"] = {"length": "<b>m</b>", "force": "</style>"}
+        path = self.folder / "hostile.json"
+        path.write_text(json.dumps(scene))
+        page, _ = self.page("solve", path)
+        browser = self.opened(page)
+        self.assertEqual(browser.ask("document.querySelector('h1').textContent"), scene["title"])
+        self.assertEqual(browser.ask("document.querySelectorAll('img, b').length"), 0)
+
+    def test_a_phone_shows_the_page_without_scrolling_sideways(self) -> None:
+        for scheme in ("light", "dark"):
+            page, _ = self.page("compare", EXAMPLES / "indentation.json")
+            browser = self.opened(page, size=PHONE, scheme=scheme)
+            self.assertLessEqual(browser.ask("document.documentElement.scrollWidth"), PHONE[0])
+        self.assertIn("penalty", self.text("#methods"))
+
+    def test_paper_is_light_and_shows_the_surfaces(self) -> None:
+        page, _ = self.page("solve", EXAMPLES / "ball.json")
+        browser = self.opened(page, scheme="dark")
+        paper = "getComputedStyle(document.documentElement).getPropertyValue('--paper')"
+        middle = (
+            "(() => { const o = View.all[0].over, d = o.getContext('2d').getImageData(o.width / 2, o.height * 0.8, 1, 1).data;"
+            " return d[0] + d[1] + d[2]; })()"
+        )
+        self.assertNotEqual(browser.ask(paper), "#ffffff")
+        self.assertEqual(browser.ask(middle), 0)
+        browser.ask("window.dispatchEvent(new Event('beforeprint')); 1")
+        self.assertEqual(browser.ask(paper), "#ffffff")
+        self.assertGreater(browser.ask(middle), 300)
+        browser.ask("window.dispatchEvent(new Event('afterprint')); 1")
+        self.assertEqual(browser.ask(middle), 0)
+
+    def test_a_page_of_every_example_opens(self) -> None:
+        for scene in sorted(EXAMPLES.glob("*.json")):
+            with self.subTest(scene.name):
+                page, _ = self.page("solve", scene)
+                self.opened(page)
+
+
+class Sweeps(Pages):
+    GAPS = "-0.01:-0.10:4"
+
+    def test_the_slider_is_exact_at_every_position(self) -> None:
+        scene = json.loads((EXAMPLES / "indentation.json").read_text())
+        page, report = self.page("sweep", EXAMPLES / "indentation.json", "--gaps=" + self.GAPS)
+        browser = self.opened(page)
+        self.assertGreater(len(report["corners"]), 4)
+        for point in report["points"]:
+            force = browser.ask(f"exactFrame(signorini.data, {point['gap']!r}).facts.force")
+            self.assertAlmostEqual(force / point["contact"]["force"], 1.0, delta=1e-11)
+        # Between the gaps of the sweep the page agrees with a solve of its own.
+        for gap in (-0.01234567, -0.0471, -0.0913579):
+            path = self.folder / "between.json"
+            path.write_text(json.dumps({**scene, "gap": gap}))
+            solved = run("solve", path)
+            facts = browser.ask(f"exactFrame(signorini.data, {gap!r}).facts")
+            self.assertEqual(facts["count"], solved["contact"]["count"])
+            for name in ("force", "pressure_max", "width"):
+                self.assertAlmostEqual(facts[name] / solved["contact"][name], 1.0, delta=1e-10, msg=name)
+
+    def test_the_slider_moves_the_body_and_its_numbers(self) -> None:
+        page, _ = self.page("sweep", EXAMPLES / "indentation.json", "--gaps=" + self.GAPS)
+        browser = self.opened(page)
+        words, picture = self.text("#facts"), self.drawn("#answer .view")
+        self.slide("#answer .slider input[type=range]", 0.73)
+        self.assertNotEqual(self.text("#facts"), words)
+        self.assertNotEqual(self.drawn("#answer .view"), picture)
+        browser.ask("[...document.querySelectorAll('button')].find(b => b.textContent === 'next event').click()")
+        gap = browser.ask("document.querySelector('#answer input[type=number]').valueAsNumber")
+        self.assertIn(gap, browser.ask("signorini.data.sweep.events.map(event => event.gap)"))
+        self.assertEqual(browser.faults(), [])
+
+
+class Motions(Pages):
+    def test_the_time_slider_moves_the_body_and_the_energies(self) -> None:
+        page, report = self.page("solve", ROOT / "tools/impact/bouncing_bar.json")
+        browser = self.opened(page)
+        words, picture = self.text("#facts"), self.drawn("#answer .view")
+        last = browser.ask("Number(document.querySelector('#answer .slider input').max)")
+        self.assertGreater(last, 3)
+        self.slide("#answer .slider input[type=range]", last // 2)
+        self.assertNotEqual(self.text("#facts"), words)
+        self.assertNotEqual(self.drawn("#answer .view"), picture)
+        total = browser.ask("signorini.data.motion.history.at(-1)")
+        self.assertAlmostEqual(total / report["energy"]["last"]["total"], 1.0, delta=1e-12)
+        self.assertEqual(browser.faults(), [])
+
+
+class Tradeoffs(Pages):
+    def test_a_point_of_a_trade_off_tells_its_values(self) -> None:
+        page, report = self.page("tradeoff", EXAMPLES / "bar.json", "--runs", "1", "--refinements", "0")
+        browser = self.opened(page)
+        count = browser.ask("document.querySelectorAll('#tradeoff circle[tabindex]').length")
+        self.assertEqual(count, len(report["points"]))
+        browser.ask("document.querySelector('#tradeoff circle[tabindex]').focus()")
+        self.assertIn(" s\nenergy error ", self.text("#tradeoff .tip"))
+        self.assertEqual(browser.faults(), [])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,93 @@
+//! The steps of the search for the contact set, each with the body that it stands for.
+
+use std::sync::Arc;
+
+use super::ticks::brief;
+use crate::error::Error;
+use crate::qp::{Method, Penalty, Settings, solve, with_contact_sets};
+use crate::scene::{Answer, Model};
+use crate::solution::Iteration;
+
+/// Of more iterations than this some are left out.
+const MOST_ITERATIONS: usize = 12;
+
+/// A step that is shown.
+pub(super) struct Step {
+    /// Its place in the history.
+    pub index: usize,
+    /// `iteration-3`, or `rung-3` of a penalty loop.
+    pub name: String,
+    /// The same in words.
+    pub what: String,
+    /// The body with the rows of the set held at their gaps, or at the penalty.
+    pub answer: Answer,
+}
+
+/// The displacement and the multiplier that an iteration worked with; `None` where it had none.
+type Found = Option<(Vec<f64>, Vec<f64>)>;
+
+/// For each set of the history of a body in the plane the displacement with the rows of the set held at their gaps; of a penalty loop
+/// one for each penalty, with its settled set. A set that does not hold the body by itself has no displacement to show.
+///
+/// # Errors
+/// [`Error::Length`] for the history of another model.
+pub(super) fn iterations(model: &Arc<Model>, history: &[Iteration]) -> Result<Vec<Step>, Error> {
+    if model.mesh().dimension() != 2 || history.is_empty() {
+        return Ok(Vec::new());
+    }
+    let is_last_of_rung = |&index: &usize| {
+        let penalty = history[index].penalty;
+        penalty > 0.0 && history.get(index + 1).is_none_or(|next| next.penalty != penalty)
+    };
+    let rungs: Vec<usize> = (0..history.len()).filter(is_last_of_rung).collect();
+    let (steps, name) = match rungs.is_empty() {
+        true => ((0..history.len()).collect(), "iteration"),
+        false => (rungs, "rung"),
+    };
+    let held_at = if name == "iteration" { with_contact_sets(model.problem()).ok() } else { None };
+    let find = |step: &Iteration| -> Found {
+        match &held_at {
+            Some(held_at) => held_at(&step.contact_set).ok(),
+            None if step.penalty > 0.0 => of_penalty(model, step.penalty),
+            None => None,
+        }
+    };
+    let chosen = evenly(steps.len(), MOST_ITERATIONS);
+    let mut shown = Vec::new();
+    for &place in &chosen {
+        let (index, number) = (steps[place], place + 1);
+        let step = &history[index];
+        let Some((displacement, multiplier)) = find(step) else { continue };
+        let mut what = match step.penalty > 0.0 {
+            true => format!("penalty {} times the local stiffness", brief(step.penalty)),
+            false => format!("iteration {number} of {}", steps.len()),
+        };
+        if chosen.len() < steps.len() {
+            what += &format!(" ({} of them drawn)", chosen.len());
+        }
+        let answer = Answer::new(model.clone(), &displacement, &multiplier, &step.contact_set)?;
+        shown.push(Step { index, name: format!("{name}-{number}"), what, answer });
+    }
+    Ok(shown)
+}
+
+/// The settled answer of the penalty loop at one penalty.
+fn of_penalty(model: &Model, penalty: f64) -> Found {
+    let ladder = Penalty { first: penalty, last: penalty, ..Penalty::default() };
+    let settings = Settings { prove: false, ..Settings::with_method(Method::Penalty(ladder)) };
+    let solution = match solve(model.problem(), &settings) {
+        Ok(solution) => solution,
+        // Certified or not: no rung but the last is exact.
+        Err(Error::NotCertified { solution, .. }) => *solution,
+        Err(_) => return None,
+    };
+    Some((solution.displacement, solution.multiplier))
+}
+
+/// At most `most` indices below `count`, the first and the last among them, at even distances.
+fn evenly(count: usize, most: usize) -> Vec<usize> {
+    if count <= most {
+        return (0..count).collect();
+    }
+    (0..most).map(|k| k * (count - 1) / (most - 1)).collect()
+}

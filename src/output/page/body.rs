@@ -1,0 +1,106 @@
+//! What is drawn of a body: its cells in the plane, its surface in space, a strip for a bar.
+
+use serde::Serialize;
+
+use super::packed::{Packed, Packer};
+use crate::scene::Model;
+
+/// Half of the height of the strip that stands for a bar, over its length.
+const HALF_STRIP: f64 = 0.04;
+
+/// The cells that are drawn, and the nodes at their vertices.
+pub(super) struct Shape {
+    /// The node of each vertex.
+    pub nodes: Vec<usize>,
+    /// The place of each vertex.
+    pub places: Vec<[f64; 3]>,
+    /// The vertices of each cell, corners first.
+    cells: Vec<usize>,
+    corners: usize,
+    /// The corners between which the other vertices of a cell lie.
+    mids: Vec<[usize; 2]>,
+    /// A vertex of each node; none inside a body in space.
+    pub vertex_of: Vec<Option<usize>>,
+}
+
+/// The same as it stands in a page.
+#[derive(Debug, Serialize)]
+pub(super) struct Body {
+    /// Coordinates of the model: 1, 2 or 3.
+    dimension: usize,
+    /// `true` if x is a radius.
+    axisymmetric: bool,
+    nodes: Packed,
+    places: Packed,
+    cells: Packed,
+    corners: usize,
+    mids: Vec<[usize; 2]>,
+}
+
+impl Shape {
+    pub fn of(model: &Model) -> Self {
+        let mesh = model.mesh();
+        match mesh.dimension() {
+            1 => strip(model),
+            2 => {
+                let nodes: Vec<usize> = (0..mesh.nodes().len()).collect();
+                let (corners, mids) = (mesh.kind().corners(), mesh.kind().reference().mid_sides.to_vec());
+                let cells = mesh.elements().flatten().copied().collect();
+                let vertex_of = nodes.iter().copied().map(Some).collect();
+                Shape { places: mesh.nodes().to_vec(), nodes, cells, corners, mids, vertex_of }
+            }
+            _ => surface(model),
+        }
+    }
+
+    /// Values of the vertices from nodal ones with `stride` components a node.
+    pub fn at_vertices(&self, nodal: &[f64], stride: usize) -> Vec<f64> {
+        let of_node = |&node: &usize| nodal[stride * node..stride * (node + 1)].iter().copied();
+        self.nodes.iter().flat_map(of_node).collect()
+    }
+
+    pub fn packed(&self, model: &Model, packer: &mut Packer) -> Body {
+        let dimension = model.mesh().dimension();
+        let shown = dimension.max(2);
+        let places: Vec<f64> = self.places.iter().flat_map(|at| at[..shown].iter().copied()).collect();
+        Body {
+            dimension,
+            axisymmetric: model.body().formulation().is_axisymmetric(),
+            nodes: packer.whole(&self.nodes, 1),
+            places: packer.quantised(&places, shown),
+            cells: packer.whole(&self.cells, self.corners + self.mids.len()),
+            corners: self.corners,
+            mids: self.mids.clone(),
+        }
+    }
+}
+
+/// A bar as a strip along x: two vertices for each node, the lower one first.
+fn strip(model: &Model) -> Shape {
+    let mesh = model.mesh();
+    let half = HALF_STRIP * mesh.size();
+    let nodes: Vec<usize> = (0..mesh.nodes().len()).flat_map(|node| [node, node]).collect();
+    let places = mesh.nodes().iter().flat_map(|at| [[at[0], -half, 0.0], [at[0], half, 0.0]]).collect();
+    let cells = mesh.elements().flat_map(|ends| [2 * ends[0], 2 * ends[1], 2 * ends[1] + 1, 2 * ends[0] + 1]).collect();
+    let vertex_of = (0..mesh.nodes().len()).map(|node| Some(2 * node)).collect();
+    Shape { nodes, places, cells, corners: 4, mids: Vec::new(), vertex_of }
+}
+
+/// The surface of bodies in space.
+fn surface(model: &Model) -> Shape {
+    let mesh = model.mesh();
+    let surface = mesh.surface(0..mesh.element_count());
+    let mut vertex_of = vec![None; mesh.nodes().len()];
+    surface.connectivity.iter().for_each(|&node| vertex_of[node] = Some(0));
+    let nodes: Vec<usize> = (0..vertex_of.len()).filter(|&node| vertex_of[node].is_some()).collect();
+    nodes.iter().enumerate().for_each(|(vertex, &node)| vertex_of[node] = Some(vertex));
+    let reference = surface.kind.reference();
+    Shape {
+        places: nodes.iter().map(|&node| mesh.nodes()[node]).collect(),
+        cells: surface.connectivity.iter().filter_map(|&node| vertex_of[node]).collect(),
+        corners: reference.corners,
+        mids: reference.mid_sides.to_vec(),
+        nodes,
+        vertex_of,
+    }
+}

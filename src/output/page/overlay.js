@@ -1,0 +1,229 @@
+// What is drawn over a body: obstacles in the plane, supports, loads, forces, gaps, a scale.
+
+/** The outline of an obstacle in the plane, filled on its own side. */
+function paintOutline(view, brush, { outline, approach }, shift, dashed) {
+  const at = view.measure(),
+    points = [];
+  for (let i = 0; i < outline.length; i += 2) {
+    points.push(view.place([outline[i] + shift * approach[0], outline[i + 1] + shift * approach[1], 0], at));
+  }
+  const closed =
+    points.length > 3 && Math.hypot(points[0][0] - points.at(-1)[0], points[0][1] - points.at(-1)[1]) < 1e-6;
+  const far = 4 * (at.width + at.height),
+    away = [far * approach[0], -far * approach[1]];
+  const trace = list => list.forEach(([x, y], i) => (i ? brush.lineTo(x, y) : brush.moveTo(x, y)));
+  if (!dashed) {
+    brush.fillStyle = css(channels(view.ink("solid")), 0.4);
+    brush.beginPath();
+    trace(closed ? points : [...points, ...points.map(([x, y]) => [x + away[0], y + away[1]]).reverse()]);
+    brush.closePath();
+    brush.fill();
+  }
+  brush.strokeStyle = view.ink("edge");
+  brush.lineWidth = 1.8;
+  brush.setLineDash(dashed ? [7, 4] : []);
+  brush.beginPath();
+  trace(points);
+  brush.stroke();
+  brush.setLineDash([]);
+}
+
+/** An arrow from one place of the screen to another. */
+function paintArrow(brush, from, to, colour, width = 1.6) {
+  const [dx, dy] = [to[0] - from[0], to[1] - from[1]],
+    long = Math.hypot(dx, dy);
+  if (long < 2) return;
+  const head = Math.min(9, 0.6 * long),
+    [ux, uy] = [dx / long, dy / long];
+  brush.strokeStyle = brush.fillStyle = colour;
+  brush.lineWidth = width;
+  brush.beginPath();
+  brush.moveTo(from[0], from[1]);
+  brush.lineTo(to[0] - 0.7 * head * ux, to[1] - 0.7 * head * uy);
+  brush.stroke();
+  brush.beginPath();
+  brush.moveTo(to[0], to[1]);
+  brush.lineTo(to[0] - head * ux + 0.4 * head * uy, to[1] - head * uy - 0.4 * head * ux);
+  brush.lineTo(to[0] - head * ux - 0.4 * head * uy, to[1] - head * uy + 0.4 * head * ux);
+  brush.fill();
+}
+
+/** A text with a halo of the colour of the paper, kept inside the view. */
+function paintText(view, brush, text, x, y, colour) {
+  const at = view.measure(),
+    width = brush.measureText(text).width;
+  const [left, base] = [Math.max(4, Math.min(x, at.width - width - 4)), Math.max(14, Math.min(y, at.height - 6))];
+  brush.lineWidth = 4;
+  brush.strokeStyle = view.ink("paper");
+  brush.strokeText(text, left, base);
+  brush.fillStyle = colour;
+  brush.fillText(text, left, base);
+}
+
+/** Evenly chosen entries, at most so many. */
+function some(count, most) {
+  const every = Math.max(1, Math.ceil(count / most));
+  return Array.from({ length: Math.ceil(count / every) }, (_, i) => i * every);
+}
+
+/** Supports: squares where all directions are held, a plate across each direction that is held elsewhere. */
+function paintSupports(view, brush, { fixed, guided }, dimension) {
+  const at = view.measure(),
+    colour = view.ink("held"),
+    size = 3.2;
+  brush.fillStyle = brush.strokeStyle = colour;
+  // In space the surface hides those behind it: they are marks of the view.
+  for (const i of view.shape.flat ? some(fixed.length, 4000) : []) {
+    const [x, y] = view.place(view.vertex(fixed[i]), at);
+    brush.fillRect(x - size, y - size, 2 * size, 2 * size);
+  }
+  brush.lineWidth = 2.4;
+  for (const i of some(guided.vertices.length, 4000)) {
+    const point = view.vertex(guided.vertices[i]),
+      [x, y] = view.place(point, at);
+    const along = [0, 1, 2].map(k => (k < dimension ? guided.directions[dimension * i + k] : 0));
+    const [tx, ty] = view.place(
+      point.map((value, k) => value + along[k]),
+      at,
+    );
+    const long = Math.hypot(tx - x, ty - y) || 1,
+      [ux, uy] = [(tx - x) / long, (ty - y) / long];
+    brush.beginPath();
+    brush.moveTo(x - 6 * uy, y + 6 * ux);
+    brush.lineTo(x + 6 * uy, y - 6 * ux);
+    brush.stroke();
+  }
+}
+
+/** Loads: an arrow at each loaded node of the boundary, or the resultant where the whole body is loaded. */
+function paintLoads(view, brush, loads, resultant, dimension) {
+  const { vertices, forces, inside } = loads,
+    colour = view.ink("load"),
+    at = view.measure();
+  if (!vertices.length && !inside) return;
+  const force = i => [0, 1, 2].map(k => (k < dimension ? forces[dimension * i + k] : 0));
+  if (!inside && vertices.length < 0.6 * view.shape.count) {
+    let largest = 0;
+    for (let i = 0; i < vertices.length; i++) largest = Math.max(largest, Math.hypot(...force(i)));
+    for (const i of some(vertices.length, 60)) {
+      const f = force(i),
+        point = view.vertex(vertices[i]),
+        long = 38 / at.scale / largest;
+      paintArrow(
+        brush,
+        view.place(
+          point.map((value, k) => value - long * f[k]),
+          at,
+        ),
+        view.place(point, at),
+        colour,
+        1.4,
+      );
+    }
+  } else paintForce(view, brush, resultant?.centre ? resultant : wholeLoad(view, loads, dimension), colour, 60);
+}
+
+/** The arrow of a resultant, so many pixels long, that ends at its centre. */
+function paintForce(view, brush, { force, centre }, colour, pixels) {
+  const full = values => [0, 1, 2].map(k => values[k] || 0),
+    size = Math.hypot(...force);
+  if (!(size > 0) || !centre) return null;
+  const at = view.measure(),
+    end = full(centre),
+    long = pixels / at.scale / size;
+  const from = view.place(
+      end.map((value, k) => value - long * full(force)[k]),
+      at,
+    ),
+    to = view.place(end, at);
+  paintArrow(brush, from, to, colour, 2.4);
+  return from;
+}
+
+/** A length on the screen and the directions of the axes. */
+function paintScale(view, brush, unit) {
+  const at = view.measure(),
+    colour = view.ink("ink"),
+    y = at.height - 12;
+  const length = ticks(0, (0.3 * Math.min(at.width, 500)) / at.scale, 4).at(-1),
+    wide = length * at.scale;
+  brush.strokeStyle = colour;
+  brush.lineWidth = 1.5;
+  brush.beginPath();
+  const rule = [
+    [12, y - 4],
+    [12, y],
+    [12 + wide, y],
+    [12 + wide, y - 4],
+  ];
+  rule.forEach(([x, v], i) => (i ? brush.lineTo(x, v) : brush.moveTo(x, v)));
+  brush.stroke();
+  paintText(view, brush, inUnit(length, unit), 16, y - 6, colour);
+  const corner = [at.width - 44, at.height - 34];
+  ["x", "y", "z"].slice(0, view.shape.flat ? 2 : 3).forEach((name, axis) => {
+    const way = [view.axes[0][axis], -view.axes[1][axis]].map(part => 26 * part);
+    paintArrow(brush, corner, [corner[0] + way[0], corner[1] + way[1]], colour, 1.2);
+    paintText(view, brush, name, corner[0] + 1.3 * way[0] - 3, corner[1] + 1.3 * way[1] + 4, colour);
+  });
+}
+
+/** The smallest gap, from its node to the obstacle. */
+function paintGap(view, brush, rows, unit, dimension) {
+  if (!rows || !rows.count) return;
+  let least = 0;
+  for (let row = 1; row < rows.count; row++) if (rows.gaps[row] < rows.gaps[least]) least = row;
+  const gap = rows.gaps[least],
+    point = view.vertex(rows.vertices[least]);
+  if (!Number.isFinite(gap)) return;
+  const foot = point.map((value, k) => value + (k < dimension ? gap * rows.normals[dimension * least + k] : 0));
+  const [a, b] = [view.place(point), view.place(foot)],
+    colour = view.ink("closed");
+  brush.strokeStyle = colour;
+  brush.lineWidth = 2;
+  brush.beginPath();
+  brush.moveTo(a[0], a[1]);
+  brush.lineTo(b[0], b[1]);
+  brush.stroke();
+  for (const [x, y] of [a, b]) {
+    brush.beginPath();
+    brush.moveTo(x - 5, y);
+    brush.lineTo(x + 5, y);
+    brush.stroke();
+  }
+  paintText(
+    view,
+    brush,
+    `smallest gap ${inUnit(gap, unit, 4)}`,
+    Math.max(a[0], b[0]) + 10,
+    Math.abs(a[1] - b[1]) > 30 ? (a[1] + b[1]) / 2 + 4 : Math.max(a[1], b[1]) + 18,
+    colour,
+  );
+}
+
+/** The sum of nodal forces of a body that is loaded everywhere, at its middle. */
+function wholeLoad(view, { vertices, forces }, dimension) {
+  const force = Array.from({ length: dimension }, () => 0);
+  for (let i = 0; i < dimension * vertices.length; i++) force[i % dimension] += forces[i];
+  return { force, centre: view.shape.low.map((value, k) => (value + view.shape.high[k]) / 2) };
+}
+
+/** Contact rows in the plane, over the obstacle that they touch. */
+function paintMarks(view, brush, vertices, kinds) {
+  const at = view.measure();
+  vertices.forEach((vertex, i) => {
+    const [x, y] = view.place(view.vertex(vertex), at),
+      closed = kinds[i] === 1 || kinds[i] === 3,
+      undecided = kinds[i] >= 2,
+      size = closed ? 4.5 : 3.4;
+    brush.fillStyle = closed ? view.ink(undecided ? "undecided" : "closed") : view.ink("paper");
+    brush.strokeStyle = view.ink(undecided ? "undecided" : closed ? "paper" : "open");
+    brush.lineWidth = 1.1;
+    brush.beginPath();
+    if (undecided)
+      [0, 1, 2, 3].forEach(k => brush.lineTo(x + 1.3 * size * [1, 0, -1, 0][k], y + 1.3 * size * [0, 1, 0, -1][k]));
+    else brush.arc(x, y, size, 0, 7);
+    brush.closePath();
+    brush.fill();
+    brush.stroke();
+  });
+}

@@ -1,0 +1,321 @@
+// A view of answers with its controls: what colours it, how far the displacement is magnified, what is marked.
+
+/** Rows beyond this number are marked where they are closed or undecided only, until all are asked for. */
+const MOST_OPEN_MARKS = 3000;
+
+/** More marks than these are small. */
+const MANY_MARKS = 300;
+
+/** Ends of the lines of a mesh beyond which it hides what it lies on, and is left out until it is asked for. */
+const MOST_LINES = 200000;
+
+/** Displacement (three a vertex) and stress between two states. */
+function mixed(data, shape, [lower, upper, share]) {
+  const { dimension, count } = shape,
+    moved = new Float32Array(3 * count);
+  const a = lower.displacement,
+    b = upper.displacement;
+  for (let i = 0; i < count; i++) {
+    for (let k = 0; k < dimension; k++)
+      moved[3 * i + k] = a[dimension * i + k] * (1 - share) + b[dimension * i + k] * share;
+  }
+  if (share === 0 || lower === upper) return { moved, stress: lower.stress };
+  return { moved, stress: lower.stress.map((value, i) => value * (1 - share) + upper.stress[i] * share) };
+}
+
+/** The values by which a body is coloured, one a vertex. */
+function valuesOf(quantity, shape, { moved, stress }, frame, data) {
+  const values = new Float32Array(shape.count);
+  if (quantity === "pressure") {
+    frame.rows.forEach((row, i) => {
+      values[data.rows.vertices[row]] += frame.pressure[i];
+    });
+    if (shape.dimension === 1) for (let i = 0; i + 1 < values.length; i += 2) values[i + 1] = values[i];
+  } else if (quantity === "displacement") {
+    for (let i = 0; i < shape.count; i++) values[i] = Math.hypot(moved[3 * i], moved[3 * i + 1], moved[3 * i + 2]);
+  } else if (quantity !== "none") {
+    const components = stress.length / shape.count,
+      { value } = QUANTITIES[quantity];
+    for (let i = 0; i < shape.count; i++) values[i] = value(stress, components * i, components);
+  }
+  return values;
+}
+
+/** The lowest and the highest value. */
+function rangeOf(values) {
+  let [low, high] = [Infinity, -Infinity];
+  for (const value of values)
+    if (Number.isFinite(value)) {
+      low = Math.min(low, value);
+      high = Math.max(high, value);
+    }
+  return low <= high ? [low, high] : [0, 1];
+}
+
+class Panel {
+  /** `frames` are some of those that will be shown: colours and magnification are the same for all. */
+  constructor(host, data, shape, { label, frames, resultants }) {
+    Object.assign(this, { host, data, shape, frames, resultants, ranges: {}, showsForces: false });
+    this.quantity = shape.flat ? "sigma-2" : "von-mises";
+    this.box = element("div", host, null, "view");
+    this.view = new View(this.box, shape, {
+      table: data.colours.field.map(channels),
+      label,
+      paint: (view, brush) => this.paint(view, brush),
+      asked: vertex => this.told(vertex),
+    });
+    this.view.coloured = true;
+    this.view.mesh = shape.lines.length < MOST_LINES;
+    this.marksOpen = (data.rows?.count ?? 0) <= MOST_OPEN_MARKS;
+    addPatches(this.view, data);
+    this.bar = element("div", host, null, "bar");
+    this.addLegend();
+    this.addControls();
+    this.fit();
+  }
+
+  /** The window holds body and moved body, and the near part of the obstacles. */
+  fit() {
+    const { low, high, size, flat } = this.shape,
+      all = [...low, ...high].length && [[...low], [...high]];
+    let largest = 0;
+    for (const frame of this.frames) {
+      const { moved } = mixed(this.data, this.shape, frame.states),
+        at = new Float32Array(3 * this.shape.count);
+      for (let i = 0; i < at.length; i++) {
+        at[i] = this.shape.places[i] + moved[i];
+        largest = Math.max(largest, Math.abs(moved[i]));
+      }
+      const box = boxOf(at);
+      for (let k = 0; k < 3; k++) {
+        all[0][k] = Math.min(all[0][k], box.low[k]);
+        all[1][k] = Math.max(all[1][k], box.high[k]);
+      }
+    }
+    if (flat)
+      for (const { approach } of this.data.question.obstacles) {
+        for (let k = 0; k < 2; k++) all[approach[k] < 0 ? 0 : 1][k] += 0.1 * size * approach[k];
+      }
+    this.view.window = all;
+    const most = largest > 0 ? Number(((0.25 * size) / largest).toPrecision(2)) : 1;
+    this.most = Math.max(2, most);
+    this.scale.max = this.most;
+    this.scale.step = "any";
+    this.scale.value = 1;
+  }
+
+  range(quantity) {
+    if (!this.ranges[quantity]) {
+      const ranges = of =>
+        this.frames.map(frame =>
+          rangeOf(valuesOf(of, this.shape, mixed(this.data, this.shape, frame.states), frame, this.data)),
+        );
+      const all = ranges(quantity),
+        low = Math.min(...all.map(range => range[0])),
+        high = Math.max(...all.map(range => range[1]));
+      // A stress that is rounding beside the whole stress has one colour.
+      const least = quantity === "sigma-2" ? 1e-9 * Math.max(...ranges("von-mises").map(range => range[1])) : 0;
+      this.ranges[quantity] = high - low < least ? [low - least, high + least] : [low, high];
+    }
+    return this.ranges[quantity];
+  }
+
+  show(frame) {
+    this.frame = frame;
+    const field = mixed(this.data, this.shape, frame.states);
+    this.field = field;
+    const [low, high] = this.range(this.quantity);
+    Object.assign(this.view, {
+      coloured: this.quantity !== "none",
+      range: [low, high],
+      magnification: Number(this.scale.value),
+    });
+    this.view.state(field.moved, valuesOf(this.quantity, this.shape, field, frame, this.data));
+    this.view.patches.forEach(patch => {
+      patch.shift = this.shiftOf(patch.obstacle);
+    });
+    this.mark(frame);
+    const { name, unit } = QUANTITIES[this.quantity];
+    this.bar.hidden = this.quantity === "none";
+    this.bar.replaceChildren();
+    element("div", this.bar, `${name}${this.data.units[unit] ? ` [${this.data.units[unit]}]` : ""}`);
+    element("div", this.bar, null, "ramp").style.background =
+      `linear-gradient(to right, ${this.data.colours.field.join(", ")})`;
+    const ends = element("div", this.bar, null, "ends");
+    [low, (low + high) / 2, high].forEach(value => element("span", ends, shown(value, 4)));
+  }
+
+  /** How far an obstacle has moved from where the question shows it. */
+  shiftOf(obstacle) {
+    const [lower, upper, share] = this.frame.states,
+      { shift, approach } = this.data.question.obstacles[obstacle];
+    const by = lower.shifts[obstacle] * (1 - share) + upper.shifts[obstacle] * share - shift;
+    return approach.map(part => part * by);
+  }
+
+  mark({ closed, proven }) {
+    const { rows } = this.data,
+      vertices = [],
+      kinds = [];
+    for (let row = 0; row < (rows?.count ?? 0); row++) {
+      const kind = (closed[row] ? 1 : 0) + (proven && proven[row] === 0 ? 2 : 0);
+      if (kind === 0 && !this.marksOpen) continue;
+      vertices.push(rows.vertices[row]);
+      kinds.push(kind);
+    }
+    this.marks = [vertices, kinds];
+    this.view.markSize = vertices.length > MANY_MARKS ? 5 : 9;
+    if (!this.shape.flat) this.view.setMarks(vertices, kinds);
+  }
+
+  paint(view, brush) {
+    if (!this.frame) return;
+    const { data, shape } = this,
+      dashed = view.magnification !== 1;
+    if (view.obstacles && shape.flat)
+      data.question.obstacles.forEach((obstacle, index) => {
+        if (!obstacle.outline) return;
+        const [x, y] = this.shiftOf(index),
+          along = x * obstacle.approach[0] + y * obstacle.approach[1];
+        paintOutline(view, brush, obstacle, along, dashed);
+      });
+    if (shape.flat && this.marks) paintMarks(view, brush, ...this.marks);
+    if (this.showsForces)
+      for (const resultant of this.resultants ?? []) {
+        const from = paintForce(view, brush, resultant, view.ink("force"), 70);
+        if (from) paintText(view, brush, resultant.of, from[0] + 6, from[1] - 4, view.ink("force"));
+      }
+    paintScale(view, brush, data.units.length);
+    if (dashed && data.question.obstacles.length)
+      paintText(view, brush, "the obstacle stands where it is without magnification", 10, 18, view.ink("soft"));
+  }
+
+  told(vertex) {
+    const { shape, data, field, frame } = this,
+      { units } = data,
+      components = field.stress.length / shape.count,
+      dimension = shape.dimension;
+    const place = [0, 1, 2].slice(0, dimension).map(k => shape.places[3 * vertex + k]),
+      moved = [0, 1, 2].slice(0, dimension).map(k => field.moved[3 * vertex + k]);
+    const lines = [
+      `node ${shape.nodes[vertex]} at ${vectorShown(place, units.length, 4)}`,
+      `u = ${vectorShown(moved, units.length, 4)}`,
+    ];
+    for (const quantity of ["sigma-2", "von-mises"]) {
+      lines.push(
+        `${QUANTITIES[quantity].name.split(",")[0]} ${inUnit(QUANTITIES[quantity].value(field.stress, components * vertex, components), units.pressure, 4)}`,
+      );
+    }
+    for (let row = 0; row < (data.rows?.count ?? 0); row++) {
+      if (shape.nodes[data.rows.vertices[row]] !== shape.nodes[vertex]) continue;
+      const place = frame.rows.indexOf(row),
+        proof = frame.proven ? ["undecided", "proven open", "proven closed"][frame.proven[row]] : null;
+      lines.push(
+        `row ${row}: ${frame.closed[row] ? "closed" : "open"}${proof ? `, ${proof}` : ""}, pressure ${inUnit(place < 0 ? 0 : frame.pressure[place], units.pressure, 8)}`,
+      );
+      if (frame.remaining) lines.push(`gap left ${inUnit(frame.remaining[row], units.length, 6)}`);
+    }
+    return lines.join("\n");
+  }
+
+  addLegend() {
+    const legend = element("div", this.host, null, "legend");
+    const entry = (text, draw) => {
+      const span = element("span", legend),
+        mark = svg("svg", { viewBox: "0 0 20 20" }, span);
+      draw(mark);
+      span.append(text);
+    };
+    if (this.data.rows?.count) {
+      entry("closed row", mark => svg("circle", { cx: 10, cy: 10, r: 7, fill: "var(--closed)" }, mark));
+      entry("open row", mark =>
+        svg("circle", { cx: 10, cy: 10, r: 6, fill: "var(--paper)", stroke: "var(--open)", "stroke-width": 2 }, mark),
+      );
+      if (this.data.contact?.proven) {
+        entry("closed, undecided by the proof", mark =>
+          svg("path", { d: "M10 2 18 10 10 18 2 10Z", fill: "var(--undecided)" }, mark),
+        );
+        entry("open, undecided by the proof", mark =>
+          svg(
+            "path",
+            { d: "M10 3 17 10 10 17 3 10Z", fill: "var(--paper)", stroke: "var(--undecided)", "stroke-width": 2 },
+            mark,
+          ),
+        );
+      }
+    }
+  }
+
+  addControls() {
+    const controls = element("div", this.host, null, "controls"),
+      again = () => this.frame && this.show(this.frame);
+    const colour = element("label", controls, "colours "),
+      select = element("select", colour);
+    for (const [name, about] of Object.entries(QUANTITIES)) {
+      if (name !== "pressure" || this.data.rows?.count)
+        Object.assign(element("option", select, about.name), { value: name });
+    }
+    select.value = this.quantity;
+    select.addEventListener("change", () => {
+      this.quantity = select.value;
+      again();
+    });
+    this.select = select;
+    const slider = element("label", controls, "displacement × ", "slider");
+    this.scale = Object.assign(element("input", slider), { type: "range", min: 0, max: 2, value: 1 });
+    this.scale.setAttribute("aria-label", "scale of the displacement");
+    const told = element("output", slider, "1");
+    const moved = () => {
+      told.textContent = shown(Number(this.scale.value), 3);
+      again();
+    };
+    this.scale.addEventListener("input", moved);
+    const button = element("button", slider, "as it is");
+    button.type = "button";
+    button.addEventListener("click", () => {
+      this.scale.value = 1;
+      moved();
+    });
+    const check = (text, value, change) => {
+      const box = Object.assign(element("input", element("label", controls, `${text} `)), {
+        type: "checkbox",
+        checked: value,
+      });
+      box.addEventListener("change", () => {
+        change(box.checked);
+        again();
+      });
+    };
+    check("mesh", this.view.mesh, on => {
+      this.view.mesh = on;
+    });
+    if (this.data.question.obstacles.some(obstacle => !obstacle.is_body))
+      check("obstacle", true, on => {
+        this.view.obstacles = on;
+      });
+    if (this.data.rows?.count)
+      check("open rows", this.marksOpen, on => {
+        this.marksOpen = on;
+      });
+    if (this.resultants?.length)
+      check("resultants", false, on => {
+        this.showsForces = on;
+      });
+  }
+}
+
+/** The obstacles in space, as parts of a view. */
+function addPatches(view, data) {
+  data.question.obstacles.forEach(({ patch }, obstacle) => {
+    if (!patch) return;
+    const order = [];
+    for (let i = 0; i < patch.cells.length; i += 4) {
+      const [a, b, c, d] = patch.cells.subarray(i, i + 4);
+      order.push(a, b, c);
+      if (c !== d) order.push(a, c, d);
+    }
+    const name = `obstacle ${obstacle}`;
+    view.surface.set(name, { places: patch.places, order: new Uint32Array(order) });
+    view.patches.push({ name, obstacle, shift: [0, 0, 0] });
+  });
+}

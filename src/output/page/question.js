@@ -1,0 +1,77 @@
+// What was asked: the body with its supports, loads and obstacles.
+
+function questionSection(page, data, shape, summary) {
+  const own = section(page, "The question", "question"),
+    { question, units } = data,
+    box = element("div", own, null, "view");
+  const loads = summary?.resultants?.find(resultant => resultant.of === "loads");
+  const view = new View(box, shape, {
+    table: data.colours.field.map(channels),
+    label: "The body with its supports, loads and obstacles before anything has moved",
+    paint: (view, brush) => {
+      if (shape.flat)
+        question.obstacles.forEach(obstacle => obstacle.outline && paintOutline(view, brush, obstacle, 0, false));
+      paintSupports(view, brush, question, shape.dimension);
+      paintLoads(view, brush, question.loads, loads, shape.dimension);
+      paintGap(view, brush, data.rows, units.length, shape.dimension);
+      paintScale(view, brush, units.length);
+    },
+  });
+  addPatches(view, data);
+  view.mesh = shape.lines.length < MOST_LINES;
+  if (!shape.flat) {
+    const held = some(question.fixed.length, 4000).map(i => question.fixed[i]);
+    view.setMarks(
+      held,
+      held.map(() => 4),
+    );
+  }
+  if (shape.flat) {
+    const [low, high] = [[...shape.low], [...shape.high]];
+    for (const { approach } of question.obstacles)
+      for (let k = 0; k < 2; k++) (approach[k] < 0 ? low : high)[k] += 0.1 * shape.size * approach[k];
+    view.window = [low, high];
+  }
+  const legend = element("div", own, null, "legend");
+  const entry = (text, name, attributes) => {
+    const span = element("span", legend);
+    svg(name, attributes, svg("svg", { viewBox: "0 0 20 20" }, span));
+    span.append(text);
+  };
+  if (question.fixed.length)
+    entry("held in all directions", "rect", { x: 4, y: 4, width: 12, height: 12, fill: "var(--held)" });
+  if (question.guided.vertices.length)
+    entry("held across the plate", "rect", { x: 1, y: 8, width: 18, height: 4, fill: "var(--held)" });
+  if (question.loads.vertices.length || question.loads.inside)
+    entry("load", "path", {
+      d: "M1 10H12M12 4 19 10 12 16Z",
+      stroke: "var(--load)",
+      "stroke-width": 2,
+      fill: "var(--load)",
+    });
+  if (question.obstacles.some(obstacle => !obstacle.is_body))
+    entry("obstacle", "rect", { x: 2, y: 4, width: 16, height: 12, fill: "var(--solid)" });
+  list(own, [
+    question.force === undefined
+      ? [
+          "gap",
+          `${inUnit(question.gap, units.length)}: the shift of every obstacle along its approach direction, negative towards the body`,
+        ]
+      : ["pressing force", inUnit(question.force, units.force)],
+    ...question.obstacles.map(({ boundary, approach, is_body }, index) => [
+      `obstacles[${index}]`,
+      `${is_body ? "another body" : "rigid"}, faces the boundary ${boundary} in the direction ${vectorShown(approach.slice(0, shape.dimension), "")}`,
+    ]),
+    ["loads", loads ? `${vectorShown(loads.force, units.force)} in all` : null],
+    ["supports", supportWords(question, shape.dimension)],
+  ]);
+  return view;
+}
+
+function supportWords({ fixed, guided }, dimension) {
+  const parts = [];
+  if (fixed.length)
+    parts.push(`${counted(dimension === 1 ? fixed.length / 2 : fixed.length, "node")} held in all directions`);
+  if (guided.vertices.length) parts.push(`${counted(guided.vertices.length, "direction")} of nodes held`);
+  return parts.length ? parts.join(", ") : "none";
+}

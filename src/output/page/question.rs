@@ -1,0 +1,176 @@
+//! What was asked: supports, loads, obstacles and gaps on the body before anything has moved.
+
+use serde::Serialize;
+
+use super::body::Shape;
+use super::packed::{Packed, Packer};
+use crate::fem::geometry::length;
+use crate::output::plane_scene::OUTLINE_SEGMENTS;
+use crate::scene::{Model, straight_cells};
+
+/// Half of the height of a wall before a bar, over its length.
+const WALL: f64 = 0.12;
+
+#[derive(Debug, Serialize)]
+pub(super) struct Question {
+    /// The scene-wide gap, in length.
+    gap: f64,
+    /// The force on the one obstacle that a force presses.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    force: Option<f64>,
+    obstacles: Vec<ObstacleShown>,
+    /// Vertices that are held in all directions.
+    fixed: Packed,
+    /// Vertices that are held along a direction, one entry for each.
+    guided: Guided,
+    loads: Loads,
+}
+
+#[derive(Debug, Serialize)]
+struct Guided {
+    vertices: Packed,
+    /// A component for each coordinate.
+    directions: Packed,
+}
+
+/// The nodal forces of the loads.
+#[derive(Debug, Serialize)]
+struct Loads {
+    vertices: Packed,
+    /// A component for each coordinate, in force.
+    forces: Packed,
+    /// Number of loaded nodes that are not drawn, because they lie inside.
+    inside: usize,
+}
+
+/// A rigid obstacle.
+#[derive(Debug, Serialize)]
+struct ObstacleShown {
+    /// The boundary whose nodes are its candidates.
+    boundary: String,
+    /// From the body to the obstacle.
+    approach: [f64; 3],
+    /// Its shift along the approach direction in the outline or patch, in length.
+    shift: f64,
+    /// What presses it, in force.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    force: Option<f64>,
+    /// `true` if it is the surface of another body.
+    is_body: bool,
+    /// In the plane: points [x, y].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    outline: Option<Packed>,
+    /// In space: where the rows of the candidates meet it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    patch: Option<Patch>,
+}
+
+#[derive(Debug, Serialize)]
+struct Patch {
+    places: Packed,
+    /// Triangles and quadrilaterals, the last vertex of a triangle twice.
+    cells: Packed,
+}
+
+impl Question {
+    pub fn of(model: &Model, shape: &Shape, packer: &mut Packer) -> Self {
+        let (fixed, guided) = supports(model, shape, packer);
+        let obstacles = (0..model.obstacles().len()).map(|index| obstacle(model, index, packer)).collect();
+        Question {
+            gap: model.gap(),
+            force: model.pressing_force(),
+            obstacles,
+            fixed,
+            guided,
+            loads: loads(model, shape, packer),
+        }
+    }
+}
+
+/// What supports, planes of symmetry and the axis of revolution hold.
+fn supports(model: &Model, shape: &Shape, packer: &mut Packer) -> (Packed, Guided) {
+    let (dofs, dimension) = (model.dofs(), model.mesh().dimension());
+    let (mut fixed, mut vertices, mut directions) = (Vec::new(), Vec::new(), Vec::new());
+    for (vertex, &node) in shape.nodes.iter().enumerate() {
+        let held: Vec<usize> =
+            (0..dimension).filter(|axis| dofs.prescribed(dimension * node + axis).is_some()).collect();
+        if held.len() == dimension {
+            fixed.push(vertex);
+            continue;
+        }
+        for axis in held {
+            let own = dofs.frame(node).map(|frame| frame.axes()[axis]);
+            let along = own.unwrap_or_else(|| [0, 1, 2].map(|other| f64::from(u8::from(other == axis))));
+            vertices.push(vertex);
+            directions.extend_from_slice(&along[..dimension]);
+        }
+    }
+    let guided = Guided { vertices: packer.whole(&vertices, 1), directions: packer.quantised(&directions, dimension) };
+    (packer.whole(&fixed, 1), guided)
+}
+
+fn loads(model: &Model, shape: &Shape, packer: &mut Packer) -> Loads {
+    let dimension = model.mesh().dimension();
+    let nodal = model.nodal_load().chunks_exact(dimension).enumerate();
+    let (mut vertices, mut forces, mut inside) = (Vec::new(), Vec::new(), 0);
+    for (node, force) in nodal.filter(|(_, force)| force.iter().any(|&part| part != 0.0)) {
+        match shape.vertex_of.get(node).copied().flatten() {
+            Some(vertex) => {
+                vertices.push(vertex);
+                forces.extend_from_slice(force);
+            }
+            None => inside += 1,
+        }
+    }
+    Loads { vertices: packer.whole(&vertices, 1), forces: packer.quantised(&forces, dimension), inside }
+}
+
+fn obstacle(model: &Model, index: usize, packer: &mut Packer) -> ObstacleShown {
+    let obstacle = &model.obstacles()[index];
+    let shift = obstacle.shift(model.gap());
+    let line =
+        if model.mesh().dimension() == 1 { wall(model, index) } else { obstacle.outline(shift, OUTLINE_SEGMENTS) };
+    let points: Vec<f64> = line.into_iter().flatten().collect();
+    ObstacleShown {
+        boundary: obstacle.boundary().to_string(),
+        approach: obstacle.approach(),
+        shift,
+        force: obstacle.force(),
+        is_body: obstacle.rigid().is_none(),
+        outline: (!points.is_empty()).then(|| packer.exact(&points, 2)),
+        patch: if obstacle.rigid().is_some() { patch(model, index, packer) } else { None },
+    }
+}
+
+/// The wall that a bar meets, a line across it where the row of its end meets the obstacle; empty for another body.
+fn wall(model: &Model, index: usize) -> Vec<[f64; 2]> {
+    let rigid = model.obstacles()[index].rigid();
+    let row = model.rows().iter().find(|row| row.obstacle == index).filter(|_| rigid.is_some());
+    row.map_or_else(Vec::new, |row| {
+        let (x, half) = (model.mesh().nodes()[row.node][0] + row.gap * row.normal[0], WALL * model.mesh().size());
+        vec![[x, -half], [x, half]]
+    })
+}
+
+/// The part of an obstacle in space that faces the candidates: each facet moved to where the rows of its nodes meet the
+/// obstacle.
+fn patch(model: &Model, index: usize, packer: &mut Packer) -> Option<Patch> {
+    if model.mesh().dimension() != 3 {
+        return None;
+    }
+    let boundary = model.mesh().boundary(model.obstacles()[index].boundary())?;
+    let mut place_of = vec![None; model.mesh().nodes().len()];
+    let mut places = Vec::new();
+    for row in model.rows().iter().filter(|row| row.obstacle == index && length(row.normal) > 0.0) {
+        place_of[row.node] = Some(places.len() / 3);
+        let at = model.mesh().nodes()[row.node];
+        places.extend([0, 1, 2].map(|axis| at[axis] + row.gap * row.normal[axis]));
+    }
+    let mut cells = Vec::new();
+    for cell in boundary.facets().flat_map(|facet| straight_cells(boundary.kind, facet)) {
+        let found: Option<Vec<usize>> = cell.iter().map(|&node| place_of[node]).collect();
+        let Some(found) = found.filter(|found| found.len() > 2) else { continue };
+        cells.extend((0..4).map(|corner| found[corner.min(found.len() - 1)]));
+    }
+    (!cells.is_empty()).then(|| Patch { places: packer.quantised(&places, 3), cells: packer.whole(&cells, 4) })
+}

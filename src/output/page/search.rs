@@ -1,0 +1,62 @@
+//! The search for the contact set, step by step.
+
+use serde::Serialize;
+
+use super::body::Shape;
+use super::packed::{Packed, Packer};
+use super::rows::closed;
+use super::state::{State, kept};
+use crate::error::Error;
+use crate::output::iterations::iterations;
+use crate::scene::Answer;
+use crate::solution::Iteration;
+
+/// More steps than these are thinned out.
+const MOST_STEPS: usize = 200;
+
+#[derive(Debug, Serialize)]
+pub(super) struct Search {
+    /// Number of steps, shown or not.
+    count: usize,
+    steps: Vec<Step>,
+}
+
+#[derive(Debug, Serialize)]
+struct Step {
+    /// Its number, from 1.
+    number: usize,
+    /// Number of closed rows.
+    closed: usize,
+    /// The penalty, in multiples of the local stiffness.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    penalty: Option<f64>,
+    /// 1 for a closed row, 0 for an open one.
+    set: Packed,
+    /// The body with these rows held at their gaps; none where that is not known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    state: Option<State>,
+}
+
+impl Search {
+    /// The steps of `history`; those of which a body in the plane has a displacement to show are shown with it.
+    ///
+    /// # Errors
+    /// Those of the recovery of stresses.
+    pub fn of(answer: &Answer, history: &[Iteration], shape: &Shape, packer: &mut Packer) -> Result<Self, Error> {
+        let shown = iterations(answer.model(), history)?;
+        let mut steps = Vec::new();
+        for index in kept(history.len(), MOST_STEPS) {
+            let (number, step) = (index + 1, &history[index]);
+            let own = shown.iter().find(|shown| shown.index == index);
+            let state = own.map(|own| State::of(&own.answer, number as f64, shape, packer)).transpose()?;
+            steps.push(Step {
+                number,
+                closed: step.contact_set.count(),
+                penalty: (step.penalty > 0.0).then_some(step.penalty),
+                set: closed(&step.contact_set, packer),
+                state,
+            });
+        }
+        Ok(Search { count: history.len(), steps })
+    }
+}

@@ -1,0 +1,62 @@
+//! A displaced body: what changes from one answer to the next.
+
+use serde::Serialize;
+
+use super::body::Shape;
+use super::packed::{Packed, Packer};
+use crate::error::Error;
+use crate::fem::recovery::Stress;
+use crate::scene::Answer;
+
+/// Displacement and stress at the vertices. Both are linear in the answer, so that a page may mix two states.
+#[derive(Debug, Serialize)]
+pub(super) struct State {
+    /// Where on the path, at which gap, force or time.
+    pub at: f64,
+    displacement: Packed,
+    /// The components xx, yy, zz, xy, and in space yz and zx.
+    stress: Packed,
+    /// The shift of each obstacle along its approach direction, in length.
+    shifts: Vec<f64>,
+}
+
+impl State {
+    /// # Errors
+    /// Those of the recovery of stresses.
+    pub fn of(answer: &Answer, at: f64, shape: &Shape, packer: &mut Packer) -> Result<Self, Error> {
+        let model = answer.model();
+        let dimension = model.mesh().dimension();
+        let components = components(dimension);
+        let stress: Vec<f64> = answer.stress()?.nodes.iter().flat_map(|stress| tensor(stress, components)).collect();
+        Ok(State {
+            at,
+            displacement: packer.quantised(&shape.at_vertices(answer.displacement(), dimension), dimension),
+            stress: packer.quantised(&shape.at_vertices(&stress, components), components),
+            shifts: (0..model.obstacles().len()).map(|obstacle| answer.shift(obstacle)).collect(),
+        })
+    }
+
+    /// Bytes of a state before they are deflated.
+    pub fn bytes(shape: &Shape, dimension: usize) -> usize {
+        2 * shape.nodes.len() * (dimension + components(dimension))
+    }
+}
+
+/// Components of the stress in a model of `dimension` coordinates.
+fn components(dimension: usize) -> usize {
+    if dimension == 3 { 6 } else { 4 }
+}
+
+fn tensor(stress: &Stress, components: usize) -> impl Iterator<Item = f64> + use<> {
+    let Stress { sigma_xx, sigma_yy, sigma_zz, sigma_xy, sigma_yz, sigma_zx, .. } = *stress;
+    [sigma_xx, sigma_yy, sigma_zz, sigma_xy, sigma_yz, sigma_zx].into_iter().take(components)
+}
+
+/// Which of `count` states are kept, of at most `most`: the first, the last, and others evenly between.
+pub(super) fn kept(count: usize, most: usize) -> Vec<usize> {
+    let most = most.max(2);
+    match count {
+        count if count <= most => (0..count).collect(),
+        count => (0..most).map(|index| index * (count - 1) / (most - 1)).collect(),
+    }
+}

@@ -1,0 +1,239 @@
+// What a page says in words and tables. All text goes in as text.
+
+function element(name, parent, text = null, className = "") {
+  const made = document.createElement(name);
+  if (text !== null) made.textContent = text;
+  if (className) made.className = className;
+  if (parent) parent.appendChild(made);
+  return made;
+}
+
+function section(host, title, id) {
+  const made = element("section", host);
+  made.id = id;
+  element("h2", made, title);
+  return made;
+}
+
+/** A table; a column whose heading ends with # holds numbers. */
+function table(host, headings, rows) {
+  const wide = element("div", host, null, "wide"),
+    made = element("table", wide),
+    head = element("tr", element("thead", made));
+  const isNumber = headings.map(heading => heading.endsWith("#"));
+  headings.forEach((heading, i) => element("th", head, heading.replace(/#$/, ""), isNumber[i] ? "number" : ""));
+  const body = element("tbody", made);
+  for (const row of rows) {
+    const line = element("tr", body);
+    row.forEach((cell, i) => element("td", line, cell, isNumber[i] ? "number" : ""));
+  }
+  return made;
+}
+
+function list(host, entries) {
+  const made = element("dl", host);
+  for (const [name, content] of entries.filter(entry => entry[1] !== null && entry[1] !== undefined)) {
+    element("dt", made, name);
+    element("dd", made, content);
+  }
+  return made;
+}
+
+const STATUS = {
+  certified: "certified",
+  not_certified: "not certified",
+  unstable: "unstable: do not trust this motion",
+};
+
+function badge(host, status) {
+  if (status) element("span", host, STATUS[status] ?? status, `badge ${status === "certified" ? "good" : "bad"}`);
+}
+
+/** The first paragraph: what was done and how it ended. */
+function headline(page, data, summary) {
+  const line = element("p", page),
+    { about } = data;
+  const statuses = data.sweep?.points.map(point => point.status);
+  badge(line, summary?.status ?? statuses?.find(status => status !== "certified") ?? statuses?.[0]);
+  line.append(` signorini ${about.command}`);
+  for (const warning of summary?.warnings ?? []) element("p", page, `Warning: ${warning.message}`, "warning");
+}
+
+/** The numbers of one answer. */
+function contactList(host, summary, data) {
+  const { contact, model } = summary,
+    { units } = data,
+    basis = summary.force_basis ? ` ${summary.force_basis}` : "";
+  const estimate = contact.estimate;
+  const within = (value, off, unit) => `${inUnit(value, unit)} ± ${shown(off, 2)}`;
+  list(host, [
+    ["method", `${summary.method}, ${counted(summary.iterations, "iteration")}`],
+    ["why", summary.reason],
+    [
+      "model",
+      `${model.nodes ? `${counted(model.nodes, "node")}, ${counted(model.elements, "element")}, ` : ""}${counted(model.dofs, "dof")}, ${counted(model.contact_rows, "contact row")}`,
+    ],
+    ["contact", `${counted(contact.count, "closed row")}, force ${inUnit(contact.force, units.force, 9)}${basis}`],
+    [
+      "peak pressure",
+      contact.pressure_max === undefined
+        ? null
+        : estimate
+          ? within(contact.pressure_max, estimate.pressure_uncertainty, units.pressure)
+          : inUnit(contact.pressure_max, units.pressure),
+    ],
+    [
+      "estimated extent",
+      !estimate
+        ? null
+        : estimate.width !== undefined
+          ? `width ${within(estimate.width, estimate.width_uncertainty, units.length)}`
+          : `area ${within(estimate.area, estimate.area_uncertainty, `${units.length}²`)}`,
+    ],
+    ["contact set", data.proven],
+    [
+      "balance of forces",
+      contact.force_balance === undefined ? null : `to ${shown(contact.force_balance, 2)}, relative`,
+    ],
+    [
+      "error of the mesh",
+      summary.discretisation_error === undefined || summary.discretisation_error === null
+        ? null
+        : `about ${shown(100 * summary.discretisation_error, 2)} % of the energy norm, estimated from the stresses`,
+    ],
+    [
+      "strain energy",
+      summary.strain_energy === undefined
+        ? null
+        : inUnit(summary.strain_energy, `${units.force} ${units.length}`.trim()),
+    ],
+  ]);
+}
+
+function certificateSection(page, { certificate }) {
+  if (!certificate) return;
+  const own = section(page, "Certificate", "certificate");
+  element(
+    "p",
+    own,
+    `This answer is ${certificate.verdict.replace(/, each relative:$/, ": every condition, recomputed from the problem, holds to that, each relative to its own scale.")}`.replace(
+      /is NOT (.*): every condition, recomputed from the problem, holds to that, each relative to its own scale\./,
+      "is NOT $1. The conditions, recomputed from the problem, each relative to its own scale:",
+    ),
+  );
+  if (certificate.conditions.length) table(own, ["condition", "formula", "value#"], certificate.conditions);
+  for (const note of certificate.notes) element("p", own, `${note[0].toUpperCase()}${note.slice(1)}.`, "soft");
+  element(
+    "p",
+    own,
+    "The energy error bounds the distance of the displacement from the exact solution of the discrete problem. It says nothing of the mesh.",
+    "soft",
+  );
+}
+
+function resultantSection(page, summary, { units }) {
+  if (!summary?.resultants?.length) return;
+  const own = section(page, "Resultants", "resultants"),
+    largest = Math.max(...summary.resultants.flatMap(resultant => resultant.force.map(Math.abs))),
+    moment = `${units.force} ${units.length}`.trim();
+  table(
+    own,
+    [
+      "of",
+      "nodes#",
+      `force [${units.force}]`,
+      `moment about the origin [${moment}]`,
+      `centre [${units.length}]`,
+      "moved",
+    ],
+    summary.resultants.map(resultant => [
+      `${resultant.of}${resultant.on ? ` on ${resultant.on}` : ""}${resultant.rule ? `, rule ${resultant.rule}` : ""}`,
+      String(resultant.nodes),
+      vectorShown(resultant.force, "", 5, largest),
+      resultant.moment.length ? vectorShown(resultant.moment, "") : "-",
+      resultant.centre ? vectorShown(resultant.centre, "") : "-",
+      resultant.travel !== undefined
+        ? `travel ${inUnit(resultant.travel, units.length)}`
+        : resultant.motion
+          ? vectorShown(resultant.motion.displacement, units.length)
+          : "-",
+    ]),
+  );
+  element("p", own, `Forces on the body${summary.force_basis ? `, ${summary.force_basis}` : ""}.`, "soft");
+}
+
+function segmentSection(page, summary, { units }) {
+  if (!summary?.segments?.length) return;
+  const own = section(page, "Contact segments", "segments");
+  table(
+    own,
+    [
+      "obstacle",
+      "closed nodes#",
+      `force [${units.force}]`,
+      `peak pressure [${units.pressure}]#`,
+      "extent",
+      `ends [${units.length}]`,
+    ],
+    summary.segments.map(segment => [
+      `obstacles[${segment.obstacle}]`,
+      String(segment.nodes.length),
+      vectorShown(segment.force, ""),
+      shown(segment.pressure_max),
+      segment.width !== undefined && segment.width !== null
+        ? `width ${inUnit(segment.width, units.length)} ± ${shown(segment.width_uncertainty, 2)}`
+        : `area ${inUnit(segment.area, `${units.length}²`)} ± ${shown(segment.area_uncertainty, 2)}`,
+      segment.ends ? segment.ends.map(end => vectorShown(end, "")).join(" to ") : "-",
+    ]),
+  );
+}
+
+function comparisonSection(page, data) {
+  const { methods, agreement } = data.report ?? {};
+  if (!methods) return;
+  const own = section(page, "Three methods", "methods"),
+    { units } = data;
+  table(
+    own,
+    [
+      "method",
+      "status",
+      "iterations#",
+      "closed#",
+      `force [${units.force}]#`,
+      `peak pressure [${units.pressure}]#`,
+      "energy error ≤#",
+    ],
+    methods.map(method => [
+      method.method,
+      STATUS[method.status],
+      shown(method.iterations),
+      String(method.contact.count),
+      shown(method.contact.force, 10),
+      shown(method.contact.pressure_max),
+      shown(method.certificate.energy_error_bound, 2),
+    ]),
+  );
+  element(
+    "p",
+    own,
+    agreement.exact_methods
+      ? "The QP and the active set agree, both certified."
+      : "The QP and the active set do NOT agree, or are not both certified.",
+  );
+}
+
+/** Version, input and machine, and how exact the page is. */
+function aboutSection(page, data, notes) {
+  const own = section(page, "About this page", "about"),
+    { about } = data;
+  list(own, [
+    ["program", `signorini ${about.version}`],
+    ["command", about.command],
+    ["input", about.input],
+    ["SHA-256 of the input", about.sha256 ?? "none: it came by a pipe"],
+    ["threads", String(about.threads)],
+    ["machine", about.machine],
+  ]);
+  for (const note of notes) element("p", own, note, "soft");
+}

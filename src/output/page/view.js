@@ -1,0 +1,411 @@
+// A body in its frame: what is drawn of it, and how it is turned, moved and asked.
+
+/** The shape that all views of a page share, from the packed body. */
+function shapeOf(body) {
+  const flat = body.dimension < 3,
+    width = flat ? 2 : 3,
+    count = body.nodes.length;
+  const places = new Float32Array(3 * count);
+  for (let i = 0; i < count; i++) for (let k = 0; k < width; k++) places[3 * i + k] = body.places[width * i + k];
+  const { faces, edges } = cutCells(body, count);
+  return {
+    flat,
+    dimension: body.dimension,
+    count,
+    places,
+    nodes: body.nodes,
+    faces,
+    lines: linesOf(edges, count),
+    ...boxOf(places),
+  };
+}
+
+/** Triangles, and the key of every edge of every cell. */
+function cutCells({ cells, corners, mids }, count) {
+  const each = corners + mids.length,
+    number = cells.length / each;
+  const perCell = mids.length ? 2 * corners - 2 : corners - 2,
+    edgesPerCell = mids.length ? 2 * corners : corners;
+  const faces = new Uint32Array(3 * perCell * number),
+    edges = new Float64Array(edgesPerCell * number);
+  let [face, edge] = [0, 0];
+  const triangle = (a, b, c) => {
+    faces[face++] = a;
+    faces[face++] = b;
+    faces[face++] = c;
+  };
+  const side = (a, b) => {
+    edges[edge++] = a < b ? a * count + b : b * count + a;
+  };
+  const middle = Array.from({ length: corners }, (_, corner) => {
+    const next = (corner + 1) % corners;
+    return mids.findIndex(([a, b]) => (a === corner && b === next) || (a === next && b === corner));
+  });
+  for (let first = 0; first < cells.length; first += each) {
+    const corner = k => cells[first + (k % corners)],
+      mid = k => cells[first + corners + middle[k % corners]];
+    for (let k = 0; k < corners; k++) {
+      if (mids.length) {
+        triangle(mid(k + corners - 1), corner(k), mid(k));
+        side(corner(k), mid(k));
+        side(mid(k), corner(k + 1));
+        if (k > 1) triangle(mid(0), mid(k - 1), mid(k));
+      } else {
+        side(corner(k), corner(k + 1));
+        if (k > 1) triangle(corner(0), corner(k - 1), corner(k));
+      }
+    }
+  }
+  return { faces, edges };
+}
+
+/** The ends of each edge, once. */
+function linesOf(edges, count) {
+  edges.sort();
+  const lines = new Uint32Array(2 * edges.length);
+  let filled = 0;
+  for (let i = 0; i < edges.length; i++) {
+    if (i > 0 && edges[i] === edges[i - 1]) continue;
+    const low = Math.floor(edges[i] / count);
+    lines[filled++] = low;
+    lines[filled++] = edges[i] - low * count;
+  }
+  return lines.subarray(0, filled);
+}
+
+function boxOf(places) {
+  const low = [Infinity, Infinity, Infinity],
+    high = [-Infinity, -Infinity, -Infinity];
+  for (let i = 0; i < places.length; i += 3) {
+    for (let k = 0; k < 3; k++) {
+      const value = places[i + k];
+      if (value < low[k]) low[k] = value;
+      if (value > high[k]) high[k] = value;
+    }
+  }
+  return { low, high, size: Math.hypot(...high.map((value, k) => value - low[k])) };
+}
+
+class View {
+  /** All views of the page. */
+  static all = [];
+
+  /** A view in `host`, of a shape; `paint(view, brush)` draws over it what is no surface. */
+  constructor(host, shape, { table, label, paint, asked }) {
+    Object.assign(this, {
+      host,
+      shape,
+      paint,
+      asked,
+      magnification: 1,
+      coloured: false,
+      range: [0, 1],
+      mesh: true,
+      markSize: 9,
+      drawn: 0,
+      patches: [],
+      obstacles: true,
+    });
+    const canvas = () => host.appendChild(document.createElement("canvas"));
+    this.under = canvas();
+    try {
+      if (location.hash === "#painter") throw new Error("asked for");
+      this.surface = new Surface(this.under, table);
+    } catch {
+      this.under.remove();
+      this.under = canvas();
+      this.surface = new Painter(this.under, table);
+    }
+    this.over = canvas();
+    this.over.className = "top";
+    this.over.tabIndex = 0;
+    this.over.setAttribute("role", "img");
+    this.over.setAttribute("aria-label", label);
+    this.tip = host.appendChild(document.createElement("div"));
+    this.tip.className = "tip";
+    this.tip.hidden = true;
+    this.moved = new Float32Array(3 * shape.count);
+    this.surface.set("body", {
+      places: shape.places,
+      moved: this.moved,
+      values: new Float32Array(shape.count),
+      order: shape.faces,
+    });
+    this.surface.set("mesh", {
+      places: shape.places,
+      moved: this.moved,
+      values: new Float32Array(shape.count),
+      order: shape.lines,
+    });
+    this.window = [shape.low, shape.high];
+    this.home();
+    this.listen();
+    new ResizeObserver(() => this.redraw()).observe(host);
+    View.all.push(this);
+  }
+
+  /** Displacements (three a vertex) and values (one a vertex) of what is shown. */
+  state(moved, values) {
+    this.moved = moved;
+    this.surface.set("body", { moved, values });
+    this.surface.set("mesh", { moved });
+    this.redraw();
+  }
+
+  /** Contact nodes: vertices and the kind of each mark. */
+  setMarks(vertices, kinds) {
+    const places = new Float32Array(3 * vertices.length),
+      moved = new Float32Array(3 * vertices.length);
+    vertices.forEach((vertex, i) => {
+      for (let k = 0; k < 3; k++) {
+        places[3 * i + k] = this.shape.places[3 * vertex + k];
+        moved[3 * i + k] = this.moved[3 * vertex + k];
+      }
+    });
+    this.surface.set("marks", { places, moved, values: Float32Array.from(kinds), hidden: vertices.length === 0 });
+    this.redraw();
+  }
+
+  home() {
+    // In space from above and the side; the third coordinate upwards.
+    this.axes = this.shape.flat
+      ? [
+          [1, 0, 0],
+          [0, 1, 0],
+          [0, 0, 1],
+        ]
+      : turned(
+          turned(
+            [
+              [1, 0, 0],
+              [0, 0, 1],
+              [0, -1, 0],
+            ],
+            1,
+            0.6,
+          ),
+          0,
+          -0.42,
+        );
+    this.zoom = 1;
+    this.pan = [0, 0];
+    this.redraw();
+  }
+
+  /** Units of the screen, in pixels of CSS, for one of the body, and where its middle lies. */
+  measure() {
+    const width = this.host.clientWidth || 1,
+      height = this.host.clientHeight || 1,
+      [low, high] = this.window;
+    const middle = low.map((value, k) => (value + high[k]) / 2);
+    const half = [0, 1].map(axis => {
+      const along = this.axes[axis];
+      return (
+        low.reduce((sum, value, k) => sum + (Math.abs(along[k]) * (high[k] - value)) / 2, 0) || this.shape.size / 20
+      );
+    });
+    const room = 0.9;
+    const scale = this.zoom * Math.min((room * width) / (2 * half[0]), (room * height) / (2 * half[1]));
+    return { width, height, middle, scale };
+  }
+
+  /** A point of the body in pixels of CSS from the upper left corner, and its depth. */
+  place(point, at = this.measure()) {
+    const away = point.map((value, k) => value - at.middle[k]);
+    const [right, up, near] = this.axes.map(axis => axis.reduce((sum, part, k) => sum + part * away[k], 0));
+    return [at.width / 2 + at.scale * (right + this.pan[0]), at.height / 2 - at.scale * (up + this.pan[1]), near];
+  }
+
+  vertex(vertex) {
+    return [0, 1, 2].map(k => this.shape.places[3 * vertex + k] + this.magnification * this.moved[3 * vertex + k]);
+  }
+
+  camera() {
+    const at = this.measure(),
+      [x, y, z] = this.axes,
+      depth = -0.2 / (this.shape.size || 1);
+    const sx = (2 * at.scale) / at.width,
+      sy = (2 * at.scale) / at.height;
+    const rows = [x.map(part => sx * part), y.map(part => sy * part), z.map(part => depth * part)];
+    const offset = rows.map(row => -row.reduce((sum, part, k) => sum + part * at.middle[k], 0));
+    offset[0] += sx * this.pan[0];
+    offset[1] += sy * this.pan[1];
+    const matrix = new Float32Array(16);
+    for (let k = 0; k < 3; k++) for (let row = 0; row < 3; row++) matrix[4 * k + row] = rows[row][k];
+    offset.forEach((value, row) => {
+      matrix[12 + row] = value;
+    });
+    matrix[15] = 1;
+    return { camera: matrix, stretch: [1 / sx, 1 / sy, 1 / depth] };
+  }
+
+  redraw() {
+    if (this.waiting) return;
+    this.waiting = requestAnimationFrame(() => {
+      this.waiting = 0;
+      this.drawNow();
+    });
+  }
+
+  drawNow() {
+    const { clientWidth: width, clientHeight: height } = this.host,
+      dense = Math.min(window.devicePixelRatio || 1, 3);
+    if (!width || !height) return;
+    for (const canvas of [this.under, this.over]) {
+      const [w, h] = [Math.round(width * dense), Math.round(height * dense)];
+      if (canvas.width !== w || canvas.height !== h) Object.assign(canvas, { width: w, height: h });
+    }
+    const style = getComputedStyle(document.documentElement);
+    this.ink = name => style.getPropertyValue(`--${name}`).trim();
+    const of = name => channels(this.ink(name));
+    const { camera, stretch } = this.camera();
+    this.surface.draw(camera, {
+      stretch,
+      magnification: this.magnification,
+      coloured: this.coloured ? 1 : 0,
+      range: this.range,
+      lit: this.shape.flat ? 0 : 1,
+      body: of("body"),
+      mesh: this.mesh,
+      meshColour: [...of("mesh"), this.shape.flat ? 0.28 : 0.2],
+      markSize: this.markSize * dense,
+      marks: {
+        closed: of("closed"),
+        open: of("open"),
+        undecided: of("undecided"),
+        paper: of("paper"),
+        held: of("held"),
+      },
+      patches: this.obstacles ? this.patches.map(patch => ({ ...patch, colour: [...of("solid"), 0.4] })) : [],
+    });
+    const brush = this.over.getContext("2d");
+    brush.setTransform(dense, 0, 0, dense, 0, 0);
+    brush.clearRect(0, 0, width, height);
+    // What WebGL has drawn does not reach the paper by itself.
+    const prints = document.documentElement.hasAttribute("data-print");
+    this.under.style.visibility = prints ? "hidden" : "";
+    if (prints) brush.drawImage(this.under, 0, 0, width, height);
+    brush.font = "12px system-ui, sans-serif";
+    brush.lineJoin = brush.lineCap = "round";
+    this.paint(this, brush);
+    this.drawn += 1;
+  }
+
+  listen() {
+    const { over } = this,
+      down = new Map();
+    let apart = 0;
+    over.addEventListener("pointerdown", event => {
+      over.setPointerCapture(event.pointerId);
+      down.set(event.pointerId, event);
+      apart = 0;
+    });
+    over.addEventListener("pointermove", event => {
+      const last = down.get(event.pointerId);
+      if (!last) return this.ask(event.offsetX, event.offsetY);
+      down.set(event.pointerId, event);
+      const [dx, dy] = [event.offsetX - last.offsetX, event.offsetY - last.offsetY];
+      if (down.size > 1) {
+        const [a, b] = [...down.values()],
+          now = Math.hypot(a.offsetX - b.offsetX, a.offsetY - b.offsetY);
+        if (apart) this.closer(now / apart);
+        apart = now;
+        this.slide(dx / 2, dy / 2);
+      } else if (this.shape.flat || event.shiftKey || event.buttons === 2) this.slide(dx, dy);
+      else this.turn(dx, dy);
+      this.tip.hidden = true;
+    });
+    const up = event => {
+      down.delete(event.pointerId);
+      apart = 0;
+    };
+    over.addEventListener("pointerup", event => {
+      up(event);
+      this.ask(event.offsetX, event.offsetY);
+    });
+    over.addEventListener("pointercancel", up);
+    over.addEventListener("pointerleave", () => {
+      this.tip.hidden = true;
+    });
+    over.addEventListener("contextmenu", event => event.preventDefault());
+    // The wheel belongs to the page until the view has the focus.
+    over.addEventListener(
+      "wheel",
+      event => {
+        if (document.activeElement !== over) return;
+        event.preventDefault();
+        this.closer(Math.exp(-event.deltaY / 500), event.offsetX, event.offsetY);
+      },
+      { passive: false },
+    );
+    over.addEventListener("dblclick", () => this.home());
+    over.addEventListener("keydown", event => this.key(event));
+  }
+
+  key(event) {
+    const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
+    if (way && (this.shape.flat || event.shiftKey)) this.slide(30 * way[0], 30 * way[1]);
+    else if (way) this.turn(30 * way[0], 30 * way[1]);
+    else if (event.key === "+" || event.key === "=") this.closer(1.25);
+    else if (event.key === "-") this.closer(0.8);
+    else if (event.key === "0" || event.key === "Home") this.home();
+    else return;
+    event.preventDefault();
+  }
+
+  turn(dx, dy) {
+    // About the third coordinate axis of the body, then about the horizontal one of the screen.
+    const [sine, cosine] = [Math.sin(0.008 * dx), Math.cos(0.008 * dx)];
+    this.axes = this.axes.map(([x, y, z]) => [cosine * x + sine * y, cosine * y - sine * x, z]);
+    this.axes = turned(this.axes, 0, -0.008 * dy);
+    this.redraw();
+  }
+
+  slide(dx, dy) {
+    const { scale } = this.measure();
+    this.pan = [this.pan[0] + dx / scale, this.pan[1] - dy / scale];
+    this.redraw();
+  }
+
+  closer(factor, x, y) {
+    const before = this.measure(),
+      next = Math.min(Math.max(this.zoom * factor, 0.2), 500);
+    const share = (1 - this.zoom / next) / before.scale;
+    if (x !== undefined)
+      this.pan = [this.pan[0] - share * (x - before.width / 2), this.pan[1] + share * (y - before.height / 2)];
+    this.zoom = next;
+    this.redraw();
+  }
+
+  /** Tells what is known of the vertex at a place of the screen. */
+  ask(x, y) {
+    if (!this.asked) return;
+    const at = this.measure();
+    let [best, least] = [-1, Infinity];
+    for (let vertex = 0; vertex < this.shape.count; vertex++) {
+      const [px, py, near] = this.place(this.vertex(vertex), at),
+        away = Math.hypot(px - x, py - y);
+      if (away > 14) continue;
+      const rank = away - (20 * near) / (this.shape.size || 1);
+      if (rank < least) [best, least] = [vertex, rank];
+    }
+    this.tip.hidden = best < 0;
+    if (best < 0) return;
+    this.tip.textContent = this.asked(best);
+    const [px, py] = this.place(this.vertex(best), at);
+    const width = this.tip.offsetWidth,
+      height = this.tip.offsetHeight;
+    this.tip.style.left = `${Math.max(4, Math.min(px + 12, at.width - width - 4))}px`;
+    this.tip.style.top = `${py + 14 + height > at.height ? Math.max(4, py - height - 10) : py + 14}px`;
+  }
+}
+
+/** Axes turned by an angle about one of their own. */
+function turned(axes, about, angle) {
+  const [sine, cosine] = [Math.sin(angle), Math.cos(angle)],
+    [one, other] = [(about + 1) % 3, (about + 2) % 3];
+  const result = [...axes];
+  result[one] = axes[one].map((value, k) => cosine * value + sine * axes[other][k]);
+  result[other] = axes[other].map((value, k) => cosine * value - sine * axes[one][k]);
+  return result;
+}
