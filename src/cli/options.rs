@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use clap::builder::PossibleValue;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use super::memory::{self, parse_size};
+use super::memory::parse_size;
+use crate::memory;
 use crate::qp::{Method, Precision};
 
 /// Frictionless contact of elastic bodies with obstacles: a convex QP, cross-checked and certified.

@@ -189,12 +189,7 @@ pub fn tradeoff(scene: &Scene, grid: &TradeoffGrid, watch: &Watch) -> Result<Tra
 ///
 /// # Errors
 /// As [`solve`]; [`Error::Interrupted`] where not one point was measured.
-#[cfg(feature = "cli")]
-pub(crate) fn problem_tradeoff(
-    problem: &ContactProblem,
-    grid: &TradeoffGrid,
-    watch: &Watch,
-) -> Result<Tradeoff, Error> {
+pub fn problem_tradeoff(problem: &ContactProblem, grid: &TradeoffGrid, watch: &Watch) -> Result<Tradeoff, Error> {
     let mut result = Tradeoff::new(grid);
     Measured { problem, peak: &|_| Ok(None), mesh: 0 }.all(grid, watch, &mut result.points)?;
     result.meshes.push(TradeoffMesh::of(problem, 1));
