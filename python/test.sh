@@ -22,7 +22,7 @@ install() { "$1/bin/python" -m pip install --quiet --disable-pip-version-check -
 install "$environment" --no-deps
 
 "$environment/bin/python" -m pytest --quiet -p no:cacheprovider tests
-"$environment/bin/python" -m mypy.stubtest --concise signorini
+"$environment/bin/python" -m mypy.stubtest --concise --mypy-config-file pyproject.toml signorini
 "$environment/bin/python" -m mypy --no-error-summary --cache-dir "$CARGO_TARGET_DIR/mypy" -p signorini
 
 # The lines of the README, where there is nothing but the wheel and numpy.

@@ -56,6 +56,7 @@ impl Prepared {
             let sentence = || format!("time is {seconds}; it must be a number of seconds that is positive and finite");
             settings.time = Some(span.ok_or_else(|| bad_input(py, sentence()))?);
         }
+        let place = Place::for_prepared(&self.problem, &self.inner);
         let prepared = self.inner.clone();
         let find = move |watch: &Watch| {
             let mut prepared = watched(&prepared, settings, watch)?;
@@ -64,7 +65,7 @@ impl Prepared {
             }
             start.map_or(prepared.clone(), |start| prepared.starting_from(start)).solve(&gap)
         };
-        answered(py, Place::for_problem(&self.problem), find, |solution| Solution::object(py, solution))
+        answered(py, place, find, |solution| Solution::object(py, solution))
     }
 
     /// The exact path of the answer between two gaps.

@@ -12,7 +12,7 @@ use crate::errors::{bad_input, plain_exception};
 use crate::matrices;
 
 /// minimise 1/2 u'K u - f'u  subject to  B u - g <= 0, checked once.
-#[pyclass(frozen, module = "signorini", subclass)]
+#[pyclass(frozen, module = "signorini")]
 pub struct Problem {
     pub inner: Arc<ContactProblem>,
 }

@@ -99,6 +99,16 @@ impl Scene {
         &self.inner.title
     }
 
+    /// Names of the units: of length, force and pressure.
+    #[getter]
+    fn units<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let (named, units) = (PyDict::new(py), &self.inner.units);
+        named.set_item("length", &units.length)?;
+        named.set_item("force", &units.force)?;
+        named.set_item("pressure", units.pressure())?;
+        Ok(named)
+    }
+
     /// The contact problem in the free dofs.
     #[getter]
     fn problem(&self, py: Python<'_>) -> PyResult<Problem> {

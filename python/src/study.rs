@@ -113,7 +113,7 @@ pub fn measured<'py>(
         }
         Err(_) => {
             let problem = problem_of(problem)?.get().inner.clone();
-            run(py, Place::Apart, move |watch: &Watch| study::problem_tradeoff(&problem, &grid, watch))?
+            run(py, Place::Apart, move |watch: &Watch| study::Tradeoff::of_problem(&problem, &grid, watch))?
         }
     };
     match end {

@@ -12,7 +12,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use pyo3::prelude::*;
-use signorini::{ContactProblem, Watch};
+use signorini::{ContactProblem, Prepared, Watch};
 
 use crate::errors::{no_memory, panicked};
 
@@ -23,7 +23,13 @@ const BETWEEN_LOOKS: Duration = Duration::from_millis(20);
 const PATIENCE: Duration = Duration::from_millis(120);
 
 /// Matrices of fewer entries are soon factorised: in some milliseconds.
-const FEW_ENTRIES: usize = 20_000;
+const FEW_ENTRIES: usize = 30_000;
+
+/// A sweep through a factor of fewer values takes less than a look for signals may be away.
+const SHORT_SWEEP: usize = 40_000_000;
+
+/// Contact boundaries of fewer dofs are soon solved.
+const SMALL_BOUNDARY: usize = 1_500;
 
 /// The stack of a thread that works, in bytes: as that of a program.
 const STACK: usize = 8 << 20;
@@ -42,6 +48,13 @@ impl Place {
     pub fn for_problem(problem: &ContactProblem) -> Self {
         let entries = problem.stiffness().lower().entries() + problem.contact().entries();
         if entries < FEW_ENTRIES { Place::Here } else { Place::Apart }
+    }
+
+    /// The place for another gap or load of a prepared problem: if it was condensed, all that is left is short steps.
+    pub fn for_prepared(problem: &ContactProblem, prepared: &Prepared) -> Self {
+        let (condensed, entries) = (prepared.condensed_dofs(), prepared.factor_entries());
+        let is_short = condensed < prepared.dofs() && condensed < SMALL_BOUNDARY && (1..SHORT_SWEEP).contains(&entries);
+        if is_short { Place::Here } else { Place::for_problem(problem) }
     }
 }
 
@@ -99,8 +112,16 @@ fn here<T: Send>(py: Python<'_>, work: impl FnOnce(&Watch) -> T + Send) -> PyRes
     let raised = raised.lock().unwrap_or_else(PoisonError::into_inner).take();
     Ok(match raised {
         Some(error) => End::Signalled(error, Some(done)),
-        None => End::Done(done),
+        None => ended(py, done),
     })
+}
+
+/// The end of work that is done: a signal that came in its last moment gets the result, too.
+fn ended<T>(py: Python<'_>, done: T) -> End<T> {
+    match py.check_signals() {
+        Ok(()) => End::Done(done),
+        Err(error) => End::Signalled(error, Some(done)),
+    }
 }
 
 fn apart<T: Send + 'static>(py: Python<'_>, work: impl FnOnce(&Watch) -> T + Send + 'static) -> PyResult<End<T>> {
@@ -111,20 +132,20 @@ fn apart<T: Send + 'static>(py: Python<'_>, work: impl FnOnce(&Watch) -> T + Sen
         let _ = sender.send(guarded(work, &watched));
     });
     worker.map_err(|error| no_memory(py, format!("no thread for the work: {error}")))?;
-    let ended = |done: Result<T, String>| done.map_err(|panic| panicked(py, &panic));
+    let whole = |done: Result<T, String>| done.map_err(|panic| panicked(py, &panic));
     // A receiver is for one thread at a time: this one, with the interpreter or without.
     let receiver = Mutex::new(receiver);
     let wait =
         |time: Duration| py.detach(|| receiver.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(time));
     loop {
         match wait(BETWEEN_LOOKS) {
-            Ok(done) => return ended(done).map(End::Done),
+            Ok(done) => return Ok(ended(py, whole(done)?)),
             Err(RecvTimeoutError::Disconnected) => return Err(panicked(py, "the work ended without a result")),
             Err(RecvTimeoutError::Timeout) => {}
         }
         if let Err(error) = py.check_signals() {
             watch.stop();
-            let best = wait(PATIENCE).ok().map(ended).transpose()?;
+            let best = wait(PATIENCE).ok().map(whole).transpose()?;
             return Ok(End::Signalled(error, best));
         }
     }

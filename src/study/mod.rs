@@ -16,5 +16,5 @@ pub use motion::MotionSummary;
 pub use motion_tradeoff::{MotionPoint, MotionTradeoff, motion_tradeoff};
 pub use scene::{Sweep, SweepCorner, SweepEvent, SweepPoint, scene_summary, sweep};
 pub use summary::{ContactSummary, ModelSize, RunSeconds, Status, Summary, Verification};
-pub use tradeoff::{Advice, Tradeoff, TradeoffGrid, TradeoffMesh, TradeoffPoint, problem_tradeoff, tradeoff};
+pub use tradeoff::{Advice, Tradeoff, TradeoffGrid, TradeoffMesh, TradeoffPoint, tradeoff};
 pub use warnings::AnswerWarning;

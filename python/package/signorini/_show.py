@@ -18,6 +18,9 @@ _VTK = {
     "Line2": 3, "Line3": 21, "T3": 5, "T6": 22, "Q4": 9, "Q8": 23, "Tet4": 10, "Tet10": 24, "Hex8": 12, "Hex20": 25,
 }  # fmt: skip
 
+# An error of zero is drawn here, on a logarithmic axis.
+_LEAST_ERROR = 1e-16
+
 
 def scene_text(scene: dict[str, Any]) -> str:
     """The JSON of a scene whose numbers may be those of numpy."""
@@ -107,18 +110,22 @@ def scene_plot(solution: SceneSolution, ax: Any = None) -> Any:
 
     moved = scene.nodes + solution.displacement
     of_elements = solution.von_mises[scene.elements].mean(axis=1)
-    cells = PolyCollection(moved[scene.elements[:, rim]], array=of_elements, cmap="viridis", edgecolors="face", linewidths=0.2)
+    outlines = list(moved[scene.elements[:, rim]])
+    cells = PolyCollection(outlines, array=of_elements, cmap="viridis", edgecolors="face", linewidths=0.2)
     ax.add_collection(cells)
     nodes = np.asarray(scene.rows["node"])[solution.contact_set]
     ax.scatter(*moved[nodes].T, s=12, color="tab:red", zorder=3, label="closed")
     ax.autoscale()
     ax.set_aspect("equal")
-    ax.set_xlabel("x")
-    ax.set_ylabel("y")
+    length, pressure = scene.units["length"], scene.units["pressure"]
+    ax.set_xlabel(f"x [{length}]" if length else "x")
+    ax.set_ylabel(f"y [{length}]" if length else "y")
     ax.set_title(scene.title or "moved mesh")
     if len(nodes):
         ax.legend(frameon=False, loc="upper left", bbox_to_anchor=(0, -0.12))
-    ax.figure.colorbar(cells, ax=ax, label="von Mises stress")
+    label = f"von Mises stress [{pressure}]" if pressure else "von Mises stress"
+    width, height = np.ptp(moved, axis=0)
+    ax.figure.colorbar(cells, ax=ax, label=label, shrink=float(np.clip(height / width, 0.3, 1.0)))
     return ax
 
 
@@ -150,16 +157,16 @@ def tradeoff_plot(tradeoff: Tradeoff, ax: Any = None) -> Any:
     lines: dict[tuple[str, bool, int], list[tuple[float, float]]] = {}
     for point in tradeoff.points:
         error = point.get(name)
-        if error is not None and error > 0.0:
+        if error is not None:
             key = (point["method"] + (", mixed" if point["mixed"] else ""), point["condensed"], point["mesh"])
-            lines.setdefault(key, []).append((point["seconds"], error))
+            lines.setdefault(key, []).append((point["seconds"], max(error, _LEAST_ERROR)))
     colours = {method: f"C{i % 10}" for i, method in enumerate(sorted({key[0] for key in lines}))}
     seen: set[str] = set()
     for (method, condensed, _), points in sorted(lines.items()):
         label = None if method in seen else method
         seen.add(method)
         style = "-" if condensed else ":"
-        ax.plot(*zip(*sorted(points), strict=True), style, marker="o", markersize=3, color=colours[method], label=label)
+        ax.plot(*zip(*points, strict=True), style, marker="o", markersize=3, color=colours[method], label=label)
     ax.set_xscale("log")
     ax.set_yscale("log")
     ax.set_xlabel("seconds")
@@ -175,6 +182,7 @@ def sweep_plot(sweep: Sweep, ax: Any = None) -> Any:
     if is_scene and sweep.corners:
         ax.plot([corner["gap"] for corner in sweep.corners], [corner["force"] for corner in sweep.corners], color="0.7")
     ax.plot(sweep.gaps if is_scene else np.arange(len(sweep.gaps)), sweep.contact_force, "o", markersize=4)
-    ax.set_xlabel("gap" if is_scene else "number of the gap")
-    ax.set_ylabel("contact force")
+    units = sweep.solutions[0].scene.units if is_scene else {"length": "", "force": ""}
+    ax.set_xlabel(("gap" + (f" [{units['length']}]" if units["length"] else "")) if is_scene else "number of the gap")
+    ax.set_ylabel("contact force" + (f" [{units['force']}]" if units["force"] else ""))
     return ax

@@ -5,11 +5,34 @@ from typing import Any, TypeAlias, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from typing_extensions import disjoint_base
+
+__all__ = [
+    "Certificate",
+    "Comparison",
+    "Event",
+    "Path",
+    "Prepared",
+    "Problem",
+    "Proven",
+    "Scene",
+    "SceneSolution",
+    "Solution",
+    "__version__",
+    "_measured",
+    "_swept",
+    "compare",
+    "prepare",
+    "solve",
+    "solve_qp",
+    "verify",
+]
 
 __version__: str
 
 _Start: TypeAlias = Solution | ArrayLike
 
+@final
 class Problem:
     """Frictionless unilateral contact as a convex quadratic program, checked once.
 
@@ -62,6 +85,7 @@ class Problem:
     def __reduce__(self) -> tuple[Any, ...]:
         """A problem can be sent to another process."""
 
+@disjoint_base
 class Solution:
     """The answer to a contact problem. Its arrays are read-only."""
 
@@ -252,6 +276,9 @@ class Scene:
     @property
     def title(self) -> str:
         """What the scene shows."""
+    @property
+    def units(self) -> dict[str, str]:
+        """Names of the units of `length`, `force` and `pressure`; empty where the scene has none."""
     @property
     def problem(self) -> Problem:
         """The contact problem in the free dofs."""
