@@ -63,7 +63,7 @@ def test_vectors_of_every_kind_are_the_same() -> None:
     frozen.flags.writeable = False
     swapped = f.astype(">f8")
     unaligned = np.frombuffer(b"-" + f.tobytes(), dtype=np.uint8)[1:].view(np.float64)
-    for load in (f, f.tolist(), tuple(f), f.astype(np.float32), f.astype(int), strided[::2], frozen, swapped, unaligned, np.matrix(f).A1):
+    for load in (f, f.tolist(), tuple(f), f.astype(np.float32), f.astype(int), strided[::2], frozen, swapped, unaligned):
         assert np.array_equal(sg.Problem(K, load, B, g).f, f)
 
 

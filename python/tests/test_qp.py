@@ -120,6 +120,33 @@ def test_least_squares_without_full_rank_reach_the_least_residual(rank: int) -> 
     assert residuals(answer, *data) < 1e-8
 
 
+@pytest.mark.parametrize("seed", range(100, 140))
+def test_a_stiffness_without_full_rank_and_with_contrast_has_one_of_its_minima(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    n = int(random.integers(5, 40))
+    rank, m = int(random.integers(1, n)), int(random.integers(1, 30))
+    R = random.normal(size=(rank, n)) * 10 ** random.uniform(-2, 2, size=(rank, 1))
+    G, inside = random.normal(size=(m, n)), random.uniform(-1, 1, n)
+    h = G @ inside + random.uniform(0, 1, m) * (random.random(m) < 0.5)
+    data = (R.T @ R, R.T @ random.normal(size=rank), G, h, G[:1], G[:1] @ inside, None, None)
+    answer = sg.qp.solve_problem(*data)
+    assert residuals(answer, *data) < 1e-8
+    assert answer.certificate.conditions_hold(1e-9)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_linear_program_has_the_minimum_of_the_simplex_method(seed: int) -> None:
+    from scipy.optimize import linprog
+
+    random = np.random.default_rng(seed)
+    n, m = int(random.integers(2, 25)), int(random.integers(1, 25))
+    G, inside, q = random.normal(size=(m, n)), random.uniform(-1, 1, n), random.normal(size=n)
+    h = G @ inside + random.uniform(0, 1, m)
+    answer = sg.qp.solve_problem(np.zeros((n, n)), q, G, h, lb=np.full(n, -2.0), ub=np.full(n, 2.0))
+    least = linprog(q, G, h, bounds=[(-2, 2)] * n).fun
+    assert abs(answer.obj - least) < 1e-8 * (1 + abs(least))
+
+
 def test_what_has_no_minimum_is_none() -> None:
     assert sg.qp.solve_qp(np.eye(1), [0.0], G=[[1.0], [-1.0]], h=[-1.0, -1.0]) is None
     assert sg.qp.solve_qp(np.eye(2), [0.0, 0.0], A=[[1.0, 0.0], [1.0, 0.0]], b=[0.0, 1.0]) is None
