@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Everything that can be checked, in one command; needs cargo (with rustfmt and clippy), python3 >= 3.11 with venv, and Chromium.
-# The Python packages of the reference are installed into target/reference-venv.
+# The Python packages of the reference are installed into target/reference-venv, those of python/ into target/python-venv.
 #
 # One profile (dev: the crate with overflow checks, dependencies as in release) serves all steps, and every test runs once.
 set -euo pipefail
@@ -53,6 +53,7 @@ for scene in tools/impact/*.json; do program solve "$scene" --out "$out/$(basena
 program sweep examples/indentation.json --gaps -0.01:-0.10:10 --out "$out/sweep"
 step "answers, the same twice";     python3 reference/same_reports.py "$built/signorini" "$built/signorini" examples tests/corpus
 
+step "Python package";              python/test.sh
 step "reference, its own tests";    reference/environment.sh
 target/reference-venv/bin/python -m unittest discover --start-directory reference
 step "schema, scenes right and wrong"; target/reference-venv/bin/python reference/schema.py "$built/signorini"

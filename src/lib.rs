@@ -61,6 +61,7 @@ mod continuum;
 mod error;
 pub mod fem;
 mod file;
+mod memory;
 pub mod motion;
 #[cfg(feature = "pictures")]
 pub mod output;

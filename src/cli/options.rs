@@ -6,7 +6,8 @@ use clap::builder::PossibleValue;
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
-use super::memory::{self, parse_size};
+use super::memory::parse_size;
+use crate::memory;
 use crate::output::gallery::{Pictures, Wanted};
 use crate::output::medium::Medium;
 use crate::qp::{Method, Precision};

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::about::about;
 use super::input::{Input, build, read_scene, scene_title, warnings};
-use super::options::Tradeoff;
+use super::options;
 use super::outcome::{Outcome, Report, warn};
 use crate::error::Error;
 use crate::output::gallery::Pictures;
@@ -14,13 +14,13 @@ use crate::output::{
     tradeoff_plot_for, tradeoff_text, write_files, write_picture,
 };
 use crate::qp::Settings;
-use crate::study::{TradeoffGrid, motion_tradeoff, problem_tradeoff, tradeoff};
+use crate::study::{Tradeoff, TradeoffGrid, motion_tradeoff, tradeoff};
 use crate::watch::Watch;
 
 /// Finer meshes where time alone limits them.
 const MOST_REFINEMENTS: usize = 8;
 
-pub(super) fn run(options: &Tradeoff, watch: &Watch) -> Result<Outcome, Error> {
+pub(super) fn run(options: &options::Tradeoff, watch: &Watch) -> Result<Outcome, Error> {
     let grid = TradeoffGrid {
         refinements: options.refinements.map_or(if options.time.is_some() { MOST_REFINEMENTS } else { 1 }, usize::from),
         runs: options.runs.into(),
@@ -31,7 +31,7 @@ pub(super) fn run(options: &Tradeoff, watch: &Watch) -> Result<Outcome, Error> {
     if options.input.is_dir() {
         let input = Input::read(&options.input, &options.limits)?;
         let about = &about(&input.title);
-        let measured = problem_tradeoff(input.problem(), &grid, watch)?;
+        let measured = Tradeoff::of_problem(input.problem(), &grid, watch)?;
         let (text, csv) = (tradeoff_text(&input.title, &measured), tradeoff_csv(&measured));
         let plots = || vec![("tradeoff", tradeoff_plot_for(options.style, &input.title, &measured))];
         return reported(options, watch, about, &measured, text, &csv, plots);
@@ -62,7 +62,7 @@ pub(super) fn run(options: &Tradeoff, watch: &Watch) -> Result<Outcome, Error> {
 
 /// Reports what was measured, with its values and its pictures in the folder of the options.
 fn reported(
-    options: &Tradeoff,
+    options: &options::Tradeoff,
     watch: &Watch,
     about: &About,
     measured: &impl Serialize,

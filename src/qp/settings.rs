@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use crate::error::Error;
+use crate::memory;
 use crate::qp::method::interior_point::InteriorPoint;
 use crate::qp::method::penalty::{BEST_PENALTY, Penalty};
 use crate::solution::Goal;
@@ -198,6 +199,12 @@ impl Settings {
     /// The same with a limit of memory, in bytes.
     pub fn with_memory(self, bytes: f64) -> Self {
         Settings { memory: Some(bytes), ..self }
+    }
+
+    /// The same with what the machine has available as the limit of memory; no limit where the system does not say.
+    pub fn with_available_memory(self) -> Self {
+        let most = memory::available().min(memory::address_space_left());
+        if most.is_finite() { self.with_memory(most.max(1.0)) } else { self }
     }
 
     /// The same with a limit of iterations of a loop, or of cycles of MPRGP.

@@ -21,7 +21,5 @@ pub use motion_tradeoff::{MotionPoint, MotionTradeoff, motion_tradeoff};
 pub(crate) use problem_sweep::{ProblemPoint, ProblemSweep, sweep_problem};
 pub use scene::{Sweep, SweepCorner, SweepEvent, SweepPoint, scene_summary, sweep};
 pub use summary::{ContactSummary, ModelSize, RunSeconds, Status, Summary, Verification};
-#[cfg(feature = "cli")]
-pub(crate) use tradeoff::problem_tradeoff;
 pub use tradeoff::{Advice, Tradeoff, TradeoffGrid, TradeoffMesh, TradeoffPoint, tradeoff};
 pub use warnings::AnswerWarning;

@@ -185,22 +185,6 @@ pub fn tradeoff(scene: &Scene, grid: &TradeoffGrid, watch: &Watch) -> Result<Tra
     result.advised()
 }
 
-/// Solves a problem that comes as matrices by all methods: errors of the algebra alone.
-///
-/// # Errors
-/// As [`solve`]; [`Error::Interrupted`] where not one point was measured.
-#[cfg(feature = "cli")]
-pub(crate) fn problem_tradeoff(
-    problem: &ContactProblem,
-    grid: &TradeoffGrid,
-    watch: &Watch,
-) -> Result<Tradeoff, Error> {
-    let mut result = Tradeoff::new(grid);
-    Measured { problem, peak: &|_| Ok(None), mesh: 0 }.all(grid, watch, &mut result.points)?;
-    result.meshes.push(TradeoffMesh::of(problem, 1));
-    result.advised()
-}
-
 impl TradeoffMesh {
     fn of(problem: &ContactProblem, divided_by: usize) -> Self {
         let (dofs, contact_rows) = (problem.dofs(), problem.gap().len());
@@ -209,6 +193,17 @@ impl TradeoffMesh {
 }
 
 impl Tradeoff {
+    /// Solves a problem that comes as matrices by all methods: errors of the algebra alone.
+    ///
+    /// # Errors
+    /// As [`solve`]; [`Error::Interrupted`] where not one point was measured.
+    pub fn of_problem(problem: &ContactProblem, grid: &TradeoffGrid, watch: &Watch) -> Result<Self, Error> {
+        let mut result = Tradeoff::new(grid);
+        Measured { problem, peak: &|_| Ok(None), mesh: 0 }.all(grid, watch, &mut result.points)?;
+        result.meshes.push(TradeoffMesh::of(problem, 1));
+        result.advised()
+    }
+
     fn new(grid: &TradeoffGrid) -> Self {
         Tradeoff { meshes: Vec::new(), points: Vec::new(), advice: Vec::new(), runs: grid.runs.max(1) }
     }

@@ -9,7 +9,7 @@ use crate::imports::House;
 /// The rooms of each floor, from the ground up. `qp` alone is the front of the rooms in it; `lib` re-exports and `main` calls:
 /// they stand on the roof.
 const FLOORS: [&[&str]; 18] = [
-    &["solution", "watch"],
+    &["solution", "watch", "memory"],
     &["error"],
     &["file", "qp/barrier", "fem/formulation", "fem/geometry"],
     &["qp/linear", "fem/element", "fem/material", "fem/surface"],

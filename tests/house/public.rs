@@ -66,6 +66,94 @@ fn compressed_columns_make_the_matrix_of_their_triplets_or_say_what_is_wrong() {
     }
 }
 
+/// Columns and rows with indices of 32 bits make what `from_full` makes of the same entries; of triangles that differ by rounding
+/// the lower is taken, entries that stand on one side only included.
+#[test]
+fn both_triangles_are_taken_in_one_pass_whichever_way_they_are_stored() {
+    let mut state = 1_u64;
+    let mut random = move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as f64 / (1_u64 << 31) as f64
+    };
+    for dim in [1, 2, 5, 17] {
+        for rounding in [0.0, 1e-13] {
+            let mut entries = Vec::new();
+            for row in 0..dim {
+                entries.push((row, row, 4.0 + random()));
+                for column in (0..row).filter(|_| random() < 0.4).collect::<Vec<_>>() {
+                    let value = random() - 0.5;
+                    entries.extend([(row, column, value), (column, row, value * (1.0 + rounding))]);
+                }
+                if rounding > 0.0 && row > 0 {
+                    // One-sided, and as good as zero.
+                    let place = if random() < 0.5 { (row, row - 1) } else { (row - 1, row) };
+                    entries.push((place.0, place.1, rounding));
+                }
+            }
+            let full = SparseMatrix::from_triplets(dim, dim, &entries).unwrap();
+            let short = |indices: &[usize]| indices.iter().map(|&index| index as i32).collect::<Vec<_>>();
+            let lower: Vec<_> = entries.iter().copied().filter(|entry| entry.0 >= entry.1).collect();
+            let expected = SparseMatrix::from_triplets(dim, dim, &lower).unwrap();
+            let by_columns = (short(full.column_starts()), short(full.row_indices()));
+            let of_columns = SymmetricMatrix::from_csc(&by_columns.0, &by_columns.1, full.values()).unwrap();
+            let rows = full.transposed();
+            let by_rows = (short(rows.column_starts()), short(rows.row_indices()));
+            let of_rows = SymmetricMatrix::from_csr(&by_rows.0, &by_rows.1, rows.values()).unwrap();
+            for of in [of_columns, of_rows, SymmetricMatrix::from_full(&full).unwrap()] {
+                assert_eq!(of.lower(), &expected, "{dim} {rounding}");
+            }
+        }
+    }
+}
+
+#[test]
+fn triangles_that_make_no_symmetric_matrix_say_what_is_wrong() {
+    let (starts, rows) = ([0_i32, 2, 4], [0_i32, 1, 0, 1]);
+    for (starts, rows, values, by_columns, by_rows) in [
+        (
+            &starts,
+            &rows,
+            [2.0, -1.0, 1.0, 3.0],
+            "(1, 0) is -1e0, entry (0, 1) is 1e0",
+            "(1, 0) is 1e0, entry (0, 1) is -1e0",
+        ),
+        (&starts, &rows, [2.0, f64::NAN, -1.0, 3.0], "NaN at (1, 0)", "NaN at (0, 1)"),
+        (&starts, &[0, 9, 0, 1], [2.0, -1.0, -1.0, 3.0], "entry (9, 0) lies outside", "entry (0, 9) lies outside"),
+        (
+            &starts,
+            &[0, -1, 0, 1],
+            [2.0, -1.0, -1.0, 3.0],
+            "a row of column 0 is negative",
+            "a column of row 0 is negative",
+        ),
+        (
+            &starts,
+            &[1, 0, 0, 1],
+            [2.0, -1.0, -1.0, 3.0],
+            "row 0 of column 0 does not lie",
+            "column 0 of row 0 does not lie",
+        ),
+        (&[0, 5, 4], &rows, [2.0, -1.0, -1.0, 3.0], "decrease after column 0", "decrease after column 0"),
+        (&[0, -2, 4], &rows, [2.0, -1.0, -1.0, 3.0], "start of column 1 is no index", "start of column 1 is no index"),
+        (
+            &[0, 2, 3],
+            &rows,
+            [2.0, -1.0, -1.0, 3.0],
+            "end with the number of values, 4",
+            "end with the number of values, 4",
+        ),
+    ] {
+        let of_columns = SymmetricMatrix::from_csc(starts, rows, &values).unwrap_err().to_string();
+        let of_rows = SymmetricMatrix::from_csr(starts, rows, &values).unwrap_err().to_string();
+        assert!(of_columns.contains(by_columns), "{of_columns}");
+        assert!(of_rows.contains(by_rows), "{of_rows}");
+    }
+    let none: [i32; 0] = [];
+    assert!(
+        SymmetricMatrix::from_csc(&starts, &none, &[1.0]).unwrap_err().to_string().contains("row indices has length 0")
+    );
+}
+
 #[test]
 fn an_error_that_carries_an_answer_gives_it_away() {
     let stiffness = SymmetricMatrix::from_lower(SparseMatrix::from_triplets(1, 1, &[(0, 0, 1.0)]).unwrap()).unwrap();

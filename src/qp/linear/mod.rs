@@ -2,6 +2,7 @@
 
 mod accumulator;
 mod augmented;
+mod both_triangles;
 mod cholesky;
 mod definite;
 mod dense;

@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::thread;
 
 use super::SparseMatrix;
+use super::both_triangles::Columns;
 use crate::error::Error;
 
 /// Entries that are worth a part of their own in a product on several threads.
@@ -11,10 +12,6 @@ const PART: usize = 250_000;
 
 /// Parts of a product at the most: each may need a vector of its own.
 const MOST_PARTS: usize = 8;
-
-/// Two triangles count as alike when mirrored entries differ by no more than this times the largest entry of their
-/// row's or column's diagonal: assembly in another order differs by rounding, 1e-10 is far above it.
-const SYMMETRY_TOLERANCE: f64 = 1e-10;
 
 /// A symmetric matrix; only its lower triangle is stored.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,42 +27,52 @@ impl SymmetricMatrix {
     /// [`Error::Shape`] if not square, [`Error::NotSymmetric`] if the triangles differ.
     pub fn from_full(full: &SparseMatrix) -> Result<Self, Error> {
         square(full)?;
-        let mirrored = full.transposed();
-        let diagonal: Vec<f64> = (0..full.columns())
-            .map(|column| full.column(column).find(|entry| entry.0 == column).map_or(0.0, |entry| entry.1.abs()))
-            .collect();
-        let compare = |row: usize, column: usize, value: f64, other: f64| {
-            let size = diagonal[row].max(diagonal[column]);
-            let scale = if size > 0.0 { size } else { value.abs().max(other.abs()) };
-            if (value - other).abs() > SYMMETRY_TOLERANCE * scale {
-                return Err(Error::NotSymmetric { row, column, value, mirrored: other });
-            }
-            Ok(())
-        };
-        for column in 0..full.columns() {
-            // Both columns are sorted: walk them side by side.
-            let (mut left, mut right) = (full.column(column).peekable(), mirrored.column(column).peekable());
-            loop {
-                match (left.peek().copied(), right.peek().copied()) {
-                    (None, None) => break,
-                    (Some((row, value)), Some((other_row, other))) if row == other_row => {
-                        compare(row, column, value, other)?;
-                        left.next();
-                        right.next();
-                    }
-                    (Some((row, value)), other) if other.is_none_or(|(other_row, _)| row < other_row) => {
-                        compare(row, column, value, 0.0)?;
-                        left.next();
-                    }
-                    (_, Some((row, other))) => {
-                        compare(row, column, 0.0, other)?;
-                        right.next();
-                    }
-                    (Some(_), None) => break,
-                }
-            }
+        let (starts, rows, values) = (full.column_starts(), full.row_indices(), full.values());
+        Ok(SymmetricMatrix { lower: Columns { starts, rows, values }.lower()? })
+    }
+
+    /// From the compressed columns of both triangles, which must be alike as in [`SymmetricMatrix::from_full`]: `column_starts` of
+    /// length `dim + 1`, and for each entry its row, from 0 and increasing within a column, and its value. The indices have any
+    /// type. One pass; only the lower triangle is copied.
+    ///
+    /// ```
+    /// use signorini::SymmetricMatrix;
+    ///
+    /// // [2 -1; -1 3]
+    /// let matrix = SymmetricMatrix::from_csc(&[0_i32, 2, 4], &[0, 1, 0, 1], &[2.0, -1.0, -1.0, 3.0])?;
+    /// assert_eq!(matrix.mul(&[1.0, 1.0]), [1.0, 2.0]);
+    /// assert!(SymmetricMatrix::from_csc(&[0_i32, 2, 4], &[0, 1, 0, 1], &[2.0, -1.0, 1.0, 3.0]).is_err());
+    /// # Ok::<(), signorini::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Length`] for arrays that do not fit each other, [`Error::Pattern`] for starts that decrease or rows that do not
+    /// increase, [`Error::IndexOutOfRange`] for a row beyond the last, [`Error::NotFinite`], [`Error::NotSymmetric`] if the triangles
+    /// differ, [`Error::Numerical`] for want of memory.
+    pub fn from_csc<I>(column_starts: &[I], row_indices: &[I], values: &[f64]) -> Result<Self, Error>
+    where
+        I: Copy + TryInto<usize>,
+    {
+        let lower = Columns { starts: column_starts, rows: row_indices, values }.lower()?;
+        Ok(SymmetricMatrix { lower })
+    }
+
+    /// The same from compressed rows: `row_starts` of length `dim + 1`, and for each entry its column and its value.
+    ///
+    /// # Errors
+    /// As [`SymmetricMatrix::from_csc`], with rows and columns exchanged.
+    pub fn from_csr<I>(row_starts: &[I], column_indices: &[I], values: &[f64]) -> Result<Self, Error>
+    where
+        I: Copy + TryInto<usize>,
+    {
+        // As columns they make the transposed matrix, whose upper triangle is the lower one that is wanted.
+        if let Some(lower) = (Columns { starts: row_starts, rows: column_indices, values }).upper()? {
+            return Ok(SymmetricMatrix { lower });
         }
-        Ok(SymmetricMatrix { lower: lower_part(full) })
+        let indices = |given: &[I]| given.iter().filter_map(|&index| index.try_into().ok()).collect();
+        let (starts, columns) = (indices(row_starts), indices(column_indices));
+        let transposed = SparseMatrix::from_csc(row_starts.len().saturating_sub(1), starts, columns, values.to_vec())?;
+        Self::from_full(&transposed.transposed())
     }
 
     /// From the lower triangle alone (entries with row >= column).
@@ -223,17 +230,4 @@ fn square(matrix: &SparseMatrix) -> Result<(), Error> {
         return Err(Error::Shape { name: "stiffness", found: (rows, columns), expected: (rows, rows) });
     }
     Ok(())
-}
-
-fn lower_part(full: &SparseMatrix) -> SparseMatrix {
-    let mut starts = vec![0];
-    let (mut rows, mut values) = (Vec::new(), Vec::new());
-    for column in 0..full.columns() {
-        for (row, value) in full.column(column).filter(|entry| entry.0 >= column) {
-            rows.push(row);
-            values.push(value);
-        }
-        starts.push(rows.len());
-    }
-    SparseMatrix::from_parts(full.rows(), starts, rows, values)
 }

@@ -105,7 +105,8 @@ fn near_null(directory: &Path, dofs: usize) -> Result<Option<NearNullSpace>, Err
             );
             return Err(fault(file, message));
         }
-        (file, rigid_body_modes(&columns(content)))
+        let of_nodes = NearNullSpace::of_nodes(&columns(content));
+        return of_nodes.map(Some).map_err(|error| fault(file, error.to_string()));
     };
     NearNullSpace::new(vectors, dofs).map(Some).map_err(|error| fault(file, error.to_string()))
 }
@@ -118,27 +119,6 @@ fn columns(content: Content) -> Vec<Vec<f64>> {
     let mut columns = vec![vec![0.0; content.rows]; content.columns];
     content.entries.iter().for_each(|&(row, column, value)| columns[column][row] += value);
     columns
-}
-
-/// Translations and rotations of nodes with the coordinates `axes`, node by node.
-fn rigid_body_modes(axes: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    let (dimension, nodes) = (axes.len(), axes.first().map_or(0, Vec::len));
-    let mut modes = vec![vec![0.0; dimension * nodes]; dimension];
-    for (axis, mode) in modes.iter_mut().enumerate() {
-        (0..nodes).for_each(|node| mode[dimension * node + axis] = 1.0);
-    }
-    for first in 0..dimension {
-        for second in first + 1..dimension {
-            let mut rotation = vec![0.0; dimension * nodes];
-            let middle = [first, second].map(|axis| axes[axis].iter().sum::<f64>() / nodes.max(1) as f64);
-            for node in 0..nodes {
-                rotation[dimension * node + first] = middle[1] - axes[second][node];
-                rotation[dimension * node + second] = axes[first][node] - middle[0];
-            }
-            modes.push(rotation);
-        }
-    }
-    modes
 }
 
 /// Name and text of the file of a problem's near-null space, where it has one.

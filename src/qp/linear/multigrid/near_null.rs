@@ -58,6 +58,24 @@ impl NearNullSpace {
         (dofs > 0 && vectors.iter().all(|vector| vector.len() == dofs)).then_some(NearNullSpace { vectors })
     }
 
+    /// The rigid-body modes of nodes whose dofs are all free and follow each other: translations and rotations, as displacements
+    /// of [x_0, y_0, x_1, ...]. One vector of coordinates for each axis, 1 to 3, each as long as there are nodes.
+    ///
+    /// # Errors
+    /// As [`NearNullSpace::new`]; [`Error::Setting`] for another number of axes, [`Error::Length`] for axes that do not fit each
+    /// other.
+    pub fn of_nodes(axes: &[Vec<f64>]) -> Result<Self, Error> {
+        let (dimension, nodes) = (axes.len(), axes.first().map_or(0, Vec::len));
+        if !(1..=3).contains(&dimension) {
+            let (name, value) = ("the number of coordinates of a node", dimension as f64);
+            return Err(Error::Setting { name, value, allowed: "1, 2 or 3" });
+        }
+        if let Some(axis) = axes.iter().find(|axis| axis.len() != nodes) {
+            return Err(Error::Length { name: "axis of coordinates", found: axis.len(), expected: nodes, of: "nodes" });
+        }
+        Self::new(modes(axes), dimension * nodes)
+    }
+
     /// The constants: one vector for each of the dofs that a node has, in their order, by the pattern of `matrix` alone.
     ///
     /// # Errors
@@ -82,6 +100,27 @@ impl NearNullSpace {
     pub fn dofs(&self) -> usize {
         self.vectors.first().map_or(0, Vec::len)
     }
+}
+
+/// Translations and rotations of nodes with the coordinates `axes`, node by node.
+fn modes(axes: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let (dimension, nodes) = (axes.len(), axes.first().map_or(0, Vec::len));
+    let mut modes = vec![vec![0.0; dimension * nodes]; dimension];
+    for (axis, mode) in modes.iter_mut().enumerate() {
+        (0..nodes).for_each(|node| mode[dimension * node + axis] = 1.0);
+    }
+    for first in 0..dimension {
+        for second in first + 1..dimension {
+            let mut rotation = vec![0.0; dimension * nodes];
+            let middle = [first, second].map(|axis| axes[axis].iter().sum::<f64>() / nodes.max(1) as f64);
+            for node in 0..nodes {
+                rotation[dimension * node + first] = middle[1] - axes[second][node];
+                rotation[dimension * node + second] = axes[first][node] - middle[0];
+            }
+            modes.push(rotation);
+        }
+    }
+    modes
 }
 
 /// The first vector that follows from those before it, by modified Gram-Schmidt.

@@ -1,0 +1,74 @@
+"""A quadratic program by signorini, by the solvers of qpsolvers, and by cvxpy.
+
+`register` makes signorini one of the solvers of qpsolvers, as its own modules do it: then `qpsolvers.solve_qp(..., solver="signorini")`
+calls it, and so does everything that is built on qpsolvers.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import qpsolvers
+import signorini as sg
+
+
+def solve_problem(problem: Any, initvals: Any = None, verbose: bool = False, **options: Any) -> Any:
+    """Solves a `qpsolvers.Problem` by signorini; the form that qpsolvers asks of a solver."""
+    data = (problem.P, problem.q, problem.G, problem.h, problem.A, problem.b, problem.lb, problem.ub)
+    answer = sg.qp.solve_problem(*data, initvals=initvals, **options)
+    found = qpsolvers.Solution(problem)
+    found.found, found.x, found.obj = answer.found, answer.x, answer.obj
+    found.y, found.z, found.z_box = answer.y, answer.z, answer.z_box
+    if answer.certificate is not None:
+        found.extras["certificate"] = answer.certificate.to_dict()
+    return found
+
+
+def register() -> None:
+    """Makes "signorini" a solver of qpsolvers."""
+    from qpsolvers import solvers
+
+    if "signorini" not in solvers.available_solvers:
+        solvers.available_solvers.append("signorini")
+    solvers.solve_function["signorini"] = solve_problem
+    solvers.dense_solvers.append("signorini")
+    solvers.sparse_solvers.append("signorini")
+
+
+def program(unknowns: int = 40) -> tuple[Any, ...]:
+    """A chain of springs between two walls, its ends held together: P, q, G, h, A, b, lb, ub."""
+    P = 2 * np.eye(unknowns) - np.eye(unknowns, k=1) - np.eye(unknowns, k=-1)
+    q = -0.05 * np.sin(np.linspace(0.0, 3 * np.pi, unknowns))
+    G = np.eye(unknowns, k=1)[:-1] - np.eye(unknowns)[:-1]
+    A = np.zeros((1, unknowns))
+    A[0, 0], A[0, -1] = 1.0, -1.0
+    bound = np.full(unknowns, 1.0)
+    return P, q, G, np.full(unknowns - 1, 0.08), A, np.zeros(1), -bound, 0.5 * bound
+
+
+def main() -> dict[str, float]:
+    """The objective by each of the three."""
+    register()
+    data = program()
+    objectives = {}
+    answer = qpsolvers.solve_problem(qpsolvers.Problem(*data), solver="signorini")
+    objectives["signorini by qpsolvers"] = answer.obj
+    for other in ("clarabel", "osqp", "highs"):
+        if other in qpsolvers.available_solvers:
+            x = qpsolvers.solve_qp(*data, solver=other)
+            objectives[f"{other} by qpsolvers"] = float(0.5 * x @ data[0] @ x + data[1] @ x)
+    import cvxpy
+
+    P, q, G, h, A, b, lb, ub = data
+    x = cvxpy.Variable(len(q))
+    objective = cvxpy.Minimize(0.5 * cvxpy.quad_form(x, cvxpy.psd_wrap(P)) + q @ x)
+    objectives["cvxpy"] = float(cvxpy.Problem(objective, [G @ x <= h, A @ x == b, lb <= x, x <= ub]).solve(solver="CLARABEL"))
+    for name, value in objectives.items():
+        print(f"{name:24} {value:.12f}")
+    print(f"residuals of signorini: {answer.primal_residual():.1e}, {answer.dual_residual():.1e}, gap {answer.duality_gap():.1e}")
+    return objectives
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,133 @@
+"""Measures what the way through Python costs: `python python/measure.py`, with the package installed.
+
+Four numbers: reading a stiffness of 8 million entries beside the solve by its factor; a solve of two springs beside what the library takes
+itself; the next gap of a block of 131,584 dofs beside the same; the answer to an interrupt.
+"""
+
+from __future__ import annotations
+
+import argparse
+import gc
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable
+
+import numpy as np
+import signorini as sg
+from scipy import sparse
+
+
+def fastest(work: Callable[[], object], runs: int) -> float:
+    """Processor seconds of the fastest run, in which other programs of the machine do not count."""
+    seconds = []
+    for _ in range(runs):
+        gc.collect()
+        began = time.process_time()
+        work()
+        seconds.append(time.process_time() - began)
+    return min(seconds)
+
+
+def block(cells: int) -> sg.Scene:
+    """An elastic block of `cells` x `cells` Q4 under a parabola, held at its bottom."""
+    side = {"points": [0, 1], "divisions": [cells]}
+    parabola = {"parabola": {"apex": [0.5, 1], "radius": 1}}
+    return sg.Scene(
+        {
+            "body": {"rectangle": {"x": side, "y": side, "element": "q4"}},
+            "material": {"young": 1e7, "poisson": 0.3},
+            "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}],
+            "obstacles": [{"boundary": "top", "approach": "+y", "rule": "approach", "shape": parabola}],
+            "gap": -0.01,
+        }
+    )
+
+
+def transfer(cells: int) -> None:
+    """Reading the arrays of a stiffness, beside the solve by the factor."""
+    problem = block(cells).problem
+    K, f, B, g = problem.K, problem.f, problem.B, problem.g
+    forms = {"csc, 64-bit indices": K, "csc, 32-bit indices": sparse.csc_array(K), "csr, 32-bit indices": sparse.csr_array(K)}
+    for name in list(forms)[1:]:
+        matrix = forms[name]
+        matrix.indices, matrix.indptr = matrix.indices.astype(np.int32), matrix.indptr.astype(np.int32)
+    solve = fastest(lambda: sg.solve(problem, method="active-set", proof=False), 2)
+    print(f"stiffness of {K.nnz} entries, {problem.dofs} dofs; solve by the factor {solve:.3f} s")
+    for name, matrix in forms.items():
+        read = fastest(lambda matrix=matrix: sg.Problem(matrix, f, B, g), 5)
+        print(f"  reading {name}: {read:.4f} s, {100 * read / solve:.2f} % of the solve")
+
+
+def two_springs(calls: int) -> None:
+    """Microseconds of a call above those of the library."""
+    problem = sg.Problem(np.array([[3.0, -1.0], [-1.0, 1.0]]), [0.0, 3.0], np.array([[0.0, 1.0]]), [1.0])
+    for name, solve in (
+        ("solve", lambda: sg.solve(problem)),
+        ("solve, and its arrays", lambda: [answer := sg.solve(problem), answer.u, answer.multiplier, answer.contact_set][0]),
+    ):
+        for _ in range(calls // 10):
+            solve()
+        above = []
+        for _ in range(calls):
+            began = time.perf_counter()
+            answer = solve()
+            above.append(1e6 * (time.perf_counter() - began - answer.seconds))
+        own = 1e6 * answer.seconds
+        print(f"two springs, {name}: {np.median(above):.1f} microseconds above the library's {own:.0f}")
+
+
+def next_gap(cells: int, gaps: int) -> None:
+    """The next gap through Python, beside what the library takes for it."""
+    problem = block(cells).problem
+    prepared = sg.prepare(problem, gaps=gaps, method="active-set", proof=False)
+    answer = prepared.solve()
+    ratios = []
+    for step in range(gaps):
+        g = problem.g - 1e-4 * step
+        began = time.perf_counter()
+        answer = prepared.solve(g, start=answer)
+        answer.u, answer.multiplier, answer.contact_set
+        wall = time.perf_counter() - began
+        ratios.append(wall / answer.seconds)
+    print(f"next gap of {problem.dofs} dofs: {np.median(ratios):.4f} times the library's {answer.seconds:.4f} s")
+
+
+def interrupt(cells: int) -> None:
+    """The answer to an interrupt, at several moments of a solve."""
+    problem = block(cells).problem
+    for method, after in (("active-set", 0.1), ("active-set", 0.5), ("mprgp", 0.3), ("qp", 0.5)):
+        sent: list[float] = []
+
+        def send(sent: list[float] = sent) -> None:
+            sent.append(time.perf_counter())
+            os.kill(os.getpid(), signal.SIGINT)
+
+        threading.Timer(after, send).start()
+        try:
+            sg.solve(problem, method=method)
+            print(f"interrupt after {after} s of {method}: it was solved before")
+            time.sleep(after)
+        except sg.Interrupted as stopped:
+            waited = 1e3 * (time.perf_counter() - sent[0])
+            carries = "an answer" if stopped.solution is not None else "no answer yet"
+            print(f"interrupt after {after} s of {method}: {waited:.0f} ms, {carries}")
+        except KeyboardInterrupt:
+            print(f"interrupt after {after} s of {method}: it came too late")
+        # What was left behind ends first.
+        time.sleep(3.0)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--short", action="store_true", help="smaller bodies and fewer calls")
+    short = parser.parse_args().short
+    two_springs(2_000 if short else 20_000)
+    next_gap(64 if short else 256, 10)
+    interrupt(200 if short else 400)
+    transfer(120 if short else 512)
+
+
+if __name__ == "__main__":
+    main()

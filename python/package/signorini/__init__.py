@@ -1,0 +1,92 @@
+"""Frictionless unilateral contact as a convex QP, cross-checked and certified.
+
+    minimise 1/2 u'K u - f'u   subject to   B u - g <= 0
+    K u - f - B' multiplier = 0,  B u - g <= 0,  multiplier <= 0,  multiplier_i (B u - g)_i = 0
+
+K (n x n) is the stiffness after supports, symmetric and positive semidefinite; f (n) the load; B (m x n) the contact rows, positive
+towards the obstacle; g (m) the gaps, negative where the obstacle starts inside the body and inf where there is none. The multiplier is
+the force on the body along its row, so that compression is negative. Any consistent system of units.
+
+>>> import numpy as np, signorini as sg
+>>> p = sg.Problem(np.array([[3.0, -1.0], [-1.0, 1.0]]), [0.0, 3.0], np.array([[0.0, 1.0]]), [1.0])
+>>> s = sg.solve(p)
+>>> s.u.round(12).tolist(), s.multiplier.round(12).tolist(), s.energy_error_bound < 1e-9
+([0.333333333333, 1.0], [-2.333333333333], True)
+"""
+
+from signorini import qp
+from signorini._errors import (
+    BadInput,
+    BadType,
+    FileError,
+    Infeasible,
+    InternalError,
+    Interrupted,
+    NotCertified,
+    NotConvex,
+    NumericalError,
+    OutOfTime,
+    SceneError,
+    SignoriniError,
+    TooLarge,
+    Unbounded,
+    UnderHeld,
+)
+from signorini._signorini import (
+    Certificate,
+    Comparison,
+    Event,
+    Path,
+    Prepared,
+    Problem,
+    Proven,
+    Scene,
+    SceneSolution,
+    Solution,
+    __version__,
+    compare,
+    prepare,
+    solve,
+    solve_qp,
+    verify,
+)
+from signorini._studies import Sweep, Tradeoff, sweep, tradeoff
+
+__all__ = [
+    "BadInput",
+    "BadType",
+    "Certificate",
+    "Comparison",
+    "Event",
+    "FileError",
+    "Infeasible",
+    "InternalError",
+    "Interrupted",
+    "NotCertified",
+    "NotConvex",
+    "NumericalError",
+    "OutOfTime",
+    "Path",
+    "Prepared",
+    "Problem",
+    "Proven",
+    "Scene",
+    "SceneError",
+    "SceneSolution",
+    "SignoriniError",
+    "Solution",
+    "Sweep",
+    "TooLarge",
+    "Tradeoff",
+    "Unbounded",
+    "UnderHeld",
+    "__version__",
+    "compare",
+    "prepare",
+    "qp",
+    "solve",
+    "solve_qp",
+    "sweep",
+    "tradeoff",
+    "verify",
+]

@@ -1,0 +1,188 @@
+"""What a notebook shows: tables in HTML, and pictures by matplotlib and pyvista, both optional."""
+
+from __future__ import annotations
+
+import html
+import json
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from signorini._signorini import SceneSolution, Solution
+    from signorini._studies import Sweep, Tradeoff
+
+# Nodes on the rim of each element in order, and the numbers of the cells of VTK.
+_RIMS = {"T3": [0, 1, 2], "T6": [0, 3, 1, 4, 2, 5], "Q4": [0, 1, 2, 3], "Q8": [0, 4, 1, 5, 2, 6, 3, 7]}
+_VTK = {
+    "Line2": 3, "Line3": 21, "T3": 5, "T6": 22, "Q4": 9, "Q8": 23, "Tet4": 10, "Tet10": 24, "Hex8": 12, "Hex20": 25,
+}  # fmt: skip
+
+# An error of zero is drawn here, on a logarithmic axis.
+_LEAST_ERROR = 1e-16
+
+
+def scene_text(scene: dict[str, Any]) -> str:
+    """The JSON of a scene whose numbers may be those of numpy."""
+
+    def plain(value: Any) -> Any:
+        if hasattr(value, "tolist"):
+            return value.tolist()
+        raise TypeError(f"a scene has no place for a {type(value).__name__}")
+
+    try:
+        return json.dumps(scene, default=plain)
+    except (TypeError, ValueError, RecursionError) as error:
+        from signorini._errors import BadType
+
+        raise BadType(f"the dictionary makes no JSON: {error}") from None
+
+
+def _table(title: str, lines: list[tuple[str, str]]) -> str:
+    rows = "".join(f"<tr><th style='text-align:left'>{html.escape(a)}</th><td>{html.escape(b)}</td></tr>" for a, b in lines)
+    return f"<table><caption>{html.escape(title)}</caption>{rows}</table>"
+
+
+def _lines(solution: Solution) -> list[tuple[str, str]]:
+    certificate = solution.certificate
+    bound = solution.energy_error_bound
+    lines = [
+        ("dofs, contact rows", f"{len(solution.u)}, {len(solution.multiplier)}"),
+        ("closed rows", f"{len(solution.contact_set)}"),
+        ("contact force", f"{solution.contact_force:.9g}"),
+        ("energy error", f"<= {bound:.1e}" if np.isfinite(bound) else "no bound"),
+        ("worst condition", "{} {:.1e}".format(*certificate.worst)),
+    ]
+    if solution.proven is not None:
+        proven = solution.proven
+        lines.append(("proven", f"{len(proven.closed)} closed, {len(proven.open)} open, {len(proven.undecided)} undecided"))
+    lines.append(("method", f"{solution.method}, {solution.iterations} iterations, {solution.seconds:.3g} s"))
+    return lines
+
+
+def solution_html(solution: Solution) -> str:
+    """The answer as a table."""
+    return _table("Answer to a contact problem", _lines(solution))
+
+
+def scene_html(solution: SceneSolution) -> str:
+    """The answer to a scene as a table."""
+    lines = _lines(solution)
+    if len(solution.pressure):
+        lines.insert(3, ("peak pressure", f"{solution.pressure.max():.6e}"))
+    return _table(solution.scene.title or "Answer to a contact scene", lines)
+
+
+def _axes(ax: Any) -> Any:
+    if ax is not None:
+        return ax
+    try:
+        import matplotlib.pyplot as plt
+    except ImportError as missing:
+        raise ImportError("pictures need matplotlib: pip install 'signorini[plot]'") from missing
+    return plt.subplots(layout="constrained")[1]
+
+
+def solution_plot(solution: Solution, ax: Any = None) -> Any:
+    """Contact force of each row; returns the axes."""
+    ax = _axes(ax)
+    forces = 0.0 - solution.multiplier
+    closed = np.zeros(len(forces), dtype=bool)
+    closed[solution.contact_set] = True
+    rows = np.arange(len(forces))
+    ax.plot(rows, forces, color="0.7", linewidth=1, zorder=1)
+    ax.scatter(rows[~closed], forces[~closed], s=12, facecolors="white", edgecolors="0.4", label="open", zorder=2)
+    ax.scatter(rows[closed], forces[closed], s=14, color="tab:blue", label="closed", zorder=2)
+    ax.set_xlabel("contact row")
+    ax.set_ylabel("contact force -multiplier")
+    ax.legend(frameon=False)
+    return ax
+
+
+def scene_plot(solution: SceneSolution, ax: Any = None) -> Any:
+    """The moved mesh in the plane with the von Mises stress; in space and on a line the contact forces of the rows."""
+    scene = solution.scene
+    rim = _RIMS.get(scene.element_kind)
+    if rim is None:
+        return solution_plot(solution, ax)
+    ax = _axes(ax)
+    from matplotlib.collections import PolyCollection
+
+    moved = scene.nodes + solution.displacement
+    of_elements = solution.von_mises[scene.elements].mean(axis=1)
+    outlines = list(moved[scene.elements[:, rim]])
+    cells = PolyCollection(outlines, array=of_elements, cmap="viridis", edgecolors="face", linewidths=0.2)
+    ax.add_collection(cells)
+    nodes = np.asarray(scene.rows["node"])[solution.contact_set]
+    ax.scatter(*moved[nodes].T, s=12, color="tab:red", zorder=3, label="closed")
+    ax.autoscale()
+    ax.set_aspect("equal")
+    length, pressure = scene.units["length"], scene.units["pressure"]
+    ax.set_xlabel(f"x [{length}]" if length else "x")
+    ax.set_ylabel(f"y [{length}]" if length else "y")
+    ax.set_title(scene.title or "moved mesh")
+    if len(nodes):
+        ax.legend(frameon=False, loc="upper left", bbox_to_anchor=(0, -0.12))
+    label = f"von Mises stress [{pressure}]" if pressure else "von Mises stress"
+    width, height = np.ptp(moved, axis=0)
+    ax.figure.colorbar(cells, ax=ax, label=label, shrink=float(np.clip(height / width, 0.3, 1.0)))
+    return ax
+
+
+def scene_to_pyvista(solution: SceneSolution) -> Any:
+    """An unstructured grid with displacement, stress and von Mises stress at the nodes."""
+    try:
+        import pyvista
+    except ImportError as missing:
+        raise ImportError("this needs pyvista: pip install 'signorini[pyvista]'") from missing
+    scene = solution.scene
+
+    def in_space(vectors: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+        return np.pad(vectors, ((0, 0), (0, 3 - vectors.shape[1])))
+
+    # The nodes of an element have the order of VTK.
+    cells = {_VTK[scene.element_kind]: np.asarray(scene.elements)}
+    grid = pyvista.UnstructuredGrid(cells, in_space(scene.nodes))
+    grid.point_data["displacement"] = in_space(solution.displacement)
+    grid.point_data["stress"] = np.asarray(solution.stress)
+    grid.point_data["von_mises"] = np.asarray(solution.von_mises)
+    return grid
+
+
+def tradeoff_plot(tradeoff: Tradeoff, ax: Any = None) -> Any:
+    """Error over seconds: the total error where there are meshes, otherwise that of the algebra."""
+    ax = _axes(ax)
+    has_total = any(point.get("total_error") is not None for point in tradeoff.points)
+    name = "total_error" if has_total else "energy_error"
+    lines: dict[tuple[str, bool, int], list[tuple[float, float]]] = {}
+    for point in tradeoff.points:
+        error = point.get(name)
+        if error is not None:
+            key = (point["method"] + (", mixed" if point["mixed"] else ""), point["condensed"], point["mesh"])
+            lines.setdefault(key, []).append((point["seconds"], max(error, _LEAST_ERROR)))
+    colours = {method: f"C{i % 10}" for i, method in enumerate(sorted({key[0] for key in lines}))}
+    seen: set[str] = set()
+    for (method, condensed, _), points in sorted(lines.items()):
+        label = None if method in seen else method
+        seen.add(method)
+        style = "-" if condensed else ":"
+        ax.plot(*zip(*points, strict=True), style, marker="o", markersize=3, color=colours[method], label=label)
+    ax.set_xscale("log")
+    ax.set_yscale("log")
+    ax.set_xlabel("seconds")
+    ax.set_ylabel("total error, relative in energy" if has_total else "error of the algebra, relative in energy")
+    ax.legend(frameon=False, title="solid: condensed, dotted: all dofs", fontsize="small")
+    return ax
+
+
+def sweep_plot(sweep: Sweep, ax: Any = None) -> Any:
+    """Contact force over the gap of a scene, or over the number of the gap."""
+    ax = _axes(ax)
+    is_scene = bool(sweep.gaps) and np.ndim(sweep.gaps[0]) == 0
+    if is_scene and sweep.corners:
+        ax.plot([corner["gap"] for corner in sweep.corners], [corner["force"] for corner in sweep.corners], color="0.7")
+    ax.plot(sweep.gaps if is_scene else np.arange(len(sweep.gaps)), sweep.contact_force, "o", markersize=4)
+    units = sweep.solutions[0].scene.units if is_scene else {"length": "", "force": ""}
+    ax.set_xlabel(("gap" + (f" [{units['length']}]" if units["length"] else "")) if is_scene else "number of the gap")
+    ax.set_ylabel("contact force" + (f" [{units['force']}]" if units["force"] else ""))
+    return ax

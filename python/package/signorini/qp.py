@@ -1,0 +1,302 @@
+"""Convex quadratic programs in the form of qpsolvers, certified.
+
+    minimise 1/2 x'P x + q'x   subject to   G x <= h,  A x = b,  lb <= x <= ub
+
+P is symmetric and positive semidefinite. An equality is held by two opposite rows, so that its residual, its multiplier and the bound on
+the error stand in the certificate like those of any other row. If the minimum is attained in more than one point, one of them is
+returned, found by proximal steps; its conditions are certified, and there is no bound on its distance to the others.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from signorini import _signorini
+from signorini._errors import BadInput, BadType, Infeasible, NotCertified, SignoriniError, Unbounded, UnderHeld
+
+__all__ = ["QPSolution", "solve_problem", "solve_qp"]
+
+# Proximal steps at the most; for a quadratic program a few are enough.
+_MOST_STEPS = 200
+
+# Proximal terms beside the largest diagonal entry of P, in the order in which they are tried: the smaller, the fewer steps; the
+# larger, the more digits in each.
+_PROXIMITIES = (1e-8, 1e-6, 1e-4)
+
+# Conditions to which an answer that is not unique is certified.
+_TOLERANCE = 1e-9
+
+
+@dataclass(frozen=True, repr=False)
+class QPSolution:
+    """The answer to a quadratic program, with the multipliers and signs of qpsolvers."""
+
+    found: bool
+    """Whether there is one: `False` if the constraints contradict each other, or the objective has no lower bound."""
+    x: NDArray[np.float64] | None
+    """The minimum, length n."""
+    z: NDArray[np.float64] | None
+    """Multipliers of G x <= h, >= 0."""
+    y: NDArray[np.float64] | None
+    """Multipliers of A x = b, of either sign: P x + q + G'z + A'y + z_box = 0."""
+    z_box: NDArray[np.float64] | None
+    """Multipliers of the bounds: negative at a lower one, positive at an upper one."""
+    obj: float | None
+    """The objective at x."""
+    certificate: _signorini.Certificate | None
+    """The conditions, recomputed from the problem, and the bound on the error of x."""
+    unique: bool
+    """Whether x is the only minimum, with a bound on its error."""
+    reason: str
+    """Why there is none, in a sentence; empty if there is one."""
+
+    def __repr__(self) -> str:
+        if self.x is None:
+            return f"<signorini.qp.QPSolution: {self.reason}>"
+        return f"<signorini.qp.QPSolution: {len(self.x)} unknowns, objective {self.obj:.9g}, {self.certificate!r}>"
+
+
+def solve_qp(
+    P: Any,
+    q: Any,
+    G: Any = None,
+    h: Any = None,
+    A: Any = None,
+    b: Any = None,
+    lb: Any = None,
+    ub: Any = None,
+    **options: Any,
+) -> NDArray[np.float64] | None:
+    """Solves a quadratic program: x, or None if there is no solution. Arguments and options are those of `solve_problem`."""
+    return solve_problem(P, q, G, h, A, b, lb, ub, **options).x
+
+
+def solve_problem(
+    P: Any,
+    q: Any,
+    G: Any = None,
+    h: Any = None,
+    A: Any = None,
+    b: Any = None,
+    lb: Any = None,
+    ub: Any = None,
+    *,
+    initvals: Any = None,
+    **options: Any,
+) -> QPSolution:
+    """Solves a quadratic program.
+
+    Matrices are arrays of numpy or sparse matrices of scipy. `initvals` is a point near the minimum. Options are those of
+    `signorini.solve`.
+
+    Raises `BadInput` for arrays that are no quadratic program, `NotConvex` if P has a negative eigenvalue, `NotCertified` with the best
+    answer if it does not meet the tolerance.
+    """
+    load = -_vector("q", q)
+    rows = _Rows(load.size)
+    if np.ndim(P) == 1 and np.size(P) == load.size == 1:
+        P = np.reshape(P, (1, 1))
+    rows.add("G", "h", G, h, _INEQUALITY)
+    rows.add("A", "b", A, b, _EQUALITY)
+    rows.add_bounds(lb, ub)
+    problem = _signorini.Problem(P, load, *rows.joined())
+    start = None if initvals is None else _vector("initvals", initvals)
+    try:
+        solution = _signorini.solve(problem, start=start, proof=False, **options)
+        return rows.answer(problem, solution.u, solution.multiplier, solution.certificate, unique=True)
+    except (Infeasible, Unbounded) as error:
+        return QPSolution(False, None, None, None, None, None, None, False, str(error))
+    except UnderHeld:
+        return _one_of_many(problem, rows, start, options)
+    except NotCertified as fell_short:
+        # Without a bound the conditions alone can be certified; a minimum that is hardly unique is found by steps.
+        best = fell_short.solution
+        if best.certificate.conditions_hold(_TOLERANCE):
+            return rows.answer(problem, best.u, best.multiplier, best.certificate, unique=False)
+        try:
+            return _one_of_many(problem, rows, start, options)
+        except SignoriniError:
+            raise fell_short from None
+
+
+_INEQUALITY, _EQUALITY = "inequality", "equality"
+
+
+def _vector(name: str, values: Any) -> NDArray[np.float64]:
+    """A vector, which may come as a column."""
+    array = np.asarray(values)
+    if array.dtype.kind not in "fiub":
+        raise BadType(f"{name} is an array of dtype {array.dtype}; it must be an array of real numbers")
+    return np.ascontiguousarray(array, dtype=np.float64).reshape(-1)
+
+
+def _is_sparse(matrix: Any) -> bool:
+    return hasattr(matrix, "tocsc")
+
+
+class _Rows:
+    """The rows B x <= g of a contact problem that stand for the constraints of a quadratic program."""
+
+    def __init__(self, unknowns: int) -> None:
+        self.unknowns = unknowns
+        self.matrices: list[Any] = []
+        self.gaps: list[NDArray[np.float64]] = []
+        self.groups: dict[str, tuple[int, int]] = {}
+        self.count = 0
+        self.has_box = False
+        self.lower = self.upper = np.empty(0, dtype=np.int64)
+
+    def _append(self, name: str, matrix: Any, gap: NDArray[np.float64]) -> None:
+        self.groups[name] = (self.count, self.count + len(gap))
+        self.count += len(gap)
+        self.matrices.append(matrix)
+        self.gaps.append(gap)
+
+    def add(self, name: str, side_name: str, matrix: Any, side: Any, kind: str) -> None:
+        """Adds `matrix x <= side`, or `matrix x = side` by two opposite rows for each."""
+        from scipy import sparse
+
+        if matrix is None and side is None:
+            return
+        if matrix is None or side is None:
+            given, missing = (side_name, name) if matrix is None else (name, side_name)
+            raise BadInput(f"{given} is given without {missing}; every row of {name} needs an entry of {side_name}")
+        if not _is_sparse(matrix):
+            matrix = np.asarray(matrix)
+            if matrix.dtype.kind not in "fiub":
+                raise BadType(f"{name} is an array of dtype {matrix.dtype}; it must be a matrix of real numbers")
+            matrix = sparse.csr_array(np.atleast_2d(matrix).astype(np.float64))
+        values = _vector(side_name, side)
+        if matrix.shape != (len(values), self.unknowns):
+            raise BadInput(
+                f"{name} is {matrix.shape[0]} x {matrix.shape[1]}; {side_name} and q ask for {len(values)} x {self.unknowns}"
+            )
+        if kind == _INEQUALITY:
+            self._append(name, matrix, _gaps(side_name, values))
+            return
+        if not np.isfinite(values).all():
+            entry = int(np.flatnonzero(~np.isfinite(values))[0])
+            raise BadInput(f"{side_name} has the value {values[entry]} at entry {entry} (from 0); it must be finite")
+        self._append(name, matrix, values)
+        self._append(f"-{name}", -matrix, -values)
+
+    def add_bounds(self, lb: Any, ub: Any) -> None:
+        """Adds the bounds that are finite."""
+        from scipy import sparse
+
+        self.has_box = lb is not None or ub is not None
+        for name, bound, sign in (("ub", ub, 1.0), ("lb", lb, -1.0)):
+            if bound is None:
+                continue
+            values = _vector(name, bound)
+            if len(values) != self.unknowns:
+                raise BadInput(f"{name} has length {len(values)}; there are {self.unknowns} unknowns")
+            values = _gaps(name, sign * values)
+            bounded = np.flatnonzero(np.isfinite(values))
+            one = np.full(len(bounded), sign)
+            matrix = sparse.csr_array((one, (np.arange(len(bounded)), bounded)), shape=(len(bounded), self.unknowns))
+            self._append(name, matrix, values[bounded])
+            if name == "ub":
+                self.upper = bounded
+            else:
+                self.lower = bounded
+
+    def joined(self) -> tuple[Any, Any]:
+        """B and g; None for both without rows."""
+        from scipy import sparse
+
+        if self.count == 0:
+            return None, None
+        return sparse.csc_array(sparse.vstack(self.matrices, format="csc")), np.concatenate(self.gaps)
+
+    def _of(self, name: str, multiplier: NDArray[np.float64]) -> NDArray[np.float64]:
+        first, end = self.groups[name]
+        # Adding zero takes the sign off a zero.
+        return 0.0 - multiplier[first:end]
+
+    def answer(
+        self,
+        problem: _signorini.Problem,
+        u: NDArray[np.float64],
+        multiplier: NDArray[np.float64],
+        certificate: _signorini.Certificate,
+        *,
+        unique: bool,
+    ) -> QPSolution:
+        """The answer in the signs of qpsolvers."""
+        x = u.copy()
+        z = self._of("G", multiplier) if "G" in self.groups else None
+        y = self._of("A", multiplier) - self._of("-A", multiplier) if "A" in self.groups else None
+        z_box = None
+        if self.has_box:
+            z_box = np.zeros(self.unknowns)
+            if "ub" in self.groups:
+                z_box[self.upper] += self._of("ub", multiplier)
+            if "lb" in self.groups:
+                z_box[self.lower] -= self._of("lb", multiplier)
+        objective = float(0.5 * x @ (problem.K @ x) - problem.f @ x)
+        return QPSolution(True, x, z, y, z_box, objective, certificate, unique, "")
+
+
+def _gaps(name: str, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Right-hand sides of rows, with inf where there is no constraint, as other solvers write 1e20 and more."""
+    if np.isnan(values).any():
+        entry = int(np.flatnonzero(np.isnan(values))[0])
+        raise BadInput(f"{name} has the value nan at entry {entry} (from 0)")
+    if np.isneginf(values).any():
+        entry = int(np.flatnonzero(np.isneginf(values))[0])
+        raise BadInput(f"{name} has an infinite value at entry {entry} (from 0) that nothing meets")
+    return np.where(values >= 1e20, np.inf, values)
+
+
+def _one_of_many(problem: _signorini.Problem, rows: _Rows, start: Any, options: dict[str, Any]) -> QPSolution:
+    """One of several minima: the limit of proximal steps x <- argmin 1/2 x'P x + q'x + 1/2 d |x - x_before|^2.
+
+    # Source
+    R. T. Rockafellar, Monotone operators and the proximal point algorithm, SIAM J. Control Optim. 14 (1976).
+    """
+    x = np.zeros(problem.dofs) if start is None else start.copy()
+    shortest: NotCertified | None = None
+    for proximity in _PROXIMITIES:
+        known = _steps(problem, rows.count > 0, proximity, x, options)
+        x, certificate = known.u, _signorini.verify(problem, known.u, known.multiplier)
+        if certificate.conditions_hold(_TOLERANCE):
+            return rows.answer(problem, x, known.multiplier, certificate, unique=False)
+        condition, value = max(((name, getattr(certificate, name)) for name in _CONDITIONS), key=lambda worst: worst[1])
+        error = NotCertified(f"not certified: {condition} is {value:.3e}, above the tolerance {_TOLERANCE:.1e}")
+        error.solution, error.condition, error.value, error.tolerance = known, condition, value, _TOLERANCE
+        if shortest is None or value < shortest.value:
+            shortest = error
+    assert shortest is not None
+    raise shortest
+
+
+_CONDITIONS = ("stationarity", "penetration", "adhesion", "complementarity", "duality_gap")
+
+
+def _steps(
+    problem: _signorini.Problem, has_rows: bool, proximity: float, x: NDArray[np.float64], options: dict[str, Any]
+) -> _signorini.Solution:
+    """The end of proximal steps from x. A step need not be certified: its end is judged on the problem itself."""
+    from scipy import sparse
+
+    size = proximity * (float(np.asarray(problem.K.diagonal()).max(initial=0.0)) or 1.0)
+    near = sparse.csc_array(problem.K + size * sparse.eye_array(problem.dofs, format="csc"))
+    stepping = _signorini.Problem(near, problem.f + size * x, *((problem.B, problem.g) if has_rows else ()))
+    chosen = {name: value for name, value in options.items() if name not in ("method", "time")}
+    prepared = _signorini.prepare(stepping, proof=False, method="active-set", **chosen)
+    known: Any = None
+    for _ in range(_MOST_STEPS):
+        try:
+            known = prepared.solve(f=problem.f + size * x, start=known)
+        except NotCertified as fell_short:
+            known = fell_short.solution
+        moved = float(np.abs(known.u - x).max(initial=0.0))
+        x = known.u
+        if moved <= 1e-14 * max(float(np.abs(x).max(initial=0.0)), 1e-300):
+            break
+    return known  # type: ignore[no-any-return]

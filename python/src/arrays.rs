@@ -1,0 +1,223 @@
+//! Numbers from and to Python: anything with the buffer of a numpy array is read in place, everything else by way of one.
+
+use pyo3::buffer::{Element, PyBuffer};
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::PyBytes;
+
+use crate::errors::{bad_input, bad_type, no_memory};
+
+/// A function or class of a Python module, imported once.
+pub fn imported<'py>(
+    py: Python<'py>,
+    cell: &'static PyOnceLock<Py<PyAny>>,
+    module: &str,
+    name: &str,
+) -> PyResult<Bound<'py, PyAny>> {
+    let found = cell.get_or_try_init(py, || Ok::<_, PyErr>(py.import(module)?.getattr(name)?.unbind()))?;
+    Ok(found.bind(py).clone())
+}
+
+/// A function of numpy.
+macro_rules! numpy {
+    ($py:expr, $name:literal) => {{
+        static FOUND: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+        $crate::arrays::imported($py, &FOUND, "numpy", $name)
+    }};
+}
+
+/// The values of a contiguous buffer, in place.
+///
+/// The caller is attached to the interpreter as long as the slice lives, so that no Python code changes it meanwhile.
+pub fn slice<'a, T: Element>(buffer: &'a PyBuffer<T>, _attached: Python<'_>) -> Option<&'a [T]> {
+    if buffer.item_count() == 0 {
+        return Some(&[]);
+    }
+    // SAFETY: the buffer holds `item_count` aligned values of this type, which `PyBuffer::get` has checked, and stays alive and in
+    // place as long as it is borrowed. Nobody writes to it: only code of the interpreter could, and that waits for this thread.
+    buffer.as_slice_ptr().map(|values| unsafe { &*values.as_ptr() })
+}
+
+/// The class of a Python object, for sentences.
+pub fn kind_of(object: &Bound<'_, PyAny>) -> String {
+    object.get_type().name().map_or_else(|_| "object".into(), |name| name.to_string())
+}
+
+/// What `name` is as an array, if its entries are of one of the `kinds` of numpy; others are refused with a sentence.
+fn array_of<'py>(name: &str, object: &Bound<'py, PyAny>, kinds: &str, wanted: &str) -> PyResult<Bound<'py, PyAny>> {
+    let py = object.py();
+    if object.is_none() {
+        return Err(bad_type(py, format!("{name} is None; it must be {wanted}")));
+    }
+    if numpy!(py, "ma")?.call_method1("isMaskedArray", (object,))?.is_truthy()? {
+        let advice = "fill it first, as numpy does with filled()";
+        return Err(bad_type(py, format!("{name} is a masked array; {advice}")));
+    }
+    let array = numpy!(py, "asarray")?
+        .call1((object,))
+        .map_err(|error| bad_type(py, format!("{name} is no array ({}); it must be {wanted}", error.value(py))))?;
+    let dtype = array.getattr("dtype")?;
+    let kind: String = dtype.getattr("kind")?.extract()?;
+    let is_long = kind == "f" && dtype.getattr("itemsize")?.extract::<usize>()? > size_of::<f64>();
+    if !kinds.contains(&kind) || is_long {
+        let what = if kind == "O" { format!("a {}", kind_of(object)) } else { "an array".into() };
+        return Err(bad_type(py, format!("{name} is {what} of dtype {dtype}; it must be {wanted}")));
+    }
+    Ok(array)
+}
+
+/// The array as one of this type, contiguous in the order of C and aligned.
+fn required<'py>(array: &Bound<'py, PyAny>, dtype: Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    numpy!(array.py(), "require")?.call1((array, dtype, "CA"))
+}
+
+/// The array as one of `f64`, contiguous in the order of C.
+fn doubles<'py>(array: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    required(array, numpy!(array.py(), "float64")?)
+}
+
+/// The buffer of an array of this type in the byte order of the machine; none of any other.
+fn native<T: Element>(array: &Bound<'_, PyAny>) -> Option<PyBuffer<T>> {
+    let buffer = PyBuffer::<T>::get(array).ok()?;
+    let swapped: &[u8] = if cfg!(target_endian = "little") { b">!" } else { b"<" };
+    let is_swapped = buffer.format().to_bytes().first().is_some_and(|order| swapped.contains(order));
+    (!is_swapped).then_some(buffer)
+}
+
+/// Real numbers in one dimension, which `take` reads in place if they are contiguous doubles.
+pub fn with_reals<T>(name: &str, object: &Bound<'_, PyAny>, take: impl FnOnce(&[f64]) -> PyResult<T>) -> PyResult<T> {
+    let py = object.py();
+    let is_array = object.is_instance(&numpy!(py, "ndarray")?)?;
+    let is_plain = is_array && !object.hasattr("mask")?;
+    if let Some(buffer) = is_plain.then(|| native::<f64>(object)).flatten()
+        && buffer.dimensions() == 1
+        && let Some(values) = slice(&buffer, py)
+    {
+        return take(values);
+    }
+    let array = array_of(name, object, "fiub", "an array of real numbers in one dimension, float64 for the best")?;
+    let shape: Vec<usize> = array.getattr("shape")?.extract()?;
+    if shape.len() != 1 {
+        let shape = array.getattr("shape")?;
+        let advice = if shape.len()? == 0 { "" } else { ", as ravel() makes it" };
+        return Err(bad_input(py, format!("{name} has the shape {shape}; it must have one dimension{advice}")));
+    }
+    let buffer = PyBuffer::<f64>::get(&doubles(&array)?)?;
+    take(slice(&buffer, py).unwrap_or(&[]))
+}
+
+/// Real numbers in one dimension, copied once.
+pub fn reals(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
+    with_reals(name, object, |values| copied(object.py(), values))
+}
+
+/// Real numbers in two dimensions, row by row, with their shape; `take` reads them in place if they are contiguous doubles.
+pub fn with_table<T>(
+    name: &str,
+    object: &Bound<'_, PyAny>,
+    take: impl FnOnce(&[f64], [usize; 2]) -> PyResult<T>,
+) -> PyResult<T> {
+    let py = object.py();
+    let array = array_of(name, object, "fiub", "a matrix of real numbers")?;
+    let shape: Vec<usize> = array.getattr("shape")?.extract()?;
+    let &[rows, columns] = shape.as_slice() else {
+        let shape = array.getattr("shape")?;
+        return Err(bad_input(py, format!("{name} has the shape {shape}; it must have two dimensions")));
+    };
+    let buffer = PyBuffer::<f64>::get(&doubles(&array)?)?;
+    take(slice(&buffer, py).unwrap_or(&[]), [rows, columns])
+}
+
+/// The columns of a table, each as long as the table has rows.
+pub fn columns(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<Vec<f64>>> {
+    with_table(name, object, |values, [_, columns]| {
+        Ok((0..columns).map(|column| values.iter().skip(column).step_by(columns).copied().collect()).collect())
+    })
+}
+
+/// Indices as scipy keeps them: in place if they are of 32 or 64 bits.
+pub enum Indices {
+    Short(PyBuffer<i32>),
+    Long(PyBuffer<i64>),
+}
+
+impl Indices {
+    pub fn of(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let py = object.py();
+        let array = array_of(name, object, "iu", "an array of whole numbers in one dimension")?;
+        if array.getattr("ndim")?.extract::<usize>()? != 1 {
+            let shape = array.getattr("shape")?;
+            return Err(bad_input(py, format!("{name} has the shape {shape}; it must have one dimension")));
+        }
+        if let Some(buffer) = native::<i32>(&array).filter(|buffer| buffer.is_c_contiguous()) {
+            return Ok(Indices::Short(buffer));
+        }
+        let long = required(&array, numpy!(py, "int64")?)?;
+        Ok(Indices::Long(PyBuffer::<i64>::get(&long)?))
+    }
+
+    pub fn len(&self) -> usize {
+        match self {
+            Indices::Short(buffer) => buffer.item_count(),
+            Indices::Long(buffer) => buffer.item_count(),
+        }
+    }
+
+    /// Copies them; an index that is negative becomes the largest there is, which lies in no matrix.
+    pub fn to_usize(&self, py: Python<'_>) -> PyResult<Vec<usize>> {
+        fn each<I: Copy + TryInto<usize>>(py: Python<'_>, indices: &[I]) -> PyResult<Vec<usize>> {
+            let mut copy = room(py, indices.len())?;
+            copy.extend(indices.iter().map(|&index| index.try_into().unwrap_or(usize::MAX)));
+            Ok(copy)
+        }
+        match self {
+            Indices::Short(buffer) => each(py, slice(buffer, py).unwrap_or(&[])),
+            Indices::Long(buffer) => each(py, slice(buffer, py).unwrap_or(&[])),
+        }
+    }
+}
+
+/// A copy, or an exception where there is no memory for it.
+pub fn copied(py: Python<'_>, values: &[f64]) -> PyResult<Vec<f64>> {
+    let mut copy = room(py, values.len())?;
+    copy.extend_from_slice(values);
+    Ok(copy)
+}
+
+/// An empty vector with room for this number of entries.
+pub fn room<T>(py: Python<'_>, entries: usize) -> PyResult<Vec<T>> {
+    let mut room = Vec::new();
+    match room.try_reserve_exact(entries) {
+        Ok(()) => Ok(room),
+        Err(error) => Err(no_memory(py, format!("{entries} entries of an array do not fit into memory: {error}"))),
+    }
+}
+
+/// A read-only array of numpy with these values.
+pub fn array<'py, const N: usize>(
+    py: Python<'py>,
+    dtype: &str,
+    values: impl ExactSizeIterator<Item = [u8; N]>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let bytes = PyBytes::new_with(py, N * values.len(), |bytes| {
+        bytes.chunks_exact_mut(N).zip(values).for_each(|(place, value)| place.copy_from_slice(&value));
+        Ok(())
+    })?;
+    numpy!(py, "frombuffer")?.call1((bytes, dtype))
+}
+
+/// A read-only array of doubles.
+pub fn of_reals<'py>(py: Python<'py>, values: &[f64]) -> PyResult<Bound<'py, PyAny>> {
+    array(py, "f8", values.iter().map(|value| value.to_ne_bytes()))
+}
+
+/// A read-only array of doubles in two dimensions, given row by row.
+pub fn of_table<'py>(py: Python<'py>, values: &[f64], columns: usize) -> PyResult<Bound<'py, PyAny>> {
+    of_reals(py, values)?.call_method1("reshape", (values.len() / columns.max(1), columns))
+}
+
+/// A read-only array of indices.
+pub fn of_indices<'py>(py: Python<'py>, indices: impl IntoIterator<Item = usize>) -> PyResult<Bound<'py, PyAny>> {
+    let indices: Vec<i64> = indices.into_iter().map(|index| index as i64).collect();
+    array(py, "i8", indices.iter().map(|index| index.to_ne_bytes()))
+}

@@ -1,0 +1,42 @@
+//! The Python module `signorini._signorini`: what Python sees of the library.
+//!
+//! Arrays come in through `arrays` and `matrices`, with one copy at most; work runs without the interpreter, in `work`, which
+//! answers interrupts and lets no panic through; endings become exceptions in `errors`. The classes stand in a file each.
+
+mod arrays;
+mod errors;
+mod matrices;
+mod options;
+mod prepared;
+mod problem;
+mod scene;
+mod solution;
+mod solving;
+mod study;
+mod work;
+
+use pyo3::prelude::*;
+
+/// Frictionless unilateral contact as a convex QP, certified.
+#[pymodule]
+fn _signorini(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add_class::<problem::Problem>()?;
+    module.add_class::<solution::Solution>()?;
+    module.add_class::<solution::Certificate>()?;
+    module.add_class::<solution::Proven>()?;
+    module.add_class::<prepared::Prepared>()?;
+    module.add_class::<prepared::Path>()?;
+    module.add_class::<prepared::Event>()?;
+    module.add_class::<scene::Scene>()?;
+    module.add_class::<scene::SceneSolution>()?;
+    module.add_class::<study::Comparison>()?;
+    module.add_function(wrap_pyfunction!(solving::solve, module)?)?;
+    module.add_function(wrap_pyfunction!(solving::solve_qp, module)?)?;
+    module.add_function(wrap_pyfunction!(solving::prepare, module)?)?;
+    module.add_function(wrap_pyfunction!(solving::verify, module)?)?;
+    module.add_function(wrap_pyfunction!(study::compare, module)?)?;
+    module.add_function(wrap_pyfunction!(study::measured, module)?)?;
+    module.add_function(wrap_pyfunction!(study::swept, module)?)?;
+    Ok(())
+}

@@ -1,0 +1,188 @@
+//! A problem factorised once for many gaps, loads and starts, and the exact path between two gaps.
+
+use std::sync::Arc;
+
+use pyo3::prelude::*;
+use pyo3::types::PyList;
+use signorini::{ContactProblem, Error, Settings, Watch};
+
+use crate::arrays::{of_reals, reals};
+use crate::errors::{bad_input, plain_exception};
+use crate::solution::{Solution, rows_of};
+use crate::solving::{answered, signalled, start_of};
+use crate::work::{End, Place, run};
+
+/// A contact problem prepared once.
+#[pyclass(frozen, module = "signorini")]
+pub struct Prepared {
+    problem: Arc<ContactProblem>,
+    inner: signorini::Prepared,
+    settings: Settings,
+}
+
+impl Prepared {
+    pub fn new(problem: Arc<ContactProblem>, inner: signorini::Prepared, settings: Settings) -> Self {
+        Prepared { problem, inner, settings }
+    }
+
+    fn gap(&self, g: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<f64>> {
+        g.map_or_else(|| Ok(self.problem.gap().to_vec()), |g| reals("g", g))
+    }
+}
+
+/// The same under a watch of its own.
+fn watched(prepared: &signorini::Prepared, settings: Settings, watch: &Watch) -> Result<signorini::Prepared, Error> {
+    prepared.with_settings(&settings.watched(watch))
+}
+
+#[pymethods]
+impl Prepared {
+    /// Solves with these gaps, or under this load, from what is known beforehand.
+    #[pyo3(signature = (g = None, f = None, *, start = None, time = None))]
+    fn solve(
+        &self,
+        py: Python<'_>,
+        g: Option<&Bound<'_, PyAny>>,
+        f: Option<&Bound<'_, PyAny>>,
+        start: Option<&Bound<'_, PyAny>>,
+        time: Option<f64>,
+    ) -> PyResult<Py<PyAny>> {
+        let gap = self.gap(g)?;
+        let load = f.map(|f| reals("f", f)).transpose()?;
+        let start = start_of(start, &self.problem)?;
+        let mut settings = self.settings.clone();
+        if let Some(seconds) = time {
+            let span = std::time::Duration::try_from_secs_f64(seconds).ok().filter(|span| !span.is_zero());
+            let sentence = || format!("time is {seconds}; it must be a number of seconds that is positive and finite");
+            settings.time = Some(span.ok_or_else(|| bad_input(py, sentence()))?);
+        }
+        let place = Place::for_prepared(&self.problem, &self.inner);
+        let prepared = self.inner.clone();
+        let find = move |watch: &Watch| {
+            let mut prepared = watched(&prepared, settings, watch)?;
+            if let Some(load) = load {
+                prepared = prepared.with_load(load)?;
+            }
+            start.map_or(prepared.clone(), |start| prepared.starting_from(start)).solve(&gap)
+        };
+        answered(py, place, find, |solution| Solution::object(py, solution))
+    }
+
+    /// The exact path of the answer between two gaps.
+    fn path(&self, py: Python<'_>, g0: &Bound<'_, PyAny>, g1: &Bound<'_, PyAny>) -> PyResult<Path> {
+        let (from, to) = (reals("g0", g0)?, reals("g1", g1)?);
+        let (prepared, settings) = (self.inner.clone(), self.settings.clone());
+        let walk = move |watch: &Watch| watched(&prepared, settings, watch)?.path(&from, &to);
+        match run(py, Place::for_problem(&self.problem), walk)? {
+            End::Done(Ok(inner)) => Ok(Path { problem: self.problem.clone(), inner: Arc::new(inner) }),
+            End::Done(Err(error)) => Err(plain_exception(py, error)),
+            End::Signalled(signal, _) => Err(signalled(py, signal, None)),
+        }
+    }
+
+    /// Number of unknowns of the problem.
+    #[getter]
+    fn dofs(&self) -> usize {
+        self.inner.dofs()
+    }
+
+    /// Number of unknowns that the methods work on.
+    #[getter]
+    fn condensed_dofs(&self) -> usize {
+        self.inner.condensed_dofs()
+    }
+
+    /// Number of values of the factor.
+    #[getter]
+    fn factor_entries(&self) -> usize {
+        self.inner.factor_entries()
+    }
+
+    /// Seconds of the preparation.
+    #[getter]
+    fn seconds(&self) -> f64 {
+        self.inner.seconds().solve
+    }
+
+    fn __repr__(&self) -> String {
+        let (dofs, condensed) = (self.inner.dofs(), self.inner.condensed_dofs());
+        let by = if self.inner.hierarchy().is_some() { "a multigrid hierarchy" } else { "a factor" };
+        format!("<signorini.Prepared: {dofs} dofs, {condensed} after condensation, {by}>")
+    }
+}
+
+/// A row that touches or releases on a path.
+#[pyclass(frozen, module = "signorini", get_all)]
+pub struct Event {
+    /// Where on the path, from 0 to 1.
+    at: f64,
+    /// Which row, from 0.
+    row: usize,
+    /// Whether it touches; otherwise it releases.
+    touches: bool,
+}
+
+#[pymethods]
+impl Event {
+    fn __repr__(&self) -> String {
+        let (what, row, at) = (if self.touches { "touches" } else { "releases" }, self.row, self.at);
+        format!("<signorini.Event: row {row} {what} at {at:.6}>")
+    }
+}
+
+/// The answers for all gaps between two, exactly.
+#[pyclass(frozen, module = "signorini")]
+pub struct Path {
+    problem: Arc<ContactProblem>,
+    inner: Arc<signorini::Path>,
+}
+
+/// Where on a path.
+fn place(py: Python<'_>, t: f64) -> PyResult<f64> {
+    let sentence = || format!("t is {t}; it must be from 0, the first gap, to 1, the last");
+    if (0.0..=1.0).contains(&t) { Ok(t) } else { Err(bad_input(py, sentence())) }
+}
+
+#[pymethods]
+impl Path {
+    /// The rows that touch or release, in order.
+    #[getter]
+    fn events<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        let of_each = self.inner.events().iter();
+        let events = of_each.map(|event| Py::new(py, Event { at: event.at, row: event.row, touches: event.touches }));
+        PyList::new(py, events.collect::<PyResult<Vec<_>>>()?)
+    }
+
+    /// The corners of the polylines: the beginning, every event, the end.
+    #[getter]
+    fn corners<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        of_reals(py, &self.inner.corners())
+    }
+
+    /// The gaps at t.
+    fn gap<'py>(&self, py: Python<'py>, t: f64) -> PyResult<Bound<'py, PyAny>> {
+        of_reals(py, &self.inner.gap(place(py, t)?))
+    }
+
+    /// The multipliers at t.
+    fn multiplier<'py>(&self, py: Python<'py>, t: f64) -> PyResult<Bound<'py, PyAny>> {
+        of_reals(py, &self.inner.multiplier(place(py, t)?))
+    }
+
+    /// The closed rows at t.
+    fn contact_set<'py>(&self, py: Python<'py>, t: f64) -> PyResult<Bound<'py, PyAny>> {
+        rows_of(py, &self.inner.contact_set(place(py, t)?))
+    }
+
+    /// The whole answer at t, certified.
+    fn solution(&self, py: Python<'_>, t: f64) -> PyResult<Py<PyAny>> {
+        let (t, path) = (place(py, t)?, self.inner.clone());
+        let find = move |_: &Watch| path.solution(t);
+        answered(py, Place::for_problem(&self.problem), find, |solution| Solution::object(py, solution))
+    }
+
+    fn __repr__(&self) -> String {
+        let (events, corners) = (self.inner.events().len(), self.inner.corners().len());
+        format!("<signorini.Path: {events} events, {corners} corners>")
+    }
+}

@@ -1,0 +1,151 @@
+//! The contact problem as Python sees it.
+
+use std::sync::Arc;
+
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use signorini::qp::NearNullSpace;
+use signorini::{ContactProblem, SparseMatrix};
+
+use crate::arrays::{columns, of_reals, of_table, reals};
+use crate::errors::{bad_input, plain_exception};
+use crate::matrices;
+
+/// minimise 1/2 u'K u - f'u  subject to  B u - g <= 0, checked once.
+#[pyclass(frozen, module = "signorini")]
+pub struct Problem {
+    pub inner: Arc<ContactProblem>,
+}
+
+impl From<ContactProblem> for Problem {
+    fn from(problem: ContactProblem) -> Self {
+        Problem { inner: Arc::new(problem) }
+    }
+}
+
+#[pymethods]
+impl Problem {
+    #[new]
+    #[pyo3(signature = (K, f, B = None, g = None, near_null = None, *, coordinates = None))]
+    #[expect(non_snake_case, reason = "the names of the equation")]
+    fn new(
+        K: &Bound<'_, PyAny>,
+        f: &Bound<'_, PyAny>,
+        B: Option<&Bound<'_, PyAny>>,
+        g: Option<&Bound<'_, PyAny>>,
+        near_null: Option<&Bound<'_, PyAny>>,
+        coordinates: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let py = K.py();
+        let stiffness = matrices::stiffness("K", K)?;
+        let load = reals("f", f)?;
+        let (contact, gap) = match (B, g) {
+            (Some(rows), Some(gap)) => (matrices::rows("B", rows, stiffness.dim())?, reals("g", gap)?),
+            (None, None) => {
+                let none = SparseMatrix::from_triplets(0, stiffness.dim(), &[]);
+                (none.map_err(|error| plain_exception(py, error))?, Vec::new())
+            }
+            (Some(_), None) => return Err(bad_input(py, "B is given without g; every row of B needs a gap")),
+            (None, Some(_)) => return Err(bad_input(py, "g is given without B; every gap needs a row of B")),
+        };
+        let problem = ContactProblem::new(stiffness, load, contact, gap).map_err(|error| plain_exception(py, error))?;
+        let near_null = match (near_null, coordinates) {
+            (None, None) => return Ok(problem.into()),
+            (Some(_), Some(_)) => {
+                return Err(bad_input(py, "near_null and coordinates are both given; one of them is enough"));
+            }
+            (Some(vectors), None) => NearNullSpace::new(columns("near_null", vectors)?, problem.dofs()),
+            (None, Some(coordinates)) => {
+                let axes = columns("coordinates", coordinates)?;
+                let (nodes, dimension) = (axes.first().map_or(0, Vec::len), axes.len());
+                if nodes * dimension != problem.dofs() {
+                    let dofs = problem.dofs();
+                    let sentence = format!(
+                        "coordinates is {nodes} x {dimension}, which makes {} dofs, but there are {dofs}; where supports have taken \
+                         dofs out, give near_null",
+                        nodes * dimension
+                    );
+                    return Err(bad_input(py, sentence));
+                }
+                NearNullSpace::of_nodes(&axes)
+            }
+        };
+        let problem = near_null.and_then(|near_null| problem.with_near_null(near_null));
+        problem.map(Problem::from).map_err(|error| plain_exception(py, error))
+    }
+
+    /// Number of unknowns.
+    #[getter]
+    fn dofs(&self) -> usize {
+        self.inner.dofs()
+    }
+
+    /// Number of contact rows.
+    #[getter]
+    fn row_count(&self) -> usize {
+        self.inner.rows()
+    }
+
+    /// The stiffness, both triangles, as compressed columns of scipy.
+    #[getter(K)]
+    fn stiffness<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let lower = csc(py, self.inner.stiffness().lower())?;
+        let sparse = py.import("scipy.sparse")?;
+        let below = sparse.getattr("tril")?.call1((&lower, -1))?;
+        let both = lower.call_method1("__add__", (below.getattr("T")?,))?;
+        sparse.getattr("csc_array")?.call1((both,))
+    }
+
+    /// The load.
+    #[getter]
+    fn f<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        of_reals(py, self.inner.load())
+    }
+
+    /// The contact rows, as compressed columns of scipy.
+    #[getter(B)]
+    fn contact<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        csc(py, self.inner.contact())
+    }
+
+    /// The gaps.
+    #[getter]
+    fn g<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        of_reals(py, self.inner.gap())
+    }
+
+    /// The near-null space, one column a vector; None without one.
+    #[getter]
+    fn near_null<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let Some(space) = self.inner.near_null() else { return Ok(None) };
+        let values: Vec<f64> = space.vectors().iter().flatten().copied().collect();
+        of_table(py, &values, space.dofs())?.getattr("T").map(Some)
+    }
+
+    /// The same body and rows under another load or with other gaps; the matrices are shared.
+    #[pyo3(signature = (*, f = None, g = None))]
+    fn replace(&self, py: Python<'_>, f: Option<&Bound<'_, PyAny>>, g: Option<&Bound<'_, PyAny>>) -> PyResult<Problem> {
+        let load = f.map_or_else(|| Ok(self.inner.load().to_vec()), |f| reals("f", f))?;
+        let gap = g.map_or_else(|| Ok(self.inner.gap().to_vec()), |g| reals("g", g))?;
+        self.inner.with(load, gap).map(Problem::from).map_err(|error| plain_exception(py, error))
+    }
+
+    fn __repr__(&self) -> String {
+        let (dofs, rows) = (self.inner.dofs(), self.inner.rows());
+        format!("<signorini.Problem: {dofs} dofs, {rows} contact rows>")
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let py = slf.py();
+        let names = ["K", "f", "B", "g", "near_null"];
+        let arguments = names.iter().map(|name| slf.getattr(*name)).collect::<PyResult<Vec<_>>>()?;
+        Ok((py.get_type::<Problem>().into_any(), pyo3::types::PyTuple::new(py, arguments)?.into_any()))
+    }
+}
+
+/// A matrix as compressed columns of scipy.
+fn csc<'py>(py: Python<'py>, matrix: &SparseMatrix) -> PyResult<Bound<'py, PyAny>> {
+    let shape = PyDict::new(py);
+    shape.set_item("shape", (matrix.rows(), matrix.columns()))?;
+    py.import("scipy.sparse")?.getattr("csc_array")?.call((matrices::compressed(py, matrix)?,), Some(&shape))
+}

@@ -1,0 +1,162 @@
+//! What is learnt from more than one solve: comparison, trade-off, sweep.
+
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+use signorini::Watch;
+use signorini::study::{self, TradeoffGrid};
+
+use crate::arrays::reals;
+use crate::errors::{bad_input, bad_type, plain_exception};
+use crate::options::Options;
+use crate::problem::Problem;
+use crate::scene::{Scene, SceneSolution, scene_exception};
+use crate::solution::{Solution, as_object};
+use crate::solving::signalled;
+use crate::work::{End, Place, run};
+
+/// One problem solved by three methods.
+#[pyclass(frozen, module = "signorini", get_all)]
+pub struct Comparison {
+    /// The answer of the interior point.
+    qp: Py<PyAny>,
+    /// The answer of the active set.
+    active_set: Py<PyAny>,
+    /// The answer of the penalty.
+    penalty: Py<PyAny>,
+    /// How far they are from each other.
+    agreement: Py<PyAny>,
+    /// Whether interior point and active set are certified and agree.
+    agrees: bool,
+}
+
+#[pymethods]
+impl Comparison {
+    fn __repr__(&self) -> String {
+        let said = if self.agrees { "agree" } else { "do not agree" };
+        format!("<signorini.Comparison: interior point and active set {said}>")
+    }
+}
+
+fn comparison(
+    py: Python<'_>,
+    found: study::Comparison,
+    object: impl Fn(signorini::Solution) -> PyResult<Py<PyAny>>,
+) -> PyResult<Comparison> {
+    let study::Comparison { answers, agreement } = found;
+    let [qp, active_set, penalty] = answers.map(|answer| object(answer.solution));
+    let agrees = agreement.exact_methods;
+    let agreement = as_object(py, &agreement)?.unbind();
+    Ok(Comparison { qp: qp?, active_set: active_set?, penalty: penalty?, agreement, agrees })
+}
+
+/// Solves a problem by three methods.
+#[pyfunction]
+pub fn compare(problem: &Bound<'_, PyAny>) -> PyResult<Comparison> {
+    let py = problem.py();
+    if let Ok(scene) = problem.cast::<Scene>() {
+        return compared_scene(scene);
+    }
+    let inner = problem_of(problem)?.get().inner.clone();
+    let settings = Options { proof: Some(false), ..Options::default() }.settings(Some(&inner))?;
+    let place = Place::for_problem(&inner);
+    match run(py, place, move |watch: &Watch| study::compare(&inner, &settings.watched(watch)))? {
+        End::Done(Ok(found)) => comparison(py, found, |solution| Solution::object(py, solution)),
+        End::Done(Err(error)) => Err(plain_exception(py, error)),
+        End::Signalled(signal, _) => Err(signalled(py, signal, None)),
+    }
+}
+
+fn problem_of<'a, 'py>(problem: &'a Bound<'py, PyAny>) -> PyResult<&'a Bound<'py, Problem>> {
+    let kind = crate::arrays::kind_of(problem);
+    problem.cast::<Problem>().map_err(|_| {
+        bad_type(problem.py(), format!("the argument is of the type {kind}; it must be a Problem or a Scene"))
+    })
+}
+
+/// Solves a scene by three methods.
+pub fn compared_scene(scene: &Bound<'_, Scene>) -> PyResult<Comparison> {
+    let py = scene.py();
+    let model = scene.get().model(py)?;
+    let settings = Options { proof: Some(false), ..Options::default() }.settings(Some(model.problem()))?;
+    let (goal, own, of_work) = (settings.goal(), scene.clone().unbind(), model.clone());
+    let place = Place::for_problem(model.problem());
+    match run(py, place, move |watch: &Watch| study::compare(of_work.problem(), &settings.watched(watch)))? {
+        End::Done(Ok(found)) => comparison(py, found, |solution| {
+            SceneSolution::object(py, own.clone_ref(py), model.clone(), solution, goal)
+        }),
+        End::Done(Err(error)) => Err(scene_exception(py, &own, &model, goal, error)),
+        End::Signalled(signal, _) => Err(signalled(py, signal, None)),
+    }
+}
+
+/// A problem or a scene by every method at every accuracy, as a dictionary.
+#[pyfunction]
+#[pyo3(name = "_measured", signature = (problem, refinements, runs, most_full_dofs, time))]
+pub fn measured<'py>(
+    problem: &Bound<'py, PyAny>,
+    refinements: usize,
+    runs: usize,
+    most_full_dofs: usize,
+    time: Option<f64>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let py = problem.py();
+    let seconds = time.unwrap_or(f64::INFINITY);
+    if seconds.is_nan() || seconds <= 0.0 {
+        return Err(bad_input(py, format!("time is {seconds}; it must be a positive number of seconds")));
+    }
+    let grid = TradeoffGrid { refinements, runs, most_full_dofs, seconds };
+    let end = match problem.cast::<Scene>() {
+        Ok(scene) => {
+            scene.get().check_rest(py)?;
+            let scene = scene.get().inner.clone();
+            run(py, Place::Apart, move |watch: &Watch| study::tradeoff(&scene, &grid, watch))?
+        }
+        Err(_) => {
+            let problem = problem_of(problem)?.get().inner.clone();
+            run(py, Place::Apart, move |watch: &Watch| study::Tradeoff::of_problem(&problem, &grid, watch))?
+        }
+    };
+    match end {
+        End::Done(Ok(found)) => as_object(py, &found),
+        End::Done(Err(error)) => Err(plain_exception(py, error)),
+        End::Signalled(signal, _) => Err(signalled(py, signal, None)),
+    }
+}
+
+/// A scene at several gaps: its answers, and what happens between, as dictionaries.
+#[pyfunction]
+#[pyo3(name = "_swept", signature = (scene, gaps, method, threads))]
+pub fn swept<'py>(
+    scene: &Bound<'py, Scene>,
+    gaps: &Bound<'py, PyAny>,
+    method: Option<Bound<'py, PyAny>>,
+    threads: Option<Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let py = scene.py();
+    let gaps = reals("gaps", gaps)?;
+    if gaps.is_empty() {
+        return Err(bad_input(py, "gaps is empty; a sweep takes one gap at least"));
+    }
+    let model = scene.get().model(py)?;
+    let options = Options { method, threads, proof: Some(false), ..Options::default() };
+    let settings = options.settings(Some(model.problem()))?;
+    let (goal, own, of_work) = (settings.goal(), scene.clone().unbind(), model.clone());
+    let found =
+        match run(py, Place::Apart, move |watch: &Watch| study::sweep(&of_work, &gaps, &settings.watched(watch)))? {
+            End::Done(Ok(found)) => found,
+            End::Done(Err(error)) => return Err(scene_exception(py, &own, &model, goal, error)),
+            End::Signalled(signal, _) => return Err(signalled(py, signal, None)),
+        };
+    let whole = PyDict::new(py);
+    whole.set_item("events", as_object(py, &found.events)?)?;
+    whole.set_item("corners", as_object(py, &found.corners)?)?;
+    let (answers, gaps) = (PyList::empty(py), PyList::empty(py));
+    for point in found.points {
+        gaps.append(point.gap)?;
+        let model = point.answer.model().clone();
+        answers.append(SceneSolution::object(py, own.clone_ref(py), model, point.summary.solution, goal)?)?;
+    }
+    whole.set_item("gaps", gaps)?;
+    whole.set_item("solutions", answers)?;
+    Ok(whole)
+}

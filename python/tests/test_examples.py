@@ -1,0 +1,65 @@
+"""The examples run, and say what they promise."""
+
+from __future__ import annotations
+
+import importlib.util
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
+
+
+def example(name: str) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(name, EXAMPLES / f"{name}.py")
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_a_membrane_of_scikit_fem_meets_its_closed_form() -> None:
+    pytest.importorskip("skfem")
+    module = example("skfem_obstacle")
+    errors = [module.main(refinements) for refinements in (3, 4, 5)]
+    # The sag converges with the square of the cell size, or nearly so at the edge of the contact.
+    assert errors[2] < 1e-3 and errors[0] / errors[2] > 8
+
+
+def test_a_block_of_scikit_fem_has_the_force_of_the_scene() -> None:
+    pytest.importorskip("skfem")
+    by_skfem, by_scene = example("skfem_contact").main()
+    assert abs(by_skfem - by_scene) < 1e-9 * by_scene
+
+
+def test_signorini_is_a_solver_of_qpsolvers_and_agrees_with_cvxpy() -> None:
+    pytest.importorskip("qpsolvers")
+    pytest.importorskip("cvxpy")
+    objectives = example("qpsolvers_and_cvxpy").main()
+    own = objectives.pop("signorini by qpsolvers")
+    assert objectives and all(own <= other + 1e-6 * abs(other) for other in objectives.values())
+
+
+def test_coordinates_give_multigrid_the_rigid_body_modes() -> None:
+    pytest.importorskip("skfem")
+    assert example("rigid_modes").main(6) < 1e-7
+
+
+def test_a_mesh_of_gmsh_becomes_a_scene() -> None:
+    pytest.importorskip("meshio")
+    answer = example("mesh_to_scene").main()
+    forces = {resultant["of"]: np.array(resultant["force"]) for resultant in answer.resultants}
+    assert forces["obstacles[0]"][1] < 0 and answer.certificate.meets(1e-9)
+    assert np.allclose(forces["obstacles[0]"] + forces["supports[0]"], 0.0, atol=1e-6 * answer.contact_force)
+
+
+def test_the_notebook_runs() -> None:
+    nbformat = pytest.importorskip("nbformat")
+    nbclient = pytest.importorskip("nbclient")
+    notebook = nbformat.read(EXAMPLES / "indentation.ipynb", as_version=4)
+    nbclient.NotebookClient(notebook, timeout=120, resources={"metadata": {"path": str(EXAMPLES)}}).execute()
+    shown = [output for cell in notebook.cells for output in cell.get("outputs", [])]
+    assert sum("image/png" in output.get("data", {}) for output in shown) == 3
+    assert any("closed rows" in output.get("data", {}).get("text/html", "") for output in shown)

@@ -1,0 +1,154 @@
+"""The package in a process: signals, threads, memory."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import signorini as sg
+from bodies import membrane, two_springs
+
+# A body that takes seconds: a signal comes while it is solved, by the method named.
+INTERRUPTED = """
+import os, signal, sys, threading, time
+sys.path.insert(0, sys.argv[1])
+import signorini as sg
+from bodies import membrane
+
+problem = sg.Problem(*membrane(int(sys.argv[3])))
+sent = []
+
+def send():
+    sent.append(time.perf_counter())
+    os.kill(os.getpid(), signal.SIGINT)
+
+timer = threading.Timer(float(sys.argv[4]), send)
+timer.start()
+try:
+    sg.solve(problem, method=sys.argv[2])
+    timer.cancel()
+    print("solved")
+except sg.Interrupted as stopped:
+    waited = time.perf_counter() - sent[0]
+    print(f"{waited:.3f} {stopped.solution is not None}")
+    if stopped.solution is not None:
+        assert len(stopped.solution.u) == problem.dofs and stopped.solution.certificate.worst
+"""
+
+
+def interrupted(method: str, cells: int, after: float) -> tuple[float, bool]:
+    """Seconds that the answer to an interrupt took, and whether it carried an answer; infinite if it was solved before."""
+    program = [sys.executable, "-c", INTERRUPTED, str(Path(__file__).parent), method, str(cells), str(after)]
+    ended = subprocess.run(program, capture_output=True, text=True, timeout=120, check=False)
+    assert ended.returncode == 0, ended.stderr
+    if "solved" in ended.stdout:
+        return float("inf"), False
+    waited, has_answer = ended.stdout.split()
+    return float(waited), has_answer == "True"
+
+
+@pytest.mark.parametrize(("method", "cells"), [("active-set", 400), ("mprgp", 700), ("qp", 400)])
+def test_an_interrupt_is_answered_at_once(method: str, cells: int) -> None:
+    # On a busy machine the system may come back late; of three times one is enough.
+    waited = (interrupted(method, cells, after)[0] for after in (0.3, 0.2, 0.4))
+    assert any(seconds < 0.2 for seconds in waited)
+
+
+def test_an_interrupt_carries_the_best_answer_until_then() -> None:
+    # Before its first iteration a method has none.
+    tried = [(method, cells, after) for method, cells in (("mprgp", 250), ("penalty", 150)) for after in (0.1, 0.2, 0.3)]
+    assert any(interrupted(*attempt)[1] for attempt in tried)
+
+
+def test_an_interrupt_is_a_keyboard_interrupt_with_an_answer_where_there_is_one() -> None:
+    error = sg.Interrupted("interrupted")
+    assert isinstance(error, KeyboardInterrupt) and error.solution is None
+
+
+def test_a_handler_of_the_callers_own_raises_what_it_raises() -> None:
+    class Enough(Exception):
+        pass
+
+    def ring(*_: object) -> None:
+        raise Enough
+
+    before = signal.signal(signal.SIGALRM, ring)
+    try:
+        signal.setitimer(signal.ITIMER_REAL, 0.2)
+        with pytest.raises(Enough):
+            sg.solve(sg.Problem(*membrane(300)), method="active-set")
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def test_other_threads_run_while_a_body_is_solved() -> None:
+    problem, ticks = sg.Problem(*membrane(120)), []
+    done = threading.Event()
+
+    def tick() -> None:
+        while not done.is_set():
+            ticks.append(time.perf_counter())
+            time.sleep(0.001)
+
+    watcher = threading.Thread(target=tick)
+    watcher.start()
+    began = time.perf_counter()
+    sg.solve(problem, method="active-set")
+    took = time.perf_counter() - began
+    done.set()
+    watcher.join()
+    during = [at for at in ticks if began < at < began + took]
+    assert took < 0.05 or len(during) > 5
+
+
+def test_two_threads_solve_at_once_and_find_the_same_bits() -> None:
+    problems = [sg.Problem(*membrane(40)), two_springs()]
+    alone = [sg.solve(problem).u.copy() for problem in problems]
+    wrong: list[int] = []
+
+    def work(number: int) -> None:
+        for _ in range(20):
+            if not np.array_equal(sg.solve(problems[number]).u, alone[number]):
+                wrong.append(number)
+
+    threads = [threading.Thread(target=work, args=(number,)) for number in (0, 1, 0)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not wrong
+
+
+def resident() -> int:
+    """Bytes of memory that the process holds."""
+    return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="the system does not say how much memory a process holds")
+def test_memory_is_flat_over_ten_thousand_solves() -> None:
+    problem = two_springs()
+    prepared = sg.prepare(problem)
+
+    def solve(times: int) -> None:
+        for _ in range(times):
+            answer = sg.solve(problem)
+            assert answer.u[1] == 1.0 and len(answer.contact_set) == 1
+            prepared.solve([0.5])
+            try:
+                sg.Problem(np.eye(2), [1.0])
+            except sg.BadInput:
+                pass
+
+    solve(2000)
+    before = resident()
+    solve(10_000)
+    # A leak of one answer, of some 500 bytes, would be ten times as much.
+    assert resident() - before < 1_000_000

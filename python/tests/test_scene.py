@@ -1,0 +1,223 @@
+"""Scenes: the same bits as the program, and what follows from an answer."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import signorini as sg
+from bodies import ROOT
+
+sys.path.append(str(ROOT / "reference"))
+import cases  # noqa: E402
+from problem import write_problem  # noqa: E402
+
+# Every scene that does not move.
+SCENES = [
+    scene
+    for scene in sorted([*ROOT.glob("examples/**/*.json"), *ROOT.glob("tools/*/*.json"), *ROOT.glob("tests/corpus/*.json")])
+    if '"analysis"' not in scene.read_text()
+]
+REFERENCE = [case for case in cases.RAW_CASES if case.generate is not None]
+FINDINGS = sorted(folder for folder in (ROOT / "tests" / "corpus" / "findings").iterdir() if (folder / "K.mtx").exists())
+
+
+def program() -> Path:
+    """The program, as the tests of the root build it."""
+    built = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
+    found = [built / profile / "signorini" for profile in ("debug", "release")]
+    there = [path for path in found if path.exists()]
+    if not there:
+        pytest.skip("the program is not built: cargo build")
+    return there[0]
+
+
+def column(file: Path) -> np.ndarray:
+    """A vector in Matrix Market form, every digit as it stands."""
+    lines = [line for line in file.read_text().splitlines() if not line.startswith("%")]
+    return np.array([float(line) for line in lines[1:]])
+
+
+# What ends a run, by the exit code of the program.
+ENDINGS = {1: (sg.BadInput, sg.NumericalError, sg.TooLarge), 3: (sg.Infeasible, sg.Unbounded, sg.UnderHeld)}
+
+
+def run(target: Path, out: Path) -> tuple[int, dict[str, Any]]:
+    """Exit code and report of `signorini solve`."""
+    command = [program(), "solve", target, "--out", out, "--format", "json", "--max-memory", "8GB"]
+    ended = subprocess.run(command, capture_output=True, text=True, check=False)
+    return ended.returncode, json.loads(ended.stdout) if ended.stdout else {}
+
+
+def agree(code: int, solve: Callable[[], sg.Solution], out: Path) -> sg.Solution | None:
+    """Holds an answer against the files of the program, bit by bit, or an exception against its exit code."""
+    if code in ENDINGS:
+        with pytest.raises(ENDINGS[code]):
+            solve()
+        return None
+    try:
+        answer = solve()
+        assert code == 0
+    except sg.NotCertified as fell_short:
+        assert code == 4
+        answer = fell_short.solution
+    assert np.array_equal(answer.u, column(out / "u.mtx"))
+    assert np.array_equal(answer.multiplier, column(out / "lambda.mtx"))
+    return answer
+
+
+@pytest.mark.parametrize("scene", SCENES, ids=lambda path: path.stem)
+def test_an_answer_has_the_bits_of_the_program(scene: Path, tmp_path: Path) -> None:
+    code, reported = run(scene, tmp_path)
+    answer = agree(code, lambda: sg.Scene(scene).solve(memory=8e9), tmp_path)
+    if answer is None:
+        return
+    report = answer.report()
+    same = ("status", "method", "iterations", "certificate", "contact", "model", "resultants", "segments", "proven", "warnings")
+    for name in same:
+        assert report.get(name) == reported.get(name), name
+
+
+def of_folder(folder: Path) -> sg.Problem:
+    """The problem of a directory, read by scipy."""
+    from scipy.io import mmread
+
+    near_null = None
+    if (folder / "near_null.mtx").exists():
+        near_null = mmread(folder / "near_null.mtx")
+    f, g = (np.asarray(mmread(folder / name)).ravel() for name in ("f.mtx", "g.mtx"))
+    return sg.Problem(mmread(folder / "K.mtx"), f, mmread(folder / "B.mtx"), g, near_null)
+
+
+def same_as_program(folder: Path, out: Path) -> None:
+    code, _ = run(folder, out)
+    agree(code, lambda: sg.solve(of_folder(folder), memory=8e9), out)
+
+
+@pytest.mark.parametrize("scene", SCENES, ids=lambda path: path.stem)
+def test_an_exported_problem_has_the_bits_of_the_program(scene: Path, tmp_path: Path) -> None:
+    exported = subprocess.run([program(), "export", scene, tmp_path / "problem"], capture_output=True, check=False)
+    if exported.returncode == 0:
+        same_as_program(tmp_path / "problem", tmp_path / "out")
+
+
+@pytest.mark.parametrize("case", REFERENCE, ids=lambda case: case.name)
+def test_a_reference_problem_has_the_bits_of_the_program(case: cases.Case, tmp_path: Path) -> None:
+    write_problem(case.generate(), tmp_path / "problem")
+    same_as_program(tmp_path / "problem", tmp_path / "out")
+
+
+@pytest.mark.parametrize("folder", FINDINGS, ids=lambda folder: folder.name)
+def test_a_problem_on_which_a_promise_once_broke_has_the_bits_of_the_program(folder: Path, tmp_path: Path) -> None:
+    same_as_program(folder, tmp_path / "out")
+
+
+def block(gap: float = -0.01) -> dict:
+    return {
+        "title": "Block under a plane",
+        "body": {"rectangle": {"x": {"points": [0, 1], "divisions": [4]}, "y": {"points": [0, 1], "divisions": [4]}}},
+        "material": {"young": 1e7, "poisson": 0.3},
+        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}],
+        "obstacles": [{"boundary": "top", "approach": "+y", "shape": {"plane": {"point": [0, 1], "normal": [0, 1]}}}],
+        "gap": gap,
+    }
+
+
+def test_a_dictionary_is_a_scene_and_may_hold_numbers_of_numpy() -> None:
+    scene = block()
+    scene["gap"] = np.float64(-0.01)
+    scene["body"]["rectangle"]["x"]["points"] = np.array([0.0, 1.0])
+    answer = sg.Scene(scene).solve()
+    assert np.array_equal(answer.u, sg.Scene(block()).solve().u)
+    assert repr(sg.Scene(scene)) == "<signorini.Scene: Block under a plane, about 50 dofs>"
+
+
+def test_what_follows_from_an_answer_fits_together() -> None:
+    scene = sg.Scene(block())
+    answer = scene.solve()
+    nodes, rows = scene.nodes, scene.rows
+    assert nodes.shape == (25, 2) and scene.elements.shape == (16, 4) and scene.element_kind == "Q4"
+    assert answer.displacement.shape == nodes.shape and answer.stress.shape == (25, 6) and answer.element_stress.shape == (16, 6)
+    assert rows["node"].shape == answer.pressure.shape == (5,) and rows["normal"].shape == (5, 2)
+    # All five nodes of the top touch, and have gone down by the gap.
+    assert np.allclose(answer.displacement[rows["node"], 1], -0.01, atol=1e-14)
+    assert np.allclose(answer.remaining_gap, 0.0, atol=1e-14)
+    assert np.allclose(answer.pressure * rows["area"], -answer.multiplier)
+    # Contact and support are in balance; the resultant of the obstacle is the sum of the forces.
+    assert np.allclose(answer.contact_forces.sum(axis=0) + answer.reactions.sum(axis=0), 0.0, atol=1e-6)
+    obstacle = next(of for of in answer.resultants if of["of"] == "obstacles[0]")
+    assert np.allclose(obstacle["force"], answer.contact_forces.sum(axis=0), atol=1e-6)
+    assert np.isclose(answer.contact_force, -obstacle["force"][1])
+    xx, yy, zz, xy = answer.stress[:, :4].T
+    assert np.allclose(answer.von_mises, np.sqrt(xx**2 + yy**2 + zz**2 - xx * yy - yy * zz - zz * xx + 3 * xy**2))
+    assert answer.scene.title == "Block under a plane" and "peak pressure" in answer._repr_html_()
+
+
+def test_a_scene_is_a_problem_like_any_other() -> None:
+    scene = sg.Scene(block())
+    problem = scene.problem
+    assert problem.dofs == 40 and problem.row_count == 5 and problem.near_null.shape == (40, 3)
+    assert np.array_equal(sg.solve(problem).u, scene.solve().u)
+    assert np.array_equal(problem.g, np.full(5, -0.01))
+    assert scene.units == {"length": "m", "force": "N", "pressure": "Pa"}
+
+
+def test_methods_are_compared_on_a_scene() -> None:
+    comparison = sg.Scene(block()).compare()
+    assert comparison.agrees and isinstance(comparison.qp, sg.SceneSolution)
+    assert np.allclose(comparison.qp.pressure, comparison.active_set.pressure, rtol=1e-7)
+
+
+def test_a_sweep_knows_what_happens_between_its_gaps() -> None:
+    sweep = sg.sweep(sg.Scene(ROOT / "examples" / "indentation.json"), [-0.01, -0.05, -0.1])
+    assert sweep.gaps == [-0.01, -0.05, -0.1] and len(sweep.solutions) == 3 and sweep.events
+    assert (np.diff(sweep.contact_force) > 0).all()
+    assert {event["touches"] for event in sweep.events} <= {True, False}
+
+
+def test_faults_are_named_with_path_line_and_column(tmp_path: Path) -> None:
+    scene = block()
+    scene["material"]["young"] = -1
+    file = tmp_path / "scene.json"
+    file.write_text(json.dumps(scene, indent=1))
+    with pytest.raises(sg.SceneError) as raised:
+        sg.Scene(file).problem
+    assert raised.value.path == "material.young" and raised.value.line and raised.value.column
+    with pytest.raises(sg.SceneError) as raised:
+        sg.Scene(scene).solve()
+    assert raised.value.path == "material.young" and raised.value.line is None
+    with pytest.raises(sg.SceneError, match="unknown field"):
+        sg.Scene({**block(), "friction": 0.3})
+
+
+def test_a_scene_without_supports_names_its_motion() -> None:
+    scene = block()
+    scene["supports"] = []
+    with pytest.raises((sg.UnderHeld, sg.Unbounded), match="translation|rotation"):
+        sg.Scene(scene).solve()
+
+
+def test_a_scene_that_moves_is_refused() -> None:
+    moving = next((ROOT / "tools" / "impact").glob("*.json"))
+    with pytest.raises(sg.SceneError, match="the scene moves"):
+        sg.Scene(moving).solve()
+
+
+def test_pictures_show_the_mesh() -> None:
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    axes = sg.Scene(block()).solve().plot()
+    assert len(axes.collections[0].get_paths()) == 16 and axes.get_title() == "Block under a plane"
+
+
+def test_a_grid_of_pyvista_has_the_fields() -> None:
+    pytest.importorskip("pyvista")
+    grid = sg.Scene(block()).solve().to_pyvista()
+    assert grid.n_cells == 16 and set(grid.point_data) == {"displacement", "stress", "von_mises"}

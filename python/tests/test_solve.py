@@ -1,0 +1,136 @@
+"""Answers, what is prepared, studies: against closed forms and against each other."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import signorini as sg
+from bodies import bar, membrane, two_springs
+
+
+@pytest.mark.parametrize("method", ["auto", "qp", "active-set", "active_set", "penalty", "mprgp"])
+def test_every_method_presses_the_springs_against_the_wall(method: str) -> None:
+    try:
+        answer = sg.solve(two_springs(), method=method)
+    except sg.NotCertified as fell_short:
+        # A penalty is never exact.
+        assert method == "penalty"
+        answer = fell_short.solution
+    assert np.allclose(answer.u, [1 / 3, 1.0], rtol=1e-7) and np.allclose(answer.multiplier, [-7 / 3], rtol=1e-7)
+    assert answer.contact_set.tolist() == [0] and abs(answer.contact_force - 7 / 3) < 1e-7
+    assert answer.method.startswith(method.replace("_", "-")) or method == "auto"
+    assert answer.seconds > 0.0 and answer.why
+
+
+def test_an_answer_says_what_is_proven_and_how_far_it_is() -> None:
+    K, f, B, g = membrane(12)
+    answer = sg.solve(sg.Problem(K, f, B, g))
+    proven = answer.proven
+    assert proven is not None
+    assert len(proven.open) + len(proven.closed) + len(proven.undecided) == len(g)
+    assert set(proven.closed) <= set(answer.contact_set) and not set(proven.open) & set(answer.contact_set)
+    assert answer.certificate.meets(1e-9) and answer.certificate.worst[1] <= 1e-9
+    assert answer.energy_error_bound == answer.certificate.energy_error_bound < 1e-9
+    assert sg.solve(sg.Problem(K, f, B, g), proof=False).proven is None
+    assert answer.to_dict()["certificate"] == answer.certificate.to_dict()
+    assert answer.history[-1][0].tolist() == answer.contact_set.tolist()
+
+
+def test_arrays_of_an_answer_are_kept_and_cannot_be_changed() -> None:
+    answer = sg.solve(two_springs())
+    assert answer.u is answer.u
+    with pytest.raises(ValueError, match="read-only"):
+        answer.u[0] = 1.0
+
+
+def test_verify_judges_anybodys_answer() -> None:
+    problem = two_springs()
+    right = sg.verify(problem, [1 / 3, 1.0], [-7 / 3])
+    assert right.meets(1e-9)
+    assert not sg.verify(problem, [1 / 3, 1.01], [-7 / 3]).meets(1e-3)
+    assert sg.verify(problem, [1.5, 4.5], [0.0]).penetration > 0.5
+    assert sg.verify(problem, [1 / 3, 1.0], [-7 / 3]) == right
+
+
+def test_a_start_changes_iterations_and_not_the_answer() -> None:
+    K, f, B, g = membrane(20)
+    problem = sg.Problem(K, f, B, g)
+    known = sg.solve(problem, method="active-set")
+    for start in (known, known.contact_set, known.u):
+        again = sg.solve(problem, method="active-set", start=start)
+        assert np.allclose(again.u, known.u, rtol=0, atol=1e-13)
+    assert sg.solve(problem, method="active-set", start=known).iterations < known.iterations
+
+
+def test_one_factor_serves_gaps_loads_and_starts() -> None:
+    K, f, B, _ = bar(6)
+    prepared = sg.prepare(sg.Problem(K, f, B, [1.0]))
+    for gap in (0.5, 1.0, 2.0, 4.0):
+        answer = prepared.solve([gap])
+        assert abs(answer.u[-1] - min(gap, 3.0)) < 1e-12
+        assert abs(answer.contact_force - max(3.0 - gap, 0.0)) < 1e-12
+    last = prepared.solve(g=[2.0], f=2 * f, start=answer)
+    assert abs(last.contact_force - 4.0) < 1e-12
+    assert prepared.dofs == 6 and prepared.condensed_dofs <= 6 and prepared.seconds >= 0.0
+    assert repr(prepared).startswith("<signorini.Prepared: 6 dofs")
+
+
+def test_a_path_finds_the_gap_at_which_the_end_touches() -> None:
+    K, f, B, _ = bar(4)
+    path = sg.prepare(sg.Problem(K, f, B, [4.0])).path([4.0], [2.0])
+    assert len(path.events) == 1
+    event = path.events[0]
+    assert abs(event.at - 0.5) < 1e-12 and event.row == 0 and event.touches
+    assert np.allclose(path.corners, [0.0, 0.5, 1.0], atol=1e-12)
+    assert abs(path.multiplier(0.75)[0] + 0.5) < 1e-12 and path.multiplier(0.25)[0] == 0.0
+    assert path.gap(0.75).tolist() == [2.5] and path.contact_set(1.0).tolist() == [0]
+    assert abs(path.solution(0.75).u[-1] - 2.5) < 1e-12
+    with pytest.raises(sg.BadInput, match="t is 2; it must be from 0"):
+        path.gap(2.0)
+
+
+def test_methods_are_compared_and_agree() -> None:
+    K, f, B, g = membrane(12)
+    comparison = sg.compare(sg.Problem(K, f, B, g))
+    assert comparison.agrees
+    assert np.allclose(comparison.qp.u, comparison.active_set.u, atol=1e-10)
+    assert comparison.agreement["active_set"]["rows"] == 0
+    assert comparison.penalty.method.startswith("penalty")
+
+
+def test_a_tradeoff_has_points_and_advice_and_a_picture() -> None:
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    K, f, B, g = membrane(8)
+    tradeoff = sg.tradeoff(sg.Problem(K, f, B, g), runs=1)
+    assert {point["method"] for point in tradeoff.points} >= {"qp", "active-set", "penalty"}
+    assert len(tradeoff.meshes) == 1 and tradeoff.advice
+    axes = tradeoff.plot()
+    assert axes.get_xlabel() == "seconds" and len(axes.lines) > 3
+
+
+def test_a_sweep_over_gaps_of_a_problem_is_a_series_of_answers() -> None:
+    K, f, B, _ = bar(4)
+    sweep = sg.sweep(sg.Problem(K, f, B, [1.0]), [[0.5], [1.5], [3.5]])
+    assert np.allclose(sweep.contact_force, [2.5, 1.5, 0.0], atol=1e-12)
+
+
+def test_limits_of_time_and_accuracy_are_kept() -> None:
+    K, f, B, g = membrane(30)
+    problem = sg.Problem(K, f, B, g)
+    assert sg.solve(problem, accuracy=1e-3).energy_error_bound <= 1e-3
+    exact = sg.solve(problem, accuracy="exact", threads=2, tolerance=1e-10, precision="double", condense=False)
+    assert exact.method.startswith("active-set") and exact.certificate.meets(1e-10)
+    try:
+        assert sg.solve(problem, time=1e-9).certificate.meets(1e-9)
+    except (sg.NotCertified, sg.OutOfTime) as error:
+        assert str(error)
+
+
+def test_pictures_of_an_answer_show_every_row() -> None:
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    K, f, B, g = membrane(6)
+    answer = sg.solve(sg.Problem(K, f, B, g))
+    still, pressed = (len(points.get_offsets()) for points in answer.plot().collections)
+    assert (still, pressed) == (len(g) - len(answer.contact_set), len(answer.contact_set)) and pressed > 1

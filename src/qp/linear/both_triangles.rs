@@ -1,0 +1,238 @@
+//! The lower triangle of a symmetric matrix that is given with both, in one pass.
+//!
+//! The columns are walked from the first to the last. An entry (r, c) above the diagonal, r < c, has its mirror image in column r,
+//! which was walked before. As c grows, the mirror images of row r come in the order of column r: a cursor for each column is all
+//! that has to be kept.
+
+use super::SparseMatrix;
+use crate::error::Error;
+
+/// Two triangles count as alike when mirrored entries differ by no more than this times the largest entry of their
+/// row's or column's diagonal: assembly in another order differs by rounding, 1e-10 is far above it.
+const SYMMETRY_TOLERANCE: f64 = 1e-10;
+
+/// Compressed columns with indices of any type, as they came.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Columns<'a, I> {
+    pub starts: &'a [I],
+    pub rows: &'a [I],
+    pub values: &'a [f64],
+}
+
+/// The triangle whose values are taken where mirrored entries differ by rounding: of columns the lower, of rows the upper.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Taken {
+    Lower,
+    Upper,
+}
+
+/// The lower triangle while it is found.
+struct Lower {
+    starts: Vec<usize>,
+    rows: Vec<usize>,
+    values: Vec<f64>,
+    /// The entry of each column, below its diagonal, whose mirror image comes next.
+    cursor: Vec<usize>,
+    taken: Taken,
+    /// An entry has no mirror image.
+    is_one_sided: bool,
+}
+
+impl<I: Copy + TryInto<usize>> Columns<'_, I> {
+    /// The lower triangle.
+    ///
+    /// # Errors
+    /// [`Error::Length`], [`Error::Pattern`] and [`Error::IndexOutOfRange`] for arrays that are no sorted columns,
+    /// [`Error::NotFinite`], [`Error::NotSymmetric`].
+    pub fn lower(self) -> Result<SparseMatrix, Error> {
+        let lower = self.walked(Taken::Lower)?;
+        Ok(SparseMatrix::from_parts(lower.starts.len() - 1, lower.starts, lower.rows, lower.values))
+    }
+
+    /// The transposed upper triangle; none if an entry, which is as good as zero, stands on one side of the diagonal only.
+    ///
+    /// # Errors
+    /// As [`Columns::lower`].
+    pub fn upper(self) -> Result<Option<SparseMatrix>, Error> {
+        let upper = self.walked(Taken::Upper)?;
+        let matrix = || SparseMatrix::from_parts(upper.starts.len() - 1, upper.starts, upper.rows, upper.values);
+        Ok((!upper.is_one_sided).then(matrix))
+    }
+
+    /// The entries on and below the diagonal, of the values of the triangle `taken`.
+    fn walked(self, taken: Taken) -> Result<Lower, Error> {
+        let (dim, entries) = (self.starts.len().saturating_sub(1), self.values.len());
+        if self.rows.len() != entries {
+            let (name, found) = ("row indices", self.rows.len());
+            return Err(Error::Length { name, found, expected: entries, of: "values" });
+        }
+        if self.start(0)? != 0 || self.start(dim)? != entries {
+            let message = format!("the column starts must begin with 0 and end with the number of values, {entries}");
+            return Err(Error::Pattern { message });
+        }
+        let room = entries / 2 + dim;
+        let mut lower = Lower {
+            starts: with_room(dim + 1)?,
+            rows: with_room(room)?,
+            values: with_room(room)?,
+            cursor: with_room(dim)?,
+            taken,
+            is_one_sided: false,
+        };
+        lower.starts.push(0);
+        let mut first = 0;
+        for column in 0..dim {
+            let end = self.start(column + 1)?;
+            let (Some(rows), Some(values)) = (self.rows.get(first..end), self.values.get(first..end)) else {
+                let message = format!("the column starts decrease after column {column} (indices from 0)");
+                return Err(Error::Pattern { message });
+            };
+            lower.take(dim, column, rows, values)?;
+            first = end;
+        }
+        lower.all_matched()?;
+        Ok(lower)
+    }
+
+    fn start(&self, column: usize) -> Result<usize, Error> {
+        let start = self.starts.get(column).and_then(|&start| start.try_into().ok());
+        start.ok_or_else(|| Error::Pattern { message: format!("the start of column {column} is no index (from 0)") })
+    }
+}
+
+/// An empty vector with room for this number of entries.
+fn with_room<T>(entries: usize) -> Result<Vec<T>, Error> {
+    let mut room = Vec::new();
+    match room.try_reserve_exact(entries) {
+        Ok(()) => Ok(room),
+        Err(error) => Err(Error::Numerical { step: "copying a matrix", reason: error.to_string() }),
+    }
+}
+
+impl Lower {
+    /// Takes what `column` has on and below the diagonal, and compares what it has above.
+    fn take<I: Copy + TryInto<usize>>(
+        &mut self,
+        dim: usize,
+        column: usize,
+        rows: &[I],
+        values: &[f64],
+    ) -> Result<(), Error> {
+        let (start, mut before) = (self.rows.len(), None);
+        for (&row, &value) in rows.iter().zip(values) {
+            let row: usize = row.try_into().map_err(|_| {
+                let [line, entry] = self.taken.words();
+                Error::Pattern { message: format!("a {entry} of {line} {column} is negative (indices from 0)") }
+            })?;
+            let place = self.taken.place(row, column);
+            if row >= dim {
+                return Err(Error::IndexOutOfRange { row: place.0, column: place.1, rows: dim, columns: dim });
+            }
+            if let Some(before) = before.filter(|&before| before >= row) {
+                let [line, entry] = self.taken.words();
+                let where_to = format!("{entry} {row} of {line} {column} does not lie beyond {entry} {before}");
+                return Err(Error::Pattern { message: format!("{where_to}, the one before (indices from 0)") });
+            }
+            before = Some(row);
+            if !value.is_finite() {
+                let at = format!("{place:?}");
+                return Err(Error::NotFinite { name: "matrix", at, value, allowed: "finite" });
+            }
+            if row >= column {
+                self.rows.push(row);
+                self.values.push(value);
+            } else {
+                self.compare(row, column, value, || diagonal_of(column, rows, values))?;
+            }
+        }
+        self.starts.push(self.rows.len());
+        let has_diagonal = self.rows.get(start) == Some(&column);
+        self.cursor.push(start + usize::from(has_diagonal));
+        Ok(())
+    }
+
+    /// Compares entry (row, column) above the diagonal with its mirror image in column `row`.
+    fn compare(&mut self, row: usize, column: usize, value: f64, diagonal: impl Fn() -> f64) -> Result<(), Error> {
+        let end = self.starts[row + 1];
+        loop {
+            let place = self.cursor[row];
+            if place >= end || self.rows[place] > column {
+                self.is_one_sided = true;
+                return self.alike((column, row), 0.0, value, diagonal());
+            }
+            self.cursor[row] += 1;
+            let below = self.values[place];
+            if self.rows[place] == column {
+                if value.to_bits() == below.to_bits() {
+                    return Ok(());
+                }
+                if self.taken == Taken::Upper {
+                    self.values[place] = value;
+                }
+                return self.alike((column, row), below, value, diagonal());
+            }
+            // A column before this one had no entry in that row.
+            self.alone(place, row)?;
+        }
+    }
+
+    /// Entries whose mirror images did not come must be as good as zero.
+    fn all_matched(&mut self) -> Result<(), Error> {
+        for column in 0..self.cursor.len() {
+            for place in self.cursor[column]..self.starts[column + 1] {
+                self.alone(place, column)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// An entry below the diagonal of `column` that has no mirror image.
+    fn alone(&mut self, place: usize, column: usize) -> Result<(), Error> {
+        self.is_one_sided = true;
+        let row = self.rows[place];
+        self.alike((row, column), self.values[place], 0.0, self.diagonal(row))
+    }
+
+    /// The size of the diagonal entry of a column that was walked.
+    fn diagonal(&self, column: usize) -> f64 {
+        let place = self.starts[column];
+        let is_there = place < self.starts[column + 1] && self.rows[place] == column;
+        if is_there { self.values[place].abs() } else { 0.0 }
+    }
+
+    /// Makes sure that an entry below the diagonal and its mirror image differ by rounding at most; `diagonal` is the size of the
+    /// diagonal entry of its row.
+    fn alike(&self, (row, column): (usize, usize), value: f64, mirrored: f64, diagonal: f64) -> Result<(), Error> {
+        let size = self.diagonal(column).max(diagonal);
+        let scale = if size > 0.0 { size } else { value.abs().max(mirrored.abs()) };
+        if (value - mirrored).abs() > SYMMETRY_TOLERANCE * scale {
+            let (value, mirrored) = self.taken.place(value, mirrored);
+            return Err(Error::NotSymmetric { row, column, value, mirrored });
+        }
+        Ok(())
+    }
+}
+
+impl Taken {
+    /// What a walked line of the matrix is, and what its entries are named by.
+    fn words(self) -> [&'static str; 2] {
+        match self {
+            Taken::Lower => ["column", "row"],
+            Taken::Upper => ["row", "column"],
+        }
+    }
+
+    /// Row and column of an entry of a line that is walked as a column, or a pair of mirrored entries.
+    fn place<T>(self, row: T, column: T) -> (T, T) {
+        match self {
+            Taken::Lower => (row, column),
+            Taken::Upper => (column, row),
+        }
+    }
+}
+
+/// The size of the diagonal entry of a column that is being walked.
+fn diagonal_of<I: Copy + TryInto<usize>>(column: usize, rows: &[I], values: &[f64]) -> f64 {
+    let place = rows.iter().position(|&row| row.try_into().ok() == Some(column));
+    place.map_or(0.0, |place| values[place].abs())
+}
