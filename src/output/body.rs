@@ -136,7 +136,8 @@ impl ContactPicture<'_> {
         draw_heading(&mut drawing, &title, 0.5 * width, margin);
 
         let bar = (column - 90.0).min(460.0);
-        let labels = |index: usize| if index % self.columns() == 0 { Labels::Both } else { Labels::Horizontal };
+        let labels =
+            |index: usize| if index.is_multiple_of(self.columns()) { Labels::Both } else { Labels::Horizontal };
         let middle = |frame: &Frame| frame.corner[0] + 0.5 * frame.size[0];
         for (index, (field, frame)) in self.fields.iter().zip(fields).enumerate() {
             let limits = field.shown_limits();

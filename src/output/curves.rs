@@ -101,7 +101,7 @@ impl CurvePanel {
 
     /// The pixel of a point; exact ones lie in the strip below the axis of the errors.
     fn place(&self, frame: &Frame, [time, error]: [f64; 2]) -> [f64; 2] {
-        if error <= EXACT && error >= 0.0 {
+        if (0.0..=EXACT).contains(&error) {
             let [x, _] = frame.place([time, frame.y.range[0]]);
             return [x, frame.corner[1] + frame.size[1] + 0.5 * EXACT_ROOM];
         }

@@ -181,18 +181,3 @@ fn closed_nodes(model: &Model, set: &ContactSet) -> String {
         count => format!("{count} closed nodes"),
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::evenly;
-
-    #[test]
-    fn of_many_iterations_twelve_are_drawn_with_the_first_and_the_last() {
-        assert_eq!(evenly(5, 12), [0, 1, 2, 3, 4]);
-        for count in [13, 14, 40, 1000] {
-            let chosen = evenly(count, 12);
-            assert_eq!((chosen.len(), chosen[0], chosen[11]), (12, 0, count - 1));
-            assert!(chosen.is_sorted_by(|a, b| a < b), "{chosen:?}");
-        }
-    }
-}

@@ -91,3 +91,18 @@ fn evenly(count: usize, most: usize) -> Vec<usize> {
     }
     (0..most).map(|k| k * (count - 1) / (most - 1)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::evenly;
+
+    #[test]
+    fn of_many_iterations_twelve_are_drawn_with_the_first_and_the_last() {
+        assert_eq!(evenly(5, 12), [0, 1, 2, 3, 4]);
+        for count in [13, 14, 40, 1000] {
+            let chosen = evenly(count, 12);
+            assert_eq!((chosen.len(), chosen[0], chosen[11]), (12, 0, count - 1));
+            assert!(chosen.is_sorted_by(|a, b| a < b), "{chosen:?}");
+        }
+    }
+}

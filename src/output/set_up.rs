@@ -11,6 +11,7 @@ use super::{
     medium::Medium,
     obstacle::{self, ObstacleLine},
     plane_scene::{OUTLINE_SEGMENTS, axes},
+    space_scene::space_set_up,
     ticks::{Scale, brief, common_exponent},
     typeface::{self, Weight},
 };
@@ -37,22 +38,26 @@ const SPRING: Colour = PALETTE[3];
 const FACE: Colour = PALETTE[5];
 const LOAD: Colour = PALETTE[1];
 
-/// Draws the scene of a model in the plane as it is before it is solved.
+/// Draws the scene of a model as it is before it is solved.
 ///
 /// # Errors
-/// [`Error::Scene`] for a bar and for a body in space, which have no such picture.
+/// [`Error::Scene`] for a bar, which has no such picture.
 pub(crate) fn set_up_picture(model: &Model) -> Result<Drawing, Error> {
-    let dimension = model.mesh().dimension();
-    if dimension != 2 {
-        let of = if dimension == 1 { "a bar" } else { "a body in space" };
-        let message = format!("the picture of a set-up is one of a body in the plane or about an axis; this is {of}");
-        return Err(Error::Scene { path: "model".into(), message });
+    let title = format!("{}, set-up", headline(model));
+    match model.mesh().dimension() {
+        1 => {
+            let message =
+                "a bar has no picture of its set-up; only bodies in the plane, about an axis and in space have one"
+                    .into();
+            return Err(Error::Scene { path: "model".into(), message });
+        }
+        3 => return Ok(space_set_up(model, &title)),
+        _ => {}
     }
     let shown = Shown::of(model);
     let lines: Vec<ObstacleLine> =
         shown.outlines.iter().map(|(points, inside)| ObstacleLine { points, inside: *inside }).collect();
     let picture = shown.picture(&lines);
-    let title = format!("{}, set-up", headline(model));
     let (frame, title) = framed(obstacle::window(shown.nodes.iter().copied(), &lines), &shown, &title);
     let arrows = arrows(model, &shown, &frame);
     let symbols = symbols(model.held_nodes(), &shown, &frame);

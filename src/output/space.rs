@@ -53,7 +53,17 @@ pub(super) struct Sheet {
     pub approach: [f64; 3],
 }
 
-/// A body in space with a field, as plain data.
+/// The colours of a surface.
+#[derive(Clone, Debug)]
+pub(super) enum Colouring<'a> {
+    /// Those of a field, with their bar.
+    Field(FieldPanel<'a>),
+    /// One for each face, and what each of them stands for.
+    #[cfg_attr(not(feature = "cli"), allow(dead_code))]
+    Faces { colours: &'a [Colour], names: &'a [(&'static str, Colour)] },
+}
+
+/// A body in space, as plain data.
 #[derive(Clone, Debug)]
 pub(super) struct SpacePicture<'a> {
     pub title: &'a str,
@@ -62,7 +72,7 @@ pub(super) struct SpacePicture<'a> {
     /// Nodes of the displaced body.
     pub nodes: &'a [[f64; 3]],
     pub faces: &'a [Face],
-    pub field: FieldPanel<'a>,
+    pub colouring: Colouring<'a>,
     pub sheets: &'a [Sheet],
     /// From the body to the eye, of any length.
     pub eye: [f64; 3],
@@ -130,21 +140,27 @@ impl SpacePicture<'_> {
         let down = (size[1] + TRIAD).max(plan.as_ref().map_or(0.0, |(_, frame)| frame.size[1] + ROOM_BELOW));
         let below = top + down + 18.0;
         let mut entries = plan.as_ref().map_or_else(Vec::new, |(plan, _)| plan.entries());
+        if let Colouring::Faces { names, .. } = self.colouring {
+            entries.extend(names.iter().map(|&(name, colour)| face_entry(name, colour)));
+        }
         if !self.sheets.is_empty() {
             entries.push(Entry { name: "obstacle".into(), key: Box::new(draw_obstacle_key), key_width: 30.0 });
         }
         let legend = legend::rows_height(&entries, self.column());
-        let mut drawing = Drawing::new(width, below + colour_bar::ROOM + legend + 12.0 + margin);
+        let bar = self.column() - 90.0;
+        let field = match &self.colouring {
+            Colouring::Field(field) => Some((field, ColourRange::new(&field.quantity, field.shown_limits(), bar))),
+            Colouring::Faces { .. } => None,
+        };
+        let bar_room = if field.is_some() { colour_bar::ROOM + 8.0 } else { 0.0 };
+        let mut drawing = Drawing::new(width, below + bar_room + legend + 4.0 + margin);
         draw_heading(&mut drawing, &title, 0.5 * width, margin);
 
-        let bar = self.column() - 90.0;
-        let limits = self.field.shown_limits();
-        let range = ColourRange::new(&self.field.quantity, limits, bar);
         let corner = [margin + 0.5 * (column - size[0]), top + 0.5 * (down - TRIAD - size[1])];
         let place = Place { scale, low: [window[0][0], window[1][0]], corner, height: size[1] };
         let is_in_front = |sheet: &&Sheet| dot(sheet.approach, view.eye) > 0.0;
         self.draw_sheets(&mut drawing, &view, &place, |sheet| !is_in_front(sheet));
-        self.draw_body(&mut drawing, &view, &place, &range);
+        self.draw_body(&mut drawing, &view, &place, field.as_ref().map(|(_, range)| range));
         self.draw_sheets(&mut drawing, &view, &place, is_in_front);
         draw_triad(&mut drawing, &view, [margin + 46.0, top + down - 30.0]);
         self.draw_ruler(&mut drawing, scale, [margin + column - 10.0, top + down - 8.0]);
@@ -152,7 +168,9 @@ impl SpacePicture<'_> {
         let panels = 1 + usize::from(plan.is_some());
         let heading = self.medium.panel_title(0, panels, self.heading);
         panel_title(&mut drawing, &heading, [middle, top - 12.0], column);
-        range.draw(&mut drawing, [middle - 0.5 * bar, below], bar, self.field.outside(limits));
+        if let Some((field, range)) = &field {
+            range.draw(&mut drawing, [middle - 0.5 * bar, below], bar, field.outside(field.shown_limits()));
+        }
 
         if let Some((plan, mut frame)) = plan {
             let left = margin + column + BETWEEN + frame.corner[0];
@@ -162,7 +180,9 @@ impl SpacePicture<'_> {
             let title = self.medium.panel_title(1, 2, &plan.title);
             panel_title(&mut drawing, &title, [middle, frame.corner[1] - 12.0], frame.size[0].max(self.column()));
             plan.draw(&mut drawing, &frame, self.length_unit, [middle - 0.5 * bar, below], bar);
-            legend::draw_rows(&mut drawing, &entries, [middle, below + colour_bar::ROOM + 8.0], self.column());
+            legend::draw_rows(&mut drawing, &entries, [middle, below + bar_room], self.column());
+        } else if field.is_none() {
+            legend::draw_rows(&mut drawing, &entries, [middle, below], self.column());
         }
         drawing.on_paper(self.medium.millimetres(2))
     }
@@ -171,14 +191,14 @@ impl SpacePicture<'_> {
         COLUMNS[self.medium as usize]
     }
 
-    /// The faces that are seen, from far to near, in the colours of the field, darker where they turn away from the light.
-    fn draw_body(&self, drawing: &mut Drawing, view: &View, place: &Place, range: &ColourRange) {
+    /// The faces that are seen, from far to near, in the colours of the field or their own, darker where they turn away from the light.
+    fn draw_body(&self, drawing: &mut Drawing, view: &View, place: &Place, range: Option<&ColourRange>) {
         let light = {
             let towards = [0, 1, 2].map(|axis| view.eye[axis] + 0.5 * view.up[axis] - 0.35 * view.right[axis]);
             towards.map(|part| part / length(towards))
         };
-        let mut seen: Vec<(f64, f64, &Face)> = Vec::new();
-        for face in self.faces {
+        let mut seen: Vec<(f64, f64, usize)> = Vec::new();
+        for (index, face) in self.faces.iter().enumerate() {
             let corners: Vec<[f64; 3]> = face.outline.iter().map(|&node| self.nodes[node]).collect();
             let normal = normal(&corners);
             if dot(normal, view.eye) <= 0.0 || corners.iter().flatten().any(|x| !Scale::Linear.shows(*x)) {
@@ -186,17 +206,18 @@ impl SpacePicture<'_> {
             }
             let depth = corners.iter().map(|&corner| dot(corner, view.eye)).sum::<f64>() / corners.len() as f64;
             let bright = 0.78 + 0.22 * (dot(normal, light) / length(normal)).max(0.0);
-            seen.push((depth, bright, face));
+            seen.push((depth, bright, index));
         }
         seen.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let cells: usize = seen.iter().map(|(_, _, face)| face.cells.len()).sum();
+        let cells: usize = seen.iter().map(|&(_, _, index)| self.faces[index].cells.len()).sum();
         let parts = ((ALL_PARTS / cells.max(1)) as f64).sqrt().floor().clamp(1.0, MOST_PARTS as f64) as usize;
         let edge = (place.scale * place.scale * self.seen_area(view, &seen) / seen.len().max(1) as f64).sqrt();
-        for (_, bright, face) in seen {
+        for (_, bright, index) in seen {
+            let face = &self.faces[index];
             let mut painted: Vec<(Colour, Vec<Vec<[f64; 2]>>)> = Vec::new();
             for cell in &face.cells {
-                for (polygon, value) in self.parts(cell, parts) {
-                    let colour = shaded(range.colour(value), bright);
+                for (polygon, colour) in self.coloured(cell, parts, index, range) {
+                    let colour = shaded(colour, bright);
                     let flat = polygon.iter().map(|&point| place.of(view.flat(point))).collect();
                     match painted.iter_mut().find(|entry| entry.0 == colour) {
                         Some(entry) => entry.1.push(flat),
@@ -216,16 +237,36 @@ impl SpacePicture<'_> {
         }
     }
 
-    fn seen_area(&self, view: &View, seen: &[(f64, f64, &Face)]) -> f64 {
+    /// The parts of a cell of a face with their colours.
+    fn coloured(
+        &self,
+        cell: &[usize],
+        parts: usize,
+        face: usize,
+        range: Option<&ColourRange>,
+    ) -> Vec<(Vec<[f64; 3]>, Colour)> {
+        match (&self.colouring, range) {
+            (Colouring::Field(field), Some(range)) => {
+                let parts = self.parts(cell, parts, field.values).into_iter();
+                parts.map(|(polygon, value)| (polygon, range.colour(value))).collect()
+            }
+            (Colouring::Faces { colours, .. }, _) => {
+                vec![(cell.iter().map(|&node| self.nodes[node]).collect(), colours[face])]
+            }
+            (Colouring::Field(_), None) => Vec::new(),
+        }
+    }
+
+    fn seen_area(&self, view: &View, seen: &[(f64, f64, usize)]) -> f64 {
         let area = |face: &Face| {
             let flat: Vec<[f64; 3]> = face.outline.iter().map(|&node| self.nodes[node]).collect();
             0.5 * dot(normal(&flat), view.eye).abs()
         };
-        seen.iter().map(|(_, _, face)| area(face)).sum()
+        seen.iter().map(|&(_, _, index)| area(&self.faces[index])).sum()
     }
 
     /// A triangle or a quadrilateral cut into `parts` along each edge, each part with the value in its middle.
-    fn parts(&self, cell: &[usize], parts: usize) -> Vec<(Vec<[f64; 3]>, f64)> {
+    fn parts(&self, cell: &[usize], parts: usize, values: &[f64]) -> Vec<(Vec<[f64; 3]>, f64)> {
         let weights = |s: f64, t: f64| -> Vec<f64> {
             match cell.len() {
                 3 => vec![1.0 - s - t, s, t],
@@ -237,7 +278,7 @@ impl SpacePicture<'_> {
             [0, 1, 2].map(|axis| cell.iter().zip(&weights).map(|(&node, w)| w * self.nodes[node][axis]).sum())
         };
         let value = |s: f64, t: f64| -> f64 {
-            cell.iter().zip(weights(s, t)).map(|(&node, weight)| weight * self.field.values[node]).sum()
+            cell.iter().zip(weights(s, t)).map(|(&node, weight)| weight * values[node]).sum()
         };
         let step = 1.0 / parts as f64;
         let mut all = Vec::with_capacity(parts * parts);
@@ -287,6 +328,14 @@ impl SpacePicture<'_> {
         }
         drawing.text([0.5 * (from + right), y - 9.0], &text, SMALL, Anchor::Middle);
     }
+}
+
+/// What the colour of a face stands for.
+fn face_entry(name: &str, colour: Colour) -> Entry<'static> {
+    let key = Box::new(move |drawing: &mut Drawing, [x, y]: [f64; 2]| {
+        drawing.rect([x - 14.0, y - 6.0], [28.0, 12.0], &Paint::fill(colour).with_stroke(EDGE, 0.6));
+    });
+    Entry { name: name.to_owned(), key, key_width: 30.0 }
 }
 
 /// The key of an obstacle that is seen through.

@@ -3,15 +3,20 @@
 use std::path::Path;
 
 use super::body::{FieldPanel, ROUNDING};
+#[cfg(feature = "cli")]
+use super::colour::Colour;
+#[cfg(feature = "cli")]
+use super::drawing::Drawing;
 use super::medium::Medium;
 use super::plan::Plan;
 use super::plane_scene::{has_pairs, rounded_down, ways_to_obstacle};
-use super::space::{Face, Sheet, SpacePicture};
+use super::space::{Colouring, Face, Sheet, SpacePicture};
 use super::ticks::{Quantity, brief};
 use super::write_picture;
 use crate::error::Error;
+use crate::fem::body::Region;
 use crate::fem::element::FacetKind;
-use crate::scene::{Answer, straight_cells};
+use crate::scene::{Answer, Model, straight_cells};
 
 /// The largest displacement is drawn about this share of the size of the body.
 const SEEN: f64 = 0.04;
@@ -41,26 +46,12 @@ pub(super) fn draw_space(folder: &Path, stem: &str, title: &str, answer: &Answer
     let largest = stress.iter().map(|of| of.von_mises).fold(0.0, f64::max);
     let values: Vec<f64> =
         stress.iter().map(|of| if of.von_mises <= ROUNDING * largest { 0.0 } else { of.von_mises }).collect();
-    let faces: Vec<Face> = model
-        .body()
-        .regions()
-        .iter()
-        .flat_map(|region| {
-            let surface = model.mesh().surface(region.elements());
-            surface.facets().map(|facet| face(surface.kind, facet)).collect::<Vec<_>>()
-        })
-        .collect();
+    let faces = faces(model);
     let obstacle = (0..model.obstacles().len()).max_by(|&a, &b| force(answer, a).total_cmp(&force(answer, b)));
-    let mut eye = EYE;
-    if let Some(obstacle) = obstacle {
-        let approach = model.obstacles()[obstacle].approach();
-        (0..3)
-            .filter(|&axis| approach[axis].abs() > 0.3)
-            .for_each(|axis| eye[axis] = eye[axis].abs().copysign(approach[axis]));
-    }
+    let eye = eye(model, obstacle);
     let sheets: Vec<Sheet> = (0..model.obstacles().len())
         .filter(|&index| model.obstacles()[index].rigid().is_some())
-        .map(|index| sheet(answer, index, magnification, NEAR * size))
+        .map(|index| sheet(model, index, &ways_to_obstacle(answer, index), (magnification, NEAR * size)))
         .collect();
     let plan = obstacle.map(|obstacle| plan(answer, obstacle));
     let times = brief(magnification);
@@ -76,7 +67,7 @@ pub(super) fn draw_space(folder: &Path, stem: &str, title: &str, answer: &Answer
         length_unit: &model.units().length,
         nodes: &displaced,
         faces: &faces,
-        field: FieldPanel { values: &values, quantity, limits: [f64::NAN; 2] },
+        colouring: Colouring::Field(FieldPanel { values: &values, quantity, limits: [f64::NAN; 2] }),
         sheets: &sheets,
         eye,
         plan: plan.as_ref(),
@@ -85,6 +76,82 @@ pub(super) fn draw_space(folder: &Path, stem: &str, title: &str, answer: &Answer
     write_picture(folder, stem, &picture.draw())?;
     Ok(())
 }
+
+/// The surfaces of all bodies.
+fn faces(model: &Model) -> Vec<Face> {
+    let of_region = |region: &Region| {
+        let surface = model.mesh().surface(region.elements());
+        surface.facets().map(|facet| face(surface.kind, facet)).collect::<Vec<_>>()
+    };
+    model.body().regions().iter().flat_map(of_region).collect()
+}
+
+/// From the body to the eye: from the side of the obstacle that is looked at.
+fn eye(model: &Model, obstacle: Option<usize>) -> [f64; 3] {
+    let mut eye = EYE;
+    if let Some(obstacle) = obstacle {
+        let approach = model.obstacles()[obstacle].approach();
+        (0..3)
+            .filter(|&axis| approach[axis].abs() > 0.3)
+            .for_each(|axis| eye[axis] = eye[axis].abs().copysign(approach[axis]));
+    }
+    eye
+}
+
+/// The picture of a body in space before it is solved: faces that are held, loaded or may touch, and the obstacles at their gap.
+#[cfg(feature = "cli")]
+pub(super) fn space_set_up(model: &Model, title: &str) -> Drawing {
+    let nodes = model.mesh().nodes();
+    let faces = faces(model);
+    let mut held = vec![false; nodes.len()];
+    model.held_nodes().iter().for_each(|node| held[node.node] = true);
+    let mut candidate = vec![false; nodes.len()];
+    model.rows().iter().for_each(|row| candidate[row.node] = true);
+    let loaded: Vec<bool> = model.nodal_load().chunks_exact(3).map(|load| load.iter().any(|&f| f != 0.0)).collect();
+    // A volume force loads every node; faces of their own have what only some nodes have.
+    let is_on_faces = loaded.iter().any(|&is_loaded| !is_loaded);
+    let all = |flags: &[bool], face: &Face| face.outline.iter().all(|&node| flags[node]);
+    let kind = |face: &Face| match () {
+        () if all(&candidate, face) => 1,
+        () if all(&held, face) => 2,
+        () if is_on_faces && all(&loaded, face) => 3,
+        () => 0,
+    };
+    let kinds: Vec<usize> = faces.iter().map(kind).collect();
+    let colours: Vec<Colour> = kinds.iter().map(|&kind| KINDS[kind].1).collect();
+    let names: Vec<(&str, Colour)> =
+        (0..KINDS.len()).filter(|kind| kinds.contains(kind)).map(|kind| KINDS[kind]).collect();
+    let sheets: Vec<Sheet> = (0..model.obstacles().len())
+        .filter(|&index| model.obstacles()[index].rigid().is_some())
+        .map(|index| {
+            let rows = model.rows().iter().filter(|row| row.obstacle == index);
+            let ways: Vec<_> = rows.map(|row| (row.node, row.normal.map(|part| row.gap * part))).collect();
+            sheet(model, index, &ways, (1.0, NEAR * model.mesh().size()))
+        })
+        .collect();
+    let picture = SpacePicture {
+        title,
+        heading: "body before it is solved",
+        length_unit: &model.units().length,
+        nodes,
+        faces: &faces,
+        colouring: Colouring::Faces { colours: &colours, names: &names },
+        sheets: &sheets,
+        eye: eye(model, (!model.obstacles().is_empty()).then_some(0)),
+        plan: None,
+        medium: Medium::Screen,
+    };
+    picture.draw()
+}
+
+/// What faces are in the picture of a set-up, with their colours.
+#[cfg(feature = "cli")]
+const KINDS: [(&str, Colour); 4] = [
+    ("body", Colour(214, 220, 230)),
+    ("candidates for contact", Colour(240, 190, 110)),
+    ("held", Colour(110, 175, 145)),
+    ("loaded", Colour(225, 130, 120)),
+];
 
 /// The size of the force of an obstacle.
 fn force(answer: &Answer, obstacle: usize) -> f64 {
@@ -107,11 +174,10 @@ fn outline(kind: FacetKind, facet: &[usize]) -> Vec<usize> {
 }
 
 /// The obstacle over the facets whose nodes all have rows: each node goes the way to it, as many times as the body has moved.
-fn sheet(answer: &Answer, obstacle: usize, magnification: f64, near: f64) -> Sheet {
-    let model = answer.model();
+fn sheet(model: &Model, obstacle: usize, ways_of: &[(usize, [f64; 3])], (magnification, near): (f64, f64)) -> Sheet {
     let placed = &model.obstacles()[obstacle];
     let mut ways: Vec<Option<[f64; 3]>> = vec![None; model.mesh().nodes().len()];
-    for (node, way) in ways_to_obstacle(answer, obstacle) {
+    for &(node, way) in ways_of {
         let way = way.map(|part| magnification * part);
         let far = way.iter().map(|part| part * part).sum::<f64>().sqrt() > near;
         ways[node] = (!far).then_some(way);

@@ -353,8 +353,7 @@ fn penalties_have_pictures_with_common_colours() {
     let label = |name: &str| {
         let svg = fs::read_to_string(desk.path("o").join(name)).unwrap();
         let (before, _) = svg.split_once(">second principal stress σ₂ (").map(|(a, b)| (a.to_string(), b)).unwrap();
-        let ticks = before.rsplit("<path").next().unwrap().to_string();
-        ticks
+        before.rsplit("<path").next().unwrap().to_string()
     };
     for rung in &rungs {
         assert_eq!(label(rung), label("contact.svg"), "{rung}");
