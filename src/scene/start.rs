@@ -118,12 +118,17 @@ fn roles(listed: &[Listed]) -> [&str; 2] {
     [held.or(first).unwrap_or_default(), pressed]
 }
 
-/// The axis and the sense in which a boundary looks; up where it looks all ways.
+/// A component within this share of the largest one is as large: a boundary that looks along several axes alike.
+const ALIKE: f64 = 0.99;
+
+/// The axis and the sense in which a boundary looks; the vertical axis if it looks along that as much as along another, and up if it
+/// looks all ways.
 fn facing(normal: [f64; 3], up: usize) -> (usize, f64) {
     if length(normal) < FACING {
         return (up, 1.0);
     }
-    let axis = (0..3).max_by(|&a, &b| normal[a].abs().total_cmp(&normal[b].abs())).unwrap_or(up);
+    let largest = (0..3).max_by(|&a, &b| normal[a].abs().total_cmp(&normal[b].abs())).unwrap_or(up);
+    let axis = if normal[up].abs() > ALIKE * normal[largest].abs() { up } else { largest };
     (axis, normal[axis].signum())
 }
 

@@ -367,12 +367,25 @@ fn a_scene_is_drawn_before_it_is_solved() {
 }
 
 #[test]
-fn a_picture_of_another_kind_or_of_another_body_is_refused() {
+fn a_picture_of_another_kind_or_of_a_bar_is_refused() {
     let desk = Desk::new();
     desk.run(&["draw", &example("indentation"), "--out", "set-up.jpg"]).ends_with(2);
     desk.run(&["draw", &example("indentation")]).ends_with(2);
-    desk.run(&["draw", &example("ball"), "--out", "ball.png"]).fails_with(1, &["`model`", "a body in space"]);
-    assert!(!desk.path("ball.png").exists());
+    desk.write("bar.json", include_str!("../../tools/impact/bar.json"));
+    desk.run(&["draw", "bar.json", "--out", "bar.png"]).fails_with(1, &["`model`", "a bar has no picture"]);
+    assert!(!desk.path("bar.png").exists());
+}
+
+#[test]
+fn the_set_up_in_space_shows_what_is_held_and_what_may_touch() {
+    let desk = Desk::new();
+    desk.run(&["draw", &example("ball"), "--out", "ball.svg"]).ends_with(0);
+    let svg = std::fs::read_to_string(desk.path("ball.svg")).unwrap();
+    for words in ["set-up", "candidates for contact", "obstacle", ">body<"] {
+        assert!(svg.contains(words), "no {words}");
+    }
+    // No load stands in the scene, and the eye does not see the side that is held.
+    assert!(!svg.contains(">loaded<"));
 }
 
 /// Runs the program on a terminal of its own, tells what the terminal shows, and ends it once that has `phrase`.
