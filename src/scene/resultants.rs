@@ -1,5 +1,6 @@
 //! Resultants: the force, moment and centre of each obstacle, pair of bodies, support, and of the loads.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use serde::Serialize;
@@ -179,11 +180,17 @@ impl Model {
         let mut supports = vec![Sum::default(); self.parts().supports];
         let mut held: Vec<Option<usize>> = vec![None; supports.len()];
         for (node, shares) in self.parts().held.shares(reaction) {
+            // A support may hold a node in several directions.
+            let mut of_node = BTreeMap::<usize, [f64; 3]>::new();
             for (by, force) in shares {
                 if let Holder::Support { index, .. } = by {
-                    held[index] = held[index].or(Some(node));
-                    self.add_images(&mut supports[index], nodes[node], force, |_| true);
+                    let sum = of_node.entry(index).or_default();
+                    *sum = [0, 1, 2].map(|axis| sum[axis] + force[axis]);
                 }
+            }
+            for (index, force) in of_node {
+                held[index] = held[index].or(Some(node));
+                self.add_images(&mut supports[index], nodes[node], force, |_| true);
             }
         }
         let of_support = |((sum, held), name): ((&Sum, Option<usize>), String)| Resultant {

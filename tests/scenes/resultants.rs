@@ -98,7 +98,10 @@ fn they_balance_in_space_and_between_two_bodies() {
     });
     let answer_in_space = answer(&space);
     assert!(answer_in_space.contact_set().count() > 2);
-    balance(answer_in_space.resultants().unwrap());
+    let in_space = answer_in_space.resultants().unwrap();
+    let support = in_space.iter().find(|one| one.of == "supports[0]").unwrap();
+    assert_eq!(support.nodes, 16, "a node that is held in three directions is one node");
+    balance(in_space);
     let two = std::fs::read_to_string("examples/two_cylinders.json").unwrap();
     let two = answer(&serde_json::from_str(&two).unwrap());
     let all = two.resultants().unwrap();
