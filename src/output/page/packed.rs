@@ -119,7 +119,7 @@ impl Packer {
     /// [`Error::Numerical`] where the encoder fails.
     pub fn finished(self) -> Result<String, Error> {
         let failed = |error: std::io::Error| Error::Numerical { step: "packing a page", reason: error.to_string() };
-        let mut deflated = DeflateEncoder::new(Vec::new(), Compression::best());
+        let mut deflated = DeflateEncoder::new(Vec::new(), Compression::default());
         deflated.write_all(&self.bytes).map_err(failed)?;
         Ok(STANDARD.encode(deflated.finish().map_err(failed)?))
     }
