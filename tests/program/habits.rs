@@ -395,8 +395,9 @@ fn on_terminal(desk: &Desk, arguments: &[&str], phrase: &str) -> String {
 child, terminal = pty.fork()
 if child == 0:
     os.execv(sys.argv[1], [sys.argv[1]] + sys.argv[3:])
-shown = b''
-while sys.argv[2].encode() not in shown or not sys.argv[2]:
+# Bytes that are joined one by one would be copied anew with every piece.
+shown = bytearray()
+while not sys.argv[2] or sys.argv[2].encode() not in shown:
     try:
         piece = os.read(terminal, 65536)
     except OSError:
