@@ -1,12 +1,12 @@
 """Writes twenty parts with the real Gmsh: for each a mesh NAME.msh and a scene NAME.json that uses it.
 
-    target/reference-venv/bin/python reference/parts.py FOLDER [NAME ...]
+    target/reference-venv/bin/python reference/parts.py [--coarser FACTOR] FOLDER [NAME ...]
     cargo run --release --example kinds -- --scenes FOLDER
 
 The second line times the methods on them. Fourteen are of tetrahedra in space, seven of these of ten nodes, six of quadratic
 triangles in the plane or about an axis; ten are graded towards the contact. They have 3,000 to 150,000 dofs. Lengths are in mm, forces
 in N.
-Every run writes the same files. meshes.py says which libraries Gmsh needs.
+`--coarser 2` makes all edges twice as long. Every run writes the same files. meshes.py says which libraries Gmsh needs.
 """
 
 import json
@@ -23,6 +23,8 @@ ALUMINIUM, CONCRETE = {"young": 70e3, "poisson": 0.33}, {"young": 30e3, "poisson
 POLYMER, RUBBER = {"young": 3e3, "poisson": 0.4}, {"young": 10.0, "poisson": 0.45}
 CLAMPED, AXIS, NORMAL = ("x", "y", "z"), "approach", "closest-point"
 occ = gmsh.model.occ
+COARSER = 1.0
+"""All edges are so many times as long; set by the command."""
 
 
 def about(radius, angle):
@@ -67,6 +69,7 @@ def samples(dimension, tag):
 
 def graded(fine, coarse, near, far, distance):
     """Edges have the length `fine` up to the distance `near`, and `coarse` from `far` on; a formula is the distance."""
+    fine, coarse = COARSER * fine, COARSER * coarse
     share = lambda *point: min(1, max(0, (value(distance, *point) - near) / (far - near)))
     gmsh.model.mesh.setSizeCallback(lambda _, tag, x, y, z, size: fine + (coarse - fine) * share(x, y, z))
 
@@ -328,7 +331,10 @@ def write(name, folder):
 
 
 if __name__ == "__main__":
-    folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else sys.exit("usage: parts.py FOLDER [NAME ...]")
+    arguments = sys.argv[1:]
+    if arguments[:1] == ["--coarser"]:
+        COARSER, arguments = float(arguments[1]), arguments[2:]
+    folder = pathlib.Path(arguments[0]) if arguments else sys.exit("usage: parts.py [--coarser FACTOR] FOLDER [NAME ...]")
     folder.mkdir(parents=True, exist_ok=True)
-    for name in sys.argv[2:] or PARTS:
+    for name in arguments[1:] or PARTS:
         write(name, folder)
