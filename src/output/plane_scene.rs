@@ -367,3 +367,27 @@ pub(super) fn state(model: &Model) -> String {
         None => format!("gap {} {}", brief(model.gap()), model.units().length).trim_end().to_owned(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Outline;
+
+    #[test]
+    fn of_a_closed_boundary_the_half_that_looks_away_has_no_obstacle_before_it() {
+        // A circle of radius 1 in the order of its boundary, from its lowest point; a plane at y = 2 comes from above.
+        let at = |number: usize| {
+            let angle = std::f64::consts::TAU * number as f64 / 16.0;
+            [angle.sin(), -angle.cos()]
+        };
+        let over: Vec<[[f64; 2]; 2]> = (0..16).map(|number| [at(number), [0.0, 2.0 - at(number)[1]]]).collect();
+        let line = vec![[-3.0, 2.0], [3.0, 2.0]];
+        let outline = Outline { line: line.clone(), inside: [0.0, 1.0], over };
+        let facing = outline.facing();
+        assert!(facing.iter().all(|[[_, y], _]| *y > -1e-12), "{facing:?}");
+        assert_eq!(facing.len(), 9, "from one side to the other");
+        // As it is the obstacle keeps its own line.
+        assert_eq!(outline.magnified(1.0), line);
+        let lowest = outline.magnified(3.0).into_iter().map(|[_, y]| y).fold(f64::INFINITY, f64::min);
+        assert!((lowest - 4.0).abs() < 1e-12, "three times the smallest gap above the top: {lowest}");
+    }
+}
