@@ -98,15 +98,7 @@ impl Drawing {
 
     /// A text in the colour of axes with its baseline at `position`.
     pub(crate) fn text(&mut self, position: [f64; 2], text: &str, size: f64, anchor: Anchor) {
-        self.any_text(Text {
-            position,
-            text: text.to_owned(),
-            size,
-            anchor,
-            weight: Weight::Regular,
-            upward: false,
-            ink: INK,
-        });
+        self.coloured_text(position, text, size, anchor, INK);
     }
 
     /// The same in a colour of its own.

@@ -10,8 +10,8 @@ const ROW_SUM_ROUNDING: f64 = 1e-9;
 const UNEVEN: f64 = 1e3;
 
 /// A row whose entries off the diagonal add up to more than this many times the diagonal is smoothed slowly: the largest
-/// eigenvalue of D^-1 K may be as large as their sum. Linear elements stay below 3.2, quadratic ones reach 5.5 in a tenth of
-/// their rows.
+/// eigenvalue of D^-1 K may be as large as one plus that sum over the diagonal. At nu = 0.3 linear elements stay below 3.2; quadratic
+/// ones reach 5.5 in a tenth of their rows.
 const HEAVY: f64 = 4.2;
 
 /// The share of such rows from which on a stiffness counts as heavy.
@@ -80,7 +80,7 @@ impl Smooth {
     }
 }
 
-/// Returns `true` if at least [`HEAVY_SHARE`] of the rows outweigh their diagonal [`HEAVY`] times.
+/// Returns `true` if more than [`HEAVY_SHARE`] of the rows outweigh their diagonal [`HEAVY`] times.
 fn is_heavy(stiffness: &SymmetricMatrix) -> bool {
     let diagonal = stiffness.diagonal();
     let mut sums = vec![0.0; diagonal.len()];

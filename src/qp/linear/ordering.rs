@@ -102,21 +102,26 @@ mod tests {
     use super::{Elimination, Fill, Quotient, minimum_degree};
     use crate::qp::linear::{Analysis, SparseMatrix, SymmetricMatrix};
 
-    /// A lattice of so many columns along each side.
+    /// A lattice with this number of nodes along each side, each of three columns that have the same neighbours.
     fn lattice(sides: [usize; 3]) -> SymmetricMatrix {
-        let columns = sides.iter().product();
+        let nodes: usize = sides.iter().product();
         let steps = [(0, 1), (1, sides[0]), (2, sides[0] * sides[1])];
-        let mut entries: Vec<_> = (0..columns).map(|column| (column, column, 7.0)).collect();
+        let mut pairs: Vec<_> = (0..nodes).map(|node| (node, node)).collect();
         for (axis, step) in steps {
-            let is_inside = |column: &usize| column / step % sides[axis] + 1 < sides[axis];
-            entries.extend((0..columns).filter(is_inside).map(|column| (column + step, column, -1.0)));
+            let is_inside = |node: &usize| node / step % sides[axis] + 1 < sides[axis];
+            pairs.extend((0..nodes).filter(is_inside).map(|node| (node + step, node)));
         }
+        let of_pair = |(a, b): (usize, usize)| (0..9).map(move |place| (3 * a + place / 3, 3 * b + place % 3));
+        let lower = pairs.into_iter().flat_map(of_pair).filter(|(row, column)| row >= column);
+        let entries: Vec<_> =
+            lower.map(|(row, column)| (row, column, if row == column { 30.0 } else { -1.0 })).collect();
+        let columns = 3 * nodes;
         SymmetricMatrix::from_lower(SparseMatrix::from_triplets(columns, columns, &entries).unwrap()).unwrap()
     }
 
     #[test]
     fn minimum_degree_tells_the_fill_of_the_factor() {
-        for sides in [[40, 40, 1], [400, 4, 1], [60, 6, 6], [12, 12, 12]] {
+        for sides in [[40, 40, 1], [400, 4, 1], [60, 6, 6], [10, 10, 10]] {
             let matrix = lattice(sides);
             let (fill, quotient) = (Fill::by_minimum_degree(&matrix).unwrap(), Quotient::of(matrix.lower()));
             let (order, _) = minimum_degree(&quotient).unwrap();
