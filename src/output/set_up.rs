@@ -267,9 +267,10 @@ struct Symbol {
 /// One symbol for each held node, as long as they are apart.
 fn symbols(held: Vec<HeldNode>, shown: &Shown, frame: &Frame) -> Vec<Symbol> {
     let mut symbols: Vec<Symbol> = Vec::new();
-    for HeldNode { node, hold, directions, direction } in held {
+    for HeldNode { node, hold, directions } in held {
+        let direction = directions.first().copied().unwrap_or_default();
         let kind = match hold {
-            Hold::Support if directions > 1 => Kind::Fixed,
+            Hold::Support if directions.len() > 1 => Kind::Fixed,
             Hold::Support => Kind::Roller,
             Hold::Spring => Kind::Spring,
             Hold::RigidFace => Kind::RigidFace,

@@ -14,37 +14,33 @@ pub(crate) enum Hold {
 }
 
 /// A node that something holds.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct HeldNode {
     /// The node.
     pub node: usize,
     /// What holds it.
     pub hold: Hold,
-    /// The directions [x, y, z] along which it does, of unit length, by their number; none of a rigid face.
-    pub directions: usize,
-    /// The first of them.
-    pub direction: [f64; 3],
+    /// The directions [x, y, z] along which it does, of unit length; none of a rigid face.
+    pub directions: Vec<[f64; 3]>,
 }
 
 impl Model {
     /// The nodes that something holds: supports first, then springs, then rigid faces.
     pub(crate) fn held_nodes(&self) -> Vec<HeldNode> {
-        let (parts, dimension) = (self.parts(), self.mesh().dimension());
+        let parts = self.parts();
         let mut nodes = Vec::new();
-        let mut hold = |node: usize, hold: Hold, directions: &[[f64; 3]]| {
-            let direction = directions.first().copied().unwrap_or_default();
-            nodes.push(HeldNode { node, hold, directions: directions.len().min(dimension), direction });
-        };
+        let mut hold =
+            |node: usize, hold: Hold, directions: Vec<[f64; 3]>| nodes.push(HeldNode { node, hold, directions });
         for (node, directions) in parts.held.directions() {
-            hold(node, Hold::Support, &directions);
+            hold(node, Hold::Support, directions);
         }
         for springs in &parts.springs {
             for (node, direction) in springs.held() {
-                hold(node, Hold::Spring, &[direction]);
+                hold(node, Hold::Spring, vec![direction]);
             }
         }
         for face in &parts.rigid_faces {
-            face.nodes().iter().for_each(|&node| hold(node, Hold::RigidFace, &[]));
+            face.nodes().iter().for_each(|&node| hold(node, Hold::RigidFace, Vec::new()));
         }
         nodes
     }

@@ -6,7 +6,7 @@ use super::body::Shape;
 use super::packed::{Packed, Packer};
 use crate::fem::geometry::length;
 use crate::output::plane_scene::OUTLINE_SEGMENTS;
-use crate::scene::{Model, straight_cells};
+use crate::scene::{HeldNode, Hold, Model, straight_cells};
 
 /// Half of the height of a wall before a bar, over its length.
 const WALL: f64 = 0.12;
@@ -89,23 +89,20 @@ impl Question {
 
 /// What supports, planes of symmetry and the axis of revolution hold.
 fn supports(model: &Model, shape: &Shape, packer: &mut Packer) -> (Packed, Guided) {
-    let (dofs, dimension) = (model.dofs(), model.mesh().dimension());
-    let (mut fixed, mut vertices, mut directions) = (Vec::new(), Vec::new(), Vec::new());
-    for (vertex, &node) in shape.nodes.iter().enumerate() {
-        let held: Vec<usize> =
-            (0..dimension).filter(|axis| dofs.prescribed(dimension * node + axis).is_some()).collect();
-        if held.len() == dimension {
+    let dimension = model.mesh().dimension();
+    let (mut fixed, mut vertices, mut along) = (Vec::new(), Vec::new(), Vec::new());
+    for HeldNode { node, directions, .. } in model.held_nodes().into_iter().filter(|held| held.hold == Hold::Support) {
+        let Some(vertex) = shape.vertex_of[node] else { continue };
+        if directions.len() >= dimension {
             fixed.push(vertex);
             continue;
         }
-        for axis in held {
-            let own = dofs.frame(node).map(|frame| frame.axes()[axis]);
-            let along = own.unwrap_or_else(|| [0, 1, 2].map(|other| f64::from(u8::from(other == axis))));
+        for direction in directions {
             vertices.push(vertex);
-            directions.extend_from_slice(&along[..dimension]);
+            along.extend_from_slice(&direction[..dimension]);
         }
     }
-    let guided = Guided { vertices: packer.whole(&vertices, 1), directions: packer.quantised(&directions, dimension) };
+    let guided = Guided { vertices: packer.whole(&vertices, 1), directions: packer.quantised(&along, dimension) };
     (packer.whole(&fixed, 1), guided)
 }
 
