@@ -212,6 +212,73 @@ class Answers(Pages):
                 self.opened(page)
 
 
+class Questions(Pages):
+    def pixels(self, ink: str) -> int:
+        """Pixels over the body of the question in a colour of the page."""
+        return self.browser.ask(
+            """(() => { const view = View.all.find(view => view.host.matches("#question .view")), { over } = view;
+            const wanted = channels(view.ink(%s)).map(part => Math.round(255 * part));
+            const { data } = over.getContext("2d").getImageData(0, 0, over.width, over.height);
+            let count = 0;
+            for (let i = 0; i < data.length; i += 4) count += data[i + 3] > 250 && wanted.every((part, k) => Math.abs(data[i + k] - part) < 3);
+            return count; })()"""
+            % json.dumps(ink)
+        )
+
+    def test_springs_and_rigid_faces_are_drawn_and_counted(self) -> None:
+        scene = {
+            "body": {"rectangle": {"x": {"points": [0, 10], "divisions": [10]}, "y": {"points": [0, 2], "divisions": [2]}}},
+            "material": {"young": 2.1e11, "poisson": 0.3},
+            "supports": [{"on": {"boundary": "left"}, "x": 0}],
+            "springs": [{"on": {"boundary": "bottom"}, "y": 1e6}],
+            "rigid-faces": [{"boundary": "right", "force": [0, 5]}],
+            "obstacles": [{"boundary": "top", "approach": "+y", "shape": {"plane": {"point": [0, 2], "normal": [0, 1]}}}],
+        }
+        for springs, faces in ((True, True), (False, True), (True, False)):
+            kept = dict(scene)
+            if not springs:
+                kept.pop("springs")
+                kept["supports"] = [{"on": {"boundary": "left"}, "x": 0, "y": 0}]
+            if not faces:
+                kept.pop("rigid-faces")
+            path = self.folder / f"held-{springs}-{faces}.json"
+            path.write_text(json.dumps(kept))
+            page, _ = self.page("solve", path)
+            self.opened(page)
+            self.browser.frame()
+            text = self.browser.ask("document.querySelector('#question').innerText")
+            self.assertEqual("at 11 nodes of the boundary" in text, springs)
+            self.assertEqual("3 nodes that move as one body" in text, faces)
+            self.assertEqual(self.pixels("spring") > 100, springs)
+            self.assertEqual(self.pixels("rigid") > 20, faces)
+
+    def test_a_body_in_space_is_seen_from_the_side_of_its_obstacle(self) -> None:
+        page, _ = self.page("solve", EXAMPLES / "ball.json")
+        self.opened(page)
+        self.assertGreater(self.browser.ask("View.all.at(-1).axes[2][2]"), 0.4)
+        below = json.loads((EXAMPLES / "ball.json").read_text())
+        below["obstacles"] = [{"boundary": "bottom", "approach": "-z", "shape": {"plane": {"point": [0, 0, 0], "normal": [0, 0, -1]}}}]
+        below["supports"] = [{"on": {"boundary": "top"}, "x": 0, "y": 0, "z": -1e-3}]
+        path = self.folder / "below.json"
+        path.write_text(json.dumps(below))
+        page, _ = self.page("solve", path)
+        self.opened(page)
+        self.assertLess(self.browser.ask("View.all.at(-1).axes[2][2]"), -0.4)
+
+
+class TotalErrors(Pages):
+    def test_a_guaranteed_error_is_shown_with_its_meshes(self) -> None:
+        page, report = self.page("solve", ROOT / "tools/guarantee/coarse.json", "--total-error", "0.1")
+        browser = self.opened(page)
+        self.assertGreater(len(report["levels"]), 2)
+        self.assertEqual(browser.ask("document.querySelectorAll('#levels tbody tr').length"), len(report["levels"]))
+        bound = f"{100 * report['total_error']['bound']:.3g} %"
+        self.assertIn(f"guaranteed at most {bound}", self.text("#levels"))
+        points = browser.ask("document.querySelectorAll('#levels circle[tabindex]').length")
+        self.assertEqual(points, 2 * len(report["levels"]))
+        self.assertGreater(browser.ask("document.querySelector('#levels #still').naturalWidth"), 300)
+
+
 class Sweeps(Pages):
     GAPS = "-0.01:-0.10:4"
 

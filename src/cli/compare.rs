@@ -40,7 +40,7 @@ pub(super) fn run(options: &Compare, watch: &Watch) -> Result<Outcome, Error> {
     let outcome = report.outcome(common.format, agreement.status());
     let (Some(qp), Some(active_set), Some(penalty)) = (qp, active_set, penalty) else { return Ok(outcome) };
     let answers = [qp, active_set, penalty];
-    let wanted = common.wanted(Pictures::All);
+    let wanted = common.wanted(Pictures::usual_of_series(answers[0].model()));
     Ok(outcome.with_pictures(move || {
         write_comparison_page(&folder, &about, &answers, &summaries, &agreement)?;
         gallery::write_compare(&folder, &answers, &summaries, wanted)

@@ -53,7 +53,7 @@ fn of_scene(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
     let Some(folder) = common.out.clone() else { return Ok(report.outcome(common.format, status)) };
     report.write(&folder)?;
     let outcome = report.outcome(common.format, status);
-    let wanted = common.wanted(Pictures::All);
+    let wanted = common.wanted(Pictures::usual_of_series(&model));
     Ok(outcome.with_pictures(move || {
         write_sweep_page(&folder, &about, &swept)?;
         gallery::write_sweep(&folder, &swept, wanted)

@@ -12,8 +12,8 @@ use super::outcome::{Outcome, Report, warn};
 use super::settings::settings;
 use crate::error::Error;
 use crate::output::gallery::{self, Pictures};
-use crate::output::page::{About, write_answer_page};
-use crate::output::{estimated_error_text, total_error_text, write_estimated_error, write_total_error};
+use crate::output::page::{About, write_answer_page, write_total_error_page};
+use crate::output::{estimated_error_text, meshes_picture, total_error_text, write_estimated_error, write_total_error};
 use crate::qp::Settings;
 use crate::scene::Scene;
 use crate::solution::Goal;
@@ -40,7 +40,12 @@ pub(super) fn run(options: &Solve, scene: &Scene, goal: TotalErrorGoal, watch: &
                 report.write_with_text(folder, "total-error.txt")?;
                 write_total_error(folder, &title, &found, &units, wanted)?;
             }
-            Ok(report.outcome(options.common.format, found.status))
+            let outcome = report.outcome(options.common.format, found.status);
+            let Some(folder) = options.common.out.clone() else { return Ok(outcome) };
+            Ok(outcome.with_pictures(move || {
+                let meshes = meshes_picture(&title, &found, &units);
+                write_total_error_page(&folder, &about, &model, &found, &meshes)
+            }))
         }
         Found::Estimated(found) => estimated(options, *found, about, &settings, seconds),
     }

@@ -67,8 +67,11 @@ impl Field {
     pub fn at_least(&self, level: f64) -> Vec<Vec<[f64; 2]>> {
         let mut pieces = Vec::new();
         for triangle in &self.triangles {
-            // Exactly one corner differs from the two others, or the level does not pass.
             let inside = triangle.map(|corner| corner.1 >= level);
+            if inside == [inside[0]; 3] {
+                continue;
+            }
+            // Exactly one corner differs from the two others.
             for k in 0..3 {
                 let (here, next, last) = (k, (k + 1) % 3, (k + 2) % 3);
                 if inside[here] != inside[next] && inside[here] != inside[last] {

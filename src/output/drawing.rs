@@ -170,8 +170,7 @@ impl Drawing {
     /// [`Error::Setting`] where the scale is not positive or makes an image of more than 1e8 pixels,
     /// [`Error::Numerical`] where the rasteriser fails.
     pub fn png(&self, scale: f64) -> Result<Vec<u8>, Error> {
-        let failed = |reason: String| Error::Numerical { step: "rasterising a picture", reason };
-        self.pixels(scale)?.encode_png().map_err(|error| failed(error.to_string()))
+        raster::png(&self.pixels(scale)?)
     }
 
     /// The same picture as pixels.

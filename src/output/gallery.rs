@@ -8,7 +8,7 @@ use super::medium::Medium;
 use super::plane_scene::{PlaneScene, draw_series, state};
 use super::plot::line_plots_for;
 use super::pressure::pressure_plots;
-use super::space_scene::draw_space;
+use super::space_scene::{SpaceScene, draw_space_series};
 use super::tables;
 use super::{Plot, Quantity, Series, write_atomically, write_files, write_picture};
 use crate::error::Error;
@@ -26,6 +26,14 @@ pub enum Pictures {
     Answer,
     /// Those of iterations and gaps as well.
     All,
+}
+
+impl Pictures {
+    /// What a comparison or a sweep of a model draws if nothing else is asked for: all pictures in the plane, and one in space, where
+    /// each step takes a solve of its own.
+    pub(crate) fn usual_of_series(model: &Model) -> Self {
+        if model.mesh().dimension() == 3 { Pictures::Answer } else { Pictures::All }
+    }
 }
 
 /// What a command draws, and for what.
@@ -47,7 +55,7 @@ pub fn write_answer(folder: &Path, solution: &Solution, answer: Option<&Answer>)
     write_files(folder, &[("contact.csv", tables::contact(answer))])
 }
 
-/// Writes the fields of an answer (`solution.vtu`) and its picture (`contact`); with all pictures of a plane body also one for each
+/// Writes the fields of an answer (`solution.vtu`) and its picture (`contact`); with all pictures also one for each
 /// iteration (`iteration-1`, ...) or each penalty (`rung-1`, ...), of more than twelve some. A bar has no picture.
 ///
 /// # Errors
@@ -58,20 +66,28 @@ pub fn write_solve(folder: &Path, answer: &Answer, history: &[Iteration], wanted
     if pictures == Pictures::None {
         return Ok(());
     }
-    let title = format!("{}, {}", headline(model), closed_nodes(model, answer.contact_set()));
-    match model.mesh().dimension() {
-        2 => {
-            let mut series = vec![("contact".to_string(), PlaneScene::new(answer, title)?)];
-            if pictures == Pictures::All {
-                for step in iterations(model, history)? {
-                    let set = step.answer.contact_set();
-                    let title = format!("{}, {}, {}", headline(model), step.what, closed_nodes(model, set));
-                    series.push((step.name, PlaneScene::new(&step.answer, title)?));
-                }
-            }
-            draw_series(folder, &series, 1, medium)
+    let steps = if pictures == Pictures::All { iterations(model, history)? } else { Vec::new() };
+    let mut shown = vec![("contact".to_string(), answer, title(answer, ""))];
+    shown.extend(steps.iter().map(|step| (step.name.clone(), &step.answer, title(&step.answer, &step.what))));
+    draw_answers(folder, shown, 1, medium)
+}
+
+/// Draws answers of one mesh, each with its name and title, with the colours and the scale of the first `leading` of them.
+fn draw_answers(
+    folder: &Path,
+    shown: Vec<(String, &Answer, String)>,
+    leading: usize,
+    medium: Medium,
+) -> Result<(), Error> {
+    match shown.first().map(|(_, answer, _)| answer.model().mesh().dimension()) {
+        Some(2) => {
+            let scenes = shown.into_iter().map(|(name, answer, title)| Ok((name, PlaneScene::new(answer, title)?)));
+            draw_series(folder, &scenes.collect::<Result<Vec<_>, Error>>()?, leading, medium)
         }
-        3 => draw_space(folder, "contact", &title, answer, medium),
+        Some(3) => {
+            let scenes = shown.into_iter().map(|(name, answer, title)| Ok((name, SpaceScene::new(answer, title)?)));
+            draw_space_series(folder, &scenes.collect::<Result<Vec<_>, Error>>()?, leading, medium)
+        }
         _ => Ok(()),
     }
 }
@@ -112,14 +128,13 @@ pub fn write_sweep(folder: &Path, sweep: &Sweep, wanted: Wanted) -> Result<(), E
     if pictures == Pictures::None {
         return Ok(());
     }
-    let mut series = Vec::new();
-    let is_drawn = |point: &SweepPoint| pictures == Pictures::All && point.answer.model().mesh().dimension() == 2;
-    for (index, SweepPoint { answer, .. }) in points.iter().enumerate().filter(|(_, point)| is_drawn(point)) {
-        let title = format!("{}, {}", headline(answer.model()), closed_nodes(answer.model(), answer.contact_set()));
-        let name = if points[index].force.is_some() { "force" } else { "gap" };
-        series.push((format!("{name}-{:02}", index + 1), PlaneScene::new(answer, title)?));
-    }
-    draw_series(folder, &series, series.len(), medium)?;
+    let drawn = if pictures == Pictures::All { &points[..] } else { &[] };
+    let name = |(index, point): (usize, &SweepPoint)| {
+        format!("{}-{:02}", if point.force.is_some() { "force" } else { "gap" }, index + 1)
+    };
+    let shown: Vec<(String, &Answer, String)> =
+        drawn.iter().enumerate().map(|of| (name(of), &of.1.answer, title(&of.1.answer, ""))).collect();
+    draw_answers(folder, shown, drawn.len(), medium)?;
     let Some(first) = points.first() else { return Ok(()) };
     let units = first.answer.model().units();
     let (swept, swept_in) = match first.force {
@@ -169,6 +184,13 @@ type Value<'a, T> = &'a dyn Fn(&T) -> f64;
 /// What all pictures of a model say first.
 pub(super) fn headline(model: &Model) -> String {
     [model.title(), &state(model)].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
+}
+
+/// What is seen: the scene, its state, what is shown of it unless that is its answer, and the number of closed nodes.
+fn title(answer: &Answer, what: &str) -> String {
+    let model = answer.model();
+    let parts = [headline(model), what.to_string(), closed_nodes(model, answer.contact_set())];
+    parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
 }
 
 /// The closed nodes, as the legend counts them: a node between two obstacles once.

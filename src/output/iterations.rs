@@ -26,13 +26,13 @@ pub(super) struct Step {
 /// The displacement and the multiplier that an iteration worked with; `None` where it had none.
 type Found = Option<(Vec<f64>, Vec<f64>)>;
 
-/// For each set of the history of a body in the plane the displacement with the rows of the set held at their gaps; of a penalty loop
+/// For each set of the history of a body in the plane or in space the displacement with the rows of the set held at their gaps; of a penalty loop
 /// one for each penalty, with its settled set. A set that does not hold the body by itself has no displacement to show.
 ///
 /// # Errors
 /// [`Error::Length`] for the history of another model.
 pub(super) fn iterations(model: &Arc<Model>, history: &[Iteration]) -> Result<Vec<Step>, Error> {
-    if model.mesh().dimension() != 2 || history.is_empty() {
+    if model.mesh().dimension() == 1 || history.is_empty() {
         return Ok(Vec::new());
     }
     let is_last_of_rung = |&index: &usize| {

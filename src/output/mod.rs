@@ -94,7 +94,7 @@ pub(crate) use report::{printable, why_text};
 pub(crate) use set_up::set_up_picture;
 pub use ticks::{Quantity, Scale};
 #[cfg(feature = "cli")]
-pub(crate) use total_error::{total_error_text, write_total_error};
+pub(crate) use total_error::{meshes_picture, total_error_text, write_total_error};
 pub use tradeoff::{tradeoff_csv, tradeoff_text};
 pub use tradeoff_plot::tradeoff_plot;
 #[cfg(feature = "cli")]

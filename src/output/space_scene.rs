@@ -2,10 +2,9 @@
 
 use std::path::Path;
 
-use super::body::{FieldPanel, ROUNDING};
+use super::body::{FieldPanel, ROUNDING, common_limits, common_window};
 #[cfg(feature = "cli")]
 use super::colour::Colour;
-#[cfg(feature = "cli")]
 use super::drawing::Drawing;
 use super::medium::Medium;
 use super::plan::Plan;
@@ -27,53 +26,109 @@ const BEYOND: f64 = 0.35;
 /// The eye looks down on the body from the front and a little from the right; contact faces turn it to their side.
 const EYE: [f64; 3] = [0.5, -0.8, 0.55];
 
-/// Draws the picture of an answer in space.
+/// What the picture of an answer in space shows.
+pub(super) struct SpaceScene<'a> {
+    title: String,
+    answer: &'a Answer,
+    /// At the nodes.
+    von_mises: Vec<f64>,
+}
+
+impl<'a> SpaceScene<'a> {
+    pub(super) fn new(answer: &'a Answer, title: String) -> Result<Self, Error> {
+        let stress = &answer.stress()?.nodes;
+        let largest = stress.iter().map(|of| of.von_mises).fold(0.0, f64::max);
+        let without_rounding = |value: f64| if value <= ROUNDING * largest { 0.0 } else { value };
+        let von_mises = stress.iter().map(|of| without_rounding(of.von_mises)).collect();
+        Ok(SpaceScene { title, answer, von_mises })
+    }
+
+    /// By what the displacement is multiplied so that it is seen.
+    fn magnification(&self) -> f64 {
+        let (model, displacement) = (self.answer.model(), self.answer.displacement());
+        if has_pairs(model) {
+            return 1.0;
+        }
+        let moved = displacement.chunks_exact(3).map(|u| u.iter().map(|part| part * part).sum::<f64>().sqrt());
+        rounded_down(SEEN * model.mesh().size() / moved.fold(0.0, f64::max))
+    }
+
+    /// The obstacle that the body presses most.
+    fn obstacle(&self) -> Option<usize> {
+        let count = self.answer.model().obstacles().len();
+        (0..count).max_by(|&a, &b| force(self.answer, a).total_cmp(&force(self.answer, b)))
+    }
+
+    fn draw(&self, shared: &Shared, plan: Option<&Plan>, medium: Medium) -> Drawing {
+        let (model, Shared { magnification, .. }) = (self.answer.model(), *shared);
+        let moved = model.mesh().nodes().iter().zip(self.answer.displacement().chunks_exact(3));
+        let nodes: Vec<[f64; 3]> =
+            moved.map(|(at, u)| [0, 1, 2].map(|axis| at[axis] + magnification * u[axis])).collect();
+        let near = NEAR * model.mesh().size();
+        let sheets: Vec<Sheet> = (0..model.obstacles().len())
+            .filter(|&index| model.obstacles()[index].rigid().is_some())
+            .map(|index| sheet(model, index, &ways_to_obstacle(self.answer, index), (magnification, near)))
+            .collect();
+        let times = brief(magnification);
+        let heading = match magnification == 1.0 {
+            true => "displaced body, to scale".to_string(),
+            false if sheets.is_empty() => format!("displaced body, displacement × {times}"),
+            false => format!("displaced body, displacement and gap × {times}"),
+        };
+        let quantity = Quantity::new("von Mises stress", model.units().pressure());
+        let picture = SpacePicture {
+            title: &self.title,
+            heading: &heading,
+            length_unit: &model.units().length,
+            nodes: &nodes,
+            faces: &faces(model),
+            colouring: Colouring::Field(FieldPanel { values: &self.von_mises, quantity, limits: shared.von_mises }),
+            sheets: &sheets,
+            eye: eye(model, shared.obstacle),
+            plan,
+            medium,
+        };
+        picture.draw()
+    }
+}
+
+/// What all pictures of a series have in common.
+#[derive(Clone, Copy)]
+struct Shared {
+    magnification: f64,
+    /// Ends of the colours of the von Mises stress.
+    von_mises: [f64; 2],
+    /// The obstacle that is seen in plan view.
+    obstacle: Option<usize>,
+}
+
+/// Draws a series of one model in space with common colours, a common magnification and a common part of the contact: those of its
+/// first `leading` pictures.
 ///
 /// # Errors
-/// [`Error::File`], and those of the recovery of stresses.
-pub(super) fn draw_space(folder: &Path, stem: &str, title: &str, answer: &Answer, medium: Medium) -> Result<(), Error> {
-    let model = answer.model();
-    let nodes = model.mesh().nodes();
-    let moved = answer.displacement().chunks_exact(3).map(|u| u.iter().map(|part| part * part).sum::<f64>().sqrt());
-    let size = model.mesh().size();
-    let magnification = if has_pairs(model) { 1.0 } else { rounded_down(SEEN * size / moved.fold(0.0, f64::max)) };
-    let displaced: Vec<[f64; 3]> = nodes
-        .iter()
-        .zip(answer.displacement().chunks_exact(3))
-        .map(|(at, u)| [0, 1, 2].map(|axis| at[axis] + magnification * u[axis]))
-        .collect();
-    let stress = &answer.stress()?.nodes;
-    let largest = stress.iter().map(|of| of.von_mises).fold(0.0, f64::max);
-    let values: Vec<f64> =
-        stress.iter().map(|of| if of.von_mises <= ROUNDING * largest { 0.0 } else { of.von_mises }).collect();
-    let faces = faces(model);
-    let obstacle = (0..model.obstacles().len()).max_by(|&a, &b| force(answer, a).total_cmp(&force(answer, b)));
-    let eye = eye(model, obstacle);
-    let sheets: Vec<Sheet> = (0..model.obstacles().len())
-        .filter(|&index| model.obstacles()[index].rigid().is_some())
-        .map(|index| sheet(model, index, &ways_to_obstacle(answer, index), (magnification, NEAR * size)))
-        .collect();
-    let plan = obstacle.map(|obstacle| plan(answer, obstacle));
-    let times = brief(magnification);
-    let heading = match magnification == 1.0 {
-        true => "displaced body, to scale".to_string(),
-        false if sheets.is_empty() => format!("displaced body, displacement × {times}"),
-        false => format!("displaced body, displacement and gap × {times}"),
+/// As [`write_picture`].
+pub(super) fn draw_space_series(
+    folder: &Path,
+    series: &[(String, SpaceScene)],
+    leading: usize,
+    medium: Medium,
+) -> Result<(), Error> {
+    let leading_scenes = || series.iter().take(leading).map(|(_, scene)| scene);
+    let [lowest, largest] = common_limits(leading_scenes().map(|scene| &scene.von_mises[..]));
+    let shared = Shared {
+        magnification: leading_scenes().map(SpaceScene::magnification).fold(f64::INFINITY, f64::min),
+        von_mises: [lowest.min(0.0), largest],
+        obstacle: leading_scenes().last().and_then(SpaceScene::obstacle),
     };
-    let quantity = Quantity::new("von Mises stress", model.units().pressure());
-    let picture = SpacePicture {
-        title,
-        heading: &heading,
-        length_unit: &model.units().length,
-        nodes: &displaced,
-        faces: &faces,
-        colouring: Colouring::Field(FieldPanel { values: &values, quantity, limits: [f64::NAN; 2] }),
-        sheets: &sheets,
-        eye,
-        plan: plan.as_ref(),
-        medium,
-    };
-    write_picture(folder, stem, &picture.draw())?;
+    let mut plans: Vec<Option<Plan>> =
+        series.iter().map(|(_, scene)| shared.obstacle.map(|obstacle| plan(scene.answer, obstacle))).collect();
+    let leading_plans = || plans.iter().take(leading).flatten();
+    let window = common_window(leading_plans().map(|plan| plan.window));
+    let limits = common_limits(leading_plans().map(|plan| &plan.pressure[..]));
+    plans.iter_mut().flatten().for_each(|plan| (plan.window, plan.limits) = (window, limits));
+    for ((stem, scene), plan) in series.iter().zip(&plans) {
+        write_picture(folder, stem, &scene.draw(&shared, plan.as_ref(), medium))?;
+    }
     Ok(())
 }
 
@@ -224,6 +279,7 @@ fn plan(answer: &Answer, obstacle: usize) -> Plan {
         cells,
         pressure,
         unit: model.units().pressure(),
+        limits: [f64::NAN; 2],
         window,
     }
 }

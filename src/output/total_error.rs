@@ -135,13 +135,18 @@ pub(crate) fn write_total_error(
         return Ok(());
     }
     write_picture(folder, "total-error", &plot(wanted.medium, title, found))?;
+    write_picture(folder, "meshes", &meshes_picture(title, found, units))?;
+    Ok(())
+}
+
+/// The meshes of the levels.
+pub(crate) fn meshes_picture(title: &str, found: &TotalError, units: &Units) -> Drawing {
     let panel = |(mesh, level): (&Triangulation, &TotalErrorLevel)| MeshPanel {
         heading: format!("{} triangles, guaranteed {:.2} %", level.triangles, 100.0 * level.bound),
         cells: (0..mesh.triangles.len()).map(|triangle| mesh.corners(triangle).to_vec()).collect(),
     };
     let panels: Vec<MeshPanel> = found.meshes.iter().zip(&found.levels).map(panel).collect();
-    write_picture(folder, "meshes", &mesh_series(title, &panels, &units.length))?;
-    Ok(())
+    mesh_series(title, &panels, &units.length)
 }
 
 fn csv(found: &TotalError) -> String {

@@ -112,9 +112,18 @@ impl Model {
     /// The force on the one obstacle that a force presses; `None` where there is no such obstacle, or several.
     #[cfg(feature = "pictures")]
     pub(crate) fn pressing_force(&self) -> Option<f64> {
-        let &[obstacle] = self.parts.unknowns.pressed() else { return None };
-        let parts = self.parts.symmetry.parts_of_obstacle(self.parts.obstacles[obstacle].approach());
-        self.parts.unknowns.travel(obstacle).map(|unknown| parts * self.problem.load()[unknown])
+        let &[force] = &self.pressing_forces()[..] else { return None };
+        Some(force)
+    }
+
+    /// The force on each obstacle that a force presses.
+    #[cfg(feature = "pictures")]
+    pub(crate) fn pressing_forces(&self) -> Vec<f64> {
+        let force = |&obstacle: &usize| {
+            let parts = self.parts.symmetry.parts_of_obstacle(self.parts.obstacles[obstacle].approach());
+            self.parts.unknowns.travel(obstacle).map(|unknown| parts * self.problem.load()[unknown])
+        };
+        self.parts.unknowns.pressed().iter().filter_map(force).collect()
     }
 
     /// The same scene with another force on the one obstacle that a force presses.

@@ -141,6 +141,39 @@ fn a_body_in_space_is_drawn_with_its_contact_in_plan_view() {
     assert!(svg.contains("fill-opacity=\".28\""));
 }
 
+/// The rows of the active-set loop that starts with none closed: the second picture shows the answer, in the colours of the answer.
+#[test]
+fn with_all_pictures_the_iterations_of_a_body_in_space_share_the_colours_of_its_answer() {
+    let desk = Desk::new();
+    desk.run(&["compare", &example("ball"), "--pictures", "all", "--out", "o"]).ends_with(0);
+    let ticks = |picture: &str| {
+        let words = words(&desk, picture);
+        let number = |word: &String| word.replace('−', "-").parse::<f64>().ok();
+        words.iter().filter_map(number).collect::<Vec<f64>>()
+    };
+    let (answer, first) = (ticks("o/contact.svg"), ticks("o/iteration-1.svg"));
+    assert!(answer.len() > 10, "{answer:?}");
+    assert_eq!(first, answer, "the first iteration, without contact, has no pressure of its own to set colours by");
+    let title = words(&desk, "o/iteration-1.svg").into_iter().next().unwrap();
+    assert!(title.ends_with("iteration 1 of 2, 0 closed nodes"), "{title}");
+    // Each would take a solve of its own: they are drawn where they are asked for.
+    desk.run(&["compare", &example("ball"), "--out", "usual"]).ends_with(0);
+    assert!(desk.path("usual/contact.svg").exists() && !desk.path("usual/iteration-1.svg").exists());
+}
+
+#[test]
+fn forces_that_press_stand_in_the_title() {
+    let desk = Desk::new();
+    let mut scene = ring();
+    let plane = |approach: &str, y: f64, normal: f64, force: f64| json!({"boundary": "outer", "approach": approach, "force": force, "shape": {"plane": {"point": [0, y], "normal": [0, normal]}}});
+    for (forces, expected) in [([100.0, 100.0], "force 100 N each"), ([100.0, 50.0], "forces 100 N and 50 N")] {
+        scene["obstacles"] = json!([plane("-y", 0.0, -1.0, forces[0]), plane("+y", 2.0, 1.0, forces[1])]);
+        drawn(&desk, &scene, &["solve"]);
+        let words = words(&desk, "o/contact.svg");
+        assert!(words[0].contains(expected), "{words:?}");
+    }
+}
+
 #[test]
 fn a_sweep_in_space_tells_the_contact_area() {
     let desk = Desk::new();

@@ -15,7 +15,7 @@ const SHELL: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
 
 /// In the order in which they are read.
-const SCRIPTS: [&str; 14] = [
+const SCRIPTS: [&str; 15] = [
     include_str!("unpack.js"),
     include_str!("numbers.js"),
     include_str!("surface.js"),
@@ -29,6 +29,7 @@ const SCRIPTS: [&str; 14] = [
     include_str!("question.js"),
     include_str!("series.js"),
     include_str!("tradeoff.js"),
+    include_str!("levels.js"),
     include_str!("page.js"),
 ];
 

@@ -22,5 +22,5 @@ pub(crate) use about::About;
 pub(crate) use motion::MotionFrames;
 pub(crate) use write::{
     write_answer_page, write_comparison_page, write_motion_page, write_problem_page, write_sweep_page,
-    write_tradeoff_page,
+    write_total_error_page, write_tradeoff_page,
 };

@@ -66,22 +66,52 @@ function some(count, most) {
   return Array.from({ length: Math.ceil(count / every) }, (_, i) => i * every);
 }
 
-/** Supports: squares where all directions are held, a plate across each direction that is held elsewhere. */
-function paintSupports(view, brush, { fixed, guided }, dimension) {
-  const at = view.measure(),
-    colour = view.ink("held"),
-    size = 3.2;
-  brush.fillStyle = brush.strokeStyle = colour;
-  // In space the surface hides those behind it: they are marks of the view.
-  for (const i of view.shape.flat ? some(fixed.length, 4000) : []) {
-    const [x, y] = view.place(view.vertex(fixed[i]), at);
+/** What holds the body: squares where all directions are held or a face is rigid, a plate across each other held direction, a zigzag along each spring. */
+function paintHolds(view, brush, { fixed, guided, springs, rigid }, dimension) {
+  // In space the surface hides those behind it: squares are marks of the view there.
+  if (view.shape.flat) {
+    paintSquares(view, brush, rigid, view.ink("rigid"), 2.4);
+    paintSquares(view, brush, fixed, view.ink("held"), 3.2);
+  }
+  paintDirected(view, brush, guided, dimension, { colour: view.ink("held"), line: PLATE, most: 4000 });
+  // More would run into each other.
+  paintDirected(view, brush, springs, dimension, { colour: view.ink("spring"), line: SPRING, most: 40 });
+}
+
+/** Points [along, aside] in pixels of a plate across a direction, and of a spring along it. */
+const PLATE = [
+  [0, -6],
+  [0, 6],
+];
+const SPRING = [
+  [0, 0],
+  [3, 0],
+  [5, 4],
+  [8, -4],
+  [11, 4],
+  [14, -4],
+  [16, 0],
+  [19, 0],
+];
+
+function paintSquares(view, brush, vertices, colour, size) {
+  const at = view.measure();
+  brush.fillStyle = colour;
+  for (const i of some(vertices.length, 4000)) {
+    const [x, y] = view.place(view.vertex(vertices[i]), at);
     brush.fillRect(x - size, y - size, 2 * size, 2 * size);
   }
+}
+
+/** The same line at each vertex, laid along its direction as the view sees it. */
+function paintDirected(view, brush, { vertices, directions }, dimension, { colour, line, most }) {
+  const at = view.measure();
+  brush.strokeStyle = colour;
   brush.lineWidth = 2.4;
-  for (const i of some(guided.vertices.length, 4000)) {
-    const point = view.vertex(guided.vertices[i]),
+  for (const i of some(vertices.length, most)) {
+    const point = view.vertex(vertices[i]),
       [x, y] = view.place(point, at);
-    const along = [0, 1, 2].map(k => (k < dimension ? guided.directions[dimension * i + k] : 0));
+    const along = [0, 1, 2].map(k => (k < dimension ? directions[dimension * i + k] : 0));
     const [tx, ty] = view.place(
       point.map((value, k) => value + along[k]),
       at,
@@ -89,8 +119,9 @@ function paintSupports(view, brush, { fixed, guided }, dimension) {
     const long = Math.hypot(tx - x, ty - y) || 1,
       [ux, uy] = [(tx - x) / long, (ty - y) / long];
     brush.beginPath();
-    brush.moveTo(x - 6 * uy, y + 6 * ux);
-    brush.lineTo(x + 6 * uy, y - 6 * ux);
+    line.forEach(([out, aside], k) =>
+      brush[k ? "lineTo" : "moveTo"](x + out * ux - aside * uy, y + out * uy + aside * ux),
+    );
     brush.stroke();
   }
 }

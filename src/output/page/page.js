@@ -26,13 +26,15 @@ async function assemble() {
   data.colours.lines = data.colours.lines.map(colour => (colour === "#000000" ? "var(--ink)" : colour));
   window.signorini = { data };
   document.getElementById("loading").remove();
-  document.getElementById("still")?.remove();
+  const still = document.getElementById("still");
+  still?.remove();
   headline(page, data, summary);
   if (data.body) {
-    const shape = shapeOf(data.body);
+    const shape = { ...shapeOf(data.body), eye: eyeOf(data.question) };
     questionSection(page, data, shape, summary);
     if (data.sweep) sweepSection(page, data, shape, notes);
     else if (data.motion) motionSection(page, data, shape, notes);
+    else if (data.report.levels && !data.states) levelsSection(page, data, still);
     else answerSection(page, data, shape, summary);
     certificateSection(page, data);
     comparisonSection(page, data);

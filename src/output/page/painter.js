@@ -94,10 +94,11 @@ class Painter {
       { brush } = this,
       size = look.markSize;
     part.values.forEach((kind, i) => {
-      const { closed, open, undecided, paper, held } = look.marks,
+      const { closed, open, undecided, paper, held, rigid } = look.marks,
+        solid = kind === 4 ? held : kind === 5 ? rigid : null,
         radius = (kind === 1 || kind === 3 ? 0.5 : 0.4) * size;
-      brush.fillStyle = css(kind === 4 ? held : kind === 1 ? closed : kind === 3 ? undecided : paper);
-      brush.strokeStyle = css(kind === 4 ? held : kind >= 2 ? undecided : kind === 1 ? paper : open);
+      brush.fillStyle = css(solid ?? (kind === 1 ? closed : kind === 3 ? undecided : paper));
+      brush.strokeStyle = css(solid ?? (kind >= 2 ? undecided : kind === 1 ? paper : open));
       brush.beginPath();
       brush.arc(at[3 * i], at[3 * i + 1], radius, 0, 7);
       brush.fill();

@@ -11,7 +11,7 @@ function questionSection(page, data, shape, summary) {
     paint: (view, brush) => {
       if (shape.flat)
         question.obstacles.forEach(obstacle => obstacle.outline && paintOutline(view, brush, obstacle, 0, false));
-      paintSupports(view, brush, question, shape.dimension);
+      paintHolds(view, brush, question, shape.dimension);
       paintLoads(view, brush, question.loads, loads, shape.dimension);
       paintGap(view, brush, data.rows, units.length, shape.dimension);
       paintScale(view, brush, units.length);
@@ -20,11 +20,9 @@ function questionSection(page, data, shape, summary) {
   addPatches(view, data);
   view.mesh = shape.lines.length < MOST_LINES;
   if (!shape.flat) {
-    const held = some(question.fixed.length, 4000).map(i => question.fixed[i]);
-    view.setMarks(
-      held,
-      held.map(() => 4),
-    );
+    const held = some(question.fixed.length, 4000).map(i => question.fixed[i]),
+      rigid = some(question.rigid.length, 4000).map(i => question.rigid[i]);
+    view.setMarks([...held, ...rigid], [...held.map(() => 4), ...rigid.map(() => 5)]);
   }
   if (shape.flat) {
     const [low, high] = [[...shape.low], [...shape.high]];
@@ -42,6 +40,14 @@ function questionSection(page, data, shape, summary) {
     entry("held in all directions", "rect", { x: 4, y: 4, width: 12, height: 12, fill: "var(--held)" });
   if (question.guided.vertices.length)
     entry("held across the plate", "rect", { x: 1, y: 8, width: 18, height: 4, fill: "var(--held)" });
+  if (question.springs.vertices.length)
+    entry("spring", "path", {
+      d: "M1 10H4L6 5 9 15 12 5 15 15 17 10H19",
+      stroke: "var(--spring)",
+      "stroke-width": 2,
+      fill: "none",
+    });
+  if (question.rigid.length) entry("rigid face", "rect", { x: 5, y: 5, width: 10, height: 10, fill: "var(--rigid)" });
   if (question.loads.vertices.length || question.loads.inside)
     entry("load", "path", {
       d: "M1 10H12M12 4 19 10 12 16Z",
@@ -64,8 +70,15 @@ function questionSection(page, data, shape, summary) {
     ]),
     ["loads", loads ? `${vectorShown(loads.force, units.force)} in all` : null],
     ["supports", supportWords(question, shape.dimension)],
+    ["springs", springWords(question.springs, shape.dimension)],
+    ["rigid faces", question.rigid.length ? `${counted(question.rigid.length, "node")} that move as one body` : null],
   ]);
   return view;
+}
+
+function springWords({ vertices }, dimension) {
+  if (!vertices.length) return null;
+  return `at ${counted(new Set(vertices).size / (dimension === 1 ? 2 : 1), "node")} of the boundary`;
 }
 
 function supportWords({ fixed, guided }, dimension) {

@@ -22,12 +22,16 @@ pub(super) struct Question {
     /// Vertices that are held in all directions.
     fixed: Packed,
     /// Vertices that are held along a direction, one entry for each.
-    guided: Guided,
+    guided: Directed,
+    /// Vertices with a spring to the ground, one entry for each direction.
+    springs: Directed,
+    /// Vertices of rigid faces.
+    rigid: Packed,
     loads: Loads,
 }
 
 #[derive(Debug, Serialize)]
-struct Guided {
+struct Directed {
     vertices: Packed,
     /// A component for each coordinate.
     directions: Packed,
@@ -74,36 +78,70 @@ struct Patch {
 
 impl Question {
     pub fn of(model: &Model, shape: &Shape, packer: &mut Packer) -> Self {
-        let (fixed, guided) = supports(model, shape, packer);
+        let holds = Holds::of(model, shape);
         let obstacles = (0..model.obstacles().len()).map(|index| obstacle(model, index, packer)).collect();
         Question {
             gap: model.gap(),
             force: model.pressing_force(),
             obstacles,
-            fixed,
-            guided,
+            fixed: packer.whole(&holds.fixed, 1),
+            guided: holds.guided.packed(packer),
+            springs: holds.springs.packed(packer),
+            rigid: packer.whole(&holds.rigid, 1),
             loads: loads(model, shape, packer),
         }
     }
 }
 
-/// What supports, planes of symmetry and the axis of revolution hold.
-fn supports(model: &Model, shape: &Shape, packer: &mut Packer) -> (Packed, Guided) {
-    let dimension = model.mesh().dimension();
-    let (mut fixed, mut vertices, mut along) = (Vec::new(), Vec::new(), Vec::new());
-    for HeldNode { node, directions, .. } in model.held_nodes().into_iter().filter(|held| held.hold == Hold::Support) {
-        let Some(vertex) = shape.vertex_of[node] else { continue };
-        if directions.len() >= dimension {
-            fixed.push(vertex);
-            continue;
+/// What holds vertices of the body.
+#[derive(Default)]
+struct Holds {
+    fixed: Vec<usize>,
+    guided: Along,
+    springs: Along,
+    rigid: Vec<usize>,
+}
+
+/// Vertices, each with a direction of as many components as the body has dimensions.
+#[derive(Default)]
+struct Along {
+    vertices: Vec<usize>,
+    components: Vec<f64>,
+    dimension: usize,
+}
+
+impl Holds {
+    fn of(model: &Model, shape: &Shape) -> Self {
+        let dimension = model.mesh().dimension();
+        let along = || Along { dimension, ..Along::default() };
+        let mut holds = Holds { guided: along(), springs: along(), ..Holds::default() };
+        for HeldNode { node, hold, directions } in model.held_nodes() {
+            let Some(vertex) = shape.vertex_of[node] else { continue };
+            match hold {
+                Hold::Support if directions.len() >= dimension => holds.fixed.push(vertex),
+                Hold::Support => holds.guided.add(vertex, &directions),
+                Hold::Spring => holds.springs.add(vertex, &directions),
+                Hold::RigidFace => holds.rigid.push(vertex),
+            }
         }
+        holds
+    }
+}
+
+impl Along {
+    fn add(&mut self, vertex: usize, directions: &[[f64; 3]]) {
         for direction in directions {
-            vertices.push(vertex);
-            along.extend_from_slice(&direction[..dimension]);
+            self.vertices.push(vertex);
+            self.components.extend_from_slice(&direction[..self.dimension]);
         }
     }
-    let guided = Guided { vertices: packer.whole(&vertices, 1), directions: packer.quantised(&along, dimension) };
-    (packer.whole(&fixed, 1), guided)
+
+    fn packed(&self, packer: &mut Packer) -> Directed {
+        Directed {
+            vertices: packer.whole(&self.vertices, 1),
+            directions: packer.quantised(&self.components, self.dimension),
+        }
+    }
 }
 
 fn loads(model: &Model, shape: &Shape, packer: &mut Packer) -> Loads {

@@ -43,7 +43,9 @@ impl Search {
     /// # Errors
     /// Those of the recovery of stresses.
     pub fn of(answer: &Answer, history: &[Iteration], shape: &Shape, packer: &mut Packer) -> Result<Self, Error> {
-        let shown = iterations(answer.model(), history)?;
+        // In space each step would need a solve of its own, and a picture of the size of the answer.
+        let in_plane = answer.model().mesh().dimension() == 2;
+        let shown = if in_plane { iterations(answer.model(), history)? } else { Vec::new() };
         let mut steps = Vec::new();
         for index in kept(history.len(), MOST_STEPS) {
             let (number, step) = (index + 1, &history[index]);

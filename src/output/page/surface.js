@@ -55,18 +55,18 @@ void main() {
   gl_PointSize = (kind == 1 || kind == 3) ? size : 0.8 * size;
 }`;
 
-// 0 open, 1 closed, 2 open and undecided, 3 closed and undecided, 4 a support.
+// 0 open, 1 closed, 2 open and undecided, 3 closed and undecided, 4 a support, 5 a rigid face.
 const MARKED = `#version 300 es
 precision highp float;
 flat in int kind;
-uniform vec3 closed, open, undecided, paper, held;
+uniform vec3 closed, open, undecided, paper, held, rigid;
 out vec4 drawn;
 void main() {
   vec2 off = 2.0 * gl_PointCoord - 1.0;
-  float away = kind == 4 ? 0.0 : kind >= 2 ? abs(off.x) + abs(off.y) : length(off);
+  float away = kind >= 4 ? 0.0 : kind >= 2 ? abs(off.x) + abs(off.y) : length(off);
   if (away > 1.0) discard;
-  vec3 ring = kind == 4 ? held : kind >= 2 ? undecided : (kind == 1 ? paper : open);
-  vec3 inside = kind == 4 ? held : kind == 1 ? closed : (kind == 3 ? undecided : paper);
+  vec3 ring = kind == 4 ? held : kind == 5 ? rigid : kind >= 2 ? undecided : (kind == 1 ? paper : open);
+  vec3 inside = kind == 4 ? held : kind == 5 ? rigid : kind == 1 ? closed : (kind == 3 ? undecided : paper);
   drawn = vec4(away > (kind == 1 ? 0.82 : 0.62) ? ring : inside, 1.0);
 }`;
 

@@ -167,26 +167,14 @@ class View {
   }
 
   home() {
-    // In space from above and the side; the third coordinate upwards.
+    // In space from the side of the contact; the third coordinate upwards.
     this.axes = this.shape.flat
       ? [
           [1, 0, 0],
           [0, 1, 0],
           [0, 0, 1],
         ]
-      : turned(
-          turned(
-            [
-              [1, 0, 0],
-              [0, 0, 1],
-              [0, -1, 0],
-            ],
-            1,
-            0.6,
-          ),
-          0,
-          -0.42,
-        );
+      : lookingFrom(this.shape.eye);
     this.zoom = 1;
     this.pan = [0, 0];
     this.redraw();
@@ -275,6 +263,7 @@ class View {
         undecided: of("undecided"),
         paper: of("paper"),
         held: of("held"),
+        rigid: of("rigid"),
       },
       patches: this.obstacles ? this.patches.map(patch => ({ ...patch, colour: [...of("solid"), 0.4] })) : [],
     });
@@ -398,6 +387,24 @@ class View {
     this.tip.style.left = `${Math.max(4, Math.min(px + 12, at.width - width - 4))}px`;
     this.tip.style.top = `${py + 14 + height > at.height ? Math.max(4, py - height - 10) : py + 14}px`;
   }
+}
+
+/** From the body to the eye that sees the side of the first rigid obstacle, as in the pictures. */
+function eyeOf({ obstacles }) {
+  const { approach } = obstacles.find(obstacle => !obstacle.is_body) ?? obstacles[0] ?? { approach: [0, 0, 0] };
+  return [0.5, -0.8, 0.55].map((part, k) => (approach[k] < -0.3 ? -Math.abs(part) : approach[k] > 0.3 ? Math.abs(part) : part));
+}
+
+/** To the right, upwards and to the eye. */
+function lookingFrom(eye) {
+  const long = Math.hypot(...eye),
+    [x, y, z] = eye.map(part => part / long),
+    across = Math.hypot(x, y);
+  return [
+    [-y / across, x / across, 0],
+    [(-x * z) / across, (-y * z) / across, across],
+    [x, y, z],
+  ];
 }
 
 /** Axes turned by an angle about one of their own. */

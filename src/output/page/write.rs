@@ -106,6 +106,23 @@ pub(crate) fn write_tradeoff_page(
     write_page(folder, &page, Packer::default(), still)
 }
 
+/// The page of a guaranteed error against the continuum: what was asked, and how the error falls from mesh to mesh, whose picture is
+/// the `still`.
+///
+/// # Errors
+/// [`Error::File`].
+pub(crate) fn write_total_error_page(
+    folder: &Path,
+    about: &About,
+    model: &Model,
+    found: &impl Serialize,
+    still: &Drawing,
+) -> Result<(), Error> {
+    let (mut packer, shape) = (Packer::default(), Shape::of(model));
+    let page = Page::of_model(about, model, &shape, &mut packer);
+    write_page(folder, &Page { report: timeless(value(found)?), ..page }, packer, Some(still))
+}
+
 /// What all pages of one answer show.
 fn of_answer<'a>(
     about: &'a About,

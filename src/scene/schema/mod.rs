@@ -34,7 +34,7 @@ pub use symmetry::SymmetryPlane;
 use std::path::PathBuf;
 
 use super::body::BodySpec;
-use json::{choice, choices, given_object, object, objects, word, words};
+use json::{choice, choices, given, given_object, object, objects, word, words};
 
 /// A contact scene: an elastic body, its supports and loads, and the obstacles around it.
 ///
@@ -45,7 +45,7 @@ use json::{choice, choices, given_object, object, objects, word, words};
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Scene {
     /// Where the JSON Schema of scenes stands, for editors: a file that `signorini schema` printed. The program does not read it.
-    #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
+    #[serde(rename = "$schema", default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     pub schema: Option<String>,
     /// What the scene shows.
     #[serde(default)]
