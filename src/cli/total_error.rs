@@ -13,7 +13,9 @@ use super::settings::settings;
 use crate::error::Error;
 use crate::output::gallery::{self, Pictures};
 use crate::output::page::{About, write_answer_page, write_total_error_page};
-use crate::output::{estimated_error_text, meshes_picture, total_error_text, write_estimated_error, write_total_error};
+use crate::output::{
+    estimated_error_text, meshes_picture, total_error_text, why_text, write_estimated_error, write_total_error,
+};
 use crate::qp::Settings;
 use crate::scene::Scene;
 use crate::solution::Goal;
@@ -35,6 +37,9 @@ pub(super) fn run(options: &Solve, scene: &Scene, goal: TotalErrorGoal, watch: &
     let about = about(&title, "solve", &options.input, options.common.out.as_ref(), options.common.threads);
     match total_error(scene, &model, goal, &settings).map_err(|error| model.explain(error))? {
         Found::Guaranteed(found) => {
+            if options.explain {
+                warn("warning: --explain tells nothing of a guaranteed error: it is for one solve\n");
+            }
             let report = Report::new(&found, total_error_text(&title, &found, &units))?;
             if let Some(folder) = &options.common.out {
                 report.write_with_text(folder, "total-error.txt")?;
@@ -70,7 +75,10 @@ fn estimated(
     let mut summary = scene_summary(&found.answer, found.solution.clone(), goal, seconds)?;
     summary.discretisation_error = found.levels.last().map(|level| level.discretisation_error);
     let units = found.answer.model().units();
-    let text = estimated_error_text(&about.title, &found, &summary, units);
+    let mut text = estimated_error_text(&about.title, &found, &summary, units);
+    if let Some(why) = summary.solution.why.as_ref().filter(|_| options.explain) {
+        text += &why_text(why);
+    }
     let report = Report::new(&EstimatedReport { found: &found, answer: &summary }, text)?;
     let Some(folder) = options.common.out.clone() else {
         return Ok(report.outcome(options.common.format, found.status));

@@ -134,6 +134,17 @@ fn an_answer_says_what_was_weighed_and_the_text_shows_the_same_numbers() {
     assert!(shown.iter().all(|line| line.chars().count() <= 100), "{shown:?}");
 }
 
+/// An estimated error is that of an answer, which has its reason; a guaranteed one is of many answers, and says so.
+#[test]
+fn an_error_against_the_continuum_is_explained_as_far_as_it_has_one_answer() {
+    let desk = Desk::new();
+    let estimated = desk.run(&["solve", &example("ball"), "--total-error", "0.5", "--explain"]).ends_with(0);
+    assert!(estimated.stdout.contains("\n  why "), "{}", estimated.stdout);
+    let plane = concat!(env!("CARGO_MANIFEST_DIR"), "/tools/guarantee/coarse.json");
+    let guaranteed = desk.run(&["solve", plane, "--total-error", "0.3", "--explain"]).ends_with(0);
+    assert!(guaranteed.stderr.contains("--explain tells nothing of a guaranteed error"), "{}", guaranteed.stderr);
+}
+
 #[test]
 fn a_method_that_was_asked_for_is_why_enough() {
     let run = Desk::new().run(&["solve", &example("ball"), "--format", "json", "--method", "active-set"]);
