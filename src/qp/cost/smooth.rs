@@ -91,3 +91,30 @@ fn is_heavy(stiffness: &SymmetricMatrix) -> bool {
     let heavy = sums.iter().zip(&diagonal).filter(|(sum, own)| **sum > HEAVY * **own).count();
     heavy as f64 > HEAVY_SHARE * diagonal.len() as f64
 }
+
+#[cfg(test)]
+mod tests {
+    use super::is_heavy;
+    use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
+
+    /// A ring in which the off-diagonal entries of each of the first `heavy` rows add up to about `sum` times the diagonal, and those
+    /// of the others to 3.2 times, as those of linear elements in space do.
+    fn ring(rows: usize, heavy: usize, sum: f64) -> SymmetricMatrix {
+        let entry = |row: usize, next: usize| {
+            let of = |row: usize| if row < heavy { 0.5 * sum } else { 1.6 };
+            (row.max(next), row.min(next), -of(row).min(of(next)))
+        };
+        let mut entries: Vec<_> = (0..rows).map(|row| (row, row, 1.0)).collect();
+        entries.extend((0..rows).map(|row| entry(row, (row + 1) % rows)));
+        SymmetricMatrix::from_lower(SparseMatrix::from_triplets(rows, rows, &entries).unwrap()).unwrap()
+    }
+
+    /// Of quadratic elements in space: 5.5 times.
+    #[test]
+    fn quadratic_elements_are_heavy_and_linear_ones_are_not() {
+        assert!(is_heavy(&ring(100, 100, 5.5)));
+        assert!(!is_heavy(&ring(100, 0, 5.5)));
+        assert!(is_heavy(&ring(100, 15, 5.5)), "a part with quadratic elements");
+        assert!(!is_heavy(&ring(100, 6, 5.5)), "few rows");
+    }
+}
