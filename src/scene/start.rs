@@ -181,7 +181,7 @@ fn body(text: &mut String, named: &str, mesh: &Mesh, group: Option<&String>, (yo
     let group = group.map_or_else(String::new, |group| format!(", \"group\": {}", quoted(group)));
     let _ = write!(
         text,
-        "{{\n  \"title\": {},\n  \"units\": {{\"length\": \"{unit}\", \"force\": \"N\"}},\n  \"model\": \"{model}\",\n  \
+        "{{\n  \"format\": 1,\n  \"title\": {},\n  \"units\": {{\"length\": \"{unit}\", \"force\": \"N\"}},\n  \"model\": \"{model}\",\n  \
          \"body\": {{\"gmsh\": {{\"file\": {}, \"scale\": 1{group}}}}},\n  // Steel.\n  \"material\": {{\"young\": {}, \"poisson\": \
          0.3}},\n",
         quoted(&format!("{named}, pressed")),

@@ -6,6 +6,7 @@ mod bodies;
 mod oracles;
 
 mod architecture;
+mod dependencies;
 mod errors;
 mod examples;
 mod imports;

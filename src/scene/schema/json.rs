@@ -7,6 +7,9 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{Error as _, IgnoredAny, IntoDeserializer, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
+/// The format of scenes that this program reads.
+const FORMAT: u32 = 1;
+
 /// Accepts an object where a struct is expected, and nothing else: serde itself would take an array for it too.
 pub(in crate::scene) fn object<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<T, D::Error> {
     struct OfObject<T>(PhantomData<T>);
@@ -116,6 +119,16 @@ pub(in crate::scene) fn number<'de, D: Deserializer<'de>>(deserializer: D) -> Re
     match Option::<f64>::deserialize(deserializer)? {
         Some(value) => Ok(Some(value)),
         None => Err(D::Error::custom("null is no number; leave the field out to leave the direction free")),
+    }
+}
+
+/// Accepts the number of the one format of scenes.
+pub(in crate::scene) fn format<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<u32>, D::Error> {
+    match u32::deserialize(deserializer)? {
+        FORMAT => Ok(Some(FORMAT)),
+        other => Err(D::Error::custom(format_args!(
+            "format {other} of scenes is not known; this program reads format {FORMAT}"
+        ))),
     }
 }
 

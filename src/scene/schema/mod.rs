@@ -34,7 +34,7 @@ pub use symmetry::SymmetryPlane;
 use std::path::PathBuf;
 
 use super::body::BodySpec;
-use json::{choice, choices, given, given_object, object, objects, word, words};
+use json::{choice, choices, format, given, given_object, object, objects, word, words};
 
 /// A contact scene: an elastic body, its supports and loads, and the obstacles around it.
 ///
@@ -47,6 +47,11 @@ pub struct Scene {
     /// Where the JSON Schema of scenes stands, for editors: a file that `signorini schema` printed. The program does not read it.
     #[serde(rename = "$schema", default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     pub schema: Option<String>,
+    /// Version of the format of scenes: 1, the only one so far. Later formats will have other numbers, and be refused by programs that do
+    /// not read them.
+    #[serde(default, deserialize_with = "format", skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "cli", schemars(extend("const" = 1)))]
+    pub format: Option<u32>,
     /// What the scene shows.
     #[serde(default)]
     pub title: String,

@@ -1,0 +1,97 @@
+//! Dependencies: their licences are those that `deny.toml` allows, and all of them come from the registry.
+
+use std::path::Path;
+use std::process::Command;
+use std::{env, fs};
+
+use serde_json::Value;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// The licences that `deny.toml` allows.
+fn allowed() -> Vec<String> {
+    let text = fs::read_to_string(root().join("deny.toml")).unwrap();
+    let list = text.split_once("\nallow = [").unwrap().1.split_once(']').unwrap().0;
+    list.split('"').skip(1).step_by(2).map(str::to_string).collect()
+}
+
+/// The packages that a lock file names.
+fn packages(manifest: &str) -> Vec<Value> {
+    let mut cargo = Command::new(env::var("CARGO").unwrap_or_else(|_| "cargo".into()));
+    cargo.args(["metadata", "--format-version", "1", "--locked", "--manifest-path"]).arg(root().join(manifest));
+    let found = cargo.output().unwrap();
+    assert!(found.status.success(), "{}", String::from_utf8_lossy(&found.stderr));
+    let metadata: Value = serde_json::from_slice(&found.stdout).unwrap();
+    metadata["packages"].as_array().unwrap().clone()
+}
+
+/// Returns `true` if one of the choices of an expression as `(MIT OR Apache-2.0) AND Unicode-3.0` is allowed.
+fn is_allowed(expression: &str, allowed: &[String]) -> bool {
+    let parts = |text: &str, by: &str| -> Vec<String> {
+        let (mut parts, mut depth) = (vec![Vec::new()], 0);
+        for word in text.split_whitespace() {
+            if depth == 0 && word == by {
+                parts.push(Vec::new());
+                continue;
+            }
+            depth += word.matches('(').count();
+            depth -= word.matches(')').count();
+            parts.last_mut().unwrap().push(word);
+        }
+        parts.into_iter().map(|part| part.join(" ")).collect()
+    };
+    // In the older form a stroke separates choices.
+    let expression = expression.replace('/', " OR ");
+    let whole = expression.trim();
+    let inner =
+        whole.strip_prefix('(').and_then(|rest| rest.strip_suffix(')')).filter(|inner| !inner.contains(['(', ')']));
+    let whole = inner.unwrap_or(whole).trim();
+    let (choices, demands) = (parts(whole, "OR"), parts(whole, "AND"));
+    match (choices.len() > 1, demands.len() > 1) {
+        (true, _) => choices.iter().any(|choice| is_allowed(choice, allowed)),
+        (false, true) => demands.iter().all(|demand| is_allowed(demand, allowed)),
+        (false, false) => allowed.iter().any(|licence| licence == whole),
+    }
+}
+
+#[test]
+fn licences_of_all_dependencies_are_allowed_and_all_come_from_the_registry() {
+    let allowed = allowed();
+    assert!(allowed.len() > 4, "{allowed:?}");
+    for manifest in ["Cargo.toml", "python/Cargo.toml"] {
+        let packages = packages(manifest);
+        assert!(packages.len() > 100, "{manifest}: {} packages", packages.len());
+        for package in packages {
+            let (name, licence) = (package["name"].as_str().unwrap(), package["license"].as_str().unwrap_or("none"));
+            assert!(
+                is_allowed(licence, &allowed),
+                "{manifest}: {name} has the licence {licence}, which deny.toml does not allow"
+            );
+            let source = package["source"].as_str();
+            let is_ours = name.starts_with("signorini");
+            assert!(
+                is_ours || source.is_some_and(|source| source.starts_with("registry+")),
+                "{manifest}: {name} comes from {source:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn an_expression_of_licences_is_read_as_it_is_meant() {
+    let allowed: Vec<String> = ["MIT", "Unicode-3.0"].map(String::from).into();
+    for (expression, expected) in [
+        ("MIT", true),
+        ("GPL-3.0", false),
+        ("GPL-3.0 OR MIT", true),
+        ("MIT AND GPL-3.0", false),
+        ("Unlicense/MIT", true),
+        ("(MIT OR Apache-2.0) AND Unicode-3.0", true),
+        ("(GPL-3.0 OR Apache-2.0) AND Unicode-3.0", false),
+        ("none", false),
+    ] {
+        assert_eq!(is_allowed(expression, &allowed), expected, "{expression}");
+    }
+}
