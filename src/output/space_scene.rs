@@ -118,7 +118,7 @@ pub(super) fn draw_space_series(
     let shared = Shared {
         magnification: leading_scenes().map(SpaceScene::magnification).fold(f64::INFINITY, f64::min),
         von_mises: [lowest.min(0.0), largest],
-        obstacle: leading_scenes().last().and_then(SpaceScene::obstacle),
+        obstacle: leading_scenes().next_back().and_then(SpaceScene::obstacle),
     };
     let mut plans: Vec<Option<Plan>> =
         series.iter().map(|(_, scene)| shared.obstacle.map(|obstacle| plan(scene.answer, obstacle))).collect();
