@@ -6,6 +6,7 @@ mod bodies;
 mod oracles;
 
 mod architecture;
+mod documents;
 mod errors;
 mod examples;
 mod imports;
