@@ -298,3 +298,43 @@ fn long_documents_stay_within_their_limits() {
         assert!(long.is_none(), "{name} has a line of more than {most_letters} letters: {long:?}");
     }
 }
+
+/// The text of all tests.
+fn tests() -> String {
+    let (mut text, mut folders) = (String::new(), vec![root().join("tests")]);
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "rs") {
+                text += &fs::read_to_string(path).unwrap();
+            }
+        }
+    }
+    text
+}
+
+#[test]
+fn every_invariant_of_the_architecture_names_a_test_that_exists() {
+    let text = read("ARCHITECTURE.md");
+    let section = text.split("## Invariants\n").nth(1).unwrap().split("\n## ").next().unwrap();
+    let mut invariants: Vec<String> = Vec::new();
+    for line in section.lines().filter(|line| !line.is_empty()) {
+        if line.starts_with(|first: char| first.is_ascii_digit()) {
+            invariants.push(String::new());
+        }
+        *invariants.last_mut().unwrap() += line;
+    }
+    assert!((4..=8).contains(&invariants.len()), "{} invariants", invariants.len());
+    let tests = tests();
+    for invariant in invariants {
+        // The names of tests are sentences; those of files and of items are not.
+        let names = invariant.split('`').skip(1).step_by(2).filter(|name| name.matches('_').count() > 3);
+        let names: Vec<&str> = names.collect();
+        assert!(!names.is_empty(), "no test stands beside: {invariant}");
+        for name in names {
+            assert!(tests.contains(&format!("fn {name}()")), "there is no test {name}");
+        }
+    }
+}
