@@ -81,8 +81,8 @@ fn desk() -> TempDir {
     desk
 }
 
-/// What a block of commands prints on standard output and error; `None` if no line of it is run.
-fn printed(desk: &Path, commands: &str, place: &str) -> Option<String> {
+/// What a block of commands prints on standard output and error; `None` if no line of it is run, an error if it fails.
+fn printed(desk: &Path, commands: &str) -> Option<Result<String, String>> {
     let is_run = |line: &&str| !NOT_RUN.iter().any(|(start, _)| line.starts_with(start));
     let script: Vec<&str> = commands.lines().filter(is_run).collect();
     if script.iter().all(|line| line.trim().is_empty()) {
@@ -93,8 +93,7 @@ fn printed(desk: &Path, commands: &str, place: &str) -> Option<String> {
     let shell = ["-e", "-c", &script.join("\n")];
     let output = Command::new("sh").args(shell).current_dir(desk).env("PATH", paths).output().unwrap();
     let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
-    assert!(output.status.success(), "{place}: {}\n{out}{err}", output.status);
-    Some(out + &err)
+    Some(if output.status.success() { Ok(out + &err) } else { Err(format!("{}\n{out}{err}", output.status)) })
 }
 
 /// The words of a text with one space between them; a number that is rounding is `~`.
@@ -106,10 +105,20 @@ fn words(text: &str) -> String {
     text.split_whitespace().map(word).collect::<Vec<_>>().join(" ")
 }
 
-/// Runs the commands of a document; returns how many blocks ran and how many lines of output were compared.
-fn follow(name: &str) -> (usize, usize) {
+/// The commands of a document, run.
+#[derive(Default)]
+struct Followed {
+    /// Blocks that ran.
+    ran: usize,
+    /// Lines of output that were compared.
+    compared: usize,
+    /// Commands that failed, and lines that they did not print.
+    wrong: Vec<String>,
+}
+
+fn follow(name: &str) -> Followed {
     let (desk, text) = (desk(), read(name));
-    let (mut shown, mut ran, mut compared) = (None, 0, 0);
+    let (mut shown, mut found) = (None, Followed::default());
     for part in parts(&text) {
         let Part::Block { kind, text, line } = part else {
             shown = None;
@@ -118,24 +127,29 @@ fn follow(name: &str) -> (usize, usize) {
         let place = format!("{name}:{line}");
         match kind.as_str() {
             "json" => {
-                let file = text.lines().next().and_then(|line| line.strip_prefix("// ")).filter(|f| f.ends_with(".json"));
+                let file =
+                    text.lines().next().and_then(|line| line.strip_prefix("// ")).filter(|f| f.ends_with(".json"));
                 file.into_iter().for_each(|file| fs::write(desk.path().join(file), &text).unwrap());
             }
             "sh" => {
-                shown = printed(desk.path(), &text, &place).map(|text| words(&text));
-                ran += usize::from(shown.is_some());
+                let run = printed(desk.path(), &text);
+                found.ran += usize::from(run.is_some());
+                shown = run.and_then(|run| run.map_err(|error| found.wrong.push(format!("{place}: {error}"))).ok());
+                shown = shown.map(|text| words(&text));
             }
             "text" => {
                 for line in text.lines().filter(|line| line.trim() != "...") {
                     let Some(shown) = &shown else { break };
-                    assert!(shown.contains(&words(line)), "{place}: {line:?} is not printed:\n{shown}");
-                    compared += 1;
+                    if !shown.contains(&words(line)) {
+                        found.wrong.push(format!("{place}: {line:?} is not printed:\n{shown}"));
+                    }
+                    found.compared += 1;
                 }
             }
             _ => {}
         }
     }
-    (ran, compared)
+    found
 }
 
 #[test]
@@ -143,15 +157,18 @@ fn commands_of_the_documents_run_and_print_what_is_shown() {
     let mut names = pages();
     names.retain(|name| !RUN_ELSEWHERE.contains(&name.as_str()));
     names.extend(["README.md", "CONTRIBUTING.md"].map(String::from));
-    let counts: Vec<(usize, usize)> = std::thread::scope(|scope| {
+    let followed: Vec<Followed> = std::thread::scope(|scope| {
         // Two halves at once: the machine that runs the tests has two cores at least.
         let half = |start: usize| names.iter().skip(start).step_by(2).map(|name| follow(name)).collect::<Vec<_>>();
         let other = scope.spawn(move || half(1));
-        let mut counts = half(0);
-        counts.extend(other.join().unwrap());
-        counts
+        let mut followed = half(0);
+        followed.extend(other.join().unwrap());
+        followed
     });
-    let (ran, compared) = counts.iter().fold((0, 0), |sum, count| (sum.0 + count.0, sum.1 + count.1));
+    let wrong: Vec<&str> = followed.iter().flat_map(|page| &page.wrong).map(String::as_str).collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    let ran: usize = followed.iter().map(|page| page.ran).sum();
+    let compared: usize = followed.iter().map(|page| page.compared).sum();
     assert!(ran > 20 && compared > 40, "{ran} blocks ran, {compared} lines were compared");
 }
 
@@ -213,7 +230,8 @@ fn every_key_of_a_scene_has_an_example_that_builds() {
         if kind != "json" {
             continue;
         }
-        let example: Value = serde_json::from_str(&text).unwrap_or_else(|error| panic!("docs/scenes.md:{line}: {error}"));
+        let example: Value =
+            serde_json::from_str(&text).unwrap_or_else(|error| panic!("docs/scenes.md:{line}: {error}"));
         words_of(&example, &mut found);
         let mut scene = small_scene();
         scene.extend(example.as_object().unwrap().clone());
