@@ -11,17 +11,13 @@ use signorini::Scene;
 use tempfile::TempDir;
 
 /// Commands that are shown and not run here: how their line begins, and why.
-const NOT_RUN: [(&str, &str); 10] = [
+const NOT_RUN: [(&str, &str); 6] = [
     ("cargo ", "builds, or measures for minutes; `test.sh` runs the short forms"),
-    ("rustup ", "changes the machine"),
     ("pip ", "installs packages"),
     ("python", "needs packages that are no part of the tests; `test.sh` runs what the project needs"),
-    ("reference/", "installs packages"),
     ("mpi", "needs the libraries of a cluster"),
-    ("git ", "needs a repository"),
     ("./test.sh", "runs this test"),
     ("signorini tradeoff examples/indentation.json", "measures for a minute"),
-    ("signorini solve tools/guarantee/ball.json", "takes 20 s in a build for tests"),
 ];
 
 /// Pages whose commands another test runs.
