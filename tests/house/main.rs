@@ -1,4 +1,4 @@
-//! The house itself: the floors of its modules, its one error, its examples, its README.
+//! The house itself: the floors of its modules, its one error, its examples, its documents.
 
 #[path = "../support/bodies.rs"]
 mod bodies;
@@ -7,6 +7,7 @@ mod oracles;
 
 mod architecture;
 mod dependencies;
+mod documents;
 mod errors;
 mod examples;
 mod imports;

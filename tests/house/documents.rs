@@ -1,0 +1,362 @@
+//! The documents do what they say: their commands run and print what is shown below them, every key of a scene has an
+//! example that builds, the index names every page, links lead to headings, and the long documents stay within their limits.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use serde_json::{Map, Value};
+use signorini::Scene;
+use tempfile::TempDir;
+
+/// Commands that are shown and not run here: how their line begins, and why.
+const NOT_RUN: [(&str, &str); 6] = [
+    ("cargo ", "builds, or measures for minutes; `test.sh` runs the short forms"),
+    ("pip ", "installs packages"),
+    ("python", "needs packages that are no part of the tests; `test.sh` runs what the project needs"),
+    ("mpi", "needs the libraries of a cluster"),
+    ("./test.sh", "runs this test"),
+    ("signorini tradeoff examples/indentation.json", "measures for a minute"),
+];
+
+/// Pages whose commands another test runs.
+const RUN_ELSEWHERE: [&str; 1] = ["docs/first-part.md"];
+
+/// Numbers below this are rounding, and differ from machine to machine.
+const ROUNDING: f64 = 1e-9;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn read(name: &str) -> String {
+    fs::read_to_string(root().join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+/// The pages of `docs/`.
+fn pages() -> Vec<String> {
+    let files = fs::read_dir(root().join("docs")).unwrap();
+    let names = files.map(|entry| format!("docs/{}", entry.unwrap().file_name().to_str().unwrap()));
+    let mut names: Vec<String> = names.filter(|name| name.ends_with(".md")).collect();
+    names.sort();
+    names
+}
+
+/// What stands in a document beside its running text.
+enum Part {
+    Heading,
+    Block { kind: String, text: String, line: usize },
+}
+
+fn parts(document: &str) -> Vec<Part> {
+    let mut parts = Vec::new();
+    let mut open: Option<(String, String, usize)> = None;
+    for (number, line) in document.lines().enumerate() {
+        match (line.strip_prefix("```"), &mut open) {
+            (Some(_), Some(_)) => {
+                let (kind, text, line) = open.take().unwrap();
+                parts.push(Part::Block { kind, text, line });
+            }
+            (Some(kind), None) => open = Some((kind.into(), String::new(), number + 1)),
+            (None, Some((_, text, _))) => *text += &format!("{line}\n"),
+            (None, None) if line.starts_with('#') => parts.push(Part::Heading),
+            (None, None) => {}
+        }
+    }
+    assert!(open.is_none(), "a block without end");
+    parts
+}
+
+/// A folder with the scenes of this repository, in which the commands of a page run.
+fn desk() -> TempDir {
+    let desk = tempfile::tempdir().unwrap();
+    for folder in ["examples", "tools"] {
+        std::os::unix::fs::symlink(root().join(folder), desk.path().join(folder)).unwrap();
+    }
+    desk
+}
+
+/// What a block of commands prints on standard output and error; `None` if no line of it is run, an error if it fails.
+fn printed(desk: &Path, commands: &str) -> Option<Result<String, String>> {
+    let is_run = |line: &&str| !NOT_RUN.iter().any(|(start, _)| line.starts_with(start));
+    let script: Vec<&str> = commands.lines().filter(is_run).collect();
+    if script.iter().all(|line| line.trim().is_empty()) {
+        return None;
+    }
+    let program = Path::new(env!("CARGO_BIN_EXE_signorini")).parent().unwrap();
+    let paths = format!("{}:{}", program.display(), std::env::var("PATH").unwrap());
+    let shell = ["-e", "-c", &script.join("\n")];
+    let output = Command::new("sh").args(shell).current_dir(desk).env("PATH", paths).output().unwrap();
+    let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+    Some(if output.status.success() { Ok(out + &err) } else { Err(format!("{}\n{out}{err}", output.status)) })
+}
+
+/// The words of a text with one space between them; a number that is rounding is `~`.
+fn words(text: &str) -> String {
+    let word = |word: &str| match word.parse::<f64>() {
+        Ok(number) if number != 0.0 && number.abs() < ROUNDING => "~".to_string(),
+        _ => word.to_string(),
+    };
+    text.split_whitespace().map(word).collect::<Vec<_>>().join(" ")
+}
+
+/// The commands of a document, run.
+#[derive(Default)]
+struct Followed {
+    /// Blocks that ran.
+    ran: usize,
+    /// Lines of output that were compared.
+    compared: usize,
+    /// Commands that failed, and lines that they did not print.
+    wrong: Vec<String>,
+}
+
+fn follow(name: &str) -> Followed {
+    let (desk, text) = (desk(), read(name));
+    let (mut shown, mut found) = (None, Followed::default());
+    for part in parts(&text) {
+        let Part::Block { kind, text, line } = part else {
+            shown = None;
+            continue;
+        };
+        let place = format!("{name}:{line}");
+        match kind.as_str() {
+            "json" => {
+                let file =
+                    text.lines().next().and_then(|line| line.strip_prefix("// ")).filter(|f| f.ends_with(".json"));
+                file.into_iter().for_each(|file| fs::write(desk.path().join(file), &text).unwrap());
+            }
+            "sh" => {
+                let run = printed(desk.path(), &text);
+                found.ran += usize::from(run.is_some());
+                shown = run.and_then(|run| run.map_err(|error| found.wrong.push(format!("{place}: {error}"))).ok());
+                shown = shown.map(|text| words(&text));
+            }
+            "text" => {
+                for line in text.lines().filter(|line| line.trim() != "...") {
+                    let Some(shown) = &shown else { break };
+                    if !shown.contains(&words(line)) {
+                        found.wrong.push(format!("{place}: {line:?} is not printed:\n{shown}"));
+                    }
+                    found.compared += 1;
+                }
+            }
+            _ => {}
+        }
+    }
+    found
+}
+
+#[test]
+fn commands_of_the_documents_run_and_print_what_is_shown() {
+    let mut names = pages();
+    names.retain(|name| !RUN_ELSEWHERE.contains(&name.as_str()));
+    names.extend(["README.md", "CONTRIBUTING.md"].map(String::from));
+    let followed: Vec<Followed> = std::thread::scope(|scope| {
+        // Two halves at once: the machine that runs the tests has two cores at least.
+        let half = |start: usize| names.iter().skip(start).step_by(2).map(|name| follow(name)).collect::<Vec<_>>();
+        let other = scope.spawn(move || half(1));
+        let mut followed = half(0);
+        followed.extend(other.join().unwrap());
+        followed
+    });
+    let wrong: Vec<&str> = followed.iter().flat_map(|page| &page.wrong).map(String::as_str).collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    let ran: usize = followed.iter().map(|page| page.ran).sum();
+    let compared: usize = followed.iter().map(|page| page.compared).sum();
+    assert!(ran > 20 && compared > 40, "{ran} blocks ran, {compared} lines were compared");
+}
+
+/// The names in a schema: the keys of its objects, and the choices that are words.
+#[derive(Default)]
+struct Names {
+    keys: BTreeSet<String>,
+    choices: BTreeSet<String>,
+}
+
+impl Names {
+    fn read(&mut self, schema: &Value) {
+        match schema {
+            Value::Object(fields) => {
+                if let Some(Value::Object(properties)) = fields.get("properties") {
+                    self.keys.extend(properties.keys().cloned());
+                }
+                let choices = fields.get("enum").and_then(Value::as_array).into_iter().flatten();
+                self.choices.extend(choices.chain(fields.get("const")).filter_map(Value::as_str).map(String::from));
+                fields.values().for_each(|value| self.read(value));
+            }
+            Value::Array(values) => values.iter().for_each(|value| self.read(value)),
+            _ => {}
+        }
+    }
+}
+
+/// The keys of an example, and its values that are words.
+fn words_of(example: &Value, found: &mut BTreeSet<String>) {
+    match example {
+        Value::Object(fields) => {
+            found.extend(fields.keys().cloned());
+            fields.values().for_each(|value| words_of(value, found));
+        }
+        Value::Array(values) => values.iter().for_each(|value| words_of(value, found)),
+        Value::String(word) => drop(found.insert(word.clone())),
+        _ => {}
+    }
+}
+
+/// A small scene; an example of `docs/scenes.md` takes the place of some of its fields.
+fn small_scene() -> Map<String, Value> {
+    let scene = serde_json::json!({
+        "title": "A small block",
+        "body": {"rectangle": {
+            "x": {"points": [0, 1], "divisions": [4]}, "y": {"points": [0, 0.5], "divisions": [2]}
+        }},
+        "material": {"young": 1e7, "poisson": 0.3},
+        "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}],
+        "obstacles": [{
+            "boundary": "top", "approach": "+y", "shape": {"parabola": {"apex": [0.5, 0.5], "radius": 1}}
+        }],
+        "gap": -0.01
+    });
+    scene.as_object().unwrap().clone()
+}
+
+#[test]
+fn every_key_of_a_scene_has_an_example_that_builds() {
+    let page = read("docs/scenes.md");
+    let desk = desk();
+    fs::copy(root().join("examples/first-part/foot.msh"), desk.path().join("foot.msh")).unwrap();
+    let mut found = BTreeSet::new();
+    let mut built = 0;
+    for part in parts(&page) {
+        let Part::Block { kind, text, line } = part else { continue };
+        if kind != "json" {
+            continue;
+        }
+        let example: Value =
+            serde_json::from_str(&text).unwrap_or_else(|error| panic!("docs/scenes.md:{line}: {error}"));
+        words_of(&example, &mut found);
+        let mut scene = small_scene();
+        scene.extend(example.as_object().unwrap().clone());
+        scene.retain(|_, value| !value.is_null());
+        let (file, scene) = (desk.path().join("scene.json"), Value::Object(scene).to_string());
+        fs::write(&file, &scene).unwrap();
+        let scene = Scene::read(&file).unwrap_or_else(|error| panic!("docs/scenes.md:{line}: {error}"));
+        if !text.contains("die.stl") {
+            let model = scene.build().unwrap_or_else(|error| panic!("docs/scenes.md:{line}: {error}"));
+            assert!(!model.rows().is_empty(), "docs/scenes.md:{line} has no contact row");
+            built += 1;
+        }
+    }
+    assert!(built > 20, "{built} examples were built");
+    let schema = Command::new(env!("CARGO_BIN_EXE_signorini")).arg("schema").output().unwrap();
+    let mut names = Names::default();
+    names.read(&serde_json::from_slice(&schema.stdout).unwrap());
+    assert!(names.keys.len() > 100 && names.choices.len() > 30, "{} and {}", names.keys.len(), names.choices.len());
+    // `$schema` is for editors. A choice may stand in the text alone.
+    let in_text = |choice: &String| page.contains(&format!("`{choice}`"));
+    let keys = names.keys.iter().filter(|key| !found.contains(*key) && *key != "$schema");
+    let choices = names.choices.iter().filter(|choice| !found.contains(*choice) && !in_text(choice));
+    let missing: Vec<&String> = keys.chain(choices).collect();
+    assert!(missing.is_empty(), "docs/scenes.md has no example of {missing:?}");
+}
+
+#[test]
+fn the_index_names_every_page() {
+    let index = read("docs/README.md");
+    for page in pages().iter().filter(|page| *page != "docs/README.md") {
+        let name = page.strip_prefix("docs/").unwrap();
+        assert!(index.contains(&format!("]({name})")), "docs/README.md does not name {name}");
+    }
+    assert!(pages().len() > 14);
+}
+
+#[test]
+fn every_page_opens_with_what_it_is_about() {
+    for page in pages() {
+        let text = read(&page);
+        let mut lines = text.lines();
+        let title = lines.next().unwrap();
+        let first = lines.find(|line| !line.is_empty()).unwrap();
+        let is_prose = first.chars().next().is_some_and(char::is_alphanumeric) && first.len() > 30;
+        assert!(title.starts_with("# ") && is_prose, "{page} opens with {first:?}");
+    }
+}
+
+/// The name under which a page can link to a heading: as GitHub makes it.
+fn anchor(heading: &str) -> String {
+    let kept = heading.trim_start_matches('#').trim().to_lowercase();
+    kept.chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c)).collect::<String>().replace(' ', "-")
+}
+
+#[test]
+fn every_link_to_a_heading_leads_to_one() {
+    let mut links = 0;
+    for name in pages().into_iter().chain(["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md"].map(String::from)) {
+        let text = read(&name);
+        for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+            let Some((file, heading)) = link.split_once('#').filter(|_| !link.starts_with("http")) else { continue };
+            let own = root().join(&name);
+            let file: PathBuf = if file.is_empty() { own } else { own.parent().unwrap().join(file) };
+            let target = fs::read_to_string(&file).unwrap_or_else(|error| panic!("{name} links to {link}: {error}"));
+            let has = target.lines().any(|line| line.starts_with('#') && anchor(line) == heading);
+            assert!(has, "{name} links to {link}, and there is no such heading");
+            links += 1;
+        }
+    }
+    assert!(links > 3, "{links} links to headings");
+}
+
+#[test]
+fn long_documents_stay_within_their_limits() {
+    for (name, most_lines, most_letters) in
+        [("README.md", 160, 120), ("ARCHITECTURE.md", 120, 140), ("CHANGELOG.md", 120, 140)]
+    {
+        let text = read(name);
+        let lines = text.lines().count();
+        assert!(lines <= most_lines, "{name} has {lines} lines; {most_lines} are allowed");
+        let long = text.lines().find(|line| !line.starts_with('|') && line.chars().count() > most_letters);
+        assert!(long.is_none(), "{name} has a line of more than {most_letters} letters: {long:?}");
+    }
+}
+
+/// The text of all tests.
+fn tests() -> String {
+    let (mut text, mut folders) = (String::new(), vec![root().join("tests")]);
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "rs") {
+                text += &fs::read_to_string(path).unwrap();
+            }
+        }
+    }
+    text
+}
+
+#[test]
+fn every_invariant_of_the_architecture_names_a_test_that_exists() {
+    let text = read("ARCHITECTURE.md");
+    let section = text.split("## Invariants\n").nth(1).unwrap().split("\n## ").next().unwrap();
+    let mut invariants: Vec<String> = Vec::new();
+    for line in section.lines().filter(|line| !line.is_empty()) {
+        if line.starts_with(|first: char| first.is_ascii_digit()) {
+            invariants.push(String::new());
+        }
+        *invariants.last_mut().unwrap() += line;
+    }
+    assert!((4..=8).contains(&invariants.len()), "{} invariants", invariants.len());
+    let tests = tests();
+    for invariant in invariants {
+        // The names of tests are sentences; those of files and of items are not.
+        let names = invariant.split('`').skip(1).step_by(2).filter(|name| name.matches('_').count() > 3);
+        let names: Vec<&str> = names.collect();
+        assert!(!names.is_empty(), "no test stands beside: {invariant}");
+        for name in names {
+            assert!(tests.contains(&format!("fn {name}()")), "there is no test {name}");
+        }
+    }
+}
