@@ -51,7 +51,7 @@ impl Path {
         &self.walk.pieces
     }
 
-    /// The multipliers at `t` as they are on `piece`: at a corner the pieces on both sides agree but for rounding.
+    /// The multipliers at `t` on `piece`: at a corner the pieces on both sides agree except for rounding.
     pub(crate) fn multiplier_on(&self, piece: &Piece, t: f64) -> Vec<f64> {
         self.walk.to_rows.multiplier(&piece.multiplier(t))
     }
