@@ -33,7 +33,7 @@ impl AugmentedMatrix {
         Self::analysed(stiffness, rows, |joined| Analysis::with_last(joined, last))
     }
 
-    /// As [`AugmentedMatrix::new`], with an `analysis` of K that is at hand, if K has a place for every entry.
+    /// As [`AugmentedMatrix::new`], with an available `analysis` of K, if K has a place for every entry.
     ///
     /// # Errors
     /// As [`Analysis::of`].
@@ -76,7 +76,7 @@ impl AugmentedMatrix {
         Ok(Self { stiffness, row_starts, products, analysis })
     }
 
-    /// The same matrices, whose factorisations use this number of threads.
+    /// The same matrices, factorised with this number of threads.
     pub fn with_threads(self, threads: usize) -> Self {
         AugmentedMatrix { analysis: self.analysis.with_threads(threads), ..self }
     }
