@@ -4,9 +4,9 @@
 //! move, and the chopped gradient, of those that want to leave their bound. An iteration is one of
 //!
 //! ```text
-//! proportioning   where the chopped gradient outweighs the free one: a step along it, which opens rows
+//! proportioning   if the chopped gradient is larger than the free one: a step along it, which opens rows
 //! CG step         along conjugate directions of the free face, one cycle of the hierarchy each
-//! expansion       where the CG step would cross bounds: its projection, which closes rows; should that raise the energy,
+//! expansion       if the CG step would cross bounds: its projection, which closes rows; if that raises the energy,
 //!                 the least energy on the way there or the step to the first bound, and a projected gradient step of
 //!                 fixed length
 //! ```
