@@ -109,7 +109,7 @@ impl EnergyNorm {
         self.watch.is_over()
     }
 
-    /// The same norm, for a factor K~ whose contraction `|I - K~^-1 K|` is measured to be this.
+    /// The same norm, for a factor K~ with this measured contraction `|I - K~^-1 K|`.
     pub fn off_by(&self, contraction: f64) -> Self {
         EnergyNorm { widening: 1.0 + MEASURED * contraction, ..self.clone() }
     }
@@ -191,8 +191,8 @@ impl EnergyNorm {
         self.boundary.as_deref()
     }
 
-    /// `L^-1 D r`, whose length times [`unit`](Self::unit) is the energy norm of the displacement that the force r
-    /// causes: the squares of the interior added up, and the entries of the boundary.
+    /// `L^-1 D r`. Its length times [`unit`](Self::unit) is the energy norm of the displacement that the force r causes: the
+    /// squares of the interior added up, and the entries of the boundary.
     pub(super) fn sweep(&self, force: &[f64]) -> (f64, Vec<f64>) {
         let swept = self.cholesky.forward(&self.scaled(force));
         let size = self.boundary.as_ref().map_or(0, |boundary| boundary.dofs.len());
@@ -293,7 +293,7 @@ impl Boundary {
 mod tests {
     use super::*;
 
-    /// Two dofs of the same stiffness, and a share of it between them.
+    /// Two dofs of the same stiffness, and a share of that stiffness between them.
     fn pair(stiffness: f64, coupling: f64) -> SymmetricMatrix {
         let entries = [(0, 0, stiffness), (1, 0, -coupling * stiffness), (1, 1, stiffness)];
         SymmetricMatrix::from_lower(SparseMatrix::from_triplets(2, 2, &entries).unwrap()).unwrap()

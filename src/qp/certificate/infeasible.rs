@@ -87,7 +87,7 @@ mod tests {
 
     #[test]
     fn rows_that_cancel_to_a_billionth_contradict_each_other_unless_a_far_displacement_meets_both() {
-        // 1 - b of the terms 1 + b are left, a share of 5e-10. A displacement 1e8 times the gaps would need 5 % of them.
+        // 1 - b of the terms 1 + b are left, a share of 5e-10. A displacement 1e8 times the gaps would need 5 % of the terms.
         for (gap, proven) in [([-1.0, 0.92], false), ([-1.0, 0.89], true)] {
             let found = between(1.0 - 1e-9, gap).overlap(&[0, 1], &[1.0, 1.0]);
             assert_eq!(found.is_some(), proven, "{gap:?}: {found:?}");

@@ -2,7 +2,7 @@
 //!
 //! With `|u - u*|_K <= E` and the compliance `G = B K^-1 B'` of the rows:
 //!
-//! * `|B_i (u - u*)| <= sqrt(G_ii) E`: a row whose distance is larger is open in the exact answer too.
+//! * `|B_i (u - u*)| <= sqrt(G_ii) E`: a row with a larger distance is open in the exact answer too.
 //! * Let C be all other rows, `r = f + B_C' lambda_C - K u`, and w a shift with `B_i w = 1` that moves no other row of C. From
 //!   `B_C' (lambda - lambda*)_C = r + K (u - u*)`: `|lambda_i - lambda*_i| <= |w|_K (|r|_{K^-1} + E)`. A row with a larger
 //!   force is closed in the exact answer too. The cheapest such shift has `|w|_K^2 = (G_CC^-1)_ii`.
@@ -173,7 +173,7 @@ impl ContactProblem {
         closed
     }
 
-    /// `|w|_K` of the shift of a single dof that moves this one of `rows` only; infinite if there is none.
+    /// `|w|_K` of the shift of a single dof that moves this one of `rows` only; infinite if no such dof exists.
     fn moved_alone(&self, rows: &[usize]) -> Vec<f64> {
         let mut place = vec![usize::MAX; self.rows()];
         rows.iter().enumerate().for_each(|(index, &row)| place[row] = index);
@@ -204,7 +204,7 @@ impl Closed {
     }
 }
 
-/// The columns of `L^-1 B'`, whose products are the compliance of the rows.
+/// The columns of `L^-1 B'`; their products are the compliance of the rows.
 pub(super) struct Halves<'a> {
     norm: &'a EnergyNorm,
     /// The entries of each row, in the dofs that are swept: on the boundary, or in the whole body.

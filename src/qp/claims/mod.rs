@@ -29,7 +29,7 @@ use crate::qp::problem::ContactProblem;
 use crate::qp::transform::Scaling;
 use crate::solution::Solution;
 
-/// The forces of the rows hold the load if at most this share of them is left on every mode.
+/// The forces of the rows hold the load if at most this share of the forces is left on every mode.
 const BALANCED: f64 = 1e-9;
 
 /// A row presses if its force on a dof exceeds this share of the forces in balance there; smaller forces are rounding.

@@ -64,7 +64,7 @@ const ENTRY_BY_ENTRY: f64 = 1.5e-9;
 /// Its order needs this many times the multiplications of ours.
 const MORE_FILL: f64 = 3.0;
 
-/// Cells along a side of the lattice whose matrix is factorised to learn the pace.
+/// Cells along a side of the lattice; its matrix is factorised to measure the pace.
 const LATTICE: usize = 64;
 
 /// Seconds of a factorisation with this number of multiplications and values, on the machine of the fit.

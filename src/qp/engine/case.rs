@@ -1,4 +1,4 @@
-//! The questions to an engine and its answers: all that [`Prepared`](super::Prepared) knows of it.
+//! The questions to an engine and its answers: all that [`Prepared`](super::Prepared) uses.
 
 use std::fmt::Debug;
 use std::sync::Arc;

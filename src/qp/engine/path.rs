@@ -105,7 +105,7 @@ impl Prepared {
     ///
     /// # Errors
     /// As [`Prepared::solve`] for both ends; [`Error::Interrupted`]; [`Error::NotCondensed`] for a problem that was not
-    /// condensed or whose stiffness is not definite by itself.
+    /// condensed or has a stiffness that is not definite by itself.
     pub fn path(&self, from: &[f64], to: &[f64]) -> Result<Path, Error> {
         let settings = &self.settings.started()?;
         // A path takes a factor.

@@ -84,13 +84,13 @@ impl Factored {
     }
 }
 
-/// The factorisation of a stiffness whose pattern is analysed.
+/// The factorisation of a stiffness with an analysed pattern.
 struct Factoring<'a> {
     problem: &'a ContactProblem,
     scaling: &'a Scaling,
     analysis: &'a Analysis,
     settings: &'a Settings,
-    /// The smallest pivot of the last factor; zero if there is none.
+    /// The smallest pivot of the last factor; zero without a factor.
     least_pivot: Option<f64>,
 }
 

@@ -2,7 +2,7 @@
 
 use super::{Analysis, Cholesky, FactorError, SparseMatrix, SymmetricMatrix};
 
-/// A symmetric matrix K and rows B whose weighted squares are added to it.
+/// A symmetric matrix K and rows B; the weighted squares of the rows are added to K.
 ///
 /// The pattern holds K, the diagonal and every row of B, so that a change of the weights costs a numeric
 /// factorisation and nothing else.

@@ -91,7 +91,7 @@ impl SymmetricMatrix {
             let next = without_noise(next.collect());
             let of_next = self.resistance(&next);
             let most = |left: &[(f64, f64)]| left.iter().fold(0.0, |most: f64, (force, _)| most.max(force.abs()));
-            // This also ends the loop if one of them is NaN.
+            // A NaN in either also ends the loop.
             let is_less = most(&of_next) < 0.5 * most(&left);
             if !is_less {
                 break;

@@ -175,7 +175,7 @@ impl SymmetricMatrix {
         y
     }
 
-    /// The contribution of some columns, and of the rows with the same numbers, to A x, from the first of them on.
+    /// The contribution of some columns, and of the rows with the same numbers, to A x, from the first column on.
     fn product_of_columns(&self, columns: Range<usize>, x: &[f64]) -> Vec<f64> {
         let first = columns.start;
         let (starts, rows) = (self.lower.column_starts(), self.lower.row_indices());

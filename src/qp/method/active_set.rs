@@ -170,7 +170,7 @@ pub fn with_contact_set(scaled: &ScaledProblem, closed: &ContactSet) -> Result<E
 enum Rule {
     /// All misclassified rows change sides.
     Exchange,
-    /// All of them while their number falls, otherwise the last one alone.
+    /// All misclassified rows while their number falls, otherwise the last one alone.
     Pivoting { fewest: usize, patience: usize, single: bool },
 }
 

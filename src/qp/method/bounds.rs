@@ -23,9 +23,9 @@ struct Side {
 pub struct Bound {
     /// The unknown, among the turned ones.
     pub unknown: usize,
-    /// The least value, `-inf` if there is none.
+    /// The least value, `-inf` without a lower bound.
     pub lower: f64,
-    /// The greatest value, `+inf` if there is none.
+    /// The greatest value, `+inf` without an upper bound.
     pub upper: f64,
     sides: [Option<Side>; 2],
 }

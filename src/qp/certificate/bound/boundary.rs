@@ -3,8 +3,8 @@
 //! The sweep of a force `alpha r + B' x` through the factor differs from that of `alpha r` on the boundary only; r is swept
 //! once. With Z = L_tt^-1 B_t' multipliers eta move the rows by c Z'Z eta. Two repairs are tried:
 //!
-//! * v is the equilibrium of the rows that look closed. If all of them push, v is the exact answer, and the bound is the error
-//!   itself;
+//! * v is the equilibrium of the rows that look closed. If all these rows push, v is the exact answer, and the bound is the
+//!   error itself;
 //! * the rows that look closed are put at their gaps by the smallest shift, and keep the forces of the answer.
 
 use super::super::energy_norm::Boundary;
@@ -88,7 +88,7 @@ impl ContactProblem {
     }
 
     /// A repaired answer, in doubles: displacements at which the rows that look closed are at their gaps, and the multipliers
-    /// of their equilibrium; `None` if there is none, or if the boundary is not known.
+    /// of their equilibrium; `None` if the repair fails, or if the boundary is not known.
     pub(crate) fn repaired(&self, norm: &EnergyNorm, u: &[f64], lambda: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
         let violation = self.accurate_violation(u);
         let residual = self.accurate_residual(u, lambda);

@@ -141,7 +141,7 @@ impl ContactProblem {
     }
 
     /// The energy of displacements that are too small for their squares to be kept in double precision, or beside the forces; 0
-    /// if there are none.
+    /// if no displacement is so small.
     fn underflow(&self, answer: &Answer) -> f64 {
         let roots = &self.diagonal().roots;
         let contact = self.contact.mul_transposed(answer.multiplier);

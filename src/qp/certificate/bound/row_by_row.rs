@@ -42,8 +42,8 @@ impl ContactProblem {
         self.contact.mul_abs(&magnitude)
     }
 
-    /// The bound from the displacement whose rows are moved one after the other, each by its own dofs: the closed ones
-    /// to their gaps, all others out of their obstacles.
+    /// The bound from a displacement with rows moved one after the other, each by its own dofs: the closed ones to their gaps,
+    /// all others out of their obstacles.
     pub(super) fn bound_row_by_row(&self, norm: &EnergyNorm, answer: &Answer, keeping: Keeping) -> ErrorBound {
         let by_row = self.contact.transposed();
         let is_closed = |row: usize| match keeping {
@@ -299,7 +299,7 @@ mod tests {
         // Each sweep moves either row half as far as the one before, first by 1, at a cost of 2 for each: 2 + 1 + 1/2 + ...
         let whole = 4.0;
         assert!(put[0] == put[1] && (whole..=2.0 * whole).contains(&put[0]), "{put:?}");
-        // The sweeps end when the last is a hundredth of their sum; the rest then counts as much as all of them.
+        // The sweeps end when the last is a hundredth of their sum; the rest then counts as much as all sweeps.
         assert!(put[0] >= 2.0 * (1.0 - LAST) * whole, "{put:?}");
     }
 

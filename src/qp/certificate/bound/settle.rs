@@ -17,7 +17,7 @@ const FOLLOWS: f64 = 2.0;
 const DISTANCE_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 impl Repair<'_> {
-    /// The equilibrium of the rows that look closed if all of them push, otherwise the better of both repairs.
+    /// The equilibrium of the rows that look closed if all these rows push, otherwise the better of both repairs.
     pub fn best_witness(&self, closed: &[bool]) -> Option<Witness> {
         let settled = self.settle(closed, Multipliers::InEquilibrium);
         if settled.as_ref().is_some_and(|witness| witness.left.is_none()) {

@@ -13,7 +13,7 @@ pub(super) struct Triangle {
 /// Pivots below this share of the products that cancel in them are rounding of nearly dependent rows.
 const PARALLEL: f64 = 1e-12;
 
-/// A row follows from others if the part of it that is orthogonal to them is below this share of the terms.
+/// A row follows from others if its component orthogonal to them is below this share of the terms.
 const DEPENDENT: f64 = 64.0 * f64::EPSILON;
 
 /// Number of times that a row is made orthogonal to others: the second removes the rounding of the first.

@@ -143,7 +143,7 @@ impl<T: Real> BlockMatrix<T> {
         sum
     }
 
-    /// The same matrix without the blocks whose values are all zero.
+    /// The same matrix without the blocks of zeros.
     pub fn without_zeros(&self) -> Self {
         let mut kept = Self::empty(0, self.columns, (self.height, self.width));
         for row in 0..self.rows() {

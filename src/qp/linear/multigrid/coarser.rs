@@ -12,7 +12,7 @@ use crate::qp::linear::{SymmetricMatrix, ldexp};
 /// An unknown starts at its bound if more than this share of the unknowns that it is interpolated from is at their bounds.
 const CLOSED_SHARE: f64 = 0.7;
 
-/// Lower and upper bound of an unknown, infinite if there is none.
+/// Lower and upper bound of an unknown, infinite without a bound.
 pub type Interval = [f64; 2];
 
 /// The second level of a hierarchy with one unknown for each node: matrix, hierarchy, and the transfer from and to the first.
@@ -39,8 +39,8 @@ struct Transfer {
 }
 
 impl Multigrid {
-    /// The second level as a separate problem; `None` if there is none, or if its unknowns are no nodal values, such as the
-    /// rigid-body modes of a body's aggregates.
+    /// The second level as a separate problem; `None` if no second level exists, or if its unknowns are no nodal values, such
+    /// as the rigid-body modes of a body's aggregates.
     pub fn coarser(&self) -> Option<Coarser> {
         match &self.levels {
             Levels::Single(hierarchy) => coarser_of(hierarchy, Levels::Single),

@@ -65,8 +65,8 @@ pub fn conjugate_gradients(
 const LOOKED: usize = 25;
 
 /// A direction without positive energy. Conjugate gradients from a generic force meet it if the matrix has a negative
-/// eigenvalue that its hierarchy does not hide; rounding may give one for a semidefinite matrix. `None` if there is none, or if
-/// `watch` is over.
+/// eigenvalue that its hierarchy does not hide; rounding may give one for a semidefinite matrix. `None` if no direction is met,
+/// or if `watch` is over.
 pub fn negative_direction(matrix: &SymmetricMatrix, multigrid: &Multigrid, watch: &Watch) -> Option<Vec<f64>> {
     let mut rest = generic(matrix.dim(), 0);
     let (mut direction, mut moved, mut energy) = (vec![0.0; rest.len()], vec![0.0; rest.len()], 1.0);

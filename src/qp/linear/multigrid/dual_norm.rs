@@ -8,7 +8,7 @@
 //!
 //! with the cycle M of the hierarchy. A few steps of conjugate gradients give z: the first part is then most of the sum. Both
 //! lines are exact. It is measured, not proven, that mu is below the least eigenvalue: the Lanczos coefficients of the same
-//! conjugate gradients give the least Ritz value, which approaches the eigenvalue from above; mu is a share of it.
+//! conjugate gradients give the least Ritz value, which approaches the eigenvalue from above; mu is a share of that value.
 //!
 //! # Source
 //! G. H. Golub, G. Meurant, *Matrices, Moments and Quadrature with Applications*, Princeton (2010), chapter 12;

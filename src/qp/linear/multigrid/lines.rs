@@ -13,7 +13,7 @@ use super::real::Real;
 /// Strength of the connections along a line, on every level.
 const ALONG_LINES: f64 = 0.4;
 
-/// Nodes lie on lines if the number of aggregates is at most this share of them: three nodes of a line make one third.
+/// Nodes lie on lines if the number of aggregates is at most this share of the nodes: three nodes of a line make one third.
 const LINES: f64 = 0.36;
 
 /// The connections along the lines of a matrix.
@@ -85,7 +85,7 @@ impl Lines {
 }
 
 /// The modes of an aggregate, continued to a node outside: X with `X R = B`; B are the near-null vectors at the node, R those
-/// in the columns of the aggregate. Returns `false` if the aggregate lacks one of them.
+/// in the columns of the aggregate. Returns `false` if the aggregate lacks one of these vectors.
 fn continued(
     fine: &Candidates,
     coarse: &Candidates,

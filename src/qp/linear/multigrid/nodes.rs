@@ -21,8 +21,8 @@ pub struct Nodes {
 }
 
 impl Nodes {
-    /// Groups dofs with the same neighbours, and writes the matrix, times `2^exponent` so that its diagonal is of order
-    /// one, in blocks of them.
+    /// Groups dofs with the same neighbours, and writes the matrix in blocks of these groups, times `2^exponent` so that its
+    /// diagonal is of order one.
     pub fn of<T: Real>(matrix: &SymmetricMatrix) -> (Self, BlockMatrix<T>, i32) {
         let graph = Quotient::of(matrix.lower());
         let groups = graph.count() as u32;

@@ -1,4 +1,4 @@
-//! The matrix of a level, in all dofs or in a face of them.
+//! The matrix of a level, in all dofs or in a face.
 
 use std::ops::Range;
 

@@ -9,8 +9,8 @@
 
 use crate::qp::linear::{UpperTriangle, dot, largest, norm, subtract, turned};
 
-/// A row depends on the closed ones if its remainder is below this share of it, times the size of its weights: the remainder is
-/// then rounding. Any value between 1e-15 and 1e-5 gives the same sets on several thousand random problems.
+/// A row depends on the closed ones if its remainder is below this share of the row, times the size of its weights: the
+/// remainder is then rounding. Any value between 1e-15 and 1e-5 gives the same sets on several thousand random problems.
 pub(super) const DEPENDENT_ROW: f64 = 64.0 * f64::EPSILON;
 
 /// A remainder that keeps this share of its length is orthogonal to Q to working precision.

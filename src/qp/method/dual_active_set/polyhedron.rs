@@ -15,7 +15,7 @@ use crate::qp::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
 
 /// Weight of the proximal term `1/2 weight |u - u_k|^2` that makes a semidefinite K, with a diagonal between 1 and 4, definite.
-/// With 1e-6 the same number of problems is solved, with 1 about half of them.
+/// With 1e-6 the same number of problems is solved, with 1 about half.
 const PROXIMAL: f64 = 1e-9;
 
 /// Multiplications that the method may cost: about a minute on one core.

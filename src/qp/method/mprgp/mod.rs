@@ -11,7 +11,7 @@
 //!                 fixed length
 //! ```
 //!
-//! Each of these steps lowers the energy. The hierarchy is built once, for K; a face is a small change of it.
+//! Each of these steps lowers the energy. The hierarchy is built once, for K; a face is a small change of the hierarchy.
 //!
 //! # Source
 //! Z. Dostál, *Optimal Quadratic Programming Algorithms*, Springer (2009), algorithm 5.8 and section 5.10.

@@ -11,7 +11,7 @@ use crate::qp::method::holding::{FreeMode, PLAY, WORK_TOLERANCE};
 /// Number of cycles in which all modes with energy are damped; if they are not, the body counts as held.
 const CYCLES: usize = 60;
 
-/// A mode is gone if less than this share of it is left: then it had only parts with energy.
+/// A mode is gone if less than this share is left: then it had only parts with energy.
 const GONE: f64 = 1e-8;
 
 /// If the energy falls by less than this factor in a cycle, it is rounding.
