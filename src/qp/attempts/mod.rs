@@ -149,7 +149,7 @@ impl Attempts {
             decided => return decided,
         };
         let seconds = clock.elapsed().as_secs_f64();
-        // The direct path may find what the iteration cannot; if it was refused, with one factor at a time.
+        // The direct path may find the answer that the iteration cannot; if it was refused before, with one factor at a time.
         let direct = match refused {
             Some(_) => Settings { method: Method::ActiveSet, ..settings.clone() },
             None => settings.clone(),

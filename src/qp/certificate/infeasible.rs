@@ -11,8 +11,8 @@ const OVERLAP: f64 = 4.0 * f64::EPSILON;
 const FAR: f64 = 1e8;
 
 impl ContactProblem {
-    /// The length by which the contact rows `rows` overlap under the weights y, one for each row: `-g'y` for the largest weight
-    /// 1. `None` if y proves nothing.
+    /// The length by which the contact rows `rows` overlap under the weights y, one for each row: `-g'y` if the largest weight
+    /// is one. `None` if y proves nothing.
     ///
     /// By Farkas' lemma no displacement satisfies `B u <= g` if and only if there are weights `y >= 0` with `B'y = 0` and
     /// `g'y < 0`: the rows, weighted, would ask for `0 <= g'y`. Doubles may leave a share s of the terms `|B|'y` of a dof:

@@ -149,7 +149,7 @@ impl ContactProblem {
     }
 
     /// The rows that are closed, proven by one dof each. The error is `error` in the energy norm; `of_force` bounds the norm of
-    /// the displacement under a force, and is given whether that is the residual.
+    /// the displacement under a force, and takes `true` if that force is the residual.
     fn closed_by(
         &self,
         answer: &Answer,

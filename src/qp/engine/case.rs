@@ -45,7 +45,7 @@ pub(super) trait Engine: Debug + Send + Sync {
     /// The problem as it came.
     fn problem(&self) -> &ContactProblem;
 
-    /// Returns `true` if `method` works on what was prepared.
+    /// Returns `true` if `method` works on the prepared data.
     fn serves(&self, method: Method) -> bool;
 
     /// The time of the preparation.

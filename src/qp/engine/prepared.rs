@@ -19,7 +19,7 @@ use crate::solution::{Seconds, Solution, Why};
 /// A contact problem prepared once for many gaps, loads and starts: its stiffness is factorised, or a multigrid hierarchy is
 /// built for it, depending on the method.
 ///
-/// Clones are cheap and share what was prepared, and so do [`with_load`](Self::with_load),
+/// Clones are cheap and share the prepared data, and so do [`with_load`](Self::with_load),
 /// [`with_settings`](Self::with_settings) and [`starting_from`](Self::starting_from).
 ///
 /// ```
@@ -96,7 +96,7 @@ impl Prepared {
         Ok(Prepared { engine, settings: settings.clone(), load, start: Start::default(), why: None })
     }
 
-    /// The same problem under other settings. What was prepared is kept if their method works on it, with its condensation,
+    /// The same problem under other settings. The prepared data are kept if their method works on them, with its condensation,
     /// precision and threads; otherwise the problem is prepared again.
     ///
     /// # Errors

@@ -112,7 +112,7 @@ impl Factored {
         set: &ContactSet,
         settings: &Settings,
     ) -> Result<Found, Error> {
-        // The contact force is balanced on its own dofs; only what is out of balance is swept.
+        // The contact force is balanced on its own dofs; only the imbalance is swept.
         let imbalance = problem.accurate_residual(displacement, multiplier);
         let contact = problem.contact().mul_transposed(multiplier);
         let released: Vec<f64> = contact.iter().map(|force| -force).collect();

@@ -73,7 +73,7 @@ impl LowerTriangle {
     }
 
     /// Upper bounds on the sums of magnitudes of each column of `L^-1`, by one sweep: no entry of the inverse is larger than
-    /// that of the triangle with the magnitudes of L on the diagonal and their negatives below it.
+    /// that of the triangle with the magnitudes of L on the diagonal and the negative magnitudes of L below.
     ///
     /// # Source
     /// N. J. Higham, *Accuracy and Stability of Numerical Algorithms*, SIAM (2002), section 8.2: the comparison matrix.

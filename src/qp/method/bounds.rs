@@ -21,7 +21,7 @@ struct Side {
 /// The bounds of one unknown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bound {
-    /// The unknown, among the turned ones.
+    /// The unknown, after the reflections.
     pub unknown: usize,
     /// The least value, `-inf` without a lower bound.
     pub lower: f64,

@@ -99,8 +99,8 @@ impl ContactProblem {
     }
 }
 
-/// Returns `true` if another repair gains nothing. A repair gains the digits that the last one has, unless `rest`, what is not
-/// the way to the witness, is at most half of the `bound`, or the last one has gained little on the `best` before.
+/// Returns `true` if another repair gains nothing. A repair gains the digits that the last one has, unless `rest`, the bound
+/// without the way to the witness, is at most half of the `bound`, or the last one has gained little on the `best` before.
 fn settled(rest: f64, bound: f64, best: f64) -> bool {
     rest <= FAR * bound || bound >= GAINS * best
 }

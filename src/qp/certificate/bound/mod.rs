@@ -9,8 +9,8 @@
 //! so that `|u - u*|_K <= |u - v|_K + sqrt(r' K^-1 r + 2 mu' (B v - g))`. The pair (v, mu) is the answer repaired: the rows
 //! that look closed are put exactly at their gaps and no other row carries a force, so that the product vanishes.
 //!
-//! If K is singular, the norm is that of `K_D = K + B_C' D B_C` with rows C that press, which does not change under shifts that
-//! leave these rows in place. With s = g - B u* on C and a = |r| in the dual norm of K_D,
+//! If K is singular, the norm is that of `K_D = K + B_C' D B_C` with rows C that press, which equals the norm of K on shifts
+//! that do not move these rows. With s = g - B u* on C and a = |r| in the dual norm of K_D,
 //!
 //! ```text
 //! |v - u*|_K^2 + sum |mu_i| s_i <= a |v - u*|_{K_D},     |v - u*|_{K_D}^2 = |v - u*|_K^2 + sum D_i s_i^2
@@ -237,7 +237,7 @@ impl ContactProblem {
         let (part_of_row, violation) = (self.parts_of_rows(parts), self.accurate_violation(displacement));
         let spring = |row: usize| {
             let (force, size) = (-multiplier[row], sizes[part_of_row[row]]);
-            // A row on dofs without stiffness only has no stiffness of its own: its force sets the scale.
+            // A row that acts only on dofs without stiffness has no stiffness of its own: its force sets the scale.
             let stiffness = match compliance[row] {
                 0.0 if size > 0.0 => (force / size).powi(2),
                 0.0 => 1.0,
@@ -313,7 +313,7 @@ mod tests {
 
     #[test]
     fn a_row_on_dofs_without_stiffness_has_a_spring_that_its_force_stretches_by_the_energy_norm() {
-        // A row joins the first dof, of stiffness 4, to the third, of stiffness 0, which alone the second row acts on.
+        // A row joins the first dof, of stiffness 4, to the third, of stiffness 0. The second row acts on the third alone.
         let rows = SparseMatrix::from_triplets(2, 3, &[(0, 0, 3.0), (0, 2, 5.0), (1, 2, 1.0)]).unwrap();
         let apart = apart();
         let problem = ContactProblem::new(apart.stiffness, apart.load, rows, vec![9.0, 1.0]).unwrap();

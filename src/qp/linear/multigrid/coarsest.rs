@@ -8,7 +8,7 @@ use crate::qp::linear::{Cholesky, Equilibration, FactorError, SparseMatrix, Symm
 /// diagonal of the matrix is of order one.
 const LEAST_PIVOT: f64 = 1000.0;
 
-/// A diagonal entry reduced below this many units in the last place has lost its digits: the face removes its unknown on this
+/// A diagonal entry reduced below this many units in the last place has lost its digits, because the face reduces it on this
 /// level and on those above.
 pub(super) const LOST_DIAGONAL: f64 = 3000.0;
 

@@ -1,7 +1,7 @@
 //! The hierarchy in a face: the subspace in which single displacements are held, such as those of closed contact rows.
 //!
 //! With Q the projection onto the held directions, the first prolongator becomes (I - Q) P. Every coarse matrix A changes by a
-//! C on the range of the face only: nothing else is built again.
+//! matrix C, only near the held dofs: nothing else is built again.
 //!
 //! ```text
 //! A_1 - C_1 = P' (I - Q) A (I - Q) P,     C_1 = S + S' - P' (Q A Q) P  with S = P' (Q A) P,     C_k+1 = P' C_k P

@@ -4,7 +4,7 @@ use super::nodes::Nodes;
 use crate::error::Error;
 use crate::qp::linear::{SymmetricMatrix, dot, largest};
 
-/// A vector follows from those before it if its length after their components are removed is less than this.
+/// A vector follows from those before it if less than this share of its length is left after their components are removed.
 const DEPENDENT_VECTOR: f64 = 1e-8;
 
 /// The near-null space of a stiffness: for a body its rigid-body modes, for a scalar problem the constants.

@@ -4,8 +4,8 @@ use super::blocks::BlockMatrix;
 use super::real::Real;
 use super::threads::in_block_chunks;
 
-/// A near-null vector is no separate mode within an aggregate if its length there, after those before it are removed, is less
-/// than this: two nodes do not turn about the line through them.
+/// A near-null vector is no separate mode within an aggregate if less than this share of its length there is left after those
+/// before it are removed: two nodes do not turn about the line through them.
 const DEPENDENT_IN_AGGREGATE: f64 = 1e-8;
 
 /// The near-null space on a level: `count` values for each place, place by place.

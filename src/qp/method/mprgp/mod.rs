@@ -36,8 +36,8 @@ const PATIENCE: usize = 60;
 /// Cycles on one face after which their rate gives an estimate of all cycles, and the factor by which it may be wrong.
 const TRIAL: (usize, f64) = (16, 1.2);
 
-/// At least one over this share of the worth is spent first: conjugate gradients begin slowly on a stretched mesh, and little
-/// is lost by waiting for the other way. If only that share is left to go, the answer is near.
+/// At least the worth divided by this number is spent first: conjugate gradients begin slowly on a stretched mesh, and little
+/// is lost by waiting for the other way. If no more cycles than that are left to go, the answer is near.
 const SHARE: usize = 8;
 
 /// If the residual in twice the precision is above this share of the previous one, it will not decrease any more.
