@@ -1,29 +1,29 @@
-//! The one error type: what is wrong, where, which value, what is allowed.
+//! The one error type: each error states what is wrong, where, which value, and what is allowed.
 
 use std::path::PathBuf;
 
 use crate::solution::Solution;
 
-/// Everything that can go wrong between a file and a certified answer.
+/// All errors between a file and a certified answer.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A vector whose length does not fit the rest of the problem.
+    /// A vector with a length that does not fit the rest of the problem.
     #[error("{name} has length {found}, but there are {expected} {of}")]
     Length {
-        /// Which vector.
+        /// Name of the vector.
         name: &'static str,
         /// Its length.
         found: usize,
         /// The length that fits.
         expected: usize,
-        /// What the fitting length counts.
+        /// The unit of the fitting length, such as `dofs`.
         of: &'static str,
     },
-    /// A matrix whose shape does not fit the rest of the problem.
+    /// A matrix with a shape that does not fit the rest of the problem.
     #[error("{name} is {} x {}, but it must be {} x {}", found.0, found.1, expected.0, expected.1)]
     Shape {
-        /// Which matrix.
+        /// Name of the matrix.
         name: &'static str,
         /// Rows and columns that it has.
         found: (usize, usize),
@@ -42,25 +42,25 @@ pub enum Error {
         /// Columns of the matrix.
         columns: usize,
     },
-    /// Compressed columns that are no matrix.
+    /// Compressed columns that form no matrix.
     #[error("compressed columns: {message}")]
     Pattern {
-        /// What is wrong, and where.
+        /// A sentence on what is wrong, and where.
         message: String,
     },
-    /// A number that is not finite where it must be.
+    /// A number that is not finite, at a place that needs a finite one.
     #[error("{name} has the value {value} at {at} (indices from 0); it must be {allowed}")]
     NotFinite {
-        /// Which vector or matrix.
+        /// Name of the vector or matrix.
         name: &'static str,
-        /// Where in it.
+        /// Place in it.
         at: String,
         /// The value.
         value: f64,
-        /// What is allowed there.
+        /// The values allowed there.
         allowed: &'static str,
     },
-    /// A stiffness given with both triangles that differ.
+    /// A stiffness given with both triangles, which differ.
     #[error(
         "the stiffness is not symmetric: entry ({row}, {column}) is {value:e}, entry ({column}, {row}) is {mirrored:e} \
          (indices from 0); give both triangles alike, or declare one"
@@ -78,20 +78,20 @@ pub enum Error {
     /// A stiffness with a negative eigenvalue: the problem has no unique minimum.
     #[error("the stiffness is not positive semidefinite ({evidence}): the problem is not convex")]
     NotConvex {
-        /// What shows it.
+        /// The evidence, in words.
         evidence: String,
     },
     /// Contact rows that no displacement satisfies together.
     #[error("infeasible: {reason}")]
     Infeasible {
-        /// Which rows, and by how much they overlap.
+        /// The rows and the length by which they overlap, in words.
         reason: String,
         /// Contact rows that contradict each other, from 0.
         rows: Vec<usize>,
-        /// Farkas' weights of these rows, `>= 0`, under which they cancel; empty where the rows would contradict each other
-        /// only as equalities.
+        /// Farkas' weights of these rows, `>= 0`, under which they cancel; empty if the rows would contradict each other only
+        /// as equalities.
         weights: Vec<f64>,
-        /// By how much they overlap, in length, for the largest weight 1.
+        /// The length by which they overlap, for the largest weight 1.
         overlap: f64,
     },
     /// The load moves the body away without end.
@@ -102,7 +102,7 @@ pub enum Error {
         /// The escape direction d, one entry per dof: `K d = 0`, `B d <= 0`, `f'd > 0`.
         direction: Vec<f64>,
     },
-    /// A mode that nothing resists and no load drives: the answer is not unique.
+    /// A mode without energy and without work of the load, which no row stops: the answer is not unique.
     #[error("a rigid-body motion is held by neither supports nor obstacle: {mode}")]
     UnderHeld {
         /// The mode in words.
@@ -110,10 +110,10 @@ pub enum Error {
         /// The free direction, one entry per dof.
         direction: Vec<f64>,
     },
-    /// A step that cannot be interrupted, as a factorisation, would take longer than there is time.
+    /// A step that cannot be interrupted, such as a factorisation, would take longer than the time that is left.
     #[error("the next step takes about {needed:.1e} s, and {time:.1e} s are left")]
     OutOfTime {
-        /// Seconds that it takes, estimated.
+        /// Seconds that the step takes, estimated.
         needed: f64,
         /// Seconds that are left.
         time: f64,
@@ -130,25 +130,25 @@ pub enum Error {
         condition: &'static str,
         /// Its value.
         value: f64,
-        /// What was asked for.
+        /// The tolerance that was requested.
         tolerance: f64,
     },
     /// A setting outside its range.
     #[error("{name} is {value}; it must be {allowed}")]
     Setting {
-        /// Which setting.
+        /// Name of the setting.
         name: &'static str,
         /// The value given.
         value: f64,
         /// The range.
         allowed: &'static str,
     },
-    /// A step that needs the problem condensed.
+    /// A step that needs a condensed problem.
     #[error(
         "{step} needs a problem that is condensed onto its contact dofs and held by its supports; solve point by point"
     )]
     NotCondensed {
-        /// Which step.
+        /// Name of the step.
         step: &'static str,
     },
     /// A scene or a problem that needs more memory than it may take.
@@ -159,18 +159,18 @@ pub enum Error {
         memory(*allowed)
     )]
     TooLarge {
-        /// Unknowns.
+        /// Number of unknowns.
         dofs: f64,
         /// Entries of the stiffness, both triangles.
         stiffness_entries: f64,
         /// Values of its Cholesky factor.
         factor_entries: f64,
-        /// Memory that all of it takes, estimated, in bytes.
+        /// Memory for everything, estimated, in bytes.
         bytes: f64,
         /// Memory that it may take, in bytes.
         allowed: f64,
     },
-    /// A problem that no way solves within the memory that it may take.
+    /// A problem that neither path solves within the memory that it may take.
     #[error("{}", no_room(*factor, *multigrid, *allowed, ended.as_deref()))]
     NoRoom {
         /// Memory of the direct path, estimated, in bytes.
@@ -179,27 +179,27 @@ pub enum Error {
         multigrid: f64,
         /// Memory that it may take, in bytes.
         allowed: f64,
-        /// How the iterative path ended without a certified answer, if there was room for it.
+        /// The way in which the iterative path ended without a certified answer, if there was room for it.
         ended: Option<String>,
     },
-    /// A library step that failed for a reason of its own.
+    /// A library step that failed for its own reason.
     #[error("{step} failed: {reason}")]
     Numerical {
-        /// Which step.
+        /// Name of the step.
         step: &'static str,
-        /// Why.
+        /// The reason.
         reason: String,
     },
-    /// Nodes and elements that make no mesh.
+    /// Nodes and elements that form no mesh.
     #[error("mesh: {message}")]
     Mesh {
-        /// Which node or element, what is wrong with it, and what is allowed.
+        /// A sentence on the node or element, its fault, and what is allowed.
         message: String,
     },
-    /// A scene whose JSON does not have the right form, or a value of it that is wrong, at its place in the text.
+    /// A scene with JSON of the wrong form or with a wrong value, at its place in the text.
     #[error("{source_name}:{line}:{column}: at `{path}`: {message}")]
     SceneSyntax {
-        /// The file, or `scene` where it came as text.
+        /// The file, or `scene` if it came as text.
         source_name: String,
         /// Line, from 1.
         line: usize,
@@ -207,27 +207,27 @@ pub enum Error {
         column: usize,
         /// JSON path of the field.
         path: String,
-        /// What is wrong, and what is allowed.
+        /// A sentence on what is wrong, and what is allowed.
         message: String,
     },
-    /// A scene that can be solved, whose answer would be to another question than was meant.
+    /// A scene that can be solved, but with an answer to another question than was meant.
     #[error("{place}at `{path}`: {message}")]
     Refused {
         /// The name of the kind of refusal, the same in every version.
         code: &'static str,
-        /// Where the scene stands: `scene, `, or its file with line and column.
+        /// Place of the scene: `scene, `, or its file with line and column.
         place: String,
-        /// JSON path of the field that would change it, as `obstacles[0].approach`.
+        /// JSON path of the field that would change it, such as `obstacles[0].approach`.
         path: String,
-        /// What would go wrong, where, with numbers, and what to change.
+        /// A sentence on what would go wrong and where, with numbers, and on what to change.
         message: String,
     },
-    /// A scene whose values do not describe a problem.
+    /// A scene with values that do not describe a problem.
     #[error("scene, at `{path}`: {message}")]
     Scene {
         /// JSON path of the value.
         path: String,
-        /// What is wrong, and what is allowed.
+        /// A sentence on what is wrong, and what is allowed.
         message: String,
     },
     /// A matrix or mesh file that does not have the right form.
@@ -235,19 +235,19 @@ pub enum Error {
     FileSyntax {
         /// The file.
         file: PathBuf,
-        /// Line, from 1; in a binary mesh the line in which the section begins.
+        /// Line, from 1; in a binary mesh the line at which the section begins.
         line: usize,
-        /// What is wrong, and what is allowed; in a binary mesh behind the byte of the file, from 0.
+        /// A sentence on what is wrong, and what is allowed; in a binary mesh after the byte of the file, from 0.
         message: String,
     },
-    /// A binary file, as an STL, that does not have the right form.
+    /// A binary file, such as an STL file, that does not have the right form.
     #[error("{}, byte {byte}: {message}", file.display())]
     FileBytes {
         /// The file.
         file: PathBuf,
-        /// Offset of what is wrong, from 0.
+        /// Offset of the fault, from 0.
         byte: usize,
-        /// What is wrong, and what is allowed.
+        /// A sentence on what is wrong, and what is allowed.
         message: String,
     },
     /// A file or folder that cannot be read or written.
@@ -255,7 +255,7 @@ pub enum Error {
     File {
         /// `read`, `write` or `make the folder`.
         action: &'static str,
-        /// Which one.
+        /// Path of the file or folder.
         path: PathBuf,
         /// The system's reason.
         source: std::io::Error,
@@ -271,22 +271,22 @@ impl Error {
         }
     }
 
-    /// The name of the kind of error, the same in every version: for programs that tell errors apart.
+    /// The name of the kind of error, the same in every version: for programs that distinguish errors.
     pub fn code(&self) -> &'static str {
         self.class().0
     }
 
-    /// The `status` of a report that ends with the error, as `under_held`.
+    /// The `status` of a report that ends with the error, such as `under_held`.
     pub fn status(&self) -> &'static str {
         self.class().1
     }
 
-    /// What the error says of the problem.
+    /// The statement of the error about the problem.
     pub fn failure(&self) -> Failure {
         self.class().2
     }
 
-    /// Code, status and failure: all that distinguishes variants outside the places that raise them.
+    /// Code, status and failure: the only place, apart from those that raise errors, that distinguishes variants.
     fn class(&self) -> (&'static str, &'static str, Failure) {
         use Failure::{BadInput, NoSolution, NotCertified};
         let bad_input = |code| (code, "bad_input", BadInput);
@@ -317,10 +317,10 @@ impl Error {
     }
 }
 
-/// What an error says of the problem; the program has an exit code for each.
+/// The statement of an error about the problem; the program has an exit code for each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Failure {
-    /// The input, a file, or a number on the way is at fault.
+    /// The input, a file, or a number on the way is faulty.
     BadInput,
     /// The problem has no solution.
     NoSolution,
@@ -342,7 +342,7 @@ fn no_room(factor: f64, multigrid: f64, allowed: f64, ended: Option<&str>) -> St
     }
 }
 
-/// Why digits are lost and what helps, where the stiffness has a pivot near rounding.
+/// The cause of lost digits and the remedy, if the stiffness has a pivot near rounding.
 fn lost_digits(solution: &Solution) -> String {
     let Some(pivot) = solution.lost_pivot else { return String::new() };
     format!(
@@ -351,17 +351,17 @@ fn lost_digits(solution: &Solution) -> String {
     )
 }
 
-/// Bytes as a reader writes them.
+/// Bytes in readable units.
 pub(crate) fn memory(bytes: f64) -> String {
     if bytes < 1e9 { format!("{:.0} MB", bytes / 1e6) } else { format!("{:.1} GB", bytes / 1e9) }
 }
 
-/// Longer names than this are no slips of the pen.
+/// Names longer than this are no spelling errors.
 const LONGEST_NAME: usize = 100;
 
-/// `; did you mean ...?` for a name that is one of `names` but for a few letters, else nothing.
+/// `; did you mean ...?` for a name that differs from one of `names` by a few letters, otherwise nothing.
 ///
-/// One letter in three may be another one, be missing, be there in addition, or have changed places with its neighbour.
+/// One letter in three may be replaced, missing, added, or exchanged with its neighbour.
 pub(crate) fn nearly<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> String {
     if name.len() > LONGEST_NAME {
         return String::new();
@@ -372,7 +372,7 @@ pub(crate) fn nearly<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -
     let away = |other: &str| strsim::damerau_levenshtein(&written, &other.to_lowercase());
     let others = names.into_iter().filter(|other| !other.is_empty() && other.len() <= LONGEST_NAME);
     let near = others.map(|other| (away(other), other));
-    // Of names of one letter no letter is left.
+    // A name of one letter that differs has no letter in common.
     let near = near.filter(|(away, other)| *away <= most && *away < length.max(other.chars().count()));
     near.min_by_key(|(away, _)| *away).map_or_else(String::new, |(_, other)| format!("; did you mean `{other}`?"))
 }

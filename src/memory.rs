@@ -1,7 +1,7 @@
-//! How much memory the machine can give.
+//! Memory that the machine can give.
 
-/// Bytes that the machine can give away, if it says so (on Linux): what is available, and what is left to the control
-/// group; elsewhere there is no limit.
+/// Bytes that the machine can give, if it states them (on Linux): the available memory, at most the rest of the control group;
+/// elsewhere there is no limit.
 pub(crate) fn available() -> f64 {
     let free = field("/proc/meminfo", "MemAvailable:").map_or(f64::INFINITY, |kilobytes| 1024.0 * kilobytes);
     let of_group = |file: &str| number(&text(&format!("/sys/fs/cgroup/{file}"))?);
@@ -11,14 +11,14 @@ pub(crate) fn available() -> f64 {
     }
 }
 
-/// A limited address space is not used to its last byte: pieces of it are too small for what is asked for.
+/// A limited address space cannot be used to its last byte: the remaining pieces are too small for the requests.
 const USABLE: f64 = 0.9;
 
-/// Bytes of the address space that matrix products reserve at least.
+/// Least number of bytes of the address space that matrix products reserve.
 const PACKED_BLOCKS: f64 = (64_u32 << 20) as f64;
 
-/// Bytes of the address space that matrix products reserve for packed blocks, of which they touch few: twice the caches of the
-/// third level, allocated at once inside the factorisation, which could not end cleanly without them.
+/// Bytes of the address space that matrix products reserve for packed blocks; they use few of these bytes. It is twice the
+/// third-level caches, allocated at once inside the factorisation, which could not end cleanly without them.
 fn packed_blocks() -> f64 {
     const CPUS: &str = "/sys/devices/system/cpu";
     let cache = |file: &str| text(&format!("{CPUS}/cpu0/cache/index3/{file}"));
@@ -29,7 +29,7 @@ fn packed_blocks() -> f64 {
     kilobytes.map_or(PACKED_BLOCKS, |kilobytes| PACKED_BLOCKS.max(2.0 * 1024.0 * kilobytes * caches))
 }
 
-/// How many numbers a list like `0-3,8` has.
+/// The number of numbers in a list like `0-3,8`.
 fn count(list: &str) -> Option<f64> {
     let of_range = |range: &str| -> Option<f64> {
         let (first, last) = range.split_once('-').unwrap_or((range, range));
@@ -40,7 +40,7 @@ fn count(list: &str) -> Option<f64> {
 
 /// Bytes of the address space that the program may take in all, itself included, if that is limited (`ulimit -v`).
 ///
-/// The program counts the bytes that it touches; code and stacks that it only reserves are taken off.
+/// The program counts the bytes that it uses; code and stacks that it only reserves are subtracted.
 pub(crate) fn address_space_left() -> f64 {
     let Some(limit) = field("/proc/self/limits", "Max address space") else { return f64::INFINITY };
     let kilobytes = |name| field("/proc/self/status", name).unwrap_or(0.0);
@@ -48,7 +48,7 @@ pub(crate) fn address_space_left() -> f64 {
     (USABLE * (limit - reserved - packed_blocks())).max(0.0)
 }
 
-/// The number behind `name` in a file of the system.
+/// The number after `name` in a file of the system.
 fn field(file: &str, name: &str) -> Option<f64> {
     number(text(file)?.lines().find_map(|line| line.strip_prefix(name))?)
 }
@@ -57,7 +57,7 @@ fn text(file: &str) -> Option<String> {
     std::fs::read_to_string(file).ok()
 }
 
-/// The first word as a number; a limit that is called `unlimited` or `max` is none.
+/// The first word as a number; `unlimited` and `max` mean no limit.
 fn number(words: &str) -> Option<f64> {
     words.split_whitespace().next()?.parse().ok()
 }

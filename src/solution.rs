@@ -1,6 +1,6 @@
-//! What an answer consists of: plain data, no logic of the solvers.
+//! The parts of an answer: plain data, no logic of the solvers.
 //!
-//! Every type serialises as it stands in a report; a number that is not finite is null there.
+//! Every type serialises as it appears in a report; a number that is not finite is null there.
 
 use std::fmt;
 use std::ops::Not;
@@ -11,7 +11,7 @@ use serde::{Serialize, Serializer};
 /// Rounding of the entries of an assembled stiffness, as a share of its diagonal.
 const ROUNDED_ENTRIES: f64 = 512.0 * f64::EPSILON;
 
-/// The contact indicator C of the formulation: which of `rows` contact rows are closed.
+/// The contact indicator C of the formulation: the closed rows of `rows` contact rows.
 ///
 /// Stored as bits, so that a method can keep its whole history of sets.
 #[derive(Clone, PartialEq, Eq, Hash, Default)]
@@ -21,17 +21,17 @@ pub struct ContactSet {
 }
 
 impl ContactSet {
-    /// The set of `rows` rows in which none is closed.
+    /// The set of `rows` rows, all open.
     pub fn open(rows: usize) -> Self {
         ContactSet { rows, bits: vec![0; rows.div_ceil(64)] }
     }
 
-    /// The set of `rows` rows in which all are closed.
+    /// The set of `rows` rows, all closed.
     pub fn closed(rows: usize) -> Self {
         Self::from_fn(rows, |_| true)
     }
 
-    /// The set of `rows` rows in which row `i` is closed when `closed(i)` says so.
+    /// The set of `rows` rows in which row `i` is closed if `closed(i)` is `true`.
     pub fn from_fn(rows: usize, mut closed: impl FnMut(usize) -> bool) -> Self {
         let mut set = Self::open(rows);
         (0..rows).filter(|&row| closed(row)).for_each(|row| set.insert(row));
@@ -53,21 +53,21 @@ impl ContactSet {
         row < self.rows && self.bits[row / 64] >> (row % 64) & 1 == 1
     }
 
-    /// Closes row `row`; a row beyond the last is left alone.
+    /// Closes row `row`; a row beyond the last is ignored.
     pub fn insert(&mut self, row: usize) {
         if row < self.rows {
             self.bits[row / 64] |= 1 << (row % 64);
         }
     }
 
-    /// Opens row `row`; a row beyond the last is left alone.
+    /// Opens row `row`; a row beyond the last is ignored.
     pub fn remove(&mut self, row: usize) {
         if row < self.rows {
             self.bits[row / 64] &= !(1 << (row % 64));
         }
     }
 
-    /// Closes row `row` if it is open, and opens it if it is closed; a row beyond the last is left alone.
+    /// Closes row `row` if it is open, and opens it if it is closed; a row beyond the last is ignored.
     pub fn toggle(&mut self, row: usize) {
         if row < self.rows {
             self.bits[row / 64] ^= 1 << (row % 64);
@@ -113,14 +113,14 @@ impl fmt::Debug for ContactSet {
     }
 }
 
-/// How far an answer (u, lambda) is from the conditions that define the solution, each relative and dimensionless.
+/// Violation, by an answer (u, lambda), of the conditions that define the solution, each relative and dimensionless.
 ///
-/// Recomputed from the original problem by [`ContactProblem::certify`](crate::ContactProblem::certify), whatever the
-/// method claims. Every measure is taken in its own scale. A *part* is a connected component of K and B, without couplings
-/// below 1e-6 of `sqrt(K_ii K_jj)`; with `p` the part of a dof or row,
+/// Recomputed from the original problem by [`ContactProblem::certify`](crate::ContactProblem::certify), independently of the
+/// method. Every measure is taken in its own scale. A *part* is a connected component of K and B, without couplings below 1e-6
+/// of `sqrt(K_ii K_jj)`; with `p` the part of a dof or row,
 ///
 /// * `N_p = sqrt(u_p' K_pp u_p)` is its energy norm and `F_p` the largest `|F_i| / sqrt(K_ii)` of its loads and contact forces;
-///   where it is at rest, a millionth of `F_p` stands for `N_p`;
+///   if the part is at rest, a millionth of `F_p` replaces `N_p`;
 /// * `E_p` is the largest of `N_p^2 / 2`, `|f' u|_p`, `|g' lambda|_p` and a millionth of `F_p^2 / 2`;
 /// * `b_i` is the largest `|B_ij| / sqrt(K_jj)` of row i.
 ///
@@ -129,19 +129,19 @@ impl fmt::Debug for ContactSet {
 /// | field | formula, the largest over all dofs, rows or parts |
 /// |---|---|
 /// | `stationarity` | `abs(r_i) / sqrt(K_ii) / F_p` |
-/// | `stationarity_excess` | the same where rounding u and lambda to double precision does not explain it |
+/// | `stationarity_excess` | the same, unless it is explained by rounding u and lambda to double precision |
 /// | `penetration` | `(B u - g)_i+ / max(abs(B_i) abs(u), abs(g_i), b_i N_p)` |
 /// | `adhesion` | `(lambda_i)_+ b_i / F_p` |
-/// | `complementarity` | `abs(lambda_i (B u - g)_i) / E_p`, where rounding u does not explain the distance |
-/// | `duality_gap` | `abs(u'Ku - f'u - lambda'g)_p / E_p`, as far as it exceeds rounding |
-/// | `energy_error_bound` | an upper bound on `norm_K(u - u*) / norm_K(u)`, infinite where none is known |
-/// | `part_error_bound` | the largest of it and of the same for each part |
-/// | `energy_error_excess` | the same where rounding u to double precision does not explain it |
+/// | `complementarity` | `abs(lambda_i (B u - g)_i) / E_p`, unless the distance is explained by rounding u |
+/// | `duality_gap` | `abs(u'Ku - f'u - lambda'g)_p / E_p`, the part above rounding |
+/// | `energy_error_bound` | an upper bound on `norm_K(u - u*) / norm_K(u)`, infinite if none is known |
+/// | `part_error_bound` | the largest of this bound and those of the parts |
+/// | `energy_error_excess` | the same, unless it is explained by rounding u to double precision |
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Certificate {
     /// Relative imbalance of forces.
     pub stationarity: f64,
-    /// Relative imbalance of forces where it is more than rounding.
+    /// Relative imbalance of forces, if it is more than rounding.
     pub stationarity_excess: f64,
     /// Relative penetration into the obstacle.
     pub penetration: f64,
@@ -151,11 +151,11 @@ pub struct Certificate {
     pub complementarity: f64,
     /// Relative difference of the primal and the dual energy.
     pub duality_gap: f64,
-    /// Upper bound on the relative error of the displacement in the energy norm; infinite where none is known.
+    /// Upper bound on the relative error of the displacement in the energy norm; infinite if none is known.
     pub energy_error_bound: f64,
-    /// The largest such bound over the whole and each part; that of the whole where K was not factorised.
+    /// The largest such bound over the whole and each part; that of the whole if K was not factorised.
     pub part_error_bound: f64,
-    /// The same over those whose bound is more than what rounding the displacement to double precision may cost.
+    /// The same over the bounds that exceed the possible effect of rounding the displacement to double precision.
     pub energy_error_excess: f64,
     /// Number of parts.
     pub parts: usize,
@@ -166,7 +166,7 @@ pub struct Certificate {
 }
 
 impl Certificate {
-    /// The conditions with their names, in the order of the fields: what is held against a tolerance beside the bound.
+    /// The conditions with their names, in the order of the fields: they must meet a tolerance, beside the bound.
     pub fn conditions(&self) -> [(&'static str, f64); 5] {
         [
             ("stationarity", self.stationarity_excess),
@@ -177,9 +177,9 @@ impl Certificate {
         ]
     }
 
-    /// Returns the condition that is worst, and its value; a value that is not a number is the worst of all.
+    /// Returns the worst condition and its value; NaN is the worst of all.
     ///
-    /// The energy bound, where there is one and it is more than rounding, stands beside the conditions.
+    /// The energy bound is compared with the conditions, if there is one and it is more than rounding.
     pub fn worst(&self) -> (&'static str, f64) {
         let rank = |value: f64| if value.is_nan() { f64::INFINITY } else { value };
         let bound = self.has_bound().then_some((self.bound_name(), self.energy_error_excess));
@@ -215,13 +215,12 @@ impl Certificate {
     }
 }
 
-/// What an answer is held against.
+/// The goal that an answer must meet.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Goal {
     /// Relative tolerance of the conditions.
     pub tolerance: f64,
-    /// Relative error in the energy norm that is good enough; where one is named and a bound is known, the bound decides
-    /// alone.
+    /// Relative error in the energy norm that is good enough; if one is named and a bound is known, the bound alone decides.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub accuracy: Option<f64>,
 }
@@ -233,7 +232,7 @@ impl From<f64> for Goal {
 }
 
 impl Goal {
-    /// The accuracy, where `certificate` has a bound to hold against it.
+    /// The accuracy, if `certificate` has a bound to compare it with.
     fn accuracy_for(&self, certificate: &Certificate) -> Option<f64> {
         self.accuracy.filter(|_| !certificate.energy_error_bound.is_infinite())
     }
@@ -246,7 +245,7 @@ impl Goal {
         }
     }
 
-    /// What decides: the condition, its value, and what is allowed.
+    /// The decisive condition, its value, and the allowed value.
     pub fn decisive(&self, certificate: &Certificate) -> (&'static str, f64, f64) {
         match self.accuracy_for(certificate) {
             Some(accuracy) => ("reachable energy_error_bound", certificate.part_error_bound, accuracy),
@@ -264,9 +263,9 @@ impl Goal {
 /// Rows that an answer proves to be open or closed in the exact answer of the same problem.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ProvenSet {
-    /// Rows whose distance exceeds its own error bound.
+    /// Rows with a distance that exceeds its own error bound.
     pub open: ContactSet,
-    /// Rows whose force exceeds its own error bound.
+    /// Rows with a force that exceeds its own error bound.
     pub closed: ContactSet,
 }
 
@@ -288,26 +287,26 @@ impl Serialize for ProvenSet {
     }
 }
 
-/// Wall-clock seconds that an answer cost.
+/// Wall-clock seconds spent on an answer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Seconds {
     /// Symbolic and numeric factorisations.
     pub factor: f64,
-    /// Recomputing the conditions and bounding the error.
+    /// Recomputation of the conditions and bound on the error.
     pub certificate: f64,
-    /// Proving which rows are open and closed.
+    /// Proof of the rows that are open and closed.
     pub proof: f64,
     /// Everything from the checked problem to the certified answer, factorisations, certificate, proof and earlier attempts included.
     pub solve: f64,
 }
 
-/// One iteration of a method: the set that it worked with and what it found there.
+/// One iteration of a method: its contact set and its penalty.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Iteration {
     /// The closed rows in this iteration; a report has their number.
     #[serde(rename = "closed", serialize_with = "count")]
     pub contact_set: ContactSet,
-    /// The penalty, in multiples of the local stiffness; zero where the method has none.
+    /// The penalty, in multiples of the local stiffness; zero if the method has none.
     #[serde(skip_serializing_if = "is_zero")]
     pub penalty: f64,
 }
@@ -321,21 +320,21 @@ fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }
 
-/// Why an answer was found the way it was: what was weighed before, and what decided.
+/// Reason for the way in which an answer was found: the ways that were compared before, and the decision.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Why {
-    /// What was chosen: one of those considered, or the method that was asked for by name.
+    /// The chosen way: one of those considered, or the method that was requested by name.
     pub chosen: String,
-    /// What decided, in words.
+    /// Reason of the decision, in words.
     pub reason: String,
-    /// What was weighed against each other; empty where a method was asked for by name.
+    /// The ways that were compared; empty if a method was requested by name.
     pub considered: Vec<Expected>,
 }
 
-/// A way to an answer with what it was expected to cost, before it was taken or left.
+/// A way to an answer with its expected cost, before it was taken or left.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Expected {
-    /// `factor`, which stands for the methods that factorise (`active-set`, `qp`, `penalty`), or `mprgp`.
+    /// `factor`, for all methods that factorise (`active-set`, `qp`, `penalty`), or `mprgp`.
     pub method: String,
     /// Seconds from the problem to its answer, on one processor of 2024.
     pub seconds: f64,
@@ -343,20 +342,20 @@ pub struct Expected {
     pub bytes: f64,
 }
 
-/// A way that was tried beside the one that gave the answer.
+/// A way that was tried in addition to the one that gave the answer.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Attempt {
     /// The method, as in [`Solution::method`].
     pub method: String,
     /// Wall-clock seconds that it took.
     pub seconds: f64,
-    /// Why its end was not the end.
+    /// Reason why this attempt did not give the answer.
     pub reason: String,
 }
 
 /// The answer to a contact problem.
 ///
-/// A report has its numbers without the vectors: they go into files of their own.
+/// A report has its numbers without the vectors, which go into their own files.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Solution {
     /// Displacement u, one entry per dof, in the problem's unit of length.
@@ -368,46 +367,46 @@ pub struct Solution {
     /// The closed rows.
     #[serde(skip)]
     pub contact_set: ContactSet,
-    /// `qp`, `active-set`, `penalty` or `mprgp`, with a suffix where a variant ran.
+    /// `qp`, `active-set`, `penalty` or `mprgp`, with a suffix if a variant ran.
     pub method: String,
     /// Iterations of the method itself (linear solves of a loop, or interior-point steps).
     pub iterations: usize,
     /// The contact sets on the way, in order; for the QP the sets of its polish.
     pub history: Vec<Iteration>,
-    /// How far the answer can be trusted.
+    /// The certificate, which measures how far the answer can be trusted.
     pub certificate: Certificate,
-    /// The rows whose contact is beyond doubt, where [`Settings::prove`](crate::Settings::prove) asks for them and
-    /// an energy bound is known.
+    /// The rows with proven contact or gap, if [`Settings::prove`](crate::Settings::prove) asks for them and an energy bound is
+    /// known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub proven: Option<ProvenSet>,
-    /// Steps of refinement, where the factor was in single precision.
+    /// Steps of refinement, if the factor was in single precision.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub refinements: Option<usize>,
-    /// Why no factor was taken, in words, where [`Method::Auto`](crate::Method::Auto) decided that.
+    /// Reason why no factor was taken, in words, if [`Method::Auto`](crate::Method::Auto) decided that.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// What was weighed before, and what decided; `None` of an answer that no choice of a method led to.
+    /// The ways that were compared before, and the decision; `None` if no method was chosen for this answer.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub why: Option<Why>,
-    /// What else was tried, in order; its time is in `seconds`.
+    /// Other attempts, in order; their time is in `seconds`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub attempts: Vec<Attempt>,
-    /// The smallest pivot of the stiffness, of a diagonal of order one, where it is so close to rounding that digits are lost;
-    /// 0 where a pivot was not positive.
+    /// The smallest pivot of the stiffness, for a diagonal of order one, if it is so close to rounding that digits are lost; 0
+    /// if a pivot was not positive.
     #[serde(skip)]
     pub lost_pivot: Option<f64>,
-    /// Unknowns that the method worked on; fewer than all where the problem was condensed.
+    /// Unknowns that the method worked on; fewer than all if the problem was condensed.
     #[serde(skip)]
     pub condensed_dofs: usize,
-    /// What it cost.
+    /// Time spent on it.
     #[serde(skip)]
     pub seconds: Seconds,
 }
 
 impl Solution {
-    /// Digits of the displacement that the entries of the stiffness determine, about, where they are few: each entry is rounded
-    /// to double precision, and the softest motion feels that divided by the smallest pivot. The certificate takes the entries
-    /// as exact.
+    /// Digits of the displacement that the entries of the stiffness determine, approximately, if they are few: each entry is
+    /// rounded to double precision, and the softest motion amplifies that by one over the smallest pivot. The certificate takes
+    /// the entries as exact.
     pub fn digits_of_stiffness(&self) -> Option<u32> {
         self.lost_pivot.map(|pivot| (pivot / ROUNDED_ENTRIES).log10().round().max(0.0) as u32)
     }

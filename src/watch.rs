@@ -26,7 +26,7 @@ use std::time::{Duration, Instant};
 #[derive(Clone, Debug, Default)]
 pub struct Watch {
     deadline: Option<Instant>,
-    /// The time until the deadline when it was set.
+    /// Time from setting the deadline to the deadline.
     span: Duration,
     shared: Arc<Shared>,
 }
@@ -52,29 +52,29 @@ impl fmt::Debug for Observer {
     }
 }
 
-/// Finishing an answer, as its certificate, may take this share of the time beyond the deadline.
+/// Finishing an answer, for example its certificate, may take this share of the time beyond the deadline.
 const FINISHING: f64 = 0.1;
 
-/// Work that takes less is too short to measure the pace.
+/// Work shorter than this is too short to measure the pace.
 const TELLING_SECONDS: f64 = 1e-3;
 
 /// The current part, step and iteration.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Activity {
-    /// The part of the work if there are several, as a gap of a sweep.
+    /// The part of the work if there are several, such as one gap of a sweep.
     pub part: Option<Part>,
-    /// The step of it, as `factorisation`; empty before the first.
+    /// The step of the work, such as `factorisation`; empty before the first.
     pub step: &'static str,
     /// The iteration of the step, from 1; 0 if the step has no iterations.
     pub iteration: usize,
-    /// When the work under way began that is [timed](Watch::timed), and how long it is expected to take.
+    /// Start and expected duration of the current work, if it is [timed](Watch::timed).
     pub timed: Option<(Instant, Duration)>,
 }
 
 /// One of several parts of the work.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Part {
-    /// What the parts are, as `gap`.
+    /// Name of the parts, such as `gap`.
     pub name: &'static str,
     /// Number of this part, from 1.
     pub number: usize,
@@ -102,7 +102,7 @@ impl fmt::Display for Activity {
 
 impl Watch {
     /// A watch that calls `observer` whenever a part, a step or an iteration begins: on the thread that does the work, and
-    /// before it is done. [`Watch::activity`] is then what begins.
+    /// before the work is done. [`Watch::activity`] is then the one that begins.
     ///
     /// ```
     /// use signorini::{Error, Settings, Watch, solve};
@@ -125,7 +125,7 @@ impl Watch {
         Watch { shared: Arc::new(Shared { observer, ..Shared::default() }), ..Watch::default() }
     }
 
-    /// Asks the work to end with what it has.
+    /// Asks the work to end with its best answer so far.
     pub fn stop(&self) {
         self.shared.stopped.store(true, Ordering::SeqCst);
     }
@@ -139,7 +139,7 @@ impl Watch {
         stopped
     }
 
-    /// Returns `true` if the work has noticed the request to stop. During a factorisation, for example, it does not.
+    /// Returns `true` if the work has noticed the request to stop. A factorisation, for example, does not notice it.
     pub fn is_noticed(&self) -> bool {
         self.shared.noticed.load(Ordering::SeqCst)
     }
@@ -166,7 +166,7 @@ impl Watch {
         Watch { deadline: None, span: Duration::ZERO, shared: self.shared.clone() }
     }
 
-    /// The same watch for finishing an answer, as its certificate: its deadline is later by a share of the time.
+    /// The same watch for finishing an answer, for example its certificate: its deadline is later by a share of the time.
     pub(crate) fn finishing(&self) -> Watch {
         let deadline = self.deadline.and_then(|deadline| deadline.checked_add(self.span.mul_f64(FINISHING)));
         Watch { deadline, ..self.clone() }
@@ -187,8 +187,8 @@ impl Watch {
         self.time_left().is_none_or(|left| self.needed(estimate) < left)
     }
 
-    /// The same watch with the deadline sooner by the time that work of `estimate` seconds needs. A loop whose steps take that
-    /// long then ends before a step that would not finish in time.
+    /// The same watch with the deadline sooner by the time that work of `estimate` seconds needs. A loop with steps of that
+    /// length then ends before a step that would not finish in time.
     pub fn keeping(&self, estimate: f64) -> Watch {
         match self.time_left() {
             Some(left) => self.within(left - self.needed(estimate).min(left)),

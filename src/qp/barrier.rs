@@ -1,12 +1,12 @@
-//! The one barrier against panics from below: around the libraries that solve and factorise, and around nothing else.
+//! The one barrier against panics of libraries: only calls that solve and factorise are wrapped in it.
 //!
-//! Own code does not panic on any input. Of a library nobody can promise that, and a panic that crosses it takes the
-//! caller's program along.
+//! The code of this crate does not panic on any input. For a library nobody can promise that, and a panic that crosses it ends
+//! the caller's program too.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Runs `work`, a call of a library that touches nothing which outlives it; a panic comes back as its message.
+/// Runs `work`, a call of a library that changes nothing which outlives it; a panic is returned as its message.
 ///
 /// ```
 /// use signorini::internals::guarded;
@@ -18,7 +18,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 /// # Errors
 /// The message of the panic.
 pub fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, String> {
-    // What `work` has left half done is dropped with it.
+    // Data that `work` has left half done are dropped with it.
     catch_unwind(AssertUnwindSafe(work)).map_err(|panic| format!("it panicked: {}", message(&*panic)))
 }
 

@@ -1,11 +1,11 @@
-//! The verdict: an answer that meets its goal, or the best answer inside an error that says what falls short.
+//! The verdict: an answer that meets its goal, or the best answer inside an error that states what falls short.
 
 use super::problem::ContactProblem;
 use crate::error::Error;
 use crate::qp::method::Outcome;
 use crate::solution::{Certificate, ContactSet, Goal, Seconds, Solution};
 
-/// An outcome of the method called `name` with its certificate, and nothing else known of it.
+/// The outcome of the method called `name` as a solution, with its certificate and nothing else.
 pub(super) fn answer(outcome: Outcome, name: &str, certificate: Certificate) -> Solution {
     let Outcome { displacement, multiplier, contact_set, iterations, history, variant, .. } = outcome;
     Solution {
@@ -39,7 +39,7 @@ pub(super) fn judged(solution: Solution, goal: Goal) -> Result<Solution, Error> 
     Err(Error::NotCertified { solution: Box::new(solution), condition, value, tolerance })
 }
 
-/// The same ending with `change` made to its solution, also to one that falls short.
+/// The same ending with `change` applied to its solution, also to one that falls short.
 pub(super) fn with_solution(
     ending: Result<Solution, Error>,
     change: impl FnOnce(Solution) -> Solution,
@@ -53,7 +53,7 @@ pub(super) fn with_solution(
     }
 }
 
-/// The ending where there is no time for a first factorisation, of `needed` seconds with `left` to go: the body at rest.
+/// The ending without time for a first factorisation, of `needed` seconds with `left` to go: the body at rest.
 ///
 /// # Errors
 /// Those of the certificate.
@@ -81,7 +81,7 @@ fn not_rechecked(problem: &ContactProblem, claim: &Error) -> Result<Error, Error
     Ok(Error::NotCertified { solution, condition, value: 0.0, tolerance: 0.0 })
 }
 
-/// The answer before anything is found: no displacement and no force, and how far that is off.
+/// The answer before anything is found: no displacement and no force, with its certificate.
 fn at_rest(problem: &ContactProblem) -> Result<Solution, Error> {
     let (displacement, multiplier) = (vec![0.0; problem.dofs()], vec![0.0; problem.rows()]);
     let certificate = problem.certify_in(None, &displacement, &multiplier)?;

@@ -24,11 +24,11 @@ const PENETRATION: f64 = 100.0;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum Method {
-    /// The program chooses, by rules fitted to measured times; MPRGP where the factor of a body in space would cost much more,
-    /// or does not fit into [`Settings::memory`].
+    /// The program chooses, by rules fitted to measured times; MPRGP if the factor of a body in space would cost much more, or
+    /// does not fit into [`Settings::memory`].
     #[default]
     Auto,
-    /// Convex QP by Clarabel, its contact set settled by the active-set loop unless [`InteriorPoint::polish`] is `false`.
+    /// Convex QP by Clarabel; the active-set loop settles its contact set unless [`InteriorPoint::polish`] is `false`.
     Qp(InteriorPoint),
     /// Active-set loop with Lagrange multipliers, from C = 0.
     ActiveSet,
@@ -49,7 +49,7 @@ impl Method {
         Method::Penalty(Penalty::DEFAULT)
     }
 
-    /// The name in reports: `qp`, `active-set`, `penalty` or `mprgp`; what chooses among them is `auto`.
+    /// The name in reports: `qp`, `active-set`, `penalty` or `mprgp`; `auto` for the choice among them.
     pub fn name(self) -> &'static str {
         match self {
             Method::Auto => "auto",
@@ -61,11 +61,11 @@ impl Method {
     }
 }
 
-/// Whether the problem is condensed onto the dofs of its contact rows.
+/// The rule for condensing the problem onto the dofs of its contact rows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Condense {
-    /// Where an estimate of work and memory says that it pays; where that loses digits, all dofs are tried next.
+    /// If an estimate of work and memory shows that it pays; if that loses digits, all dofs are tried next.
     #[default]
     Auto,
     /// Never: the methods work on all dofs.
@@ -76,13 +76,13 @@ pub enum Condense {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Precision {
-    /// Double, unless [`Method::Auto`] is told an accuracy that the other reaches in less time.
+    /// Double, unless [`Method::Auto`] has an accuracy that single precision reaches in less time.
     #[default]
     Auto,
     /// Double precision.
     Double,
-    /// Single precision with half the memory, the answer refined in double precision; where the problem is not condensed,
-    /// or too ill-conditioned, the factor is in double precision after all.
+    /// Single precision with half the memory, and an answer refined in double precision; if the problem is not condensed, or
+    /// too ill-conditioned, the factor is in double precision after all.
     Mixed,
 }
 
@@ -117,7 +117,7 @@ pub enum Precision {
 pub struct Settings {
     /// The method.
     pub method: Method,
-    /// Whether the problem is condensed onto its contact dofs.
+    /// The rule for condensing the problem onto its contact dofs.
     pub condense: Condense,
     /// Threads of the sparse factorisations and of multigrid, at least 1.
     pub threads: usize,
@@ -125,22 +125,22 @@ pub struct Settings {
     pub precision: Precision,
     /// Tolerance of the certificate, relative: what `Ok` promises.
     pub tolerance: f64,
-    /// Relative error in the energy norm that is good enough: where a bound is known, `Ok` promises that it is below, and
-    /// nothing else.
+    /// Relative error in the energy norm that is good enough: if a bound is known, `Ok` promises that it is below, and nothing
+    /// else.
     pub accuracy: Option<f64>,
-    /// Whether to prove which rows are open and which are closed.
+    /// `true` to prove which rows are open and which are closed.
     pub prove: bool,
-    /// Wall-clock time after which the best answer so far is returned, as [`Error::NotCertified`] if it falls short;
-    /// a factorisation that is under way is ended first, and the bound of the certificate may take a tenth of the time more:
-    /// what it has not found then is a weaker bound, or none.
+    /// Wall-clock time after which the best answer so far is returned, as [`Error::NotCertified`] if it falls short. A
+    /// factorisation in progress is finished first, and the bound of the certificate may take a tenth of the time more; if it
+    /// is cut short then, it is weaker or missing.
     pub time: Option<Duration>,
-    /// Bytes that a solve may take: [`Method::Auto`] takes no way whose estimate is above, and what would take more on the way
-    /// that was named, by an estimate made before anything is factorised, is refused.
+    /// Bytes that a solve may take. [`Method::Auto`] takes no way with an estimate above this. A named method is refused if it
+    /// would take more, by an estimate made before anything is factorised.
     pub memory: Option<f64>,
-    /// Asked from any thread, the solve ends as if its time were over, or with [`Error::Interrupted`] where it has found
-    /// nothing yet; it tells what is being done. Clones of the settings share it.
+    /// Any thread can stop the solve through it. The solve then ends as if its time were over, or with [`Error::Interrupted`]
+    /// if it has found nothing yet; the watch also states the current activity. Clones of the settings share it.
     pub watch: Watch,
-    /// Most iterations of a loop; the cycles of MPRGP.
+    /// Largest number of iterations of a loop, or of cycles of MPRGP.
     pub max_iterations: usize,
     /// Cycles of MPRGP after which another method would have been as fast.
     pub(crate) worth_cycles: usize,
@@ -171,12 +171,12 @@ impl Settings {
         Settings { method, ..Settings::default() }
     }
 
-    /// The program chooses how; `Ok` promises a relative error in the energy norm of at most `accuracy`.
+    /// The program chooses the method; `Ok` promises a relative error in the energy norm of at most `accuracy`.
     pub fn for_accuracy(accuracy: f64) -> Self {
         Settings { accuracy: Some(accuracy), ..Settings::default() }
     }
 
-    /// The program chooses how; the best answer that this time allows.
+    /// The program chooses the method; the best answer that this time allows.
     pub fn within(time: Duration) -> Self {
         Settings { time: Some(time), ..Settings::default() }
     }
@@ -201,7 +201,7 @@ impl Settings {
         Settings { memory: Some(bytes), ..self }
     }
 
-    /// The same with what the machine has available as the limit of memory; no limit where the system does not say.
+    /// The same with the available memory of the machine as the limit; no limit if the system does not state it.
     pub fn with_available_memory(self) -> Self {
         let most = memory::available().min(memory::address_space_left());
         if most.is_finite() { self.with_memory(most.max(1.0)) } else { self }
@@ -227,18 +227,18 @@ impl Settings {
         Settings { condense, ..self }
     }
 
-    /// The same with the rows named that are proven open or closed.
+    /// The same with a proof of the rows that are open or closed.
     pub fn with_proof(self) -> Self {
         Settings { prove: true, ..self }
     }
 
-    /// The same under a watch that can stop it and tells what is being done.
+    /// The same under a watch that can stop the solve and states its current activity.
     pub fn watched(self, watch: &Watch) -> Self {
         Settings { watch: watch.clone(), ..self }
     }
 
     /// The same with the active set if the method is left to the program: answers are those of a settled linear solve, and each
-    /// step of a motion starts from the set before.
+    /// step of a motion starts from the previous set.
     pub fn exactly(self) -> Self {
         let method = if self.method == Method::Auto { Method::ActiveSet } else { self.method };
         Settings { method, ..self }
@@ -254,7 +254,7 @@ impl Settings {
         Ok(Settings { time: None, watch, ..self.clone() })
     }
 
-    /// What an answer is held against.
+    /// The goal that an answer must meet.
     pub fn goal(&self) -> Goal {
         Goal { tolerance: self.tolerance, accuracy: self.accuracy }
     }
@@ -269,8 +269,8 @@ impl Settings {
     }
 
     /// Returns `true` if the last resort may replace an answer that misses the goal, in its worst condition, by `value`. The
-    /// answers of an unpolished QP and of a penalty below its best value stay as they are, and so does the penetration
-    /// that the best penalty leaves.
+    /// answers of an unpolished QP and of a penalty below its best value are kept, and so is the penetration that the best
+    /// penalty leaves.
     pub(super) fn allows_last_resort(&self, value: f64) -> bool {
         let is_best_penalty = matches!(self.method, Method::Penalty(ladder) if ladder.last >= BEST_PENALTY);
         self.wants_best() || (is_best_penalty && value > PENETRATION / BEST_PENALTY)

@@ -1,4 +1,4 @@
-//! One way after another until an answer is certified: which are tried, and what is told of those that were.
+//! Tries one way after another until an answer is certified, and reports the ways that were tried.
 
 mod pieces;
 
@@ -14,7 +14,7 @@ use crate::error::Error;
 use crate::qp::method::Start;
 use crate::solution::{Attempt, Seconds, Solution, Why};
 
-/// The same from what is known of the answer of the whole problem, which is then solved in one piece.
+/// As [`solved`], from a `start` for the whole problem, which is then solved in one piece.
 ///
 /// # Errors
 /// As [`solved`].
@@ -24,7 +24,7 @@ pub(super) fn solved_from(start: Start, problem: &ContactProblem, settings: &Set
     if start.is_unknown() { solved(problem, settings) } else { in_one_piece_from(start, problem, settings) }
 }
 
-/// How the ways that are tried end by themselves.
+/// The ending of the ways that are tried, without a recheck.
 ///
 /// # Errors
 /// As [`solve`](super::solve()); a claim about the problem is not rechecked.
@@ -32,7 +32,7 @@ pub(super) fn solved(problem: &ContactProblem, settings: &Settings) -> Result<So
     let settings = &settings.started()?;
     let Some(pieces) = pieces_of(problem, settings) else { return in_one_piece(problem, settings) };
     let clock = Instant::now();
-    // A mode that nothing stops is rechecked like any other; what else a piece ends with is told in terms of the whole.
+    // A mode that nothing stops is rechecked like any other; every other ending of a piece is reported in terms of the whole.
     let fell_short = match pieces::solved(problem, &pieces, settings, in_one_piece) {
         Ok(solution) => match judged(solution, settings.goal()) {
             Err(error) if !settings.watch.is_over() => error,
@@ -53,12 +53,12 @@ pub(super) fn solved(problem: &ContactProblem, settings: &Settings) -> Result<So
     })
 }
 
-/// The same, of all parts together.
+/// The same, for all parts together.
 fn in_one_piece(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
     in_one_piece_from(Start::default(), problem, settings)
 }
 
-/// The same from what is known of the answer.
+/// The same from a start.
 fn in_one_piece_from(start: Start, problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
     let mut attempts = Attempts { clock: Instant::now(), start, made: Vec::new(), factor_seconds: 0.0 };
     let found = match settings.method {
@@ -77,25 +77,25 @@ fn in_one_piece_from(start: Start, problem: &ContactProblem, settings: &Settings
     with_solution(found, |solution| attempts.told(solution))
 }
 
-/// What was tried so far.
+/// The attempts so far.
 struct Attempts {
     clock: Instant,
-    /// What was known of the answer beforehand.
+    /// The start that was given.
     start: Start,
     made: Vec<Attempt>,
-    /// Seconds of the factorisations in it.
+    /// Seconds of the factorisations in the attempts.
     factor_seconds: f64,
 }
 
 impl Attempts {
-    /// The answer on the way that memory, time and size suggest; where it leads nowhere, on the other one.
+    /// The answer on the way that memory, time and size suggest; if it leads nowhere, on the other one.
     fn choose(&mut self, problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
         let estimate = Estimate::of(problem);
         let choice = estimate.choose(settings.memory.unwrap_or(f64::INFINITY))?;
         let why = estimate.why(&choice);
         with_solution(self.chosen(problem, settings, &estimate, choice), |solution| {
             let reason = match (&solution.why, &solution.reason) {
-                // Of the methods with a factor one was chosen by itself.
+                // The choice among the methods with a factor has its own reason.
                 (Some(of_way), _) => format!("{}; {}", why.reason, of_way.reason),
                 (None, Some(other)) if *other != why.reason => format!("{}; in the end {other}", why.reason),
                 _ => why.reason.clone(),
@@ -104,7 +104,7 @@ impl Attempts {
         })
     }
 
-    /// The answer on the way of `choice`; where it leads nowhere, on the other one.
+    /// The answer on the way of `choice`; if it leads nowhere, on the other one.
     fn chosen(
         &mut self,
         problem: &ContactProblem,
@@ -149,7 +149,7 @@ impl Attempts {
             decided => return decided,
         };
         let seconds = clock.elapsed().as_secs_f64();
-        // What the iteration cannot take, the direct path may; if it was refused, with one factor at a time.
+        // The direct path may find the answer that the iteration cannot; if it was refused before, with one factor at a time.
         let direct = match refused {
             Some(_) => Settings { method: Method::ActiveSet, ..settings.clone() },
             None => settings.clone(),
@@ -161,7 +161,7 @@ impl Attempts {
         }
     }
 
-    /// The answer on the direct path, after so many seconds of an iteration that ended with `fell_short`.
+    /// The answer on the direct path, after `seconds` of an iteration that ended with `fell_short`.
     fn after_multigrid(
         &mut self,
         problem: &ContactProblem,
@@ -182,14 +182,14 @@ impl Attempts {
         }
     }
 
-    /// The answer with a factor; where a shortcut falls short, by the active set in double precision, and where a condensed
-    /// problem does, on all dofs.
+    /// The answer with a factor. If a shortcut falls short, the active set in double precision follows; if a condensed problem
+    /// does, all dofs follow.
     fn with_factor(&mut self, problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
         let start = if self.start.is_unknown() { start(problem, settings) } else { self.start.clone() };
         self.with_factor_from(start, problem, settings)
     }
 
-    /// The same, the active-set steps starting from `start`.
+    /// The same, with active-set steps that start from `start`.
     fn with_factor_from(
         &mut self,
         start: Start,
@@ -212,7 +212,7 @@ impl Attempts {
         let seconds = clock.elapsed().as_secs_f64();
         let clock = Instant::now();
         match self.with_factor_from(start, problem, &safer) {
-            // Where it is cut short, what was tried first may have come further.
+            // If it is cut short, the first attempt may have come further.
             Err(error) if is_better(&fell_short, &error) => {
                 let tried = Tried::on_all_dofs(safer.method);
                 self.add(tried, clock.elapsed().as_secs_f64(), &error);
@@ -235,7 +235,7 @@ impl Attempts {
         solved_with(&prepared, problem)
     }
 
-    /// Notes an attempt on some way that took so many seconds and ended with `error`.
+    /// Records an attempt on some way that took this number of seconds and ended with `error`.
     fn add(&mut self, tried: Tried, seconds: f64, error: &Error) {
         let mut method = tried.method.name().to_string();
         if let Error::NotCertified { solution, .. } = error {
@@ -249,7 +249,7 @@ impl Attempts {
         self.made.push(Attempt { method, seconds, reason });
     }
 
-    /// The answer with what was tried beside it, and the time of all.
+    /// The answer with the other attempts, and the time of all.
     fn told(self, mut solution: Solution) -> Solution {
         solution.seconds.factor += self.factor_seconds;
         solution.seconds.solve = self.clock.elapsed().as_secs_f64();
@@ -257,15 +257,15 @@ impl Attempts {
     }
 }
 
-/// Which of the methods with a factor was chosen, and why.
+/// The chosen method with a factor, and the reason.
 fn of_way(prepared: &Prepared) -> Why {
     let tried = prepared.tried();
     let reason = tried.in_words(prepared.multiplications());
     Why { chosen: tried.method.name().to_string(), reason, considered: Vec::new() }
 }
 
-/// Where the direct path starts: where contact is everywhere, from what a few cycles of a hierarchy find, since a front of closed
-/// rows moves by one row of nodes with every set.
+/// The start of the direct path. If contact is everywhere, it is the set that a few cycles of a hierarchy find, since a front
+/// of closed rows moves by one row of nodes with every set.
 fn start(problem: &ContactProblem, settings: &Settings) -> Start {
     if !starts_by_multigrid(problem, settings) {
         return Start::default();
@@ -274,7 +274,7 @@ fn start(problem: &ContactProblem, settings: &Settings) -> Start {
     Prepared::by_method(problem, &settings).ok().and_then(|prepared| prepared.near()).unwrap_or_default()
 }
 
-/// Is what an attempt `before` left better than the `error` of the safer one?
+/// Returns `true` if the result of an attempt `before` is better than the `error` of the safer one.
 fn is_better(before: &Error, error: &Error) -> bool {
     match (before, error) {
         (Error::NotCertified { solution: before, .. }, Error::NotCertified { solution, .. }) => {
@@ -285,7 +285,7 @@ fn is_better(before: &Error, error: &Error) -> bool {
     }
 }
 
-/// How an attempt ended, in a few words.
+/// The ending of an attempt, in a few words.
 fn ending(error: &Error) -> String {
     match error {
         Error::NotCertified { condition, value, tolerance, .. } => {
@@ -295,7 +295,7 @@ fn ending(error: &Error) -> String {
     }
 }
 
-/// The answer at the gaps of `problem`, whose time is that of its preparation too.
+/// The answer at the gaps of `problem`; its time includes that of the preparation.
 fn solved_with(prepared: &Prepared, problem: &ContactProblem) -> Result<Solution, Error> {
     let Seconds { factor, solve, .. } = prepared.seconds();
     with_solution(prepared.solve(problem.gap()), |mut solution| {

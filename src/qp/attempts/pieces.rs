@@ -9,11 +9,11 @@ use crate::qp::settings::Settings;
 use crate::qp::transform::Pieces;
 use crate::solution::{ContactSet, Iteration, ProvenSet, Seconds, Solution, Why};
 
-/// The answer whose pieces are each found by `solve`, not judged yet.
+/// The answer put together from the pieces, each found by `solve`; it is not judged yet.
 ///
 /// # Errors
-/// What the first piece without an answer ends with; a mode that nothing stops is one of the whole, all else is in terms of the
-/// piece.
+/// The error of the first piece without an answer; a mode that nothing stops is expanded to the whole, every other error is in
+/// terms of the piece.
 pub(super) fn solved(
     problem: &ContactProblem,
     pieces: &Pieces,
@@ -75,7 +75,7 @@ pub(super) fn solved(
     })
 }
 
-/// Why the largest piece was solved the way it was.
+/// The reason for the way in which the largest piece was solved.
 fn why(answers: &[Solution]) -> Option<Why> {
     let largest = answers.iter().max_by_key(|answer| answer.displacement.len())?;
     let of_piece = largest.why.clone()?;
@@ -84,7 +84,7 @@ fn why(answers: &[Solution]) -> Option<Why> {
     Some(Why { reason, ..of_piece })
 }
 
-/// The sets of all pieces side by side, iteration by iteration; a piece that needed fewer stays at its last.
+/// The sets of all pieces joined, iteration by iteration; a piece with fewer iterations stays at its last set.
 fn history(pieces: &Pieces, answers: &[Solution]) -> Vec<Iteration> {
     let most = answers.iter().map(|answer| answer.history.len()).max().unwrap_or(0);
     let at = |number: usize| {
@@ -95,7 +95,7 @@ fn history(pieces: &Pieces, answers: &[Solution]) -> Vec<Iteration> {
     (0..most).map(at).collect()
 }
 
-/// The rows that the pieces prove; `None` if none of them has a proof.
+/// The rows that the pieces prove; `None` if no piece has a proof.
 fn proven(pieces: &Pieces, answers: &[Solution]) -> Option<ProvenSet> {
     answers.iter().any(|answer| answer.proven.is_some()).then(|| {
         let of = |set: fn(&ProvenSet) -> &ContactSet| {

@@ -10,17 +10,17 @@ use crate::qp::problem::ContactProblem;
 use crate::solution::{Certificate, Solution};
 use crate::watch::Watch;
 
-/// Rounding moves an entry of u or lambda by half a unit in the last place; what a sum of such errors may be is excused
-/// twice, once for the rounding and once for the arithmetic that made the entry.
+/// Rounding moves an entry of u or lambda by half a unit in the last place. The sum of such errors is excused twice: once for
+/// the rounding and once for the arithmetic that made the entry.
 const ENTRY_ROUNDING: f64 = f64::EPSILON;
 
-/// Sums with twice the working precision leave out less than this share of their terms: no bound is smaller.
+/// Relative error of sums with twice the working precision stays below this share of their terms: no bound is smaller.
 const LEAST: f64 = 1e-28;
 
-/// Rounding of an energy that is added up with twice the working precision, as a share of its terms.
+/// Rounding of an energy computed with twice the working precision, as a share of its terms.
 const OF_ENERGY: f64 = 1e-31;
 
-/// What bounds the error in energy.
+/// The means by which the error is bounded in energy.
 #[derive(Clone, Copy)]
 enum Bounding<'a> {
     Nothing,
@@ -34,7 +34,7 @@ impl<'a> Bounding<'a> {
     }
 }
 
-/// A certificate, and what it has found of the answer; not of an answer in far units.
+/// A certificate and the evidence that it was computed from; an answer in far units has no evidence.
 pub(crate) struct Examined {
     pub certificate: Certificate,
     pub evidence: Option<Evidence>,
@@ -47,15 +47,15 @@ impl Examined {
     }
 }
 
-/// What a certificate has found of an answer, for a proof of its contact set.
+/// Evidence that a certificate has found for an answer, used to prove its contact set.
 pub(crate) struct Evidence {
     /// `f + B' lambda - K u`.
     pub(super) residual: Vec<f64>,
     /// `B u - g`.
     pub(super) violation: Vec<f64>,
-    /// An upper bound on `|u - u*|_K`; infinite where none is known.
+    /// An upper bound on `|u - u*|_K`; infinite if none is known.
     pub(super) error: f64,
-    /// What cycles have measured, where the bound is theirs.
+    /// Numbers that cycles have measured, if the bound comes from cycles.
     pub(super) measured: Option<Measured>,
 }
 
@@ -74,12 +74,11 @@ fn worst(values: impl IntoIterator<Item = f64>) -> f64 {
 }
 
 impl ContactProblem {
-    /// The certificate of an answer (u, lambda), with the energy bound where K is positive definite or the rows that press
-    /// hold the body.
+    /// The certificate of an answer (u, lambda), with the energy bound if K is positive definite or the rows that press hold
+    /// the body.
     ///
     /// # Errors
-    /// [`Error::Length`] for vectors that do not fit, [`Error::Numerical`] when the factorisation of K fails for want
-    /// of memory.
+    /// [`Error::Length`] for vectors that do not fit, [`Error::Numerical`] if the factorisation of K fails for lack of memory.
     pub fn certify(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Certificate, Error> {
         self.check_answer(displacement, multiplier)?;
         if let Some(units) = self.far_units(displacement) {
@@ -89,7 +88,7 @@ impl ContactProblem {
         self.certify_in(norm.as_ref(), displacement, multiplier)
     }
 
-    /// As [`ContactProblem::certify`], in an energy norm that is at hand.
+    /// As [`ContactProblem::certify`], in an energy norm that is already available.
     ///
     /// # Errors
     /// [`Error::Length`] for vectors that do not fit.
@@ -102,7 +101,7 @@ impl ContactProblem {
         Ok(self.examine_in(norm, displacement, multiplier)?.certificate)
     }
 
-    /// The same, with what it has found.
+    /// As `certify_in`, with the evidence.
     ///
     /// # Errors
     /// [`Error::Length`] for vectors that do not fit.
@@ -123,8 +122,8 @@ impl ContactProblem {
     }
 
     /// As [`ContactProblem::certify`], with the energy bound by the cycles of the hierarchy of K, which needs no factor and
-    /// rests on a measured eigenvalue; without a bound where K is singular to the precision of its levels, or where `watch` is
-    /// over before it is found. A hierarchy of one level is a factor already, of so few dofs that another in double precision
+    /// rests on a measured eigenvalue. There is no bound if K is singular to the precision of its levels, or if `watch` is over
+    /// before it is found. A hierarchy of one level is already a factor, with so few dofs that another one in double precision
     /// costs nothing.
     ///
     /// # Errors
@@ -146,8 +145,8 @@ impl ContactProblem {
         Ok(self.recomputed(Bounding::Cycles(multigrid, watch), displacement, multiplier))
     }
 
-    /// The certificate of an answer that was put together from the answers of pieces that nothing couples: the conditions
-    /// recomputed, the bounds those of the pieces, with an upper bound on `|u - u*|_K` of each in `errors`.
+    /// The certificate of an answer that was put together from answers of pieces without coupling. The conditions are
+    /// recomputed; the bounds are those of the pieces, with an upper bound on `|u - u*|_K` of each in `errors`.
     ///
     /// # Errors
     /// [`Error::Length`] for vectors that do not fit.
@@ -171,13 +170,13 @@ impl ContactProblem {
         })
     }
 
-    /// The upper bound on `|u - u*|_K` that an answer has with its certificate.
+    /// The upper bound on `|u - u*|_K` of an answer with its certificate.
     pub(crate) fn error_of(&self, answer: &Solution) -> f64 {
         let bound = answer.certificate.energy_error_bound;
         if bound == 0.0 { 0.0 } else { bound * self.size_of(&answer.displacement, &answer.multiplier) }
     }
 
-    /// What the bound of an answer is relative to.
+    /// The energy norm that the bound of an answer is relative to.
     fn size_of(&self, displacement: &[f64], multiplier: &[f64]) -> f64 {
         let Balance { strain, terms, .. } = self.accurate_balance(displacement, &[multiplier]);
         let contact = self.contact.mul_transposed(multiplier);
@@ -198,7 +197,7 @@ impl ContactProblem {
         let is_rounding = |dof: usize| residual[dof].abs() <= ENTRY_ROUNDING * (terms[dof] + contact_terms[dof]);
         let excess = |dof: usize| if is_rounding(dof) { 0.0 } else { residual[dof] };
         let own = |dof: usize| larger(self.load[dof].abs(), contact[dof].abs());
-        // A row without obstacle carries no multiplier; a violation that rounding of u explains does no work.
+        // A row without obstacle carries no multiplier; a violation within the rounding of u does no work.
         let work = |row: usize| {
             if lambda[row] == 0.0 || violation[row].abs() <= ENTRY_ROUNDING * lengths[row] {
                 0.0
@@ -245,7 +244,7 @@ impl ContactProblem {
         Examined { certificate, evidence: Some(Evidence { residual, violation, error: bound.whole, measured }) }
     }
 
-    /// Do the vectors of an answer fit?
+    /// Checks that the vectors of an answer have the lengths of the problem.
     pub(super) fn check_answer(&self, displacement: &[f64], multiplier: &[f64]) -> Result<(), Error> {
         let length = |name, found: usize, expected, of| {
             if found == expected { Ok(()) } else { Err(Error::Length { name, found, expected, of }) }
@@ -259,15 +258,15 @@ impl ContactProblem {
         self.accurate_residual_of(u, &[lambda])
     }
 
-    /// The same of multipliers that are sums, which are not rounded.
+    /// The same for multipliers that are given as sums, which are not rounded.
     pub(super) fn accurate_residual_of(&self, u: &[f64], multipliers: &[&[f64]]) -> Vec<f64> {
         self.accurate_balance(u, multipliers).residual
     }
 
-    /// The same, and what it consists of.
+    /// The same, with its terms.
     fn accurate_balance(&self, u: &[f64], multipliers: &[&[f64]]) -> Balance {
-        // Of opposite sign, K u first: a body that moves far and bends little has so little energy that forces rounded before
-        // would leave none of it.
+        // Summed with opposite sign, K u first: if a body moves far and bends little, its energy is so small that forces
+        // rounded first would leave nothing of that energy.
         let mut sums = Accumulator::new(&vec![0.0; self.dofs()]);
         let terms = sums.add_matrix_product(|column| self.stiffness.lower().column(column), u);
         let strain = sums.products_by(u, |_| 0, 1)[0];
@@ -280,7 +279,7 @@ impl ContactProblem {
         Balance { residual: sums.sums().map(|sum| -sum).collect(), strain, terms }
     }
 
-    /// `B u - g` of the given doubles, with twice the working precision; `-inf` where there is no obstacle.
+    /// `B u - g` of the given doubles, with twice the working precision; `-inf` for a row without obstacle.
     pub(crate) fn accurate_violation(&self, u: &[f64]) -> Vec<f64> {
         let start: Vec<f64> = self.gap.iter().map(|&gap| if gap.is_finite() { -gap } else { 0.0 }).collect();
         let mut sums = Accumulator::new(&start);
@@ -301,7 +300,7 @@ impl ContactProblem {
         self.unrounded_product(within, u).into_sums()
     }
 
-    /// The same, not rounded yet.
+    /// The same, not yet rounded.
     pub(super) fn unrounded_product<I: Iterator<Item = (usize, f64)>>(
         &self,
         within: impl Fn(usize) -> I,
@@ -313,15 +312,15 @@ impl ContactProblem {
     }
 }
 
-/// The energy norm that is sure: a body that moves far and does not bend has no energy but rounding of `sum`, that of
-/// `|u_i| (|K| |u|)_i`.
+/// The part of the energy norm that is certain: a body that moves far and does not bend has only energy from rounding of `sum`,
+/// the sum of `|u_i| (|K| |u|)_i`.
 fn sure_size(scales: &Scales, strain: f64, sum: f64) -> f64 {
     scales.size_of_whole((strain - OF_ENERGY * sum).max(0.0))
 }
 
 impl Certificate {
-    /// Takes in a bound on the error: of the whole and of each part, relative to its own energy norm. An error that rounding
-    /// explains, with `rounding` the sum of `|u_i| (|K| |u|)_i` of each part, is no excess.
+    /// Takes in a bound on the error: of the whole and of each part, relative to its own energy norm. An error within the
+    /// rounding, with `rounding` the sum of `|u_i| (|K| |u|)_i` of each part, is no excess.
     fn judge(&mut self, bound: &ErrorBound, scales: &Scales, strain: f64, rounding: &[f64]) {
         let explained = |sum: f64| ENTRY_ROUNDING * sum.sqrt();
         let unexplained =
@@ -349,7 +348,7 @@ mod tests {
     use crate::qp::settings::Settings;
     use crate::qp::solve;
 
-    /// What the bound of an answer is above its error: the rounding that it is multiplied with.
+    /// The relative excess of the bound of an answer over its error, from the factor for rounding.
     const ROUNDED: f64 = 1e-5;
 
     /// Two dofs of stiffness 4 and 16, each a part, under loads of 8 and 48, before walls at 1 and 2.

@@ -1,4 +1,4 @@
-//! The energy norm of a definite stiffness, and what it knows of the contact boundary.
+//! The energy norm of a definite stiffness, with its data on the contact boundary.
 
 use std::sync::Arc;
 
@@ -13,10 +13,10 @@ use crate::watch::Watch;
 /// Contact dofs beyond this share of all are not ordered last: the boundary would be most of the body.
 const LARGEST_SHARE: f64 = 0.25;
 
-/// So few contact dofs are ordered last whatever their share: dense matrices of them cost less than a millisecond.
+/// Up to this number, contact dofs are ordered last whatever their share: their dense matrices cost less than a millisecond.
 const FEW_DOFS: usize = 100;
 
-/// A contraction that is measured may be so many times larger.
+/// The true contraction may be larger than the measured one by this factor.
 const MEASURED: f64 = 10.0;
 
 /// Steps of the power method for a contraction.
@@ -25,7 +25,7 @@ const POWER_STEPS: usize = 3;
 /// Rounding of a sweep, relative, over the smallest pivot.
 const SWEEP_ROUNDING: f64 = 1e5 * f64::EPSILON;
 
-/// Where rounding of a sweep may be so many times the sweep itself, the factor is that of another matrix.
+/// If the rounding of a sweep may reach this multiple of the sweep itself, the factor belongs to another matrix.
 const LOST: f64 = 1e3;
 
 /// A bound is multiplied with this, because its own sums are rounded too.
@@ -40,11 +40,11 @@ pub(crate) struct EnergyNorm {
     cholesky: Cholesky,
     equilibration: Equilibration,
     boundary: Option<Arc<Boundary>>,
-    /// What a bound in this norm is multiplied with, because the factor is not quite that of K.
+    /// Factor by which a bound in this norm is multiplied, because the factor is not exactly that of K.
     widening: f64,
     /// The springs that made a singular K definite.
     springs: Option<Arc<Springs>>,
-    /// When a bound in this norm must be done with.
+    /// Time limit of the bounds in this norm.
     watch: Watch,
 }
 
@@ -57,11 +57,11 @@ pub(super) struct Boundary {
 }
 
 impl EnergyNorm {
-    /// The energy norm of `stiffness`, with the boundary that the rows `contact` touch, or `None` where it is not
+    /// The energy norm of `stiffness`, with the boundary of the dofs in the rows `contact`; `None` if the stiffness is not
     /// positive definite to working precision.
     ///
     /// # Errors
-    /// [`Error::Numerical`] when the factorisation fails for another reason, as memory.
+    /// [`Error::Numerical`] if the factorisation fails for another reason, such as memory.
     pub fn of(stiffness: &SymmetricMatrix, contact: &SparseMatrix) -> Result<Option<Self>, Error> {
         if stiffness.diagonal().iter().any(|&value| value <= 0.0) {
             return Ok(None);
@@ -77,8 +77,8 @@ impl EnergyNorm {
         }
     }
 
-    /// The dofs to eliminate last, so that the contact boundary is known: those that appear in the rows `contact`, or none
-    /// where that is most of the body.
+    /// The dofs to eliminate last, so that the contact boundary is known: those that appear in the rows `contact`, or none if
+    /// that is most of the body.
     pub fn last_dofs(contact: &SparseMatrix) -> Vec<usize> {
         let dofs: Vec<usize> =
             (0..contact.columns()).filter(|&dof| contact.column(dof).any(|entry| entry.1 != 0.0)).collect();
@@ -86,8 +86,7 @@ impl EnergyNorm {
         if dofs.len() > most { Vec::new() } else { dofs }
     }
 
-    /// The energy norm from a factor of the equilibrated stiffness `c D K D` that is at hand and has `last` as its last
-    /// columns.
+    /// The energy norm from an available factor of the equilibrated stiffness `c D K D`, with `last` as its last columns.
     pub fn new(cholesky: Cholesky, equilibration: Equilibration, last: Vec<usize>) -> Self {
         let values = last.len().saturating_mul(last.len());
         let worth = !last.is_empty() && values <= FEW_VALUES.max(cholesky.entries());
@@ -100,23 +99,23 @@ impl EnergyNorm {
         EnergyNorm { equilibration: Equilibration::none(self.cholesky.dim()), ..self.clone() }
     }
 
-    /// The same norm, whose bounds are cut short when `watch` says so: a weaker one, or none, is what is left.
+    /// The same norm, with bounds that are cut short when `watch` says so: then a weaker bound, or none, is left.
     pub fn watched(&self, watch: &Watch) -> Self {
         EnergyNorm { watch: watch.clone(), ..self.clone() }
     }
 
-    /// Must a bound be done with?
+    /// Returns `true` if the time for a bound is over.
     pub(super) fn is_over(&self) -> bool {
         self.watch.is_over()
     }
 
-    /// The same norm, for a factor K~ whose contraction `|I - K~^-1 K|` is measured to be this.
+    /// The same norm, for a factor K~ with this measured contraction `|I - K~^-1 K|`.
     pub fn off_by(&self, contraction: f64) -> Self {
         EnergyNorm { widening: 1.0 + MEASURED * contraction, ..self.clone() }
     }
 
-    /// An estimate of `|I - K~^-1 K|` of this factor K~ of the stiffness K, from below: by some steps of the power method, since
-    /// the steps of a refinement may be too few, or too short, to show it.
+    /// An estimate from below of `|I - K~^-1 K|` for this factor K~ and the stiffness K: by some steps of the power method,
+    /// since the steps of a refinement may be too few, or too short, to show it.
     pub fn contraction(&self, stiffness: &SymmetricMatrix) -> f64 {
         let (mut vector, mut contraction) = (generic(self.dofs(), 0), 0.0_f64);
         let size = |vector: &[f64]| dot(vector, &stiffness.mul(vector)).max(0.0).sqrt();
@@ -133,19 +132,20 @@ impl EnergyNorm {
         contraction
     }
 
-    /// What a bound in this norm is multiplied with.
+    /// The factor by which a bound in this norm is multiplied.
     pub(super) fn widening(&self) -> f64 {
         self.widening
     }
 
-    /// By how much a norm that comes from sweeps through the factor may be rounded: by some units in the last place over the
-    /// smallest pivot, on a diagonal of order one.
+    /// Relative rounding of a norm that comes from sweeps through the factor: some units in the last place over the smallest
+    /// pivot, on a diagonal of order one.
     pub(super) fn rounding(&self) -> f64 {
         let share = SWEEP_ROUNDING * self.loss();
         if share < LOST { ROUNDED_BOUND + share } else { f64::INFINITY }
     }
 
-    /// What a sweep makes of rounding of a force, on a diagonal of order one: one over the smallest pivot, at least one.
+    /// Amplification of the rounding of a force by a sweep, on a diagonal of order one: one over the smallest pivot, at least
+    /// one.
     pub(super) fn loss(&self) -> f64 {
         1.0 / self.cholesky.smallest_pivot().min(1.0)
     }
@@ -176,23 +176,23 @@ impl EnergyNorm {
         scaled.iter().zip(exponents).map(|(&value, exponent)| ldexp(value, exponent)).collect()
     }
 
-    /// The same norm, of a matrix that these springs are part of.
+    /// The same norm, of a matrix that contains these springs.
     pub(super) fn with_springs(self, springs: Springs) -> Self {
         EnergyNorm { springs: Some(Arc::new(springs)), ..self }
     }
 
-    /// The springs that made a singular K definite, where there are some.
+    /// The springs that made a singular K definite, if there are any.
     pub(super) fn springs(&self) -> Option<&Springs> {
         self.springs.as_deref()
     }
 
-    /// The contact boundary, where it is known.
+    /// The contact boundary, if it is known.
     pub(super) fn boundary(&self) -> Option<&Boundary> {
         self.boundary.as_deref()
     }
 
-    /// `L^-1 D r`, whose length times [`unit`](Self::unit) is the energy norm of the displacement that the force r
-    /// causes: the squares of the interior added up, and the entries of the boundary.
+    /// `L^-1 D r`. Its length times [`unit`](Self::unit) is the energy norm of the displacement that the force r causes: the
+    /// squares of the interior added up, and the entries of the boundary.
     pub(super) fn sweep(&self, force: &[f64]) -> (f64, Vec<f64>) {
         let swept = self.cholesky.forward(&self.scaled(force));
         let size = self.boundary.as_ref().map_or(0, |boundary| boundary.dofs.len());
@@ -206,7 +206,7 @@ impl EnergyNorm {
     }
 
     /// The entries of each row of `contact` that `counts`, on the boundary: place among its dofs, coefficient times D; `None`
-    /// where such a row reaches beyond it.
+    /// if such a row reaches beyond it.
     pub(super) fn rows_on(
         &self,
         boundary: &Boundary,
@@ -247,7 +247,7 @@ impl EnergyNorm {
         self.cholesky.multiplications()
     }
 
-    /// The entries of the inverse of the equilibrated stiffness in the pattern of its factor; `None` for want of memory.
+    /// The entries of the inverse of the equilibrated stiffness in the pattern of its factor; `None` for lack of memory.
     pub(super) fn selected_inverse(&self) -> Option<SelectedInverse<'_>> {
         self.cholesky.selected_inverse()
     }
@@ -293,7 +293,7 @@ impl Boundary {
 mod tests {
     use super::*;
 
-    /// Two dofs of the same stiffness, and a share of it between them.
+    /// Two dofs of the same stiffness, and a share of that stiffness between them.
     fn pair(stiffness: f64, coupling: f64) -> SymmetricMatrix {
         let entries = [(0, 0, stiffness), (1, 0, -coupling * stiffness), (1, 1, stiffness)];
         SymmetricMatrix::from_lower(SparseMatrix::from_triplets(2, 2, &entries).unwrap()).unwrap()
@@ -315,7 +315,8 @@ mod tests {
         // For K~ = K + diag(e) on the diagonal only e / (4 + e) of the softest motion is missing at most.
         let found = norm(&pair(4.0 / 0.9, 0.45)).contraction(&stiffness);
         let (soft, stiff): (f64, f64) = (1.0 - 2.0 / (4.0 / 0.9 * 0.55), 1.0 - 6.0 / (4.0 / 0.9 * 1.45));
-        // Each step multiplies the part along (1, 1), of stiffness 2, with the one, and that along (1, -1), of 6, with the other.
+        // Each step multiplies the component along (1, 1), of stiffness 2, by the one factor, and that along (1, -1), of 6, by
+        // the other.
         let start = generic(2, 0);
         let energy = |steps: i32| {
             let (along, across) = ((start[0] + start[1]) * soft.powi(steps), (start[0] - start[1]) * stiff.powi(steps));

@@ -6,13 +6,13 @@ use crate::qp::problem::ContactProblem;
 /// Rows must overlap by this share of their weighted gaps, beyond the rounding of the gaps themselves.
 const OVERLAP: f64 = 4.0 * f64::EPSILON;
 
-/// Weights that do not cancel exactly prove nothing about a displacement that is large enough. A contradiction counts
-/// where such a displacement would have to be this many times larger than the gaps.
+/// Weights that do not cancel exactly prove nothing about a displacement that is large enough. A contradiction counts if such a
+/// displacement would have to be this many times larger than the gaps.
 const FAR: f64 = 1e8;
 
 impl ContactProblem {
-    /// By how much the contact rows `rows` overlap under the weights y, one for each of them, in length: `-g'y` for the
-    /// largest weight 1. `None` where y proves nothing.
+    /// The length by which the contact rows `rows` overlap under the weights y, one for each row: `-g'y` if the largest weight
+    /// is one. `None` if y proves nothing.
     ///
     /// By Farkas' lemma no displacement satisfies `B u <= g` if and only if there are weights `y >= 0` with `B'y = 0` and
     /// `g'y < 0`: the rows, weighted, would ask for `0 <= g'y`. Doubles may leave a share s of the terms `|B|'y` of a dof:
@@ -78,7 +78,7 @@ mod tests {
 
     #[test]
     fn rows_must_overlap_by_more_than_rounding_of_their_gaps() {
-        // The gaps are 1 and the next numbers below -1; four units in the last place of both together are 8.
+        // The gaps are 1 and the doubles next below -1; four units in the last place of both together are 8.
         for (units, proven) in [(7.0, false), (9.0, true)] {
             let gap = -1.0 - units * f64::EPSILON;
             assert_eq!(between(1.0, [1.0, gap]).overlap(&[0, 1], &[1.0, 1.0]).is_some(), proven, "{units}");
@@ -87,7 +87,7 @@ mod tests {
 
     #[test]
     fn rows_that_cancel_to_a_billionth_contradict_each_other_unless_a_far_displacement_meets_both() {
-        // 1 - b of the terms 1 + b are left, a share of 5e-10. A displacement 1e8 times the gaps would need 5 % of them.
+        // 1 - b of the terms 1 + b are left, a share of 5e-10. A displacement 1e8 times the gaps would need 5 % of the terms.
         for (gap, proven) in [([-1.0, 0.92], false), ([-1.0, 0.89], true)] {
             let found = between(1.0 - 1e-9, gap).overlap(&[0, 1], &[1.0, 1.0]);
             assert_eq!(found.is_some(), proven, "{gap:?}: {found:?}");

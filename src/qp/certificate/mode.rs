@@ -1,4 +1,4 @@
-//! What is said of a problem that has no unique answer, rechecked in the problem itself with twice the working precision.
+//! Statements on a problem without a unique answer, rechecked in the problem itself with twice the working precision.
 
 use crate::error::Error;
 use crate::qp::linear::{NullSpace, Twice, largest, twice};
@@ -7,28 +7,28 @@ use crate::qp::problem::ContactProblem;
 /// A load drives a mode if its work is beyond this share of its terms.
 const DRIVES: f64 = 1e-9;
 
-/// The work of a load vanishes below this share of its terms, however the direction was found: a load that is out of balance by
-/// its last bit is held by some row.
+/// The work of a load vanishes below this share of its terms, however the direction was found: if a load is out of balance by
+/// its last bit, some row holds it.
 const IDLE: f64 = 1e-29;
 
-/// What rounding leaves of sums over a direction, as shares of their terms.
+/// Rounding of sums over a direction, as shares of their terms.
 #[derive(Clone, Copy)]
 pub(crate) struct Rounding {
-    /// Entries below this share of the largest are left of zero.
+    /// Entries below this share of the largest are rounded zeros.
     entry: f64,
-    /// Forces `K d` up to this are none, and so are the coordinates of a row.
+    /// Forces `K d` up to this count as zero, and so do the coordinates of a row.
     pub vanishes: f64,
     /// A sum up to this is zero.
     pub zero: f64,
-    /// A sum beyond this has a sign; between both it is not known.
+    /// A sum beyond this has a certain sign; between `zero` and this its sign is not known.
     sure: f64,
 }
 
 impl Rounding {
-    /// Of a direction in twice the working precision that the stiffness resists exactly nothing.
+    /// For a direction in twice the working precision on which the stiffness does exactly no work.
     const OF_EXACT: Rounding = Rounding { entry: 1e-24, vanishes: 1e-28, zero: 1e-28, sure: 1e-28 };
 
-    /// Of a direction that is known no better than rounded entries of the stiffness.
+    /// For a direction that is known only as precisely as rounded entries of the stiffness.
     const OF_ROUNDED: Rounding = Rounding { entry: 1e-9, vanishes: 1e-10, zero: 1e-15, sure: 1e-8 };
 
     pub fn of(null: &NullSpace) -> Self {
@@ -39,21 +39,21 @@ impl Rounding {
 /// Energy of a direction counts as negative beyond this share of its terms.
 const NEGATIVE: f64 = 1e-12;
 
-/// A direction without energy, and what the rows and the load say of it.
+/// A direction without energy, with the approach of the rows and the work of the load along it.
 #[derive(Clone, Debug)]
 pub(crate) struct NullMode {
     /// The direction d, one entry per dof, largest entry one.
     pub direction: Vec<f64>,
-    /// `B d` of each row, zero where it vanishes, positive where the mode closes the row.
+    /// `B d` of each row, zero if it vanishes, positive if the mode closes the row.
     pub approach: Vec<f64>,
-    /// The share of its terms that is left of `f'd`, zero where that vanishes.
+    /// `f'd` as a share of its terms, zero if it vanishes.
     pub work: f64,
-    /// The share of their terms that `K d` stays below.
+    /// `K d` stays below this share of its terms.
     resistance: f64,
 }
 
 impl NullMode {
-    /// The error that it is, if the load drives the mode and no row stops it.
+    /// The error to report if the load drives the mode and no row stops it.
     pub fn escapes(&self) -> bool {
         self.work > DRIVES && self.approach.iter().all(|&speed| speed <= 0.0)
     }
@@ -63,7 +63,7 @@ impl NullMode {
         self.work == 0.0
     }
 
-    /// How the mode was rechecked, and most of it.
+    /// A sentence on the recheck of the mode, with its largest entries.
     pub fn in_words(&self) -> String {
         let mut entries: Vec<(usize, f64)> = self.direction.iter().copied().enumerate().collect();
         entries.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
@@ -77,8 +77,8 @@ impl NullMode {
 }
 
 impl ContactProblem {
-    /// A direction of which the stiffness resists nothing, if it is one: `K d` vanishes in every dof. A direction is none if it
-    /// cannot tell whether it closes, opens or slides along a row.
+    /// The null mode along a direction, if it is one: `K d` vanishes in every dof. There is no mode if it is not certain
+    /// whether the direction closes, opens or slides along a row.
     pub(crate) fn mode_along(&self, direction: &[Twice], rounding: Rounding) -> Option<NullMode> {
         let by_size = |a: &&Twice, b: &&Twice| a.rounded().abs().total_cmp(&b.rounded().abs());
         let size = direction.iter().max_by(by_size)?.abs();
@@ -92,7 +92,7 @@ impl ContactProblem {
             let resists = |&(force, terms): &(f64, f64)| force.abs() > rounding.vanishes * terms;
             !self.stiffness.resistance(direction).iter().any(resists)
         };
-        // Small entries may be what is left of zero, or part of the mode.
+        // Small entries may be rounded zeros or part of the mode.
         let direction = [cleaned, whole].into_iter().find(is_free)?;
         let by_row = self.contact.transposed();
         let mut approach = vec![0.0; self.rows()];
@@ -111,7 +111,7 @@ impl ContactProblem {
         Some(NullMode { direction, approach, work, resistance: rounding.vanishes })
     }
 
-    /// The error that a direction p of negative energy is, if `p'K p` is negative beyond rounding.
+    /// The error to report for a direction p of negative energy, if `p'K p` is negative beyond rounding.
     pub(crate) fn not_convex_along(&self, p: &[f64]) -> Option<Error> {
         let size = largest(p);
         let p: Vec<f64> = p.iter().map(|value| value / size).collect();

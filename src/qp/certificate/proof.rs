@@ -1,11 +1,11 @@
-//! Which rows of a contact set are beyond doubt, from the bound on the energy norm of the error.
+//! The rows of a contact set that are proven open or closed, from the bound on the energy norm of the error.
 //!
 //! With `|u - u*|_K <= E` and the compliance `G = B K^-1 B'` of the rows:
 //!
-//! * `|B_i (u - u*)| <= sqrt(G_ii) E`: a row whose distance is larger is open in the exact answer too.
-//! * Let C be all other rows, `r = f + B_C' lambda_C - K u`, and w a shift with `B_i w = 1` that no other row of C feels.
-//!   From `B_C' (lambda - lambda*)_C = r + K (u - u*)`: `|lambda_i - lambda*_i| <= |w|_K (|r|_{K^-1} + E)`. A row whose
-//!   force is larger is closed in the exact answer too. The cheapest such shift has `|w|_K^2 = (G_CC^-1)_ii`.
+//! * `|B_i (u - u*)| <= sqrt(G_ii) E`: a row with a larger distance is open in the exact answer too.
+//! * Let C be all other rows, `r = f + B_C' lambda_C - K u`, and w a shift with `B_i w = 1` that moves no other row of C. From
+//!   `B_C' (lambda - lambda*)_C = r + K (u - u*)`: `|lambda_i - lambda*_i| <= |w|_K (|r|_{K^-1} + E)`. A row with a larger
+//!   force is closed in the exact answer too. The cheapest such shift has `|w|_K^2 = (G_CC^-1)_ii`.
 
 use super::EnergyNorm;
 use super::bound::Answer;
@@ -18,18 +18,18 @@ use crate::qp::problem::ContactProblem;
 use crate::solution::{ContactSet, ProvenSet};
 use crate::watch::Watch;
 
-/// Accuracy of the solve for an M-matrix without a factor; what it lacks widens the bounds.
+/// Accuracy of the solve for an M-matrix without a factor; its error widens the bounds.
 const ROUGH: f64 = 1e-2;
 
-/// Cycles of that solve.
+/// Largest number of cycles of that solve.
 const MOST_CYCLES: usize = 20;
 
-/// Multiplications that the compliance of the rows in question may cost; beyond, one dof of each row is moved alone.
+/// Multiplications that the compliance of the rows in question may cost; beyond this, one dof of each row is moved alone.
 const MOST_WORK: f64 = 2e9;
 
 impl ContactProblem {
-    /// The rows of which an answer proves, by its distance and force, that the exact answer has them open or closed;
-    /// `None` where K is not positive definite by itself and no bound is known.
+    /// The rows for which an answer proves, by its distance and force, that they are open or closed in the exact answer; `None`
+    /// if K is not positive definite by itself and no bound is known.
     ///
     /// # Errors
     /// As [`ContactProblem::certify`].
@@ -39,8 +39,8 @@ impl ContactProblem {
         Ok(norm.and_then(|norm| self.prove_in(&norm, displacement, multiplier, None)))
     }
 
-    /// As [`ContactProblem::prove`], in an energy norm that is at hand, for vectors that fit; from the evidence of their
-    /// certificate where there is any.
+    /// As [`ContactProblem::prove`], in an energy norm that is already available, for vectors that fit; from the evidence of
+    /// their certificate if there is any.
     pub(crate) fn prove_in(
         &self,
         norm: &EnergyNorm,
@@ -86,8 +86,8 @@ impl ContactProblem {
         Some(ProvenSet { open, closed: closed.set })
     }
 
-    /// As [`ContactProblem::prove`], without a factor: with the bound by the cycles of the hierarchy of K, and one solve by them
-    /// for an M-matrix. `None` if the cycles find no bound, or if K is singular to their precision.
+    /// As [`ContactProblem::prove`], without a factor: with the bound by the cycles of the hierarchy of K, and one solve by
+    /// cycles for an M-matrix. `None` if the cycles find no bound, or if K is singular to their precision.
     pub(crate) fn prove_by_cycles(
         &self,
         multigrid: &Multigrid,
@@ -96,7 +96,7 @@ impl ContactProblem {
         multiplier: &[f64],
         evidence: Option<Evidence>,
     ) -> Option<ProvenSet> {
-        // A hierarchy of one level is a factor already.
+        // A hierarchy of one level is already a factor.
         if multigrid.unknowns().len() <= 1 {
             return self.prove(displacement, multiplier).ok()?;
         }
@@ -125,18 +125,18 @@ impl ContactProblem {
         Some(ProvenSet { open, closed: closed.set })
     }
 
-    /// Bounds on the reach of the rows where nothing is known of it.
+    /// Bounds on the reach of the rows if nothing is known about it: infinite.
     fn any_reach(&self) -> Vec<f64> {
         vec![f64::INFINITY; self.rows()]
     }
 
-    /// The distance `g - B u` of each row, less what it may be off by rounding u; infinite without obstacle.
+    /// The distance `g - B u` of each row, less its possible error from rounding of u; infinite without obstacle.
     fn distances(&self, answer: &Answer) -> impl Iterator<Item = f64> {
         let distances = answer.violation.iter().zip(self.negligible(answer.displacement));
         distances.map(|(violation, negligible)| -violation - negligible).collect::<Vec<_>>().into_iter()
     }
 
-    /// The rows that are open beyond an error of `error` in the energy norm; `reach` bounds how far it moves each of them.
+    /// The rows that are open beyond an error of `error` in the energy norm; `reach` bounds the move of each row by it.
     fn open_by(&self, answer: &Answer, error: f64, reach: &[f64]) -> ContactSet {
         let is_open: Vec<bool> = self
             .distances(answer)
@@ -148,8 +148,8 @@ impl ContactProblem {
         is_open.into_iter().collect()
     }
 
-    /// The rows that are closed, by one dof each, where the error is `error` in the energy norm and `of_force` bounds the norm
-    /// of the displacement under a force, and knows whether that is the residual.
+    /// The rows that are closed, proven by one dof each. The error is `error` in the energy norm; `of_force` bounds the norm of
+    /// the displacement under a force, and takes `true` if that force is the residual.
     fn closed_by(
         &self,
         answer: &Answer,
@@ -173,7 +173,7 @@ impl ContactProblem {
         closed
     }
 
-    /// `|w|_K` of the shift of a single dof that only this one of `rows` feels; infinite where there is none.
+    /// `|w|_K` of the shift of a single dof that moves this one of `rows` only; infinite if no such dof exists.
     fn moved_alone(&self, rows: &[usize]) -> Vec<f64> {
         let mut place = vec![usize::MAX; self.rows()];
         rows.iter().enumerate().for_each(|(index, &row)| place[row] = index);
@@ -189,14 +189,14 @@ impl ContactProblem {
     }
 }
 
-/// The rows that are proven closed, and the norm of what may be out of balance.
+/// The rows that are proven closed, and the norm of the forces that may be out of balance.
 struct Closed {
     set: ContactSet,
     imbalance: f64,
 }
 
 impl Closed {
-    /// Is a row with this force closed, if a shift that it alone feels has this length?
+    /// Adds the row if this force, and the length of a shift that moves this row alone, prove it closed.
     fn prove(&mut self, row: usize, force: f64, length: f64) {
         if force > length * self.imbalance {
             self.set.insert(row);
@@ -204,10 +204,10 @@ impl Closed {
     }
 }
 
-/// The columns of `L^-1 B'`, whose products are the compliance of the rows.
+/// The columns of `L^-1 B'`; their products are the compliance of the rows.
 pub(super) struct Halves<'a> {
     norm: &'a EnergyNorm,
-    /// The entries of each row, where they are swept: on the boundary, or in the whole body.
+    /// The entries of each row, in the dofs that are swept: on the boundary, or in the whole body.
     rows: Vec<Vec<(usize, f64)>>,
     on_boundary: bool,
 }
@@ -231,7 +231,7 @@ impl<'a> Halves<'a> {
         }
     }
 
-    /// `sqrt(G_ii)`: how far a displacement of unit energy norm moves the row.
+    /// `sqrt(G_ii)`: the distance by which a displacement of unit energy norm moves the row.
     pub(super) fn reach(&self, row: usize) -> f64 {
         if self.norm.is_over() {
             return f64::INFINITY;
@@ -240,7 +240,7 @@ impl<'a> Halves<'a> {
         ldexp(dot(&half, &half), self.norm.factor()).sqrt()
     }
 
-    /// Upper bounds on the reach of all rows by one sweep, where the contact boundary is known: the length of a column is at most
+    /// Upper bounds on the reach of all rows by one sweep, if the contact boundary is known: the length of a column is at most
     /// the sum of its magnitudes.
     fn reach_at_once(&self) -> Option<Vec<f64>> {
         let sums = self.norm.boundary().filter(|_| self.on_boundary)?.sums_of_inverse();
@@ -256,14 +256,14 @@ impl<'a> Halves<'a> {
         }
     }
 
-    /// Multiplications of the compliance of so many rows.
+    /// Multiplications of the compliance of this number of rows.
     fn work(&self, rows: usize) -> f64 {
         let length =
             self.norm.boundary().filter(|_| self.on_boundary).map_or(self.norm.dofs(), |boundary| boundary.len());
         (rows * rows) as f64 * (length + rows) as f64
     }
 
-    /// `sqrt((G_CC^-1)_ii)` of the rows C of `contact`; infinite for those with a share in a dependence.
+    /// `sqrt((G_CC^-1)_ii)` of the rows C of `contact`; infinite for those that take part in a dependence.
     fn moved_together(&self, contact: &SparseMatrix, rows: &[usize]) -> Vec<f64> {
         let none = || vec![f64::INFINITY; rows.len()];
         let Some(Dependence { independent, takes_part }) = Dependence::of(contact, rows, || self.norm.is_over()) else {

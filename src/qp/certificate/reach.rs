@@ -1,4 +1,4 @@
-//! How far a displacement of unit energy norm moves a row: upper bounds on `sqrt(G_ii)`, `G = B K^-1 B'`, cheap ones first.
+//! Upper bounds on `sqrt(G_ii)`, `G = B K^-1 B'`: the distance by which a displacement of unit energy norm moves a row.
 //!
 //! If no entry of K off its diagonal is positive and some w > 0 has `K w >= kappa s` with kappa, s > 0, then K is an M-matrix, no
 //! entry of its inverse is negative, and
@@ -7,8 +7,8 @@
 //! (K^-1)_ii s_i <= (K^-1 s)_i <= w_i / kappa
 //! ```
 //!
-//! One solve `K w = s`, of any accuracy, serves all rows. Rows for which that is not enough are swept through the factor one
-//! by one, or, if they are many, read off the selected inverse.
+//! One solve `K w = s`, of any accuracy, serves all rows; this is the cheapest bound. Rows that need a smaller one are swept
+//! through the factor one by one or, if they are many, read off the selected inverse.
 //!
 //! # Source
 //! A. Berman, R. J. Plemmons, *Nonnegative Matrices in the Mathematical Sciences*, SIAM (1994), theorem 6.2.3: condition I27 of
@@ -25,13 +25,13 @@ use crate::watch::Watch;
 /// Steps of power iteration for the largest eigenvalue of M D.
 const POWER_STEPS: usize = 3;
 
-/// What the quotient of two measured eigenvalues may be off by.
+/// Possible error, as a factor, of the quotient of two measured eigenvalues.
 const SAFETY: f64 = 4.0;
 
-/// Rounding of an entry of K w, relative to the sum of its terms: no more than this for each term.
+/// Rounding of an entry of K w, relative to the sum of its terms, is at most this for each term.
 const OF_TERM: f64 = 2.0 * f64::EPSILON;
 
-/// Multiplications of a blocked factorisation that take the time of one in a sweep.
+/// Number of multiplications of a blocked factorisation that take the time of one in a sweep.
 const BLOCKED: f64 = 4.0;
 
 impl ContactProblem {
@@ -64,8 +64,8 @@ impl ContactProblem {
     /// K^-1 <= M / least(M K),     M <= largest(M D) D^-1
     /// ```
     ///
-    /// The first is `least`, the second comes from power iteration, begun at the smooth `displacement`. `None` if that does not
-    /// settle.
+    /// The first eigenvalue is `least`, the second comes from power iteration that starts at the smooth `displacement`. `None`
+    /// if the iteration does not settle.
     pub(super) fn measured_reach(
         &self,
         multigrid: &Multigrid,
@@ -98,7 +98,7 @@ impl ContactProblem {
         Some(squares.into_iter().map(|square| (square / mu).sqrt()).collect())
     }
 
-    /// Lower bounds on `sqrt(G_ii)` of every row: how far a single dof of unit energy norm moves it.
+    /// Lower bounds on `sqrt(G_ii)` of every row: the distance by which unit energy norm of a single dof moves it.
     pub(super) fn least_reach(&self) -> Vec<f64> {
         let mut least = vec![0.0_f64; self.rows()];
         for (dof, stiffness) in self.stiffness().diagonal().into_iter().enumerate().filter(|entry| entry.1 > 0.0) {
@@ -107,7 +107,7 @@ impl ContactProblem {
         least
     }
 
-    /// Which of `rows` have a `sqrt(G_ii)` below their limit, by sweeps or by the selected inverse, whichever costs less.
+    /// The rows of `rows` with a `sqrt(G_ii)` below their limit, by sweeps or by the selected inverse, whichever costs less.
     pub(super) fn within_reach(&self, norm: &EnergyNorm, halves: &Halves, rows: &[(usize, f64)]) -> Vec<usize> {
         let by_sweeps = rows.len() as f64 * halves.sweep();
         let at_once = FACTORISATIONS * norm.multiplications() / BLOCKED;

@@ -1,30 +1,31 @@
-//! The scales of an answer: what is large and what is small for each part, each dof and each row by itself.
+//! The scales of an answer: the size of its norm, forces and energy for each part, and of each dof and row by itself.
 
 use crate::qp::problem::{ContactProblem, Parts};
 
-/// A part whose energy norm is below this share of what its forces could do to a single dof is at rest but for rounding.
+/// A part is at rest except for rounding if its energy norm is below this share of what its forces could do to a single dof.
 const AT_REST: f64 = 1e-6;
 
-/// What the errors of an answer are measured against.
+/// The scales that the errors of an answer are measured against.
 pub(super) struct Scales {
-    /// Part of each row; that of a row without dofs is 0.
+    /// Part of each row; 0 for a row without dofs.
     part_of_row: Vec<usize>,
     /// `1 / sqrt(K_ii)` of each dof; infinite for a dof without stiffness.
     softness: Vec<f64>,
     /// `max |b_ij| / sqrt(K_jj)` of each row, over the dofs with stiffness: the force of the row in units of energy norm, and
-    /// how far a shift of unit energy norm of a single dof moves it.
+    /// the distance by which a shift of unit energy norm of a single dof moves it.
     pub reach: Vec<f64>,
-    /// Does the part have stiffness? Where it has none, its error has no energy, and rows alone judge it.
+    /// `true` if the part has stiffness. The error of a part without stiffness has no energy, and rows alone judge it.
     pub is_stiff: Vec<bool>,
     /// Energy norm of each part, from `u_p' K_pp u_p`.
     pub norm: Vec<f64>,
-    /// `max |F_i| / sqrt(K_ii)` of each part over loads and contact forces F: what they could do to a single dof.
+    /// `max |F_i| / sqrt(K_ii)` of each part over loads and contact forces F: the energy norm that they could give a single
+    /// dof.
     pub force: Vec<f64>,
     /// The larger of the strain energy, the work of the load, and the work of the gaps, of each part.
     pub energy: Vec<f64>,
 }
 
-/// What an answer consists of, for its scales.
+/// The forces and energy of an answer, from which its scales follow.
 pub(super) struct Forces<'a> {
     pub displacement: &'a [f64],
     pub multiplier: &'a [f64],
@@ -34,12 +35,12 @@ pub(super) struct Forces<'a> {
     pub strain: f64,
 }
 
-/// The larger of two; what is not a number is larger than all.
+/// The larger of two numbers; NaN is larger than all.
 pub(super) fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || a > b { a } else { b }
 }
 
-/// `value / scale`, where nothing over nothing is nothing.
+/// `value / scale`, with 0 / 0 = 0.
 pub(super) fn relative(value: f64, scale: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value / scale }
 }
@@ -85,12 +86,12 @@ impl Scales {
         self.part_of_row[row]
     }
 
-    /// The energy norm of a part, or a millionth of what its forces could do, where it is at rest.
+    /// The energy norm of a part, or, if it is at rest, a millionth of what its forces could do.
     pub fn size(&self, part: usize) -> f64 {
         larger(self.norm[part], AT_REST * self.force[part])
     }
 
-    /// The energy norm of all parts together, or what stands for it where all are at rest.
+    /// The energy norm of all parts together, or its substitute if all are at rest.
     pub fn size_of_whole(&self, strain: f64) -> f64 {
         let force = self.force.iter().fold(0.0, |largest, &force| larger(force, largest));
         larger(strain.max(0.0).sqrt(), AT_REST * force)
@@ -115,7 +116,7 @@ impl Scales {
 }
 
 impl ContactProblem {
-    /// `w_p' K_pp w_p` of each part p: twice its energy under the displacement w, without its couplings to others.
+    /// `w_p' K_pp w_p` of each part p: twice its energy under the displacement w, without couplings to other parts.
     pub(super) fn energies(&self, parts: &Parts, w: &[f64]) -> Vec<f64> {
         let within = |column: usize| {
             let of_part = move |entry: &(usize, f64)| parts.of_dof(entry.0) == parts.of_dof(column);

@@ -11,7 +11,7 @@ pub(super) struct Springs {
 }
 
 impl Springs {
-    /// `K + B_C' D B_C`; `None` where no row presses.
+    /// `K + B_C' D B_C`; `None` if no row presses.
     ///
     /// # Errors
     /// As [`SymmetricMatrix::plus_squares`](crate::qp::linear::SymmetricMatrix::plus_squares).
@@ -28,7 +28,7 @@ impl Springs {
         stiffness.plus_squares(&contact.select_rows(&closed), &weights).map(Some)
     }
 
-    /// `f + B' lambda - K_D u + B_C' D g_C`: the `residual` of an answer with this `violation`, with springs.
+    /// `f + B' lambda - K_D u + B_C' D g_C`: the `residual` with springs of an answer with this `violation`.
     pub fn residual(&self, contact: &SparseMatrix, residual: &[f64], violation: &[f64]) -> Vec<f64> {
         let pull: Vec<f64> = (self.stiffness.iter().zip(violation))
             .map(|(&stiffness, &violation)| if stiffness > 0.0 { -stiffness * violation } else { 0.0 })
@@ -36,8 +36,8 @@ impl Springs {
         residual.iter().zip(contact.mul_transposed(&pull)).map(|(r, spring)| r + spring).collect()
     }
 
-    /// Does every spring stand on a row that is at its gap, with a force mu that exceeds what `left(row)`, the dual norm of the
-    /// forces left over on its part, could take off it?
+    /// Returns `true` if every spring is on a row at its gap and the force mu of the row exceeds the force that `left(row)`,
+    /// the dual norm of the forces left over on its part, could take off.
     pub fn hold(&self, multiplier: &[f64], at_gap: &[bool], left: impl Fn(usize) -> f64) -> bool {
         let is_held = |(row, (&stiffness, (&mu, &at_gap))): (usize, (&f64, (&f64, &bool)))| {
             stiffness == 0.0 || (at_gap && -mu >= 2.0 * stiffness.sqrt() * left(row))

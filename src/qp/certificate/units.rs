@@ -1,4 +1,4 @@
-//! Data at the ends of double precision in other units: powers of two, so that nothing but the range changes.
+//! Other units for data at the ends of double precision: powers of two, so that only the range changes.
 
 use super::EnergyNorm;
 use crate::error::Error;
@@ -8,7 +8,7 @@ use crate::qp::problem::ContactProblem;
 /// Forces and energies beyond 2 to plus or minus this power are near the ends of double precision.
 const FAR: i32 = 800;
 
-/// A displacement below 2 to this power of what the load could do is nothing beside it, and sets no unit.
+/// A displacement below 2 to this power of what the load could do is negligible beside it, and sets no unit.
 const NOTHING: i32 = -200;
 
 /// Units of stiffness and of length, as exponents of two.
@@ -36,7 +36,7 @@ impl Units {
 }
 
 impl ContactProblem {
-    /// The units in which an answer is of order one, where forces or energies would over- or underflow in its own.
+    /// The units in which an answer is of order one, if forces or energies would over- or underflow in its own units.
     pub(super) fn far_units(&self, displacement: &[f64]) -> Option<Units> {
         let stiffness = exponent(largest(&self.diagonal().values));
         let (moved, load) = (largest(displacement), largest(&self.load));

@@ -1,8 +1,8 @@
 //! Cones in the few coordinates of the modes without energy.
 //!
-//! A point of a cone is found in doubles and decided in twice the working precision: rows that stop it are made to slide along
-//! it exactly, one after the other, so that rows which are parallel but for their last bits leave no more than they do as they
-//! stand.
+//! A point of a cone is found in doubles and decided in twice the working precision: the point is made to slide exactly along
+//! the rows that stop it, one after the other. So rows that are parallel except for their last bits leave exactly the
+//! directions that these doubles leave.
 
 use crate::error::Error;
 use crate::qp::attempts;
@@ -10,23 +10,23 @@ use crate::qp::linear::{SparseMatrix, SymmetricMatrix, Twice, exponent, largest,
 use crate::qp::problem::ContactProblem;
 use crate::qp::settings::{Method, Settings};
 
-/// A point of a cone that is nearer to its tip than this share of c is the tip.
+/// If a point of a cone is nearer to its tip than this share of c, it is the tip.
 const TIP: f64 = 1e-8;
 
-/// A row that a point is nearer to than this share of its terms is touched, as far as rows that are rounded can tell.
+/// A row is touched if a point is nearer to it than this share of its terms, which is the precision of rounded rows.
 const TOUCHED: f64 = 1e-8;
 
-/// Coordinates below this share of the largest are what a solve in doubles leaves of zero.
+/// Coordinates below this share of the largest are zeros with the error of a solve in doubles.
 const SOLVE_ROUNDING: f64 = 1e-10;
 
-/// Turns in which a vector is made orthogonal to others: the second takes out what rounding of the first has left.
+/// Number of times that a vector is made orthogonal to others: the second removes the rounding of the first.
 const TURNS: usize = 2;
 
 /// A linear function of the coordinates.
 #[derive(Clone, Debug)]
 pub(super) struct Row {
     pub values: Vec<Twice>,
-    /// The sum of the magnitudes of all terms of the values: what rounding is measured by.
+    /// The sum of the magnitudes of all terms of the values, the scale of rounding.
     pub terms: f64,
 }
 
@@ -40,14 +40,14 @@ impl Row {
 pub(super) struct Cone<'a> {
     pub rows: Vec<&'a Row>,
     pub fixed: Option<&'a Row>,
-    /// What rounding may leave of a sum, as a share of its terms.
+    /// Rounding of a sum, as a share of its terms.
     pub rounding: f64,
-    /// `false` if the rows themselves are rounded: then the point slides along all rows that doubles put it next to.
+    /// `false` if the rows themselves are rounded: then the point slides along all rows that it is close to in doubles.
     pub is_exact: bool,
 }
 
 impl Cone<'_> {
-    /// The point that is nearest to c, about; `None` where that is the tip.
+    /// The point nearest to c, approximately; `None` if that is the tip.
     pub fn nearest(&self, c: &[f64]) -> Option<Vec<Twice>> {
         let twice = |values: &[f64]| -> Vec<Twice> { values.iter().map(|&value| value.into()).collect() };
         let mut start = twice(&self.nearest_in_doubles(c)?);
@@ -61,7 +61,7 @@ impl Cone<'_> {
             for row in rows().filter(|row| closing(row, &start) > -TOUCHED * size(&start)) {
                 face.hold(row, self.rounding);
             }
-            // The nearest point is that of the rows it touches, which doubles have found with fewer digits.
+            // The nearest point lies on the rows that it touches; doubles gave it with fewer digits.
             start = twice(c);
         }
         let least = TIP * size(&start);
@@ -73,7 +73,7 @@ impl Cone<'_> {
             }
             let worst = rows().max_by(|a, b| closing(a, &point).total_cmp(&closing(b, &point)));
             match worst.filter(|row| closing(row, &point) > self.rounding * size) {
-                // A row that follows from those which are held, and still stops the point, shows that their digits are lost.
+                // If a row follows from the held rows and still stops the point, their digits are lost.
                 Some(row) if !face.hold(row, self.rounding) => return None,
                 Some(_) => {}
                 None => return Some(point),
@@ -81,7 +81,7 @@ impl Cone<'_> {
         }
     }
 
-    /// The same as the answer to a contact problem with K = I, in doubles. What is fixed may be negative: in doubles two
+    /// The same as the answer to a contact problem with K = I, in doubles. The fixed function may be negative: in doubles two
     /// opposed rows would leave nothing.
     fn nearest_in_doubles(&self, c: &[f64]) -> Option<Vec<f64>> {
         let (size, dofs) = (largest(c), c.len());
@@ -114,7 +114,7 @@ impl Cone<'_> {
     }
 }
 
-/// The coordinates at which some rows are zero: all that is at right angles to their orthogonal directions.
+/// The coordinates at which some rows are zero: the orthogonal complement of their orthogonal directions.
 #[derive(Default)]
 pub(super) struct Face {
     directions: Vec<Vec<Twice>>,
@@ -131,7 +131,7 @@ impl Face {
         rest
     }
 
-    /// Takes a row in, and returns `true`, unless it follows from the others.
+    /// Adds a row and returns `true`, unless it follows from the others.
     pub fn hold(&mut self, row: &Row, rounding: f64) -> bool {
         let direction = self.along(&row.values);
         let is_new = size(&direction) > rounding * row.terms;
@@ -169,9 +169,9 @@ mod tests {
         let rows = [row([1.0, 0.0]), row([1.0, 1e-9])];
         let cone = Cone { rows: rows.iter().collect(), fixed: None, rounding: 1e-28, is_exact: true };
         let nearest: Vec<f64> = cone.nearest(&[1.0, -1.0]).unwrap().into_iter().map(Twice::rounded).collect();
-        // A solve in doubles says how far the point is out; that it is on the first row is exact.
+        // The distance of the point has the precision of a solve in doubles; its place on the first row is exact.
         assert!(nearest[0] == 0.0 && (nearest[1] + 1.0).abs() < TIP, "{nearest:?}");
-        // Rows that are rounded themselves are touched both, and hold it.
+        // If the rows themselves are rounded, both are touched, and they hold the point.
         assert!(Cone { is_exact: false, ..cone }.nearest(&[1.0, -1.0]).is_none());
     }
 }

@@ -1,16 +1,18 @@
-//! What is said of a problem without a unique answer: not convex, infeasible, unbounded, under-held. A method that ends with such
-//! a claim, or without a bound, is a reason to look; what is said then rests on the problem alone.
+//! Claims about a problem without a unique answer: not convex, infeasible, unbounded, or not held enough (`Error::UnderHeld`:
+//! the answer can move along a mode without energy). If a method ends with such a claim, or without a bound, the claim is
+//! examined here, from the problem alone.
 //!
-//! With N a basis of the null space of K, everything turns on cones in the few coordinates a of d = N a:
+//! With N a basis of the null space of K, all claims depend on cones in the few coordinates a of d = N a:
 //!
 //! ```text
-//! unbounded    d = N a with  B d <= 0                              and  f'd > 0
-//! under-held   d = N a with  B d <= 0 on the rows that touch        and  f'd = 0,  from a displacement u that is an answer
+//! unbounded         d = N a with  B d <= 0                              and  f'd > 0
+//! not held enough   d = N a with  B d <= 0 on the rows that touch       and  f'd = 0,  from a displacement u that is an answer
 //! ```
 //!
 //! The point of a cone that is nearest to some c is itself the answer to a contact problem, with K = I. It is zero exactly if
-//! no direction of the cone leans towards c. N and the signs of all these sums have twice the working precision: what is said
-//! of a problem holds for its doubles as they stand. Where a method left no answer, steps with `K + rho E` instead of K find one.
+//! no direction of the cone has a positive product with c. N and the signs of all these sums have twice the working precision:
+//! a claim holds for the given doubles of the problem. If a method left no answer, steps with `K + rho E` instead of K find
+//! one.
 
 mod cone;
 mod steps;
@@ -27,20 +29,20 @@ use crate::qp::problem::ContactProblem;
 use crate::qp::transform::Scaling;
 use crate::solution::Solution;
 
-/// The forces of the rows hold the load if no mode is left with more than this share of them.
+/// The forces of the rows hold the load if at most this share of the forces is left on every mode.
 const BALANCED: f64 = 1e-9;
 
-/// A row presses if its force on a dof is beyond this share of the forces that are in balance there: less is their rounding.
+/// A row presses if its force on a dof exceeds this share of the forces in balance there; smaller forces are rounding.
 const PRESSED: f64 = 1e-13;
 
-/// Where an answer leaves forces out of balance that may move a row by more than this share of its displacement and gap, it does
+/// If an answer leaves forces out of balance that may move a row by more than this share of its displacement and gap, it does
 /// not show which rows touch.
 const SETTLED_FORCES: f64 = 1e-4;
 
 /// A row that is open by less than this share of its displacement and gap may touch.
 const TOUCHING: f64 = 1e-8;
 
-/// The same, as a share of what the load would move.
+/// The same, as a share of the displacement that the load would cause.
 const STRAINED: f64 = 1e-13;
 
 /// An answer is settled to this share of its largest displacement, in the units of equal stiffness.
@@ -49,10 +51,10 @@ const SETTLED_TO: f64 = 1e-11;
 /// A body moves at most this many times as far as a dof that a force moves alone: enough for bodies that are not slender.
 const BENDS: f64 = 1e3;
 
-/// An answer shows which rows press only if its conditions hold to this, however little is asked for.
+/// An answer shows which rows press only if its conditions hold to this, for every requested tolerance.
 const SURE_CONDITIONS: f64 = 1e-9;
 
-/// The ending of a solve, with every claim rechecked; where an ending left no answer, the one that is found here.
+/// The ending of a solve, with every claim rechecked; if the ending has no answer, the answer that is found here.
 ///
 /// # Errors
 /// As [`solve`](super::solve()).
@@ -98,7 +100,7 @@ pub(super) fn rechecked(
         Error::NotCertified { solution, .. } if holds(&solution) => *solution,
         before => steps::answer(problem, &scaling, settings, before)?,
     };
-    // A problem that has a place within its rows, and no mode that the load drives, has an answer.
+    // A problem with a displacement that meets its rows, and without a mode that the load drives, has an answer.
     let mode = match solution.certificate.penetration <= tolerance {
         true => looked.drift(),
         false => None,
@@ -109,7 +111,7 @@ pub(super) fn rechecked(
     judged(solution, settings.goal())
 }
 
-/// Refuses a factorisation of the stiffness that memory or time do not allow.
+/// Refuses a factorisation of the stiffness if memory or time do not allow it.
 ///
 /// # Errors
 /// [`Error::TooLarge`], [`Error::OutOfTime`], and those of the analysis.
@@ -122,8 +124,8 @@ fn check_room(problem: &ContactProblem, settings: &Settings) -> Result<(), Error
     check_time(&settings.watch, seconds::factorisation(&analysis))
 }
 
-/// Returns `true` if an error makes a claim, or leaves open whether there is one. An answer without a bound leaves it open if
-/// its conditions hold, or if a factor has shown the stiffness to be singular and the best possible answer is wanted.
+/// Returns `true` if an error makes a claim, or leaves open whether one holds. An answer without a bound leaves it open if its
+/// conditions hold, or if a factor has shown the stiffness to be singular and the best possible answer is wanted.
 fn is_doubtful(error: &Error, settings: &Settings) -> bool {
     match error {
         Error::NotConvex { .. } | Error::Unbounded { .. } | Error::UnderHeld { .. } => true,
@@ -144,7 +146,7 @@ struct Looked<'a> {
     rounding: Rounding,
     /// `B N` of each row with a bound, and the place of the row among all.
     rows: Vec<(usize, Row)>,
-    /// `-f'N`: the load stops what goes against it.
+    /// `-f'N`: as a row, the load stops directions against it.
     against_load: Row,
 }
 
@@ -172,22 +174,22 @@ impl<'a> Looked<'a> {
         self.mode(&cone.nearest(&along_load)?).filter(NullMode::escapes)
     }
 
-    /// A mode without energy on which the load does no work, and that no row stops, wherever it starts: of a problem that has
-    /// an answer, it has others.
+    /// A mode without energy on which the load does no work, and that no row stops from any start: a problem with such a mode
+    /// has more than one answer if it has any.
     fn drift(&self) -> Option<NullMode> {
         self.idle(&|_| true)
     }
 
     /// A mode without energy that leads from an answer to others.
     ///
-    /// A displacement that differs from u by a d with `K d = 0` and `f'd = 0` has the same energy, and meets the rows if d closes
-    /// none of those that touch.
+    /// If a displacement differs from u by a d with `K d = 0` and `f'd = 0`, it has the same energy. It meets the rows if d
+    /// closes no row that touches.
     fn freedom(&self, problem: &ContactProblem, solution: &Solution) -> Option<NullMode> {
         let u = &solution.displacement;
         let violation = problem.accurate_violation(u);
         let sizes = problem.contact().mul_abs(u);
-        // What the load would move dofs that nothing but their own stiffness holds, and what the largest displacement leaves of
-        // others: all that is left of u may be rounding of it.
+        // Two scales: the displacement by the load of dofs held by their own stiffness only, and the rounding that the largest
+        // displacement leaves in others. Any u below these may be rounding.
         let ones = self.scaling.expand_displacement(&vec![1.0; u.len()], 0);
         let largest_move = u.iter().zip(&ones).fold(0.0, |most: f64, (u, one)| most.max(u.abs() / one));
         let unit = STRAINED * largest(self.scaled.load()) + SETTLED_TO * largest_move;
@@ -212,8 +214,9 @@ impl<'a> Looked<'a> {
         self.idle(&touches).filter(|mode| self.rows.iter().all(|&(row, _)| !presses(row) || mode.approach[row] == 0.0))
     }
 
-    /// Returns `true` if these forces of the rows hold the load on all modes without energy: they do so to the digits of doubles, in
-    /// their own terms, and the rows that carry them can do so exactly. The last bit of the load may need another row.
+    /// Returns `true` if these forces of the rows hold the load on all modes without energy: they do so to the digits of
+    /// doubles, in their own terms, and the rows that carry them can do so exactly. The last bit of the load may need another
+    /// row.
     fn is_carried_by(&self, forces: &[f64]) -> bool {
         let (mut left, mut terms) = (self.against_load.values.clone(), Vec::new());
         terms.extend(left.iter().map(|value| value.rounded().abs()));
@@ -236,7 +239,7 @@ impl<'a> Looked<'a> {
         let stays = |mode: &NullMode| {
             mode.is_idle() && self.rows.iter().all(|&(row, _)| mode.approach[row] <= 0.0 || !stops(row))
         };
-        // No direction of a cone leans towards c or towards -c only if all are at right angles to it.
+        // All directions of a cone are orthogonal to c if no direction has a positive product with c or with -c.
         [1.0, -1.0].iter().find_map(|way| {
             let towards: Vec<f64> = generic(self.null.vectors.len(), 0).iter().map(|value| way * value).collect();
             self.mode(&cone.nearest(&towards)?).filter(stays)
@@ -269,17 +272,17 @@ fn coordinates<I: Iterator<Item = (usize, f64)>>(null: &NullSpace, entries: impl
     Row { values, terms }
 }
 
-/// How far rows may move by what u and lambda leave out of balance: a force moves its dof against no more than the stiffness of that
-/// dof, and a body that bends moves further.
+/// Upper bounds on the moves of rows by the imbalance of u and lambda: a force moves its dof against no more than the stiffness
+/// of that dof, and a body that bends moves further.
 fn moved_by_residual(problem: &ContactProblem, u: &[f64], lambda: &[f64]) -> Vec<f64> {
     let residual = problem.accurate_residual(u, lambda);
     let alone = problem.stiffness().diagonal();
-    // A force on a dof without stiffness moves nothing that others resist.
+    // A force on a dof without stiffness moves no dof with stiffness.
     let moved = |(force, stiffness): (f64, &f64)| if *stiffness > 0.0 { BENDS * force.abs() / stiffness } else { 0.0 };
     problem.contact().mul_abs(&residual.into_iter().zip(&alone).map(moved).collect::<Vec<f64>>())
 }
 
-/// The force of each row in the dof where it is largest, as a share of those that are in balance there.
+/// The force of each row in the dof with the largest share, as a share of the forces in balance there.
 fn shares_of_forces(problem: &ContactProblem, solution: &Solution) -> Vec<f64> {
     let lambda: Vec<f64> = solution.multiplier.iter().map(|value| value.abs()).collect();
     let (contact, elastic) =
@@ -298,8 +301,8 @@ mod tests {
     use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
     use crate::qp::solve;
 
-    /// A dof of stiffness 2 under a force of 4 before a wall at 1, with that dof alone or with a second one that nothing but a wall
-    /// at 5 holds.
+    /// A dof of stiffness 2 under a force of 4 before a wall at 1, with that dof alone or with a second one that only a wall at
+    /// 5 holds.
     fn before_a_wall(dofs: usize) -> ContactProblem {
         let diagonal = SparseMatrix::from_triplets(dofs, dofs, &[(0, 0, 2.0)]).unwrap();
         let entries: Vec<_> = (0..dofs).map(|dof| (dof, dof, 1.0)).collect();
@@ -308,7 +311,8 @@ mod tests {
         ContactProblem::new(stiffness, [4.0, 0.0][..dofs].to_vec(), contact, [1.0, 5.0][..dofs].to_vec()).unwrap()
     }
 
-    /// What `freedom` says of this displacement of the first dof and the force of its wall; the second dof is at rest.
+    /// Returns `true` if `freedom` finds a mode for this displacement of the first dof and this force of its wall; the second
+    /// dof is at rest.
     fn is_free(displacement: f64, force: f64) -> bool {
         let (problem, alone) = (before_a_wall(2), before_a_wall(1));
         let scaling = Scaling::of(problem.stiffness(), problem.contact()).unwrap();
@@ -327,7 +331,7 @@ mod tests {
 
     #[test]
     fn forces_carry_a_load_if_they_balance_it_on_every_mode() {
-        // Nothing but its wall holds the second dof, under a force of 3.
+        // Only its wall holds the second dof, under a force of 3.
         let problem = before_a_wall(2).with_load(vec![4.0, 3.0]).unwrap();
         let scaling = Scaling::of(problem.stiffness(), problem.contact()).unwrap();
         let (load, gap) = (scaling.load(problem.load(), 0), scaling.gap(problem.gap(), 0));
@@ -335,7 +339,7 @@ mod tests {
         let null = scaled.stiffness().null_space().unwrap().unwrap();
         let looked = Looked::of(&scaled, &scaling, null);
         let is_carried = |forces: [f64; 2]| looked.is_carried_by(&scaling.multiplier(&forces, 0));
-        // The force on the first wall is no matter of the mode.
+        // The force on the first wall does not act on the mode.
         assert!(is_carried([-2.0, -3.0]) && is_carried([0.0, -3.0]));
         assert!(is_carried([-2.0, -3.0 * (1.0 - BALANCED)]));
         for force in [-3.0 * (1.0 - 3.0 * BALANCED), -2.9, -3.1, 0.0, 3.0] {
@@ -346,7 +350,7 @@ mod tests {
     #[test]
     fn an_answer_out_of_balance_shows_no_freedom() {
         assert!(is_free(1.0, 2.0));
-        // Out of balance by e the dof may move by 1e3 e / 2, of which 1e-4 of displacement and gap, 2, are allowed.
+        // With an imbalance e the dof may move by 1e3 e / 2; 1e-4 of displacement and gap, 2, are allowed.
         assert!(is_free(1.0, 2.0 + 3e-7) && is_free(1.0, 2.0 - 3e-7));
         assert!(!is_free(1.0, 2.0 + 5e-7) && !is_free(1.0, 2.0 - 5e-7));
     }

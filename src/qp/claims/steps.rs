@@ -1,4 +1,4 @@
-//! An answer where the stiffness is singular, by steps with a stiffness that is not.
+//! An answer for a singular stiffness, by steps with a regular one.
 
 use crate::error::Error;
 use crate::qp::attempts;
@@ -9,19 +9,19 @@ use crate::qp::settings::{Method, Precision, Settings};
 use crate::qp::transform::Scaling;
 use crate::solution::Solution;
 
-/// Exponent of rho: on a diagonal of order one, far above rounding and far below what resists.
+/// Exponent of rho: on a diagonal of order one, far above rounding and far below all eigenvalues except zero.
 const STEP: i32 = -20;
 
-/// What a step with the added diagonal makes of rounding is below this share of its terms.
+/// The rounding of a step with the added diagonal is below this share of its terms.
 const OF_STEP: f64 = 1e-14;
 
-/// A step gains something if the square of its length is below this share of that of the one before.
+/// A step gains something if the square of its length is below this share of that of the previous one.
 const SHORTER: f64 = 1e-2;
 
-/// Steps after which one that gains nothing is the last: the first finds a place, the second its forces.
+/// After this number of steps, one that gains nothing is the last: the first finds a place, the second its forces.
 const FEWEST_STEPS: usize = 3;
 
-/// Steps with `K + rho E`, each of which takes a factor `rho / eigenvalue` off the error.
+/// Largest number of steps with `K + rho E`; each multiplies the error by `rho / eigenvalue`.
 const MOST_STEPS: usize = 12;
 
 /// The diagonal of `rho E`.
@@ -72,7 +72,7 @@ pub(super) fn answer(
         };
         let moved = (0..dofs).map(|dof| added[dof] * (found.displacement[dof] - centre[dof]).powi(2)).sum::<f64>();
         centre.clone_from(&found.displacement);
-        // The steps become shorter until they are rounding, also where the conditions cannot tell.
+        // The steps become shorter until they are rounding, even if the conditions do not show it.
         let mut is_better = moved < SHORTER * before_last;
         before_last = moved;
         for (displacement, multiplier) in without_rounding(problem, &added, &centre, &found.multiplier) {
@@ -100,8 +100,8 @@ fn with_diagonal(stiffness: &SymmetricMatrix, added: &[f64]) -> Result<Symmetric
     SymmetricMatrix::from_lower(SparseMatrix::from_triplets(added.len(), added.len(), &entries)?)
 }
 
-/// An answer of a step as it is, without the forces that the added diagonal makes of the rounding of the displacement, and
-/// also without the displacements that such forces make.
+/// The answer of a step: unchanged, without forces that come from the added diagonal and the rounding of the displacement, and
+/// also without the displacements that such forces cause.
 fn without_rounding(problem: &ContactProblem, added: &[f64], u: &[f64], lambda: &[f64]) -> [(Vec<f64>, Vec<f64>); 3] {
     let mut rounding = vec![0.0_f64; problem.rows()];
     for (row, dof, b) in problem.contact().triplets().filter(|entry| entry.2 != 0.0) {
@@ -158,8 +158,8 @@ mod tests {
         let found = answer(&problem, &scaling, &settings, before).unwrap();
         assert_eq!((&found.displacement[..], &found.multiplier[..]), (&[2.0, 0.5][..], &[0.0, -3.0][..]));
         assert_eq!(found.lost_pivot, Some(1e-17));
-        // Each step takes a factor of about 2^-20 off the error: the third leaves less than the last bit, the fourth is as
-        // long as rounding, and the fifth is none.
+        // Each step multiplies the error by about 2^-20: the third leaves less than the last bit, the fourth has the length of
+        // rounding, and there is no fifth.
         let solves = solves.load(Ordering::SeqCst);
         assert!((FEWEST_STEPS..=5).contains(&solves), "{solves}");
     }
@@ -167,14 +167,14 @@ mod tests {
     #[test]
     fn forces_and_displacements_within_rounding_of_a_step_are_left_out() {
         let problem = two([2.0, 2.0], [4.0, 1.0], [3.0, 3.0]);
-        // The added diagonal of 1/2 makes rounding of OF_STEP / 2 of a displacement of one.
+        // With the added diagonal of 1/2, a displacement of one has a rounding of OF_STEP / 2.
         let kept_force = |share: f64| {
             let force = -share * OF_STEP / 2.0;
             without_rounding(&problem, &[0.5; 2], &[1.0, 0.0], &[force, 0.0])[1].1[0] / force
         };
         assert_eq!((kept_force(0.9), kept_force(1.1)), (0.0, 1.0));
-        // On the second dof a load of one is rounded by OF_STEP, against a stiffness of 2 and the 1/2 that is added.
-        // The rounding of its own row is a share of OF_STEP of that.
+        // On the second dof a load of one is rounded by OF_STEP, against a stiffness of 2 and the added 1/2. The rounding of
+        // its own row is a share of OF_STEP of that.
         let is_kept = |share: f64| {
             let small = share * OF_STEP / 2.5;
             let [.., (u, _)] = without_rounding(&problem, &[0.5; 2], &[1.0, small], &[0.0; 2]);

@@ -1,4 +1,4 @@
-//! Seconds of the direct path, estimated before anything is ordered.
+//! Seconds of the direct path, estimated before the ordering.
 
 use super::seconds::{self, factor_seconds};
 use super::smooth::Smooth;
@@ -9,22 +9,23 @@ use crate::qp::transform::Condensation;
 /// Rigid-body modes of a body in space: its factor grows faster than that of a plane body.
 const MODES_IN_SPACE: usize = 6;
 
-/// Values of the factor of a bar for an unknown, about.
+/// Values of the factor of a bar for each unknown, approximately.
 const ALONG_A_LINE: f64 = 4.0;
 
-/// Entries of the contact rows for a dof beyond which the contact boundary is most of the body.
+/// If the contact rows have more entries for each dof than this, the contact boundary is most of the body.
 const MANY: f64 = 0.25;
 
-/// Cycles of the start of the direct path.
+/// Cycles of multigrid from which the direct path starts.
 pub(in crate::qp) const NEAR_CYCLES: f64 = 8.0;
 
-/// Sets of closed rows, each with a factor, until one is settled: where contact is everywhere, and where it is not condensed.
+/// Sets of closed rows, each with a factor, until one is settled: if contact is everywhere, and if the problem is not
+/// condensed.
 const SETS: [f64; 2] = [10.0, 5.0];
 
-/// The sets of a condensed problem take so many times the seconds of making it, about.
+/// The sets of a condensed problem take about this many times the seconds of condensing it.
 const DENSE_STEPS: f64 = 3.0;
 
-/// Returns `true` if the contact boundary is most of the body, so that a front of closed rows has far to move.
+/// Returns `true` if the contact boundary is most of the body, so that a front of closed rows has a long way to go.
 fn is_everywhere(problem: &ContactProblem) -> bool {
     problem.contact().entries() as f64 > MANY * problem.dofs() as f64
 }
@@ -38,7 +39,7 @@ pub(super) struct BodyFactor {
 }
 
 impl BodyFactor {
-    /// By the number of unknowns, as for a bar, a square or a cube.
+    /// By the number of unknowns, with the law of a bar, a square or a cube.
     pub fn by_size(problem: &ContactProblem) -> Self {
         let dofs = problem.dofs() as f64;
         let (entries, seconds) = match problem.near_null().map(|near_null| near_null.count()) {
@@ -49,8 +50,9 @@ impl BodyFactor {
         BodyFactor { entries, seconds, ordering_seconds: seconds::ordering(problem) }
     }
 
-    /// The same where an order by minimum degree, which takes a few hundredths of the time of a solve by multigrid, tells that the
-    /// factor of a body in space is smaller: slender and thin-walled bodies have far smaller factors than cubes.
+    /// The same, or less if an order by minimum degree shows that the factor of a body in space is smaller: slender and
+    /// thin-walled bodies have far smaller factors than cubes. The order takes a few hundredths of the time of a solve by
+    /// multigrid.
     pub fn by_degree(problem: &ContactProblem) -> Self {
         let by_size = Self::by_size(problem);
         let in_space = problem.near_null().is_some_and(|near_null| near_null.count() >= MODES_IN_SPACE);
@@ -77,7 +79,7 @@ pub(super) struct Direct {
     pub factor_entries: f64,
     pub seconds: f64,
     pub shared_seconds: f64,
-    /// Whether a few cycles of multigrid, which find a set near the last one, cost less than the sets on the way there.
+    /// `true` if a few cycles of multigrid, which find a set near the last one, cost less than the sets on the way there.
     pub starts_near: bool,
 }
 

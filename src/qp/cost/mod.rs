@@ -1,4 +1,4 @@
-//! What a solve costs: the one model of seconds and bytes, and the limits that are held against it.
+//! Cost of a solve: the one model of seconds and bytes, and the limits that they must keep.
 
 pub mod bytes;
 mod direct;
@@ -15,25 +15,25 @@ pub(in crate::qp) use direct::{NEAR_CYCLES, starts_near};
 pub(crate) use seconds::assembly_seconds;
 pub(in crate::qp) use smooth::Smooth;
 
-/// Rows that are bounds only after turning take more cycles by this factor.
+/// Rows that are bounds only after reflections take more cycles by this factor.
 const TURNED: f64 = 1.6;
 
-/// A stiffness that is singular takes so many times the seconds: factors for the start and for what the rows hold.
+/// A singular stiffness takes this many times the seconds: factors for the start and for the sets of rows that hold the body.
 const SINGULAR: f64 = 2.5;
 
-/// Where a cube would take less than this many times the seconds of multigrid, a slender body may take less than these: the order
-/// by minimum degree is looked at.
+/// If a cube would take less than this many times the seconds of multigrid, a slender body may take less than multigrid: the
+/// order by minimum degree is then computed.
 const LOOK: f64 = 12.0;
 
 /// Forces of a mode below this share of their terms are rounding.
 const FREE: f64 = 1e-9;
 
-/// Returns `true` if a row has several entries, so that it is a bound only after turning.
+/// Returns `true` if a row has several entries, so that it is a bound only after reflections.
 fn is_turned(contact: &SparseMatrix) -> bool {
     contact.entries() > contact.rows()
 }
 
-/// Returns `true` if one of the rigid-body modes costs no energy.
+/// Returns `true` if one of the rigid-body modes has no energy.
 fn has_free_mode(problem: &ContactProblem) -> bool {
     let stiffness = problem.stiffness();
     let is_free = |mode: &Vec<f64>| largest(&stiffness.mul(mode)) <= FREE * largest(&stiffness.mul_abs(mode));
@@ -43,7 +43,8 @@ fn has_free_mode(problem: &ContactProblem) -> bool {
 /// Estimated time and memory of the two paths.
 ///
 /// Calibrated on blocks of Q4 and Hex8 (`cargo run --release --example multigrid`) and on parts of tetrahedra
-/// (`cargo run --release --example kinds -- --scenes FOLDER`, on what `reference/parts.py` writes); good to a factor of two or so.
+/// (`cargo run --release --example kinds -- --scenes FOLDER`, on the output of `reference/parts.py`); accurate to a factor of
+/// about two.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// Bytes of the direct path at its peak, the problem itself included.
@@ -58,16 +59,16 @@ pub struct Estimate {
     pub multigrid_seconds: f64,
     /// Seconds of the hierarchy alone.
     pub hierarchy_seconds: f64,
-    /// Seconds of what serves all gaps on the direct path: the first factorisation, with its order.
+    /// Seconds of the part of the direct path that serves all gaps: the first factorisation, with its order.
     pub(super) shared_seconds: f64,
-    /// What a hierarchy knows.
+    /// The near-null space that a hierarchy is given.
     pub(super) smooth: Smooth,
-    /// Cycles that the seconds of multigrid stand for.
+    /// Number of cycles in the seconds of multigrid.
     pub(super) cycles: f64,
 }
 
 impl Estimate {
-    /// The estimate for `problem`; its near-null space tells whether it is a bar or a body in space.
+    /// The estimate for `problem`; its near-null space shows whether it is a bar or a body in space.
     pub fn of(problem: &ContactProblem) -> Self {
         let dofs = problem.dofs() as f64;
         let entries = problem.stiffness().lower().entries() as f64;
@@ -77,7 +78,7 @@ impl Estimate {
         let cycles = turned * smooth.cycles();
         let multigrid_seconds = hierarchy_seconds + cycles * seconds::cycle(dofs, entries);
         let mut direct = Direct::of(problem, smooth, BodyFactor::by_size(problem));
-        // What takes time to find is looked at where it matters.
+        // The slow estimate is made only if it may change the choice.
         if (1.0..LOOK).contains(&(direct.seconds / multigrid_seconds)) {
             direct = Direct::of(problem, smooth, BodyFactor::by_degree(problem));
         }
@@ -106,34 +107,34 @@ fn multigrid_bytes(problem: &ContactProblem) -> f64 {
     bytes::START + bytes::of_hierarchy(dofs, 2.0 * lower - dofs)
 }
 
-/// What a solve keeps beside the problem.
+/// The data that a solve keeps beside the problem.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::qp) enum Kept {
     /// Nothing yet: the problem is being ordered.
     Nothing,
-    /// The factor of the body, with so many values, and dense matrices on so many contact dofs.
+    /// The factor of the body, with `values` values, and dense matrices on `contact_dofs` contact dofs.
     Condensed { values: usize, width: Width, contact_dofs: usize, by_interior_point: bool },
-    /// The factor of the body and those of two contact sets, with so many values each; so many contact dofs come last.
+    /// The factor of the body and those of two contact sets, with `values` values each; `last` contact dofs come last.
     Factors { values: usize, last: usize, by_interior_point: bool },
-    /// The factor of one contact set, with so many values.
+    /// The factor of one contact set, with `values` values.
     OneFactor { values: usize },
     /// A hierarchy instead of a factor.
     Multigrid,
 }
 
 impl Kept {
-    /// The least that a condensation onto so many contact dofs keeps.
+    /// The least that a condensation onto this number of contact dofs keeps.
     pub fn dense(contact_dofs: usize) -> Self {
         Kept::Condensed { values: 0, width: Width::Single, contact_dofs, by_interior_point: false }
     }
 
-    /// The least that factors with so many contact dofs last keep.
+    /// The least that factors with this number of contact dofs last keep.
     pub fn boundary(last: usize) -> Self {
         Kept::Factors { values: 0, last, by_interior_point: false }
     }
 }
 
-/// Factors that exist at one time where every contact set has its own.
+/// Number of factors that exist at one time if every contact set has its own.
 pub(in crate::qp) const FACTORS: f64 = 2.0;
 
 /// Refuses a problem that would take more memory than `settings` allow.
@@ -173,7 +174,7 @@ pub(in crate::qp) fn check_memory(problem: &ContactProblem, kept: Kept, settings
     Ok(())
 }
 
-/// Refuses work that is estimated to take so many seconds if there is no time for it.
+/// Refuses work with this estimate in seconds if there is no time for it.
 ///
 /// # Errors
 /// [`Error::OutOfTime`].

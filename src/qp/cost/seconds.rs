@@ -1,4 +1,5 @@
-//! Seconds that a step of a solve takes, estimated on the machine of the fit; [`Watch::timed`] learns how this one compares.
+//! Seconds of a step of a solve, estimated for the machine of the fit; [`Watch::timed`] measures the ratio of this machine to
+//! it.
 
 use std::hint::black_box;
 use std::sync::LazyLock;
@@ -14,14 +15,14 @@ use crate::watch::Watch;
 static FITTED: LazyLock<Fitted> =
     LazyLock::new(|| serde_json::from_str(include_str!("../fitted.json")).unwrap_or_default());
 
-/// What was fitted, without the rules.
+/// The fitted costs, without the rules.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 struct Fitted {
     double: Cost,
     single: Cost,
 }
 
-/// Seconds that a step takes: a constant, and one for each multiplication and each value of the factor.
+/// Seconds of a step: a constant, and one for each multiplication and each value of the factor.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Cost {
@@ -42,7 +43,7 @@ const ASSEMBLY: f64 = 3e-8;
 /// Seconds of ordering and analysis for an entry of the lower triangle, nested dissection included.
 const ORDERING: f64 = 1.3e-7;
 
-/// The same of minimum degree alone, which slender bodies are left with.
+/// The same of minimum degree alone, the order that slender bodies keep.
 const MINIMUM_DEGREE: f64 = 1.3e-8;
 
 /// Seconds of a hierarchy for an unknown, and for an entry of the lower triangle (`cargo run --release --example kinds`).
@@ -57,22 +58,22 @@ const CERTIFICATE: f64 = 1e-7;
 /// Seconds of a multiplication in the plain loops of a condensation, and in a sweep through a dense triangle.
 const PLAIN: f64 = 4e-10;
 
-/// Seconds of a multiplication in the interior point, whose factor is built entry by entry.
+/// Seconds of a multiplication in the interior-point method, which builds its factor entry by entry.
 const ENTRY_BY_ENTRY: f64 = 1.5e-9;
 
-/// Its order needs so many times the multiplications of ours.
+/// Its order needs this many times the multiplications of ours.
 const MORE_FILL: f64 = 3.0;
 
-/// Cells along a side of the lattice whose matrix is factorised to learn the pace.
+/// Cells along a side of the lattice; its matrix is factorised to measure the pace.
 const LATTICE: usize = 64;
 
-/// Seconds of a factorisation with so many multiplications and values, as they were where the rules were fitted.
+/// Seconds of a factorisation with this number of multiplications and values, on the machine of the fit.
 pub(in crate::qp) fn factor_seconds(multiplications: f64, values: usize, width: Width) -> f64 {
     let cost = if width == Width::Single { FITTED.single } else { FITTED.double };
     cost.seconds(multiplications, values as f64)
 }
 
-/// Seconds of meshing a scene and assembling so many entries of its stiffness, both triangles.
+/// Seconds of meshing a scene and assembling this number of entries of its stiffness, both triangles.
 pub(crate) fn assembly_seconds(entries: f64) -> f64 {
     ASSEMBLY * entries
 }
@@ -82,12 +83,12 @@ pub(in crate::qp) fn ordering(problem: &ContactProblem) -> f64 {
     ORDERING * problem.stiffness().lower().entries() as f64
 }
 
-/// The same where the order by minimum degree is kept without looking for a better one.
+/// The same if the order by minimum degree is kept without a search for a better one.
 pub(in crate::qp) fn minimum_degree(problem: &ContactProblem) -> f64 {
     MINIMUM_DEGREE * problem.stiffness().lower().entries() as f64
 }
 
-/// Seconds of a hierarchy of so many unknowns and entries of the lower triangle.
+/// Seconds of a hierarchy of this number of unknowns and entries of the lower triangle.
 pub(in crate::qp) fn hierarchy(dofs: f64, entries: f64) -> f64 {
     HIERARCHY[0] * dofs + HIERARCHY[1] * entries
 }
@@ -97,8 +98,8 @@ pub(in crate::qp) fn cycle(dofs: f64, entries: f64) -> f64 {
     CYCLE[0] * dofs + CYCLE[1] * entries
 }
 
-/// Seconds of what follows the last step: the conditions of the certificate, which are summed with twice the working
-/// precision, and what a report adds up.
+/// Seconds of the work after the last step: the conditions of the certificate, which are summed with twice the working
+/// precision, and the sums of a report.
 pub(in crate::qp) fn certificate(problem: &ContactProblem) -> f64 {
     CERTIFICATE * problem.stiffness().lower().entries() as f64
 }
@@ -108,7 +109,7 @@ pub(in crate::qp) fn factorisation(analysis: &Analysis) -> f64 {
     factor_seconds(analysis.multiplications(), analysis.factor_entries(), Width::Double)
 }
 
-/// Seconds of one step of the interior point on a matrix that is analysed so, with a row for each of its contact dofs.
+/// Seconds of one step of the interior-point method on a matrix with this analysis, with a row for each of its contact dofs.
 pub(in crate::qp) fn interior_point(analysis: &Analysis) -> f64 {
     MORE_FILL * ENTRY_BY_ENTRY * analysis.multiplications()
 }
@@ -118,12 +119,12 @@ pub(in crate::qp) fn dense(size: usize) -> f64 {
     PLAIN * (size as f64).powi(3) / 3.0
 }
 
-/// Seconds that so many columns add to a factorisation in which they come last.
+/// Seconds that this number of columns adds to a factorisation if they come last.
 pub(in crate::qp) fn last_block(size: usize) -> f64 {
     FITTED.double.per_multiplication * (size as f64).powi(3) / 6.0
 }
 
-/// Seconds of sweeps through so many values.
+/// Seconds of `count` sweeps through this number of values.
 pub(in crate::qp) fn sweeps(count: usize, values: f64) -> f64 {
     PLAIN * count as f64 * values
 }
@@ -148,7 +149,7 @@ pub(in crate::qp) fn learn(watch: &Watch) {
     let lattice = SparseMatrix::from_triplets(columns, columns, &entries).and_then(SymmetricMatrix::from_lower);
     let Ok(lattice) = lattice else { return };
     let Ok(analysis) = Analysis::of(&lattice) else { return };
-    // The first run fetches code and memory.
+    // The first run is slower, because it fetches code and memory.
     let _ = black_box(analysis.factor(&lattice));
     let _ = black_box(watch.timed(factorisation(&analysis), || analysis.factor(&lattice)));
 }

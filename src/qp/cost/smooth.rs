@@ -1,34 +1,34 @@
-//! How many cycles an answer by multigrid takes, by what the hierarchy knows and by how well its smoother works.
+//! Number of cycles of an answer by multigrid, from the near-null space of the hierarchy and the quality of its smoother.
 
 use crate::qp::linear::SymmetricMatrix;
 use crate::qp::problem::ContactProblem;
 
-/// Row sums of a stiffness may be negative by this share of the diagonal: rounding.
+/// Row sums of a stiffness may be negative by this share of the diagonal, because of rounding.
 const ROW_SUM_ROUNDING: f64 = 1e-9;
 
-/// Neighbours of a dof of a diffusion whose ties differ by more than this slow multigrid down, if most dofs have such.
+/// If most dofs of a diffusion have couplings to their neighbours that differ by more than this, multigrid is slow.
 const UNEVEN: f64 = 1e3;
 
-/// A row whose entries off the diagonal add up to more than this many times the diagonal is smoothed slowly: the largest
-/// eigenvalue of D^-1 K may be as large as one plus that sum over the diagonal. At nu = 0.3 linear elements stay below 3.2; quadratic
-/// ones reach 5.5 in a tenth of their rows.
+/// A row is smoothed slowly if its entries off the diagonal add up to more than this many times the diagonal: the largest
+/// eigenvalue of D^-1 K may be as large as one plus that sum over the diagonal. At nu = 0.3 linear elements stay below 3.2;
+/// quadratic ones reach 5.5 in a tenth of their rows.
 const HEAVY: f64 = 4.2;
 
-/// The share of such rows from which on a stiffness counts as heavy.
+/// A stiffness counts as heavy from this share of such rows on.
 const HEAVY_SHARE: f64 = 0.1;
 
-/// What a hierarchy is told of the displacements that cost next to no energy.
+/// Displacements of almost no energy that a hierarchy is given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::qp) enum Smooth {
     /// The rigid-body modes are given.
     Given,
     /// The same; point smoothers need more cycles, because many rows outweigh their diagonal.
     GivenHeavy,
-    /// Those of a scalar diffusion, the constants.
+    /// The constants of a scalar diffusion.
     Constants,
-    /// The same, of one whose ties to neighbours differ by orders of magnitude nearly everywhere.
+    /// The same, for a diffusion with couplings that differ by orders of magnitude at most dofs.
     Uneven,
-    /// Nothing: constants make a poor hierarchy of a body, and a smoother needs a stiffness of every dof.
+    /// Nothing is given: constants make a poor hierarchy of a body, and a smoother needs a stiffness of every dof.
     Unknown,
 }
 
@@ -64,7 +64,7 @@ impl Smooth {
         if 2 * uneven > ties.len() { Smooth::Uneven } else { Smooth::Constants }
     }
 
-    /// Returns `true` if a few cycles tell the direct path where to start.
+    /// Returns `true` if a few cycles give the direct path a good start.
     pub fn starts_sets(self) -> bool {
         matches!(self, Smooth::Given | Smooth::GivenHeavy | Smooth::Constants)
     }

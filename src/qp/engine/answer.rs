@@ -1,4 +1,4 @@
-//! The whole answer of the engine with a factor: expanded, certified, refined, and found again where it falls short.
+//! The whole answer of the engine with a factor: expanded, certified, refined, and found again if it falls short.
 
 use std::time::Instant;
 
@@ -14,11 +14,11 @@ use crate::qp::settings::Settings;
 use crate::solution::{Certificate, ContactSet, Iteration, Seconds, Solution};
 use crate::watch::Watch;
 
-/// Repairs of an answer: the second takes out what rounding of the first has left.
+/// Largest number of repairs of an answer: the second removes the rounding of the first.
 const MOST_REPAIRS: usize = 2;
 
 impl Factored {
-    /// The whole answer, certified, and what was found for it: by a second attempt where `found` falls short.
+    /// The whole answer, certified, and what was found for it; a second attempt is made if `found` falls short.
     pub(super) fn best(&self, found: Found, settings: &Settings) -> Result<(Found, Solution), Error> {
         let goal = settings.goal();
         let solution = self.whole(&found, settings)?;
@@ -41,13 +41,13 @@ impl Factored {
         Ok((found, judged(solution, goal)?))
     }
 
-    /// What the last resort finds, where `found` is not its answer already.
+    /// The answer of the last resort, if `found` is not that already.
     ///
     /// # Errors
     /// [`Error::Infeasible`] for contact rows that contradict each other.
     fn second_attempt(&self, found: &Found, settings: &Settings) -> Result<Option<Found>, Error> {
         let clock = Instant::now();
-        // Of an answer that was cut short it is known why it falls short.
+        // For an answer that was cut short, the reason is known.
         if found.outcome.is_last_resort() || settings.watch.is_over() {
             return Ok(None);
         }
@@ -59,7 +59,7 @@ impl Factored {
         Ok(outcome.is_last_resort().then(|| Found { outcome, seconds, ..found.clone() }))
     }
 
-    /// The energy norm for a certificate; a factor in single precision is off by its contraction.
+    /// The energy norm for a certificate; a factor in single precision is widened by its contraction.
     fn norm_of(&self, found: &Found, settings: &Settings) -> Option<EnergyNorm> {
         let norm = self.norm_within(&settings.watch.finishing())?;
         Some(match &found.refined {
@@ -86,7 +86,7 @@ impl Factored {
             }
         };
         let judging = before_certificate.elapsed().as_secs_f64();
-        // A factor that was made for the certificate alone makes room for those of a refinement.
+        // A factor that was made for the certificate alone is freed to make room for those of a refinement.
         let norm = norm.filter(|_| self.reduction.is_norm_at_hand());
         let expand_iteration = |step: &Iteration| Iteration {
             contact_set: self.reduction.selection.expand_set(&step.contact_set),
@@ -117,7 +117,7 @@ impl Factored {
         // A proof takes about the memory of one more factor.
         if let Some(norm) = norm.as_ref().filter(|_| may_prove) {
             let clock = Instant::now();
-            // A refined answer leaves something else.
+            // A refined answer has another residual.
             let evidence = evidence.filter(|_| solution.refinements == refinements);
             solution.proven = problem.prove_in(norm, &solution.displacement, &solution.multiplier, evidence);
             let seconds = clock.elapsed().as_secs_f64();
@@ -127,7 +127,7 @@ impl Factored {
         Ok(solution)
     }
 
-    /// The certificate of an answer to `problem`, this one under some load and gaps: with what bound there is time for.
+    /// The certificate of an answer to `problem`, this one under some load and gaps, with the bound that the time allows.
     pub(super) fn certificate(
         &self,
         problem: &ContactProblem,
@@ -142,16 +142,16 @@ impl Factored {
         }
     }
 
-    /// The energy norm of a stiffness that is definite by itself, whose bounds end when `watch` says so; `None` too if there is no
-    /// time to make it.
+    /// The energy norm of a stiffness that is definite by itself, with bounds that end when `watch` says so; `None` also if
+    /// there is no time to make it.
     fn norm_within(&self, watch: &Watch) -> Option<EnergyNorm> {
         let in_time = self.reduction.is_norm_at_hand() || watch.allows(self.norm_seconds);
         if in_time { self.reduction.norm().map(|norm| norm.watched(watch)) } else { None }
     }
 }
 
-/// A solution that falls short, by the repair of its own bound as long as that brings it closer to its goal: rows that hold many
-/// dofs, or no dof but rounding, leave nothing that a step of the method can take.
+/// A solution that falls short, improved by the repair of its own bound as long as that brings it closer to its goal. This
+/// helps if rows hold many dofs, or no dof except for rounding: then a step of the method has nothing left to improve.
 ///
 /// # Errors
 /// Those of the certificate.

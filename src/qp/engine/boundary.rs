@@ -6,10 +6,10 @@ use std::sync::Arc;
 use crate::error::Error;
 use crate::solution::{Certificate, ContactSet, Solution};
 
-/// What a prepared problem says of its contact boundary at some gap and load.
+/// The answer of a prepared problem on its contact boundary at some gap and load.
 ///
-/// The multipliers are those of the whole answer. Nothing in it costs a sweep through the factor of the body, unless it
-/// is asked for: [`displacement`](Self::displacement) takes one, [`solution`](Self::solution) two.
+/// The multipliers are those of the whole answer. Nothing here costs a sweep through the factor of the body, unless it is asked
+/// for: [`displacement`](Self::displacement) takes one, [`solution`](Self::solution) two.
 #[derive(Clone, Debug)]
 pub struct BoundarySolution {
     /// Contact multiplier lambda, one entry per contact row, in the problem's unit of force, `<= 0` in compression.
@@ -18,13 +18,13 @@ pub struct BoundarySolution {
     pub contact_set: ContactSet,
     /// Iterations of the method.
     pub iterations: usize,
-    /// The certificate of the *condensed* problem, in its dimensionless units: its conditions are recomputed from the
-    /// condensed stiffness, load and rows, not from the problem itself. That takes the displacement of the body.
+    /// The certificate of the *condensed* problem, in its dimensionless units: its conditions are recomputed from the condensed
+    /// stiffness, load and rows, not from the problem itself, which would need the displacement of the body.
     pub condensed_certificate: Certificate,
     pub(super) inside: Arc<dyn Inside>,
 }
 
-/// What the answer inside the body can be made of.
+/// The means to compute the answer inside the body.
 pub(super) trait Inside: Debug + Send + Sync {
     /// The displacement of the whole body, not certified.
     fn displacement(&self) -> Vec<f64>;

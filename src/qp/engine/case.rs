@@ -1,4 +1,4 @@
-//! What an engine is asked for, and what it answers: all that [`Prepared`](super::Prepared) knows of it.
+//! The questions to an engine and its answers: all that [`Prepared`](super::Prepared) uses.
 
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -14,17 +14,17 @@ use crate::qp::problem::ContactProblem;
 use crate::qp::settings::{Method, Settings};
 use crate::solution::{Seconds, Solution};
 
-/// What an engine is asked for.
+/// A question to an engine: gaps, load, start and settings.
 pub(super) struct Case<'a> {
     pub load: &'a Load,
     /// Gaps, one entry per row.
     pub gap: &'a [f64],
     pub start: &'a Start,
-    /// Settings whose clock runs.
+    /// Settings with a running clock.
     pub settings: &'a Settings,
-    /// The same as they were given: what is asked for later has the time anew.
+    /// The same settings as they were given: later questions start with the full time again.
     pub given: &'a Settings,
-    /// Whether an answer on the boundary needs a bound on its error; without one its conditions alone are held against the
+    /// `true` if an answer on the boundary needs a bound on its error; otherwise only its conditions are compared with the
     /// tolerance, which costs no triangular solve.
     pub is_bounded: bool,
 }
@@ -40,18 +40,18 @@ pub(super) struct FactorSize {
     pub is_single: bool,
 }
 
-/// A problem prepared once for many gaps, loads and starts. What an engine has no means for keeps its default.
+/// A problem prepared once for many gaps, loads and starts. A function that an engine cannot provide keeps its default.
 pub(super) trait Engine: Debug + Send + Sync {
     /// The problem as it came.
     fn problem(&self) -> &ContactProblem;
 
-    /// Returns `true` if `method` works on what was prepared.
+    /// Returns `true` if `method` works on the prepared data.
     fn serves(&self, method: Method) -> bool;
 
-    /// What the preparation cost.
+    /// The time of the preparation.
     fn seconds(&self) -> Seconds;
 
-    /// What a solve with `settings` tries here.
+    /// The methods and means that a solve with `settings` tries here.
     fn tried(&self, settings: &Settings) -> Tried;
 
     /// The whole answer, certified.
@@ -68,8 +68,8 @@ pub(super) trait Engine: Debug + Send + Sync {
         Ok(self.solve(case)?.into())
     }
 
-    /// The displacement without a certificate; `None` if the method did not settle on a set, or only a certified answer is known
-    /// to be one.
+    /// The displacement without a certificate; `None` if the method did not settle on a set, or if an answer of the method is
+    /// only valid with a certificate.
     ///
     /// # Errors
     /// As [`Engine::boundary`].
@@ -82,7 +82,7 @@ pub(super) trait Engine: Debug + Send + Sync {
         None
     }
 
-    /// A contact set near that of the answer, at a small part of its cost.
+    /// A contact set near that of the answer, at a small part of the cost of the answer.
     fn near(&self, _settings: &Settings) -> Option<Start> {
         None
     }

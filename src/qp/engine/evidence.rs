@@ -1,4 +1,4 @@
-//! What a method says of the scaled problem, in the terms of the problem as it came.
+//! The claims of a method on the scaled problem, in the terms of the original problem.
 
 use super::factored::Factored;
 use crate::error::Error;
@@ -23,7 +23,7 @@ impl Factored {
         match error {
             Error::Unbounded { mode, direction } => {
                 let direction = normalised(direction);
-                // Condensing leaves the rounding of a load in balance, which is all that drives the boundary then.
+                // If the load is in balance, condensing leaves its rounding, which is then all that drives the boundary.
                 match problem.share_of_work(&direction) > WORK_TOLERANCE {
                     true => Error::Unbounded { mode, direction },
                     false => Error::UnderHeld { mode, direction },
@@ -34,7 +34,7 @@ impl Factored {
                 let mut scaled = vec![0.0; self.reduction.selection.kept().len()];
                 rows.iter().zip(&weights).for_each(|(&row, &weight)| scaled[row] = weight);
                 let rows: Vec<usize> = rows.into_iter().map(|row| self.reduction.selection.kept()[row]).collect();
-                // Rows are scaled as multipliers are; the unit of weights is free.
+                // Rows are scaled like multipliers; the unit of weights is free.
                 let all = self.expand_multiplier(&scaled, self.reduction.scaling.equilibration().factor);
                 let weights: Vec<f64> =
                     if weights.is_empty() { weights } else { rows.iter().map(|&row| all[row]).collect() };

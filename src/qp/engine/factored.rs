@@ -1,4 +1,4 @@
-//! The engine with a factor: everything is done once that does not depend on load and gap.
+//! The engine with a factor: everything that does not depend on load and gap is done once.
 
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
@@ -22,25 +22,25 @@ use crate::qp::transform::Condensation;
 use crate::solution::{ContactSet, Seconds, Solution};
 use crate::watch::Watch;
 
-/// Factorisations for one step of a loop where K is not definite by itself.
+/// Factorisations for one step of a loop if K is not definite by itself.
 const SINGULAR: f64 = 3.0;
 
-/// A contact problem, scaled, condensed where that pays, factorised.
+/// A contact problem, scaled, condensed if that pays, factorised.
 #[derive(Debug)]
 pub(super) struct Factored {
     pub(super) problem: ContactProblem,
     pub(super) reduction: Reduction,
-    /// The smallest pivot of the scaled stiffness, where it is below [`LOST_PIVOT`](super::preparation::LOST_PIVOT).
+    /// The smallest pivot of the scaled stiffness, if it is below [`LOST_PIVOT`](super::preparation::LOST_PIVOT).
     pub(super) lost_pivot: Option<f64>,
     pub(super) augmented: AugmentedMatrix,
-    /// Energy norm of the condensed stiffness, if it is definite, made when it is first asked for.
+    /// Energy norm of the condensed stiffness, if it is definite, made at its first use.
     pub(super) condensed_norm: OnceLock<Option<EnergyNorm>>,
-    /// What was chosen, where the choice was left to the program.
+    /// The choice of method and means, if it was left to the program.
     pub(super) way: Option<Way>,
     pub(super) multiplications: f64,
-    /// Seconds that proving which rows are open and closed takes, estimated.
+    /// Estimated seconds of the proof of the open and closed rows.
     pub(super) proof_seconds: f64,
-    /// Seconds of the factorisation that a bound takes where the stiffness is not definite by itself, estimated.
+    /// Estimated seconds of the factorisation that a bound takes if the stiffness is not definite by itself.
     pub(super) norm_seconds: f64,
     pub(super) seconds: Seconds,
 }
@@ -110,7 +110,7 @@ impl Factored {
         self.reduction.condensation.as_ref().map_or(self.problem.dofs(), |condensed| condensed.stiffness().dim())
     }
 
-    /// Do the methods work on the contact dofs alone?
+    /// Returns `true` if the methods work on the contact dofs alone.
     pub(super) fn is_condensed(&self) -> bool {
         self.reduction.condensation.is_some()
     }
@@ -123,7 +123,7 @@ impl Factored {
         self.reduction.selection.expand_set(set)
     }
 
-    /// Runs the method, on the contact boundary where the problem is condensed.
+    /// Runs the method, on the contact boundary if the problem is condensed.
     pub fn find(&self, case: &Case) -> Result<Found, Error> {
         let settings = &self.resolved(case.settings);
         self.check_gap(case.gap)?;
@@ -132,7 +132,7 @@ impl Factored {
         if self.is_single() { self.refined(found, settings) } else { Ok(found) }
     }
 
-    /// The settings with the method that was chosen, where they leave the choice.
+    /// The settings with the chosen method, if they leave the choice.
     pub(super) fn resolved(&self, settings: &Settings) -> Settings {
         match settings.method {
             Method::Auto => self.way.unwrap_or(Way::ActiveSet).settings(settings),
@@ -171,16 +171,16 @@ impl Factored {
         Ok(Found { loading, gap, problem, unit, outcome, seconds, refined: None })
     }
 
-    /// A watch that is over as soon as there is no time left for one more factorisation of a loop, and the certificate.
+    /// A watch that is over as soon as there is no time left for one more factorisation of a loop and for the certificate.
     ///
     /// # Errors
-    /// [`Error::OutOfTime`] where there is none for the first.
+    /// [`Error::OutOfTime`] if there is no time for the first factorisation.
     fn watch_of_loop(&self, settings: &Settings) -> Result<Watch, Error> {
         if settings.watch.time_left().is_none() {
             return Ok(settings.watch.clone());
         }
         let analysis = self.augmented.analysis();
-        // Where K is not definite, the start and the test of uniqueness factorise too.
+        // If K is not definite, the start and the test of uniqueness factorise too.
         let factors = if self.reduction.is_definite() { 1.0 } else { SINGULAR };
         let of_loop = factors * seconds::factorisation(analysis);
         let (first, each) = match settings.method {
@@ -204,7 +204,7 @@ impl Factored {
         self.condensed_norm.get_or_init(of_boundary).clone()
     }
 
-    /// The energy norm of a displacement of the condensed problem over that of the whole body.
+    /// The ratio of the energy norm of a displacement of the condensed problem to that of the whole body.
     fn share_of_boundary(&self, loading: &Loading, unit: i32, problem: &ContactProblem, displacement: &[f64]) -> f64 {
         let Some(condensed) = &self.reduction.condensation else { return 1.0 };
         let on_boundary = dot(displacement, &problem.stiffness().mul(displacement));
@@ -237,7 +237,7 @@ impl Factored {
         self.reduction.is_definite() && self.reduction.condensation.as_ref().is_some_and(Condensation::is_single)
     }
 
-    /// Rows that were left out when the problem was prepared must still be no constraints, and no others.
+    /// Rows that were left out when the problem was prepared, and only these, must still be without obstacle.
     pub(super) fn check_gap(&self, gap: &[f64]) -> Result<(), Error> {
         check_gap(gap, self.problem.rows())?;
         if self.reduction.selection.under(gap)?.kept() == self.reduction.selection.kept() {

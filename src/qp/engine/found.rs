@@ -1,4 +1,4 @@
-//! What a method found, on its way to a whole answer.
+//! The result of a method, before the whole answer is made from it.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use crate::qp::method::Outcome;
 use crate::qp::problem::ContactProblem;
 use crate::solution::Seconds;
 
-/// What a method found, with the load and the gaps that it was found for.
+/// The result of a method, with its load and gaps.
 #[derive(Clone, Debug)]
 pub(super) struct Found {
     pub loading: Arc<Loading>,
@@ -17,11 +17,11 @@ pub(super) struct Found {
     pub unit: i32,
     pub outcome: Outcome,
     pub seconds: Seconds,
-    /// Where the factor is in single precision.
+    /// State of the refinement, if the factor is in single precision.
     pub refined: Option<Refined>,
 }
 
-/// What refinement has done so far.
+/// State of the refinement so far.
 #[derive(Clone, Debug)]
 pub(super) struct Refined {
     /// The displacement before the last step, length n.

@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 use super::reduction::Reduction;
 use crate::qp::linear::{exponent, largest, ldexp};
 
-/// A load, and its sweep through a factor once that was needed.
+/// A load, and its sweep through a factor once that has been used.
 #[derive(Debug)]
 pub(super) struct Load {
     force: Vec<f64>,
@@ -23,8 +23,8 @@ impl Load {
         &self.force
     }
 
-    /// The load swept through the factor of `reduction`, in a unit that fits `gap`, the gaps of the selected rows, if this is
-    /// the first time.
+    /// The load swept through the factor of `reduction`; the first call does this in a unit that fits `gap`, the gaps of the
+    /// selected rows.
     pub fn swept(&self, reduction: &Reduction, gap: &[f64]) -> Arc<Loading> {
         self.swept.get_or_init(|| Arc::new(Loading::of(reduction, self.force.clone(), gap))).clone()
     }
@@ -35,13 +35,13 @@ impl Load {
 pub(super) struct Loading {
     /// The load f of the problem, length n.
     pub load: Vec<f64>,
-    /// Exponent of the reference displacement of what follows.
+    /// Exponent of the reference displacement of the fields below.
     pub unit: i32,
-    /// Forward sweep of the scaled load, where the body is condensed.
+    /// Forward sweep of the scaled load, if the body is condensed.
     pub sweep: Vec<f64>,
     /// The scaled load on the dofs that the methods work on.
     scaled: Vec<f64>,
-    /// The largest displacement that the load alone causes, where the stiffness is definite.
+    /// The largest displacement that the load alone causes, if the stiffness is definite.
     free: Option<f64>,
     /// The load over the stiffness.
     statics: f64,
@@ -69,7 +69,7 @@ impl Loading {
         Loading { load, unit, sweep, scaled, free: free.map(|free| ldexp(free, unit)), statics }
     }
 
-    /// The load together with a force (length n) on contact dofs alone, which no sweep has to carry.
+    /// The load together with a force (length n) on contact dofs alone, which needs no sweep.
     pub fn with_contact_force(mut self, reduction: &Reduction, force: &[f64]) -> Self {
         if let Some(condensed) = &reduction.condensation {
             let scaled = reduction.scaling.load(force, self.unit);
@@ -78,15 +78,16 @@ impl Loading {
         self
     }
 
-    /// The same forms, said to be those of another load.
+    /// The same forms, with another load f as their original.
     pub fn with_load(&self, load: Vec<f64>) -> Self {
         Loading { load, ..self.clone() }
     }
 
     /// The exponent of the reference displacement with the gaps of the selected rows.
     ///
-    /// The reference displacement is what the load alone does or the obstacle enforces, where the stiffness is definite,
-    /// but no more than the gaps and the load over the stiffness, where a soft support would let the free body run away.
+    /// If the stiffness is definite, the reference displacement is the larger of what the load alone causes and what the
+    /// obstacle enforces. It is at most the larger of the gaps and the load over the stiffness, because on a soft support the
+    /// free body would move far.
     pub fn unit_with(&self, gap: &[f64]) -> i32 {
         let local = largest(gap).max(self.statics);
         let enforced = gap.iter().fold(0.0, |enforced: f64, gap| enforced.max(-gap));

@@ -13,7 +13,7 @@ use crate::qp::method::parametric::Compliance;
 use crate::qp::settings::Settings;
 use crate::solution::{Certificate, ContactSet, Solution};
 
-/// What was found on the boundary, of which the whole answer can be made.
+/// The result on the boundary, from which the whole answer can be made.
 #[derive(Debug)]
 struct Reduced {
     engine: Arc<Factored>,
@@ -49,8 +49,8 @@ impl Expansion for ToRows {
 }
 
 impl Factored {
-    /// What the method finds, with the certificate of the condensed problem: its conditions recomputed there, and its error bound
-    /// if the case asks for one.
+    /// The result of the method with the certificate of the condensed problem: its conditions recomputed there, and its error
+    /// bound if the case asks for one.
     pub fn on_boundary(&self, case: &Case) -> Result<(Found, Certificate), Error> {
         let (settings, bounded, found) = (case.settings, case.is_bounded, self.find(case)?);
         let on_boundary = |found: &Found| -> Result<Certificate, Error> {
@@ -61,7 +61,7 @@ impl Factored {
             }
         };
         if self.is_single() {
-            // The condensed problem is that of the last step only.
+            // The condensed problem then belongs to the last step only.
             let (found, solution) = self.best(found, settings)?;
             return Ok((found, solution.certificate));
         }
@@ -73,7 +73,7 @@ impl Factored {
         if is_met {
             return Ok((found, certificate));
         }
-        // The certificate of the whole answer tells what is wrong, unless it knows better.
+        // The certificate of the whole answer shows what is wrong, unless the answer meets its goal.
         let found = self.best(found, settings)?.0;
         let certificate = on_boundary(&found)?;
         Ok((found, certificate))
@@ -94,7 +94,7 @@ impl Factored {
         })
     }
 
-    /// The way from the answer at the gaps of `from` to that at the gaps `to`.
+    /// The way from the answer at the gaps of `from` to the answer at the gaps `to`.
     ///
     /// # Errors
     /// As [`Prepared::path`](super::Prepared::path).

@@ -51,7 +51,7 @@ impl Path {
         &self.walk.pieces
     }
 
-    /// The multipliers at `t` as they are on `piece`: at a corner the pieces on both sides agree but for rounding.
+    /// The multipliers at `t` on `piece`: at a corner the pieces on both sides agree except for rounding.
     pub(crate) fn multiplier_on(&self, piece: &Piece, t: f64) -> Vec<f64> {
         self.walk.to_rows.multiplier(&piece.multiplier(t))
     }
@@ -105,7 +105,7 @@ impl Prepared {
     ///
     /// # Errors
     /// As [`Prepared::solve`] for both ends; [`Error::Interrupted`]; [`Error::NotCondensed`] for a problem that was not
-    /// condensed or whose stiffness is not definite by itself.
+    /// condensed or has a stiffness that is not definite by itself.
     pub fn path(&self, from: &[f64], to: &[f64]) -> Result<Path, Error> {
         let settings = &self.settings.started()?;
         // A path takes a factor.

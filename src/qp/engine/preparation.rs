@@ -1,4 +1,4 @@
-//! What is done once for all loads and gaps: rows selected, data scaled, the stiffness ordered and factorised.
+//! The work that is done once for all loads and gaps: rows selected, data scaled, the stiffness ordered and factorised.
 
 use std::sync::OnceLock;
 use std::time::Instant;
@@ -51,10 +51,10 @@ impl Factored {
         let mut factoring = Factoring { problem, scaling: &scaling, analysis: &analysis, settings, least_pivot: None };
         let cholesky = factoring.definite(width, last.len())?;
         let least_pivot = factoring.least_pivot;
-        // Without columns that come last the contact sets have the order of the stiffness.
+        // If no columns come last, the contact sets have the order of the stiffness.
         let analysis = last.is_empty().then_some(analysis);
         if cholesky.is_none() {
-            // Without a bound no accuracy can be held: what is exact is left.
+            // Without a bound no accuracy can be reached, so only exact methods are left.
             let exact = Settings { accuracy: None, ..settings.clone() };
             way = Way::chosen(&exact, unknowns, multiplications, problem.rows());
         }
@@ -84,19 +84,19 @@ impl Factored {
     }
 }
 
-/// The factorisation of a stiffness that has been analysed.
+/// The factorisation of a stiffness with an analysed pattern.
 struct Factoring<'a> {
     problem: &'a ContactProblem,
     scaling: &'a Scaling,
     analysis: &'a Analysis,
     settings: &'a Settings,
-    /// The smallest pivot of the last factor; zero where there is none.
+    /// The smallest pivot of the last factor; zero without a factor.
     least_pivot: Option<f64>,
 }
 
 impl Factoring<'_> {
-    /// The factor in single precision if that is asked for and loses nothing, else in double; `None` for a stiffness that is not
-    /// definite to working precision.
+    /// The factor in single precision if that is asked for and loses nothing, otherwise in double; `None` for a stiffness that
+    /// is not definite to working precision.
     ///
     /// # Errors
     /// [`Error::TooLarge`] and [`Error::OutOfTime`] for a second factor, [`Error::Numerical`].
@@ -140,8 +140,8 @@ impl Factoring<'_> {
     }
 }
 
-/// The condensation onto the contact dofs `last`, from the factor of the stiffness or, without one, from that of the stiffness with
-/// its rows; `None` where even all rows together do not hold the body: the full problem tells why.
+/// The condensation onto the contact dofs `last`, from the factor of the stiffness or, without one, from that of the stiffness
+/// with its rows; `None` if even all rows together do not hold the body: the full problem then gives the reason.
 fn condensed(
     cholesky: Option<&Cholesky>,
     scaling: &Scaling,
@@ -162,7 +162,7 @@ fn condensed(
     .map(Some)
 }
 
-/// The matrices that the methods factorise, analysed; an `analysis` of the stiffness serves them too.
+/// The matrices that the methods factorise, analysed; an `analysis` of the stiffness is reused for them.
 ///
 /// # Errors
 /// As [`AugmentedMatrix::new`].
@@ -173,7 +173,7 @@ fn augmented(
 ) -> Result<AugmentedMatrix, FactorError> {
     match (condensation, analysis) {
         (Some(condensed), _) => {
-            // Dense: the order is of no matter to the factor, and its last block is all of it.
+            // The condensed matrix is dense: any order gives the same factor, and its last block is the whole factor.
             let all: Vec<usize> = (0..condensed.stiffness().dim()).collect();
             AugmentedMatrix::with_last(condensed.stiffness(), condensed.contact(), &all)
         }
@@ -182,10 +182,10 @@ fn augmented(
     }
 }
 
-/// The factor of `K + B'B` with the contact dofs last, or `None` where it is not safely definite.
+/// The factor of `K + B'B` with the contact dofs last, or `None` if it is not safely definite.
 ///
 /// # Errors
-/// [`Error::OutOfTime`] before it is factorised, [`Error::Numerical`].
+/// [`Error::OutOfTime`] before the factorisation, [`Error::Numerical`].
 fn factor_with_rows(scaling: &Scaling, contact_dofs: &[usize], settings: &Settings) -> Result<Option<Cholesky>, Error> {
     let augmented = AugmentedMatrix::with_last(scaling.stiffness(), scaling.contact(), contact_dofs)?;
     let augmented = augmented.with_threads(settings.threads);

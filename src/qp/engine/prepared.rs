@@ -19,7 +19,7 @@ use crate::solution::{Seconds, Solution, Why};
 /// A contact problem prepared once for many gaps, loads and starts: its stiffness is factorised, or a multigrid hierarchy is
 /// built for it, depending on the method.
 ///
-/// Clones are cheap and share what was prepared, and so do [`with_load`](Self::with_load),
+/// Clones are cheap and share the prepared data, and so do [`with_load`](Self::with_load),
 /// [`with_settings`](Self::with_settings) and [`starting_from`](Self::starting_from).
 ///
 /// ```
@@ -44,11 +44,11 @@ pub struct Prepared {
     pub(super) settings: Settings,
     load: Arc<Load>,
     start: Start,
-    /// Why it was prepared this way; `None` where that was decided elsewhere.
+    /// The reasons for this preparation; `None` if that was decided elsewhere.
     why: Option<Arc<Why>>,
 }
 
-/// Gaps that a problem is prepared for where their number is not known.
+/// Number of gaps that a problem is prepared for if it is not known.
 const MANY_GAPS: usize = 10;
 
 /// The engine for the method of `settings`: MPRGP works on a hierarchy, every other method on a factor.
@@ -72,7 +72,7 @@ impl Prepared {
     /// * [`Error::Infeasible`] for rows that contradict each other at the gaps of `problem`,
     /// * [`Error::NotConvex`] for a stiffness with a negative eigenvalue,
     /// * [`Error::OutOfTime`], [`Error::Interrupted`] and [`Error::TooLarge`] if there is not enough time or memory left,
-    /// * [`Error::Numerical`] if the preparation fails for want of memory.
+    /// * [`Error::Numerical`] if the preparation fails for lack of memory.
     pub fn new(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
         Self::for_gaps(problem, MANY_GAPS, settings)
     }
@@ -87,7 +87,7 @@ impl Prepared {
         Ok(Prepared { settings: settings.clone(), why: why.map(Arc::new), ..prepared })
     }
 
-    /// The same for the method of `settings`, with a factor where that leaves the choice.
+    /// The same for the method of `settings`, with a factor if they leave the choice.
     ///
     /// # Errors
     /// As [`Prepared::new`].
@@ -96,7 +96,7 @@ impl Prepared {
         Ok(Prepared { engine, settings: settings.clone(), load, start: Start::default(), why: None })
     }
 
-    /// The same problem under other settings. What was prepared is kept if their method works on it, with its condensation,
+    /// The same problem under other settings. The prepared data are kept if their method works on them, with its condensation,
     /// precision and threads; otherwise the problem is prepared again.
     ///
     /// # Errors
@@ -120,7 +120,7 @@ impl Prepared {
         Ok(Prepared { load: Arc::new(Load::new(load)), ..self.clone() })
     }
 
-    /// The same, solved from what is known of the answer, such as the contact set at the last gap.
+    /// The same, solved from a start, such as the contact set at the last gap.
     pub fn starting_from(&self, start: impl Into<Start>) -> Self {
         Prepared { start: start.into(), ..self.clone() }
     }
@@ -146,16 +146,16 @@ impl Prepared {
     }
 
     /// Contact set, multipliers and forces with these gaps. The displacement of the body is not computed, so that a condensed
-    /// problem costs what its contact boundary costs.
+    /// problem costs only the solve on its contact boundary.
     ///
     /// # Errors
-    /// As [`Prepared::solve`]; the tolerance is held against the certificate of the condensed problem.
+    /// As [`Prepared::solve`]; the certificate of the condensed problem must meet the tolerance.
     pub fn boundary(&self, gap: &[f64]) -> Result<BoundarySolution, Error> {
         let settings = &self.settings.started()?;
         self.engine.clone().boundary(&self.case(gap, settings))
     }
 
-    /// What an engine is asked for at these gaps.
+    /// The question to the engine at these gaps.
     pub(super) fn case<'a>(&'a self, gap: &'a [f64], settings: &'a Settings) -> Case<'a> {
         Case { load: &self.load, gap, start: &self.start, settings, given: &self.settings, is_bounded: true }
     }
@@ -198,7 +198,7 @@ impl Prepared {
         self.engine.hierarchy()
     }
 
-    /// What the preparation cost.
+    /// The time of the preparation.
     pub fn seconds(&self) -> Seconds {
         self.engine.seconds()
     }
@@ -208,15 +208,15 @@ impl Prepared {
         self.engine.near(&self.settings)
     }
 
-    /// What a solve tries here.
+    /// The methods and means that a solve tries here.
     pub(in crate::qp) fn tried(&self) -> Tried {
         self.engine.tried(&self.settings)
     }
 }
 
-/// What a motion asks for in every step.
+/// The functions that a motion calls in every step.
 impl Prepared {
-    /// As [`Prepared::boundary`], for one of many steps: held against its conditions alone, which cost no triangular
+    /// As [`Prepared::boundary`], for one of many steps: only its conditions must meet the tolerance, which costs no triangular
     /// solve, unless the settings name an accuracy.
     ///
     /// # Errors
@@ -227,8 +227,8 @@ impl Prepared {
         self.engine.clone().boundary(&case)
     }
 
-    /// The displacement at these gaps without a certificate; `None` if the method did not settle on a set, or only a certified
-    /// answer is known to be one.
+    /// The displacement at these gaps without a certificate; `None` if the method did not settle on a set, or if its answer is
+    /// only valid with a certificate.
     ///
     /// # Errors
     /// As [`Prepared::boundary`].

@@ -1,11 +1,11 @@
-//! A problem reduced to what the methods work on.
+//! A problem reduced to the unknowns of the methods.
 
 use crate::qp::certificate::EnergyNorm;
 use crate::qp::linear::Analysis;
 use crate::qp::method::Definiteness;
 use crate::qp::transform::{Condensation, RowSelection, Scaling};
 
-/// Rows selected, data scaled, the stiffness factorised and condensed where that pays; load and gaps play no part in it.
+/// Rows selected, data scaled, the stiffness factorised, and condensed if that pays; independent of load and gaps.
 #[derive(Clone, Debug)]
 pub(super) struct Reduction {
     pub selection: RowSelection,
@@ -22,12 +22,12 @@ pub(super) enum Norm {
     /// The stiffness is not definite by itself.
     Missing,
     Kept(EnergyNorm),
-    /// Memory is too short to keep the factor: it is made again from this analysis each time.
+    /// Memory is too short to keep the factor: it is made from this analysis at every use.
     Again(Analysis),
 }
 
 impl Reduction {
-    /// Is the stiffness definite by itself?
+    /// The definiteness of the stiffness by itself.
     pub fn definiteness(&self) -> Definiteness {
         match self.norm {
             Norm::Missing => Definiteness::Semidefinite,
@@ -45,7 +45,7 @@ impl Reduction {
         !matches!(self.norm, Norm::Again(_))
     }
 
-    /// The energy norm, where the stiffness is definite by itself; `None` too if there is no memory to make it again.
+    /// The energy norm, if the stiffness is definite by itself; `None` also if there is no memory to make it again.
     pub fn norm(&self) -> Option<EnergyNorm> {
         match &self.norm {
             Norm::Missing => None,

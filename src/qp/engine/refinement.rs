@@ -1,15 +1,15 @@
-//! Refinement: an answer brought to the digits of doubles, or to the accuracy asked for, with the factor at hand.
+//! Refinement: with the available factor an answer is brought to the digits of doubles, or to the requested accuracy.
 //!
-//! With the factor K~, in single precision or in double precision with the digits that condensation and bending have left, every
-//! step solves the contact problem of what is left,
+//! With the factor K~, in single precision or in double precision with the digits that condensation and bending have left,
+//! every step solves a contact problem for the residual,
 //!
 //! ```text
 //! minimise 1/2 d' K~ d - (f - K u)' d   subject to   B d <= g - B u
 //! ```
 //!
-//! condensed, by the same method, and adds d to u. What is left is computed with twice the working precision. Where d is zero the
-//! conditions are those of the problem itself; until then the error shrinks by `|I - K~^-1 K|` from step to step. With
-//! a factor in single precision that contraction is measured, and widens the bound of the certificate, which knows K~ only.
+//! condensed, by the same method, and adds d to u. The residual is computed with twice the working precision. If d is zero, the
+//! conditions are those of the problem itself; until then the error shrinks by `|I - K~^-1 K|` from step to step. With a factor
+//! in single precision that contraction is measured; it widens the bound of the certificate, which uses K~ only.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -23,29 +23,29 @@ use crate::qp::problem::ContactProblem;
 use crate::qp::settings::Settings;
 use crate::solution::{ContactSet, Solution};
 
-/// Steps after which there is nothing more to gain.
+/// Number of steps after which no more digits can be gained.
 const MOST_STEPS: usize = 30;
 
-/// Steps after an answer in double precision: each gains the digits that the factor has left.
+/// Steps after an answer in double precision: each gains as many digits as the factor has left.
 const MOST_CORRECTIONS: usize = 6;
 
 /// A contraction above this makes the bound of the certificate worthless.
 const LARGEST_CONTRACTION: f64 = 0.2;
 
-/// Steps below this share of the displacement are rounding, and say nothing of the contraction.
+/// Steps below this share of the displacement are rounding and do not show the contraction.
 const LEAST_STEP: f64 = 1e-9;
 
-/// A step of this share of the displacement changes it no more.
+/// A step below this share of the displacement no longer changes it.
 const NOTHING: f64 = 4.0 * f64::EPSILON;
 
-/// The accuracy that is aimed at is this share of the one asked for, because the contraction is an estimate.
+/// The target accuracy is this share of the requested one, because the contraction is an estimate.
 const AIM: f64 = 0.1;
 
 impl Factored {
-    /// Refines what the method found with the factor in single precision.
+    /// Refines the result of the method with the factor in single precision.
     ///
     /// # Errors
-    /// [`Error::Numerical`] where the stiffness is too ill-conditioned for it, and those of the method.
+    /// [`Error::Numerical`] if the stiffness is too ill-conditioned for single precision, and those of the method.
     pub(super) fn refined(&self, first: Found, settings: &Settings) -> Result<Found, Error> {
         let (load, gap) = (first.loading.load.clone(), first.gap.clone());
         let mut rest = load.clone();
@@ -55,7 +55,7 @@ impl Factored {
         loop {
             let step = self.expand(&found.loading, found.unit, &found.outcome.displacement);
             let displacement: Vec<f64> = refined.base.iter().zip(&step).map(|(u, d)| u + d).collect();
-            // K~ d is what is left of the load and the contact force.
+            // K~ d is the residual of the load and the contact force.
             let multiplier = self.expand_multiplier(&found.outcome.multiplier, found.unit);
             let contact = self.problem.contact().mul_transposed(&multiplier);
             let work: f64 = step.iter().zip(rest.iter().zip(&contact)).map(|(d, (r, c))| d * (r + c)).sum();
@@ -86,7 +86,7 @@ impl Factored {
             let (set, seconds) = (self.expand_set(&found.outcome.contact_set), found.seconds);
             let problem = self.problem.with(load.clone(), gap.clone())?;
             found = self.step_from(&problem, &displacement, &multiplier, &set, settings)?;
-            // Of a step that keeps the set there is nothing to tell.
+            // A step that keeps the set adds nothing to the history.
             let kept = found
                 .outcome
                 .history
@@ -102,8 +102,8 @@ impl Factored {
         }
     }
 
-    /// The answer d to the contact problem of what an answer (u, lambda) to `problem` leaves, from its contact set, and the
-    /// whole multiplier.
+    /// The step d: the answer to the contact problem for the residual of an answer (u, lambda) to `problem`, started from its
+    /// contact set, together with the whole multiplier.
     fn step_from(
         &self,
         problem: &ContactProblem,
@@ -112,7 +112,7 @@ impl Factored {
         set: &ContactSet,
         settings: &Settings,
     ) -> Result<Found, Error> {
-        // The contact force is balanced on its own dofs; only what is out of balance is swept.
+        // The contact force is balanced on its own dofs; only the imbalance is swept.
         let imbalance = problem.accurate_residual(displacement, multiplier);
         let contact = problem.contact().mul_transposed(multiplier);
         let released: Vec<f64> = contact.iter().map(|force| -force).collect();
@@ -128,7 +128,7 @@ impl Factored {
         self.find_step(Arc::new(loading), left, Some(set), settings)
     }
 
-    /// A solution that falls short, refined for as long as that brings it closer to its goal.
+    /// A solution that falls short, refined as long as that brings it closer to its goal.
     ///
     /// # Errors
     /// Those of the certificate.
@@ -138,7 +138,7 @@ impl Factored {
         problem: &ContactProblem,
         settings: &Settings,
     ) -> Result<Solution, Error> {
-        // Another step must come so much closer.
+        // Another step must reduce the worst condition to this share.
         const GAIN: f64 = 0.5;
         for _ in 0..MOST_CORRECTIONS {
             if settings.goal().is_met_by(&solution.certificate) || settings.watch.is_over() {
@@ -147,7 +147,7 @@ impl Factored {
             let clock = Instant::now();
             settings.watch.step("refinement", 0);
             let (displacement, multiplier) = (&solution.displacement, &solution.multiplier);
-            // What cannot be solved for what is left may still stand as it is.
+            // If there is no answer for the residual, the solution may still be good enough.
             let Ok(step) = self.step_from(problem, displacement, multiplier, &solution.contact_set, settings) else {
                 break;
             };

@@ -1,4 +1,4 @@
-//! Runs a method on a scaled problem, and the last resort where that does not settle.
+//! Runs a method on a scaled problem, and the last resort if that does not settle.
 
 use crate::error::Error;
 use crate::qp::method::active_set::ActiveSet;
@@ -10,8 +10,8 @@ use crate::qp::plan::{PATIENCE, takes_last_resort};
 use crate::qp::settings::{Method, Settings};
 use crate::solution::ContactSet;
 
-/// Runs the method of `settings`, and the last resort where that does not settle; the active-set steps start from `start`
-/// where it is given.
+/// Runs the method of `settings`, and the last resort if that does not settle; the active-set steps start from `start` if it is
+/// given.
 ///
 /// `bound` is that of the energy error of an answer to the scaled problem.
 pub(super) fn run(
@@ -26,7 +26,7 @@ pub(super) fn run(
     let unique = |outcome: Outcome| scaled.check_unique(&outcome).map(|()| outcome);
     match found.and_then(unique) {
         Err(claim @ (Error::Unbounded { .. } | Error::UnderHeld { .. })) if !scaled.is_evident(&claim) => {
-            // Only of rows that can be met together, and where there is no balance, which rounding may hide.
+            // The claim holds only if the rows can be met together and there is no balance; rounding may hide a balance.
             let balance = DualActiveSet::of(scaled)?.map(|method| method.solve(Start::default())).transpose()?;
             match balance {
                 Some(balance) if balance.settled || !scaled.is_true(&claim) => unique(balance),
@@ -37,7 +37,7 @@ pub(super) fn run(
     }
 }
 
-/// The outcome of the method of `settings` as it stands.
+/// The outcome of the method of `settings` without the last resort.
 fn run_method(
     scaled: &ScaledProblem,
     start: Option<ContactSet>,
@@ -68,7 +68,7 @@ fn run_method(
     }
 }
 
-/// What the dual active-set method finds after another fell short; what that left if it finds nothing.
+/// The outcome of the dual active-set method after another method fell short; the earlier outcome if it finds nothing.
 ///
 /// # Errors
 /// Those of [`DualActiveSet`].
@@ -82,10 +82,10 @@ pub(super) fn last_resort(scaled: &ScaledProblem, before: Outcome) -> Result<Out
     })
 }
 
-/// The active-set loop; should it take long, it is started again from the set that the penalty ladder arrives at.
+/// The active-set loop; if it takes long, it is started again from the set that the penalty ladder reaches.
 ///
-/// On fine meshes a contact zone that starts too wide shrinks by one row an iteration. A penalty that grows from the
-/// stiffness to its best value gets there in few iterations whatever the mesh.
+/// On fine meshes a contact zone that starts too wide shrinks by one row an iteration. A penalty that grows from the stiffness
+/// to its best value reaches the zone in few iterations on every mesh.
 ///
 /// # Source
 /// K. Ito and K. Kunisch, *Semi-smooth Newton methods for variational inequalities of the first kind*, ESAIM: M2AN 37

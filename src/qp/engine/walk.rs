@@ -1,4 +1,4 @@
-//! The way of an answer while its gaps move, as an engine finds it.
+//! The path of an answer while its gaps move, as an engine finds it.
 
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::qp::method::parametric::{Event, Piece};
 use crate::solution::ContactSet;
 
-/// The way back from what an engine works on to the rows of the problem.
+/// The way back from the unknowns of an engine to the rows of the problem.
 pub(super) trait Expansion: Debug + Send + Sync {
     /// One multiplier for each row of the problem.
     fn multiplier(&self, reduced: &[f64]) -> Vec<f64>;
@@ -15,7 +15,7 @@ pub(super) trait Expansion: Debug + Send + Sync {
     fn contact_set(&self, reduced: &ContactSet) -> ContactSet;
 }
 
-/// The stretches of a path as an engine finds them, and where rows touch and release.
+/// The stretches of a path as an engine finds them, and the events at which rows touch and release.
 #[derive(Clone, Debug)]
 pub(super) struct Walk {
     pub pieces: Vec<Piece>,

@@ -2,9 +2,9 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
-/// Sums that keep what rounding takes off them.
+/// Sums that keep the rounding errors of their terms.
 ///
-/// A fused multiply-add of two factors and their negative product gives what rounding takes off the product. The loop over a
+/// A fused multiply-add of two factors and their negative product gives the rounding error of the product. The loop over a
 /// matrix is compiled for processors with that instruction and for those without; the sums are the same, bit by bit.
 ///
 /// # Source
@@ -14,7 +14,7 @@ pub struct Accumulator {
     sums: Vec<Sum>,
 }
 
-/// A sum and what rounding has taken off it.
+/// A sum and its accumulated rounding error.
 #[derive(Clone, Copy, Debug)]
 struct Sum {
     value: f64,
@@ -45,7 +45,7 @@ struct Product<'a, C> {
 impl<I: Iterator<Item = (usize, f64)>, C: Fn(usize) -> I> WithSimd for Product<'_, C> {
     type Output = ();
 
-    // A plain closure would be a call, which is not compiled for the processor.
+    // A plain closure would be a call to code that is not compiled for the processor.
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         let Product { column, x, sums, terms } = self;
@@ -76,8 +76,8 @@ impl Accumulator {
         self.sums[index].add_product(a, b);
     }
 
-    /// Adds `A x` of the symmetric matrix A whose lower triangle has the entries `(row, value)` that `column` gives, for as many
-    /// sums as A has rows; returns `|A| |x|`, the scale of rounding in it, which the same pass over A gives.
+    /// Adds `A x` to as many sums as A has rows. A is symmetric; `column` gives the entries `(row, value)` of its lower
+    /// triangle. Returns `|A| |x|`, the scale of rounding in `A x`, from the same pass over A.
     pub fn add_matrix_product<I: Iterator<Item = (usize, f64)>>(
         &mut self,
         column: impl Fn(usize) -> I,

@@ -2,7 +2,7 @@
 
 use super::{Analysis, Cholesky, FactorError, SparseMatrix, SymmetricMatrix};
 
-/// A symmetric matrix K and rows B whose weighted squares are added to it.
+/// A symmetric matrix K and rows B; the weighted squares of the rows are added to K.
 ///
 /// The pattern holds K, the diagonal and every row of B, so that a change of the weights costs a numeric
 /// factorisation and nothing else.
@@ -33,7 +33,7 @@ impl AugmentedMatrix {
         Self::analysed(stiffness, rows, |joined| Analysis::with_last(joined, last))
     }
 
-    /// As [`AugmentedMatrix::new`], with an `analysis` of K that is at hand, if K has a place for every entry.
+    /// As [`AugmentedMatrix::new`], with an available `analysis` of K, if K has a place for every entry.
     ///
     /// # Errors
     /// As [`Analysis::of`].
@@ -76,7 +76,7 @@ impl AugmentedMatrix {
         Ok(Self { stiffness, row_starts, products, analysis })
     }
 
-    /// The same matrices, whose factorisations use this number of threads.
+    /// The same matrices, factorised with this number of threads.
     pub fn with_threads(self, threads: usize) -> Self {
         AugmentedMatrix { analysis: self.analysis.with_threads(threads), ..self }
     }

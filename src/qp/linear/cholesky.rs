@@ -1,4 +1,4 @@
-//! Sparse Cholesky factorisation A = L L' on faer: analysed once, factorised as often as the values change.
+//! Sparse Cholesky factorisation A = L L' on faer: one analysis, and one factorisation for each change of the values.
 
 use std::sync::Arc;
 
@@ -27,7 +27,7 @@ pub struct Cholesky {
     smallest_pivot: f64,
 }
 
-/// Shared, because a factor is the largest thing there is.
+/// Shared, because a factor is the largest object in memory.
 #[derive(Clone, Debug)]
 enum Values {
     Double(Arc<Vec<f64>>),
@@ -58,7 +58,7 @@ impl Analysis {
     /// Orders and analyses the pattern of `matrix`.
     ///
     /// # Errors
-    /// [`FactorError::Failed`] when memory or the index range does not suffice.
+    /// [`FactorError::Failed`] if memory or the index range does not suffice.
     pub fn of(matrix: &SymmetricMatrix) -> Result<Self, FactorError> {
         Self::with_last(matrix, &[])
     }
@@ -84,7 +84,7 @@ impl Analysis {
         Ok(Analysis { symbolic: Arc::new(symbolic), trailing: last.len(), threads: 1 })
     }
 
-    /// The same analysis, whose factorisations use this number of threads.
+    /// The same analysis, for factorisations with this number of threads.
     pub fn with_threads(self, threads: usize) -> Self {
         Analysis { threads, ..self }
     }
@@ -94,7 +94,7 @@ impl Analysis {
         self.symbolic.len_val()
     }
 
-    /// Number of multiplications of a factorisation, as if each column went through its own.
+    /// Number of multiplications of a factorisation, counted as if each column were eliminated by itself.
     pub fn multiplications(&self) -> f64 {
         let Some(nodes) = self.supernodes() else { return 0.0 };
         let (starts, below) = (nodes.supernode_begin(), nodes.col_ptr_for_row_idx());
@@ -106,7 +106,7 @@ impl Analysis {
             .sum()
     }
 
-    /// Factorises `matrix`, whose pattern must be the analysed one.
+    /// Factorises `matrix`, which must have the analysed pattern.
     ///
     /// # Errors
     /// [`FactorError::NotPositiveDefinite`] for a pivot that is not positive.
@@ -114,7 +114,8 @@ impl Analysis {
         self.factor_last(matrix.clone())
     }
 
-    /// As [`Analysis::factor`], for a matrix that is not needed any more: its values are freed before those of the factor are made.
+    /// As [`Analysis::factor`], for a matrix that is no longer needed: its values are freed before those of the factor are
+    /// made.
     ///
     /// # Errors
     /// As [`Analysis::factor`].
@@ -214,13 +215,13 @@ impl Cholesky {
         matches!(self.values, Values::Single(_))
     }
 
-    /// The solution x of A x = b, length `dim`. Should faer fail, or b not fit, then nothing in x is a number, which no
-    /// certificate accepts.
+    /// The solution x of A x = b, length `dim`. If faer fails or b does not fit, every entry of x is NaN, which no certificate
+    /// accepts.
     pub fn solve(&self, b: &[f64]) -> Vec<f64> {
         by_precision!(self.values, values => factor::solve(&self.analysis.symbolic, values, b.to_vec()))
     }
 
-    /// `b' A^-1 b`: the squared length of L^-1 P b, by one sweep where a solution takes two.
+    /// `b' A^-1 b`: the squared length of L^-1 P b, by one sweep; a solution takes two.
     pub fn inverse_product(&self, b: &[f64]) -> f64 {
         let y = self.forward(b);
         dot(&y, &y)
@@ -265,7 +266,7 @@ impl Cholesky {
         }
     }
 
-    /// Number of multiplications of its factorisation, as if each column went through its own.
+    /// Number of multiplications of its factorisation, counted as if each column were eliminated by itself.
     pub fn multiplications(&self) -> f64 {
         self.analysis.multiplications()
     }
@@ -275,7 +276,7 @@ impl Cholesky {
         self.analysis.symbolic.perm().map_or(&[], |perm| perm.arrays().0)
     }
 
-    /// The smallest pivot, min over j of L_jj^2: small against the diagonal of A when A is close to singular.
+    /// The smallest pivot, min over j of L_jj^2: small relative to the diagonal of A if A is close to singular.
     pub fn smallest_pivot(&self) -> f64 {
         self.smallest_pivot
     }

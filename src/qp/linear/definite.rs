@@ -1,11 +1,11 @@
-//! Tells a positive definite matrix from a singular one that passed its Cholesky factorisation by rounding.
+//! Distinguishes a positive definite matrix from a singular one that passed its Cholesky factorisation by rounding.
 
 use super::{Cholesky, Equilibration, FactorError, SymmetricMatrix, largest};
 
-/// On a diagonal of order one, a smallest pivot above this leaves no doubt; below it the smallest eigenvalue is looked at.
+/// On a diagonal of order one, a smallest pivot above this leaves no doubt; below it the smallest eigenvalue is computed.
 const SAFE_PIVOT: f64 = 1e-9;
 
-/// `norm(A x)` of a null vector x is rounding: this many units in the last place of the terms that cancel.
+/// `norm(A x)` of a null vector x is rounding: up to this many units in the last place of the terms that cancel.
 pub(super) const NULL_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Steps of inverse iteration: each gains several digits, since eigenvalues differ by many orders of magnitude.
@@ -22,7 +22,7 @@ impl Cholesky {
         self.smallest_pivot() > SAFE_PIVOT
     }
 
-    /// Returns `true` if `matrix`, whose diagonal is of order one and whose factor this is, is definite beyond rounding.
+    /// Returns `true` if `matrix`, with a diagonal of order one and with this factor, is definite beyond rounding.
     pub fn is_definite(&self, matrix: &SymmetricMatrix) -> bool {
         if self.is_safely_definite() {
             return true;
@@ -31,7 +31,7 @@ impl Cholesky {
         largest(&matrix.mul(&softest)) > NULL_ROUNDING * largest(&matrix.mul_abs(&softest))
     }
 
-    /// The vector that the matrix resists least, largest entry one, by inverse iteration.
+    /// The vector with the least energy, largest entry one, by inverse iteration.
     pub fn softest_vector(&self) -> Vec<f64> {
         // A start without symmetry, the same in every run.
         let golden = 0.618_033_988_749_895;
@@ -50,7 +50,7 @@ impl SymmetricMatrix {
     /// matrix has a factor.
     ///
     /// # Errors
-    /// Those of the factorisation but [`FactorError::NotPositiveDefinite`].
+    /// Those of the factorisation, except for [`FactorError::NotPositiveDefinite`].
     pub(crate) fn is_semidefinite(&self) -> Result<bool, FactorError> {
         let diagonal = self.diagonal();
         let has_none = |dof: usize| diagonal[dof] == 0.0;

@@ -1,6 +1,6 @@
 //! Dense vectors and triangles.
 
-/// The largest magnitude of the entries; 0 for none.
+/// The largest magnitude of the entries; 0 for an empty slice.
 pub fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |largest, value| value.abs().max(largest))
 }
@@ -20,7 +20,7 @@ pub fn subtract(x: &mut [f64], share: f64, y: &[f64]) {
     x.iter_mut().zip(y).for_each(|(entry, y)| *entry -= share * y);
 }
 
-/// Takes the share of a direction of length one out of a vector, and returns that share.
+/// Subtracts from a vector its component along a direction of length one, and returns that component.
 pub fn take_out(vector: &mut [f64], direction: &[f64]) -> f64 {
     let share = dot(vector, direction);
     subtract(vector, share, direction);
@@ -36,7 +36,7 @@ pub struct LowerTriangle {
 }
 
 impl LowerTriangle {
-    /// The triangle of `size` columns of `size` values each; what is above the diagonal is not looked at.
+    /// The triangle of `size` columns of `size` values each; values above the diagonal are not read.
     pub fn new(size: usize, values: Vec<f64>) -> Self {
         LowerTriangle { size, values }
     }
@@ -72,8 +72,8 @@ impl LowerTriangle {
         y
     }
 
-    /// Upper bounds on the sums of magnitudes of each column of `L^-1`, by one sweep: no entry of the inverse is larger than that
-    /// of the triangle with the magnitudes of L on the diagonal and less those of L below.
+    /// Upper bounds on the sums of magnitudes of each column of `L^-1`, by one sweep: no entry of the inverse is larger than
+    /// that of the triangle with the magnitudes of L on the diagonal and the negative magnitudes of L below.
     ///
     /// # Source
     /// N. J. Higham, *Accuracy and Stability of Numerical Algorithms*, SIAM (2002), section 8.2: the comparison matrix.
@@ -118,7 +118,7 @@ impl LowerTriangle {
 }
 
 /// An upper triangle R that grows column by column, as in `Z = Q R` of vectors Z. Columns that follow from those before them
-/// take no part in what is solved.
+/// take no part in solutions.
 #[derive(Clone, Debug, Default)]
 pub struct UpperTriangle {
     /// The columns, each down to its diagonal entry.
@@ -155,8 +155,8 @@ impl UpperTriangle {
         self.independent[self.columns.len() - 1] = false;
     }
 
-    /// Takes out the column at `place`. What the columns after it then have below their diagonal is rotated away, and
-    /// `turn(i, c, s)` is told that the rows i and i + 1 of R were turned by a plane rotation with this cosine and sine.
+    /// Removes the column at `place`. Rotations remove the entries that later columns then have below their diagonal. Each one
+    /// calls `turn(i, c, s)`: rows i and i + 1 of R were turned by a plane rotation with cosine c and sine s.
     pub fn remove(&mut self, place: usize, mut turn: impl FnMut(usize, f64, f64)) {
         self.columns.remove(place);
         self.independent.remove(place);
@@ -223,7 +223,7 @@ mod tests {
 
     #[test]
     fn a_lower_triangle_is_multiplied_and_solved_with() {
-        // [2 0; 1 3], column by column; what is above the diagonal is no part of it.
+        // [2 0; 1 3], column by column; the value above the diagonal does not belong to it.
         let l = LowerTriangle::new(2, vec![2.0, 1.0, 9.0, 3.0]);
         assert_eq!((l.mul(&[1.0, 2.0]), l.mul_transposed(&[1.0, 2.0])), (vec![2.0, 7.0], vec![4.0, 6.0]));
         assert_eq!((l.forward(vec![2.0, 7.0]), l.backward(vec![4.0, 6.0])), (vec![1.0, 2.0], vec![1.0, 2.0]));

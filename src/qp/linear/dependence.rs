@@ -1,8 +1,7 @@
-//! Which rows of a matrix follow from others: exactly, as the doubles stand, without a threshold.
+//! The rows of a matrix that follow from others: exactly, for the given doubles, without a threshold.
 //!
-//! Doubles are integers times powers of two, so that elimination modulo a prime knows their rank. Rows that are independent
-//! modulo a prime are independent. The converse fails where the prime divides a minor, of which there are about as many as
-//! numbers below 2^61 between two misses.
+//! Doubles are integers times powers of two, so elimination modulo a prime finds their rank. Rows that are independent modulo a
+//! prime are independent. The converse fails if the prime divides a minor; this happens for about one minor in 2^61.
 
 use super::SparseMatrix;
 
@@ -11,12 +10,12 @@ const PRIME: u64 = (1 << BITS) - 1;
 
 const BITS: i32 = 61;
 
-/// The rows that were asked for, by their dependence.
+/// The dependence of the rows in question.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Dependence {
     /// A basis: rows that do not follow from those before them.
     pub independent: Vec<bool>,
-    /// Rows with a share in some dependence; the others follow from no set of rows.
+    /// Rows that take part in some dependence; the others follow from no set of rows.
     pub takes_part: Vec<bool>,
 }
 
@@ -24,11 +23,11 @@ pub struct Dependence {
 type Residues = Vec<(usize, u64)>;
 
 impl Dependence {
-    /// That of some `rows` of a matrix; `None` where it `is_over` before it is found.
+    /// The dependence of some `rows` of a matrix; `None` if it `is_over` before it is found.
     pub fn of(matrix: &SparseMatrix, rows: &[usize], is_over: impl Fn() -> bool) -> Option<Self> {
         let by_row = matrix.transposed();
         let mut found = Dependence { independent: vec![false; rows.len()], takes_part: vec![false; rows.len()] };
-        // Rows in echelon form with the rows of the matrix that each consists of, by their first column.
+        // Rows in echelon form by their first column, each with the rows of the matrix of which it is the combination.
         let mut echelon: Vec<Option<(Residues, Residues)>> = vec![None; matrix.columns()];
         for (index, &row) in rows.iter().enumerate() {
             if is_over() {

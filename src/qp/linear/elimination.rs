@@ -1,14 +1,14 @@
-//! What an order of elimination brings with it: the elimination tree and the work of the factorisation.
+//! Results of an order of elimination: the elimination tree and the work of the factorisation.
 
 use super::quotient::Quotient;
 
-/// Where a group has no parent in the elimination tree.
+/// Marks a group without a parent in the elimination tree.
 const NONE: u32 = u32::MAX;
 
 /// The elimination of the groups of a quotient graph in some order.
 pub(super) struct Elimination {
     order: Vec<u32>,
-    /// Position of each group in the order; none for those left out.
+    /// Position of each group in the order; `NONE` for those left out.
     place: Vec<u32>,
     /// Parent of each group in the elimination tree, both by position in the order.
     parent: Vec<u32>,
@@ -41,8 +41,8 @@ impl Elimination {
         Elimination { order, place, parent }
     }
 
-    /// Multiplications of the factorisation, about. The rows of the factor are walked through the tree, which takes one
-    /// step for each entry of the factor of the quotient graph.
+    /// Multiplications of the factorisation, approximately. The rows of the factor are followed through the tree, which takes
+    /// one step for each entry of the factor of the quotient graph.
     pub fn multiplications(&self, quotient: &Quotient) -> f64 {
         let mut walked = vec![NONE; self.order.len()];
         let mut below = vec![0_u32; self.order.len()];
@@ -64,7 +64,7 @@ impl Elimination {
         self.order.iter().zip(&below).map(work).sum()
     }
 
-    /// The groups with every one behind all of its descendants and these next to each other.
+    /// The groups in postorder: each after all of its descendants, and these next to each other.
     pub fn postorder(&self) -> Vec<u32> {
         let count = self.parent.len();
         let (mut first_child, mut sibling) = (vec![NONE; count], vec![NONE; count]);

@@ -14,7 +14,7 @@ use super::{SparseMatrix, exponent, largest, ldexp};
 use crate::error::Error;
 use crate::qp::barrier::guarded;
 
-/// Why a factorisation did not end with a factor.
+/// Reason why a factorisation did not end with a factor.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FactorError {
     /// A pivot was not positive: the matrix is not positive definite.
@@ -40,7 +40,7 @@ impl From<FaerError> for FactorError {
     }
 }
 
-/// A call of faer: a panic in it is a failure like any other.
+/// Calls faer; a panic in the call is a failure like any other.
 pub(super) fn call<T>(work: impl FnOnce() -> Result<T, FactorError>) -> Result<T, FactorError> {
     guarded(work).map_err(FactorError::Failed)?
 }
@@ -50,7 +50,7 @@ pub(super) fn call<T>(work: impl FnOnce() -> Result<T, FactorError>) -> Result<T
 pub enum Width {
     /// Double.
     Double,
-    /// Single: half the memory, some seven digits of each value.
+    /// Single: half the memory, about seven digits of each value.
     Single,
 }
 
@@ -108,7 +108,7 @@ impl Real for f32 {
 /// Factorises the lower triangle with the structure of `permuted` and these `entries`, rows in any order.
 ///
 /// # Errors
-/// [`FactorError::NotPositiveDefinite`] for a pivot that is not positive, [`FactorError::Failed`] for want of memory.
+/// [`FactorError::NotPositiveDefinite`] for a pivot that is not positive, [`FactorError::Failed`] for lack of memory.
 pub(super) fn factorise<T: Real>(
     supernodes: &supernodal::SymbolicSupernodalCholesky<usize>,
     permuted: &SparseMatrix,
@@ -116,7 +116,8 @@ pub(super) fn factorise<T: Real>(
     par: Par,
 ) -> Result<(Vec<T>, f64), FactorError> {
     let size = supernodes.len_val();
-    // Asked for first, because a vector of zeros would end the program; the zeros come untouched from the system.
+    // Memory is requested first, because a vector of zeros ends the program if memory is short; the zeros come untouched
+    // from the system.
     let request = Vec::<T>::new().try_reserve_exact(size);
     request.map_err(|_| FactorError::Failed("out of memory".into()))?;
     let mut values = vec![T::rounded(0.0); size];
@@ -159,8 +160,8 @@ fn pivots<T: Real>(supernodes: &supernodal::SymbolicSupernodalCholesky<usize>, v
     (smallest, finite)
 }
 
-/// A vector on its way through a factor of `dim` columns: scaled and rounded on the way in, back to doubles on the way
-/// out. Should it fail, or the vector not fit, then nothing in it is a number.
+/// A vector swept through a factor of `dim` columns: scaled and rounded before, converted back to doubles after. If the sweep
+/// fails or the vector does not fit, every entry is NaN.
 fn swept<T: Real>(
     load: Vec<f64>,
     dim: usize,

@@ -1,6 +1,6 @@
 //! Connected components.
 
-/// Trees of unknowns, each of which points towards the first of its tree.
+/// Trees of unknowns; each unknown points towards the first of its tree.
 pub struct Forest {
     parent: Vec<usize>,
 }
@@ -19,7 +19,7 @@ impl Forest {
         unknown
     }
 
-    /// Makes one tree of those of two unknowns.
+    /// Joins the trees of two unknowns into one.
     pub fn join(&mut self, a: usize, b: usize) {
         if self.parent[a] == self.parent[b] {
             return;
@@ -28,7 +28,7 @@ impl Forest {
         self.parent[a.max(b)] = a.min(b);
     }
 
-    /// The number of the tree of each unknown, in the order of their first unknowns, and how many trees there are.
+    /// The number of the tree of each unknown, in the order of their first unknowns, and the number of trees.
     pub fn into_trees(mut self) -> (Vec<usize>, usize) {
         let mut tree = Vec::with_capacity(self.parent.len());
         let mut count = 0;

@@ -1,31 +1,33 @@
-//! The vectors that a positive semidefinite matrix does not resist.
+//! The null vectors of a positive semidefinite matrix.
 
 use super::definite::NULL_ROUNDING;
 use super::{AugmentedMatrix, Cholesky, FactorError, Forest, SparseMatrix, SymmetricMatrix, Twice, dot, largest};
 
-/// What is added to a diagonal of order one, so that a singular matrix has a factor: far below what resists, far above rounding.
+/// Added to a diagonal of order one, so that a singular matrix has a factor: far below its other eigenvalues, far above
+/// rounding.
 const SHIFT: f64 = 1e-10;
 
-/// Steps of inverse iteration: each takes a factor `SHIFT / eigenvalue` off what the matrix resists.
+/// Largest number of steps of inverse iteration: each multiplies components with energy by `SHIFT / eigenvalue`.
 const MOST_STEPS: usize = 30;
 
-/// Entries of a null vector below this share of the largest are what the iteration has left of zero.
+/// Entries of a null vector below this share of the largest are zeros with an error of the iteration.
 const ZERO: f64 = 1e-12;
 
-/// Null vectors beyond which none is looked for: every vector is held against all before it.
+/// Largest number of null vectors: every vector is made orthogonal to all before it.
 const MOST_VECTORS: usize = 256;
 
 /// Corrections of a null vector in twice the working precision.
 const MOST_CORRECTIONS: usize = 20;
 
-/// `A v` vanishes exactly where it is below this share of its terms.
+/// An entry of `A v` vanishes exactly if it is below this share of its terms.
 const EXACT: f64 = 1e-26;
 
-/// Beside the largest entry of a vector in twice the working precision, less than this is what its corrections leave of zero.
+/// Entries of a vector in twice the working precision below this share of the largest are zeros with an error of the
+/// corrections.
 const NO_ENTRY: f64 = 1e-24;
 
-/// A change of every entry of A by this much of itself makes `A v` vanish: A may be a singular matrix whose entries were
-/// rounded, several times where it was assembled.
+/// If a change of every entry of A by this share of itself makes `A v` vanish, A may be a singular matrix with rounded entries,
+/// rounded several times during assembly.
 ///
 /// # Source
 /// W. Oettli, W. Prager, *Compatibility of approximate solution of linear equations with given error bounds for coefficients and
@@ -35,21 +37,21 @@ const OF_ENTRIES: f64 = 4.0 * f64::EPSILON;
 /// A basis of the null space of a matrix.
 #[derive(Clone, Debug, Default)]
 pub struct NullSpace {
-    /// Vectors of length about one, independent of each other.
+    /// Linearly independent vectors of length about one.
     pub vectors: Vec<Vec<Twice>>,
-    /// `true` if the matrix resists them exactly nothing, as its doubles stand. Otherwise it would with its entries rounded in
-    /// another way, and the vectors have no more digits than the entries.
+    /// `true` if `A v` vanishes exactly, for the doubles of the matrix. Otherwise it would with its entries rounded in another
+    /// way, and the vectors have no more digits than the entries.
     pub is_exact: bool,
 }
 
 impl SymmetricMatrix {
-    /// A basis of the null space of a positive semidefinite matrix with a diagonal of order one or zero; `None` where it has more
+    /// A basis of the null space of a positive semidefinite matrix with a diagonal of order one or zero; `None` if it has more
     /// than 256 vectors.
     ///
-    /// Inverse iteration with A + 1e-10 I, each vector at right angles to those before, ends at the first that A resists.
+    /// Inverse iteration with A + 1e-10 I, each vector orthogonal to those before, ends at the first vector with energy.
     ///
     /// # Errors
-    /// [`FactorError::NotPositiveDefinite`] where an eigenvalue is clearly negative, and those of the factorisation.
+    /// [`FactorError::NotPositiveDefinite`] if an eigenvalue is clearly negative, and those of the factorisation.
     pub(crate) fn null_space(&self) -> Result<Option<NullSpace>, FactorError> {
         let factor = self.shifted_factor(SHIFT)?;
         let (mut found, components): (Vec<Vec<f64>>, _) = (Vec::new(), self.components());
@@ -67,7 +69,7 @@ impl SymmetricMatrix {
             if share <= EXACT {
                 basis.vectors.push(corrected);
             } else if share <= OF_ENTRIES {
-                // Corrections follow the rounding of the entries, and turn the vectors towards each other.
+                // Corrections follow the rounding of the entries, and make the vectors less orthogonal to each other.
                 basis.vectors.push(vector.iter().map(|&value| value.into()).collect());
                 basis.is_exact = false;
             }
@@ -77,8 +79,8 @@ impl SymmetricMatrix {
 
     /// A null vector in twice the working precision, and the largest share of its terms that is left in an entry of `A v`.
     ///
-    /// `(A + s I)^-1 A v` is what A resists of v, but for the share `s / eigenvalue`; what rounding adds to it lies mostly in the
-    /// null space.
+    /// `(A + s I)^-1 A v` is the component of v with energy, except for the share `s / eigenvalue`; the rounding in it lies
+    /// mostly in the null space.
     fn corrected(&self, factor: &Cholesky, vector: &[f64]) -> (Vec<Twice>, f64) {
         let mut vector: Vec<Twice> = vector.iter().map(|&value| value.into()).collect();
         let mut left = self.resistance(&vector);
@@ -89,7 +91,7 @@ impl SymmetricMatrix {
             let next = without_noise(next.collect());
             let of_next = self.resistance(&next);
             let most = |left: &[(f64, f64)]| left.iter().fold(0.0, |most: f64, (force, _)| most.max(force.abs()));
-            // Also where one of them is not a number.
+            // A NaN in either also ends the loop.
             let is_less = most(&of_next) < 0.5 * most(&left);
             if !is_less {
                 break;
@@ -119,7 +121,7 @@ impl SymmetricMatrix {
         sums.into_iter().map(|(sum, terms)| (sum.rounded(), terms)).collect()
     }
 
-    /// A unit vector that is not resisted, at right angles to those `found`.
+    /// A unit null vector, orthogonal to those `found`.
     fn null_vector(&self, factor: &Cholesky, found: &[Vec<f64>]) -> Option<Vec<f64>> {
         // No entry of A v is larger than this, for a unit vector v.
         let terms = largest(&self.mul_abs(&vec![1.0; self.dim()]));
@@ -127,7 +129,7 @@ impl SymmetricMatrix {
         let mut before = f64::INFINITY;
         for _ in 0..MOST_STEPS {
             vector = factor.solve(&vector);
-            // A second time, for what rounding of the first has left.
+            // A second pass removes the rounding of the first.
             for other in found.iter().chain(found) {
                 let share = dot(&vector, other);
                 vector.iter_mut().zip(other).for_each(|(value, other)| *value -= share * other);
@@ -157,8 +159,9 @@ impl SymmetricMatrix {
         forest.into_trees()
     }
 
-    /// A null vector as the sum of those of single components, of length one: what one component does is no matter of another, and
-    /// may be smaller by more digits than doubles have. What the iteration has left in a component that resists is left out.
+    /// A null vector as the sum of null vectors of single components, of length one: the components are independent of each
+    /// other, and one may be smaller than another by more digits than doubles have. Iteration errors in a component with energy
+    /// are left out.
     fn in_components(&self, vector: &[f64], (component, count): &(Vec<usize>, usize)) -> Vec<Vec<f64>> {
         if *count == 1 {
             return vec![vector.to_vec()];
@@ -176,7 +179,7 @@ impl SymmetricMatrix {
         if pieces.is_empty() { vec![vector.to_vec()] } else { pieces }
     }
 
-    /// A direction of negative energy, if there is one that stands out from rounding: largest entry one.
+    /// A direction of negative energy, if there is one beyond rounding: largest entry one.
     ///
     /// # Errors
     /// Those of the factorisation.
@@ -193,7 +196,7 @@ impl SymmetricMatrix {
                 }
                 Err(error) => return Err(error),
             };
-            // Close above the least eigenvalue, inverse iteration turns to its vector.
+            // With a shift close above the least eigenvalue, inverse iteration converges to its vector.
             let mut vector = generic(self.dim(), 0);
             for _ in 0..MOST_STEPS {
                 vector = factor.solve(&vector);
@@ -213,7 +216,7 @@ impl SymmetricMatrix {
     }
 }
 
-/// A vector without the entries that are nothing beside the largest.
+/// A vector without the entries that are negligible beside the largest.
 pub fn without_noise(mut vector: Vec<Twice>) -> Vec<Twice> {
     let largest = vector.iter().fold(0.0, |largest: f64, value| largest.max(value.rounded().abs()));
     vector
@@ -223,7 +226,7 @@ pub fn without_noise(mut vector: Vec<Twice>) -> Vec<Twice> {
     vector
 }
 
-/// A vector without symmetry, another for each number, the same in every run.
+/// A vector without symmetry, different for each number, the same in every run.
 pub fn generic(length: usize, number: usize) -> Vec<f64> {
     let (golden, silver) = (0.618_033_988_749_895, 0.414_213_562_373_095);
     (0..length).map(|i| (i as f64 * golden + (number + 1) as f64 * silver).fract() - 0.5).collect()

@@ -27,7 +27,7 @@ impl From<&SparseMatrix> for SparseColMat<usize, f64> {
 impl TryFrom<SparseColMatRef<'_, usize, f64>> for SparseMatrix {
     type Error = Error;
 
-    /// The same matrix; rows in any order, entries of the same place are added.
+    /// The same matrix; rows in any order, entries at the same place are added.
     ///
     /// # Errors
     /// [`Error::NotFinite`] for a value that is not finite.

@@ -11,21 +11,21 @@ use super::factor::call;
 use super::quotient::Quotient;
 use super::{FactorError, SparseMatrix, SymmetricMatrix};
 
-/// Nested dissection takes about as long as this many multiplications of the factorisation for each edge of the graph;
-/// where minimum degree leaves a factorisation that costs several times as much, it is tried.
+/// Nested dissection takes about as long as this many multiplications of the factorisation for each edge of the graph; it is
+/// tried if minimum degree leaves a factorisation that costs several times as much.
 const WORTH_DISSECTING: f64 = 50_000.0;
 
-/// Diagonals for which minimum degree gets memory: more than it takes.
+/// Diagonals for which minimum degree gets memory: more than it needs.
 const DIAGONALS: usize = 4;
 
-/// What a factorisation takes if the columns are eliminated by minimum degree.
+/// The cost of a factorisation with columns eliminated by minimum degree.
 #[derive(Clone, Copy, Debug)]
 pub struct Fill {
-    /// Multiplications, about.
+    /// Multiplications, approximately.
     pub multiplications: f64,
-    /// Values of the factor, about.
+    /// Values of the factor, approximately.
     pub entries: f64,
-    /// Whether the factorisation costs so much that [`order`] tries nested dissection as well.
+    /// `true` if the factorisation costs so much that [`order`] tries nested dissection as well.
     pub is_dissected: bool,
 }
 
@@ -33,7 +33,7 @@ impl Fill {
     /// The fill of the factor of `matrix`, found without a factorisation.
     ///
     /// # Errors
-    /// [`FactorError::Failed`] when memory or the index range does not suffice.
+    /// [`FactorError::Failed`] if memory or the index range does not suffice.
     pub fn by_minimum_degree(matrix: &SymmetricMatrix) -> Result<Self, FactorError> {
         call(|| {
             let quotient = Quotient::of(matrix.lower());
@@ -45,11 +45,11 @@ impl Fill {
 /// A fill-reducing order of the columns of a symmetric matrix, given by its lower triangle: `order[i]` is the column
 /// that is eliminated as the i-th. The columns of `last` come last, as they are given.
 ///
-/// Columns with the same neighbours (the dofs of a node) are ordered as one, which is faster and fills in less. The order
-/// is that of minimum degree, or of nested dissection where that is worth its time and needs fewer multiplications.
+/// Columns with the same neighbours (the dofs of a node) are ordered as one, which is faster and gives less fill. The order is
+/// that of minimum degree, or of nested dissection if that is worth its time and needs fewer multiplications.
 ///
 /// # Errors
-/// [`FactorError::Failed`] when memory or the index range does not suffice.
+/// [`FactorError::Failed`] if memory or the index range does not suffice.
 pub(super) fn order(lower: &SparseMatrix, last: &[usize]) -> Result<Vec<usize>, FactorError> {
     let mut quotient = Quotient::of(lower);
     let (by_degree, fill) = minimum_degree(&quotient)?;
@@ -67,12 +67,12 @@ pub(super) fn order(lower: &SparseMatrix, last: &[usize]) -> Result<Vec<usize>, 
     Ok(columns)
 }
 
-/// Approximate minimum degree, with the fill, about, for groups of average size.
+/// Approximate minimum degree, with the approximate fill for groups of average size.
 fn minimum_degree(quotient: &Quotient) -> Result<(Vec<u32>, Fill), FactorError> {
     let count = quotient.count();
     let graph =
         SymbolicSparseColMatRef::new_unsorted_checked(count, count, quotient.starts(), None, quotient.all_neighbours());
-    // The request counts on stored diagonals, and falls short without them.
+    // The memory request assumes stored diagonals, and falls short without them.
     let entries = quotient.all_neighbours().len() + DIAGONALS * count;
     let request = amd::order_maybe_unsorted_scratch::<u32>(count, entries);
     let mut buffer = MemBuffer::try_new(request).map_err(|_| FactorError::Failed("out of memory".into()))?;
@@ -128,7 +128,7 @@ mod tests {
             let eliminated = Elimination::of(&quotient, order).multiplications(&quotient);
             let ratio = fill.multiplications / eliminated;
             assert!((0.9..=1.1).contains(&ratio), "{sides:?}: {ratio}");
-            // Supernodes add zeros to the factor, those of a chain as many as it has values.
+            // Supernodes add zeros to the factor; for a chain they are as many as its values.
             let entries = fill.entries / Analysis::of(&matrix).unwrap().factor_entries() as f64;
             assert!((0.25..=1.0).contains(&entries), "{sides:?}: {entries}");
         }

@@ -1,12 +1,13 @@
-//! How far vectors are from the span of the others, by orthogonal directions: products of vectors would lose half the digits.
+//! The distance of vectors from the span of the others, by orthogonal directions: products of vectors would lose half the
+//! digits.
 
 use super::{UpperTriangle, dot, norm, take_out};
 
-/// What is left of a vector across the others is rounding where it is below this share of the terms that cancel.
+/// The component of a vector orthogonal to the others is rounding if it is below this share of the terms that cancel.
 const CANCELLED_VECTOR: f64 = 64.0 * f64::EPSILON;
 
 /// `sqrt((Z'Z)^-1_ii)`, one over the distance of column i of Z from the span of the others, for independent columns. It is
-/// infinite for columns with a share in what rounding cannot tell from a dependence. `None` where it `is_over` before.
+/// infinite for columns that take part in a dependence to rounding. `None` if it `is_over` before.
 ///
 /// # Source
 /// Å. Björck, *Numerics of Gram-Schmidt orthogonalization*, Linear Algebra Appl. 197/198 (1994) 297-316.
@@ -26,7 +27,7 @@ pub fn inverse_lengths(columns: Vec<Vec<f64>>, is_over: impl Fn() -> bool) -> Op
     Some(lengths)
 }
 
-/// R of the columns, each of length one, the farthest from the span of those before it first.
+/// R of the columns, each of length one, ordered so that the farthest from the span of those before it comes first.
 #[derive(Default)]
 struct Ordered {
     order: Vec<usize>,
@@ -51,7 +52,7 @@ impl Ordered {
             let farthest = (0..left.len()).max_by(|&a, &b| across(&left[a]).total_cmp(&across(&left[b])))?;
             let next = left.swap_remove(farthest);
             let (mut direction, mut column) = (std::mem::take(&mut rest[next]), std::mem::take(&mut entries[next]));
-            // Rounding of the first turn is taken out.
+            // The second turn removes the rounding of the first.
             for (entry, before) in column.iter_mut().zip(&directions) {
                 *entry += take_out(&mut direction, before);
             }

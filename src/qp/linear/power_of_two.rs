@@ -19,7 +19,7 @@ pub fn exponent(x: f64) -> i32 {
 pub fn ldexp(x: f64, e: i32) -> f64 {
     const STEP: i32 = 1000;
     if e.abs() <= STEP {
-        // The bits of 2^e: this is called once for each entry of the stiffness.
+        // The bits of 2^e, because this is called once for each entry of the stiffness.
         return x * f64::from_bits(((1023 + e) as u64) << 52);
     }
     let mut result = x;
@@ -32,7 +32,7 @@ pub fn ldexp(x: f64, e: i32) -> f64 {
     result
 }
 
-/// The exponents of a dimensionless diagonal D and a factor c for which `c D A D` has a diagonal between 1 and 4.
+/// The exponents of a dimensionless diagonal D and a factor c that give `c D A D` a diagonal between 1 and 4.
 ///
 /// `1 / c` is the size of the largest diagonal entry; D levels the contrast between the entries. Multiplying A by a
 /// power of two changes c alone, so that the scaled matrix stays the same bit by bit.
@@ -45,7 +45,7 @@ pub struct Equilibration {
 }
 
 impl Equilibration {
-    /// That of a matrix which needs none.
+    /// The equilibration of a matrix that needs none.
     pub fn none(dim: usize) -> Self {
         Equilibration { diagonal: vec![0; dim], factor: 0 }
     }

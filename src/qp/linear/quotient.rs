@@ -1,11 +1,11 @@
-//! The graph of a symmetric matrix with alike columns taken as one: for a stiffness, the graph of its nodes.
+//! The graph of a symmetric matrix with alike columns merged into one: for a stiffness, the graph of its nodes.
 
 use super::SparseMatrix;
 
 /// No group has this number.
 const NONE: u32 = u32::MAX;
 
-/// Groups of columns with the same neighbours, and which groups meet.
+/// Groups of columns with the same neighbours, and the pairs of groups that meet.
 pub(super) struct Quotient {
     /// Group of each column.
     of_column: Vec<u32>,
@@ -35,7 +35,7 @@ impl Quotient {
         quotient
     }
 
-    /// Finds the neighbours: one member stands for all, those above the diagonal come from their own columns.
+    /// Finds the neighbours: one member represents its group; neighbours above the diagonal come from their own columns.
     fn connect(&mut self, lower: &SparseMatrix) {
         let count = self.count();
         let (mut below_starts, mut below) = (vec![0], Vec::new());
@@ -94,7 +94,7 @@ impl Quotient {
         &self.neighbours[self.starts[group as usize] as usize..self.starts[group as usize + 1] as usize]
     }
 
-    /// Where the neighbours of each group start in [`all_neighbours`](Self::all_neighbours).
+    /// Start of the neighbours of each group in [`all_neighbours`](Self::all_neighbours).
     pub fn starts(&self) -> &[u32] {
         &self.starts
     }
@@ -104,7 +104,7 @@ impl Quotient {
         &self.neighbours
     }
 
-    /// Takes columns out of their groups, which may become empty; the graph stays.
+    /// Removes columns from their groups, which may become empty; the graph stays.
     pub fn remove(&mut self, columns: &[usize]) {
         let mut is_kept = vec![true; self.of_column.len()];
         columns.iter().for_each(|&column| is_kept[column] = false);
@@ -123,7 +123,7 @@ impl Quotient {
 /// The group of each column and the number of groups. Groups are numbered by their first column.
 fn groups(lower: &SparseMatrix) -> (Vec<u32>, usize) {
     let dim = lower.columns();
-    // A sum of scrambled indices stands for the set of neighbours; a collision costs fill, not correctness.
+    // A sum of scrambled indices represents the set of neighbours; a collision costs fill, not correctness.
     let mut signature: Vec<u64> = (0..dim).map(scramble).collect();
     for column in 0..dim {
         let own = scramble(column);
@@ -134,7 +134,7 @@ fn groups(lower: &SparseMatrix) -> (Vec<u32>, usize) {
         }
         signature[column] = sum;
     }
-    // Alike columns mostly follow each other; the runs are sorted, which leaves less than the columns to be sorted.
+    // Alike columns mostly follow each other, so runs are sorted, which are fewer than columns.
     let mut runs: Vec<(u64, u32)> = Vec::new();
     for (column, &of_column) in signature.iter().enumerate() {
         if column == 0 || signature[column - 1] != of_column {

@@ -1,4 +1,4 @@
-//! The entries of `A^-1` where the factor of A has entries, for about two factorisations.
+//! The entries of `A^-1` in the pattern of the factor, at the cost of about two factorisations.
 //!
 //! With a block column (L_JJ, L_RJ) of the factor and `Y = L_RJ L_JJ^-1`, from the last block column to the first,
 //!
@@ -6,7 +6,7 @@
 //! Z_RJ = -Z_RR Y,     Z_JJ = (L_JJ L_JJ')^-1 - Y' Z_RJ
 //! ```
 //!
-//! Z_RR is known by then: R is part of the pattern of every column that it names.
+//! Z_RR is known by then: for every column in R, the rows of R after it are part of its pattern.
 //!
 //! # Source
 //! K. Takahashi, J. Fagan, M.-S. Chin, *Formation of a sparse bus impedance matrix and its application to short circuit
@@ -21,7 +21,7 @@ use faer::{Accum, Mat, MatMut, Par};
 use super::Cholesky;
 use super::factor::{FactorError, call};
 
-/// Factorisations that take as many multiplications.
+/// Number of factorisations that take as many multiplications.
 pub const FACTORISATIONS: f64 = 2.0;
 
 /// Entries of the inverse of a factorised matrix.
@@ -60,7 +60,7 @@ impl Cholesky {
 }
 
 impl SelectedInverse<'_> {
-    /// Finds block column `node`, of which the factor is `factor`; those after it are known.
+    /// Computes block column `node` with the factor `factor`; those after it are known.
     fn find(&mut self, node: usize, factor: Mat<f64>) {
         let columns = factor.ncols();
         let rows = factor.nrows() - columns;
@@ -97,7 +97,7 @@ impl SelectedInverse<'_> {
             let (begin, end) = (self.nodes.supernode_begin()[ancestor], self.nodes.supernode_end()[ancestor]);
             let last = first + rows[first..].iter().take_while(|&&row| row < end).count();
             let (columns, pattern) = (end - begin, self.below(ancestor));
-            // Where the rows from `first` on stand in the ancestor: within its columns, then in its pattern.
+            // Places of the rows from `first` on in the ancestor: within its columns, then in its pattern.
             local.clear();
             local.extend(rows[first..last].iter().map(|row| row - begin));
             let mut next = 0;
@@ -140,7 +140,7 @@ impl SelectedInverse<'_> {
         Some(self.values[self.nodes.col_ptr_for_val()[node] + (first - begin) * height + row])
     }
 
-    /// `b' A^-1 b` of a vector of few entries `(column, value)`; `None` if an entry is outside the pattern.
+    /// `b' A^-1 b` of a vector b with few entries `(column, value)`; `None` if an entry is outside the pattern.
     pub fn product(&self, entries: &[(usize, f64)]) -> Option<f64> {
         let mut sum = 0.0;
         for &(a, first) in entries {
@@ -156,7 +156,7 @@ impl SelectedInverse<'_> {
 mod tests {
     use crate::qp::linear::{Cholesky, SparseMatrix, SymmetricMatrix};
 
-    /// A lattice with random-looking couplings, against solves with unit loads.
+    /// A lattice with random-looking couplings, compared with solves with unit loads.
     #[test]
     fn selected_entries_are_those_of_the_inverse() {
         let n = 17;

@@ -7,10 +7,10 @@ use super::SparseMatrix;
 use super::both_triangles::Columns;
 use crate::error::Error;
 
-/// Entries that are worth a part of their own in a product on several threads.
+/// Number of entries that justify a separate part in a product on several threads.
 const PART: usize = 250_000;
 
-/// Parts of a product at the most: each may need a vector of its own.
+/// Largest number of parts of a product: each may need its own vector.
 const MOST_PARTS: usize = 8;
 
 /// A symmetric matrix; only its lower triangle is stored.
@@ -48,7 +48,7 @@ impl SymmetricMatrix {
     /// # Errors
     /// [`Error::Length`] for arrays that do not fit each other, [`Error::Pattern`] for starts that decrease or rows that do not
     /// increase, [`Error::IndexOutOfRange`] for a row beyond the last, [`Error::NotFinite`], [`Error::NotSymmetric`] if the triangles
-    /// differ, [`Error::Numerical`] for want of memory.
+    /// differ, [`Error::Numerical`] for lack of memory.
     pub fn from_csc<I>(column_starts: &[I], row_indices: &[I], values: &[f64]) -> Result<Self, Error>
     where
         I: Copy + TryInto<usize>,
@@ -65,7 +65,7 @@ impl SymmetricMatrix {
     where
         I: Copy + TryInto<usize>,
     {
-        // As columns they make the transposed matrix, whose upper triangle is the lower one that is wanted.
+        // Read as columns they are the transposed matrix; its upper triangle is the lower triangle of this matrix.
         if let Some(lower) = (Columns { starts: row_starts, rows: column_indices, values }).upper()? {
             return Ok(SymmetricMatrix { lower });
         }
@@ -88,7 +88,7 @@ impl SymmetricMatrix {
         }
     }
 
-    /// From a lower triangle that is known to be one.
+    /// From a lower triangle that is known to be valid.
     pub(super) fn from_sorted_lower(lower: SparseMatrix) -> Self {
         SymmetricMatrix { lower }
     }
@@ -175,7 +175,7 @@ impl SymmetricMatrix {
         y
     }
 
-    /// What some columns and the rows of the same numbers add to A x, from the first of them on.
+    /// The contribution of some columns, and of the rows with the same numbers, to A x, from the first column on.
     fn product_of_columns(&self, columns: Range<usize>, x: &[f64]) -> Vec<f64> {
         let first = columns.start;
         let (starts, rows) = (self.lower.column_starts(), self.lower.row_indices());
@@ -206,7 +206,7 @@ impl SymmetricMatrix {
         for (column, &at_column) in x.iter().enumerate().take(self.dim()) {
             let (mut rows, mut values) = self.lower.column_slices(column);
             let mut sum = 0.0;
-            // Rows increase: the diagonal comes first where there is one.
+            // Rows increase: the diagonal entry comes first if there is one.
             if let ([row, rows_below @ ..], [value, values_below @ ..]) = (rows, values)
                 && *row == column
             {

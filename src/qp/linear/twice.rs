@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// The unrounded sum of two doubles, of which the second is below half a unit in the last place of the first.
+/// The unrounded sum of two doubles; the second is below half a unit in the last place of the first.
 ///
 /// # Source
 /// T. J. Dekker, *A floating-point technique for extending the available precision*, Numer. Math. 18 (1971) 224-242.
@@ -26,7 +26,7 @@ impl Twice {
         if self.head < 0.0 { -self } else { self }
     }
 
-    /// The sum of two doubles, of which the first is the larger in magnitude.
+    /// The sum of two doubles; the first is the larger in magnitude.
     fn of_sorted(head: f64, tail: f64) -> Self {
         let sum = head + tail;
         Twice { head: sum, tail: tail - (sum - head) }
@@ -94,7 +94,7 @@ impl Div for Twice {
     }
 }
 
-/// A sum, zero where its terms cancel to less than `rounding` of the sum of their magnitudes.
+/// A sum; zero if its terms cancel to less than `rounding` of the sum of their magnitudes.
 pub fn sum(terms: impl Iterator<Item = Twice>, rounding: f64) -> Twice {
     let (sum, size) = terms.fold((Twice::ZERO, 0.0_f64), |(sum, size), term| (sum + term, size + term.rounded().abs()));
     if sum.rounded().abs() > rounding * size { sum } else { Twice::ZERO }

@@ -5,10 +5,10 @@
 //!                        [ C  I-C] [l] = [ C g ]      C <- diag heaviside( (I-C)(u-g) - C l )     until C is settled
 //! ```
 //!
-//! A primal-dual active set, or semismooth Newton, method: from most starts it ends in a few steps. It can cycle. When
-//! a set comes back, the loop goes on by block principal pivoting with single pivots (largest row first) whenever a
-//! block exchange does not reduce the number of violations: finite for every P-matrix. Closed rows that contradict each
-//! other, and a set that comes back under pivoting too, end the loop unsettled.
+//! A primal-dual active set, or semismooth Newton, method: from most starts it ends in a few steps. It can cycle. When a set
+//! returns, the loop goes on by block principal pivoting, with single pivots (largest row first) if a block exchange does not
+//! reduce the number of violations: finite for every P-matrix. The loop ends unsettled if closed rows contradict each other, or
+//! if a set returns under pivoting too.
 //!
 //! # Source
 //! J. J. Júdice and F. M. Pires, *A block principal pivoting algorithm for large-scale strictly monotone linear
@@ -24,10 +24,10 @@ use crate::error::Error;
 use crate::qp::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
 
-/// Free modes that may be stopped, where there are fewer rows.
+/// Number of free modes that may be stopped, if there are fewer rows.
 const MOST_STOPS: usize = 100;
 
-/// Block exchanges that may fail to reduce the number of violations before a single pivot.
+/// Number of block exchanges that may fail to reduce the number of violations before a single pivot.
 const PATIENCE: usize = 3;
 
 /// The active-set loop on a scaled problem.
@@ -35,7 +35,7 @@ const PATIENCE: usize = 3;
 pub struct ActiveSet<'a> {
     /// The problem.
     pub scaled: &'a ScaledProblem<'a>,
-    /// Most factorisations.
+    /// Largest number of factorisations.
     pub most_iterations: usize,
 }
 
@@ -62,7 +62,7 @@ impl Solver for ActiveSet<'_> {
             let balance = match balances.of(&closed, &displacement)? {
                 Balance::Held(balance) => balance,
                 Balance::Free(mode) => match scaled.stopping_rows(&mode, &displacement, &closed) {
-                    // A mode that rows stop again and again must not keep the loop alive.
+                    // A mode that rows stop repeatedly must not continue the loop without end.
                     Some(stopped) if stops < MOST_STOPS.max(rows) => {
                         stops += 1;
                         closed = stopped;
@@ -83,7 +83,7 @@ impl Solver for ActiveSet<'_> {
             } else {
                 if !seen.insert((closed.clone(), rule)) {
                     if matches!(rule, Rule::Pivoting { .. }) {
-                        // Pivoting comes back to a set where rounding decides signs: it would do so for ever.
+                        // Pivoting returns to a set if rounding decides signs: it would then repeat without end.
                         break;
                     }
                     rule = rule.pivoting(wrong.len());
@@ -97,11 +97,12 @@ impl Solver for ActiveSet<'_> {
     }
 }
 
-/// The balances of the sets of a loop: by the factor of an earlier set while that takes few steps, else each by its own.
+/// The balances of the sets of a loop: by the factor of an earlier set if that takes few steps, otherwise each by its own
+/// factor.
 struct Balances<'a> {
     scaled: &'a ScaledProblem<'a>,
     most_steps: usize,
-    /// Where K is definite, every row bounds one dof, and a factor is dear.
+    /// Set if K is definite, every row bounds one dof, and a factor is expensive.
     bounded: Option<BoundedDofs>,
     earlier: Option<EarlierFactor>,
 }
@@ -120,7 +121,7 @@ impl<'a> Balances<'a> {
         Balances { scaled, most_steps, bounded, earlier: None }
     }
 
-    /// The balance of `closed`, whose displacement is about `near`.
+    /// The balance of `closed`, from a displacement `near` it.
     ///
     /// # Errors
     /// As [`ScaledProblem::hold`].
@@ -147,8 +148,8 @@ impl<'a> Balances<'a> {
 /// Balance of forces with the rows of `closed` held at their gaps, pushing or pulling, and all others free.
 ///
 /// # Errors
-/// [`Error::Unbounded`] and [`Error::UnderHeld`] where they do not hold the body, [`Error::Infeasible`] where they
-/// contradict each other.
+/// [`Error::Unbounded`] and [`Error::UnderHeld`] if they do not hold the body, [`Error::Infeasible`] if they contradict each
+/// other.
 pub fn with_contact_set(scaled: &ScaledProblem, closed: &ContactSet) -> Result<Equilibrium, Error> {
     match scaled.hold(closed, WEIGHT)? {
         Holding::Held(cholesky) => {
@@ -164,12 +165,12 @@ pub fn with_contact_set(scaled: &ScaledProblem, closed: &ContactSet) -> Result<E
     }
 }
 
-/// How the next set is made from the rows that are wrong in this one.
+/// The rule by which the misclassified rows of a set give the next set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Rule {
-    /// All of them change sides.
+    /// All misclassified rows change sides.
     Exchange,
-    /// All of them while their number falls, else the last one alone.
+    /// All misclassified rows while their number falls, otherwise the last one alone.
     Pivoting { fewest: usize, patience: usize, single: bool },
 }
 
@@ -205,7 +206,7 @@ impl Rule {
     }
 }
 
-/// The rows that are on the wrong side: open and penetrating, or closed and pulling, beyond rounding.
+/// The misclassified rows: open and penetrating, or closed and pulling, beyond rounding.
 fn wrong_rows(problem: &ContactProblem, u: &[f64], multiplier: &[f64], closed: &ContactSet) -> Vec<usize> {
     let reach = reach(problem, u);
     let rounding = multiplier_rounding(problem, u, multiplier);

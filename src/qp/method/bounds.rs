@@ -7,7 +7,7 @@ use crate::qp::linear::SparseMatrix;
 use crate::qp::linear::multigrid::Direction;
 use crate::solution::ContactSet;
 
-/// Parts of a unit vector below this are rounding of the turning.
+/// Entries of a unit vector below this are rounding of the reflections.
 const TURNING_ROUNDING: f64 = 1e-12;
 
 /// A row on one side of its unknown: `coefficient * v <= gap`.
@@ -21,11 +21,11 @@ struct Side {
 /// The bounds of one unknown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bound {
-    /// The unknown, among the turned ones.
+    /// The unknown, after the reflections.
     pub unknown: usize,
-    /// The least value, `-inf` where there is none.
+    /// The least value, `-inf` without a lower bound.
     pub lower: f64,
-    /// The greatest value, `+inf` where there is none.
+    /// The greatest value, `+inf` without an upper bound.
     pub upper: f64,
     sides: [Option<Side>; 2],
 }
@@ -57,18 +57,18 @@ pub struct Bounds {
 /// The order in which reflections are applied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Order {
-    /// That of the product H.
+    /// The order of the product H.
     Forward,
-    /// The opposite one, that of H'.
+    /// The reverse order, that of H'.
     Backward,
 }
 
 impl Bounds {
-    /// The bounds that rows B (m x n) and gaps g make. Rows without entries or with an infinite gap make none.
+    /// The bounds that rows B (m x n) and gaps g give. Rows without entries or with an infinite gap give none.
     ///
     /// # Errors
-    /// [`Error::Numerical`] for two rows that share an unknown and are neither parallel nor at right angles: no turning
-    /// makes bounds of them.
+    /// [`Error::Numerical`] for two rows that share an unknown and are neither parallel nor orthogonal: no rotation makes them
+    /// bounds.
     pub fn of(contact: &SparseMatrix, gap: &[f64]) -> Result<Self, Error> {
         let by_row = contact.transposed();
         let mut all = Bounds { reflections: Vec::new(), touching: HashMap::new(), bounds: Vec::new(), rows: gap.len() };
@@ -103,7 +103,7 @@ impl Bounds {
         Ok(all)
     }
 
-    /// A unit vector after those reflections that touch it.
+    /// A unit vector after the reflections that touch it.
     fn reflected(&self, vector: Direction, order: Order) -> Direction {
         if vector.len() == 1 && vector.iter().all(|entry| !self.touching.contains_key(&entry.0)) {
             return vector;
@@ -153,7 +153,7 @@ impl Bounds {
         &self.bounds
     }
 
-    /// Returns `true` if all rows are bounds as they stand.
+    /// Returns `true` if all rows are bounds without a reflection.
     pub fn is_plain(&self) -> bool {
         self.reflections.is_empty()
     }
@@ -173,13 +173,13 @@ impl Bounds {
         self.reflected(vec![(bound.unknown, 1.0)], Order::Backward)
     }
 
-    /// The multipliers of the rows where the forces on the unknowns with bounds are `force` (those that are out of
-    /// balance there), and the rows that are closed.
+    /// The multipliers of the rows if the forces on the unknowns with bounds are `force` (those out of balance there), and the
+    /// rows that are closed.
     pub fn multipliers(&self, force: impl Fn(usize) -> f64) -> (Vec<f64>, ContactSet) {
         let (mut multiplier, mut closed) = (vec![0.0; self.rows], ContactSet::open(self.rows));
         for (index, bound) in self.bounds.iter().enumerate() {
             let force = force(index);
-            // A force down is that of the upper bound.
+            // A negative force belongs to the upper bound.
             let side = bound.sides[usize::from(force < 0.0)];
             if let Some(side) = side.filter(|_| force != 0.0) {
                 multiplier[side.row] = force / side.coefficient;
@@ -191,7 +191,7 @@ impl Bounds {
 }
 
 impl Bound {
-    /// The value of a bound whose row is in the set, of the upper one if both are.
+    /// The value of a bound with a row in the set; the upper value if both rows are.
     pub fn closed_at(&self, closed: &ContactSet) -> Option<f64> {
         let is_closed = |side: &Option<Side>| side.is_some_and(|side| closed.contains(side.row));
         let [lower, upper] = &self.sides;
@@ -210,7 +210,7 @@ impl Bound {
                 self.lower = side.value;
             }
         }
-        // Rows that meet but for rounding are an equality.
+        // Rows that meet except for rounding are an equality.
         self.lower = self.lower.min(self.upper);
     }
 }

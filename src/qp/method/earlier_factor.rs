@@ -1,33 +1,34 @@
 //! Balance of forces on a set of closed rows, by conjugate gradients with the factor of an earlier set.
 //!
-//! From one set of an active-set loop to the next few rows change sides. Where every row bounds one dof, the dofs that are
-//! free in both sets take the earlier factor for their inverse, and those that became free their own diagonal: a few steps
-//! cost less than a factorisation.
+//! From one set of an active-set loop to the next few rows change sides. If every row bounds one dof, the dofs that are free in
+//! both sets use the earlier factor as preconditioner, and those that became free their own diagonal: a few steps cost less
+//! than a factorisation.
 
 use super::equilibrium::Equilibrium;
 use crate::qp::linear::{Analysis, Cholesky, SparseMatrix, dot, subtract};
 use crate::qp::problem::ContactProblem;
 use crate::solution::ContactSet;
 
-/// Multiplications of a factorisation, for each value of the factor, that take about as long as a step.
+/// Number of multiplications of a factorisation, for each value of the factor, that take about as long as a step.
 const WORK_OF_STEP: f64 = 10.0;
 
-/// Steps for one set, however dear a factor is: beyond, rounding of the conjugate directions costs more of them.
+/// Largest number of steps for one set, however expensive a factor is: beyond this, rounding of the conjugate directions costs
+/// further steps.
 const MOST_STEPS: f64 = 25.0;
 
-/// Steps after which the rate so far tells whether the rest will do.
+/// Number of steps after which the rate of convergence shows whether the remaining steps suffice.
 pub const TRIAL: usize = 4;
 
-/// Energy of what is left, over that of the displacement, at which the residual is computed anew.
+/// The residual is recomputed when its energy falls below this share of the energy of the displacement.
 const ENOUGH: f64 = 1e-28;
 
-/// The same of each part, at which a balance is as good as that of a factor of its own.
+/// With this share in each part, a balance is as good as that of its own factor.
 const ACCEPTED: f64 = 1e-24;
 
-/// A residual that is computed anew and keeps this share of the energy before is rounding.
+/// If a recomputed residual keeps this share of the previous energy, it is rounding.
 const NO_GAIN: f64 = 0.1;
 
-/// Steps that take as long as a factorisation, about.
+/// Number of steps that take about as long as a factorisation.
 pub fn steps_for_a_factor(analysis: &Analysis) -> usize {
     let values = analysis.factor_entries().max(1) as f64;
     (analysis.multiplications() / (WORK_OF_STEP * values)).min(MOST_STEPS) as usize
@@ -40,7 +41,7 @@ pub struct BoundedDofs {
 }
 
 impl BoundedDofs {
-    /// `None` where a row has several entries, or none.
+    /// `None` if a row has several entries, or none.
     pub fn of(contact: &SparseMatrix) -> Option<Self> {
         let by_row = contact.transposed();
         let single = |row| {
@@ -51,7 +52,7 @@ impl BoundedDofs {
         Some(BoundedDofs { dofs: contact.columns(), of_rows })
     }
 
-    /// Where a set of rows holds dofs; `None` where two rows hold one.
+    /// The values at which a set of rows holds dofs; `None` if two rows hold one dof.
     fn held(&self, gap: &[f64], closed: &ContactSet) -> Option<Vec<Option<f64>>> {
         let mut held = vec![None; self.dofs];
         for row in closed.iter() {
@@ -66,9 +67,9 @@ impl BoundedDofs {
 
 /// The factor of a set of closed rows that bound one dof each.
 pub struct EarlierFactor {
-    /// That of K + w B_C'B_C, with a large w.
+    /// The factor of K + w B_C'B_C, with a large w.
     cholesky: Cholesky,
-    /// Is a dof held in that set?
+    /// `true` for each dof that is held in that set.
     held: Vec<bool>,
 }
 
@@ -80,8 +81,8 @@ impl EarlierFactor {
         EarlierFactor { cholesky, held }
     }
 
-    /// The balance with the rows of `closed` at their gaps, from a displacement `near` it; `None` where that would take more than
-    /// `most_steps`, or where two of the rows hold one dof.
+    /// The balance with the rows of `closed` at their gaps, from a displacement `near` it; `None` if that would take more than
+    /// `most_steps`, or if two of the rows hold one dof.
     pub fn balance(
         &self,
         problem: &ContactProblem,
@@ -114,7 +115,7 @@ impl EarlierFactor {
     }
 }
 
-/// A set whose balance is looked for.
+/// A set and the data of its balance.
 struct Task<'a> {
     factor: &'a EarlierFactor,
     problem: &'a ContactProblem,
@@ -129,7 +130,7 @@ impl Task<'_> {
         self.problem.stiffness().mul(u).iter().zip(self.problem.load()).map(|(elastic, load)| load - elastic).collect()
     }
 
-    /// Returns `true` if next to no energy is left in any part: that of a soft part does not show beside that of a stiff one.
+    /// Returns `true` if almost no energy is left in any part; the sum over all would hide a soft part beside a stiff one.
     fn is_balanced(&self, u: &[f64], residual: &[f64], direction: &[f64]) -> bool {
         let (parts, elastic) = (self.problem.parts(), self.problem.stiffness().mul(u));
         let left = parts.sums(|dof| residual[dof] * direction[dof]);
@@ -156,7 +157,7 @@ impl Task<'_> {
         step
     }
 
-    /// Conjugate gradients until the energy that is left falls to `enough`; `None` where that takes too many steps.
+    /// Conjugate gradients until the remaining energy falls to `enough`; `None` if that takes too many steps.
     fn descend(
         &self,
         u: &mut [f64],
@@ -228,7 +229,7 @@ mod tests {
         let first = ContactSet::from_fn(problem.rows(), |row| row % 7 == 0);
         let by_first = equilibrium(&problem, &factor(&problem, &first), &first);
         let earlier = EarlierFactor::new(factor(&problem, &first), &bounded, &first);
-        // Some open, some close, none changes.
+        // Some rows open, some close, none changes.
         for changes in [97, 31, usize::MAX] {
             let other = ContactSet::from_fn(problem.rows(), |row| (row % 7 == 0) != (row % changes == 21 % changes));
             let found = earlier.balance(&problem, (&bounded, &other), &by_first.displacement, 25).unwrap();
@@ -264,7 +265,7 @@ mod tests {
             let off = (0..dofs).map(|dof| found.displacement[dof] - found.displacement[dofs + dof]).collect::<Vec<_>>();
             assert!(largest(&off) < 1e-11 * largest(&found.displacement), "{:e}", largest(&off));
         }
-        // One that is settled in the stiff part alone is none.
+        // A balance that is settled in the stiff part alone is not accepted.
         let stiff_only = ContactSet::from_fn(2 * dofs, |row| row % dofs % 7 == 0 && (row < dofs || row % 2 == 0));
         let found = earlier.balance(&both, (&bounded, &stiff_only), &first.displacement, 25);
         let exact = equilibrium(&both, &factor(&both, &stiff_only), &stiff_only);
@@ -283,7 +284,7 @@ mod tests {
         let earlier = EarlierFactor::new(factor(&problem, &none), &bounded, &none);
         let checkered = ContactSet::from_fn(problem.rows(), |row| row % 2 == 0);
         assert!(earlier.balance(&problem, (&bounded, &checkered), &free.displacement, TRIAL).is_none());
-        // A dof between two walls, both of them closed.
+        // A dof between two walls, both closed.
         let twice = SparseMatrix::from_triplets(2, 1, &[(0, 0, 1.0), (1, 0, -1.0)]).unwrap();
         let both = BoundedDofs::of(&twice).unwrap();
         assert!(both.held(&[1.0, 1.0], &ContactSet::closed(2)).is_none());

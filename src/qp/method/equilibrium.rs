@@ -4,11 +4,11 @@ use crate::qp::linear::{Cholesky, largest};
 use crate::qp::problem::ContactProblem;
 use crate::solution::ContactSet;
 
-/// Weight of the closed rows in K + w B_C'B_C, on a diagonal of order one: every correction of the multipliers gains
-/// about four digits, and the factorisation loses as many.
+/// Weight of the closed rows in K + w B_C'B_C, on a diagonal of order one: every correction of the multipliers gains about four
+/// digits, and the factorisation loses as many.
 pub const WEIGHT: f64 = 65536.0;
 
-/// Corrections of the multipliers; four or five suffice where the closed rows are consistent.
+/// Corrections of the multipliers; four or five suffice if the closed rows are consistent.
 const CORRECTIONS: usize = 25;
 
 /// Closed rows that still miss their gap by this, relative to the displacement, contradict each other.
@@ -21,12 +21,12 @@ pub struct Equilibrium {
     pub displacement: Vec<f64>,
     /// Multiplier, one entry per row, zero on open rows, of either sign on closed ones.
     pub multiplier: Vec<f64>,
-    /// Could all rows of the set be closed together?
+    /// `true` if all rows of the set could be closed together.
     pub consistent: bool,
 }
 
-/// The size of the displacements that matter: those of the contact rows, or what the load does to a stiffness of order
-/// one where all of these are zero but for rounding.
+/// The size of the displacements that matter: those of the contact rows or, if all of these are zero except for rounding, the
+/// displacement by the load of a stiffness of order one.
 pub fn reach(problem: &ContactProblem, u: &[f64]) -> f64 {
     largest(&problem.contact().mul(u)).max(largest(problem.load()))
 }
@@ -37,7 +37,7 @@ pub fn reach(problem: &ContactProblem, u: &[f64]) -> f64 {
 /// (K + w B_C'B_C) du = f + B_C'l - K u + w B_C'(g - B u),     dl = w (g - B u - B du)  on C
 /// ```
 ///
-/// The residuals are those of the exact system, so that neither the weight nor redundant rows spoil the answer.
+/// The residuals are those of the exact system, so that neither the weight nor redundant rows reduce the accuracy.
 pub fn equilibrium(problem: &ContactProblem, cholesky: &Cholesky, closed: &ContactSet) -> Equilibrium {
     let (rows, contact, gap) = (problem.rows(), problem.contact(), problem.gap());
     let mut u = vec![0.0; problem.dofs()];

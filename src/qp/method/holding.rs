@@ -6,16 +6,16 @@ use crate::error::Error;
 use crate::qp::linear::{Cholesky, FactorError, largest};
 use crate::solution::ContactSet;
 
-/// Shifts with which a singular matrix is made definite, smallest first.
+/// Shifts that make a singular matrix definite, smallest first.
 const SHIFTS: [f64; 3] = [1e-12, 1e-10, 1e-8];
 
 /// Projections of the load: each gains several digits, since eigenvalues differ by many orders of magnitude.
 const STEPS: usize = 5;
 
-/// Work of the load on a free mode, and other sums over one, are rounding below this share of their own terms.
+/// Work of the load on a free mode, and other sums over a mode, are rounding below this share of their own terms.
 pub(crate) const WORK_TOLERANCE: f64 = 1e-9;
 
-/// A row this close to the obstacle, on displacements of order one, has no play.
+/// A row this close to the obstacle, for displacements of order one, has no play.
 pub(super) const PLAY: f64 = 1e-9;
 
 /// Entries of a null vector with largest entry one, and forces on a diagonal of order one, below this are rounding.
@@ -28,7 +28,7 @@ fn normalised(mut direction: Vec<f64>) -> Vec<f64> {
     direction
 }
 
-/// The answer to whether the closed rows hold the body.
+/// States whether the closed rows hold the body.
 #[derive(Debug)]
 pub enum Holding {
     /// They do; the factorisation of K + w B_C'B_C.
@@ -47,7 +47,7 @@ pub struct FreeMode {
 }
 
 impl FreeMode {
-    /// The error that this mode is when no row stops it.
+    /// The error for this mode if no row stops it.
     pub fn into_error(self) -> Error {
         let mode = where_largest(&self.direction);
         match self.driven {
@@ -57,7 +57,7 @@ impl FreeMode {
     }
 }
 
-/// Where the largest entries of a direction are, in words.
+/// The places of the largest entries of a direction, in words.
 pub(super) fn where_largest(direction: &[f64]) -> String {
     let mut entries: Vec<(usize, f64)> = direction.iter().copied().enumerate().collect();
     entries.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
@@ -66,8 +66,8 @@ pub(super) fn where_largest(direction: &[f64]) -> String {
 }
 
 impl ScaledProblem<'_> {
-    /// Where a loop starts: from C = 0 where K is definite; otherwise all rows are taken for springs, which hold the
-    /// body, and those in compression are closed.
+    /// The start of a loop: C = 0 if K is definite; otherwise all rows are replaced by springs, which hold the body, and those
+    /// in compression are closed.
     ///
     /// # Errors
     /// [`Error::Unbounded`] and [`Error::UnderHeld`] for a mode that not even all rows together hold,
@@ -89,8 +89,8 @@ impl ScaledProblem<'_> {
         }
     }
 
-    /// Is the answer the only one? It is where K and the rows under pressure hold the body; where they leave a mode,
-    /// the open rows would have to stop it both ways without play.
+    /// Checks that the answer is unique. It is if K and the rows under pressure hold the body; if they leave a mode, the open
+    /// rows must stop it both ways without play.
     ///
     /// # Errors
     /// [`Error::UnderHeld`] with a mode that changes neither force nor energy.
@@ -117,19 +117,19 @@ impl ScaledProblem<'_> {
     /// Checks that K is positive semidefinite to the largest of the shifts.
     ///
     /// # Errors
-    /// [`Error::NotConvex`] if not, [`Error::Numerical`] for want of memory.
+    /// [`Error::NotConvex`] if not, [`Error::Numerical`] for lack of memory.
     pub(super) fn check_convex(&self) -> Result<(), Error> {
         let nothing_closed = ContactSet::open(self.problem.rows());
         self.factor(self.matrix(&nothing_closed, 0.0, SHIFTS[SHIFTS.len() - 1])).map(|_| ()).map_err(Error::from)
     }
 
-    /// Factorises K + weight B_C'B_C and finds out whether it is definite.
+    /// Factorises K + weight B_C'B_C and checks whether it is definite.
     ///
     /// # Errors
-    /// [`Error::NotConvex`] where K has a negative eigenvalue, [`Error::Numerical`] for want of memory.
+    /// [`Error::NotConvex`] if K has a negative eigenvalue, [`Error::Numerical`] for lack of memory.
     pub fn hold(&self, closed: &ContactSet, weight: f64) -> Result<Holding, Error> {
         let matrix = self.matrix(closed, weight, 0.0);
-        // Of a K that is definite by itself it is not looked at again.
+        // If K is definite by itself, this is not checked again.
         let looked_at = (!self.is_definite()).then(|| matrix.clone());
         match self.factor(matrix) {
             Ok(cholesky) if looked_at.is_none_or(|matrix| cholesky.is_definite(&matrix)) => Ok(Holding::Held(cholesky)),
@@ -138,9 +138,9 @@ impl ScaledProblem<'_> {
         }
     }
 
-    /// The projection of the load onto the null space, or, where the load does no work there, any null vector.
+    /// The projection of the load onto the null space or, if the load does no work there, any null vector.
     fn free_mode(&self, closed: &ContactSet, weight: f64) -> Result<FreeMode, Error> {
-        // A weight changes nothing about null vectors, and a large one hides the shift in its rounding.
+        // A weight does not change the null vectors, and a large one hides the shift in its rounding.
         let weight = weight.min(1.0);
         for shift in SHIFTS {
             let cholesky = match self.factor(self.matrix(closed, weight, shift)) {
@@ -162,8 +162,8 @@ impl ScaledProblem<'_> {
         Err(Error::NotConvex { evidence: "a Cholesky pivot is negative".into() })
     }
 
-    /// The open rows that stop a mode first, when it starts from `displacement`; a mode that the load does not
-    /// drive may go either way. `None` where no row stops it.
+    /// The open rows that stop a mode first, if it starts from `displacement`; a mode that the load does not drive may go
+    /// either way. `None` if no row stops it.
     pub(super) fn stopping_rows(
         &self,
         mode: &FreeMode,
@@ -190,7 +190,7 @@ impl ScaledProblem<'_> {
         None
     }
 
-    /// How fast each row closes on a mode: B d, zero where that is rounding of its own terms.
+    /// The rate at which each row closes on a mode: B d, zero if it is rounding of its own terms.
     pub(super) fn approach(&self, direction: &[f64]) -> Vec<f64> {
         let terms = self.problem.contact().mul_abs(direction);
         let speed = self.problem.contact().mul(direction);
@@ -205,8 +205,8 @@ impl ScaledProblem<'_> {
         (0..force.len()).all(|dof| force[dof].abs() <= WORK_TOLERANCE * terms[dof].max(alone[dof]))
     }
 
-    /// Returns `true` if an error's claim about a mode holds in the terms of each dof and row. Sums of squares, which find
-    /// the mode, lose terms that are small beside others.
+    /// Returns `true` if an error's claim about a mode holds in the terms of each dof and row. The mode was found by sums of
+    /// squares, which lose terms that are small beside others.
     pub fn is_true(&self, claim: &Error) -> bool {
         let stops = |direction: &[f64], way: f64| self.approach(direction).iter().any(|&speed| speed * way > 0.0);
         match claim {

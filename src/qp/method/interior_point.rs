@@ -1,4 +1,4 @@
-//! The QP by Clarabel's interior-point method. The only place that names clarabel, and that knows z = -lambda.
+//! The QP by Clarabel's interior-point method. The only module that uses clarabel, and the sign z = -lambda.
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
@@ -13,19 +13,19 @@ use crate::qp::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
 use crate::watch::Watch;
 
-/// A gap this many times the displacement is out of reach: the row is left out, where it would only spoil the scale.
+/// A gap this many times the displacement is out of reach: the row is left out, because it would only spoil the scale.
 const OUT_OF_REACH: f64 = 1e12;
 
-/// The answer is computed again in other units while its size is off by more than 2 to this power.
+/// The answer is computed again in other units while the exponent of its size is off by more than this.
 const UNIT_EXPONENT: i32 = 6;
 
-/// Below 2 to minus this power a displacement is nothing but the tolerance.
+/// A displacement below 2 to minus this power is only the tolerance.
 const NOTHING_EXPONENT: i32 = 60;
 
-/// Times that the unit is corrected.
+/// Largest number of corrections of the unit.
 const UNIT_CORRECTIONS: usize = 4;
 
-/// Steps after which more do not help: on ill-conditioned data the residuals stall, and the barrier falls on.
+/// Number of steps after which more do not help: on ill-conditioned data the residuals stall while the barrier parameter falls.
 const MAX_STEPS: u32 = 50;
 
 /// Options of [`Method::Qp`](crate::Method::Qp).
@@ -66,11 +66,11 @@ pub struct Barrier<'a> {
 }
 
 impl Solver for Barrier<'_> {
-    /// Solves the QP; the start is of no use to it. The contact set is that of the rows with `z / z_scale > s / s_scale`, and
-    /// `iterations` counts the steps over all units that were tried.
+    /// Solves the QP; the method has no use for a start. The contact set is that of the rows with `z / z_scale > s / s_scale`,
+    /// and `iterations` counts the steps over all units that were tried.
     ///
-    /// An ending without full accuracy is no error here: the set is settled and the answer certified later. A problem that
-    /// is reported as unbounded or infeasible returns with no closed row, for others to find the mode or the rows.
+    /// An ending without full accuracy is no error here: the set is settled and the answer certified later. A problem that is
+    /// reported as unbounded or infeasible returns with no closed row; other methods then find the mode or the rows.
     ///
     /// # Errors
     /// [`Error::Numerical`] if the solver refuses its input.
@@ -104,19 +104,19 @@ impl Solver for Barrier<'_> {
     }
 }
 
-/// An answer of the barrier as it stands.
+/// The answer of the interior-point method without polish.
 fn unpolished(displacement: Vec<f64>, multiplier: Vec<f64>, contact_set: ContactSet, iterations: usize) -> Outcome {
     let history = vec![Iteration { contact_set: contact_set.clone(), penalty: 0.0 }];
     Outcome { displacement, multiplier, contact_set, iterations, history, settled: true, variant: "-unpolished" }
 }
 
-/// No displacement and no closed row: what there is to say if nothing was found or there is no row to close.
+/// No displacement and no closed row: the outcome if nothing was found or if there is no row to close.
 fn nothing_found(problem: &ContactProblem, iterations: usize) -> Outcome {
     unpolished(vec![0.0; problem.dofs()], vec![0.0; problem.rows()], ContactSet::open(problem.rows()), iterations)
 }
 
-/// Units in which the answer is of order one, as exponents of two: where a fine mesh makes the stiffness large beside
-/// the forces, multipliers of order one in the scaled problem would need a displacement far beyond the gap.
+/// Units in which the answer is of order one, as exponents of two: if a fine mesh makes the stiffness large beside the forces,
+/// multipliers of order one in the scaled problem would need a displacement far beyond the gap.
 #[derive(Clone, Copy, Debug)]
 struct Unit {
     displacement: i32,

@@ -1,6 +1,6 @@
 //! The methods: each takes a scaled problem and returns displacement, multiplier, contact set and history.
 //!
-//! Nothing here knows what a body is: the words are those of the QP.
+//! No module here uses the notion of a body: the terms are those of the QP.
 
 pub mod active_set;
 mod bounds;

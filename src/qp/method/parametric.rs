@@ -1,4 +1,4 @@
-//! The exact path of a contact problem whose gaps or load move along a line.
+//! The exact path of a contact problem with gaps or a load that move along a line.
 //!
 //! With the compliance G = B K^-1 B' of the contact rows and the violation b of the free body, the problem is
 //!
@@ -6,9 +6,9 @@
 //! d = b + G l,   d <= 0,   l <= 0,   d'l = 0,        b(t) = b_0 + t b_1
 //! ```
 //!
-//! Its solution is piecewise linear in t. The walk follows one piece to the first t at which an open row touches or a
-//! closed row loses its pressure, changes that row, and goes on: every such t is found exactly. Where several rows change
-//! at once, the set that holds next is the one whose slopes have the right signs.
+//! Its solution is piecewise linear in t. The walk follows one piece to the first t at which an open row touches or a closed
+//! row loses its pressure, changes that row, and goes on: every such t is found exactly. If several rows change at once, the
+//! next set is the one with slopes of the right signs.
 //!
 //! # Source
 //! R. W. Cottle, J.-S. Pang, R. E. Stone, *The Linear Complementarity Problem*, section 4.5 (parametric principal pivoting).
@@ -21,10 +21,10 @@ use crate::qp::linear::largest;
 use crate::solution::ContactSet;
 use crate::watch::Watch;
 
-/// A row whose compliance is this small, relative, once the rows before it are held, depends on them.
+/// A row depends on the rows before it if its compliance with those rows held is this small, relative.
 const DEPENDENT_COMPLIANCE: f64 = 1e-10;
 
-/// A path may change this many rows for each row there is before it is given up.
+/// A path is given up after this number of changes for each row.
 const CHANGES_PER_ROW: usize = 50;
 
 /// The compliance of the contact rows, with the violation of the free body as a function of t.
@@ -38,9 +38,9 @@ pub struct Compliance {
 /// A row that changes sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Event {
-    /// Where on the path.
+    /// Its place t on the path.
     pub at: f64,
-    /// Which row.
+    /// The row.
     pub row: usize,
     /// `true` if the row touches, `false` if it releases.
     pub touches: bool,
@@ -49,9 +49,9 @@ pub struct Event {
 /// A stretch of the path on which the contact set does not change.
 #[derive(Clone, Debug)]
 pub struct Piece {
-    /// Where it begins.
+    /// The t at its beginning.
     pub from: f64,
-    /// Where it ends.
+    /// The t at its end.
     pub to: f64,
     /// The rows that are closed on it.
     pub contact_set: ContactSet,
@@ -77,7 +77,7 @@ impl Compliance {
         self.constant.len()
     }
 
-    /// The rows of `closed` without those that depend on others before them: held once is held. On the walk a dependent
+    /// The rows of `closed` without those that depend on others before them, which hold them already. On the walk a dependent
     /// row does not join, because its violation does not grow.
     fn independent(&self, closed: &ContactSet) -> ContactSet {
         let mut kept: Vec<(usize, Vec<f64>)> = Vec::new();
@@ -132,7 +132,7 @@ impl Compliance {
     /// Walks from t = 0 to t = 1, from the set that holds at the beginning.
     ///
     /// # Errors
-    /// [`Error::Numerical`] where the closed rows are dependent beyond repair, or where the walk does not end;
+    /// [`Error::Numerical`] if the closed rows are dependent beyond repair, or if the walk does not end;
     /// [`Error::Interrupted`].
     pub fn walk(&self, start: &ContactSet, watch: &Watch) -> Result<(Vec<Piece>, Vec<Event>), Error> {
         let (mut pieces, mut events) = (Vec::new(), Vec::new());
@@ -176,8 +176,8 @@ impl Compliance {
         Err(Error::Numerical { step: "the exact path", reason })
     }
 
-    /// The set that holds next: the `undecided` rows are closed with falling or open with falling violation. Block
-    /// pivoting on these rows, single pivots where that does not help.
+    /// The set that holds next: the `undecided` rows are closed with falling or open with falling violation. Found by block
+    /// pivoting on these rows, and by single pivots if that does not help.
     fn turn(
         &self,
         closed: &ContactSet,
@@ -224,7 +224,7 @@ struct Linear {
 }
 
 impl Linear {
-    /// Where the row changes sides, if it heads there.
+    /// The t at which the row changes sides, if it moves in that direction.
     fn change(&self, row: usize, closed: &ContactSet, scales: &Scales) -> Option<f64> {
         let (value, slope, least) = match closed.contains(row) {
             true => (self.multiplier[row], self.multiplier_slope[row], scales.force),

@@ -6,9 +6,9 @@
 //!     stop when norm(C (u - g)) < threshold
 //! ```
 //!
-//! The relative error of the multiplier is k/(k + eps) and a rounding part that grows with eps. Both are equal near
-//! eps = 1e8 k; there the ladder ends. The rounding part comes from forming u - g by cancellation, so each solve is
-//! for the change against the last displacement, in which u - g is small.
+//! The relative error of the multiplier is k/(k + eps) plus a rounding part that grows with eps. Both are equal near eps = 1e8
+//! k; there the ladder ends. The rounding part comes from cancellation in u - g, so each solve is for the change from the last
+//! displacement, in which u - g is small.
 
 use std::collections::HashSet;
 
@@ -18,10 +18,10 @@ use crate::qp::linear::{Cholesky, largest};
 use crate::qp::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
 
-/// The penalty at which the two parts of the error meet: one over the square root of the machine precision.
+/// The penalty at which the two parts of the error are equal: one over the square root of the machine precision.
 pub const BEST_PENALTY: f64 = 1e8;
 
-/// The ladder of penalties of [`Method::Penalty`](crate::Method::Penalty), and where it may end early.
+/// The ladder of penalties of [`Method::Penalty`](crate::Method::Penalty), and the conditions under which it ends early.
 ///
 /// ```
 /// use signorini::{Method, Penalty, Settings};
@@ -53,7 +53,7 @@ impl Default for Penalty {
     }
 }
 
-/// An accuracy, with the bound that is held against it.
+/// An accuracy, with the bound that must meet it.
 #[derive(Clone, Copy)]
 pub struct Goal<'a> {
     /// Relative error in the energy norm.
@@ -71,14 +71,14 @@ pub struct PenaltyLoop<'a> {
     pub ladder: Penalty,
     /// The relative energy error at which the ladder ends, if any.
     pub goal: Option<Goal<'a>>,
-    /// Most factorisations.
+    /// Largest number of factorisations.
     pub most_iterations: usize,
 }
 
 /// Factor from rung to rung.
 const RUNG: f64 = 10.0;
 
-/// A rung whose bound is above this share of the one before is the floor: more penalty only adds rounding.
+/// A rung with a bound above this share of the previous one is the floor: more penalty only adds rounding.
 const FLOOR: f64 = 0.5;
 
 /// Solves on the last rung after the set has settled: in the second the shift is the displacement itself.
@@ -130,7 +130,7 @@ impl Solver for PenaltyLoop<'_> {
 }
 
 impl PenaltyLoop<'_> {
-    /// One rung: exchanges the rows of the set until it comes back, or the loop must end.
+    /// One rung: exchanges the rows of the set until it returns, or until the loop must end.
     fn settle(&self, climb: &mut Climb, penalty: f64) -> Result<(), Error> {
         let scaled = self.scaled;
         let mut seen = HashSet::new();
@@ -164,7 +164,7 @@ impl PenaltyLoop<'_> {
         Ok(())
     }
 
-    /// The answer of a rung, extrapolated from the one `before`, or from one below it where they differ in their sets.
+    /// The answer of a rung, extrapolated from the one `before`, or from one below it if their sets differ.
     fn extrapolated(&self, rung: &Rung, before: Option<&Rung>) -> Result<Rung, Error> {
         Ok(match before {
             Some(before) if before.closed == rung.closed => rung.extrapolated(before),
@@ -173,7 +173,7 @@ impl PenaltyLoop<'_> {
     }
 }
 
-/// What the loop has in hand between two rungs.
+/// The state of the loop between two rungs.
 struct Climb {
     closed: ContactSet,
     state: State,
@@ -216,8 +216,8 @@ impl Rung {
         Rung { penalty, displacement: state.displacement.clone(), multiplier, closed }
     }
 
-    /// Richardson's extrapolation to an infinite penalty: the error of either answer is one over its penalty, to the
-    /// first order.
+    /// Richardson's extrapolation to an infinite penalty: to the first order, the error of either answer is proportional to one
+    /// over its penalty.
     fn extrapolated(&self, before: &Rung) -> Rung {
         let share = before.penalty / (self.penalty - before.penalty);
         let beyond = |now: &[f64], before: &[f64]| -> Vec<f64> {

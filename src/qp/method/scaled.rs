@@ -1,4 +1,4 @@
-//! What every method works on, and what it leaves behind.
+//! The problem that every method works on, and the outcome that it returns.
 
 use std::cell::Cell;
 use std::time::Instant;
@@ -10,8 +10,8 @@ use crate::qp::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
 use crate::watch::Watch;
 
-/// Differences below this, relative to the largest displacement or multiplier, are rounding: the sign of a weakly
-/// active row is compared with it, or such a row would close and open for ever.
+/// Differences below this, relative to the largest displacement or multiplier, are rounding. Without this tolerance on signs a
+/// weakly active row would close and open without end.
 pub(crate) const SIGN_TOLERANCE: f64 = 1e-12;
 
 /// Rounding of a multiplier, in units of the last place of the forces that balance it.
@@ -19,14 +19,14 @@ const FORCE_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// A method, together with the problem that it works on.
 pub trait Solver {
-    /// What the method finds from `start`.
+    /// The result of the method from `start`.
     ///
     /// # Errors
-    /// What it meets in the problem: see the methods.
+    /// Those that it finds in the problem: see the methods.
     fn solve(&self, start: Start) -> Result<Outcome, Error>;
 }
 
-/// What is known of a stiffness by itself.
+/// The definiteness of a stiffness by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Definiteness {
     /// It is positive definite.
@@ -35,7 +35,7 @@ pub enum Definiteness {
     Semidefinite,
 }
 
-/// A scaled problem with its pattern analysed: what every method works on.
+/// A scaled problem with its pattern analysed: the input of every method.
 #[derive(Debug)]
 pub struct ScaledProblem<'a> {
     /// The data, dimensionless and of order one.
@@ -52,7 +52,7 @@ impl<'a> ScaledProblem<'a> {
         ScaledProblem { problem, definiteness, augmented, factor_seconds: Cell::new(0.0), watch: Watch::default() }
     }
 
-    /// The same problem, whose loops end with what they have when `watch` says so.
+    /// The same problem, with loops that end with the answer so far when `watch` says so.
     pub fn watched(self, watch: &Watch) -> Self {
         ScaledProblem { watch: watch.clone(), ..self }
     }
@@ -62,7 +62,7 @@ impl<'a> ScaledProblem<'a> {
         self.definiteness == Definiteness::Definite
     }
 
-    /// What the loops look at, and tell their iterations.
+    /// The watch that the loops check, and to which they report their iterations.
     pub fn watch(&self) -> &Watch {
         &self.watch
     }
@@ -85,7 +85,7 @@ impl<'a> ScaledProblem<'a> {
     }
 }
 
-/// The suffix that the dual active-set method leaves behind a name; another that begins so stands there if it is not settled.
+/// The suffix of a name after the dual active-set method; the suffix of an unsettled answer may begin with it too.
 pub(super) const LAST_RESORT: &str = "-dual";
 
 /// Multipliers of either sign below this are rounding, row by row.
@@ -97,7 +97,7 @@ pub(super) fn multiplier_rounding(problem: &ContactProblem, u: &[f64], multiplie
     rounding.iter().map(|rounding| strongest + FORCE_ROUNDING * rounding).collect()
 }
 
-/// What a method found, in scaled quantities.
+/// The result of a method, in scaled quantities.
 #[derive(Clone, Debug)]
 pub struct Outcome {
     /// Displacement v, one entry per dof.
@@ -110,14 +110,14 @@ pub struct Outcome {
     pub iterations: usize,
     /// The sets on the way.
     pub history: Vec<Iteration>,
-    /// Did the loop end because the set was settled?
+    /// `true` if the loop ended because the set was settled.
     pub settled: bool,
     /// Empty, or the variant that ended the loop, to be appended to the method's name.
     pub variant: &'static str,
 }
 
 impl Outcome {
-    /// Returns `true` if the last resort, the dual active-set method, found it.
+    /// Returns `true` if the last resort, the dual active-set method, found this outcome.
     pub fn is_last_resort(&self) -> bool {
         self.variant.starts_with(LAST_RESORT)
     }

@@ -1,10 +1,10 @@
-//! Where an iteration starts.
+//! The start of an iteration.
 
 #[cfg(feature = "cli")]
 use crate::error::Error;
 use crate::solution::{ContactSet, Solution};
 
-/// What is known of the answer beforehand: nothing, a contact set, a displacement, or both.
+/// Earlier knowledge of the answer: nothing, a contact set, a displacement, or both.
 ///
 /// It changes the number of iterations, not the answer. The active-set and the penalty loop start from the contact set, MPRGP
 /// from either; the interior-point method of Clarabel has no warm start, but its polish starts from the set.
@@ -36,7 +36,7 @@ impl Start {
         Start { displacement: Some(displacement), contact_set: Some(closed) }
     }
 
-    /// Refuses a start that is none of a problem with so many dofs and rows.
+    /// Refuses a start that does not fit a problem with this number of dofs and rows.
     ///
     /// # Errors
     /// [`Error::Length`].
@@ -59,7 +59,7 @@ impl Start {
         Start { displacement: Some(displacement), contact_set: None }
     }
 
-    /// The contact set; that of `rows` open rows if none is known.
+    /// The contact set; if none is known, the set of `rows` open rows.
     pub(crate) fn into_set(self, rows: usize) -> ContactSet {
         self.contact_set.unwrap_or_else(|| ContactSet::open(rows))
     }

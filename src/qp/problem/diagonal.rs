@@ -1,4 +1,4 @@
-//! The diagonal of the stiffness, in which forces and couplings are measured.
+//! The diagonal of the stiffness, the scale of forces and couplings.
 
 use crate::qp::linear::SymmetricMatrix;
 

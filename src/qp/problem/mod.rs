@@ -20,8 +20,8 @@ use crate::qp::linear::{Accumulator, SparseMatrix, SymmetricMatrix};
 /// K u - f - B' lambda = 0,  B u - g <= 0,  lambda <= 0,  lambda_i (B u - g)_i = 0
 /// ```
 ///
-/// Checked once, when it is built: shapes, finite values, symmetry. Whether K is positive semidefinite, and whether
-/// supports and obstacle hold the body, is found out when it is solved.
+/// Shapes, finite values and symmetry are checked once, when it is built. The solve finds out whether K is positive
+/// semidefinite, and whether supports and obstacle hold the body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactProblem {
     pub(in crate::qp) stiffness: SymmetricMatrix,
@@ -33,8 +33,8 @@ pub struct ContactProblem {
     parts: FoundOnce<Parts>,
 }
 
-/// What follows from the matrices of a problem, or from which of its rows have an obstacle too: found when it is first asked
-/// for, and shared by the same problem under other loads and gaps.
+/// Data that follow from the matrices of a problem, and some also from which rows have an obstacle: computed at the first use
+/// and shared by the same problem under other loads and gaps.
 #[derive(Clone, Debug)]
 struct FoundOnce<T>(Arc<OnceLock<T>>);
 
@@ -49,13 +49,13 @@ impl<T> FoundOnce<T> {
 }
 
 impl<T> PartialEq for FoundOnce<T> {
-    /// What follows from equal data is equal.
+    /// Data that follow from equal data are equal.
     fn eq(&self, _: &Self) -> bool {
         true
     }
 }
 
-/// Gaps that other QP solvers take for infinite; any other finite gap is a length.
+/// Gaps that other QP solvers treat as infinite; any other finite gap is a length.
 const NO_OBSTACLE: [f64; 2] = [1e20, 1e30];
 
 /// The gaps with `+inf` for every [`NO_OBSTACLE`].
@@ -67,8 +67,8 @@ fn with_infinite(mut gap: Vec<f64>) -> Vec<f64> {
 impl ContactProblem {
     /// The problem of stiffness K (n x n, N/m), load f (n, N), contact rows B (m x n) and initial gaps g (m, m).
     ///
-    /// A row of B is positive towards the obstacle. A gap is negative where the obstacle starts inside the body and
-    /// `f64::INFINITY`, or exactly 1e20 or 1e30, where there is none.
+    /// A row of B is positive towards the obstacle. A gap is negative if the obstacle starts inside the body and
+    /// `f64::INFINITY`, or exactly 1e20 or 1e30, without an obstacle.
     ///
     /// # Errors
     /// [`Error::Length`] and [`Error::Shape`] for sizes that do not fit, [`Error::NotFinite`] for a load that is not
@@ -94,7 +94,7 @@ impl ContactProblem {
         Ok(ContactProblem { stiffness, load, contact, gap, near_null: None, diagonal, parts })
     }
 
-    /// The same problem with what multigrid should know of its body: displacements that cost next to no energy, as the
+    /// The same problem with the near-null space of its body for multigrid: displacements of almost no energy, such as the
     /// rigid-body modes.
     ///
     /// # Errors
@@ -108,7 +108,7 @@ impl ContactProblem {
         Ok(ContactProblem { near_null: Some(near_null), ..self })
     }
 
-    /// The near-null space, where one was given.
+    /// The near-null space, if one was given.
     pub fn near_null(&self) -> Option<&Arc<NearNullSpace>> {
         self.near_null.as_ref()
     }
@@ -138,7 +138,7 @@ impl ContactProblem {
         &self.contact
     }
 
-    /// The initial gaps g, length m, in m; negative where the obstacle starts inside the body.
+    /// The initial gaps g, length m, in m; negative if the obstacle starts inside the body.
     pub fn gap(&self) -> &[f64] {
         &self.gap
     }
@@ -174,17 +174,17 @@ impl ContactProblem {
         Ok(ContactProblem { stiffness, load, contact, gap, near_null, diagonal, parts })
     }
 
-    /// The diagonal of K, found when it is first asked for.
+    /// The diagonal of K, computed at its first use.
     pub(in crate::qp) fn diagonal(&self) -> &Diagonal {
         self.diagonal.get_or_find(|| Diagonal::of(&self.stiffness))
     }
 
-    /// The parts, found when they are first asked for.
+    /// The parts, computed at their first use.
     pub(in crate::qp) fn parts(&self) -> &Parts {
         self.parts.get_or_find(|| Parts::of(&self.stiffness, self.diagonal(), &self.contact, &self.gap))
     }
 
-    /// The violation B u - g of each row, length m: positive is penetration; `-inf` where there is no obstacle.
+    /// The violation B u - g of each row, length m: positive is penetration; `-inf` without an obstacle.
     pub fn violation(&self, displacement: &[f64]) -> Vec<f64> {
         let mut violation = self.contact.mul(displacement);
         for (value, gap) in violation.iter_mut().zip(&self.gap) {

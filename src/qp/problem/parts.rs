@@ -1,7 +1,7 @@
-//! The parts of a problem: bodies, or pieces of one, that share next to no energy.
+//! The parts of a problem: bodies, or pieces of one, that share almost no energy.
 //!
-//! An answer may be right for a stiff part and wrong for a soft one beside it, whose energy is too small to show in that of
-//! the whole. Therefore a certificate measures every part in its own scale.
+//! An answer may be right for a stiff part and wrong for a soft one beside it, because the energy of the soft part is too small
+//! to show in that of the whole. Therefore a certificate measures every part in its own scale.
 
 use super::diagonal::Diagonal;
 use crate::qp::linear::{Forest, SparseMatrix, SymmetricMatrix};
@@ -55,7 +55,7 @@ impl Parts {
         &self.of_dof
     }
 
-    /// Returns `true` if the stiffness has no coupling of two parts, be it as weak as may be.
+    /// Returns `true` if the stiffness has no coupling of two parts, not even a weak one.
     pub fn are_apart(&self, stiffness: &SymmetricMatrix) -> bool {
         stiffness.lower().triplets().all(|(row, column, value)| value == 0.0 || self.of_dof[row] == self.of_dof[column])
     }

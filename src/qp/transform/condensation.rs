@@ -8,28 +8,28 @@
 //! L' u = (y_i, L_tt' u_t)                         the way back to the whole body
 //! ```
 //!
-//! A body that only its contact rows hold has a singular K. There `K + B'B` is factorised, whose Schur complement is
-//! `S + B_t'B_t`: the interior blocks, and so both sweeps, are the same.
+//! A body that only its contact rows hold has a singular K. In that case `K + B'B` is factorised; its Schur complement is `S +
+//! B_t'B_t`: the interior blocks, and so both sweeps, are the same.
 
 use crate::error::Error;
 use crate::qp::linear::{Analysis, Cholesky, FactorError, LowerTriangle, SparseMatrix, SymmetricMatrix, dot};
 
-/// Contact dofs beyond this share of all leave little to condense.
+/// If contact dofs exceed this share of all, condensing removes too little.
 const LARGEST_SHARE: f64 = 0.25;
 
 /// A dense factorisation on the contact dofs may cost this many times the estimate for the sparse one, which is low.
 const DENSE_WORK: f64 = 3.0;
 
-/// Dense matrices on the contact dofs that exist at one time, in the memory of their values.
+/// Number of dense matrices on the contact dofs that exist at one time, in units of the memory of their values.
 const DENSE_MATRICES: f64 = 5.0;
 
 /// A difference below this share of its terms is rounding: the factorisation of a large body loses a few digits.
 const LEFT_OVER: f64 = 1e-12;
 
-/// Dense values that are not worth counting.
+/// A number of dense values below which their memory does not count.
 pub(crate) const FEW_VALUES: f64 = 1e6;
 
-/// The condensed stiffness, with the way back to the whole body.
+/// The condensed stiffness, with the transform back to the whole body.
 #[derive(Clone, Debug)]
 pub struct Condensation {
     contact_dofs: Vec<usize>,
@@ -71,7 +71,7 @@ impl Condensation {
     /// Condenses with a factorisation of K that put `contact_dofs` last.
     ///
     /// # Errors
-    /// Those of the sparse matrices, should the data leave the range of double precision.
+    /// Those of the sparse matrices, if the data leave the range of double precision.
     pub fn new(cholesky: Cholesky, contact_dofs: Vec<usize>, contact: &SparseMatrix) -> Result<Self, Error> {
         let contact = on_dofs(contact, &contact_dofs)?;
         let trailing = cholesky.trailing_block();
@@ -79,7 +79,7 @@ impl Condensation {
         Self::of((cholesky, trailing), schur, contact_dofs, contact)
     }
 
-    /// The same with a factorisation of K + B'B, whose rows are taken out of the Schur complement.
+    /// The same with a factorisation of K + B'B; the rows are subtracted from the Schur complement.
     ///
     /// # Errors
     /// As [`Condensation::new`].
@@ -96,7 +96,7 @@ impl Condensation {
                 }
             }
         }
-        // What is left of equal terms is rounding, and would hold a body that nothing holds.
+        // The difference of equal terms is rounding, and would hold a body that nothing holds.
         for (entry, before) in schur.iter_mut().zip(&before) {
             if entry.abs() <= LEFT_OVER * before.abs() {
                 *entry = 0.0;
@@ -142,7 +142,7 @@ impl Condensation {
 
     /// The forward sweep y of a load, to be kept for [`load`](Self::load) and [`expand`](Self::expand).
     pub fn sweep(&self, load: &[f64]) -> Vec<f64> {
-        // Many a body is loaded by its obstacle alone.
+        // Many bodies are loaded by their obstacle alone.
         if load.iter().all(|&force| force == 0.0) { load.to_vec() } else { self.cholesky.forward(load) }
     }
 
@@ -152,19 +152,19 @@ impl Condensation {
         self.trailing.mul(&sweep[sweep.len() - size..])
     }
 
-    /// The square of the energy norm that the load alone adds inside the body, whatever the contact dofs do.
+    /// The square of the energy norm that the load alone adds inside the body, for any displacement of the contact dofs.
     pub fn interior_energy(&self, sweep: &[f64]) -> f64 {
         let interior = &sweep[..sweep.len() - self.contact_dofs.len()];
         dot(interior, interior)
     }
 
-    /// The displacement of the contact dofs that the load alone causes, where K is definite.
+    /// The displacement of the contact dofs that the load alone causes, if K is definite.
     pub fn free_displacement(&self, sweep: &[f64]) -> Vec<f64> {
         let size = self.contact_dofs.len();
         self.trailing.backward(sweep[sweep.len() - size..].to_vec())
     }
 
-    /// The compliance B S^-1 B' of the contact rows (m x m, column by column), where K is definite.
+    /// The compliance B S^-1 B' of the contact rows (m x m, column by column), if K is definite.
     pub fn compliance(&self) -> Vec<f64> {
         let (rows, size) = (self.contact.rows(), self.contact_dofs.len());
         let by_row = self.contact.transposed();
@@ -193,20 +193,20 @@ impl Condensation {
         let mut y = sweep.to_vec();
         y[first..].copy_from_slice(&self.trailing.mul_transposed(displacement));
         let mut expanded = self.cholesky.backward(y);
-        // The sweep gives these back but for rounding.
+        // The sweep gives these values back except for rounding.
         self.contact_dofs.iter().zip(displacement).for_each(|(&dof, &u)| expanded[dof] = u);
         expanded
     }
 }
 
-/// The rows B in the contact dofs alone.
+/// The rows B restricted to the contact dofs.
 fn on_dofs(contact: &SparseMatrix, contact_dofs: &[usize]) -> Result<SparseMatrix, Error> {
     let column = |(column, &dof)| contact.column(dof).map(move |(row, value)| (row, column, value));
     let entries: Vec<_> = contact_dofs.iter().enumerate().flat_map(column).collect();
     SparseMatrix::from_triplets(contact.rows(), contact_dofs.len(), &entries)
 }
 
-/// The lower triangle of a dense matrix (n x n, column by column), with every entry of it.
+/// The lower triangle of a dense matrix (n x n, column by column), zeros included.
 ///
 /// # Errors
 /// [`Error::NotFinite`] for an entry that is not finite.

@@ -1,4 +1,4 @@
-//! Transforms of a contact problem into one that is easier to solve, each with its way back.
+//! Transforms of a contact problem into one that is easier to solve, each with its inverse transform.
 
 mod condensation;
 mod pieces;

@@ -1,4 +1,4 @@
-//! A problem split where nothing couples it: each piece is a problem of its own, and the answers are put side by side.
+//! A problem split into pieces without coupling: each piece is a separate problem, and the answers are joined.
 
 use crate::error::Error;
 use crate::qp::linear::multigrid::NearNullSpace;

@@ -1,4 +1,4 @@
-//! Rows that can never close are taken out; rows that contradict each other are named.
+//! Rows that can never close are removed; rows that contradict each other are named.
 
 use std::collections::HashMap;
 
@@ -6,7 +6,7 @@ use crate::error::Error;
 use crate::qp::linear::{Accumulator, SparseMatrix, exponent, ldexp};
 use crate::solution::ContactSet;
 
-/// Two opposed gaps that overlap by less than this times their size meet: the rows are an equality.
+/// Two opposed gaps meet if they overlap by less than this times their size: the rows are an equality.
 const MEETING: f64 = 4.0 * f64::EPSILON;
 
 /// A row divided by its first entry: dofs and the bits of their coefficients.
@@ -27,7 +27,7 @@ impl RowSelection {
     /// Selects the rows of `contact` (m x n) that can close under `gap` (m).
     ///
     /// # Errors
-    /// [`Error::Infeasible`] for a row without dofs whose gap is negative, and for two opposed rows whose gaps overlap.
+    /// [`Error::Infeasible`] for a row without dofs and with a negative gap, and for two opposed rows with overlapping gaps.
     pub fn of(contact: &SparseMatrix, gap: &[f64]) -> Result<Self, Error> {
         Self::of_transposed(contact.transposed(), gap)
     }
@@ -49,7 +49,7 @@ impl RowSelection {
         }
         let kept: Vec<usize> = (0..gap.len()).filter(|&row| gap[row].is_finite() && !is_empty(row)).collect();
 
-        // Opposed rows are alike after division by their first entry, and differ in its sign.
+        // Opposed rows are equal after division by their first entry, except for the sign of that entry.
         let mut nearest: HashMap<Direction, Nearest> = HashMap::new();
         for &row in &kept {
             let mut entries = by_row.column(row).filter(|entry| entry.1 != 0.0).peekable();
@@ -73,7 +73,7 @@ impl RowSelection {
             let rows = vec![a.min(b), a.max(b)];
             let reason =
                 format!("contact rows {} and {} oppose each other and overlap by {:e}", rows[0], rows[1], -overlap);
-            // Divided by their first entries the rows cancel.
+            // The rows cancel if each is divided by its first entry.
             let first = |row: usize| by_row.column(row).map(|entry| entry.1.abs()).find(|&value| value > 0.0);
             let weights = rows.iter().map(|&row| first(row).map_or(0.0, |first| 1.0 / first)).collect();
             return Err(Error::Infeasible { reason, rows, weights, overlap: -overlap });
@@ -81,7 +81,7 @@ impl RowSelection {
         Ok(RowSelection { by_row, kept })
     }
 
-    /// The index in the original problem of each selected row.
+    /// The index of each selected row in the original problem.
     pub fn kept(&self) -> &[usize] {
         &self.kept
     }
@@ -118,12 +118,12 @@ impl RowSelection {
     }
 }
 
-/// Returns `true` if two rows with entries in the same places are multiples of each other, to the last bit. Quotients may be
-/// equal by rounding only; then some displacement meets both rows.
+/// Returns `true` if two rows with entries in the same places are multiples of each other, to the last bit. Quotients that are
+/// equal only by rounding do not count: then some displacement meets both rows.
 fn are_parallel(by_row: &SparseMatrix, a: usize, b: usize) -> bool {
     let entries = |row: usize| by_row.column(row).filter(|entry| entry.1 != 0.0).map(|entry| entry.1);
     let (Some(first_a), Some(first_b)) = (entries(a).next(), entries(b).next()) else { return false };
-    // Brought to order one, so that no product leaves the range of doubles.
+    // Scaled to order one, so that no product leaves the range of doubles.
     let of_order_one = |value: f64, first: f64| ldexp(value, -exponent(first));
     entries(a).zip(entries(b)).all(|(at_a, at_b)| {
         let mut difference = Accumulator::new(&[0.0]);

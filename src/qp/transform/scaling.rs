@@ -6,22 +6,22 @@
 //! u = u0 D v,   K~ = c D K D,   f~ = c D f / u0,   B~ = R B D,   g~ = R g / u0,   lambda = (u0 / c) R mu
 //! ```
 //!
-//! D levels a stiffness contrast inside the body, R gives every contact row a largest entry near one. All factors are
-//! powers of two: the scaled problem is the same problem in other units, bit by bit. u0 belongs to a load and a gap; the
-//! rest belongs to the body and is made once.
+//! D reduces a stiffness contrast inside the body, R gives every contact row a largest entry near one. All factors are powers
+//! of two: the scaled problem is the same problem in other units, bit by bit. u0 belongs to a load and a gap; the rest belongs
+//! to the body and is computed once.
 
 use std::sync::OnceLock;
 
 use crate::error::Error;
 use crate::qp::linear::{Equilibration, SparseMatrix, SymmetricMatrix, exponent, ldexp};
 
-/// The scaling of a body and its contact rows, with its way back.
+/// The scaling of a body and its contact rows, with its inverse.
 #[derive(Clone, Debug)]
 pub struct Scaling {
     equilibration: Equilibration,
     /// Exponent of each entry of R.
     rows: Vec<i32>,
-    /// The stiffness as it came, and scaled, which is made when it is first asked for.
+    /// The original stiffness, and the scaled one, which is computed at its first use.
     unscaled: SymmetricMatrix,
     stiffness: OnceLock<SymmetricMatrix>,
     contact: SparseMatrix,
@@ -31,7 +31,7 @@ impl Scaling {
     /// Scales the stiffness K (n x n) and the contact rows B (m x n).
     ///
     /// # Errors
-    /// [`Error::NotFinite`], should the data leave the range of double precision.
+    /// [`Error::NotFinite`] if the data leave the range of double precision.
     pub fn of(stiffness: &SymmetricMatrix, contact: &SparseMatrix) -> Result<Self, Error> {
         let equilibration = Equilibration::of(stiffness);
         let d = &equilibration.diagonal;

@@ -1,9 +1,9 @@
-//! The bound where the energy norm knows the contact boundary: repaired in energy, all rows together.
+//! The bound if the energy norm knows the contact boundary: the answer is repaired in energy, all rows together.
 //!
-//! A force `alpha r + B' x` has its sweep through the factor on the boundary alone but for that of r, which is made once.
-//! With Z = L_tt^-1 B_t' multipliers eta move the rows by c Z'Z eta. Two repairs are tried:
+//! The sweep of a force `alpha r + B' x` through the factor differs from that of `alpha r` on the boundary only; r is swept
+//! once. With Z = L_tt^-1 B_t' multipliers eta move the rows by c Z'Z eta. Two repairs are tried:
 //!
-//! * v is the equilibrium of the rows that look closed. Where all of them push, v is the exact answer, and the bound is the
+//! * v is the equilibrium of the rows that look closed. If all these rows push, v is the exact answer, and the bound is the
 //!   error itself;
 //! * the rows that look closed are put at their gaps by the smallest shift, and keep the forces of the answer.
 
@@ -12,23 +12,23 @@ use super::repair::{Multipliers, Repair};
 use super::{Answer, EnergyNorm, ErrorBound};
 use crate::qp::problem::ContactProblem;
 
-/// Repairs from the witness of the one before.
+/// Repairs that start from the witness of the previous one.
 const MOST_NEAR: usize = 4;
 
-/// A bound that consists of the way to the witness to this share is as good as it can be.
+/// If the way to the witness makes up this share of a bound, the bound cannot become much better.
 const FAR: f64 = 0.5;
 
-/// Another repair is worth its time if the last one has brought the bound below this share.
+/// Another repair is worth its time if the last one brought the bound below this share of the previous one.
 const GAINS: f64 = 0.1;
 
-/// Forces that cancel each other do no harm where their rounding is below this share of the bound.
+/// Rounding of forces that cancel each other does no harm below this share of the bound.
 const SMALL: f64 = 1e-3;
 
-/// With springs, a factor that loses more than this is not enough for the energy of a shift.
+/// With springs, a factor that loses more than this is too inaccurate for the energy of a shift.
 const LOST_WITH_SPRINGS: f64 = 1e4;
 
 impl ContactProblem {
-    /// The bound from the repair on the boundary; `None` where the rows that look closed cannot be met together.
+    /// The bound from the repair on the boundary; `None` if the rows that look closed cannot be met together.
     pub(super) fn bound_on_boundary(
         &self,
         norm: &EnergyNorm,
@@ -44,21 +44,21 @@ impl ContactProblem {
         let repair = Repair::new(self, norm, boundary, &first)?;
         let witness = repair.best_witness(closed)?;
         let bound = repair.bound(&witness);
-        // With springs the shift is large and bends little, which a factor that loses digits leaves to rounding.
+        // With springs the shift is large and bends little: a factor that loses digits makes its energy mere rounding.
         let is_precise = norm.springs().is_none() || norm.loss() <= LOST_WITH_SPRINGS;
         let is_exact = norm.widening() == 1.0 && !witness.has_dependent && is_precise;
         if is_exact && repair.cancelled(&witness) <= SMALL * bound.whole {
             return Some(bound);
         }
-        // Rows that follow from others: what is rounding of a large shift may be a large distance between them. Forces that
-        // cancel each other leave what the factor has rounded. The same again from the witness itself, whose shifts, forces
-        // and changes of force are small; how far the answer is from there needs no factor.
+        // The rounding of a large shift may be a large distance between rows that follow from others, and forces that cancel
+        // each other leave what the factor has rounded. So the repair is repeated from the witness itself, with small shifts,
+        // forces and changes of force; the distance of the answer from there needs no factor.
         let mut multipliers = vec![answer.multiplier.to_vec()];
         let mut next = (repair.answer(&witness), repair.expanded(&witness.change));
         let (mut witness, mut best) = (witness, None);
         for _ in 0..MOST_NEAR {
             let ((moved, multiplier), change) = next;
-            // Multipliers stay sums: rounded, they would leave more than all other forces on a dof with next to no stiffness.
+            // Multipliers stay sums: if rounded, they would leave more than all other forces on a dof with almost no stiffness.
             let rounded = |row: usize| if multiplier[row] < 0.0 { 1.0 } else { 0.0 };
             multipliers.iter_mut().flat_map(|part| part.iter_mut().enumerate()).for_each(|(row, x)| *x *= rounded(row));
             multipliers.push(change);
@@ -87,8 +87,8 @@ impl ContactProblem {
         best
     }
 
-    /// An answer repaired, in doubles: displacements at which the rows that look closed are at their gaps, and the multipliers
-    /// of their equilibrium; `None` where there is none, or where the boundary is not known.
+    /// A repaired answer, in doubles: displacements at which the rows that look closed are at their gaps, and the multipliers
+    /// of their equilibrium; `None` if the repair fails, or if the boundary is not known.
     pub(crate) fn repaired(&self, norm: &EnergyNorm, u: &[f64], lambda: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
         let violation = self.accurate_violation(u);
         let residual = self.accurate_residual(u, lambda);
@@ -99,8 +99,8 @@ impl ContactProblem {
     }
 }
 
-/// Does another repair gain nothing? It gains the digits that the last one has, unless most of the `bound` is the way to the
-/// witness, of which `rest` is left, or the last one has gained little on the `best` before.
+/// Returns `true` if another repair gains nothing. A repair gains the digits that the last one has, unless `rest`, the bound
+/// without the way to the witness, is at most half of the `bound`, or the last one has gained little on the `best` before.
 fn settled(rest: f64, bound: f64, best: f64) -> bool {
     rest <= FAR * bound || bound >= GAINS * best
 }
@@ -132,11 +132,11 @@ mod tests {
 
     #[test]
     fn repairs_end_when_half_the_bound_is_the_way_or_a_tenth_of_the_last_is_not_reached() {
-        // Nothing of the bound is the way, and there is none before, or one that is more than ten times as large.
+        // The way takes no part in the bound, and there is no previous bound, or one more than ten times as large.
         assert!(!settled(1.0, 1.0, f64::INFINITY) && !settled(2.0, 2.0, 20.5));
-        // Half of it is the way, and a little less.
+        // The way is half of the bound, then a little less.
         assert!(settled(1.0, 2.0, f64::INFINITY) && !settled(1.01, 2.0, f64::INFINITY));
-        // Ten times as large, and less than that.
+        // The previous bound is ten times as large, then less than that.
         assert!(settled(2.0, 2.0, 20.0) && settled(2.0, 2.0, 1.0));
         // Without a bound no repair follows.
         assert!(settled(f64::INFINITY, f64::INFINITY, f64::INFINITY));

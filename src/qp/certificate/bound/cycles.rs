@@ -1,4 +1,4 @@
-//! The bound on the energy norm of an answer's error where K has a hierarchy and no factor.
+//! The bound on the energy norm of an answer's error if K has a hierarchy and no factor.
 //!
 //! As in the bound with a factor, for a feasible v and multipliers mu <= 0 that push only where v touches,
 //!
@@ -6,11 +6,11 @@
 //! |u - u*|_K <= |u - v|_K + |f + B' mu - K v|_{K^-1}
 //! ```
 //!
-//! v is the answer with each row that touches or penetrates moved to its gap along itself; for an answer of MPRGP, whose rows
-//! are bounds that it keeps, that is rounding. The dual norm comes from the cycles of the hierarchy.
+//! v is the answer with each row that touches or penetrates moved to its gap along itself. For an answer of MPRGP this move is
+//! rounding, because its rows are bounds that it keeps. The dual norm comes from the cycles of the hierarchy.
 //!
-//! Parts that no coupling joins are blocks of K, and the inequality holds for each by itself. Where a coupling is too weak to
-//! make one part of two, the parts have no bound of their own.
+//! Parts that no coupling joins are blocks of K, and the inequality holds for each by itself. If a coupling is too weak to join
+//! two parts into one, the parts have no bound of their own.
 
 use super::{Answer, ErrorBound, Measured};
 use crate::qp::certificate::energy_norm::ROUNDED_BOUND;
@@ -20,9 +20,9 @@ use crate::qp::problem::ContactProblem;
 use crate::watch::Watch;
 
 impl ContactProblem {
-    /// An upper bound on `|u - u*|_K`, as far as [`dual_norms_within`] finds the least eigenvalues; infinite where it finds none.
-    /// A stiffness that the hierarchy has found singular gets springs on the rows that press, if no direction of negative energy
-    /// is found, which they would hide. Infinite too where `watch` is over before that.
+    /// An upper bound on `|u - u*|_K`, as far as [`dual_norms_within`] finds the least eigenvalues; infinite if it finds none,
+    /// or if `watch` is over before that. A stiffness that the hierarchy has found singular gets springs on the rows that
+    /// press, but only if no direction of negative energy is found, because springs would hide it.
     pub(in super::super) fn energy_error_bound_by(
         &self,
         multigrid: &Multigrid,
@@ -69,7 +69,7 @@ impl ContactProblem {
                 moved[of_rows[row]] += length * violation.abs();
             }
         }
-        // What moves the answer moves its residual too, by K times that.
+        // A shift of the answer changes its residual too, by K times the shift.
         let bounds: Vec<f64> =
             moved.iter().zip(&left).map(|(moved, left)| 2.0 * ROUNDED_BOUND * moved + left).collect();
         let whole = bounds.iter().map(|bound| bound * bound).sum::<f64>().sqrt();
@@ -81,8 +81,8 @@ impl ContactProblem {
         (ErrorBound { whole, of_parts }, measured)
     }
 
-    /// Returns `true` if conjugate gradients with the cycles meet no direction of negative energy beyond rounding, and `watch` is
-    /// not over before.
+    /// Returns `true` if conjugate gradients with the cycles meet no direction of negative energy beyond rounding and `watch`
+    /// is not over before they end.
     fn is_semidefinite_by(&self, multigrid: &Multigrid, watch: &Watch) -> bool {
         match negative_direction(&self.stiffness, multigrid, watch) {
             Some(direction) => self.not_convex_along(&direction).is_none(),
@@ -100,7 +100,7 @@ mod tests {
     /// Points along a side of the square.
     const SIDE: usize = 48;
 
-    /// Rounding of sums over all of them.
+    /// Rounding of sums over all points.
     const ROUNDING: f64 = 1e-9;
 
     /// Five points on a square: 4 on the diagonal, -1 to each neighbour, and `more` on the diagonal.
@@ -138,7 +138,7 @@ mod tests {
         let near_null = NearNullSpace::constants(problem.stiffness()).unwrap();
         let multigrid = Multigrid::new(problem.stiffness(), &near_null, 1).unwrap();
         assert!(multigrid.unknowns().len() > 1);
-        // Forces of one balance u = 0.9, which is open by 0.1 everywhere.
+        // Forces that balance u = 0.9, which is open by 0.1 everywhere.
         let (u, lambda) = (vec![0.9; dofs], vec![-1.0; dofs]);
         let violation = problem.accurate_violation(&u);
         let residual = problem.accurate_residual(&u, &lambda);
@@ -150,7 +150,7 @@ mod tests {
         // The exact answer is one everywhere: K 1 is one at each edge, so that the error is 0.1 sqrt(1'K 1).
         assert!(bound.whole > 0.1 * (4.0 * SIDE as f64).sqrt());
         assert!(measured.unwrap().of_residual < 1e-10);
-        // A force that pulls is none, and is left as a residual.
+        // A force that pulls does not count, and is left as a residual.
         let pulls = vec![1.0; dofs];
         let residual = problem.accurate_residual(&u, &pulls);
         let answer = Answer { displacement: &u, multiplier: &pulls, residual, violation: &violation };

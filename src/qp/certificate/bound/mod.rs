@@ -9,8 +9,8 @@
 //! so that `|u - u*|_K <= |u - v|_K + sqrt(r' K^-1 r + 2 mu' (B v - g))`. The pair (v, mu) is the answer repaired: the rows
 //! that look closed are put exactly at their gaps and no other row carries a force, so that the product vanishes.
 //!
-//! Where K is singular, the norm is that of `K_D = K + B_C' D B_C` with rows C that press, which stays the same on shifts
-//! that these rows do not feel. With s = g - B u* on C and a = |r| in the dual norm of K_D,
+//! If K is singular, the norm is that of `K_D = K + B_C' D B_C` with rows C that press, which equals the norm of K on shifts
+//! that do not move these rows. With s = g - B u* on C and a = |r| in the dual norm of K_D,
 //!
 //! ```text
 //! |v - u*|_K^2 + sum |mu_i| s_i <= a |v - u*|_{K_D},     |v - u*|_{K_D}^2 = |v - u*|_K^2 + sum D_i s_i^2
@@ -30,7 +30,7 @@ use super::springs::Springs;
 use crate::error::Error;
 use crate::qp::problem::{ContactProblem, Parts};
 
-/// An answer (u, lambda) and what its certificate has computed of it.
+/// An answer (u, lambda) and what its certificate has computed for it.
 pub(super) struct Answer<'a> {
     pub displacement: &'a [f64],
     pub multiplier: &'a [f64],
@@ -40,7 +40,7 @@ pub(super) struct Answer<'a> {
     pub violation: &'a [f64],
 }
 
-/// What cycles have measured for a bound.
+/// Numbers that cycles have measured for a bound.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Measured {
     /// An upper bound on the dual norm of the residual.
@@ -54,7 +54,7 @@ pub(super) struct Measured {
 pub(super) struct ErrorBound {
     /// `|u - u*|_K`.
     pub whole: f64,
-    /// The same for each part, where there are several.
+    /// The same for each part, if there are several.
     pub of_parts: Option<Vec<f64>>,
 }
 
@@ -64,7 +64,7 @@ impl ErrorBound {
         ErrorBound { whole: f64::INFINITY, of_parts: None }
     }
 
-    /// What tells the smaller of two bounds; what is not a number is larger than anything.
+    /// The number by which two bounds are compared; NaN counts as larger than anything.
     fn size(&self) -> f64 {
         let size = self.of_parts.as_ref().map_or(self.whole, |parts| parts.iter().sum());
         if size.is_nan() { f64::INFINITY } else { size }
@@ -74,7 +74,7 @@ impl ErrorBound {
         if self.size() <= other.size() { self } else { other }
     }
 
-    /// The bound on the error of an answer that is away by `step` from the one that this is of.
+    /// The bound on the error of an answer that differs by `step` from the answer of this bound.
     fn farther(mut self, problem: &ContactProblem, step: &[f64]) -> Self {
         self.whole += problem.length(step);
         if let Some(parts) = &mut self.of_parts {
@@ -93,19 +93,19 @@ impl ErrorBound {
 /// The rows that keep their forces in a repair.
 #[derive(Clone, Copy)]
 enum Keeping<'a> {
-    /// All rows, which are moved out of their obstacles only.
+    /// All rows; they are only moved out of their obstacles.
     All,
-    /// The closed rows, which are moved to their gaps.
+    /// The closed rows; they are moved to their gaps.
     Closed(&'a [bool]),
 }
 
-/// Squares of what is below this share of another number underflow beside it.
+/// The square of a number below this share of another one underflows beside it.
 const LOST: f64 = 1e-140;
 
 /// Rounding of a sum in twice the working precision, in units of its terms.
 const OF_SUMS: f64 = 4.0 * f64::EPSILON * f64::EPSILON;
 
-/// Squares of what is below this underflow, or lose digits.
+/// Squares of numbers below this underflow, or lose digits.
 const LEAST: f64 = 1e-145;
 
 impl ContactProblem {
@@ -113,7 +113,7 @@ impl ContactProblem {
     pub(super) fn energy_error_bound(&self, norm: &EnergyNorm, answer: &Answer) -> ErrorBound {
         let closed = self.rows_that_look_closed(answer);
         let on_boundary = norm.boundary().and_then(|boundary| self.bound_on_boundary(norm, boundary, answer, &closed));
-        // What was cut short is nothing.
+        // A bound that was cut short is not used.
         let on_boundary = on_boundary.filter(|bound| bound.whole.is_finite() || !norm.is_over());
         let bound = on_boundary.unwrap_or_else(|| {
             let as_it_stands = self.bound_row_by_row(norm, answer, Keeping::All);
@@ -129,8 +129,8 @@ impl ContactProblem {
         }
     }
 
-    /// What loads and contact forces that cancel each other leave of twice the working precision, by parts, in energy norm of
-    /// dofs that stand alone.
+    /// Rounding, in twice the working precision, of loads and contact forces that cancel each other: by parts, in the energy
+    /// norm of dofs that stand alone.
     fn rounding_of_residual(&self, answer: &Answer) -> Vec<f64> {
         let roots = &self.diagonal().roots;
         let contact = self.contact.mul_abs_transposed(answer.multiplier);
@@ -140,8 +140,8 @@ impl ContactProblem {
         })
     }
 
-    /// What displacements are worth in energy whose squares are lost in double precision, or beside the forces; 0 where there
-    /// are none.
+    /// The energy of displacements that are too small for their squares to be kept in double precision, or beside the forces; 0
+    /// if no displacement is so small.
     fn underflow(&self, answer: &Answer) -> f64 {
         let roots = &self.diagonal().roots;
         let contact = self.contact.mul_transposed(answer.multiplier);
@@ -155,7 +155,7 @@ impl ContactProblem {
         (0..self.dofs()).filter(|&dof| is_lost(dof)).count() as f64 * 2.0 * least
     }
 
-    /// Rows whose force, times their compliance if all else stood still, exceeds their distance.
+    /// The rows that look closed: their force, times their compliance if all else stood still, exceeds their distance.
     fn rows_that_look_closed(&self, answer: &Answer) -> Vec<bool> {
         let mut compliance = vec![0.0; self.rows()];
         for (dof, &stiffness) in self.diagonal().values.iter().enumerate() {
@@ -180,7 +180,7 @@ impl ContactProblem {
         of_rows
     }
 
-    /// An upper bound on `|b / b'b|_K` of each row b: the shift along the row that it feels as one.
+    /// An upper bound on `|b / b'b|_K` of each row b: the shift along the row that moves it by one.
     pub(super) fn lengths_along_rows(&self) -> Vec<f64> {
         let (mut sums, mut squares) = (vec![0.0; self.rows()], vec![0.0; self.rows()]);
         for (dof, &root) in self.diagonal().roots.iter().enumerate() {
@@ -205,12 +205,12 @@ impl ContactProblem {
     }
 }
 
-/// A row presses where its force could do more than this share of the energy norm of its part.
+/// A row presses if its force could do more than this share of the energy norm of its part.
 const PRESSING: f64 = 1e-8;
 
 impl ContactProblem {
-    /// The energy norm of K or, where K is semidefinite, of K with springs on the rows that press; `None` where these do not
-    /// hold the body, or K has a negative eigenvalue: springs would hide it.
+    /// The energy norm of K or, if K is semidefinite, of K with springs on the rows that press; `None` if these do not hold the
+    /// body, or if K has a negative eigenvalue, which springs would hide.
     ///
     /// # Errors
     /// As [`EnergyNorm::of`].
@@ -224,7 +224,7 @@ impl ContactProblem {
         Ok(self.stiffness.is_semidefinite()?.then(|| norm.with_springs(springs)))
     }
 
-    /// Springs on the rows that press, each as stiff as the row itself is when all but its own dofs stand still.
+    /// Springs on the rows that press, each as stiff as the row itself if only its own dofs move.
     pub(super) fn springs(&self, displacement: &[f64], multiplier: &[f64]) -> Springs {
         let parts = self.parts();
         let mut compliance = vec![0.0; self.rows()];
@@ -237,7 +237,7 @@ impl ContactProblem {
         let (part_of_row, violation) = (self.parts_of_rows(parts), self.accurate_violation(displacement));
         let spring = |row: usize| {
             let (force, size) = (-multiplier[row], sizes[part_of_row[row]]);
-            // A row that only dofs without stiffness feel has no stiffness of its own: its force sets the scale.
+            // A row that acts only on dofs without stiffness has no stiffness of its own: its force sets the scale.
             let stiffness = match compliance[row] {
                 0.0 if size > 0.0 => (force / size).powi(2),
                 0.0 => 1.0,
@@ -291,7 +291,7 @@ mod tests {
             assert_eq!(underflow(&u), lost, "{u:?}");
         }
         assert_eq!(underflow(&[-1e-145, 1e-145, 0.0]), 4.0);
-        // Without any force it is what underflows by itself.
+        // Without any force it is the limit below which squares underflow by themselves.
         let free = apart().with_load(vec![0.0; 3]).unwrap();
         assert_eq!(free.underflow(&answer(&[1e-150, 1.0, 0.0], &[0.0, 0.0])), 2.0 * LEAST);
     }
@@ -303,7 +303,7 @@ mod tests {
         let springs = |force: f64, u: f64| apart().springs(&[u, 0.0, 0.0], &[-force, 0.0]).stiffness;
         assert_eq!(springs(10.0, 1.0), [stiffness, 0.0]);
         assert_eq!(springs(-10.0, 1.0), [0.0, 0.0]);
-        // A force below the share that presses, and one that does not reach over the gap of a body at rest.
+        // A force below the share that presses, and one that does not cross the gap of a body at rest.
         let least = PRESSING * stiffness.sqrt() * 2.0;
         assert_eq!(springs(0.9 * least, 1.0), [0.0, 0.0]);
         assert_eq!(springs(1.1 * least, 1.0), [stiffness, 0.0]);
@@ -313,7 +313,7 @@ mod tests {
 
     #[test]
     fn a_row_on_dofs_without_stiffness_has_a_spring_that_its_force_stretches_by_the_energy_norm() {
-        // A row joins the first dof, of stiffness 4, to the third, of none, which the second row feels alone.
+        // A row joins the first dof, of stiffness 4, to the third, of stiffness 0. The second row acts on the third alone.
         let rows = SparseMatrix::from_triplets(2, 3, &[(0, 0, 3.0), (0, 2, 5.0), (1, 2, 1.0)]).unwrap();
         let apart = apart();
         let problem = ContactProblem::new(apart.stiffness, apart.load, rows, vec![9.0, 1.0]).unwrap();
@@ -321,7 +321,7 @@ mod tests {
         let spring = |u: f64| problem.springs(&[u, 0.0, 1.0], &[0.0, -10.0]).stiffness;
         assert_eq!(spring(1.0), [0.0, (10.0_f64 / 2.0).powi(2)]);
         assert_eq!(spring(-0.25), [0.0, (10.0_f64 / 0.5).powi(2)]);
-        // Without energy there is nothing to measure by.
+        // Without energy there is no scale.
         assert_eq!(spring(0.0), [0.0, 1.0]);
     }
 

@@ -1,4 +1,4 @@
-//! An answer repaired on the contact boundary: its shifts, forces and bound.
+//! A repaired answer on the contact boundary: its shifts, forces and bound.
 
 use std::cell::OnceCell;
 
@@ -10,24 +10,24 @@ use crate::qp::problem::ContactProblem;
 /// The multipliers of a repair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Multipliers {
-    /// Those that balance the closed rows at their gaps.
+    /// The multipliers that balance the closed rows at their gaps.
     InEquilibrium,
-    /// Those of the answer.
+    /// The multipliers of the answer.
     OfTheAnswer,
 }
 
 /// Rounding of a sum of forces, in units of its terms; a factor multiplies it by its [loss](EnergyNorm::loss).
 const CANCELLED: f64 = 4.0 * f64::EPSILON;
 
-/// The way of rows to their gaps counts as shift of the answer, as the residual that this makes, and once for the rounding of
-/// its length.
+/// The way of rows to their gaps counts three times: as a shift of the answer, as the residual of that shift, and for the
+/// rounding of its length.
 const COUNTS: f64 = 3.0;
 
 /// The force `alpha r + B' x`, x in the units of normalised rows.
 pub(super) struct Force {
     pub alpha: f64,
     pub rows: Vec<f64>,
-    /// Magnitudes of the terms of x: what rounding of their sum is measured by.
+    /// Magnitudes of the terms of x, the scale of rounding of their sum.
     pub terms: Vec<f64>,
 }
 
@@ -37,7 +37,7 @@ impl Force {
         Force { alpha, rows, terms }
     }
 
-    /// The force with more of each row, which was added up from steps of the magnitudes `steps`.
+    /// The force with more of each row, added up from steps of the magnitudes `steps`.
     pub fn plus(&self, more: &[f64], steps: &[f64]) -> Self {
         let rows = self.rows.iter().zip(more).map(|(a, b)| a + b).collect();
         let terms = self.terms.iter().zip(steps).map(|(a, b)| a + b).collect();
@@ -49,18 +49,18 @@ impl Force {
     }
 }
 
-/// A feasible v and multipliers mu: `v - u = K^-1 error`, and what is left of the forces at (v, mu).
+/// A feasible v and multipliers mu: `v - u = K^-1 error`, and the forces left out of balance at (v, mu).
 pub(super) struct Witness {
     pub error: Force,
     pub left: Force,
-    /// The multipliers mu, rounded: those of the answer, as far as they push, and the change.
+    /// The multipliers mu, rounded: those of the answer, if they push, plus the change.
     pub multiplier: Vec<f64>,
     pub change: Vec<f64>,
     pub closed: Vec<bool>,
-    /// For each closed row an upper bound on the energy norm of the shift that puts it exactly at its gap, and leaves the others
-    /// there.
+    /// For each closed row an upper bound on the energy norm of the shift that puts it exactly at its gap and leaves the other
+    /// closed rows there.
     pub rest: Vec<f64>,
-    /// Does a closed row follow from others?
+    /// `true` if a closed row follows from others.
     pub has_dependent: bool,
 }
 
@@ -76,7 +76,7 @@ pub(super) struct Repair<'a> {
     shift: Vec<i32>,
     pub violation: Vec<f64>,
     pub multiplier: Vec<f64>,
-    /// `L_tt^-1 B_i'` of each row that was asked for.
+    /// `L_tt^-1 B_i'` of each row that was used.
     halves: Vec<OnceCell<Vec<f64>>>,
     /// The sweep of the residual: squares of the interior, and the boundary.
     interior: f64,
@@ -90,7 +90,7 @@ impl<'a> Repair<'a> {
         boundary: &'a Boundary,
         answer: &'a Answer<'a>,
     ) -> Option<Self> {
-        // A row without obstacle and without force may reach wherever it likes.
+        // A row without obstacle and without force may reach beyond the boundary.
         let counts = |row: usize| problem.gap[row].is_finite() || answer.multiplier[row] != 0.0;
         let mut rows = norm.rows_on(boundary, &problem.contact, counts)?;
         let largest = |row: &Vec<(usize, f64)>| row.iter().fold(0.0, |largest: f64, entry| largest.max(entry.1.abs()));
@@ -167,11 +167,11 @@ impl<'a> Repair<'a> {
         if springs.is_some_and(|springs| !springs.hold(&self.expanded(multiplier), closed, |_| of_left)) {
             return ErrorBound::none();
         }
-        // Closed rows are put exactly at their gaps, which moves the answer and its residual; and forces that cancel each other
+        // Closed rows are put exactly at their gaps, which moves the answer and its residual; forces that cancel each other
         // leave their rounding.
         let put: Vec<f64> = (0..rest.len()).map(|row| COUNTS * rest[row] + self.cancelled_on(witness, row)).collect();
         let of_error = match springs {
-            // The springs' own energy is no error, but rounding knows them.
+            // The energy of the springs is no error, but it adds rounding.
             Some(_) => self.problem.length(&self.shift(error)) + (self.norm.rounding() - 1.0) * self.length(error),
             None => self.length(error),
         };
@@ -186,13 +186,13 @@ impl<'a> Repair<'a> {
         ErrorBound { whole, of_parts }
     }
 
-    /// What rounding of forces that cancel each other may be worth, row by row, in energy norm.
+    /// Upper bound, in energy norm, of the rounding of forces that cancel each other on this row.
     fn cancelled_on(&self, witness: &Witness, row: usize) -> f64 {
         let terms = witness.error.terms[row] + witness.left.terms[row];
         if terms > 0.0 { CANCELLED * self.norm.loss() * terms * self.reach(row) } else { 0.0 }
     }
 
-    /// The same of all rows and of the residual.
+    /// The sum of `cancelled_on` over all rows and the residual.
     pub fn cancelled(&self, witness: &Witness) -> f64 {
         let alpha = witness.error.alpha.abs() + witness.left.alpha.abs();
         let residual = self.length(&Force::new(alpha, vec![0.0; self.rows.len()]));
@@ -233,10 +233,10 @@ mod tests {
         assert!((repair.bound(&witness).whole - 1.0).abs() < ROUNDING, "{:?}", repair.bound(&witness));
         // The residual and the change of the force, one each, move the spring by 1/2 in energy norm each.
         assert!((repair.cancelled(&witness) / CANCELLED - 1.0).abs() < ROUNDING, "{:e}", repair.cancelled(&witness));
-        // A way that is left to the gap counts for the answer, for its residual and for its rounding.
+        // A distance that is left to the gap counts for the answer, for its residual and for its rounding.
         let open = Witness { rest: vec![0.25], ..witness };
         assert!((repair.bound(&open).whole - (1.0 + 3.0 * 0.25)).abs() < ROUNDING, "{:?}", repair.bound(&open));
-        // With the force of 3 as it was, a force of 1 is left at the gap, which moves the spring by 1/4, 1/2 in energy norm.
+        // If the force stays 3, a force of 1 is left at the gap; it moves the spring by 1/4, 1/2 in energy norm.
         let kept = repair.settle(&[true], Multipliers::OfTheAnswer).unwrap();
         assert!((repair.bound(&kept).whole - 1.5).abs() < ROUNDING, "{:?}", repair.bound(&kept));
     }

@@ -1,33 +1,33 @@
-//! The bound where the contact boundary is not known: rows are repaired one by one, each by its own dofs.
+//! The bound if the contact boundary is not known: rows are repaired one by one, each by its own dofs.
 
 use super::{Answer, EnergyNorm, ErrorBound, Keeping};
 use crate::qp::linear::{SparseMatrix, dot};
 use crate::qp::problem::ContactProblem;
 
-/// Rounding a sum leaves about this much of its terms.
+/// Rounding of a sum, relative to the sum of its terms.
 const SUM_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// Sweeps over the rows when a displacement is repaired row by row.
 const REPAIR_SWEEPS: usize = 50;
 
-/// Steps in which the rest of the body follows rows that were put at their gaps; each costs a product with K.
+/// Steps in which the rest of the body adapts to the rows that were put at their gaps; each costs a product with K.
 const RELAXATIONS: usize = 20;
 
-/// Modes of a sweep below this share of those of all sweeps are followed by no more than all of them together.
+/// When a sweep contributes less than this share of the sum of all sweeps, those that follow contribute at most that sum again.
 const LAST: f64 = 0.01;
 
-/// Where a row must be for a bound.
+/// The place of a row that a bound needs.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Aim {
     /// At its gap: its force does no work then.
     AtGap,
     /// At its gap or open, without a force.
     WithinGap,
-    /// Open, where it is: its force and the way that is left have been counted.
+    /// Open, at its place: its force and the distance that is left are already counted.
     Stays,
 }
 
-/// A repaired answer, whose rows are put where they aim.
+/// A repaired answer; its rows are put at their aims.
 struct Start<'a> {
     answer: &'a Answer<'a>,
     /// `B d` of the repair d.
@@ -36,14 +36,14 @@ struct Start<'a> {
 }
 
 impl ContactProblem {
-    /// What B u - g may be off by rounding u, row by row.
+    /// Possible rounding error of B u - g from rounding of u, row by row.
     pub(in super::super) fn negligible(&self, displacement: &[f64]) -> Vec<f64> {
         let magnitude: Vec<f64> = displacement.iter().map(|value| SUM_ROUNDING * value).collect();
         self.contact.mul_abs(&magnitude)
     }
 
-    /// The bound from the displacement whose rows are moved one after the other, each by its own dofs: the closed ones
-    /// to their gaps, all others out of their obstacles.
+    /// The bound from a displacement with rows moved one after the other, each by its own dofs: the closed ones to their gaps,
+    /// all others out of their obstacles.
     pub(super) fn bound_row_by_row(&self, norm: &EnergyNorm, answer: &Answer, keeping: Keeping) -> ErrorBound {
         let by_row = self.contact.transposed();
         let is_closed = |row: usize| match keeping {
@@ -76,7 +76,7 @@ impl ContactProblem {
                 residual.iter_mut().zip(&force).for_each(|(entry, force)| *entry -= force);
             }
         }
-        // A row on a single dof takes what is out of balance there, as far as it may push.
+        // The row on a single dof takes the force that is out of balance there, as far as it may push.
         for row in (0..self.rows()).filter(|&row| is_closed(row)) {
             let mut entries = by_row.column(row).filter(|entry| entry.1 != 0.0);
             if let (Some((dof, b)), None) = (entries.next(), entries.next()) {
@@ -88,8 +88,8 @@ impl ContactProblem {
         self.with_slack(norm, &by_row, answer, &repair, &residual, &multiplier)
     }
 
-    /// The bound of a repaired answer: u moved by `repair`, with `residual` and `multiplier` there. Rows that are still off
-    /// their gaps by rounding are put there along themselves, at the cost of those shifts.
+    /// The bound of a repaired answer: u moved by `repair`, with its `residual` and `multiplier`. Rows that rounding still
+    /// holds off their gaps are put there along themselves, at the cost of those shifts.
     fn with_slack(
         &self,
         norm: &EnergyNorm,
@@ -123,7 +123,7 @@ impl ContactProblem {
         let put = put_in_parts;
         let length = |square: f64, slack: f64| (square + 2.0 * slack).max(0.0).sqrt();
         let total = |values: &[f64]| values.iter().sum::<f64>();
-        // What moves the answer moves its residual too, by K times that.
+        // A shift of the answer changes its residual too, by K times the shift.
         let left = length(norm.of_force(residual).powi(2), total(&slack_work));
         if norm.springs().is_some_and(|springs| !springs.hold(multiplier, &at_gap, |_| left)) {
             return ErrorBound::none();
@@ -142,8 +142,8 @@ impl ContactProblem {
         ErrorBound { whole, of_parts }
     }
 
-    /// An upper bound on the energy norm of the shifts that put rows where they aim, row by row: each moves the others,
-    /// so that they follow each other until what is left of them is small beside the sum; `None` where it stays large.
+    /// An upper bound on the energy norm of the shifts that put rows at their aims, row by row. Each shift moves other rows
+    /// too, so sweeps are repeated until the last one is small beside the sum; `None` if it stays large.
     fn put_along_rows(&self, by_row: &SparseMatrix, start: &Start) -> Option<Vec<f64>> {
         let lengths = self.lengths_along_rows();
         let (mut put, mut total, mut change) = (vec![0.0; self.rows()], 0.0, vec![0.0; self.dofs()]);
@@ -165,7 +165,7 @@ impl ContactProblem {
             }
             total += last;
             if last <= LAST * total {
-                // As much again may follow.
+                // The sweeps that would follow add at most as much again.
                 let follow = if last > 0.0 { 2.0 } else { 1.0 };
                 return Some(put.iter().map(|cost| follow * cost).collect());
             }
@@ -173,8 +173,8 @@ impl ContactProblem {
         None
     }
 
-    /// A displacement d that follows the force `residual` where nothing is `held`, by a few steps of conjugate gradients,
-    /// and K d.
+    /// A displacement d that follows the force `residual` on all dofs that are not `held`, by a few steps of conjugate
+    /// gradients, and K d.
     fn relaxed(&self, residual: &[f64], held: &[bool]) -> (Vec<f64>, Vec<f64>) {
         let diagonal = &self.diagonal().values;
         let free = |values: Vec<f64>| -> Vec<f64> {
@@ -205,8 +205,8 @@ impl ContactProblem {
         (moved, force)
     }
 
-    /// A change of u that puts the closed rows at their gaps and removes all penetration but for rounding of u, by
-    /// projections row after row; `None` where rows contradict.
+    /// A change of u that puts the closed rows at their gaps and removes all penetration except for rounding of u, by
+    /// projections row after row; `None` if rows contradict each other.
     fn repair(&self, by_row: &SparseMatrix, answer: &Answer, is_closed: impl Fn(usize) -> bool) -> Option<Vec<f64>> {
         let mut change = vec![0.0; self.dofs()];
         let negligible = self.negligible(answer.displacement);
@@ -217,7 +217,7 @@ impl ContactProblem {
             for (row, &negligible) in negligible.iter().enumerate() {
                 let (moved, terms) = by_row.column(row).map(|(dof, b)| b * change[dof]).fold((0.0, 0.0), add_term);
                 let excess = answer.violation[row] + moved;
-                // Rows that contradict a closed one as an equality may still be met as what they are.
+                // A row that contradicts a closed one as an equality may still be met as an inequality.
                 let open = excess < 0.0 && !(is_closed(row) && patient);
                 let rounding = SUM_ROUNDING * (answer.violation[row].abs() + terms);
                 if excess == 0.0 || open || excess.abs() <= if patient { rounding } else { negligible.max(rounding) } {
@@ -240,7 +240,7 @@ impl ContactProblem {
     }
 }
 
-/// A sum and the sum of magnitudes, with one term more.
+/// A sum and the sum of magnitudes, with one more term.
 fn add_term((sum, magnitudes): (f64, f64), term: f64) -> (f64, f64) {
     (sum + term, magnitudes + term.abs())
 }
@@ -299,7 +299,7 @@ mod tests {
         // Each sweep moves either row half as far as the one before, first by 1, at a cost of 2 for each: 2 + 1 + 1/2 + ...
         let whole = 4.0;
         assert!(put[0] == put[1] && (whole..=2.0 * whole).contains(&put[0]), "{put:?}");
-        // The sweeps end, and what they leave counts as much as all of them, when the last is a hundredth of their sum.
+        // The sweeps end when the last is a hundredth of their sum; the rest then counts as much as all sweeps.
         assert!(put[0] >= 2.0 * (1.0 - LAST) * whole, "{put:?}");
     }
 

@@ -4,20 +4,20 @@ use super::repair::{Force, Multipliers, Repair, Witness};
 use super::triangle::{Triangle, triangle_of};
 use crate::qp::linear::{UpperTriangle, ldexp};
 
-/// Times that the rows which look closed are corrected; from then on rows are only added.
+/// Number of corrections of the set of rows that look closed; after these, rows are only added.
 const EXCHANGES: usize = 10;
 
-/// Corrections of the multipliers that put rows at their gaps; each gains the digits that the dependence of rows leaves.
+/// Corrections of the multipliers that put rows at their gaps; each gains as many digits as the dependence of rows leaves.
 const CORRECTIONS: usize = 4;
 
-/// Rows that others follow from are off by their own rounding after a fit, and by that of their distances.
+/// After a fit, rows that follow from others are off by their own rounding and by that of their distances.
 const FOLLOWS: f64 = 2.0;
 
 /// Rounding of a row's distance after a shift, in units of its terms.
 const DISTANCE_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 impl Repair<'_> {
-    /// The equilibrium of the rows that look closed where all of them push, or else the better of both repairs.
+    /// The equilibrium of the rows that look closed if all these rows push, otherwise the better of both repairs.
     pub fn best_witness(&self, closed: &[bool]) -> Option<Witness> {
         let settled = self.settle(closed, Multipliers::InEquilibrium);
         if settled.as_ref().is_some_and(|witness| witness.left.is_none()) {
@@ -30,7 +30,7 @@ impl Repair<'_> {
             .min_by(|a, b| size(a).total_cmp(&size(b)))
     }
 
-    /// The force beside the change of the multipliers of closed rows; in equilibrium open rows lose theirs.
+    /// The force without the change of the multipliers of closed rows; in equilibrium open rows lose their multipliers.
     fn base(&self, closed: &[bool], multipliers: Multipliers) -> Force {
         let dropped = |row: usize| if closed[row] { 0.0 } else { -self.multiplier[row] };
         match multipliers {
@@ -88,7 +88,7 @@ impl Repair<'_> {
             deeper.iter().for_each(|&row| first[row] = true);
             violated.iter().for_each(|&row| closed[row] = true);
             looser.iter().filter(|_| deeper.is_empty()).for_each(|&row| closed[row] = false);
-            // The force of a looser row goes to others, which may pull no more then.
+            // The force of a looser row passes to other rows, which may then stop pulling.
             if exchange < EXCHANGES && looser.is_empty() {
                 pulling.iter().for_each(|&row| closed[row] = false);
             }
@@ -96,11 +96,11 @@ impl Repair<'_> {
         None
     }
 
-    /// The witness of rows that are at their gaps under the force `error`, a `change` of the multipliers included.
+    /// The witness of rows that are at their gaps under the force `error`, which includes a `change` of the multipliers.
     fn witness(&self, error: Force, change: &[f64], closed: &[bool], multipliers: Multipliers) -> Witness {
         let in_equilibrium = multipliers == Multipliers::InEquilibrium;
         let balanced = |row: usize| self.multiplier[row] + if in_equilibrium { change[row] } else { 0.0 };
-        // What pulls is no multiplier.
+        // A force that pulls is no multiplier.
         let multiplier: Vec<f64> =
             (0..change.len()).map(|row| if closed[row] { balanced(row).min(0.0) } else { 0.0 }).collect();
         let left = |row: usize| match in_equilibrium {
@@ -116,12 +116,13 @@ impl Repair<'_> {
         Witness { error, left, multiplier, change, closed, rest, has_dependent: false }
     }
 
-    /// For each row an upper bound on the energy norm of the shift that puts it exactly at its gap, from where a fit has left it, and
-    /// does not move the others of the set; zero for rows that follow from others.
+    /// For each row an upper bound on the energy norm of the shift that moves it from its place after a fit exactly to its gap
+    /// and does not move the others of the set; zero for rows that follow from others.
     ///
-    /// The shifts of all rows together put every row at its gap, so that their lengths, added up, bound the way to such a point,
-    /// whatever the signs of what rounding left of the distances. A row that the triangle keeps stands 64 units in the last place
-    /// across those before it: rounding of its column changes the lengths by a small share.
+    /// The shifts of all rows together put every row at its gap, so the sum of their lengths bounds the way to such a point,
+    /// for all signs of the rounding errors in the distances. The part of a row that is orthogonal to the rows before it is at
+    /// least 64 units in the last place if the triangle keeps the row: rounding of its column changes the lengths by a small
+    /// share.
     fn rest(&self, set: &[usize], fitted: &Fitted) -> Vec<f64> {
         let mut rest = vec![0.0; self.rows.len()];
         for (&row, length) in set.iter().zip(fitted.triangle.lengths_of_inverse()) {
@@ -131,7 +132,7 @@ impl Repair<'_> {
         rest
     }
 
-    /// The multipliers that put the rows of `set` at their gaps beside the force `base`; `None` where there is no time.
+    /// The multipliers that put the rows of `set` at their gaps beside the force `base`; `None` if there is no time.
     fn fit(&self, set: &[usize], base: &Force) -> Option<Fitted> {
         let half = |&row: &usize| if self.norm.is_over() { None } else { Some(self.half(row)) };
         let columns: Vec<&[f64]> = set.iter().map(half).collect::<Option<_>>()?;
@@ -147,7 +148,7 @@ impl Repair<'_> {
                 DISTANCE_ROUNDING * terms(row).fold(self.violation[row].abs(), |sum, term| sum + term.abs())
             };
             let mut tolerance: Vec<f64> = (0..self.rows.len()).map(rounding).collect();
-            // A row that follows from others is at its gap as far as they are.
+            // A row that follows from others is at its gap as precisely as they are.
             for (&row, weights) in set.iter().zip(&weights) {
                 let of_others = weights.iter().zip(set).map(|(weight, &other)| weight.abs() * tolerance[other]);
                 tolerance[row] += FOLLOWS * of_others.sum::<f64>();
@@ -161,18 +162,17 @@ impl Repair<'_> {
             let mut added = vec![0.0; self.rows.len()];
             set.iter().zip(step).for_each(|(&row, step)| added[row] = step);
             change.iter_mut().zip(&added).for_each(|(sum, step)| *sum += step);
-            // The shifts are those of the forces but for the rounding of each step, however much the steps take from each other.
+            // The shifts are those of the forces, except for the rounding of each step, even if the steps cancel each other.
             steps.iter_mut().zip(&added).for_each(|(sum, step)| *sum += step.abs());
             moved.iter_mut().zip(self.boundary.backward(self.spread(&added))).for_each(|(sum, step)| *sum += step);
         }
     }
 }
 
-/// Rows after a fit: the change of each multiplier, distances and what is rounding of them, and the triangle of the rows of the
-/// set.
+/// Rows after a fit: the change of each multiplier, the distances and their rounding, and the triangle of the rows of the set.
 struct Fitted {
     change: Vec<f64>,
-    /// The magnitudes of the steps that it was added up from.
+    /// The magnitudes of the steps of which the change is the sum.
     steps: Vec<f64>,
     distance: Vec<f64>,
     tolerance: Vec<f64>,

@@ -2,25 +2,25 @@
 
 use crate::qp::linear::{UpperTriangle, dot, norm, take_out};
 
-/// R, and how columns of Z that it leaves out follow from those before them.
+/// R, and the weights with which columns of Z that it leaves out follow from those before them.
 #[derive(Default)]
 pub(super) struct Triangle {
     pub r: UpperTriangle,
-    /// The weight of each column before; none for a column that follows from no others.
+    /// The weight of each earlier column; empty for a column that does not follow from others.
     pub weights: Vec<Vec<f64>>,
 }
 
-/// Pivots below this share of the products that cancel in them are what rounding leaves of nearly dependent rows.
+/// Pivots below this share of the products that cancel in them are rounding of nearly dependent rows.
 const PARALLEL: f64 = 1e-12;
 
-/// What is left of a row across all others follows from them if it is below this share of the terms.
+/// A row follows from others if its component orthogonal to them is below this share of the terms.
 const DEPENDENT: f64 = 64.0 * f64::EPSILON;
 
-/// Turns in which a row is made orthogonal to others: the second takes out what rounding of the first has left.
+/// Number of times that a row is made orthogonal to others: the second removes the rounding of the first.
 const TURNS: usize = 2;
 
-/// R from the products of the columns of Z. If some are nearly parallel, such as rows that reach a part much softer than the
-/// others, the products have lost what tells them apart, and the columns themselves are made orthogonal.
+/// R from the products of the columns of Z. If some are nearly parallel, such as rows on a part much softer than the others,
+/// the products have lost their difference, and the columns themselves are made orthogonal.
 ///
 /// `None` if it `is_over` before R is found.
 pub(super) fn triangle_of(columns: &[&[f64]], is_over: impl Fn() -> bool) -> Option<Triangle> {
@@ -79,8 +79,8 @@ fn of_columns(columns: &[&[f64]], is_over: &impl Fn() -> bool) -> Option<Triangl
 }
 
 impl Triangle {
-    /// The weights of the columns in the part of the next one along them, whose entries in R are these, and the lengths of all,
-    /// added up as they cancel in what is left of it.
+    /// The weights of the columns in the component of the next one along them, which has these entries in R, and the sum of the
+    /// lengths of all terms, which cancel in the remainder.
     fn combined(&self, entries: &[f64], lengths: &[f64]) -> (Vec<f64>, f64) {
         let weights = self.r.solve_upper(entries.to_vec());
         let along = weights.iter().zip(lengths);
@@ -94,7 +94,7 @@ impl Triangle {
         self.weights.push(Vec::new());
     }
 
-    /// Appends a column that follows from those before with these weights, of which nothing else is kept.
+    /// Appends a column that follows from earlier ones with these weights; nothing else of the column is kept.
     fn push_dependent(&mut self, weights: Vec<f64>) {
         self.r.push_dependent(vec![0.0; self.r.size()], 0.0);
         self.weights.push(weights);
@@ -113,7 +113,7 @@ mod tests {
         let mut found = Triangle::default();
         found.push(Vec::new(), 2.0);
         found.push(vec![3.0], 4.0);
-        // R w = (x, 8) with w_2 = 2; columns of lengths 2 and 5 beside one of length 7.
+        // R w = (x, 8) with w_2 = 2; columns of length 2 and 5 next to one of length 7.
         for (x, first) in [(8.0, 1.0), (4.0, -1.0)] {
             let (weights, terms) = found.combined(&[x, 8.0], &[2.0, 5.0, 7.0]);
             assert_eq!((&weights[..], terms), (&[first, 2.0][..], 7.0 + 2.0 + 2.0 * 5.0));

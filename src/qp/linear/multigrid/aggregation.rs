@@ -6,7 +6,7 @@ use super::real::Real;
 /// No aggregate yet.
 const NONE: u32 = u32::MAX;
 
-/// The strong connections of each node, itself left out.
+/// The strong connections of each node, without the node itself.
 pub struct Graph {
     starts: Vec<usize>,
     neighbours: Vec<u32>,
@@ -14,7 +14,7 @@ pub struct Graph {
 }
 
 impl Graph {
-    /// The nodes that one is strongly connected to.
+    /// The nodes to which this one is strongly connected.
     pub fn neighbours(&self, node: usize) -> &[u32] {
         &self.neighbours[self.starts[node]..self.starts[node + 1]]
     }
@@ -22,9 +22,9 @@ impl Graph {
 
 /// The aggregate of each node, and their number.
 ///
-/// Two nodes are strongly connected where `|A_ij|^2 > threshold^2 |A_ii| |A_jj|` in the Frobenius norm. A node with its
-/// strong neighbours becomes an aggregate where none of them is in one; the rest join that to which they are connected
-/// most strongly.
+/// Two nodes are strongly connected if `|A_ij|^2 > threshold^2 |A_ii| |A_jj|` in the Frobenius norm. A node and its strong
+/// neighbours become an aggregate if none of these nodes is in one yet; each remaining node joins the aggregate to which it is
+/// connected most strongly.
 ///
 /// # Source
 /// P. Vaněk, J. Mandel, M. Brezina, *Algebraic multigrid by smoothed aggregation for second and fourth order elliptic
@@ -64,7 +64,7 @@ pub fn aggregate(graph: &Graph) -> (Vec<u32>, usize) {
     (of_node, count as usize)
 }
 
-/// The connections of a block matrix that are strong.
+/// The strong connections of a block matrix.
 pub fn strong_connections<T: Real>(matrix: &BlockMatrix<T>, threshold: f64) -> Graph {
     let square = |block: &[T]| block.iter().map(|value| value.double() * value.double()).sum::<f64>();
     let diagonal: Vec<f64> = (0..matrix.rows())

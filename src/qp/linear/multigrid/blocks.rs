@@ -22,7 +22,7 @@ pub struct BlockMatrix<T> {
     pub values: Vec<T>,
 }
 
-/// Calls a function with the size of its blocks as constants where it is one of those that bodies have.
+/// Calls a function with the block size as constants if it is one of the sizes of bodies.
 macro_rules! with_block_size {
     ($function:ident, $size:expr, $arguments:tt) => {
         match $size {
@@ -62,13 +62,13 @@ impl<T: Real> BlockMatrix<T> {
         (self.starts[row]..self.starts[row + 1]).map(|place| (self.indices[place] as usize, self.block(place)))
     }
 
-    /// The diagonal block of a row, where there is one.
+    /// The place of the diagonal block of a row, if there is one.
     pub fn diagonal_place(&self, row: usize) -> Option<usize> {
         let range = self.starts[row]..self.starts[row + 1];
         self.indices[range.clone()].binary_search(&(row as u32)).ok().map(|place| range.start + place)
     }
 
-    /// Bytes that it holds.
+    /// Bytes of memory that it holds.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.starts[..]) + size_of_val(&self.indices[..]) + size_of_val(&self.values[..])
     }
@@ -85,7 +85,7 @@ impl<T: Real> BlockMatrix<T> {
         BlockMatrix { height, width, columns, starts: vec![0; rows + 1], indices: Vec::new(), values: Vec::new() }
     }
 
-    /// `y -= A x`, for a matrix most of whose rows are empty.
+    /// `y -= A x`, for a matrix with mostly empty rows.
     pub fn subtract_product(&self, x: &[T], y: &mut [T]) {
         let (height, width) = (self.height, self.width);
         let mut sums = vec![T::default(); height];
@@ -101,7 +101,7 @@ impl<T: Real> BlockMatrix<T> {
         }
     }
 
-    /// `y -= A y`, for a matrix most of whose rows are empty.
+    /// `y -= A y`, for a matrix with mostly empty rows.
     pub fn subtract_from(&self, y: &mut [T]) {
         let (height, width) = (self.height, self.width);
         let rows = || (0..self.rows()).filter(|&row| self.starts[row] < self.starts[row + 1]);
@@ -143,7 +143,7 @@ impl<T: Real> BlockMatrix<T> {
         sum
     }
 
-    /// The same matrix without the blocks whose values are all zero.
+    /// The same matrix without the blocks of zeros.
     pub fn without_zeros(&self) -> Self {
         let mut kept = Self::empty(0, self.columns, (self.height, self.width));
         for row in 0..self.rows() {
@@ -181,7 +181,7 @@ impl<T: Real> BlockMatrix<T> {
         BlockMatrix { height: self.width, width: self.height, columns: self.rows(), starts, indices, values }
     }
 
-    /// The product A B, row by row: a row of the product is the sum of the rows of B that a row of A names.
+    /// The product A B, row by row: a row of the product is a sum of rows of B, one for each entry in the row of A.
     pub fn product(&self, other: &Self, threads: usize) -> Self {
         let parts = row_chunks(&self.starts, threads, |rows| {
             with_block_size!(product_rows, (self.height, self.width), (self, other, rows))

@@ -8,21 +8,21 @@ use super::real::Real;
 /// Products that estimate the largest eigenvalue of D^-1 A.
 const POWER_STEPS: usize = 12;
 
-/// The estimate comes from below.
+/// Safety factor of the estimate, which is a lower bound.
 const SAFETY: f64 = 1.1;
 
-/// What changing a matrix on few rows may add to the largest eigenvalue.
+/// Factor by which a change of a matrix on few rows may increase the largest eigenvalue.
 const CHANGED: f64 = 1.15;
 
 /// A pivot of a diagonal block below this share of its entry is rounding: such a direction is not smoothed.
 const SINGULAR_PIVOT: f64 = 1e-6;
 
-/// What the smoother leaves in the residual.
+/// State of the residual after the smoother.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rest {
     /// The residual of the improved vector.
     Updated,
-    /// A residual that is not used any more: one product is saved.
+    /// A residual that is not used any more; this saves one product.
     Stale,
 }
 
@@ -49,12 +49,12 @@ impl<T: Real> Chebyshev<T> {
         smoother
     }
 
-    /// Bytes that it holds.
+    /// Bytes of memory that it holds.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.inverse[..])
     }
 
-    /// Improves `x`, whose residual b - A x is `rest`; `after` tells what `rest` is afterwards.
+    /// Improves `x` with the residual `rest` = b - A x; `after` states what `rest` holds afterwards.
     pub fn smooth(&self, operator: &Operator<T>, x: &mut [T], rest: &mut [T], after: Rest) {
         let (mut step, mut moved) = (vec![T::default(); x.len()], vec![T::default(); x.len()]);
         for k in 1..=self.degree {
@@ -91,7 +91,7 @@ impl<T: Real> Chebyshev<T> {
         operator.project(result);
     }
 
-    /// The same smoother for the matrix less `change`, whose blocks are its own where `change` has none.
+    /// The same smoother for the matrix minus `change`; blocks in which `change` has no entry are kept.
     pub fn changed(&self, matrix: &BlockMatrix<T>, change: &BlockMatrix<T>) -> Self {
         let size = matrix.height;
         let mut smoother = self.clone();

@@ -1,7 +1,7 @@
-//! The second level of a hierarchy as a problem of its own, for unknowns that have bounds.
+//! The second level of a hierarchy as a separate problem, for unknowns that have bounds.
 //!
-//! The weights of the bounds and the share of closed parents were chosen by measurement on obstacle problems: plain means cost some
-//! cycles more, and any share from 0.5 to 0.99 serves.
+//! The weights of the bounds and the share of closed parents were chosen by measurement on obstacle problems: unweighted means
+//! cost a few cycles more, and every share from 0.5 to 0.99 works.
 
 use super::coarsest::lower_part;
 use super::hierarchy::{Hierarchy, Level};
@@ -9,18 +9,18 @@ use super::real::Real;
 use super::{Levels, Multigrid};
 use crate::qp::linear::{SymmetricMatrix, ldexp};
 
-/// An unknown starts at its bound if more than this share of what it is interpolated from is at its own.
+/// An unknown starts at its bound if more than this share of the unknowns that it is interpolated from is at their bounds.
 const CLOSED_SHARE: f64 = 0.7;
 
-/// Lower and upper bound of an unknown, infinite where there is none.
+/// Lower and upper bound of an unknown, infinite without a bound.
 pub type Interval = [f64; 2];
 
-/// The second level of a hierarchy with one unknown for each node: matrix, hierarchy, and the way from and to the first.
+/// The second level of a hierarchy with one unknown for each node: matrix, hierarchy, and the transfer from and to the first.
 #[derive(Debug)]
 pub struct Coarser {
     /// The Galerkin matrix.
     pub matrix: SymmetricMatrix,
-    /// Its hierarchy: what is below the first level.
+    /// Its hierarchy: the levels below the first.
     pub multigrid: Multigrid,
     transfer: Transfer,
 }
@@ -39,8 +39,8 @@ struct Transfer {
 }
 
 impl Multigrid {
-    /// The second level as a problem of its own; `None` if there is none, or if its unknowns are no values of nodes, as the
-    /// rigid-body modes of a body's aggregates.
+    /// The second level as a separate problem; `None` if no second level exists, or if its unknowns are no nodal values, such
+    /// as the rigid-body modes of a body's aggregates.
     pub fn coarser(&self) -> Option<Coarser> {
         match &self.levels {
             Levels::Single(hierarchy) => coarser_of(hierarchy, Levels::Single),
@@ -79,8 +79,8 @@ impl Coarser {
         coarse
     }
 
-    /// The bounds of the second level: means of those of the unknowns that each reaches, weighted by the fourth power of
-    /// P, relative to the near-null vector.
+    /// The bounds of the second level: for each unknown the mean of the bounds of the first-level unknowns that it reaches,
+    /// weighted by the fourth power of P, relative to the near-null vector.
     pub fn bounds(&self, bounds: &[Interval]) -> Vec<Interval> {
         let transfer = &self.transfer;
         let count = transfer.near_null.len();
@@ -111,8 +111,8 @@ impl Coarser {
         (0..count).map(of_column).collect()
     }
 
-    /// The values of the first level, put within `bounds`, and at a bound if most of what they are interpolated from is at
-    /// its own.
+    /// The values of the first level, put within `bounds`; a value is put at its bound if most of the values that it is
+    /// interpolated from are at theirs.
     pub fn interpolated(&self, coarse: &[f64], coarse_bounds: &[Interval], bounds: &[Interval]) -> Vec<f64> {
         let value_of = |(&place, &[lower, upper]): (&u32, &Interval)| {
             let (mut value, mut all, mut at) = (0.0, 0.0, [0.0; 2]);

@@ -8,11 +8,11 @@ use crate::qp::linear::{Cholesky, Equilibration, FactorError, SparseMatrix, Symm
 /// diagonal of the matrix is of order one.
 const LEAST_PIVOT: f64 = 1000.0;
 
-/// A diagonal entry reduced below this many units in the last place has lost its digits: the face takes from it on this level
-/// and on those above.
+/// A diagonal entry reduced below this many units in the last place has lost its digits, because the face reduces it on this
+/// level and on those above.
 pub(super) const LOST_DIAGONAL: f64 = 3000.0;
 
-/// What then holds it, on a diagonal of order one: its contact will, about as stiffly as a coarse cell.
+/// Shift that then holds the body, on a diagonal of order one: about as stiff as a coarse cell, as its contact will be.
 const SHIFT: f64 = 1e-3;
 
 /// The factor of a coarsest matrix.
@@ -27,7 +27,7 @@ impl Coarsest {
     /// Factorises a coarsest matrix; one that is singular to the precision of its entries is held by a shift.
     ///
     /// # Errors
-    /// [`FactorError`] where it has a negative eigenvalue, or memory does not suffice.
+    /// [`FactorError`] if it has a negative eigenvalue, or if memory does not suffice.
     pub fn of<T: Real>(blocks: &BlockMatrix<T>) -> Result<Self, FactorError> {
         let matrix = lower_part(blocks);
         let equilibration = Equilibration::of(&matrix);
@@ -47,8 +47,8 @@ impl Coarsest {
         }
     }
 
-    /// Factorises a coarsest `matrix` less `change`, what a face takes off it. Unknowns of which rounding is all that is
-    /// left do not move.
+    /// Factorises a coarsest `matrix` minus `change`, the reduction by a face. Unknowns with a diagonal entry that is only
+    /// rounding do not move.
     ///
     /// # Errors
     /// As [`Coarsest::of`].

@@ -10,18 +10,18 @@ use crate::watch::Watch;
 pub struct ConjugateGradients {
     /// The solution x.
     pub solution: Vec<f64>,
-    /// Cycles of the hierarchy.
+    /// Number of cycles of the hierarchy.
     pub cycles: usize,
-    /// `|b - A x| / |b|`, of the residual that the iteration carries along.
+    /// `|b - A x| / |b|`, for the residual that the iteration updates.
     pub residual: f64,
 }
 
 /// Solves A x = b to `|b - A x| <= tolerance |b|` in the Euclidean norm, in at most `most_cycles` cycles.
 ///
-/// Whether the tolerance was met is told by `residual`.
+/// The tolerance was met if `residual` is at most `tolerance`.
 ///
 /// # Errors
-/// [`Error::NotConvex`] where a search direction has negative energy.
+/// [`Error::NotConvex`] if a search direction has negative energy.
 pub fn conjugate_gradients(
     matrix: &SymmetricMatrix,
     b: &[f64],
@@ -43,7 +43,7 @@ pub fn conjugate_gradients(
         if direction.is_empty() {
             direction = step;
         } else {
-            // Conjugate to the last direction itself: rounding of the cycle to single precision does no harm.
+            // Made conjugate to the last direction itself, so that rounding of the cycle to single precision does no harm.
             let share = dot(&step, &moved) / energy;
             direction.iter_mut().zip(&step).for_each(|(d, z)| *d = z - share * *d);
         }
@@ -61,12 +61,12 @@ pub fn conjugate_gradients(
     Ok(ConjugateGradients { solution: x, cycles, residual })
 }
 
-/// Cycles in which conjugate gradients from a generic force meet a direction of negative energy, if there is one.
+/// Number of cycles within which conjugate gradients from a generic force meet a direction of negative energy, if there is one.
 const LOOKED: usize = 25;
 
-/// A direction whose energy is not positive, which conjugate gradients from a generic force meet if the matrix has a negative
-/// eigenvalue that its hierarchy does not hide; rounding may leave one of a semidefinite matrix. `None` if there is none, or
-/// `watch` is over.
+/// A direction without positive energy. Conjugate gradients from a generic force meet it if the matrix has a negative
+/// eigenvalue that its hierarchy does not hide; rounding may give one for a semidefinite matrix. `None` if no direction is met,
+/// or if `watch` is over.
 pub fn negative_direction(matrix: &SymmetricMatrix, multigrid: &Multigrid, watch: &Watch) -> Option<Vec<f64>> {
     let mut rest = generic(matrix.dim(), 0);
     let (mut direction, mut moved, mut energy) = (vec![0.0; rest.len()], vec![0.0; rest.len()], 1.0);

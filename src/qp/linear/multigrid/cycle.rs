@@ -7,7 +7,7 @@ use super::operator::Operator;
 use super::real::Real;
 
 impl<T: Real> Hierarchy<T> {
-    /// Approximately `A^-1 r`, by one V-cycle, in the face that is given; r is `force` times `2^exponent`.
+    /// Approximately `A^-1 r`, by one V-cycle, in the given face; r is `force` times `2^exponent`.
     pub fn cycle(&self, force: &[f64], exponent: i32, face: Option<&FaceLevels<T>>) -> Vec<f64> {
         let mut rest = self.nodes.gather::<T>(force, exponent);
         if let Some(face) = face {

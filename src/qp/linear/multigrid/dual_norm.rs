@@ -1,14 +1,14 @@
-//! The energy of a force, `r' A^-1 r`, from above, without a factor of A.
+//! An upper bound on the energy of a force, `r' A^-1 r`, without a factor of A.
 //!
-//! For any z with the rest s = r - A z,
+//! For any z with the residual s = r - A z,
 //!
 //! ```text
 //! r' A^-1 r = z' (r + s) + s' A^-1 s,     s' A^-1 s <= s' M s / mu,     mu <= the least eigenvalue of M A
 //! ```
 //!
-//! with the cycle M of the hierarchy. Conjugate gradients make z, and few of them: the first part is then most of the sum.
-//! Both lines are exact. That mu is below the least eigenvalue is measured, not proven: the Lanczos coefficients of the same
-//! conjugate gradients give the least Ritz value, which comes down to the eigenvalue from above; mu is a share of it.
+//! with the cycle M of the hierarchy. A few steps of conjugate gradients give z: the first part is then most of the sum. Both
+//! lines are exact. It is measured, not proven, that mu is below the least eigenvalue: the Lanczos coefficients of the same
+//! conjugate gradients give the least Ritz value, which approaches the eigenvalue from above; mu is a share of that value.
 //!
 //! # Source
 //! G. H. Golub, G. Meurant, *Matrices, Moments and Quadrature with Applications*, Princeton (2010), chapter 12;
@@ -19,22 +19,22 @@ use super::Multigrid;
 use crate::qp::linear::{SymmetricMatrix, exponent, ldexp};
 use crate::watch::Watch;
 
-/// What is taken of the least Ritz value: the least eigenvalue may be so much smaller.
+/// Factor on the least Ritz value, because the least eigenvalue may be smaller.
 const SAFETY: f64 = 0.5;
 
-/// The rest is bounded, not known: it ends as this share of the whole.
+/// The second part is a bound only: the iteration ends when it is at most this share of the first.
 const REST_SHARE: f64 = 0.1;
 
-/// The Ritz value has settled where one step more takes no more than this share of it.
+/// The Ritz value has settled if one more step reduces it by no more than this share.
 const SETTLED_RITZ: f64 = 0.15;
 
-/// A hierarchy that needs more cycles than this is none to bound by.
+/// A hierarchy that needs more cycles than this gives no bound.
 const MOST_CYCLES: usize = 60;
 
-/// Halvings of the interval in which a Ritz value is.
+/// Halvings of the interval that contains a Ritz value.
 const HALVINGS: usize = 40;
 
-/// The energy of a force between two bounds.
+/// A lower and an upper bound on the dual norm of a force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DualNorm {
     /// A lower bound on `sqrt(r' A^-1 r)`.
@@ -43,11 +43,11 @@ pub struct DualNorm {
     pub most: f64,
     /// The least Ritz value of M A.
     pub ritz: f64,
-    /// Cycles that it took.
+    /// Number of cycles used.
     pub cycles: usize,
 }
 
-/// Which unknowns share no energy: the blocks of a matrix that is diagonal by blocks.
+/// Groups of unknowns that share no energy: the blocks of a block-diagonal matrix.
 #[derive(Clone, Copy, Debug)]
 pub struct Blocks<'a> {
     /// The block of each unknown.
@@ -66,12 +66,12 @@ impl Blocks<'_> {
 }
 
 /// Bounds `sqrt(r' A^-1 r)` by conjugate gradients with one cycle of `multigrid`, the hierarchy of `matrix` A or of A without
-/// terms of low rank; `None` where the cycles do not settle. A must be definite.
+/// terms of low rank; `None` if the cycles do not settle. A must be definite.
 pub fn dual_norm(matrix: &SymmetricMatrix, multigrid: &Multigrid, force: &[f64]) -> Option<DualNorm> {
     dual_norm_within(matrix, multigrid, force, &Watch::default())
 }
 
-/// The same; `None` too where `watch` is over before the cycles settle.
+/// The same; `None` also if `watch` is over before the cycles settle.
 pub fn dual_norm_within(
     matrix: &SymmetricMatrix,
     multigrid: &Multigrid,
@@ -84,8 +84,8 @@ pub fn dual_norm_within(
 
 /// The same for the force on each of the blocks of A.
 ///
-/// One cycle serves all blocks, but each has conjugate gradients of its own: its own scale, step lengths and Ritz value. A soft
-/// block is not lost beside a stiff one.
+/// One cycle serves all blocks, but each block has its own conjugate gradients: its own scale, step lengths and Ritz value. So
+/// a soft block is not lost beside a stiff one.
 pub fn dual_norms_within(
     matrix: &SymmetricMatrix,
     multigrid: &Multigrid,
@@ -148,7 +148,7 @@ pub fn dual_norms_within(
 struct Iteration {
     lengths: Vec<f64>,
     shares: Vec<f64>,
-    /// What the last direction takes of the one before, and the step along it.
+    /// The coefficient of the previous direction in the last one, and the step along it.
     share: f64,
     length: f64,
     energy: f64,
@@ -157,7 +157,7 @@ struct Iteration {
 }
 
 impl Iteration {
-    /// Ends where nothing is left of the force.
+    /// Ends if nothing is left of the force.
     fn end_without_rest(&mut self, known: f64, left: f64, cycles: usize) {
         if self.found.is_none() && left == 0.0 {
             let norm = known.max(0.0).sqrt();
@@ -165,7 +165,7 @@ impl Iteration {
         }
     }
 
-    /// Takes in what a cycle makes of the rest: the end, or the share of the direction before in the next one.
+    /// Takes in the effect of a cycle on the residual: the end, or the coefficient of the previous direction in the next one.
     fn turn(&mut self, known: f64, in_cycle: f64, along: f64, cycles: usize) {
         if self.found.is_some() || self.lengths.is_empty() {
             return;
@@ -182,7 +182,7 @@ impl Iteration {
         self.shares.push(self.share);
     }
 
-    /// The step along a direction of this energy, on which the rest does this work; `None` if it is none.
+    /// The step along a direction of this energy, on which the residual does this work; `None` if there is no step.
     fn step(&mut self, energy: f64, work: f64) -> Option<()> {
         if self.found.is_some() {
             return Some(());
@@ -199,8 +199,8 @@ impl Iteration {
     }
 }
 
-/// The least eigenvalue of the Lanczos matrix of conjugate gradients with these step lengths and shares of the direction
-/// before, by counting signs.
+/// The least eigenvalue of the Lanczos matrix of conjugate gradients with these step lengths and these coefficients of the
+/// previous directions, by counting signs.
 fn least_eigenvalue(lengths: &[f64], shares: &[f64]) -> f64 {
     let entries = || {
         (0..lengths.len()).map(|k| {
@@ -208,7 +208,7 @@ fn least_eigenvalue(lengths: &[f64], shares: &[f64]) -> f64 {
             (1.0 / lengths[k] + share / before, share / (before * before))
         })
     };
-    // Is the matrix less `shift` positive definite?
+    // `true` if the matrix minus `shift` is positive definite.
     let is_below = |shift: f64| {
         let mut pivot = f64::INFINITY;
         entries().all(|(diagonal, square)| {

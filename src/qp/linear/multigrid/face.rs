@@ -1,14 +1,14 @@
-//! The hierarchy in a face: where single displacements are held, as those of closed contact rows.
+//! The hierarchy in a face: the subspace in which single displacements are held, such as those of closed contact rows.
 //!
-//! With Q the projection onto what is held, the first prolongator becomes (I - Q) P and every coarse matrix A changes by a
-//! C that reaches only where the face does: nothing else is built again.
+//! With Q the projection onto the held directions, the first prolongator becomes (I - Q) P. Every coarse matrix A changes by a
+//! matrix C, only near the held dofs: nothing else is built again.
 //!
 //! ```text
 //! A_1 - C_1 = P' (I - Q) A (I - Q) P,     C_1 = S + S' - P' (Q A Q) P  with S = P' (Q A) P,     C_k+1 = P' C_k P
 //! ```
 //!
-//! From the face of Q to that of Q + D, C_1 grows by `S + S' - P' (D A D) P` with `S = P' D A (I - Q) P`: work for what changes,
-//! not for what is held.
+//! From the face of Q to that of Q + D, C_1 grows by `S + S' - P' (D A D) P` with `S = P' D A (I - Q) P`: the work depends on
+//! the change, not on the number of held directions.
 //!
 //! # Source
 //! R. Kornhuber, *Monotone multigrid methods for elliptic variational inequalities I*, Numer. Math. 69 (1994) 167-184:
@@ -21,24 +21,24 @@ use super::hierarchy::Hierarchy;
 use super::real::Real;
 use crate::qp::linear::FactorError;
 
-/// A unit vector along which nothing moves: dofs and coefficients. Those of one face are orthogonal.
+/// A unit vector along which nothing moves: dofs and coefficients. The directions of one face are orthogonal.
 pub type Direction = Vec<(usize, f64)>;
 
-/// What the levels of a hierarchy have of their own in a face.
+/// The data of a face on the levels of a hierarchy.
 #[derive(Debug)]
 pub struct FaceLevels<T> {
     /// Q.
     pub held: BlockMatrix<T>,
-    /// C of each level but the finest.
+    /// C of each level except the finest.
     pub changes: Vec<BlockMatrix<T>>,
-    /// Smoothers of each level but the finest and the coarsest.
+    /// Smoothers of each level except the finest and the coarsest.
     pub smoothers: Vec<Chebyshev<T>>,
     /// The factor of the coarsest matrix.
     pub coarsest: Coarsest,
 }
 
 impl<T: Real> FaceLevels<T> {
-    /// The hierarchy where nothing moves along `directions`: from the `last` face if less changes from there.
+    /// The hierarchy if nothing moves along `directions`: built from the `last` face if less changes from there.
     ///
     /// # Errors
     /// As [`Hierarchy::new`].
@@ -66,7 +66,7 @@ impl<T: Real> FaceLevels<T> {
     }
 }
 
-/// C of each level but the finest, where D is `newly_held` beyond what the face `last` holds, Q.
+/// C of each level except the finest; D is `newly_held`, beyond Q, which the face `last` holds.
 fn changes<T: Real>(
     hierarchy: &Hierarchy<T>,
     newly_held: &BlockMatrix<T>,

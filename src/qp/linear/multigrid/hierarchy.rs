@@ -13,22 +13,22 @@ use super::prolongator::{Candidates, smoothed, tentative};
 use super::real::Real;
 use crate::qp::linear::{FactorError, SymmetricMatrix};
 
-/// Strength of connection on the finest level; it is halved from level to level, as the source has it.
+/// Strength of connection on the finest level; it is halved from level to level, as in the source.
 const THRESHOLD: f64 = 0.02;
 
-/// Where too few connections are strong for aggregates to form, all count below this.
+/// If too few connections are strong to form aggregates, all connections count as strong below this threshold.
 const LEAST_THRESHOLD: f64 = 1e-3;
 
 /// Degree of the smoothing polynomial, before and after the coarse correction.
 const DEGREE: usize = 3;
 
-/// Unknowns that are factorised at once.
+/// Largest number of unknowns that are factorised directly.
 const COARSEST: usize = 1500;
 
 /// A level with more than this share of the nodes above it is not worth its work: the matrix is factorised there.
 const LEAST_COARSENING: f64 = 0.4;
 
-/// What the smoothing of the prolongator takes of the inverse of the largest eigenvalue.
+/// Factor on the inverse of the largest eigenvalue in the smoothing of the prolongator.
 const PROLONGATOR_STEP: f64 = 4.0 / 3.0;
 
 /// A hierarchy of levels in one precision.
@@ -54,7 +54,8 @@ pub(super) struct Level<T> {
     pub near_null: Candidates,
 }
 
-/// The aggregate of each node, and their number; `None` where there are too many. The threshold falls until there are few.
+/// The aggregate of each node and the number of aggregates; `None` if they are too many. The threshold falls until they are
+/// few.
 fn gathered<T: Real>(blocks: &BlockMatrix<T>, count: usize, threshold: &mut f64) -> Option<(Vec<u32>, usize)> {
     let most = (LEAST_COARSENING * (blocks.rows() * blocks.height) as f64) as usize;
     loop {
@@ -71,7 +72,7 @@ impl<T: Real> Hierarchy<T> {
     /// Builds the levels of `matrix`.
     ///
     /// # Errors
-    /// [`FactorError`] where the coarsest matrix has a negative eigenvalue, or memory does not suffice for its factor.
+    /// [`FactorError`] if the coarsest matrix has a negative eigenvalue, or if memory does not suffice for its factor.
     pub fn new(matrix: &SymmetricMatrix, near_null: &NearNullSpace, threads: usize) -> Result<Self, FactorError> {
         let (nodes, mut blocks, shift) = Nodes::of::<T>(matrix);
         let count = near_null.count();
@@ -137,7 +138,7 @@ impl<T: Real> Hierarchy<T> {
         self.levels.iter().map(of_level).chain([coarsest]).collect()
     }
 
-    /// Bytes that it holds.
+    /// Bytes of memory that it holds.
     pub fn bytes(&self) -> usize {
         let of_level = |level: &Arc<Level<T>>| {
             level.matrix.bytes() + level.prolongator.bytes() + level.restriction.bytes() + level.smoother.bytes()
@@ -145,7 +146,7 @@ impl<T: Real> Hierarchy<T> {
         self.levels.iter().map(of_level).sum::<usize>() + size_of::<f64>() * self.coarsest.entries()
     }
 
-    /// Returns `true` if the coarsest matrix was shifted, as that of a body without supports.
+    /// Returns `true` if the coarsest matrix was shifted, like that of a body without supports.
     pub fn is_shifted(&self) -> bool {
         self.coarsest.is_shifted()
     }

@@ -1,9 +1,9 @@
 //! Aggregates and prolongators along the lines of stretched cells.
 //!
-//! Bilinear elements connect nodes across such lines too, up to half as strongly as along them, although the smoother leaves
-//! what varies across. Aggregates that reach across do not help it; and a prolongator that is smoothed across makes the next
-//! matrices dense. Here both stay on the line: what a weak neighbour moves is taken as the mode of the node's own aggregate,
-//! continued to that neighbour, so that the near-null vectors stay exact.
+//! Bilinear elements connect nodes across such lines too, up to half as strongly as along them, although the smoother does not
+//! damp errors that vary across the lines. Aggregates across lines do not help it; and a prolongator that is smoothed across
+//! lines makes the next matrices dense. Here both stay on the line: the move of a weak neighbour is taken as the mode of the
+//! node's own aggregate, continued to that neighbour, so that the near-null vectors stay exact.
 
 use super::aggregation::{Graph, aggregate, strong_connections};
 use super::blocks::BlockMatrix;
@@ -13,7 +13,7 @@ use super::real::Real;
 /// Strength of the connections along a line, on every level.
 const ALONG_LINES: f64 = 0.4;
 
-/// Nodes lie on lines if their aggregates are at most this share of them: three nodes of a line are a third.
+/// Nodes lie on lines if the number of aggregates is at most this share of the nodes: three nodes of a line make one third.
 const LINES: f64 = 0.36;
 
 /// The connections along the lines of a matrix.
@@ -26,7 +26,7 @@ pub struct Lines {
 }
 
 impl Lines {
-    /// `None` where nodes do not lie on lines, or are close to all others.
+    /// `None` if nodes do not lie on lines, or are close to all others.
     pub fn of<T: Real>(matrix: &BlockMatrix<T>) -> Option<Self> {
         let graph = strong_connections(matrix, ALONG_LINES);
         let (of_node, aggregates) = aggregate(&graph);
@@ -34,8 +34,8 @@ impl Lines {
         has_lines.then_some(Lines { graph, of_node, aggregates })
     }
 
-    /// `A T` of the tentative prolongator T of these aggregates, without what reaches across lines: its columns stay those of
-    /// the aggregates that strong neighbours belong to. `fine` and `coarse` are the near-null vectors of both levels.
+    /// `A T` of the tentative prolongator T of these aggregates, without the couplings across lines: its columns stay those of
+    /// the aggregates of strong neighbours. `fine` and `coarse` are the near-null vectors of both levels.
     pub fn product<T: Real>(
         &self,
         matrix: &BlockMatrix<T>,
@@ -84,8 +84,8 @@ impl Lines {
     }
 }
 
-/// The modes of an aggregate, continued to a node outside: X with `X R = B`, where B are the near-null vectors at the node, R those
-/// in the columns of the aggregate. Returns `false` where it does not feel one of them.
+/// The modes of an aggregate, continued to a node outside: X with `X R = B`; B are the near-null vectors at the node, R those
+/// in the columns of the aggregate. Returns `false` if the aggregate lacks one of these vectors.
 fn continued(
     fine: &Candidates,
     coarse: &Candidates,
@@ -146,7 +146,7 @@ mod tests {
         let matrix = membrane(nx, ny, 20.0);
         let lines = Lines::of(&matrix).unwrap();
         let line_of = |node: usize| node / nx;
-        // Constants, and what grows along the lines.
+        // Constants, and vectors that grow along the lines.
         let fine = Candidates { count: 2, values: (0..nx * ny).flat_map(|node| [1.0, (node % nx) as f64]).collect() };
         let (flat, coarse) = tentative::<f64>(&fine, 1, &lines.of_node, lines.aggregates);
         let product = lines.product(&matrix, &flat, &fine, &coarse);

@@ -1,9 +1,9 @@
-//! Smoothed-aggregation multigrid for symmetric matrices whose near-null space is known, as for the stiffness of a body.
+//! Smoothed-aggregation multigrid for symmetric matrices with a known near-null space, such as the stiffness of a body.
 //!
-//! Nodes are gathered into aggregates along strong connections; the near-null vectors, cut into aggregates and made
-//! orthonormal, are the tentative prolongator, which one step of damped Jacobi smooths; the next matrix is the Galerkin
-//! product. One cycle smooths by a Chebyshev polynomial, corrects on the next level, and smooths again; the coarsest
-//! matrix is factorised. The cycle is a symmetric positive definite preconditioner.
+//! Nodes are gathered into aggregates along strong connections. The near-null vectors, cut into aggregates and made
+//! orthonormal, are the tentative prolongator; one step of damped Jacobi smooths it. The next matrix is the Galerkin product.
+//! One cycle smooths by a Chebyshev polynomial, corrects on the next level, and smooths again; the coarsest matrix is
+//! factorised. The cycle is a symmetric positive definite preconditioner.
 //!
 //! # Source
 //! P. Vaněk, M. Brezina, J. Mandel, *Convergence of algebraic multigrid based on smoothed aggregation*, Numer. Math. 88
@@ -38,17 +38,17 @@ use crate::error::Error;
 use face::FaceLevels;
 use hierarchy::Hierarchy;
 
-/// The precision in which the levels are stored; the iteration around them is in double precision always.
+/// The precision in which the levels are stored; the iteration around them is always in double precision.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Precision {
-    /// Half the memory, and the same number of cycles but for nearly singular matrices.
+    /// Half the memory, and the same number of cycles except for nearly singular matrices.
     #[default]
     Single,
     /// All digits.
     Double,
 }
 
-/// The hierarchy of a symmetric positive (semi)definite matrix: one cycle stands for its inverse.
+/// The hierarchy of a symmetric positive (semi)definite matrix: one cycle approximates its inverse.
 #[derive(Debug)]
 pub struct Multigrid {
     levels: Levels,
@@ -61,12 +61,12 @@ enum Levels {
 }
 
 impl Multigrid {
-    /// Builds the hierarchy of `matrix` (n x n) in single precision, or in double where rounding to single loses that the
-    /// matrix is definite.
+    /// Builds the hierarchy of `matrix` (n x n) in single precision, or in double if rounding to single makes the matrix
+    /// indefinite.
     ///
     /// # Errors
     /// [`Error::Length`] for a near-null space of other than n dofs, [`Error::NotConvex`] for a diagonal entry that is not
-    /// positive and for a coarse matrix with a negative eigenvalue, [`Error::Numerical`] for want of memory.
+    /// positive and for a coarse matrix with a negative eigenvalue, [`Error::Numerical`] for lack of memory.
     pub fn new(matrix: &SymmetricMatrix, near_null: &NearNullSpace, threads: usize) -> Result<Self, Error> {
         match Self::with_precision(matrix, near_null, threads, Precision::Single) {
             Err(Error::NotConvex { .. }) => Self::with_precision(matrix, near_null, threads, Precision::Double),
@@ -106,8 +106,8 @@ impl Multigrid {
         }
     }
 
-    /// The hierarchy with nothing moving along `directions`, orthonormal vectors of few dofs each; `last` is a face of the
-    /// same hierarchy that may be near.
+    /// The hierarchy if nothing moves along `directions`, orthonormal vectors of few dofs each; `last` is a face of the same
+    /// hierarchy that may be close.
     ///
     /// # Errors
     /// As [`Multigrid::new`].
@@ -127,7 +127,7 @@ impl Multigrid {
         Ok(Face { levels: levels.map_err(located)? })
     }
 
-    /// Threads that it works with.
+    /// Number of threads.
     pub fn threads(&self) -> usize {
         match &self.levels {
             Levels::Single(hierarchy) => hierarchy.threads,
@@ -143,7 +143,7 @@ impl Multigrid {
         }
     }
 
-    /// Bytes that it holds.
+    /// Bytes of memory that it holds.
     pub fn bytes(&self) -> usize {
         match &self.levels {
             Levels::Single(hierarchy) => hierarchy.bytes(),
@@ -160,7 +160,7 @@ impl Multigrid {
     }
 }
 
-/// A hierarchy in a face: one cycle stands for the inverse of the matrix there.
+/// A hierarchy in a face: one cycle approximates the inverse of the matrix there.
 #[derive(Debug)]
 pub struct Face<'a> {
     levels: LevelsInFace<'a>,
@@ -191,7 +191,7 @@ impl Face<'_> {
     }
 }
 
-/// Single precision has a small range: the exponent that makes b of order one.
+/// The exponent that makes b of order one, because single precision has a small range.
 fn to_order_one(b: &[f64]) -> i32 {
     -exponent(largest(b))
 }

@@ -1,16 +1,16 @@
-//! Displacements that cost next to no energy: what a hierarchy must not lose on its way down.
+//! Displacements of almost no energy, which a hierarchy must represent on every level.
 
 use super::nodes::Nodes;
 use crate::error::Error;
 use crate::qp::linear::{SymmetricMatrix, dot, largest};
 
-/// A vector of which less than this is left after those before it are taken off follows from them.
+/// A vector follows from those before it if less than this share of its length is left after their components are removed.
 const DEPENDENT_VECTOR: f64 = 1e-8;
 
 /// The near-null space of a stiffness: for a body its rigid-body modes, for a scalar problem the constants.
 ///
-/// One vector for each mode, one entry per free dof, linearly independent. Bodies that share no dof are carried by the
-/// same vectors, as rigid-body modes of all space.
+/// One vector for each mode, one entry per free dof, linearly independent. Bodies that share no dof can share the same vectors,
+/// such as the rigid-body modes of all space.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NearNullSpace {
     vectors: Vec<Vec<f64>>,
@@ -51,15 +51,15 @@ impl NearNullSpace {
         }
     }
 
-    /// From vectors that are known to be finite; one that follows from others, as a mode of which supports leave nothing,
-    /// does no harm. `None` without vectors.
+    /// From vectors that are known to be finite; a vector that follows from others, such as a mode that supports suppress, does
+    /// no harm. `None` without vectors.
     pub(crate) fn of_modes(vectors: Vec<Vec<f64>>) -> Option<Self> {
         let dofs = vectors.first().map_or(0, Vec::len);
         (dofs > 0 && vectors.iter().all(|vector| vector.len() == dofs)).then_some(NearNullSpace { vectors })
     }
 
-    /// The rigid-body modes of nodes whose dofs are all free and follow each other: translations and rotations, as displacements
-    /// of [x_0, y_0, x_1, ...]. One vector of coordinates for each axis, 1 to 3, each as long as there are nodes.
+    /// The rigid-body modes of nodes with free dofs that follow each other: translations and rotations, as displacements of
+    /// [x_0, y_0, x_1, ...]. One vector of coordinates for each axis, 1 to 3; its length is the number of nodes.
     ///
     /// # Errors
     /// As [`NearNullSpace::new`]; [`Error::Setting`] for another number of axes, [`Error::Length`] for axes that do not fit each
@@ -76,7 +76,7 @@ impl NearNullSpace {
         Self::new(modes(axes), dimension * nodes)
     }
 
-    /// The constants: one vector for each of the dofs that a node has, in their order, by the pattern of `matrix` alone.
+    /// The constants: one vector for each dof of a node, in their order, by the pattern of `matrix` alone.
     ///
     /// # Errors
     /// [`Error::Setting`] for a matrix without dofs.

@@ -5,11 +5,11 @@ use super::super::{SymmetricMatrix, exponent, ldexp};
 use super::blocks::BlockMatrix;
 use super::real::Real;
 
-/// Most dofs of a node; where more have the same neighbours, they are taken for those of several nodes.
+/// Largest number of dofs of a node; if more have the same neighbours, they count as dofs of several nodes.
 const MOST_DOFS: usize = 3;
 
-/// Which dofs belong to which node. Nodes with fewer dofs than others, as at a roller, are filled up with dofs that
-/// nothing touches.
+/// The node of each dof. Nodes with fewer dofs than others, such as nodes at a roller, are filled up with dofs that nothing
+/// touches.
 #[derive(Clone, Debug)]
 pub struct Nodes {
     /// Places of a node.
@@ -21,8 +21,8 @@ pub struct Nodes {
 }
 
 impl Nodes {
-    /// Groups dofs with the same neighbours, and writes the matrix, times `2^exponent` so that its diagonal is of order
-    /// one, in blocks of them.
+    /// Groups dofs with the same neighbours, and writes the matrix in blocks of these groups, times `2^exponent` so that its
+    /// diagonal is of order one.
     pub fn of<T: Real>(matrix: &SymmetricMatrix) -> (Self, BlockMatrix<T>, i32) {
         let graph = Quotient::of(matrix.lower());
         let groups = graph.count() as u32;
@@ -46,7 +46,7 @@ impl Nodes {
             groups_met.push(group);
             groups_met.extend_from_slice(graph.neighbours(group));
             groups_met.sort_unstable();
-            // Groups whose dofs do not follow each other meet from both sides.
+            // Groups with dofs that do not follow each other meet from both sides.
             groups_met.dedup();
             for _ in first_node[group as usize]..first_node[group as usize + 1] {
                 for &other in &groups_met {
@@ -65,12 +65,12 @@ impl Nodes {
         (nodes, blocks, shift)
     }
 
-    /// So many nodes of `size` dofs each, one after another.
+    /// `count` nodes of `size` dofs each, one after another.
     pub fn in_order(size: usize, count: usize) -> Self {
         Nodes { size, count, place: (0..(size * count) as u32).collect() }
     }
 
-    /// Dofs of a node, and which of them each dof is.
+    /// Number of dofs of a node, and the component of each dof.
     pub fn components(matrix: &SymmetricMatrix) -> (usize, Vec<usize>) {
         let graph = Quotient::of(matrix.lower());
         let mut components = vec![0; matrix.dim()];
@@ -81,8 +81,8 @@ impl Nodes {
         (size, components)
     }
 
-    /// Fills the blocks on and above the diagonal, row by row, then those below from them: both run through memory in
-    /// order. A pattern that the graph does not have costs quality, not correctness.
+    /// Fills the blocks on and above the diagonal, row by row, then copies those below from them: both run through memory in
+    /// order. Entries outside the pattern of the graph cost quality, not correctness.
     fn fill<T: Real>(&self, matrix: &SymmetricMatrix, shift: i32, blocks: &mut BlockMatrix<T>) {
         let size = self.size;
         let diagonal: Vec<usize> =
@@ -142,7 +142,7 @@ impl Nodes {
     }
 }
 
-/// Dofs of the nodes of a graph: what most groups have. Nodes inside an element may share a group.
+/// Dofs of the nodes of a graph: the number in most groups. Nodes inside an element may share a group.
 fn usual_dofs(graph: &Quotient) -> usize {
     let mut with = [0_usize; MOST_DOFS + 1];
     for group in 0..graph.count() as u32 {

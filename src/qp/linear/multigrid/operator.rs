@@ -1,4 +1,4 @@
-//! The matrix of a level, in all dofs or in a face of them.
+//! The matrix of a level, in all dofs or in a face.
 
 use std::ops::Range;
 
@@ -6,13 +6,12 @@ use super::blocks::BlockMatrix;
 use super::real::Real;
 use super::threads::in_row_chunks;
 
-/// A matrix A less what a face changes: on the finest level the face is the range of I - Q, on coarser ones A becomes
-/// A - C.
+/// A matrix A minus the change by a face: on the finest level the face is the range of I - Q, on coarser ones A becomes A - C.
 #[derive(Clone, Copy, Debug)]
 pub struct Operator<'a, T> {
     /// A.
     pub matrix: &'a BlockMatrix<T>,
-    /// Q, the projection onto what is held.
+    /// Q, the projection onto the held directions.
     pub held: Option<&'a BlockMatrix<T>>,
     /// C.
     pub change: Option<&'a BlockMatrix<T>>,
@@ -40,7 +39,7 @@ impl<'a, T: Real> Operator<'a, T> {
         self.project(y);
     }
 
-    /// Takes off what is held.
+    /// Removes the held components.
     pub fn project(&self, y: &mut [T]) {
         if let Some(held) = self.held {
             held.subtract_from(y);
@@ -57,7 +56,7 @@ impl<'a, T: Real> Operator<'a, T> {
         self.in_chunks([y], |range, [y]| y.iter_mut().zip(&x[range]).for_each(|(y, &x)| *y -= x));
     }
 
-    /// Runs `work` on runs of unknowns, whole nodes each, with their parts of the vectors `ys`.
+    /// Runs `work` on runs of unknowns, whole nodes each, with the matching parts of the vectors `ys`.
     pub fn in_chunks<const N: usize>(&self, ys: [&mut [T]; N], work: impl Fn(Range<usize>, [&mut [T]; N]) + Sync) {
         let height = self.matrix.height;
         in_row_chunks(&self.matrix.starts, height, ys, self.threads, |rows, parts| {

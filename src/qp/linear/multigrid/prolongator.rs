@@ -4,8 +4,8 @@ use super::blocks::BlockMatrix;
 use super::real::Real;
 use super::threads::in_block_chunks;
 
-/// A near-null vector of which less than this is left within an aggregate, after those before it are taken off, is no
-/// mode of its own there: two nodes do not turn about the line through them.
+/// A near-null vector is no separate mode within an aggregate if less than this share of its length there is left after those
+/// before it are removed: two nodes do not turn about the line through them.
 const DEPENDENT_IN_AGGREGATE: f64 = 1e-8;
 
 /// The near-null space on a level: `count` values for each place, place by place.
@@ -17,8 +17,8 @@ pub struct Candidates {
     pub values: Vec<f64>,
 }
 
-/// The tentative prolongator, whose columns are the vectors of `fine` within each aggregate, made orthonormal, and the
-/// near-null space in its columns. `size` is the number of places of a node.
+/// The tentative prolongator and the near-null space in its columns. The columns are the vectors of `fine` within each
+/// aggregate, made orthonormal. `size` is the number of places of a node.
 ///
 /// Columns that follow from others stay empty.
 pub fn tentative<T: Real>(
@@ -58,7 +58,7 @@ pub fn tentative<T: Real>(
     (BlockMatrix { height: size, width: count, columns: aggregates, starts, indices, values }, coarse)
 }
 
-/// Q R of the rows of `local`, `count` values each, in place: twice modified Gram-Schmidt. `triangle` is R, row by row.
+/// Q R of the rows of `local`, `count` values each, in place: modified Gram-Schmidt, done twice. `triangle` is R, row by row.
 fn orthonormalise(local: &mut [f64], count: usize, triangle: &mut [f64]) {
     for column in 0..count {
         let length = |local: &[f64]| local.iter().skip(column).step_by(count).map(|v| v * v).sum::<f64>().sqrt();
@@ -77,7 +77,7 @@ fn orthonormalise(local: &mut [f64], count: usize, triangle: &mut [f64]) {
     }
 }
 
-/// `T - step D^-1 (A T)` from T and `moved` = A T, whose pattern holds that of T; `inverse` holds the blocks of D^-1.
+/// `T - step D^-1 (A T)` from T and `moved` = A T, with a pattern that contains that of T; `inverse` holds the blocks of D^-1.
 pub fn smoothed<T: Real>(
     tentative: &BlockMatrix<T>,
     mut moved: BlockMatrix<T>,

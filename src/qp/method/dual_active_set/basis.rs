@@ -1,7 +1,7 @@
 //! The orthonormal basis of the closed rows: `C_A' = Q R`, updated when a row closes or opens.
 //!
-//! A row that closes is orthogonalised against Q until it stays the same; a row that opens is taken out by plane
-//! rotations. Both cost `O(n k)` for k closed rows.
+//! A row that closes is orthogonalised against Q until it stays the same; a row that opens is removed by plane rotations. Both
+//! cost `O(n k)` for k closed rows.
 //!
 //! # Source
 //! J. W. Daniel, W. B. Gragg, L. Kaufman, G. W. Stewart, 1976, "Reorthogonalization and stable algorithms for updating
@@ -9,14 +9,14 @@
 
 use crate::qp::linear::{UpperTriangle, dot, largest, norm, subtract, turned};
 
-/// What is left of a row below this share of it, times the size of its weights, is rounding: the row depends on the
-/// closed ones. Any value between 1e-15 and 1e-5 gives the same sets on several thousand random problems.
+/// A row depends on the closed ones if its remainder is below this share of the row, times the size of its weights: the
+/// remainder is then rounding. Any value between 1e-15 and 1e-5 gives the same sets on several thousand random problems.
 pub(super) const DEPENDENT_ROW: f64 = 64.0 * f64::EPSILON;
 
 /// A remainder that keeps this share of its length is orthogonal to Q to working precision.
 const ORTHOGONAL_SHARE: f64 = 0.5;
 
-/// Orthogonalisations of one row: two suffice unless the row depends on the others.
+/// Largest number of orthogonalisations of one row: two suffice unless the row depends on the others.
 const MOST_TURNS: usize = 3;
 
 /// The factors Q (n x k) and R (k x k) of the closed rows, in the order in which they closed.
@@ -29,13 +29,13 @@ pub(super) struct Basis {
     triangle: UpperTriangle,
 }
 
-/// A row c beside a basis: `c = Q along + across`.
+/// A row c split by a basis: `c = Q along + across`.
 #[derive(Clone, Debug)]
 pub(super) struct Split {
     along: Vec<f64>,
-    /// The part that no closed row has, length n.
+    /// The component orthogonal to the closed rows, length n.
     pub across: Vec<f64>,
-    /// The weights r of the closed rows for which `C_A' r` is the rest.
+    /// The weights r of the closed rows that give the rest as `C_A' r`.
     pub weights: Vec<f64>,
     /// `true` if `across` is rounding.
     pub depends: bool,
@@ -89,8 +89,8 @@ impl Basis {
         self.directions.pop();
     }
 
-    /// The point w (length n) nearest to `target` where each closed row has the value `values`, and the multipliers y of
-    /// the closed rows for which `w = target - C_A' y`.
+    /// The point w (length n) nearest to `target` at which each closed row has its value in `values`, and the multipliers y of
+    /// the closed rows with `w = target - C_A' y`.
     pub fn nearest(&self, target: &[f64], values: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let mut excess = self.along(target);
         let wanted = self.triangle.solve_lower(values.to_vec());

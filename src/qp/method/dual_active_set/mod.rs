@@ -1,9 +1,8 @@
-//! The dual active-set method for strictly convex problems: the last resort, slow and hard to mislead.
+//! The dual active-set method for strictly convex problems: the last resort, slow and robust.
 //!
-//! It starts from the free point and closes the row that is violated most, again and again. A row closes by a step in
-//! its pressure; closed rows whose pressure comes to an end on the way open. Every set on the way is one of independent
-//! rows that all push, so that rows which are equal, dependent, or nearly parallel in energy do no harm, and the dual
-//! energy grows from set to set.
+//! It starts from the free point and repeatedly closes the row that is violated most. A row closes by a step in its pressure;
+//! closed rows with a pressure that falls to zero in the step open. In every set the rows are independent and all push, so that
+//! equal or dependent rows, and rows that are nearly parallel in energy, do no harm, and the dual energy grows from set to set.
 //!
 //! ```text
 //! base (u, y) = 0
@@ -12,8 +11,8 @@
 //! until all rows are met, by their accurate distances
 //! ```
 //!
-//! A semidefinite K is made definite by a proximal term, which the corrections and further passes, being about the last
-//! answer, take out again.
+//! A semidefinite K is made definite by a proximal term. The corrections and further passes remove it again, because they start
+//! from the last answer.
 //!
 //! # Source
 //! D. Goldfarb and A. Idnani, 1983, "A numerically stable dual method for solving strictly convex quadratic programs",
@@ -33,29 +32,30 @@ use basis::Basis;
 use pass::{Ending, Pass, Pressures};
 use polyhedron::Polyhedron;
 
-/// Passes: the second mends what the rounding of the first hides where dofs are of very different scale.
+/// Largest number of passes: the second corrects errors hidden by the rounding of the first if dofs are of very different
+/// scale.
 const MOST_PASSES: usize = 10;
 
-/// Corrections of one set in any case. The first gains all digits but the last, except in parts that are so soft that their
-/// energy is below the rounding of the others.
+/// Least number of corrections of one set. The first gains all digits except the last, unless a part is so soft that its energy
+/// is below the rounding of the others.
 const CORRECTIONS: usize = 3;
 
-/// Most corrections of one set: a proximal term may need more.
+/// Largest number of corrections of one set: a proximal term may need more.
 const MOST_CORRECTIONS: usize = 30;
 
-/// A correction is worth another where it is below this share of the one before.
+/// Another correction is worth its time if this one is below this share of the one before.
 const SHRINKS: f64 = 0.5;
 
-/// A change below this share of the free point is nothing, even where the answer is zero.
+/// A change below this share of the free point is negligible, even if the answer is zero.
 const NO_CHANGE: f64 = f64::EPSILON * f64::EPSILON;
 
-/// A set whose last correction is above this share of the answer holds no answer.
+/// A set with a last correction above this share of the answer has not converged.
 const CONVERGED: f64 = 1e-10;
 
-/// Units in the last place of its terms to which a row is met.
+/// Rows are met to this number of units in the last place of their terms.
 const ROW_MET: f64 = 4.0 * f64::EPSILON;
 
-/// The dual active-set method on a scaled problem, whose polyhedron it has factorised.
+/// The dual active-set method on a scaled problem, with its factorised polyhedron.
 pub struct DualActiveSet<'a> {
     scaled: &'a ScaledProblem<'a>,
     polyhedron: Polyhedron,
@@ -65,7 +65,7 @@ impl<'a> DualActiveSet<'a> {
     /// Factorises the problem; `None` if that fails or the problem is too large for a dense basis of its rows.
     ///
     /// # Errors
-    /// [`Error::Numerical`] for want of memory.
+    /// [`Error::Numerical`] for lack of memory.
     pub fn of(scaled: &'a ScaledProblem<'a>) -> Result<Option<Self>, Error> {
         Ok(Polyhedron::of(scaled)?.map(|polyhedron| DualActiveSet { scaled, polyhedron }))
     }
@@ -74,11 +74,11 @@ impl<'a> DualActiveSet<'a> {
 impl Solver for DualActiveSet<'_> {
     /// Solves the problem; it always starts from the free point.
     ///
-    /// The answer is not settled if the method was cut short or its corrections do not converge, for example if rows and
-    /// stiffness do not hold the body: it makes no claim about that.
+    /// The answer is not settled if the method was cut short or if its corrections do not converge, for example if rows and
+    /// stiffness do not hold the body: the method makes no claim about that.
     ///
     /// # Errors
-    /// [`Error::Infeasible`] with verified weights, [`Error::Numerical`] for want of memory.
+    /// [`Error::Infeasible`] with verified weights, [`Error::Numerical`] for lack of memory.
     fn solve(&self, _: Start) -> Result<Outcome, Error> {
         let (dofs, rows) = (self.scaled.problem.dofs(), self.scaled.problem.rows());
         let mut search = Search {
@@ -98,7 +98,7 @@ impl Solver for DualActiveSet<'_> {
             let violated = search.violates();
             settled = ending == Ending::Met && converged && !violated;
             let pulls = search.pressures.iter().any(|&pressure| pressure < 0.0);
-            // A set that comes back will do so for ever.
+            // A set that returns once would return in every further pass.
             if settled && !pulls || self.scaled.watch().is_over() || !seen.insert(search.contact_set()) {
                 break;
             }
@@ -116,8 +116,8 @@ struct Search<'a> {
     displacement: Vec<f64>,
     /// `-lambda` of all rows.
     pressures: Vec<f64>,
-    /// What the pressures of closed rows have beyond double precision: large pressures that cancel on a soft dof would leave
-    /// more than all other forces there.
+    /// The parts of the pressures of closed rows beyond double precision: if large pressures cancel on a soft dof, their
+    /// rounding would exceed all other forces there.
     rests: Vec<f64>,
     /// L' u.
     point: Vec<f64>,
@@ -131,13 +131,13 @@ impl Search<'_> {
         closed
     }
 
-    /// What is out of balance, `L^-1 (f - B'y - K u)`, and the distances of the rows, both from accurate sums.
+    /// The imbalance `L^-1 (f - B'y - K u)`, and the distances of the rows, both from accurate sums.
     fn residuals(&self) -> (Vec<f64>, Vec<f64>) {
         let imbalance = self.polyhedron.imbalance(&self.displacement, &self.pressures, &self.rests);
         (self.polyhedron.of_force(&imbalance), self.polyhedron.distances(&self.displacement))
     }
 
-    /// One pass from the answer so far. The basis comes from the data again, free of what its updates have lost.
+    /// One pass from the answer so far. The basis is computed from the data again, without the errors of its updates.
     fn pass(&mut self, scaled: &ScaledProblem) -> Result<Ending, Error> {
         let residuals = self.residuals();
         let base = norm(&self.point);
@@ -157,13 +157,13 @@ impl Search<'_> {
         self.displacement.iter_mut().zip(&moved).for_each(|(u, moved)| *u += moved);
     }
 
-    /// The change that balances the forces with the closed rows at their gaps, and that of their pressures.
+    /// The change of the point that balances the forces with the closed rows at their gaps, and the change of their pressures.
     fn correction(&self, imbalance: &[f64], distances: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let on_closed: Vec<f64> = self.basis.rows().iter().map(|&row| distances[row]).collect();
         self.basis.nearest(imbalance, &on_closed)
     }
 
-    /// Corrects the answer on its set until that gains nothing more. Returns `true` if it converges.
+    /// Corrects the answer on its set until another correction gains nothing. Returns `true` if it converges.
     fn correct(&mut self) -> bool {
         let mut last = f64::INFINITY;
         for turn in 0..MOST_CORRECTIONS {
@@ -187,8 +187,8 @@ impl Search<'_> {
         last <= CONVERGED * norm(&self.point)
     }
 
-    /// Returns `true` if an open row is violated beyond rounding. A violation that the rounding of the closed rows explains
-    /// does not count: otherwise two rows that differ by their scale only would be exchanged for ever.
+    /// Returns `true` if an open row is violated beyond rounding. A violation within the rounding of the closed rows does not
+    /// count: otherwise two rows that differ by their scale only would be exchanged without end.
     fn violates(&self) -> bool {
         let problem = &self.polyhedron.problem;
         let distances = self.polyhedron.distances(&self.displacement);

@@ -9,34 +9,34 @@ use crate::qp::linear::{dot, largest, norm};
 use crate::solution::{ContactSet, Iteration};
 use crate::watch::Watch;
 
-/// Units in the last place of the terms below which a violation is rounding. The pass that follows, with accurate
-/// distances, makes any value up to 1e-4 give the same sets.
+/// A violation below this number of units in the last place of the terms is rounding. The next pass, with accurate distances,
+/// makes any value up to 1e-4 give the same sets.
 const VIOLATED: f64 = 16.0 * f64::EPSILON;
 
-/// A contradiction counts where a point that meets the rows would lie this many times farther off than the rows and the
-/// free point do. Rows that depend on each other but for the rounding of their entries are met 1e16 times as far.
+/// A contradiction counts if a point that meets the rows would be this many times farther away than the rows and the free point
+/// are. Rows that depend on each other except for the rounding of their entries are met 1e16 times as far away.
 const FAR_MEETING: f64 = 1e22;
 
-/// Corrected weights below this share of the largest are zero but for rounding.
+/// Corrected weights below this share of the largest are zero except for rounding.
 const NO_WEIGHT: f64 = 1e-24;
 
-/// Corrections of the weights: the first gains all digits but the last, the second and the third as many again.
+/// Corrections of the weights: the first gains all digits except the last, the second and the third as many again.
 const WEIGHT_CORRECTIONS: usize = 3;
 
-/// How a pass ended.
+/// The way in which a pass ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ending {
     /// No row is violated beyond rounding.
     Met,
-    /// It was cut short, or came back to a set where rounding decides.
+    /// It was cut short, or it returned to a set because rounding decides.
     Stopped,
 }
 
-/// The pressures y = -lambda of all rows, scaled, as sums of two; none on open rows.
+/// The pressures y = -lambda of all rows, scaled, as sums of two numbers; zero on open rows.
 pub(super) struct Pressures<'a> {
     /// Positive on closed rows.
     pub rounded: &'a mut [f64],
-    /// What pressures of the base have beyond double precision: a pass carries it along as it is.
+    /// The parts of the pressures of the base beyond double precision: a pass does not change them.
     pub rests: &'a mut [f64],
 }
 
@@ -47,15 +47,15 @@ pub(super) struct Pass<'a> {
     pub basis: &'a mut Basis,
     pub pressures: Pressures<'a>,
     pub history: &'a mut Vec<Iteration>,
-    /// The pressures of the base that the target has been relieved of.
+    /// The pressures of the base, which the target does not contain.
     carried: Vec<f64>,
-    /// The free point, less the closed rows under their pressures at the base.
+    /// The free point, minus the closed rows under their pressures at the base.
     target: Vec<f64>,
     /// Distances of the base from all rows.
     distances: Vec<f64>,
     /// The change of the point.
     pub point: Vec<f64>,
-    /// Length of the base and of the change, for what is far.
+    /// Length of the base and of the change, the scale of distances.
     base: f64,
     /// Rows that depend on closed ones and cannot be met, but do not prove a contradiction.
     given_up: HashSet<usize>,
@@ -103,7 +103,7 @@ impl<'a> Pass<'a> {
         Ok(Ending::Met)
     }
 
-    /// Opens rows until the closed ones push, which is where the method may start.
+    /// Opens rows until all closed ones push: the method needs such a set to start.
     fn open_pulling(&mut self) {
         loop {
             self.balance();
@@ -138,7 +138,7 @@ impl<'a> Pass<'a> {
         }
     }
 
-    /// The row that is violated most, and by how much.
+    /// The row that is violated most, and its violation.
     fn most_violated(&self) -> Option<(usize, f64)> {
         let moved = self.polyhedron.problem.contact().mul(&self.polyhedron.displacement(&self.point));
         let size = norm(&self.point) + norm(&self.target);
@@ -150,7 +150,7 @@ impl<'a> Pass<'a> {
         (0..moved.len()).filter_map(violated).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// Closes `row`, opening others on the way whose pressure comes to an end. `false` where the row cannot be met.
+    /// Closes `row`; opens other rows if their pressure falls to zero in the step. Returns `false` if the row cannot be met.
     fn close(&mut self, row: usize, mut violation: f64) -> Result<bool, Error> {
         let before = self.basis.rows().to_vec();
         let direction = self.polyhedron.row(row);
@@ -178,7 +178,7 @@ impl<'a> Pass<'a> {
         }
     }
 
-    /// How far the new pressure may grow until that of a closed row comes to an end, and the place of that row.
+    /// The largest step of the new pressure before the pressure of a closed row falls to zero, and the place of that row.
     fn blocking(&self, weights: &[f64]) -> (f64, Option<usize>) {
         let rounding = DEPENDENT_ROW * (1.0 + largest(weights));
         let mut first = (f64::INFINITY, None);
@@ -191,7 +191,7 @@ impl<'a> Pass<'a> {
         first
     }
 
-    /// Goes back to a set that was closed before.
+    /// Returns to a set that was closed before.
     fn restore(&mut self, rows: &[usize]) {
         self.pressures.rounded.fill(0.0);
         *self.basis = of_rows(self.polyhedron, rows);
@@ -199,9 +199,9 @@ impl<'a> Pass<'a> {
     }
 
     /// Checks that `row` does not contradict the closed rows. It does if, under the weights y (1 for it, -r for them), the rows
-    /// overlap, `-g'y > 0`, and their combination, `delta = |L^-1 B'y|`, is so small that a point which meets all of them is
-    /// absurdly far away. Rows that depend on each other but for the rounding of their entries are met far away, and do not
-    /// contradict each other: weights in twice the working precision tell them from rows that do.
+    /// overlap, `-g'y > 0`, and their combination, `delta = |L^-1 B'y|`, is so small that a point which meets all rows is
+    /// absurdly far away. Rows that depend on each other except for the rounding of their entries are met far away, and do not
+    /// contradict each other: weights in twice the working precision distinguish the two cases.
     ///
     /// # Errors
     /// [`Error::Infeasible`] if it does.

@@ -1,8 +1,8 @@
 //! The problem as the least distance to a polyhedron.
 //!
 //! With K = L L' and w = L' u the problem is to find the point of `C w <= g`, `C = B L^-T`, nearest to `h = L^-1 f`.
-//! Dofs are scaled by `diag(K)^-1/2` and rows by `1 / |L^-1 b|`, both to powers of two, so that lengths are energies and
-//! the rows are about as long as each other.
+//! Dofs are scaled by `diag(K)^-1/2` and rows by `1 / |L^-1 b|`, both rounded to powers of two, so that lengths are energies
+//! and the rows have about the same length.
 
 use std::cell::Cell;
 
@@ -14,21 +14,21 @@ use crate::qp::method::scaled::{LAST_RESORT, Outcome, ScaledProblem};
 use crate::qp::problem::ContactProblem;
 use crate::solution::{ContactSet, Iteration};
 
-/// Weight of the proximal term `1/2 weight |u - u_k|^2` that makes a semidefinite K, with a diagonal between 1 and 4,
-/// definite. With 1e-6 as many problems are solved, with 1 about half of them.
+/// Weight of the proximal term `1/2 weight |u - u_k|^2` that makes a semidefinite K, with a diagonal between 1 and 4, definite.
+/// With 1e-6 the same number of problems is solved, with 1 about half.
 const PROXIMAL: f64 = 1e-9;
 
 /// Multiplications that the method may cost: about a minute on one core.
 const MOST_WORK: f64 = 5e10;
 
-/// Values of an orthonormal basis that it may keep: 400 MB.
+/// Values of an orthonormal basis that may be kept: 400 MB.
 const MOST_VALUES: usize = 50_000_000;
 
 /// The scaled problem with the factor L of its stiffness.
 #[derive(Debug)]
 pub(super) struct Polyhedron {
     pub problem: ContactProblem,
-    /// B', whose columns are the rows.
+    /// B', with the rows as columns.
     by_row: SparseMatrix,
     /// L of K, or of K with the proximal term.
     factor: Cholesky,
@@ -43,10 +43,10 @@ pub(super) struct Polyhedron {
 }
 
 impl Polyhedron {
-    /// That of a problem; `None` where its factorisation fails or would take too many sweeps.
+    /// The polyhedron of a problem; `None` if its factorisation fails or would take too many sweeps.
     ///
     /// # Errors
-    /// [`Error::Numerical`] for want of memory, [`Error::NotFinite`] where data leave the range of double precision.
+    /// [`Error::Numerical`] for lack of memory, [`Error::NotFinite`] if data leave the range of double precision.
     pub fn of(scaled: &ScaledProblem) -> Result<Option<Self>, Error> {
         let of = scaled.problem;
         let equilibration = Equilibration::of(of.stiffness());
@@ -92,7 +92,7 @@ impl Polyhedron {
         Ok(Some(Polyhedron { problem, by_row, factor, lengths, reach, equilibration, scales, work }))
     }
 
-    /// Notes the multiplications of a step with `closed` rows: `false` once there were too many.
+    /// Adds the multiplications of a step with `closed` rows: `false` once there were too many.
     pub fn affords(&self, closed: usize) -> bool {
         let dofs = self.problem.dofs();
         self.work.set(self.work.get() + (4 * self.factor.entries() + 12 * dofs * closed) as f64);
@@ -116,7 +116,7 @@ impl Polyhedron {
         self.factor.backward(point.to_vec())
     }
 
-    /// `f - B'y - K u` of the pressures `y = pressures + rests`, rounded once.
+    /// `f - B'y - K u` for the pressures `y = pressures + rests`, rounded once.
     pub fn imbalance(&self, displacement: &[f64], pressures: &[f64], rests: &[f64]) -> Vec<f64> {
         let mut sums = Accumulator::new(self.problem.load());
         let back: Vec<f64> = displacement.iter().map(|u| -u).collect();
@@ -137,7 +137,7 @@ impl Polyhedron {
         sums.into_sums()
     }
 
-    /// B'y of the rows' weights `y = weights + rest`, rounded once.
+    /// B'y for the rows' weights `y = weights + rest`, rounded once.
     pub fn force(&self, weights: &[f64], rest: &[f64]) -> Vec<f64> {
         let mut sums = Accumulator::new(&vec![0.0; self.problem.dofs()]);
         for (row, dof, b) in self.problem.contact().triplets() {
@@ -147,16 +147,16 @@ impl Polyhedron {
         sums.into_sums()
     }
 
-    /// That the rows `rows` contradict each other under `weights`, in the units of the problem that was scaled.
+    /// The error that the rows `rows` contradict each other under `weights`, in the units of the unscaled problem.
     pub fn contradiction(&self, rows: Vec<usize>, weights: &[f64]) -> Error {
         let weights: Vec<f64> =
             rows.iter().zip(weights).map(|(&row, &weight)| ldexp(weight, self.scales[row])).collect();
         let reason = format!("no displacement satisfies all contact rows; those that contradict are {rows:?}");
-        // In the unit of the scaled gaps; whoever expands it computes it again.
+        // In the unit of the scaled gaps; the expansion of the error computes it again.
         Error::Infeasible { reason, rows, weights, overlap: 0.0 }
     }
 
-    /// The settled answer in the units of the problem that was scaled; `pressures` are `-lambda`.
+    /// The settled answer in the units of the unscaled problem; `pressures` are `-lambda`.
     pub fn expand(
         &self,
         displacement: &[f64],

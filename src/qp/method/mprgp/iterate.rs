@@ -1,4 +1,4 @@
-//! What MPRGP has in hand, and the steps that it takes.
+//! The state of MPRGP, and the steps that it takes.
 
 use crate::error::Error;
 use crate::qp::linear::multigrid::{Direction, Face};
@@ -12,23 +12,23 @@ use crate::solution::Iteration;
 /// Rows that are open at the start although nothing has moved keep this share of their depth as distance.
 const INSIDE: f64 = 1e-3;
 
-/// Energy of a direction below this share of what its unknowns would cost one by one is rounding of zero.
+/// The energy of a direction is rounding of zero below this share of the energy of its unknowns one by one.
 const NO_ENERGY: f64 = 1e-13;
 
-/// Bounds that are met within this share of the first are met with it.
+/// Bounds within this share of the distance to the first bound are met together with it.
 const FIRST: f64 = 1e-12;
 
-/// Where an unknown with bounds is.
+/// The place of an unknown with bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum At {
     Free,
     Lower,
     Upper,
-    /// Both bounds are one.
+    /// Both bounds are equal.
     Fixed,
 }
 
-/// The unknowns, turned, their gradient, and which of them are at bounds.
+/// The unknowns after the reflections, their gradient, and the bounds that they are at.
 pub struct Iterate<'a> {
     pub problem: &'a ContactProblem,
     pub bounds: &'a Bounds,
@@ -41,14 +41,14 @@ pub struct Iterate<'a> {
     threads: usize,
 }
 
-/// A direction with its product.
+/// A direction p with its product K p.
 pub struct Conjugate {
     pub p: Vec<f64>,
     moved: Vec<f64>,
     pub energy: f64,
     /// Free gradient along it.
     slope: f64,
-    /// Does it cost nothing and meet no bound?
+    /// `true` if it has no energy and meets no bound.
     pub is_free: bool,
 }
 
@@ -61,7 +61,7 @@ impl Conjugate {
         }
         let slope = dot(gradient, &p);
         if slope < 0.0 {
-            // Rounding of the cycle may turn a direction uphill.
+            // Rounding of the cycle may make a direction point uphill.
             p.iter_mut().for_each(|p| *p = -*p);
         }
         let slope = slope.abs();
@@ -100,7 +100,7 @@ impl<'a> Iterate<'a> {
         iterate
     }
 
-    /// Is `p'Kp` rounding of zero?
+    /// Returns `true` if `p'Kp` is rounding of zero.
     pub fn is_rounding(&self, p: &[f64], energy: f64) -> bool {
         let scale: f64 = p.iter().zip(&self.diagonal).map(|(p, d)| d * p * p).sum();
         energy.abs() <= NO_ENERGY * scale || !energy.is_finite()
@@ -132,7 +132,7 @@ impl<'a> Iterate<'a> {
         self.gradient = rest;
     }
 
-    /// Moves the unknowns into their bounds, and sees which are at them.
+    /// Moves the unknowns into their bounds, and records which are at a bound.
     fn project(&mut self) {
         for (bound, at) in self.bounds.bounds().iter().zip(&mut self.at) {
             let value = &mut self.x[bound.unknown];
@@ -146,7 +146,7 @@ impl<'a> Iterate<'a> {
         }
     }
 
-    /// The gradient of a bound that is closed, as far as the bound takes it.
+    /// The part of the gradient at a closed bound that the bound carries.
     pub fn held_gradient(&self, index: usize) -> f64 {
         let gradient = self.gradient[self.bounds.bounds()[index].unknown];
         match self.at[index] {
@@ -157,7 +157,7 @@ impl<'a> Iterate<'a> {
         }
     }
 
-    /// The gradient of a bound that is closed, as far as the unknown wants to leave it.
+    /// The part of the gradient at a closed bound that would open it.
     fn chopped_gradient(&self, index: usize) -> f64 {
         match self.at[index] {
             At::Free => 0.0,
@@ -188,7 +188,7 @@ impl<'a> Iterate<'a> {
         if wrong == 0.0 { 0.0 } else { wrong / held.max(largest(&self.load)) }
     }
 
-    /// Does the chopped gradient outweigh the free one?
+    /// Returns `true` if the chopped gradient is larger than the free one.
     pub fn is_disproportionate(&self) -> bool {
         let weighted = |value: f64, unknown: usize| value * value / self.diagonal[unknown];
         let free: f64 = self.free_gradient().iter().enumerate().map(|(unknown, &g)| weighted(g, unknown)).sum();
@@ -196,7 +196,7 @@ impl<'a> Iterate<'a> {
         self.bounds.bounds().iter().enumerate().map(chopped).sum::<f64>() > free
     }
 
-    /// A step along the chopped gradient to the least energy, as far as the other bounds let it.
+    /// A step along the chopped gradient to the least energy, unless other bounds end it before.
     pub fn proportion(&mut self) {
         let mut direction = vec![0.0; self.x.len()];
         for (index, bound) in self.bounds.bounds().iter().enumerate() {
@@ -213,7 +213,7 @@ impl<'a> Iterate<'a> {
         self.gradient.iter_mut().zip(moved).for_each(|(g, m)| *g -= length * m);
     }
 
-    /// The longest t for which x - t d keeps within the bounds.
+    /// The largest t that keeps x - t d within the bounds.
     pub fn longest_step(&self, direction: &[f64]) -> f64 {
         let room = |bound: &Bound| {
             let (value, speed) = (self.x[bound.unknown], direction[bound.unknown]);
@@ -226,7 +226,8 @@ impl<'a> Iterate<'a> {
         self.bounds.bounds().iter().map(room).fold(f64::INFINITY, f64::min)
     }
 
-    /// The step of length `room`, which the first bounds end; rounding must not stop short of them, or it would for ever.
+    /// The step of length `room`, which the first bounds end. Their unknowns are set exactly to them; otherwise rounding could
+    /// leave them short of the bound in every iteration.
     fn step_to_bounds(&mut self, direction: &Conjugate, room: f64) {
         let meets = |bound: &Bound, x: &[f64]| {
             let (value, speed) = (x[bound.unknown], direction.p[bound.unknown]);
@@ -239,9 +240,9 @@ impl<'a> Iterate<'a> {
         self.project();
     }
 
-    /// The CG step, or if it would cross bounds, the expansion: its projection; if that raises the energy, the least energy on
-    /// the way there or the step to the first bound, whichever is lower, and a projected gradient step. Returns the direction
-    /// if the next one is conjugate to it.
+    /// The CG step or, if it would cross bounds, the expansion: its projection. If that raises the energy, the expansion is the
+    /// least energy on the way there or the step to the first bound, whichever is lower, and a projected gradient step. Returns
+    /// the direction if the next one is conjugate to it.
     pub fn advance(&mut self, direction: Conjugate) -> Option<Conjugate> {
         let length = direction.slope / direction.energy;
         let room = self.longest_step(&direction.p);
@@ -282,9 +283,9 @@ impl<'a> Iterate<'a> {
         None
     }
 
-    /// The share of the way from `x`, with its `gradient`, to the unknowns as they are that is to be gone, and by how much the
-    /// energy falls: all of the way if the energy at its end is lower, else that to the least energy; `None` if the energy rises
-    /// at once.
+    /// The share of the way from `x`, with its `gradient`, to the present unknowns that is to be taken, and the decrease of the
+    /// energy: the whole way if the energy at its end is lower, otherwise the way to the least energy; `None` if the energy
+    /// rises at once.
     fn least_energy_from(&self, x: &[f64], gradient: &[f64]) -> Option<(f64, f64)> {
         let (mut slope, mut curvature) = (0.0, 0.0);
         for ((new, old), (after, before)) in self.x.iter().zip(x).zip(self.gradient.iter().zip(gradient)) {
@@ -305,7 +306,7 @@ impl<'a> Iterate<'a> {
         sums.iter().zip(&weights).map(|(sum, weight)| sum * weight).fold(1.0, f64::max)
     }
 
-    /// What may not move, in the dofs of the problem.
+    /// The held directions, in the dofs of the problem.
     pub fn held(&self) -> Vec<Direction> {
         let closed = self.bounds.bounds().iter().zip(&self.at).filter(|entry| *entry.1 != At::Free);
         closed.map(|(bound, _)| self.bounds.direction(bound)).collect()
@@ -326,7 +327,7 @@ impl<'a> Iterate<'a> {
         step
     }
 
-    /// The set as it stands.
+    /// The present set, as an entry of the history.
     pub fn step(&self) -> Iteration {
         let (_, contact_set) = self.bounds.multipliers(|index| match self.at[index] {
             At::Free => 0.0,
@@ -336,7 +337,7 @@ impl<'a> Iterate<'a> {
         Iteration { contact_set, penalty: 0.0 }
     }
 
-    /// The direction is what shows that K is not positive on the face.
+    /// The error for a direction which shows that K is not positive on the face.
     pub fn negative_energy(&self, direction: Conjugate) -> Error {
         let Conjugate { mut p, energy, .. } = direction;
         self.bounds.turn_back(&mut p);

@@ -1,17 +1,17 @@
 //! MPRGP: modified proportioning with reduced gradient projections, preconditioned in the free face.
 //!
-//! Rows are turned into bounds by reflections. With the gradient g = K u - f, split into the free gradient, of unknowns
-//! that may move, and the chopped gradient, of those that want to leave their bound, an iteration is one of
+//! Rows are turned into bounds by reflections. The gradient g = K u - f is split into the free gradient, of unknowns that may
+//! move, and the chopped gradient, of those that want to leave their bound. An iteration is one of
 //!
 //! ```text
-//! proportioning   where the chopped gradient outweighs the free one: a step along it, which opens rows
+//! proportioning   if the chopped gradient is larger than the free one: a step along it, which opens rows
 //! CG step         along conjugate directions of the free face, one cycle of the hierarchy each
-//! expansion       where the CG step would cross bounds: its projection, which closes rows; should that raise the energy,
+//! expansion       if the CG step would cross bounds: its projection, which closes rows; if that raises the energy,
 //!                 the least energy on the way there or the step to the first bound, and a projected gradient step of
 //!                 fixed length
 //! ```
 //!
-//! The energy falls in every one of them. The hierarchy is built once, for K; a face is a small change of it.
+//! Each of these steps lowers the energy. The hierarchy is built once, for K; a face is a small change of the hierarchy.
 //!
 //! # Source
 //! Z. Dostál, *Optimal Quadratic Programming Algorithms*, Springer (2009), algorithm 5.8 and section 5.10.
@@ -29,41 +29,41 @@ use crate::watch::Watch;
 use iterate::{Conjugate, Iterate};
 use nested::nested_start;
 
-/// Iterations without a residual half as large as the best before, after which the loop has stagnated; those in which the
-/// face changes count only beyond one for each row.
+/// The loop has stagnated after this many iterations without a residual half as large as the best before; those that change the
+/// face count only beyond one for each row.
 const PATIENCE: usize = 60;
 
-/// Cycles on one face after which their rate tells how many all will take, and by how much that may be wrong.
+/// Cycles on one face after which their rate gives an estimate of all cycles, and the factor by which it may be wrong.
 const TRIAL: (usize, f64) = (16, 1.2);
 
-/// These cycles are at least one over this share of those that they are worth: conjugate gradients begin slowly on a stretched mesh,
-/// and little of the other way is lost by waiting. With that share left to go, an answer is near.
+/// At least the worth divided by this number is spent first: conjugate gradients begin slowly on a stretched mesh, and little
+/// is lost by waiting for the other way. If no more cycles than that are left to go, the answer is near.
 const SHARE: usize = 8;
 
-/// A residual in twice the precision that is above this share of the one before will not come down any more.
+/// If the residual in twice the precision is above this share of the previous one, it will not decrease any more.
 const NO_GAIN: f64 = 0.5;
 
-/// When the loop ends.
+/// The limits at which the loop ends.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits<'a> {
     /// Largest imbalance of forces and largest wrong-signed multiplier, relative to the largest force.
     pub tolerance: f64,
-    /// Most cycles of the hierarchy.
+    /// Largest number of cycles of the hierarchy.
     pub most_cycles: usize,
-    /// Cycles that the answer by another way is worth: the loop ends if its rate tells that clearly more are left, or after as many
-    /// unless few are left.
+    /// Cycles that the answer by another way is worth: the loop ends if its rate shows that clearly more are left, or after
+    /// this number unless few are left.
     pub worth: usize,
-    /// Whether it must end before, with what it has.
+    /// The watch that may end the loop before, with the answer so far.
     pub watch: &'a Watch,
 }
 
-/// MPRGP on a problem as it came, with the hierarchy of its stiffness.
+/// MPRGP on an unscaled problem, with the hierarchy of its stiffness.
 pub struct Mprgp<'a> {
     /// The problem.
     pub problem: &'a ContactProblem,
     /// The hierarchy.
     pub multigrid: &'a Multigrid,
-    /// When the loop ends.
+    /// The limits at which the loop ends.
     pub limits: Limits<'a>,
 }
 
@@ -75,11 +75,11 @@ impl Solver for Mprgp<'_> {
 
 /// Finds displacement, multipliers and contact set; `iterations` counts the cycles of the hierarchy.
 ///
-/// The loop is finite: it ends at the limits, where only rounding is left, or, as `-stagnated`, where 60 iterations together
-/// do not halve the residual; those that change the face count only beyond one for each row.
+/// The loop is finite. It ends at the limits, or if only rounding is left, or, as `-stagnated`, if 60 iterations together do
+/// not halve the residual; those that change the face count only beyond one for each row.
 ///
 /// # Errors
-/// [`Error::Numerical`] for rows that no turning makes bounds of, [`Error::NotConvex`] for a direction of negative energy
+/// [`Error::Numerical`] for rows that no reflections make bounds, [`Error::NotConvex`] for a direction of negative energy
 /// in a face, [`Error::Unbounded`] for a load that drives a mode which no row stops, [`Error::UnderHeld`] for a mode
 /// that the rows under pressure leave free.
 fn solve(problem: &ContactProblem, multigrid: &Multigrid, start: Start, limits: Limits) -> Result<Outcome, Error> {
@@ -131,7 +131,7 @@ fn solve(problem: &ContactProblem, multigrid: &Multigrid, start: Start, limits: 
     Ok(Outcome { displacement, multiplier, contact_set, iterations: steps.cycles, history, settled, variant })
 }
 
-/// The start from the second level, if there is one with the values of nodes.
+/// The start from the second level, if there is one with nodal values.
 fn nested(problem: &ContactProblem, bounds: &Bounds, multigrid: &Multigrid, limits: Limits) -> Option<Start> {
     let below = |problem: &ContactProblem, multigrid: &Multigrid, tolerance, most_cycles| {
         solve(problem, multigrid, Start::default(), Limits { tolerance, most_cycles, worth: usize::MAX, ..limits })
@@ -139,15 +139,15 @@ fn nested(problem: &ContactProblem, bounds: &Bounds, multigrid: &Multigrid, limi
     nested_start(problem, bounds, multigrid, below).map(Start::near)
 }
 
-/// How far the iteration has come.
+/// The progress of the iteration.
 struct Progress {
     /// Cycles before the last change of the face, and the residual then.
     on_face: (usize, f64),
     best: f64,
     since_best: usize,
-    /// Changes of the face since then.
+    /// Changes of the face since the best residual.
     changes: usize,
-    /// Was the gradient just computed from the unknowns, in twice the precision?
+    /// `true` if the gradient was just computed from the unknowns, in twice the precision.
     is_fresh: bool,
     last_checked: f64,
 }
@@ -173,7 +173,7 @@ impl Progress {
         }
     }
 
-    /// Returns `true` if the other way, which is worth so many cycles, is the shorter one from here.
+    /// Returns `true` if the other way, which is worth `limits.worth` cycles, is the shorter one from here.
     fn is_hopeless(&self, cycles: usize, limits: Limits) -> bool {
         let ((least, unsure), (before, first)) = (TRIAL, self.on_face);
         let gained = (first / self.best).ln();
@@ -186,8 +186,7 @@ impl Progress {
         (is_told && left > unsure * worth) || (cycles >= limits.worth && !is_near)
     }
 
-    /// Checks what the steps have carried along before it is believed. Returns `true` if rounding of the displacement is all
-    /// that is left.
+    /// Recomputes the gradient, which the steps have only updated. Returns `true` if only rounding of the displacement is left.
     fn has_settled(&mut self, iterate: &mut Iterate) -> bool {
         iterate.refresh_gradient_accurately();
         let checked = iterate.residual();
@@ -199,12 +198,12 @@ impl Progress {
     }
 }
 
-/// What the steps keep from one to the next.
+/// The data that the steps keep from one to the next.
 struct Steps<'a> {
     multigrid: &'a Multigrid,
     limits: Limits<'a>,
     face: Option<Face<'a>>,
-    /// Has the set of unknowns at bounds changed since the face was built?
+    /// `true` if the set of unknowns at bounds has changed since the face was built.
     is_old: bool,
     last: Option<Conjugate>,
     cycles: usize,

@@ -1,7 +1,7 @@
-//! A start from the second level of the hierarchy, where the same problem is solved with bounds that are means of its own.
+//! A start from the second level of the hierarchy: the same problem is solved there, with means as bounds.
 //!
-//! From zero, the first step that is cut off at the bounds leaves jumps whose energy grows as the mesh is refined: a fine
-//! mesh is then closed layer by layer. From the answer of the second level a few steps remain, on any mesh.
+//! From zero, the first step that the bounds cut off leaves jumps with an energy that grows as the mesh is refined: a fine mesh
+//! is then closed layer by layer. From the answer of the second level a few steps remain, on any mesh.
 //!
 //! # Source
 //! R. Kornhuber, *Monotone multigrid methods for elliptic variational inequalities I*, Numer. Math. 69 (1994) 167-184,
@@ -14,14 +14,14 @@ use crate::qp::method::Outcome;
 use crate::qp::method::bounds::Bounds;
 use crate::qp::problem::ContactProblem;
 
-/// Tolerance of the problem of the second level; its bounds are means already.
+/// Tolerance of the problem of the second level, which is only approximate because its bounds are means.
 const TOLERANCE: f64 = 1e-3;
 
-/// Cycles on the second level.
+/// Largest number of cycles on the second level.
 const MOST_CYCLES: usize = 40;
 
-/// The start for `problem` with `bounds` that are unknowns as they stand; `None` if the hierarchy has no second level with the
-/// values of nodes, or if `solve(problem, hierarchy, tolerance, cycles)` finds no answer there.
+/// The start for `problem` with `bounds` that are unknowns without reflections; `None` if the hierarchy has no second level
+/// with nodal values, or if `solve(problem, hierarchy, tolerance, cycles)` finds no answer there.
 pub fn nested_start(
     problem: &ContactProblem,
     bounds: &Bounds,

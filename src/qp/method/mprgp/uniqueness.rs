@@ -1,4 +1,4 @@
-//! Modes without energy. Without a factor the cycles must tell: they leave such a mode as it is, and nothing else.
+//! Modes without energy, found by cycles, without a factor: cycles leave such a mode unchanged, and nothing else.
 
 use super::iterate::{At, Iterate};
 use crate::error::Error;
@@ -8,17 +8,17 @@ use crate::qp::method::SIGN_TOLERANCE;
 use crate::qp::method::bounds::Bound;
 use crate::qp::method::holding::{FreeMode, PLAY, WORK_TOLERANCE};
 
-/// Cycles in which all modes that cost energy die away; where they have not, the body counts as held.
+/// Number of cycles in which all modes with energy are damped; if they are not, the body counts as held.
 const CYCLES: usize = 60;
 
-/// What is left of a mode that had only parts with energy.
+/// A mode is gone if less than this share is left: then it had only parts with energy.
 const GONE: f64 = 1e-8;
 
-/// Energy that falls by less than this factor in a cycle has come down to rounding.
+/// If the energy falls by less than this factor in a cycle, it is rounding.
 const LAST_FALL: f64 = 0.25;
 
 impl Iterate<'_> {
-    /// Do K and the rows under pressure hold every mode, or the open rows both ways without play?
+    /// Checks that K and the rows under pressure hold every mode, or that the open rows stop it both ways without play.
     ///
     /// # Errors
     /// [`Error::UnderHeld`] with a mode that changes neither force nor energy, and those of the face.
@@ -34,8 +34,8 @@ impl Iterate<'_> {
         }
     }
 
-    /// Does the load drive a mode without energy that no row stops? Asked of the rows that are closed, and of none: a
-    /// displacement that has run away closes any.
+    /// Checks that the load drives no mode without energy that no row stops. The check is done with the closed rows, and with
+    /// none, because a displacement that has run away may close any row.
     ///
     /// # Errors
     /// [`Error::Unbounded`] with that mode, and those of the face.
@@ -57,8 +57,8 @@ impl Iterate<'_> {
         Ok(())
     }
 
-    /// What cycles leave of `mode` where nothing moves that `is_held`: a mode without energy, largest entry one; `None`
-    /// where they leave nothing. Asked only where the coarsest matrix is singular to its precision.
+    /// The part of `mode` that cycles leave if everything that `is_held` is fixed: a mode without energy, largest entry one;
+    /// `None` if they leave nothing. Modes are looked for only if the coarsest matrix is singular to its precision.
     fn without_energy(
         &self,
         multigrid: &Multigrid,
@@ -77,7 +77,7 @@ impl Iterate<'_> {
         }
         let keep = |values: &mut [f64]| held.iter().for_each(|&index| values[bounds[index].unknown] = 0.0);
         keep(&mut mode);
-        // The smoothest part first: what a load of that form moves.
+        // Begins with the smoothest part: the displacement under a load of that form.
         mode = self.cycled(&face, &mode);
         keep(&mut mode);
         let whole = largest(&mode);
@@ -99,7 +99,7 @@ impl Iterate<'_> {
         Ok(None)
     }
 
-    /// Do open rows without play stop the mode one way and the other?
+    /// Returns `true` if open rows without play stop the mode both ways.
     fn is_stopped_both_ways(&self, mode: &[f64]) -> bool {
         let play = PLAY * largest(&self.x);
         let stops = |way: f64| {
@@ -112,7 +112,7 @@ impl Iterate<'_> {
         stops(1.0) && stops(-1.0)
     }
 
-    /// The error that a mode without energy is, the way that the load drives it.
+    /// The error for a mode without energy, in the direction in which the load drives it.
     pub fn free_mode(&self, mut direction: Vec<f64>) -> Error {
         self.bounds.turn_back(&mut direction);
         let work = dot(self.problem.load(), &direction);
