@@ -14,15 +14,25 @@ use crate::qp::problem::ContactProblem;
 /// [`Error::File`] for a file that is missing and for a directory with both; [`Error::FileSyntax`] and [`Error::FileBytes`] for one
 /// that is malformed; those of [`ContactProblem::new`].
 pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
-    let [of_text, of_petsc] = [matrix_market::STIFFNESS, petsc::STIFFNESS].map(|name| directory.join(name).exists());
-    match (of_text, of_petsc) {
-        (true, true) => {
+    match forms(directory) {
+        [true, true] => {
             let both = format!("{} and {} both stand there", matrix_market::STIFFNESS, petsc::STIFFNESS);
             let source =
                 io::Error::new(io::ErrorKind::InvalidInput, format!("{both}; take the files of one form away"));
             Err(Error::File { action: "read", path: directory.to_path_buf(), source })
         }
-        (false, true) => petsc::read_problem(directory),
+        [false, true] => petsc::read_problem(directory),
         _ => matrix_market::read_problem(directory),
     }
+}
+
+/// Returns `true` for a directory with the stiffness of a problem.
+#[cfg(feature = "cli")]
+pub(crate) fn is_problem_directory(directory: &Path) -> bool {
+    forms(directory).contains(&true)
+}
+
+/// Whether there is a stiffness of Matrix Market, and one of PETSc.
+fn forms(directory: &Path) -> [bool; 2] {
+    [matrix_market::STIFFNESS, petsc::STIFFNESS].map(|name| directory.join(name).exists())
 }

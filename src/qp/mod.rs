@@ -26,6 +26,8 @@ pub(crate) mod problem;
 mod settings;
 pub(crate) mod transform;
 
+#[cfg(feature = "cli")]
+pub(crate) use directory::is_problem_directory;
 pub use directory::read_problem;
 pub use engine::{BoundarySolution, Path, Prepared};
 pub use linear::multigrid::NearNullSpace;

@@ -20,7 +20,7 @@ const OF_DOF: f64 = 120.0;
 const OF_ENTRY: f64 = 32.0;
 
 /// Bytes of an unknown, and of an entry of the stiffness, both triangles, of a model that is assembled and not solved.
-const OF_MODEL: [f64; 2] = [190.0, 16.0];
+const OF_MODEL: [f64; 2] = [110.0, 11.0];
 
 /// Bytes of an unknown, and of an entry of the stiffness, with a hierarchy instead of a factor.
 const OF_HIERARCHY: [f64; 2] = [190.0, 33.0];

@@ -7,7 +7,7 @@
 use super::SymmetricMatrix;
 
 /// Entries of the rows that are put together at a time, unless one row has more.
-const GATHERED: usize = 1 << 20;
+const GATHERED: usize = 1 << 19;
 
 /// Rows that follow each other, put together.
 #[derive(Default)]
@@ -31,7 +31,7 @@ impl SymmetricMatrix {
     }
 
     /// Calls `take(columns, values)` for each row, from the first on, with its columns in their order. Beside the matrix a number
-    /// of 4 and one of 8 bytes stand in memory for each row, and 12 bytes for each of a million entries.
+    /// of 4 and one of 8 bytes stand in memory for each row, and 12 bytes for each of half a million entries.
     ///
     /// # Errors
     /// Those of `take`.
@@ -82,6 +82,9 @@ impl Gathered {
             self.ends.push(room);
             room += length;
         }
+        // Not more than is needed: a vector that grows by itself doubles.
+        self.columns.reserve_exact(room.max(GATHERED).saturating_sub(self.columns.len()));
+        self.values.reserve_exact(room.max(GATHERED).saturating_sub(self.values.len()));
         self.columns.resize(room, 0);
         self.values.resize(room, 0.0);
     }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::matrix::{Row, Rows, dense_columns};
-use super::source::{INTEGER, indices, vector};
+use super::source::{INTEGER, REAL, indices, vector};
 use super::{BLOCK_SIZE, CONTACT, COORDINATES, FREE, GAP, INFO, LOAD, NEAR_NULL, STIFFNESS};
 use crate::error::Error;
 use crate::file::read_text_capped;
@@ -84,7 +84,8 @@ impl Places {
         let supported = |&(place, value): &(usize, &f64)| self.dof[place] == SUPPORTED && *value != 0.0;
         if let Some((place, value)) = load.iter().enumerate().find(supported) {
             let message = format!("value {place} is {value} (from 0), but {FREE} does not name it: it must be 0");
-            return Err(fault(file, message));
+            let byte = (2 * INTEGER + REAL * place as u64) as usize;
+            return Err(Error::FileBytes { file: file.to_path_buf(), byte, message });
         }
         Ok(self.free.iter().map(|&place| load[place as usize]).collect())
     }

@@ -1,7 +1,7 @@
 //! A PETSc file while it is read: every fault has its byte.
 
 use std::fs::File;
-use std::io::{BufReader, Read, Seek, SeekFrom};
+use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use super::Class;
@@ -85,7 +85,7 @@ impl Source {
     /// The next integer.
     ///
     /// # Errors
-    /// [`Error::File`], at the end of the file too.
+    /// [`Error::File`]; [`Error::FileBytes`] at the end of the file.
     pub fn integer(&mut self) -> Result<i32, Error> {
         self.bytes().map(i32::from_be_bytes)
     }
@@ -110,8 +110,10 @@ impl Source {
 
     fn bytes<const COUNT: usize>(&mut self) -> Result<[u8; COUNT], Error> {
         let mut bytes = [0; COUNT];
-        let read = self.reader.read_exact(&mut bytes);
-        read.map_err(|source| Error::File { action: "read", path: self.path.clone(), source })?;
+        self.reader.read_exact(&mut bytes).map_err(|source| match source.kind() {
+            io::ErrorKind::UnexpectedEof => self.fault(self.length, "the file ends here, before its sizes do"),
+            _ => Error::File { action: "read", path: self.path.clone(), source },
+        })?;
         self.byte += COUNT as u64;
         Ok(bytes)
     }
