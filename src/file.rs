@@ -12,8 +12,11 @@ use crate::error::Error;
 /// Most bytes of a scene: a height map of millions of points fits.
 pub const MOST_OF_SCENE: u64 = 256 << 20;
 
-/// Most bytes of a mesh or a matrix: more than any body that can be solved needs.
+/// Most bytes of a mesh: more than any body that can be solved needs.
 pub const MOST_OF_TABLE: u64 = 4 << 30;
+
+/// Most bytes of a matrix in text, which does not stand in memory: fifty million dofs of a body in space.
+pub const MOST_OF_MATRIX: u64 = 64 << 30;
 
 /// Most bytes of a surface: twenty million triangles.
 pub const MOST_OF_SURFACE: u64 = 1 << 30;
@@ -30,19 +33,50 @@ pub fn read_capped(path: &Path, most: u64) -> Result<Vec<u8>, Error> {
 }
 
 fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
-    let file = open(path)?;
-    let about = file.metadata()?;
-    let most = if about.is_file() { most } else { most.min(MOST_OF_STREAM) };
-    let too_long = || io::Error::new(io::ErrorKind::FileTooLarge, format!("it is longer than {} MB", most >> 20));
-    if about.is_file() && about.len() > most {
-        return Err(too_long());
-    }
+    let mut file = Capped::open(path, most)?;
     let mut bytes = Vec::new();
-    if about.is_file() {
-        bytes.try_reserve_exact(about.len() as usize)?;
+    bytes.try_reserve_exact(file.length as usize)?;
+    file.read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// A file that is read up to a cap; beyond it, reading fails.
+pub struct Capped {
+    file: File,
+    /// Bytes of a regular file; 0 of another, which does not say.
+    pub length: u64,
+    most: u64,
+    left: u64,
+}
+
+impl Capped {
+    fn open(path: &Path, most: u64) -> io::Result<Self> {
+        let file = open(path)?;
+        let about = file.metadata()?;
+        let (length, most) = if about.is_file() { (about.len(), most) } else { (0, most.min(MOST_OF_STREAM)) };
+        let file = Capped { file, length, most, left: most };
+        if length > most { Err(file.too_long()) } else { Ok(file) }
     }
-    file.take(most + 1).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > most { Err(too_long()) } else { Ok(bytes) }
+
+    fn too_long(&self) -> io::Error {
+        io::Error::new(io::ErrorKind::FileTooLarge, format!("it is longer than {} MB", self.most >> 20))
+    }
+}
+
+impl Read for Capped {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        let count = self.file.read(into)?;
+        self.left = self.left.checked_sub(count as u64).ok_or_else(|| self.too_long())?;
+        Ok(count)
+    }
+}
+
+/// A file to be read piece by piece, at most `most` bytes of it.
+///
+/// # Errors
+/// As [`read_capped`].
+pub fn open_capped(path: &Path, most: u64) -> Result<Capped, Error> {
+    Capped::open(path, most).map_err(|source| Error::File { action: "read", path: path.into(), source })
 }
 
 fn open(path: &Path) -> io::Result<File> {

@@ -11,7 +11,7 @@ use super::{write_columns, write_entries};
 use crate::error::Error;
 #[cfg(feature = "cli")]
 use crate::file::Streamed;
-use crate::file::{MOST_OF_TABLE, read_capped};
+use crate::file::{MOST_OF_MATRIX, open_capped};
 use crate::qp::linear::multigrid::NearNullSpace;
 use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
 use crate::qp::problem::ContactProblem;
@@ -183,9 +183,7 @@ pub fn solution_files(solution: &Solution) -> [(&'static str, String); 2] {
 }
 
 fn read(file: &Path, values: Values) -> Result<Content, Error> {
-    let bytes = read_capped(file, MOST_OF_TABLE)?;
-    // Comments of older collections hold names in other encodings; numbers are ASCII in all of them.
-    parse(file, &String::from_utf8_lossy(&bytes), values, quotes(file))
+    parse(file, open_capped(file, MOST_OF_MATRIX)?, values, quotes(file))
 }
 
 /// What a link leads to outside the folder of `file` is not repeated in errors.

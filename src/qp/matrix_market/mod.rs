@@ -9,6 +9,7 @@
 //! R. F. Boisvert, R. Pozo, K. A. Remington, *The Matrix Market Exchange Formats: Initial Design*, NISTIR 5935 (1996).
 
 mod directory;
+mod lines;
 mod parse;
 
 pub use directory::{STIFFNESS, problem_files, read_problem, read_vector, solution_files};

@@ -90,8 +90,8 @@ impl Places {
         Ok(self.free.iter().map(|&place| load[place as usize]).collect())
     }
 
-    /// Leaves out the columns of supported components, which must be zero; `is_own` tells which entry may be there.
-    fn leave_out(&self, rows: &Rows, row: &mut Row, is_own: impl Fn(u32) -> bool) -> Result<(), Error> {
+    /// Leaves out the columns of supported components, which must be zero.
+    fn leave_out(&self, rows: &Rows, row: &mut Row) -> Result<(), Error> {
         let mut kept = 0;
         for entry in 0..row.columns.len() {
             let (column, value) = (row.columns[entry], row.values[entry]);
@@ -99,7 +99,7 @@ impl Places {
             if dof != SUPPORTED {
                 (row.columns[kept], row.values[kept]) = (dof, value);
                 kept += 1;
-            } else if value != 0.0 && !is_own(column) {
+            } else if value != 0.0 {
                 let place = format!("entry ({}, {column}) is {value:e} (indices from 0)", rows.row());
                 return Err(rows.fault(entry, format!("{place}, but {FREE} does not name {column}: it must be 0")));
             }
@@ -117,7 +117,7 @@ impl Places {
         let (mut starts, mut columns, mut values) = (vec![0], Vec::new(), Vec::new());
         let mut row = Row::default();
         while rows.read(&mut row)? {
-            self.leave_out(&rows, &mut row, |_| false)?;
+            self.leave_out(&rows, &mut row)?;
             columns.extend(row.columns.iter().map(|&column| column as usize));
             values.extend_from_slice(&row.values);
             starts.push(columns.len());
@@ -139,7 +139,7 @@ impl Places {
                 }
                 continue;
             }
-            self.leave_out(&rows, &mut row, |_| false)?;
+            self.leave_out(&rows, &mut row)?;
             matrix.take(&row.columns, &row.values).map_err(|error| self.located(error, &rows))?;
         }
         matrix.finish().map_err(|error| self.located(error, &rows))
