@@ -4,7 +4,7 @@
 //! which was walked before. As c grows, the mirror images of row r come in the order of column r: a cursor for each column is all
 //! that has to be kept.
 
-use super::{SparseMatrix, SymmetricMatrix};
+use super::SparseMatrix;
 use crate::error::Error;
 
 /// Two triangles count as alike when mirrored entries differ by no more than this times the largest entry of their
@@ -51,14 +51,14 @@ impl SymmetricRows {
         self.lower.take(self.dim, row, columns, values)
     }
 
-    /// The matrix, with the values of the lower triangle; an entry that is as good as zero may stand in one triangle only.
+    /// The lower triangle; an entry that is as good as zero may stand in one triangle only.
     ///
     /// # Errors
     /// [`Error::NotSymmetric`] for an entry of the upper triangle without a mirror image.
-    pub fn finish(mut self) -> Result<SymmetricMatrix, Error> {
+    pub fn lower(mut self) -> Result<SparseMatrix, Error> {
         self.lower.all_matched()?;
         let Lower { starts, rows, values, .. } = self.lower;
-        Ok(SymmetricMatrix::from_sorted_lower(SparseMatrix::from_parts(self.dim, starts, rows, values)))
+        Ok(SparseMatrix::from_parts(self.dim, starts, rows, values))
     }
 }
 

@@ -142,7 +142,7 @@ impl Places {
             self.leave_out(&rows, &mut row)?;
             matrix.take(&row.columns, &row.values).map_err(|error| self.located(error, &rows))?;
         }
-        matrix.finish().map_err(|error| self.located(error, &rows))
+        SymmetricMatrix::from_lower(matrix.lower().map_err(|error| self.located(error, &rows))?)
     }
 
     /// Two triangles that differ, at their places in the file.
