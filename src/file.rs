@@ -1,6 +1,9 @@
-//! Files read up to a cap: a device without end or a file beyond all sense is refused before it fills the memory.
+//! Files read up to a cap: a device without end or a file beyond all sense is refused before it fills the memory. Files of numbers
+//! that are larger than they need be in memory are read, and written, piece by piece.
 
 use std::fs::File;
+#[cfg(feature = "pictures")]
+use std::io::Write;
 use std::io::{self, Read};
 use std::path::Path;
 
@@ -9,8 +12,11 @@ use crate::error::Error;
 /// Most bytes of a scene: a height map of millions of points fits.
 pub const MOST_OF_SCENE: u64 = 256 << 20;
 
-/// Most bytes of a mesh or a matrix: more than any body that can be solved needs.
+/// Most bytes of a mesh: more than any body that can be solved needs.
 pub const MOST_OF_TABLE: u64 = 4 << 30;
+
+/// Most bytes of a matrix in text, which does not stand in memory: fifty million dofs of a body in space.
+pub const MOST_OF_MATRIX: u64 = 64 << 30;
 
 /// Most bytes of a surface: twenty million triangles.
 pub const MOST_OF_SURFACE: u64 = 1 << 30;
@@ -27,23 +33,73 @@ pub fn read_capped(path: &Path, most: u64) -> Result<Vec<u8>, Error> {
 }
 
 fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    let mut file = Capped::open(path, most)?;
+    let mut bytes = Vec::new();
+    bytes.try_reserve_exact(file.length as usize)?;
+    file.read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// A file that is read up to a cap; beyond it, reading fails.
+pub struct Capped {
+    file: File,
+    /// Bytes of a regular file; 0 of another, which does not say.
+    pub length: u64,
+    most: u64,
+    left: u64,
+}
+
+impl Capped {
+    fn open(path: &Path, most: u64) -> io::Result<Self> {
+        let file = open(path)?;
+        let about = file.metadata()?;
+        let (length, most) = if about.is_file() { (about.len(), most) } else { (0, most.min(MOST_OF_STREAM)) };
+        let file = Capped { file, length, most, left: most };
+        if length > most { Err(file.too_long()) } else { Ok(file) }
+    }
+
+    fn too_long(&self) -> io::Error {
+        io::Error::new(io::ErrorKind::FileTooLarge, format!("it is longer than {} MB", self.most >> 20))
+    }
+}
+
+impl Read for Capped {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        let count = self.file.read(into)?;
+        self.left = self.left.checked_sub(count as u64).ok_or_else(|| self.too_long())?;
+        Ok(count)
+    }
+}
+
+/// A file to be read piece by piece, at most `most` bytes of it.
+///
+/// # Errors
+/// As [`read_capped`].
+pub fn open_capped(path: &Path, most: u64) -> Result<Capped, Error> {
+    Capped::open(path, most).map_err(|source| Error::File { action: "read", path: path.into(), source })
+}
+
+fn open(path: &Path) -> io::Result<File> {
     if is_named_pipe(path) {
         let reason = "it is a named pipe, which may never be written to; name a file, or pipe into /dev/stdin";
         return Err(io::Error::new(io::ErrorKind::InvalidInput, reason));
     }
-    let file = File::open(path)?;
-    let about = file.metadata()?;
-    let most = if about.is_file() { most } else { most.min(MOST_OF_STREAM) };
-    let too_long = || io::Error::new(io::ErrorKind::FileTooLarge, format!("it is longer than {} MB", most >> 20));
-    if about.is_file() && about.len() > most {
-        return Err(too_long());
-    }
-    let mut bytes = Vec::new();
-    if about.is_file() {
-        bytes.try_reserve_exact(about.len() as usize)?;
-    }
-    file.take(most + 1).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > most { Err(too_long()) } else { Ok(bytes) }
+    File::open(path)
+}
+
+/// A regular file, opened, with its length in bytes.
+///
+/// # Errors
+/// [`Error::File`] for a file that cannot be read, and for a pipe, a device or a folder.
+pub fn open_regular(path: &Path) -> Result<(File, u64), Error> {
+    let opened = open(path).and_then(|file| {
+        let about = file.metadata()?;
+        if about.is_file() {
+            return Ok((file, about.len()));
+        }
+        Err(io::Error::new(io::ErrorKind::InvalidInput, "it is no regular file, whose length is known"))
+    });
+    opened.map_err(|source| Error::File { action: "read", path: path.into(), source })
 }
 
 /// Returns `true` for a named pipe, which would wait for a writer when it is opened. A pipe that a shell has already connected,
@@ -69,4 +125,56 @@ pub fn read_text_capped(path: &Path, most: u64) -> Result<String, Error> {
         let source = io::Error::new(io::ErrorKind::InvalidData, "stream did not contain valid UTF-8");
         Error::File { action: "read", path: path.into(), source }
     })
+}
+
+/// A file to be written, piece by piece: it never stands in memory as a whole.
+#[cfg(feature = "pictures")]
+pub struct Streamed<'a> {
+    /// Its name in its folder.
+    pub name: &'static str,
+    contents: Box<Contents<'a>>,
+}
+
+/// Writes the contents of a file, the same each time.
+#[cfg(feature = "pictures")]
+type Contents<'a> = dyn Fn(&mut dyn Write) -> io::Result<()> + 'a;
+
+#[cfg(feature = "pictures")]
+impl<'a> Streamed<'a> {
+    /// The file of this name whose contents are written by a function, the same each time that it is called.
+    pub fn new(name: &'static str, contents: impl Fn(&mut dyn Write) -> io::Result<()> + 'a) -> Self {
+        Streamed { name, contents: Box::new(contents) }
+    }
+
+    /// Writes the contents.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn write(&self, out: &mut dyn Write) -> io::Result<()> {
+        (self.contents)(out)
+    }
+
+    /// The number of bytes of the contents, counted without writing them anywhere.
+    #[cfg(feature = "cli")]
+    pub fn bytes(&self) -> u64 {
+        let mut counter = Counter(0);
+        // A counter takes everything.
+        let _ = self.write(&mut counter);
+        counter.0
+    }
+}
+
+#[cfg(feature = "cli")]
+struct Counter(u64);
+
+#[cfg(feature = "cli")]
+impl Write for Counter {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0 += bytes.len() as u64;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
 }

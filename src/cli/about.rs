@@ -1,13 +1,18 @@
 //! What a page says of where it comes from.
 
 use std::fmt::Write;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use crate::file::{MOST_OF_TABLE, read_capped};
+use crate::file::open_regular;
 use crate::output::page::About;
 
-/// The files of a problem directory, in the order in which they are hashed.
-const PROBLEM_FILES: [&str; 4] = ["K.mtx", "f.mtx", "B.mtx", "g.mtx"];
+/// The files of a problem directory, in the order in which they are hashed: of the one form or the other.
+const PROBLEM_FILES: [&[&str]; 2] =
+    [&["K.mtx", "f.mtx", "B.mtx", "g.mtx"], &["K.petsc", "f.petsc", "B.petsc", "g.petsc", "free.petsc"]];
+
+/// Bytes that are hashed at a time.
+const PIECE: usize = 1 << 20;
 
 /// The page of `command` on the scene file or problem directory `input`, which is hashed as it stands now, if there is a folder for
 /// the page.
@@ -19,15 +24,19 @@ pub(super) fn about(title: &str, command: &'static str, input: &Path, out: Optio
 /// SHA-256 in hexadecimal digits; none of what cannot be read twice, as standard input.
 fn hash_of(input: &Path) -> Option<String> {
     let files = match input.is_dir() {
-        true => PROBLEM_FILES.iter().map(|name| input.join(name)).collect(),
-        false => vec![input.to_path_buf()],
+        true => PROBLEM_FILES.iter().map(|names| names.iter().map(|name| input.join(name)).collect()).collect(),
+        false => vec![vec![input.to_path_buf()]],
     };
-    let mut hash = hmac_sha256::Hash::new();
+    let files: Vec<PathBuf> = files.into_iter().find(|files: &Vec<PathBuf>| files.iter().all(|file| file.is_file()))?;
+    let (mut hash, mut piece) = (hmac_sha256::Hash::new(), vec![0; PIECE]);
     for file in files {
-        if !file.is_file() {
-            return None;
+        let (mut file, _) = open_regular(&file).ok()?;
+        loop {
+            match file.read(&mut piece).ok()? {
+                0 => break,
+                read => hash.update(&piece[..read]),
+            }
         }
-        hash.update(read_capped(&file, MOST_OF_TABLE).ok()?);
     }
     Some(hash.finalize().iter().fold(String::new(), |mut text, byte| {
         let _ = write!(text, "{byte:02x}");

@@ -1,26 +1,54 @@
-//! `signorini export`: the problem of a scene as Matrix Market files.
+//! `signorini export`: the problem of a scene as files of Matrix Market or PETSc.
 
-use super::input::{still_model, warnings};
-use super::options::Export;
+use super::input::{build, rests, scene_of, warnings};
+use super::options::{Export, Form};
 use super::outcome::{Outcome, warn};
 use crate::error::Error;
-use crate::output::{tables, write_files};
-use crate::qp::matrix_market;
+use crate::file::Streamed;
+use crate::output::{make_folder, tables, write_streamed};
+use crate::qp::{matrix_market, petsc};
+use crate::scene::{Meaning, Model};
+
+/// Bytes of a megabyte.
+const MEGABYTE: f64 = 1e6;
 
 pub(super) fn run(options: &Export) -> Result<Outcome, Error> {
-    let model = still_model(&options.scene, &options.limits)?;
+    let scene = scene_of(&options.scene, &options.limits)?;
+    scene.check_size_of_model(options.limits.most_memory())?;
+    rests(&scene)?;
+    let model = build(&scene, &options.scene)?;
     warn(&warnings(&model));
-    let problem = model.problem();
-    write_files(&options.directory, &matrix_market::problem_files(problem))?;
-    write_files(&options.directory, &tables::of_model(&model))?;
-    let near_null = matrix_market::near_null_file(problem);
-    let also = if near_null.is_some() { ", near_null.mtx" } else { "" };
-    write_files(&options.directory, &near_null.into_iter().collect::<Vec<_>>())?;
+    let layout;
+    let files = match options.format {
+        Form::MatrixMarket => matrix_market::streamed_files(model.problem()),
+        Form::Petsc => {
+            layout = layout_of(&model)?;
+            petsc::streamed_files(model.problem(), &layout)
+        }
+    };
+    let files: Vec<Streamed> = files.into_iter().chain(tables::of_model(&model)).collect();
+    let (folder, problem) = (&options.directory, model.problem());
+    make_folder(folder)?;
+    let bytes: u64 = files.iter().map(Streamed::bytes).sum();
+    warn(&format!("writing {bytes} bytes ({:.1} MB) into {}\n", bytes as f64 / MEGABYTE, folder.display()));
+    write_streamed(folder, &files)?;
+    let names: Vec<&str> = files.iter().map(|file| file.name).collect();
     let text = format!(
-        "{}: K.mtx, f.mtx, B.mtx, g.mtx{also}, dofs.csv, rows.csv with {} dofs and {} contact rows\n",
-        options.directory.display(),
+        "{}: {} with {} dofs and {} contact rows\n",
+        folder.display(),
+        names.join(", "),
         problem.dofs(),
         problem.rows()
     );
     Ok(Outcome::done(text))
+}
+
+/// Where the dofs of a model stand in PETSc's files.
+fn layout_of(model: &Model) -> Result<petsc::Layout, Error> {
+    if model.meanings().any(|meaning| !matches!(meaning, Meaning::Node { .. })) {
+        let message = "petsc has blocks for nodes alone, but the scene has rigid faces or obstacles that a force presses, which \
+                       have unknowns of their own; take matrix-market";
+        return Err(Error::Scene { path: "--format".into(), message: message.into() });
+    }
+    Ok(petsc::Layout::of(model.body().dimension(), model.dofs().free(), model.mesh().nodes()))
 }

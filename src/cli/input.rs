@@ -6,8 +6,8 @@ use std::time::Instant;
 
 use super::options::Limits;
 use crate::error::Error;
-use crate::qp::matrix_market;
 use crate::qp::problem::ContactProblem;
+use crate::qp::read_problem;
 use crate::scene::{Answer, Model, Scene, Units};
 use crate::solution::{Goal, Solution};
 use crate::study::scene::problem_summary;
@@ -44,7 +44,7 @@ impl Source {
             let scene = Box::new(scene_of(path, limits)?);
             return Ok(Source::Scene(scene, clock.elapsed().as_secs_f64()));
         }
-        let content = Content::Directory(matrix_market::read_problem(path)?);
+        let content = Content::Directory(read_problem(path)?);
         let (title, units) = (format!("Problem directory {}", path.display()), Units::unnamed());
         let assemble_seconds = clock.elapsed().as_secs_f64();
         Ok(Source::Directory(Box::new(Input { title, units, assemble_seconds, content })))
@@ -126,7 +126,7 @@ pub(super) fn still_model(path: &Path, limits: &Limits) -> Result<Model, Error> 
 }
 
 /// Refuses a scene whose motion is asked for.
-fn rests(scene: &Scene) -> Result<(), Error> {
+pub(super) fn rests(scene: &Scene) -> Result<(), Error> {
     if scene.analysis.is_none() {
         return Ok(());
     }
@@ -134,7 +134,8 @@ fn rests(scene: &Scene) -> Result<(), Error> {
     Err(Error::Scene { path: "analysis".into(), message: message.into() })
 }
 
-fn scene_of(path: &Path, limits: &Limits) -> Result<Scene, Error> {
+/// Reads a scene of any size.
+pub(super) fn scene_of(path: &Path, limits: &Limits) -> Result<Scene, Error> {
     // What comes by a pipe stands in the folder in which the program runs.
     let scene = match path == Path::new(STANDARD_INPUT) {
         true => Scene { folder: Some(PathBuf::new()), ..Scene::read("/dev/stdin")? },

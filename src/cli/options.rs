@@ -64,11 +64,19 @@ A problem directory is swept from g.mtx and f.mtx to g1.mtx and f1.mtx, on a str
     /// Solve a scene or a problem directory in every way, and say what each digit costs
     #[command(after_help = "Example: signorini tradeoff examples/indentation.json --refinements 2 --time 60")]
     Tradeoff(Tradeoff),
-    /// Write the problem of a scene as Matrix Market files
-    #[command(after_help = "Example: signorini export examples/ball.json ball")]
+    /// Write the problem of a scene as Matrix Market or PETSc files
+    #[command(after_help = "\
+Example: signorini export examples/ball.json ball
+         signorini export examples/ball.json ball --format petsc
+
+The bytes that it writes are told on standard error before it begins; they go to the files piece by piece.")]
     Export(Export),
     /// Certify an answer that came from elsewhere
-    #[command(after_help = "Example: signorini verify problem --displacement u.mtx --multiplier lambda.mtx")]
+    #[command(after_help = "\
+Example: signorini verify problem --displacement u.mtx --multiplier lambda.mtx
+
+The energy error is bounded with a factor of the stiffness if that fits into the memory and the time; else by multigrid,
+and the bound is then `measured`.")]
     Verify(Verify),
     /// Print the JSON Schema of a scene
     #[command(after_help = "\
@@ -197,7 +205,7 @@ impl Common {
 
 #[derive(Debug, Args)]
 pub(super) struct Solve {
-    /// Scene (a JSON file, - for standard input) or problem directory (with K.mtx, f.mtx, B.mtx, g.mtx)
+    /// Scene (a JSON file, - for standard input) or problem directory (with K.mtx, f.mtx, B.mtx, g.mtx, or the same as .petsc)
     pub input: PathBuf,
     /// Method that finds the contact set
     #[arg(long, value_enum, default_value_t = Method::Auto)]
@@ -249,7 +257,7 @@ pub(super) struct New {
 
 #[derive(Debug, Args)]
 pub(super) struct Compare {
-    /// Scene (a JSON file) or problem directory (with K.mtx, f.mtx, B.mtx, g.mtx)
+    /// Scene (a JSON file) or problem directory (with K.mtx, f.mtx, B.mtx, g.mtx, or the same as .petsc)
     pub input: PathBuf,
     #[command(flatten)]
     pub common: Common,
@@ -258,7 +266,8 @@ pub(super) struct Compare {
 #[derive(Debug, Args)]
 #[command(group(ArgGroup::new("over").required(true).args(["gaps", "forces", "points"])))]
 pub(super) struct Sweep {
-    /// Scene (a JSON file) or problem directory (with K.mtx, f.mtx, B.mtx, g.mtx, and g1.mtx or f1.mtx or both for its other end)
+    /// Scene (a JSON file) or problem directory (with K.mtx, f.mtx, B.mtx, g.mtx, or the same as .petsc, and g1.mtx or f1.mtx or
+    /// both for its other end)
     pub scene: PathBuf,
     /// Gaps from the first to the last, and their number, as -0.01:-0.10:10
     #[arg(long, value_name = "FIRST:LAST:COUNT", allow_hyphen_values = true, value_parser = parse_gaps)]
@@ -393,8 +402,13 @@ pub(super) struct Limits {
 impl Limits {
     /// The memory, in bytes.
     pub fn most_memory(&self) -> f64 {
-        self.max_memory.unwrap_or_else(memory::available).min(memory::address_space_left())
+        most_memory(self.max_memory)
     }
+}
+
+/// The memory that may be taken, in bytes, where so much is allowed.
+fn most_memory(allowed: Option<f64>) -> f64 {
+    allowed.unwrap_or_else(memory::available).min(memory::address_space_left())
 }
 
 /// What every solving command takes.
@@ -461,15 +475,27 @@ pub(super) struct Tradeoff {
 pub(super) struct Export {
     /// Scene (a JSON file)
     pub scene: PathBuf,
-    /// Folder for K.mtx, f.mtx, B.mtx, g.mtx and near_null.mtx; made if missing
+    /// Folder for K, f, B, g and what else tells of the problem; made if missing
     pub directory: PathBuf,
+    /// Form of the files
+    #[arg(long, value_enum, default_value_t = Form::MatrixMarket)]
+    pub format: Form,
     #[command(flatten)]
     pub limits: Limits,
 }
 
+/// The form of an exported problem.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Form {
+    /// Text: K.mtx, f.mtx, B.mtx, g.mtx, near_null.mtx
+    MatrixMarket,
+    /// Binary, in blocks of nodes: K.petsc, f.petsc, B.petsc, g.petsc, coordinates.petsc, free.petsc, near_null.petsc
+    Petsc,
+}
+
 #[derive(Debug, Args)]
 pub(super) struct Verify {
-    /// Problem directory (with K.mtx, f.mtx, B.mtx, g.mtx)
+    /// Problem directory (with K.mtx, f.mtx, B.mtx, g.mtx, or the same as .petsc)
     pub directory: PathBuf,
     /// Displacement u of the free dofs
     #[arg(long, value_name = "u.mtx")]
@@ -480,9 +506,25 @@ pub(super) struct Verify {
     /// Relative tolerance of the certificate
     #[arg(long, default_value = "1e-9", value_name = "T", allow_negative_numbers = true, value_parser = parse_tolerance)]
     pub tolerance: f64,
+    /// Most seconds that a factor of the stiffness may take, by an estimate
+    #[arg(long, default_value = "60", value_name = "T", allow_negative_numbers = true, value_parser = parse_seconds)]
+    pub factor_time: f64,
+    /// Threads of the factorisation and of multigrid
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = parse_threads)]
+    pub threads: usize,
+    /// Refuse what needs more memory, as 500MB or 1.5GB [default: what the machine has available]
+    #[arg(long, value_name = "SIZE", value_parser = parse_size)]
+    pub max_memory: Option<f64>,
     /// Form of the report
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
+}
+
+impl Verify {
+    /// The memory, in bytes.
+    pub fn most_memory(&self) -> f64 {
+        most_memory(self.max_memory)
+    }
 }
 
 impl Command {

@@ -9,6 +9,7 @@ use crate::error::Error;
 use crate::output::gallery::{self, Pictures};
 use crate::output::page::write_sweep_page;
 use crate::output::{draw_problem_sweep, problem_sweep_text, sweep_text, write_points};
+use crate::qp::is_problem_directory;
 use crate::qp::matrix_market::read_other_end;
 use crate::study::scene::{even_gaps, sweep_forces};
 use crate::study::{sweep, sweep_problem};
@@ -16,7 +17,7 @@ use crate::watch::Watch;
 
 pub(super) fn run(options: &Sweep, watch: &Watch) -> Result<Outcome, Error> {
     // Any other folder is refused as a scene.
-    let is_problem = options.scene.join("K.mtx").exists();
+    let is_problem = is_problem_directory(&options.scene);
     match (is_problem, options.points) {
         (true, Some(points)) => of_problem(options, points, watch),
         (true, None) => {

@@ -4,14 +4,18 @@ use super::options::Verify;
 use super::outcome::{Outcome, Report};
 use crate::error::Error;
 use crate::output::verify_text;
-use crate::qp::{read_problem, read_vector};
+use crate::qp::{Settings, certify_within, read_problem, read_vector};
 use crate::study::{ModelSize, Verification};
+use crate::watch::Watch;
 
-pub(super) fn run(options: &Verify) -> Result<Outcome, Error> {
-    let problem = read_problem(&options.directory)?;
+pub(super) fn run(options: &Verify, watch: &Watch) -> Result<Outcome, Error> {
+    // What may be taken is asked before the problem takes its own.
+    let memory = Some(options.most_memory());
     let displacement = read_vector(&options.displacement)?;
     let multiplier = read_vector(&options.multiplier)?;
-    let certificate = problem.certify(&displacement, &multiplier)?;
+    let problem = read_problem(&options.directory)?;
+    let settings = Settings { memory, threads: options.threads, watch: watch.clone(), ..Settings::default() };
+    let certificate = certify_within(&problem, options.factor_time, (&displacement, &multiplier), &settings)?;
     let verification = Verification::new(certificate, &multiplier, ModelSize::of(&problem), options.tolerance);
     let text = verify_text(&format!("Problem directory {}", options.directory.display()), &verification);
     Ok(Report::new(&verification, text)?.outcome(options.format, verification.status))

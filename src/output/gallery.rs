@@ -10,7 +10,7 @@ use super::plot::line_plots_for;
 use super::pressure::pressure_plots;
 use super::space_scene::{SpaceScene, draw_space_series};
 use super::tables;
-use super::{Plot, Quantity, Series, write_atomically, write_files, write_picture};
+use super::{Plot, Quantity, Series, write_atomically, write_files, write_picture, write_streamed};
 use crate::error::Error;
 use crate::qp::matrix_market::solution_files;
 use crate::scene::{Answer, Model};
@@ -51,7 +51,7 @@ pub struct Wanted {
 pub fn write_answer(folder: &Path, solution: &Solution, answer: Option<&Answer>) -> Result<(), Error> {
     write_files(folder, &solution_files(solution))?;
     let Some(answer) = answer else { return Ok(()) };
-    write_files(folder, &tables::of_model(answer.model()))?;
+    write_streamed(folder, &tables::of_model(answer.model()))?;
     write_files(folder, &[("contact.csv", tables::contact(answer))])
 }
 

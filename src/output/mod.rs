@@ -73,7 +73,9 @@ pub(crate) use body::{ContactPicture, common_limits, common_window};
 pub use drawing::Drawing;
 #[cfg(feature = "cli")]
 pub(crate) use estimated_error::{estimated_error_text, write_estimated_error};
-pub(crate) use file::write_atomically;
+#[cfg(feature = "cli")]
+pub(crate) use file::make_folder;
+pub(crate) use file::{write_atomically, write_streamed};
 pub use file::{write_files, write_picture};
 #[cfg(feature = "cli")]
 pub(crate) use json::compact_json;

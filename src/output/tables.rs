@@ -1,19 +1,21 @@
 //! Tables beside the numbers of an answer: what each unknown and each row is, and what happens at the contact.
 
-use std::fmt::Write;
+use std::fmt::Write as _;
+use std::io::{self, Write};
 
+use crate::file::Streamed;
 use crate::scene::{Answer, Meaning, Model};
 
 /// `dofs.csv` and `rows.csv`: the meaning of the entries of `u.mtx` and `lambda.mtx`, in their order, from 0.
-pub(crate) fn of_model(model: &Model) -> [(&'static str, String); 2] {
-    [("dofs.csv", dofs(model)), ("rows.csv", rows(model))]
+pub(crate) fn of_model(model: &Model) -> [Streamed<'_>; 2] {
+    [Streamed::new("dofs.csv", |out| dofs(model, out)), Streamed::new("rows.csv", |out| rows(model, out))]
 }
 
 /// A line for each unknown. A rigid face has no node: its rotations are measured by the displacement of its farthest node, and `unit`
 /// times the value is in radians.
-fn dofs(model: &Model) -> String {
-    let mut text = String::from("dof,quantity,of,x,y,z,direction_x,direction_y,direction_z,unit\n");
-    for (dof, meaning) in model.meanings().into_iter().enumerate() {
+fn dofs(model: &Model, out: &mut dyn Write) -> io::Result<()> {
+    writeln!(out, "dof,quantity,of,x,y,z,direction_x,direction_y,direction_z,unit")?;
+    for (dof, meaning) in model.meanings().enumerate() {
         let (quantity, of, at, direction, unit) = match meaning {
             Meaning::Node { node, direction, quantity } => {
                 (quantity, format!("node {node}"), model.mesh().nodes().get(node), Some(direction), 1.0)
@@ -24,21 +26,21 @@ fn dofs(model: &Model) -> String {
                 ("travel", format!("obstacles[{obstacle}]"), None, Some(against), 1.0)
             }
         };
-        let _ = writeln!(text, "{dof},{quantity},{of},{},{},{unit:e}", vector(at.copied()), vector(direction));
+        writeln!(out, "{dof},{quantity},{of},{},{},{unit:e}", vector(at.copied()), vector(direction))?;
     }
-    text
+    Ok(())
 }
 
 /// A line for each contact row: `normal . (u - u_partner) <= gap`.
-fn rows(model: &Model) -> String {
-    let mut text = String::from("row,obstacle,node,partner,x,y,z,normal_x,normal_y,normal_z,gap,tributary_area\n");
+fn rows(model: &Model, out: &mut dyn Write) -> io::Result<()> {
+    writeln!(out, "row,obstacle,node,partner,x,y,z,normal_x,normal_y,normal_z,gap,tributary_area")?;
     for (index, row) in model.rows().iter().enumerate() {
         let partner = row.partner.map_or_else(String::new, |partner| partner.to_string());
         let at = vector(model.mesh().nodes().get(row.node).copied());
         let (normal, gap, area) = (vector(Some(row.normal)), row.gap, row.tributary_area);
-        let _ = writeln!(text, "{index},{},{},{partner},{at},{normal},{gap:e},{area:e}", row.obstacle, row.node);
+        writeln!(out, "{index},{},{},{partner},{at},{normal},{gap:e},{area:e}", row.obstacle, row.node)?;
     }
-    text
+    Ok(())
 }
 
 /// `contact.csv`: force, pressure and remaining gap of each row, with the place of its node in the displaced body.

@@ -14,20 +14,25 @@ pub(crate) mod barrier;
 mod certificate;
 mod claims;
 pub(crate) mod cost;
+mod directory;
 mod engine;
 mod judged;
 pub(crate) mod linear;
 pub(crate) mod matrix_market;
 pub(crate) mod method;
+pub(crate) mod petsc;
 mod plan;
 pub(crate) mod problem;
 mod settings;
 pub(crate) mod transform;
 
+#[cfg(feature = "cli")]
+pub(crate) use directory::is_problem_directory;
+pub use directory::read_problem;
 pub use engine::{BoundarySolution, Path, Prepared};
 pub use linear::multigrid::NearNullSpace;
 pub use linear::{SparseMatrix, SymmetricMatrix};
-pub use matrix_market::{problem_files, read_problem, read_vector, solution_files};
+pub use matrix_market::{problem_files, read_vector, solution_files};
 pub use method::Start;
 pub use method::interior_point::InteriorPoint;
 pub use method::parametric::Event;
@@ -36,6 +41,8 @@ pub use problem::ContactProblem;
 pub use settings::{Condense, Method, Precision, Settings};
 
 use crate::error::Error;
+#[cfg(feature = "cli")]
+use crate::solution::Certificate;
 use crate::solution::{ContactSet, Solution};
 
 /// Solves a contact problem; `Ok` means that the answer is certified to `settings.tolerance`.
@@ -79,6 +86,24 @@ pub(crate) fn solve_from(problem: &ContactProblem, start: Start, settings: &Sett
     start.check(problem.dofs(), problem.rows())?;
     let settings = &settings.started()?;
     claims::rechecked(problem, settings, attempts::solved_from(start, problem, settings))
+}
+
+/// The certificate of an answer (u, lambda) that came from elsewhere, within the memory of `settings`: with a factor if that is
+/// estimated to take at most `seconds`, else by multigrid.
+///
+/// # Errors
+/// As [`ContactProblem::certify`]; [`Error::NoRoom`] where there is no room for either.
+#[cfg(feature = "cli")]
+pub(crate) fn certify_within(
+    problem: &ContactProblem,
+    seconds: f64,
+    answer: (&[f64], &[f64]),
+    settings: &Settings,
+) -> Result<Certificate, Error> {
+    match plan::is_bounded_by_factor(problem, seconds, settings)? {
+        true => problem.certify(answer.0, answer.1),
+        false => engine::certify_by_multigrid(problem, answer, settings),
+    }
 }
 
 /// Solves a contact problem as a QP by the interior-point method, polished, certified to 1e-9.

@@ -150,6 +150,20 @@ pub(super) fn method_for(problem: &ContactProblem, gaps: usize, settings: &Setti
     }
 }
 
+/// Returns `true` if the energy bound of an answer from elsewhere comes from a factor of the stiffness, `false` if from multigrid:
+/// a factor, whose bound is proven, if it fits into the memory and is estimated to take at most so many seconds.
+///
+/// # Errors
+/// [`Error::NoRoom`] where neither fits into the memory.
+#[cfg(feature = "cli")]
+pub(super) fn is_bounded_by_factor(problem: &ContactProblem, seconds: f64, settings: &Settings) -> Result<bool, Error> {
+    let (estimate, memory) = (Estimate::of(problem), settings.memory.unwrap_or(f64::INFINITY));
+    if estimate.direct_bytes > memory {
+        return estimate.without_factor(estimate.direct_bytes, memory).map(|_| false);
+    }
+    Ok(estimate.shared_seconds <= seconds || estimate.multigrid_bytes > memory)
+}
+
 /// Why a method is taken that was asked for.
 pub(super) fn by_name(method: Method) -> Why {
     let reason = format!("by {}: it was asked for", method.name());

@@ -172,7 +172,7 @@ impl Model {
 
     /// What each unknown of the problem is, in its order.
     #[cfg(feature = "pictures")]
-    pub(crate) fn meanings(&self) -> Vec<Meaning> {
+    pub(crate) fn meanings(&self) -> impl Iterator<Item = Meaning> + '_ {
         let parts = &self.parts;
         parts.unknowns.meanings(&parts.dofs, parts.body.dimension(), &parts.rigid_faces)
     }

@@ -25,6 +25,8 @@ pub struct Size {
     pub bytes: f64,
     /// Memory at the most without a factor, by multigrid, in bytes.
     pub multigrid_bytes: f64,
+    /// Memory of the model alone, before it is solved, in bytes.
+    pub model_bytes: f64,
 }
 
 impl Size {
@@ -44,6 +46,7 @@ impl Scene {
             factor_entries: 0.0,
             bytes: bytes::START,
             multigrid_bytes: bytes::START,
+            model_bytes: bytes::START,
         };
         let bodies = std::iter::once(&self.body).chain(self.further_bodies.iter().map(|further| &further.body));
         let radius = self.obstacles.iter().map(|obstacle| obstacle.shape.shape().radius());
@@ -51,6 +54,7 @@ impl Scene {
         let surfaces: f64 = self.obstacles.iter().map(|obstacle| obstacle.shape.shape().bytes(self.files())).sum();
         size.bytes += surfaces;
         size.multigrid_bytes += surfaces;
+        size.model_bytes += surfaces;
         for body in bodies {
             let block = body.shape().block(Some(self.files()));
             let (dimension, counts) = (block.cells.len() as f64, block.counts);
@@ -75,6 +79,7 @@ impl Scene {
             let direct = bytes::of_factor(factor, size_of::<f64>()) + bytes::of_dense(dense.sqrt());
             size.bytes += mesh + bytes::of_problem(dofs, entries) + direct;
             size.multigrid_bytes += mesh + bytes::of_hierarchy(dofs, entries);
+            size.model_bytes += mesh + bytes::of_model(dofs, entries);
         }
         size
     }
@@ -96,6 +101,15 @@ impl Scene {
     pub fn check_size_without_factor(&self, most: f64) -> Result<(), Error> {
         let Size { bytes, multigrid_bytes, .. } = self.size();
         self.check_bytes(bytes.min(multigrid_bytes), 0.0, most)
+    }
+
+    /// As [`Scene::check_size`], for what only builds the model and solves nothing.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`].
+    #[cfg(feature = "cli")]
+    pub(crate) fn check_size_of_model(&self, most: f64) -> Result<(), Error> {
+        self.check_bytes(self.size().model_bytes, 0.0, most)
     }
 
     fn check_bytes(&self, bytes: f64, factor_entries: f64, most: f64) -> Result<(), Error> {

@@ -212,8 +212,13 @@ impl Unknowns {
 
     /// What each unknown is.
     #[cfg(feature = "pictures")]
-    pub fn meanings(&self, dofs: &DofMap, dimension: usize, faces: &[RigidFace]) -> Vec<Meaning> {
-        let of_node = |dof: usize| {
+    pub fn meanings<'a>(
+        &'a self,
+        dofs: &'a DofMap,
+        dimension: usize,
+        faces: &'a [RigidFace],
+    ) -> impl Iterator<Item = Meaning> + 'a {
+        let of_node = move |dof: usize| {
             let (node, axis) = (dof / dimension, dof % dimension);
             let mut along = [0.0; 3];
             along[axis] = 1.0;
@@ -222,18 +227,13 @@ impl Unknowns {
             Meaning::Node { node, direction, quantity }
         };
         let tied: HashSet<usize> = faces.iter().flat_map(RigidFace::nodes).copied().collect();
-        let mut meanings: Vec<Meaning> =
-            dofs.free().iter().filter(|&dof| !tied.contains(&(dof / dimension))).map(|&dof| of_node(dof)).collect();
-        for (index, face) in faces.iter().enumerate() {
+        let own = dofs.free().iter().filter(move |&dof| !tied.contains(&(dof / dimension)));
+        let of_faces = faces.iter().enumerate().flat_map(|(index, face)| {
             let free = face.motions.iter().filter(|motion| motion.prescribed.is_none());
-            meanings.extend(free.map(|motion| Meaning::Face {
-                face: index,
-                motion: motion.name(),
-                unit: face.unit(motion),
-            }));
-        }
-        meanings.extend(self.pressed.iter().map(|&obstacle| Meaning::Travel { obstacle }));
-        meanings
+            free.map(move |motion| Meaning::Face { face: index, motion: motion.name(), unit: face.unit(motion) })
+        });
+        let travels = self.pressed.iter().map(|&obstacle| Meaning::Travel { obstacle });
+        own.map(move |&dof| of_node(dof)).chain(of_faces).chain(travels)
     }
 
     /// The stiffness of the unknowns with a spring on each pressed obstacle, as stiff as the stiffest dof.

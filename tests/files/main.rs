@@ -17,3 +17,5 @@ mod output_files;
 mod output_pictures;
 mod output_plots;
 mod output_ticks;
+mod petsc;
+mod petsc_faults;

@@ -109,6 +109,34 @@ fn the_estimate_of_memory_is_within_a_factor_of_two_of_the_peak_on_ten_scenes() 
     }
 }
 
+#[test]
+fn an_export_takes_the_memory_of_the_model_alone_within_a_factor_of_two() {
+    let bar = json!({"bar": {"x": {"points": [0, 1], "divisions": [100_000]}}});
+    let scenes = [
+        rectangle([200, 200], "q4"),
+        rectangle([100, 100], "q8"),
+        block([20, 20, 20], "hex8"),
+        block([10, 10, 10], "tet10"),
+        json!({
+            "model": "bar", "body": bar, "material": {"young": 1000, "poisson": 0.3},
+            "supports": [{"on": {"boundary": "left"}, "x": 0}], "loads": [{"body-force": [1]}],
+            "obstacles": [{"boundary": "right", "approach": "+x", "shape": {"plane": {"point": [1], "normal": [1]}}}]
+        }),
+    ];
+    let desk = Desk::new();
+    for scene in scenes {
+        desk.write("scene.json", scene.to_string());
+        for form in ["matrix-market", "petsc"] {
+            let export = ["export", "scene.json", form, "--format", form];
+            let estimate = told(&desk.run(&[&export[..], &["--max-memory", "1MB"]].concat()).ends_with(1));
+            let peak = desk.peak(&export);
+            let ratio = estimate / peak;
+            assert!(ratio < WITHIN && ratio > 0.9, "{ratio:.2} of the peak {peak:e}: {form}, {}", scene["body"]);
+            fs::remove_dir_all(desk.path(form)).unwrap();
+        }
+    }
+}
+
 /// The memory that a refusal tells, in bytes.
 fn told(run: &Run) -> f64 {
     let (_, needed) = run.stderr.split_once("needs about ").unwrap_or_else(|| panic!("{}", run.stderr));

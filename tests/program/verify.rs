@@ -54,3 +54,61 @@ fn verify_rejects_a_multiplier_of_the_other_sign() {
     desk.write("p/lambda.mtx", vector(&["-1.35"]));
     verify(&desk, "text").ends_with(0);
 }
+
+/// A cube whose stiffness has a hierarchy of several levels, exported, with the answer of multigrid beside it.
+#[cfg(target_os = "linux")]
+fn solved_cube(desk: &Desk, cells: usize) {
+    desk.write("cube.json", crate::blocks::cube(cells, "hex8").to_string());
+    desk.run(&["export", "cube.json", "p", "--format", "petsc"]).ends_with(0);
+    desk.run(&["solve", "cube.json", "--method", "mprgp", "--no-proof", "--pictures", "none", "--out", "o"])
+        .ends_with(0);
+    for file in ["u.mtx", "lambda.mtx"] {
+        desk.write(&format!("p/{file}"), std::fs::read(desk.path("o").join(file)).unwrap());
+    }
+}
+
+/// Arguments that leave no time for a factor.
+#[cfg(target_os = "linux")]
+const WITHOUT_FACTOR: [&str; 8] =
+    ["verify", "p", "--displacement", "p/u.mtx", "--multiplier", "p/lambda.mtx", "--factor-time", "1e-9"];
+
+/// Both bounds lie above the error of the changed answer, which is the energy of what was added to one dof.
+#[cfg(target_os = "linux")]
+#[test]
+fn where_there_is_no_time_for_a_factor_the_bound_is_measured_and_as_good() {
+    let desk = Desk::new();
+    solved_cube(&desk, 12);
+    let without = |desk: &Desk| desk.run(&[&WITHOUT_FACTOR[..], &["--format", "json"]].concat());
+    let (measured, proven) = (without(&desk).ends_with(0).json(), verify(&desk, "json").ends_with(0).json());
+    assert_eq!(measured["certificate"]["bound_is_measured"], true);
+    // What a factor proves is not called measured.
+    assert!(proven["certificate"]["bound_is_measured"].is_null());
+    for condition in ["stationarity", "penetration", "adhesion", "complementarity", "duality_gap"] {
+        assert_eq!(measured["certificate"][condition], proven["certificate"][condition], "{condition}");
+    }
+    let (mut u, _) = vectors(&desk, "p");
+    let largest = u.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let middle = u.len() / 2;
+    u[middle] += 1e-6 * largest;
+    let words: Vec<String> = u.iter().map(f64::to_string).collect();
+    desk.write("p/u.mtx", vector(&words.iter().map(String::as_str).collect::<Vec<_>>()));
+    let (measured, proven) = (without(&desk).ends_with(4).json(), verify(&desk, "json").ends_with(4).json());
+    let [measured, proven] =
+        [&measured, &proven].map(|report| report["certificate"]["energy_error_bound"].as_f64().unwrap());
+    // The proven bound is the error itself but for a repair of the rows; the measured one takes a rest twice.
+    assert!(measured > 0.99 * proven && measured < 2.0 * proven, "{measured:e} {proven:e}");
+}
+
+/// Neither the files nor a second matrix stand in memory beside the hierarchy: a matrix in a file of PETSc has 12 bytes for an entry,
+/// hierarchy and problem take about twice as many.
+#[cfg(target_os = "linux")]
+#[test]
+fn verify_without_a_factor_takes_the_memory_of_the_hierarchy_and_says_if_there_is_none() {
+    let desk = Desk::new();
+    solved_cube(&desk, 24);
+    let file = std::fs::metadata(desk.path("p/K.petsc")).unwrap().len() as f64;
+    let peak = desk.peak(&WITHOUT_FACTOR) - signorini::internals::bytes::START;
+    assert!(peak < 2.4 * file, "{:.2} times the file of the stiffness", peak / file);
+    let refused = desk.run(&[&WITHOUT_FACTOR[..], &["--max-memory", "30MB"]].concat());
+    refused.fails_with(1, &["neither way fits into 30 MB"]);
+}

@@ -19,6 +19,9 @@ const OF_DOF: f64 = 120.0;
 /// ordering.
 const OF_ENTRY: f64 = 32.0;
 
+/// Bytes of an unknown, and of an entry of the stiffness, both triangles, of a model that is assembled and not solved.
+const OF_MODEL: [f64; 2] = [110.0, 11.0];
+
 /// Bytes of an unknown, and of an entry of the stiffness, with a hierarchy instead of a factor.
 const OF_HIERARCHY: [f64; 2] = [190.0, 33.0];
 
@@ -51,6 +54,11 @@ pub fn of_mesh(nodes: f64, connections: f64) -> f64 {
 /// Bytes of a problem with so many unknowns and `entries` of its stiffness, both triangles, ready to be factorised.
 pub fn of_problem(dofs: f64, entries: f64) -> f64 {
     OF_DOF * dofs + OF_ENTRY * entries
+}
+
+/// Bytes of the problem of a model that is not solved.
+pub fn of_model(dofs: f64, entries: f64) -> f64 {
+    OF_MODEL[0] * dofs + OF_MODEL[1] * entries
 }
 
 /// Bytes of a problem with a multigrid hierarchy.

@@ -19,6 +19,8 @@ mod run;
 mod walk;
 
 pub use boundary::BoundarySolution;
+#[cfg(feature = "cli")]
+pub(super) use multigrid::certify_by_multigrid;
 pub use path::Path;
 pub use prepared::Prepared;
 

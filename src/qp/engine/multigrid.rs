@@ -14,6 +14,8 @@ use crate::qp::plan::Tried;
 use crate::qp::problem::{ContactProblem, check_gap};
 use crate::qp::settings::{Method, Settings};
 use crate::qp::transform::RowSelection;
+#[cfg(feature = "cli")]
+use crate::solution::Certificate;
 use crate::solution::{Seconds, Solution};
 use crate::watch::Watch;
 
@@ -74,6 +76,28 @@ impl Hierarchical {
     fn examine(&self, problem: &ContactProblem, found: &Outcome, watch: &Watch) -> Result<Examined, Error> {
         watch.step("certificate", 0);
         problem.examine_by_cycles(&self.multigrid, &watch.finishing(), &found.displacement, &found.multiplier)
+    }
+}
+
+/// The certificate of an answer from elsewhere, with the bound of the cycles; without one where the stiffness has no hierarchy, because
+/// a dof has no stiffness or a direction negative energy.
+///
+/// # Errors
+/// As [`Hierarchical::new`] and [`ContactProblem::certify`].
+#[cfg(feature = "cli")]
+pub(in crate::qp) fn certify_by_multigrid(
+    problem: &ContactProblem,
+    (displacement, multiplier): (&[f64], &[f64]),
+    settings: &Settings,
+) -> Result<Certificate, Error> {
+    match Hierarchical::new(problem, settings) {
+        Ok(Hierarchical { multigrid, .. }) => {
+            settings.watch.step("certificate", 0);
+            let examined = problem.examine_by_cycles(&multigrid, &settings.watch, displacement, multiplier)?;
+            Ok(examined.certificate)
+        }
+        Err(Error::NotConvex { .. }) => problem.certify_in(None, displacement, multiplier),
+        Err(error) => Err(error),
     }
 }
 

@@ -26,6 +26,42 @@ enum Taken {
     Upper,
 }
 
+/// A symmetric matrix while its rows are taken, both triangles of them, one after another.
+pub struct SymmetricRows {
+    dim: usize,
+    lower: Lower,
+}
+
+impl SymmetricRows {
+    /// Before the first of `dim` rows with so many entries together.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] for want of memory.
+    pub fn new(dim: usize, entries: usize) -> Result<Self, Error> {
+        Ok(SymmetricRows { dim, lower: Lower::new(dim, entries, Taken::Upper)? })
+    }
+
+    /// Takes the next row: columns from 0, increasing, and values.
+    ///
+    /// # Errors
+    /// [`Error::Pattern`], [`Error::IndexOutOfRange`], [`Error::NotFinite`]; [`Error::NotSymmetric`] for an entry that differs from
+    /// its mirror image in a row before.
+    pub fn take(&mut self, columns: &[u32], values: &[f64]) -> Result<(), Error> {
+        let row = self.lower.cursor.len();
+        self.lower.take(self.dim, row, columns, values)
+    }
+
+    /// The lower triangle; an entry that is as good as zero may stand in one triangle only.
+    ///
+    /// # Errors
+    /// [`Error::NotSymmetric`] for an entry of the upper triangle without a mirror image.
+    pub fn lower(mut self) -> Result<SparseMatrix, Error> {
+        self.lower.all_matched()?;
+        let Lower { starts, rows, values, .. } = self.lower;
+        Ok(SparseMatrix::from_parts(self.dim, starts, rows, values))
+    }
+}
+
 /// The lower triangle while it is found.
 struct Lower {
     starts: Vec<usize>,
@@ -70,16 +106,7 @@ impl<I: Copy + TryInto<usize>> Columns<'_, I> {
             let message = format!("the column starts must begin with 0 and end with the number of values, {entries}");
             return Err(Error::Pattern { message });
         }
-        let room = entries / 2 + dim;
-        let mut lower = Lower {
-            starts: with_room(dim + 1)?,
-            rows: with_room(room)?,
-            values: with_room(room)?,
-            cursor: with_room(dim)?,
-            taken,
-            is_one_sided: false,
-        };
-        lower.starts.push(0);
+        let mut lower = Lower::new(dim, entries, taken)?;
         let mut first = 0;
         for column in 0..dim {
             let end = self.start(column + 1)?;
@@ -110,6 +137,15 @@ fn with_room<T>(entries: usize) -> Result<Vec<T>, Error> {
 }
 
 impl Lower {
+    /// Before the first of `dim` lines with so many entries together.
+    fn new(dim: usize, entries: usize, taken: Taken) -> Result<Self, Error> {
+        let room = entries / 2 + dim;
+        let mut starts = with_room(dim + 1)?;
+        starts.push(0);
+        let (rows, values, cursor) = (with_room(room)?, with_room(room)?, with_room(dim)?);
+        Ok(Lower { starts, rows, values, cursor, taken, is_one_sided: false })
+    }
+
     /// Takes what `column` has on and below the diagonal, and compares what it has above.
     fn take<I: Copy + TryInto<usize>>(
         &mut self,

@@ -20,12 +20,15 @@ mod ordering;
 mod orthogonal;
 mod power_of_two;
 mod quotient;
+#[cfg(feature = "cli")]
+mod rows;
 pub mod selected_inverse;
 mod symmetric;
 pub mod twice;
 
 pub use accumulator::Accumulator;
 pub use augmented::AugmentedMatrix;
+pub use both_triangles::SymmetricRows;
 pub use cholesky::{Analysis, Cholesky};
 pub use dense::{LowerTriangle, UpperTriangle, dot, largest, norm, subtract, take_out, turned};
 pub use dependence::Dependence;

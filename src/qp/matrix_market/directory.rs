@@ -1,17 +1,24 @@
 //! Problem directories: which file holds what.
 
-#[cfg(feature = "cli")]
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
+#[cfg(feature = "cli")]
+use std::sync::Arc;
 
 use super::parse::{Content, Quotes, Values, parse};
 use super::{format_matrix, format_symmetric, format_vector};
+#[cfg(feature = "cli")]
+use super::{write_columns, write_entries};
 use crate::error::Error;
-use crate::file::{MOST_OF_TABLE, read_capped};
+#[cfg(feature = "cli")]
+use crate::file::Streamed;
+use crate::file::{MOST_OF_MATRIX, open_capped};
 use crate::qp::linear::multigrid::NearNullSpace;
 use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
 use crate::qp::problem::ContactProblem;
 use crate::solution::Solution;
+
+/// The file that makes a directory one of Matrix Market files.
+pub const STIFFNESS: &str = "K.mtx";
 
 /// Reads the problem of a directory.
 ///
@@ -19,7 +26,7 @@ use crate::solution::Solution;
 /// [`Error::File`] and [`Error::FileSyntax`] for a file that is missing or malformed, and those of
 /// [`ContactProblem::new`].
 pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
-    let file = directory.join("K.mtx");
+    let file = directory.join(STIFFNESS);
     let stiffness = read(&file, Values::Finite)?;
     check_filled(&file, &stiffness, stiffness.rows.max(stiffness.columns))?;
     let (is_symmetric, stiffness) = (stiffness.symmetric, matrix(stiffness)?);
@@ -121,16 +128,20 @@ fn columns(content: Content) -> Vec<Vec<f64>> {
     columns
 }
 
-/// Name and text of the file of a problem's near-null space, where it has one.
+/// The files of a problem, with its near-null space where it has one.
 #[cfg(feature = "cli")]
-pub fn near_null_file(problem: &ContactProblem) -> Option<(&'static str, String)> {
-    let vectors = problem.near_null()?.vectors();
-    let mut text = format!("%%MatrixMarket matrix array real general\n{} {}\n", problem.dofs(), vectors.len());
-    for value in vectors.iter().flatten() {
-        // Writing into a String cannot fail.
-        let _ = writeln!(text, "{value:e}");
-    }
-    Some(("near_null.mtx", text))
+pub fn streamed_files<'a>(problem: &'a ContactProblem) -> Vec<Streamed<'a>> {
+    let mut files = vec![
+        Streamed::new(STIFFNESS, |out| write_entries(out, problem.stiffness().lower(), "symmetric")),
+        Streamed::new("f.mtx", |out| write_columns(out, &[problem.load()])),
+        Streamed::new("B.mtx", |out| write_entries(out, problem.contact(), "general")),
+        Streamed::new("g.mtx", |out| write_columns(out, &[problem.gap()])),
+    ];
+    let of_modes = |near_null: &'a Arc<NearNullSpace>| {
+        Streamed::new("near_null.mtx", |out| write_columns(out, near_null.vectors()))
+    };
+    files.extend(problem.near_null().map(of_modes));
+    files
 }
 
 /// Reads a vector of finite numbers: one column, or one row.
@@ -159,7 +170,7 @@ fn vector(file: &Path, values: Values) -> Result<Vec<f64>, Error> {
 /// Name and text of the files of a problem.
 pub fn problem_files(problem: &ContactProblem) -> [(&'static str, String); 4] {
     [
-        ("K.mtx", format_symmetric(problem.stiffness())),
+        (STIFFNESS, format_symmetric(problem.stiffness())),
         ("f.mtx", format_vector(problem.load())),
         ("B.mtx", format_matrix(problem.contact())),
         ("g.mtx", format_vector(problem.gap())),
@@ -172,9 +183,7 @@ pub fn solution_files(solution: &Solution) -> [(&'static str, String); 2] {
 }
 
 fn read(file: &Path, values: Values) -> Result<Content, Error> {
-    let bytes = read_capped(file, MOST_OF_TABLE)?;
-    // Comments of older collections hold names in other encodings; numbers are ASCII in all of them.
-    parse(file, &String::from_utf8_lossy(&bytes), values, quotes(file))
+    parse(file, open_capped(file, MOST_OF_MATRIX)?, values, quotes(file))
 }
 
 /// What a link leads to outside the folder of `file` is not repeated in errors.

@@ -9,41 +9,50 @@
 //! R. F. Boisvert, R. Pozo, K. A. Remington, *The Matrix Market Exchange Formats: Initial Design*, NISTIR 5935 (1996).
 
 mod directory;
+mod lines;
 mod parse;
 
+pub use directory::{STIFFNESS, problem_files, read_problem, read_vector, solution_files};
 #[cfg(feature = "cli")]
-pub use directory::{near_null_file, read_other_end};
-pub use directory::{problem_files, read_problem, read_vector, solution_files};
+pub use directory::{read_other_end, streamed_files};
 
-use std::fmt::Write;
+use std::io::{self, Write};
 
 use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
 
 /// The text of a general sparse matrix.
 pub fn format_matrix(matrix: &SparseMatrix) -> String {
-    format_entries(matrix, "general")
+    text(|out| write_entries(out, matrix, "general"))
 }
 
 /// The text of a symmetric matrix: its lower triangle.
 pub fn format_symmetric(matrix: &SymmetricMatrix) -> String {
-    format_entries(matrix.lower(), "symmetric")
-}
-
-fn format_entries(matrix: &SparseMatrix, symmetry: &str) -> String {
-    let mut text = format!("%%MatrixMarket matrix coordinate real {symmetry}\n");
-    // Writing into a String cannot fail.
-    let _ = writeln!(text, "{} {} {}", matrix.rows(), matrix.columns(), matrix.entries());
-    for (row, column, value) in matrix.triplets() {
-        let _ = writeln!(text, "{} {} {value:e}", row + 1, column + 1);
-    }
-    text
+    text(|out| write_entries(out, matrix.lower(), "symmetric"))
 }
 
 /// The text of a vector, as an array of one column.
 pub fn format_vector(vector: &[f64]) -> String {
-    let mut text = format!("%%MatrixMarket matrix array real general\n{} 1\n", vector.len());
-    for value in vector {
-        let _ = writeln!(text, "{value:e}");
-    }
-    text
+    text(|out| write_columns(out, &[vector]))
+}
+
+/// What is written by `write`.
+fn text(write: impl Fn(&mut dyn Write) -> io::Result<()>) -> String {
+    let mut text = Vec::new();
+    // Writing into memory cannot fail, and all that is written is ASCII.
+    let _ = write(&mut text);
+    String::from_utf8_lossy(&text).into_owned()
+}
+
+/// Writes a sparse matrix, whose `symmetry` is `general`, or the lower triangle of one that is `symmetric`.
+fn write_entries(out: &mut dyn Write, matrix: &SparseMatrix, symmetry: &str) -> io::Result<()> {
+    writeln!(out, "%%MatrixMarket matrix coordinate real {symmetry}")?;
+    writeln!(out, "{} {} {}", matrix.rows(), matrix.columns(), matrix.entries())?;
+    matrix.triplets().try_for_each(|(row, column, value)| writeln!(out, "{} {} {value:e}", row + 1, column + 1))
+}
+
+/// Writes columns of one length as an array.
+fn write_columns(out: &mut dyn Write, columns: &[impl AsRef<[f64]>]) -> io::Result<()> {
+    let rows = columns.first().map_or(0, |column| column.as_ref().len());
+    writeln!(out, "%%MatrixMarket matrix array real general\n{rows} {}", columns.len())?;
+    columns.iter().flat_map(AsRef::as_ref).try_for_each(|value| writeln!(out, "{value:e}"))
 }

@@ -1,8 +1,10 @@
-//! Reading the text of a Matrix Market file; every fault has its line.
+//! Reading the text of a Matrix Market file, line by line; every fault has its line.
 
 use std::path::Path;
 
+use super::lines::Lines;
 use crate::error::Error;
+use crate::file::Capped;
 
 /// More rows or columns than this are refused before anything is allocated.
 const LARGEST_DIMENSION: usize = 100_000_000;
@@ -24,6 +26,9 @@ pub(super) struct Content {
 /// What the second line of a file of coordinates must be.
 const COORDINATE_SIZES: &str = "3 whole numbers (rows, columns and entries)";
 
+/// Bytes that an entry or a value takes at least, with the end of its line.
+const LEAST_OF_ENTRY: u64 = 2;
+
 /// Words of a file that an error repeats are cut to this many characters.
 const LONGEST_EXCERPT: usize = 80;
 
@@ -43,29 +48,31 @@ pub(super) enum Quotes {
     Withheld,
 }
 
-/// Parses `text`; `file` is named in errors.
-pub(super) fn parse(file: &Path, text: &str, values: Values, quotes: Quotes) -> Result<Content, Error> {
-    // Some editors put a byte order mark in front.
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let source = Source { file, text, values, quotes };
-    let mut lines = text.lines().enumerate().map(|(index, line)| (index + 1, line.trim()));
-    let (_, first) = lines.next().ok_or_else(|| source.fault(1, "the file is empty"))?;
-    let header = source.header(first)?;
-    let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('%'));
-    let (line, sizes) = lines.next().ok_or_else(|| source.fault(1, "the line with the sizes is missing"))?;
+/// Parses an open file, whose path is named in errors.
+pub(super) fn parse(file: &Path, text: Capped, values: Values, quotes: Quotes) -> Result<Content, Error> {
+    let source = Source { file, length: text.length, values, quotes };
+    let mut lines = Lines::of(file, text);
+    let header = match lines.next()? {
+        Some((_, first)) => source.header(first)?,
+        None => return Err(source.fault(1, "the file is empty")),
+    };
+    let Some((line, sizes)) = lines.next_data()? else {
+        return Err(source.fault(1, "the line with the sizes is missing"));
+    };
     let (rows, columns, announced) = source.sizes(&header, line, sizes)?;
     let symmetric = header.symmetric;
     let content = Content { line, rows, columns, symmetric, entries: Vec::new() };
     match header.is_array {
-        true => source.array(content, lines),
-        false => source.coordinates(content, announced, lines),
+        true => source.array(content, &mut lines),
+        false => source.coordinates(content, announced, &mut lines),
     }
 }
 
-/// The text of a file, and what may be in it.
+/// A file, and what may be in it.
 struct Source<'a> {
     file: &'a Path,
-    text: &'a str,
+    /// Bytes of the file, if it says.
+    length: u64,
     values: Values,
     quotes: Quotes,
 }
@@ -76,7 +83,7 @@ struct Header {
     symmetric: bool,
 }
 
-impl<'a> Source<'a> {
+impl Source<'_> {
     fn fault(&self, line: usize, message: impl Into<String>) -> Error {
         Error::FileSyntax { file: self.file.to_path_buf(), line, message: message.into() }
     }
@@ -135,11 +142,12 @@ impl<'a> Source<'a> {
     }
 
     /// One value a line, column by column.
-    fn array(&self, mut content: Content, lines: impl Iterator<Item = (usize, &'a str)>) -> Result<Content, Error> {
+    fn array(&self, mut content: Content, lines: &mut Lines) -> Result<Content, Error> {
         let Content { rows, columns, symmetric, .. } = content;
+        self.make_room(&mut content, rows.saturating_mul(columns));
         let mut places =
             (0..columns).flat_map(|column| (if symmetric { column } else { 0 }..rows).map(move |row| (row, column)));
-        for (line, word) in lines {
+        while let Some((line, word)) = lines.next_data()? {
             let not_a_number = || self.fault(line, format!("{} is not a number", self.excerpt(word)));
             let value = number(word).ok_or_else(not_a_number)?;
             self.values.check(value).map_err(|message| self.fault(line, message))?;
@@ -151,20 +159,16 @@ impl<'a> Source<'a> {
         match places.next() {
             Some((row, column)) => {
                 let message = format!("the file ends before the value of ({}, {})", row + 1, column + 1);
-                Err(self.fault(self.text.lines().count(), message))
+                Err(self.fault(lines.number(), message))
             }
             None => Ok(content),
         }
     }
 
     /// One entry a line: row, column, value.
-    fn coordinates(
-        &self,
-        mut content: Content,
-        announced: usize,
-        lines: impl Iterator<Item = (usize, &'a str)>,
-    ) -> Result<Content, Error> {
-        for (line, words) in lines {
+    fn coordinates(&self, mut content: Content, announced: usize, lines: &mut Lines) -> Result<Content, Error> {
+        self.make_room(&mut content, announced);
+        while let Some((line, words)) = lines.next_data()? {
             let entry = self.entry(&content, words).map_err(|message| self.fault(line, message))?;
             if content.entries.len() == announced {
                 return Err(self.fault(line, format!("there are more entries than the {announced} announced")));
@@ -175,17 +179,28 @@ impl<'a> Source<'a> {
         let found = content.entries.len();
         if found < announced {
             let message = format!("the file ends after {found} of {announced} entries");
-            return Err(self.fault(self.text.lines().count(), message));
+            return Err(self.fault(lines.number(), message));
         }
         Ok(content)
+    }
+
+    /// Makes room for the entries that are announced, as far as the length of the file lets them be believed: entries that come
+    /// without room for them would take twice as much for a while.
+    fn make_room(&self, content: &mut Content, announced: usize) {
+        let credible = (self.length / LEAST_OF_ENTRY) as usize;
+        // Without room they are taken one by one.
+        let _ = content.entries.try_reserve_exact(announced.min(credible));
     }
 
     /// The entry of a line, indices from 0, or what is wrong with it.
     fn entry(&self, content: &Content, line: &str) -> Result<(usize, usize, f64), String> {
         let Content { rows, columns, symmetric, .. } = *content;
-        let words: Vec<&str> = line.split_whitespace().collect();
-        let entry = match words[..] {
-            [row, column, value] => row.parse().ok().zip(column.parse().ok()).zip(number(value)),
+        let mut words = line.split_whitespace();
+        let mut word = || words.next();
+        let entry = match (word(), word(), word(), word()) {
+            (Some(row), Some(column), Some(value), None) => {
+                row.parse().ok().zip(column.parse().ok()).zip(number(value))
+            }
             _ => None,
         };
         let Some(((row, column), value)): Option<((usize, usize), f64)> = entry else {

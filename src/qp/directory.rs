@@ -1,0 +1,38 @@
+//! Problem directories, whichever files they are made of.
+
+use std::io;
+use std::path::Path;
+
+use super::{matrix_market, petsc};
+use crate::error::Error;
+use crate::qp::problem::ContactProblem;
+
+/// Reads the problem of a directory: Matrix Market files, with `K.mtx`, or PETSc's, with `K.petsc`. One with both is refused: they
+/// may be of two problems.
+///
+/// # Errors
+/// [`Error::File`] for a file that is missing and for a directory with both; [`Error::FileSyntax`] and [`Error::FileBytes`] for one
+/// that is malformed; those of [`ContactProblem::new`].
+pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
+    match forms(directory) {
+        [true, true] => {
+            let both = format!("{} and {} both stand there", matrix_market::STIFFNESS, petsc::STIFFNESS);
+            let source =
+                io::Error::new(io::ErrorKind::InvalidInput, format!("{both}; take the files of one form away"));
+            Err(Error::File { action: "read", path: directory.to_path_buf(), source })
+        }
+        [false, true] => petsc::read_problem(directory),
+        _ => matrix_market::read_problem(directory),
+    }
+}
+
+/// Returns `true` for a directory with the stiffness of a problem.
+#[cfg(feature = "cli")]
+pub(crate) fn is_problem_directory(directory: &Path) -> bool {
+    forms(directory).contains(&true)
+}
+
+/// Whether there is a stiffness of Matrix Market, and one of PETSc.
+fn forms(directory: &Path) -> [bool; 2] {
+    [matrix_market::STIFFNESS, petsc::STIFFNESS].map(|name| directory.join(name).exists())
+}

@@ -1,0 +1,92 @@
+//! The lines of a text that does not stand in memory.
+
+use std::io::{self, BufRead, BufReader};
+use std::path::{Path, PathBuf};
+
+use crate::error::Error;
+use crate::file::Capped;
+
+/// Bytes that are read at a time.
+const PIECE: usize = 1 << 20;
+
+/// What a line has beyond this many bytes is passed over: none that means something is as long.
+const LONGEST: usize = 1 << 16;
+
+/// The lines of a file, one at a time.
+pub(super) struct Lines {
+    file: PathBuf,
+    reader: BufReader<Capped>,
+    number: usize,
+    bytes: Vec<u8>,
+    text: String,
+}
+
+impl Lines {
+    /// Before the first line.
+    pub fn of(file: &Path, text: Capped) -> Self {
+        let reader = BufReader::with_capacity(PIECE, text);
+        Lines { file: file.to_path_buf(), reader, number: 0, bytes: Vec::new(), text: String::new() }
+    }
+
+    /// Number of lines that were read.
+    pub fn number(&self) -> usize {
+        self.number
+    }
+
+    /// The next line, with its number from 1 and without blanks at its ends.
+    ///
+    /// # Errors
+    /// [`Error::File`].
+    pub fn next(&mut self) -> Result<Option<(usize, &str)>, Error> {
+        let there = self.advance().map_err(|source| Error::File { action: "read", path: self.file.clone(), source })?;
+        Ok(there.then(|| (self.number, self.text.trim())))
+    }
+
+    /// The next line that is neither blank nor a comment.
+    ///
+    /// # Errors
+    /// As [`Lines::next`].
+    pub fn next_data(&mut self) -> Result<Option<(usize, &str)>, Error> {
+        loop {
+            match self.next()? {
+                None => return Ok(None),
+                Some((_, line)) if line.is_empty() || line.starts_with('%') => {}
+                Some(_) => return Ok(Some((self.number, self.text.trim()))),
+            }
+        }
+    }
+
+    /// Reads a line; `false` at the end of the file.
+    fn advance(&mut self) -> io::Result<bool> {
+        self.bytes.clear();
+        let mut is_there = false;
+        loop {
+            let piece = match self.reader.fill_buf() {
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+                piece => piece?,
+            };
+            if piece.is_empty() {
+                break;
+            }
+            is_there = true;
+            let end = piece.iter().position(|&byte| byte == b'\n');
+            let (line, used) = end.map_or((piece, piece.len()), |end| (&piece[..end], end + 1));
+            self.bytes.extend_from_slice(&line[..line.len().min(LONGEST - self.bytes.len())]);
+            self.reader.consume(used);
+            if end.is_some() {
+                break;
+            }
+        }
+        if !is_there {
+            return Ok(false);
+        }
+        self.number += 1;
+        // Comments of older collections hold names in other encodings; numbers are ASCII in all of them.
+        let text = String::from_utf8_lossy(&self.bytes);
+        // Some editors put a byte order mark in front.
+        let mark = if self.number == 1 { "\u{feff}" } else { "" };
+        self.text.clear();
+        self.text.push_str(text.strip_prefix(mark).unwrap_or(&text));
+        Ok(true)
+    }
+}

@@ -1,0 +1,159 @@
+//! The rows of a PETSc matrix, one after another: neither the file nor a second matrix stands in memory.
+
+use std::path::Path;
+
+use super::source::{INTEGER, REAL, Source};
+use super::{Class, DENSE, TOO_MANY};
+use crate::error::Error;
+
+/// Bytes before the lengths of the rows.
+const HEADER: u64 = 4 * INTEGER;
+
+/// A sparse matrix whose rows are read.
+pub(super) struct Rows {
+    /// Rows and columns.
+    pub shape: (usize, usize),
+    /// Number of entries.
+    pub entries: usize,
+    lengths: Vec<u32>,
+    columns: Source,
+    values: Source,
+    /// The row that is read next.
+    next: usize,
+    /// The byte of the values of the last row.
+    byte: u64,
+}
+
+/// A row: columns from 0, increasing, and values.
+#[derive(Default)]
+pub(super) struct Row {
+    pub columns: Vec<u32>,
+    pub values: Vec<f64>,
+}
+
+impl Rows {
+    /// Opens a sparse matrix, and reads how long its rows are.
+    ///
+    /// # Errors
+    /// [`Error::File`], [`Error::FileBytes`].
+    pub fn open(path: &Path) -> Result<Self, Error> {
+        let mut source = Source::open(path, Class::Matrix)?;
+        let (rows, columns) = (source.count("rows")?, source.count("columns")?);
+        let (byte, announced) = (source.byte(), source.integer()?);
+        if announced == DENSE {
+            let message = format!("the matrix is stored dense (its number of entries is {DENSE}); store it as AIJ");
+            return Err(source.fault(byte, message));
+        }
+        if announced < 0 {
+            let message = format!("the number of entries is {announced}; it must not be negative");
+            return Err(source.fault(byte, message));
+        }
+        let after_lengths = HEADER + INTEGER * rows as u64;
+        if source.is_shorter_than(after_lengths) {
+            source.ends_at(after_lengths, || format!("the header of a matrix of {rows} rows"))?;
+        }
+        let mut lengths = Vec::with_capacity(rows);
+        let mut entries = 0_u64;
+        for row in 0..rows {
+            let (byte, length) = (source.byte(), source.integer()?);
+            if length < 0 || length as usize > columns {
+                let allowed = format!("it must be from 0 to {columns}, the number of columns");
+                return Err(source.fault(byte, format!("row {row} has length {length} (from 0); {allowed}")));
+            }
+            lengths.push(length as u32);
+            entries += length as u64;
+        }
+        if announced != TOO_MANY && entries != announced as u64 {
+            let message =
+                format!("the number of entries is {announced}, but the lengths of the rows add up to {entries}");
+            return Err(source.fault(byte, message));
+        }
+        let after_columns = after_lengths + INTEGER * entries;
+        let holds = || format!("a matrix of {rows} rows and {entries} entries");
+        source.ends_at(after_columns + REAL * entries, holds)?;
+        let values = source.beside(after_columns)?;
+        let (shape, entries) = ((rows, columns), entries as usize);
+        Ok(Rows { shape, entries, lengths, columns: source, values, next: 0, byte: after_columns })
+    }
+
+    /// Reads the next row; `false` behind the last.
+    ///
+    /// # Errors
+    /// [`Error::File`]; [`Error::FileBytes`] for columns that do not increase or lie outside, and for values that are not finite.
+    pub fn read(&mut self, into: &mut Row) -> Result<bool, Error> {
+        let Some(&length) = self.lengths.get(self.next) else { return Ok(false) };
+        let row = self.next;
+        into.columns.clear();
+        into.values.clear();
+        let mut least = 0;
+        for _ in 0..length {
+            let (byte, column) = (self.columns.byte(), self.columns.integer()?);
+            if !(least..self.shape.1 as i64).contains(&i64::from(column)) {
+                let allowed = format!("columns must increase and lie below {}", self.shape.1);
+                let before = into.columns.last().map_or(String::new(), |before| format!(" behind column {before}"));
+                let message = format!("row {row} has column {column}{before} (indices from 0); {allowed}");
+                return Err(self.columns.fault(byte, message));
+            }
+            least = i64::from(column) + 1;
+            into.columns.push(column as u32);
+        }
+        self.byte = self.values.byte();
+        for &column in &into.columns {
+            let (byte, value) = (self.values.byte(), self.values.real()?);
+            if !value.is_finite() {
+                let message = format!("entry ({row}, {column}) is {value} (indices from 0); it must be finite");
+                return Err(self.values.fault(byte, message));
+            }
+            into.values.push(value);
+        }
+        self.next += 1;
+        Ok(true)
+    }
+
+    /// The row that was read last.
+    pub fn row(&self) -> usize {
+        self.next - 1
+    }
+
+    /// What is wrong with an entry of the row that was read last; `place` is its number in the row.
+    pub fn fault(&self, place: usize, message: impl Into<String>) -> Error {
+        self.values.fault(self.byte + REAL * place as u64, message)
+    }
+
+    /// What is wrong with the shape.
+    pub fn wrong_shape(&self, message: impl Into<String>) -> Error {
+        self.values.fault(INTEGER, message)
+    }
+}
+
+/// The columns of a matrix of `rows` rows that is stored with all its entries.
+///
+/// # Errors
+/// [`Error::File`]; [`Error::FileBytes`] for another shape or form, and for values that are not finite.
+pub(super) fn dense_columns(path: &Path, rows: usize) -> Result<Vec<Vec<f64>>, Error> {
+    let mut source = Source::open(path, Class::Matrix)?;
+    let (found, count) = (source.count("rows")?, source.count("columns")?);
+    if found != rows || count == 0 {
+        let message = format!("it is {found} x {count}, but it must have {rows} rows, as the stiffness, and a column");
+        return Err(source.fault(INTEGER, message));
+    }
+    let (byte, announced) = (source.byte(), source.integer()?);
+    if announced != DENSE {
+        let message = format!("the number of entries is {announced}; it must be {DENSE}: store the matrix dense");
+        return Err(source.fault(byte, message));
+    }
+    let bytes = (rows as u64).saturating_mul(count as u64).saturating_mul(REAL).saturating_add(HEADER);
+    source.ends_at(bytes, || format!("a dense matrix of {rows} x {count}"))?;
+    let mut columns = vec![Vec::with_capacity(rows); count];
+    for row in 0..rows {
+        for (index, column) in columns.iter_mut().enumerate() {
+            let (byte, value) = (source.byte(), source.real()?);
+            if !value.is_finite() {
+                let message = format!("entry ({row}, {index}) is {value} (indices from 0); it must be finite");
+                return Err(source.fault(byte, message));
+            }
+            column.push(value);
+        }
+    }
+    Ok(columns)
+}

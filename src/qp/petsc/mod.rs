@@ -1,0 +1,82 @@
+//! PETSc's binary files: the form in which a body too large for one machine goes to a cluster and comes back.
+//!
+//! A problem directory holds `K.petsc` (D n x D n, both triangles, D dofs for each of n nodes), `K.petsc.info`, `f.petsc`,
+//! `coordinates.petsc`, `B.petsc`, `g.petsc`, `free.petsc`, and `near_null.petsc` where displacements are known that cost next to no
+//! energy. `free.petsc` is the place in 0..D n of each free dof: `u.mtx` has their order. All else that stands there is supported.
+//!
+//! Numbers are big-endian: integers of 32 bits, reals of 64. A file begins with the class of what it holds.
+//!
+//! | class | what follows |
+//! |---|---|
+//! | 1211216, Mat | rows, columns, entries; the length of each row; the column of each entry; its value |
+//! | 1211216, Mat, with -1 for the entries | all values, row by row |
+//! | 1211214, Vec | length; values |
+//! | 1211218, IS | length; indices |
+//!
+//! # Source
+//! PETSc Users Manual, `MatLoad()` and `VecLoad()`: the binary formats (petsc.org).
+
+mod directory;
+#[cfg(feature = "cli")]
+mod layout;
+mod matrix;
+mod source;
+#[cfg(feature = "cli")]
+mod write;
+
+pub use directory::read_problem;
+#[cfg(feature = "cli")]
+pub use layout::Layout;
+#[cfg(feature = "cli")]
+pub use write::streamed_files;
+
+/// The file that makes a directory one of PETSc's files.
+pub const STIFFNESS: &str = "K.petsc";
+
+/// Options that PETSc reads with the matrix.
+const INFO: &str = "K.petsc.info";
+
+/// The option that says how many dofs a node has.
+const BLOCK_SIZE: &str = "-matload_block_size";
+
+const LOAD: &str = "f.petsc";
+const CONTACT: &str = "B.petsc";
+const GAP: &str = "g.petsc";
+const FREE: &str = "free.petsc";
+const COORDINATES: &str = "coordinates.petsc";
+const NEAR_NULL: &str = "near_null.petsc";
+
+/// What a file holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Class {
+    Matrix,
+    Vector,
+    Indices,
+}
+
+impl Class {
+    const ALL: [Class; 3] = [Class::Matrix, Class::Vector, Class::Indices];
+
+    /// The number that a file begins with.
+    fn number(self) -> i32 {
+        match self {
+            Class::Matrix => 1_211_216,
+            Class::Vector => 1_211_214,
+            Class::Indices => 1_211_218,
+        }
+    }
+
+    fn words(self) -> &'static str {
+        match self {
+            Class::Matrix => "a matrix (Mat)",
+            Class::Vector => "a vector (Vec)",
+            Class::Indices => "an index set (IS)",
+        }
+    }
+}
+
+/// Stands for the number of entries of a matrix that is stored with all of them.
+const DENSE: i32 = -1;
+
+/// Stands for a number of entries that 32 bits do not hold: the lengths of the rows tell it.
+const TOO_MANY: i32 = i32::MAX;

@@ -1,0 +1,179 @@
+//! A PETSc file while it is read: every fault has its byte.
+
+use std::fs::File;
+use std::io::{self, BufReader, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+
+use super::Class;
+use crate::error::Error;
+use crate::file::open_regular;
+
+/// Bytes that are read at a time.
+const PIECE: usize = 1 << 20;
+
+/// Bytes of an integer and of a real.
+pub(super) const INTEGER: u64 = 4;
+pub(super) const REAL: u64 = 8;
+
+/// A file, read from some byte on.
+pub(super) struct Source {
+    path: PathBuf,
+    reader: BufReader<File>,
+    byte: u64,
+    length: u64,
+}
+
+impl Source {
+    /// Opens a file that holds one object of this class, and reads the class.
+    ///
+    /// # Errors
+    /// [`Error::File`] for a file that cannot be read, [`Error::FileBytes`] for one of another class.
+    pub fn open(path: &Path, class: Class) -> Result<Self, Error> {
+        let mut source = Self::from_byte(path, 0)?;
+        let number = class.number();
+        if source.length < 2 * INTEGER {
+            let message = format!("the file ends here; {} begins with {number} and its size", class.words());
+            return Err(source.fault(source.length, message));
+        }
+        let found = source.integer()?;
+        if found == number {
+            return Ok(source);
+        }
+        let known = |number: i32| Class::ALL.into_iter().find(|class| class.number() == number);
+        let message = if let Some(other) = known(found) {
+            format!("the class is {found}, {}; it must be {number}, {}", other.words(), class.words())
+        } else if known(found.swap_bytes()).is_some() {
+            let little = found.swap_bytes();
+            format!("the class is {found}, which is {little} in little-endian order; PETSc files are big-endian")
+        } else {
+            match (found, source.integer()?) {
+                (0, next) if known(next).is_some() => {
+                    format!("the integers have 64 bits; they must have 32: write {next} and all others in 4 bytes")
+                }
+                _ => format!("the class is {found}; it must be {number}, {}", class.words()),
+            }
+        };
+        Err(source.fault(0, message))
+    }
+
+    /// The same file from another byte on, read beside this one.
+    ///
+    /// # Errors
+    /// [`Error::File`].
+    pub fn beside(&self, byte: u64) -> Result<Self, Error> {
+        Self::from_byte(&self.path, byte)
+    }
+
+    fn from_byte(path: &Path, byte: u64) -> Result<Self, Error> {
+        let (mut file, length) = open_regular(path)?;
+        let sought = if byte == 0 { Ok(0) } else { file.seek(SeekFrom::Start(byte)) };
+        sought.map_err(|source| Error::File { action: "read", path: path.into(), source })?;
+        let reader = BufReader::with_capacity(PIECE.min(length as usize + 1), file);
+        Ok(Source { path: path.to_path_buf(), reader, byte, length })
+    }
+
+    /// The byte that is read next.
+    pub fn byte(&self) -> u64 {
+        self.byte
+    }
+
+    /// What is wrong with a byte of the file.
+    pub fn fault(&self, byte: u64, message: impl Into<String>) -> Error {
+        Error::FileBytes { file: self.path.clone(), byte: byte as usize, message: message.into() }
+    }
+
+    /// The next integer.
+    ///
+    /// # Errors
+    /// [`Error::File`]; [`Error::FileBytes`] at the end of the file.
+    pub fn integer(&mut self) -> Result<i32, Error> {
+        self.bytes().map(i32::from_be_bytes)
+    }
+
+    /// The next integer, which is a number of `what`.
+    ///
+    /// # Errors
+    /// As [`Source::integer`]; [`Error::FileBytes`] for a negative one.
+    pub fn count(&mut self, what: &str) -> Result<usize, Error> {
+        let (byte, count) = (self.byte, self.integer()?);
+        let negative = |_| self.fault(byte, format!("the number of {what} is {count}; it must not be negative"));
+        usize::try_from(count).map_err(negative)
+    }
+
+    /// The next real.
+    ///
+    /// # Errors
+    /// As [`Source::integer`].
+    pub fn real(&mut self) -> Result<f64, Error> {
+        self.bytes().map(f64::from_be_bytes)
+    }
+
+    fn bytes<const COUNT: usize>(&mut self) -> Result<[u8; COUNT], Error> {
+        let mut bytes = [0; COUNT];
+        self.reader.read_exact(&mut bytes).map_err(|source| match source.kind() {
+            io::ErrorKind::UnexpectedEof => self.fault(self.length, "the file ends here, before its sizes do"),
+            _ => Error::File { action: "read", path: self.path.clone(), source },
+        })?;
+        self.byte += COUNT as u64;
+        Ok(bytes)
+    }
+
+    /// Returns `true` if the file has fewer bytes.
+    pub fn is_shorter_than(&self, bytes: u64) -> bool {
+        self.length < bytes
+    }
+
+    /// Refuses a file that does not end with the byte before `end`, where what `holds` says ends.
+    ///
+    /// # Errors
+    /// [`Error::FileBytes`].
+    pub fn ends_at(&self, end: u64, holds: impl FnOnce() -> String) -> Result<(), Error> {
+        if self.length == end {
+            return Ok(());
+        }
+        let what = if self.length < end { "the file ends here" } else { "the file goes on here" };
+        let byte = self.length.min(end);
+        let message = format!("{what}, after {} bytes; {} takes {end} bytes", self.length, holds());
+        Err(self.fault(byte, message))
+    }
+}
+
+/// Reads a vector whose values satisfy `is_allowed`, as in words: `allowed`.
+///
+/// # Errors
+/// [`Error::File`], [`Error::FileBytes`].
+pub(super) fn vector(path: &Path, is_allowed: fn(f64) -> bool, allowed: &str) -> Result<Vec<f64>, Error> {
+    let mut source = Source::open(path, Class::Vector)?;
+    let length = source.count("values")?;
+    source.ends_at(2 * INTEGER + REAL * length as u64, || format!("a vector of {length} values"))?;
+    let mut values = Vec::with_capacity(length);
+    for index in 0..length {
+        let (byte, value) = (source.byte(), source.real()?);
+        if !is_allowed(value) {
+            return Err(source.fault(byte, format!("value {index} is {value} (from 0); it must be {allowed}")));
+        }
+        values.push(value);
+    }
+    Ok(values)
+}
+
+/// Reads a set of indices that increase and lie below `most`.
+///
+/// # Errors
+/// [`Error::File`], [`Error::FileBytes`].
+pub(super) fn indices(path: &Path, most: usize) -> Result<Vec<u32>, Error> {
+    let mut source = Source::open(path, Class::Indices)?;
+    let length = source.count("indices")?;
+    source.ends_at(INTEGER * (2 + length as u64), || format!("an index set of {length}"))?;
+    let mut indices: Vec<u32> = Vec::with_capacity(length);
+    for number in 0..length {
+        let (byte, index) = (source.byte(), source.integer()?);
+        let least = indices.last().map_or(0, |&before| i64::from(before) + 1);
+        if !(least..most as i64).contains(&i64::from(index)) {
+            let allowed = format!("it must lie beyond the one before and below {most}, the size of the stiffness");
+            return Err(source.fault(byte, format!("index {number} is {index} (from 0); {allowed}")));
+        }
+        indices.push(index as u32);
+    }
+    Ok(indices)
+}
