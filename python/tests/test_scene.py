@@ -182,6 +182,60 @@ def test_a_sweep_knows_what_happens_between_its_gaps() -> None:
     assert {event["touches"] for event in sweep.events} <= {True, False}
 
 
+def pressed() -> dict:
+    scene = block(gap=0.0)
+    scene["obstacles"][0] = {"boundary": "top", "approach": "+y", "shape": {"circle": {"apex": [0.5, 1.003], "radius": 1}}, "force": 1}
+    del scene["gap"]
+    return scene
+
+
+def test_a_sweep_over_forces_is_that_of_the_program(tmp_path: Path) -> None:
+    file = tmp_path / "scene.json"
+    file.write_text(json.dumps(pressed()))
+    command = [program(), "sweep", file, "--forces", "0:2e4:5", "--format", "json"]
+    reported = json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)["points"]
+    sweep = sg.sweep(sg.Scene(file), forces=np.linspace(0.0, 2e4, 5))
+    assert sweep.forces == [point["force"] for point in reported] == [0.0, 5e3, 1e4, 1.5e4, 2e4]
+    assert [answer.resultants for answer in sweep.solutions] == [point["resultants"] for point in reported]
+    assert np.allclose(sweep.contact_force, sweep.forces, rtol=0, atol=1e-5) and not sweep.events
+    # Without a force the obstacle stands where it first touches.
+    assert abs(sweep.solutions[0].resultants[0]["travel"] - 0.003) < 1e-15
+
+
+def test_a_sweep_to_another_end_has_the_bits_of_the_program(tmp_path: Path) -> None:
+    from scipy.io import mmwrite
+
+    problem = cases.elastic_block.indentation(-0.02, columns=8, layers=4)
+    write_problem(problem, tmp_path)
+    g1, f1 = problem.gap - 0.03, problem.load - 10.0
+    mmwrite(tmp_path / "g1.mtx", g1.reshape(-1, 1), precision=17)
+    for other_load in (False, True):
+        if other_load:
+            mmwrite(tmp_path / "f1.mtx", f1.reshape(-1, 1), precision=17)
+        command = [program(), "sweep", tmp_path, "--points", "4", "--format", "json", "--out", tmp_path / "out"]
+        reported = json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
+        sweep = sg.sweep(of_folder(tmp_path), g1=g1, f1=f1 if other_load else None, points=4)
+        assert sweep.t == [point["t"] for point in reported["points"]]
+        assert sweep.events == reported.get("events", []) and bool(sweep.events) != other_load
+        for number, answer in enumerate(sweep.solutions, start=1):
+            assert np.array_equal(answer.u, column(tmp_path / "out" / f"point-{number:02}" / "u.mtx"))
+            assert np.array_equal(answer.multiplier, column(tmp_path / "out" / f"point-{number:02}" / "lambda.mtx"))
+
+
+def test_pictures_of_sweeps_have_an_axis_for_what_was_swept() -> None:
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    scene = sg.Scene(pressed())
+    for sweep, names in (
+        (sg.sweep(scene, forces=[0.0, 1e4]), ("force [N]", "travel [m]")),
+        (sg.sweep(sg.Scene(block()), [-0.01, -0.02]), ("gap [m]", "contact force [N]")),
+        (sg.sweep(scene.problem, g1=scene.problem.g, points=2), ("way t", "contact force")),
+        (sg.sweep(scene.problem, [scene.problem.g]), ("number of the gap", "contact force")),
+    ):
+        axes = sweep.plot()
+        assert (axes.get_xlabel(), axes.get_ylabel()) == names and len(axes.lines[-1].get_xdata()) == len(sweep.solutions)
+
+
 def test_faults_are_named_with_path_line_and_column(tmp_path: Path) -> None:
     scene = block()
     scene["material"]["young"] = -1
