@@ -8,6 +8,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -271,7 +272,38 @@ def test_pictures_show_the_mesh() -> None:
     assert len(axes.collections[0].get_paths()) == 16 and axes.get_title() == "Block under a plane"
 
 
-def test_a_grid_of_pyvista_has_the_fields() -> None:
-    pytest.importorskip("pyvista")
-    grid = sg.Scene(block()).solve().to_pyvista()
-    assert grid.n_cells == 16 and set(grid.point_data) == {"displacement", "stress", "von_mises"}
+class Grid:
+    """What `pyvista.UnstructuredGrid` takes, which needs VTK, 600 MB: tables of nodes by the type of the cell, and points in space."""
+
+    def __init__(self, cells: dict[int, np.ndarray], points: np.ndarray) -> None:
+        assert points.shape[1] == 3 and all(0 <= nodes.min() and nodes.max() < len(points) for nodes in cells.values())
+        self.cells_dict, self.points, self.point_data = cells, points, {}
+
+
+# The names of meshio, whose numbers of cells are those of VTK.
+CELLS = {
+    "Line2": "line", "Line3": "line3", "T3": "triangle", "T6": "triangle6", "Q4": "quad", "Q8": "quad8",
+    "Tet4": "tetra", "Tet10": "tetra10", "Hex8": "hexahedron", "Hex20": "hexahedron20",
+}  # fmt: skip
+
+
+def test_the_types_of_cells_are_those_of_vtk() -> None:
+    from meshio._vtk_common import meshio_to_vtk_type
+    from signorini import _show
+
+    assert _show._VTK == {kind: meshio_to_vtk_type[name] for kind, name in CELLS.items()}
+
+
+@pytest.mark.parametrize("stands_in", [True, False], ids=["stand-in", "pyvista"])
+def test_a_grid_of_pyvista_has_the_mesh_and_the_fields(stands_in: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    if stands_in:
+        monkeypatch.setitem(sys.modules, "pyvista", SimpleNamespace(UnstructuredGrid=Grid))
+    else:
+        pytest.importorskip("pyvista")
+    answer = sg.Scene(block()).solve()
+    grid = answer.to_pyvista()
+    (kind, cells), fields = *grid.cells_dict.items(), grid.point_data
+    assert kind == 9 and np.array_equal(cells, answer.scene.elements)
+    assert np.array_equal(grid.points, np.pad(answer.scene.nodes, ((0, 0), (0, 1))))
+    assert np.array_equal(fields["displacement"], np.pad(answer.displacement, ((0, 0), (0, 1))))
+    assert np.array_equal(fields["stress"], answer.stress) and np.array_equal(fields["von_mises"], answer.von_mises)
