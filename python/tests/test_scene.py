@@ -50,9 +50,9 @@ def column(file: Path) -> np.ndarray:
 ENDINGS = {1: (sg.BadInput, sg.NumericalError, sg.TooLarge), 3: (sg.Infeasible, sg.Unbounded, sg.UnderHeld)}
 
 
-def run(target: Path, out: Path) -> tuple[int, dict[str, Any]]:
+def run(target: Path, out: Path, method: str = "auto") -> tuple[int, dict[str, Any]]:
     """Exit code and report of `signorini solve`."""
-    command = [program(), "solve", target, "--out", out, "--format", "json", "--max-memory", "8GB"]
+    command = [program(), "solve", target, "--method", method, "--out", out, "--format", "json", "--max-memory", "8GB"]
     ended = subprocess.run(command, capture_output=True, text=True, check=False)
     return ended.returncode, json.loads(ended.stdout) if ended.stdout else {}
 
@@ -97,9 +97,9 @@ def of_folder(folder: Path) -> sg.Problem:
     return sg.Problem(mmread(folder / "K.mtx"), f, mmread(folder / "B.mtx"), g, near_null)
 
 
-def same_as_program(folder: Path, out: Path) -> None:
-    code, _ = run(folder, out)
-    agree(code, lambda: sg.solve(of_folder(folder), memory=8e9), out)
+def same_as_program(folder: Path, out: Path, method: str = "auto") -> None:
+    code, _ = run(folder, out, method)
+    agree(code, lambda: sg.solve(of_folder(folder), method=method, memory=8e9), out)
 
 
 @pytest.mark.parametrize("scene", SCENES, ids=lambda path: path.stem)
@@ -112,7 +112,8 @@ def test_an_exported_problem_has_the_bits_of_the_program(scene: Path, tmp_path: 
 @pytest.mark.parametrize("case", REFERENCE, ids=lambda case: case.name)
 def test_a_reference_problem_has_the_bits_of_the_program(case: cases.Case, tmp_path: Path) -> None:
     write_problem(case.generate(), tmp_path / "problem")
-    same_as_program(tmp_path / "problem", tmp_path / "out")
+    for method in ("auto", "qp", "active-set", "penalty"):
+        same_as_program(tmp_path / "problem", tmp_path / method, method)
 
 
 @pytest.mark.parametrize("folder", FINDINGS, ids=lambda folder: folder.name)
