@@ -152,3 +152,29 @@ def test_memory_is_flat_over_ten_thousand_solves() -> None:
     solve(10_000)
     # A leak of one answer, of some 500 bytes, would be ten times as much.
     assert resident() - before < 1_000_000
+
+
+# What is left of a limited address space is taken for the memory there is: a refusal, and not the end of the process.
+LIMITED = """
+import resource, sys
+sys.path.insert(0, sys.argv[1])
+import signorini as sg
+from bodies import membrane
+
+problem = sg.Problem(*membrane(int(sys.argv[2])))
+pages = int(open("/proc/self/statm").read().split()[0])
+most = pages * resource.getpagesize() + (int(sys.argv[3]) << 20)
+resource.setrlimit(resource.RLIMIT_AS, (most, most))
+try:
+    print(sg.solve(problem, method="active-set").certificate.meets(1e-9))
+except sg.TooLarge as error:
+    print(f"{error.bytes > error.allowed}, too large")
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="the system does not say how much memory a process holds")
+@pytest.mark.parametrize(("cells", "megabytes", "said"), [(300, 100, "True, too large"), (300, 4000, "True"), (40, 4000, "True")])
+def test_what_does_not_fit_into_a_limited_address_space_is_refused(cells: int, megabytes: int, said: str) -> None:
+    program = [sys.executable, "-c", LIMITED, str(Path(__file__).parent), str(cells), str(megabytes)]
+    ended = subprocess.run(program, capture_output=True, text=True, timeout=120, check=False)
+    assert (ended.returncode, ended.stdout.strip()) == (0, said), ended.stderr
