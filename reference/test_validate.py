@@ -177,6 +177,13 @@ class Parts(unittest.TestCase):
             doubled = Answer(2.0 * self.settled.answer.displacement, self.settled.answer.multiplier)
             self.assertEqual(len(vtu_faults(Path(name), Run(doubled, self.told, True))), 1)
 
+    def test_a_vtu_of_another_contact_set_is_seen(self):
+        with tempfile.TemporaryDirectory() as name:
+            stand_in.write_vtu(self.settled.answer, self.problem, Path(name))
+            fewer = SimpleNamespace(contact_set=self.told.contact_set[1:])
+            faults = vtu_faults(Path(name), Run(self.settled.answer, fewer, True))
+        self.assertRegex(faults[0], "^contact is set at 5 points, the answer has 4$")
+
     def test_the_table_has_a_line_for_answers_and_for_failures(self):
         right = validate.judge(
             "case", "answer", self.problem, self.settled.answer, [self.settled.answer], validate.EXACT

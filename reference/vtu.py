@@ -46,7 +46,7 @@ def vtu_faults(folder: Path, run: Run) -> list[str]:
     # 1 marks a closed candidate, 0 an open one, -1 a node that is no candidate.
     closed = int(np.count_nonzero(points["contact"] == 1)) if "contact" in points else count
     if closed != count:
-        faults.append(f"contact is set at {closed} points, the answer {count}")
+        faults.append(f"contact is set at {closed} points, the answer has {count}")
     if "pressure" in points and np.min(points["pressure"], initial=0.0) < 0.0:
         faults.append(f"pressure goes down to {points['pressure'].min():.3g}")
     if "u" in points:
