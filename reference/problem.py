@@ -3,7 +3,7 @@
     minimise 1/2 u'K u - f'u   subject to   B u - g <= 0
     K u - f - B' lambda = 0,  B u - g <= 0,  lambda <= 0,  lambda_i (B u - g)_i = 0
 
-A problem directory holds the Matrix Market files K.mtx, f.mtx, B.mtx and g.mtx; a solution adds u.mtx and lambda.mtx.
+A problem directory holds the Matrix Market files K.mtx, f.mtx, B.mtx and g.mtx.
 """
 
 from dataclasses import dataclass
@@ -75,17 +75,6 @@ def problem_of(stiffness, load, contact, gap) -> Problem:
     return Problem(stiffness, np.asarray(load, float).ravel(), contact, np.asarray(gap, float).ravel())
 
 
-def read_problem(directory) -> Problem:
-    """Reads K.mtx, f.mtx, B.mtx and g.mtx of a problem directory."""
-    folder = Path(directory)
-    return problem_of(
-        io.mmread(folder / "K.mtx"),
-        read_vector(folder / "f.mtx"),
-        io.mmread(folder / "B.mtx"),
-        read_vector(folder / "g.mtx"),
-    )
-
-
 def write_problem(problem: Problem, directory) -> None:
     """Writes a problem directory: K as its lower triangle, vectors as n x 1 arrays, every double exactly."""
     folder = Path(directory)
@@ -94,31 +83,6 @@ def write_problem(problem: Problem, directory) -> None:
     io.mmwrite(folder / "B.mtx", problem.contact.tocoo(), symmetry="general", precision=17)
     write_vector(folder / "f.mtx", problem.load)
     write_vector(folder / "g.mtx", problem.gap)
-
-
-def read_answer(directory) -> Answer:
-    """Reads u.mtx and lambda.mtx of a solution."""
-    folder = Path(directory)
-    return Answer(read_vector(folder / "u.mtx"), read_vector(folder / "lambda.mtx"))
-
-
-def write_answer(answer: Answer, directory) -> None:
-    """Writes u.mtx and lambda.mtx."""
-    folder = Path(directory)
-    folder.mkdir(parents=True, exist_ok=True)
-    write_vector(folder / "u.mtx", answer.displacement)
-    write_vector(folder / "lambda.mtx", answer.multiplier)
-
-
-def read_vector(path) -> np.ndarray:
-    """A Matrix Market vector, in array or coordinate format, as a flat array."""
-    with open(path) as file:
-        size = next((line for line in file if line.strip() and not line.startswith("%")), "").split()
-    if size[:1] == ["0"]:
-        # scipy's reader ends the process with a division by zero on an array without rows.
-        return np.zeros(0)
-    matrix = io.mmread(path)
-    return np.asarray(matrix.todense() if sparse.issparse(matrix) else matrix, float).ravel()
 
 
 def write_vector(path, vector: np.ndarray) -> None:

@@ -1,21 +1,17 @@
-"""A stand-in for the program, to test the validation itself: same command line, files and report, dense solves inside.
+"""A stand-in for the package and the program, to test the validation itself: dense solves inside, wrong in one of the ways below."""
 
-A scene is any JSON with a `gap`; it stands for the indented block of `elastic_block`. The environment variable
-STAND_IN_FAULT makes it wrong in one of the ways below.
-"""
-
-import json
-import os
-import sys
+import subprocess
 from pathlib import Path
+from types import SimpleNamespace
 
 import meshio
 import numpy as np
+import signorini as sg
 
-import elastic_block
 from compare import energy_distance
 from kkt import kkt
-from problem import Answer, Problem, read_problem, write_answer, write_problem
+from problem import Answer, Problem, problem_of
+from program import problem_of_scene
 from settle import contact_set, settle
 
 BLOCK = dict(columns=8, layers=4)
@@ -44,10 +40,10 @@ def slightly_off(answer: Answer) -> Answer:
 
 
 WRONG_ANSWERS = {fault.__name__: fault for fault in (flipped_sign, lost_factor, swapped_dofs, slightly_off)}
-WRONG_REPORTS = {
-    "overstated_bound": {"certificate": {"energy_error_bound": 1e-30}},
-    "lying_status": {"status": "not_certified"},
-    "wrong_force": {"contact": {"count": 1, "force": 0.0}},
+WRONG_WORDS = {
+    "overstated_bound": {"energy_error_bound": 1e-30},
+    "wrong_count": {"contact_set": np.array([0])},
+    "wrong_force": {"contact_force": 0.0},
 }
 
 
@@ -70,35 +66,42 @@ def settled(problem: Problem):
     return settle(problem, start)
 
 
-def solve(target: Path, method: str, out: Path, on_all_dofs: bool) -> int:
-    """Writes the files of one solve, prints its report and returns the exit code."""
-    problem = scene_problem(target) if target.is_file() else read_problem(target)
+def solve(given: sg.Problem, *, method: str, condense: bool, proof: bool, fault: str = "") -> SimpleNamespace:
+    """What `signorini.solve` would return or raise."""
+    if fault == "refused":
+        raise sg.UnderHeld("the body is not held")
+    problem = problem_of(given.K, given.f, given.B, given.g)
     exact = settled(problem).answer
     answer = penalty(problem) if method == "penalty" else exact
-    fault = os.environ.get("STAND_IN_FAULT", "")
     if fault in WRONG_ANSWERS and method != "penalty":
         answer = WRONG_ANSWERS[fault](answer)
-    if fault == "full_differs" and on_all_dofs:
+    if fault == "full_differs" and not condense:
         answer = Answer(answer.displacement * (1.0 + 1e-10), answer.multiplier)
-    certified = kkt(problem, answer).worst() <= 1e-9 or method != "penalty"
-    report = {
-        "status": "certified" if certified else "not_certified",
+    closed = np.flatnonzero(contact_set(problem, answer))
+    told = {
+        "u": answer.displacement,
+        "multiplier": answer.multiplier,
         "method": method,
-        "history": [{"closed": int(contact_set(problem, answer).sum())}],
-        "contact": {"count": int(contact_set(problem, answer).sum()), "force": answer.force},
-        "certificate": {"energy_error_bound": 2.0 * energy_distance(problem, answer, exact) + 1e-14},
+        "seconds": 0.0,
+        "history": [(closed, 0.0)],
+        "contact_set": closed,
+        "contact_force": answer.force,
+        "energy_error_bound": 2.0 * energy_distance(problem, answer, exact) + 1e-14,
     }
-    report |= WRONG_REPORTS.get(fault, {})
-    write_answer(answer, out)
-    if target.is_file():
-        write_vtu(answer, problem, out)
-    print(json.dumps(report))
-    return 0 if certified else 4
+    solution = SimpleNamespace(**told | WRONG_WORDS.get(fault, {}))
+    if fault == "not_certified" or (method == "penalty" and kkt(problem, answer).worst() > 1e-9):
+        fell_short = sg.NotCertified("not certified")
+        fell_short.solution = solution
+        raise fell_short
+    return solution
 
 
-def scene_problem(path: Path) -> Problem:
-    """The block of a scene file."""
-    return elastic_block.indentation(json.loads(path.read_text())["gap"], **BLOCK)
+def run(arguments: list[str], **_) -> subprocess.CompletedProcess:
+    """`signorini solve SCENE ... --out OUT` as `subprocess.run` would run it."""
+    problem, out = problem_of_scene(Path(arguments[2])), Path(arguments[-1])
+    out.mkdir()
+    write_vtu(settled(problem).answer, problem, out)
+    return subprocess.CompletedProcess(arguments, 0, "", "")
 
 
 def write_vtu(answer: Answer, problem: Problem, out: Path) -> None:
@@ -114,20 +117,3 @@ def write_vtu(answer: Answer, problem: Problem, out: Path) -> None:
     arrays["contact"][-problem.rows :] = contact_set(problem, answer)
     cell = [[0, 1, BLOCK["columns"] + 2, BLOCK["columns"] + 1]]
     meshio.Mesh(points, [("quad", cell)], point_data={"u": u, **arrays}).write(out / "scene.vtu")
-
-
-def main(arguments: list[str]) -> int:
-    """`export SCENE DIR` and `solve TARGET --method M --format json --out DIR [--no-condense]`."""
-    if arguments[0] == "export":
-        write_problem(scene_problem(Path(arguments[1])), arguments[2])
-        return 0
-    if os.environ.get("STAND_IN_FAULT") == "refused":
-        print("the body is not held", file=sys.stderr)
-        return 3
-    pairs = [argument for argument in arguments[2:] if argument != "--no-condense"]
-    options = dict(zip(pairs[::2], pairs[1::2], strict=True))
-    return solve(Path(arguments[1]), options["--method"], Path(options["--out"]), "--no-condense" in arguments)
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

@@ -14,7 +14,7 @@ closed    rows in contact; weak: rows that touch without force, where closed or 
 force     -sum(lambda), in the unit of the problem
 |du|/|u|  largest difference to any settled answer of the independent solvers, relative to the largest value
 |dl|/|l|  the same of lambda
-station. to dual gap: violations recomputed from the problem directory, relative"""
+station. to dual gap: violations recomputed from K, f, B and g, relative"""
 
 
 def line(verdict: Verdict) -> str:

@@ -1,6 +1,5 @@
 """Tests of the reference itself: `python -m unittest` in this folder, with the pinned environment."""
 
-import tempfile
 import unittest
 
 import numpy as np
@@ -10,7 +9,7 @@ import oracles
 import raw_problems
 from compare import distance, weak_rows
 from kkt import Rejected, kkt, reject
-from problem import Answer, problem_of, read_answer, read_problem, write_answer, write_problem
+from problem import Answer, problem_of
 from scaling import largest, scales_of
 from settle import Unsettled, contact_set, settle
 from solvers import SOLVERS, osqp_direct
@@ -193,35 +192,7 @@ class Oracles(unittest.TestCase):
         self.assertEqual(np.frexp(scales.stiffness)[0], 0.5)
 
 
-class Files(unittest.TestCase):
-    def test_a_problem_directory_comes_back_bit_by_bit(self):
-        problem = raw_problems.bounded_quadratic(dofs=30)
-        gap = problem.gap.copy()
-        gap[3] = np.inf
-        problem = problem_of(problem.stiffness, problem.load, problem.contact, gap)
-        with tempfile.TemporaryDirectory() as folder:
-            write_problem(problem, folder)
-            read = read_problem(folder)
-        self.assertEqual((read.stiffness != problem.stiffness).nnz, 0)
-        self.assertEqual((read.contact != problem.contact).nnz, 0)
-        np.testing.assert_array_equal(read.load, problem.load)
-        np.testing.assert_array_equal(read.gap, problem.gap)
-
-    def test_an_answer_comes_back_bit_by_bit(self):
-        answer = Answer(np.array([1 / 3, -1e-300]), np.array([-0.1]))
-        with tempfile.TemporaryDirectory() as folder:
-            write_answer(answer, folder)
-            read = read_answer(folder)
-        np.testing.assert_array_equal(read.displacement, answer.displacement)
-        np.testing.assert_array_equal(read.multiplier, answer.multiplier)
-
-    def test_a_problem_without_contact_rows_comes_back(self):
-        problem = problem_of(np.identity(2), [1.0, 0.0], np.zeros((0, 2)), [])
-        with tempfile.TemporaryDirectory() as folder:
-            write_problem(problem, folder)
-            read = read_problem(folder)
-        self.assertEqual((read.dofs, read.rows), (2, 0))
-
+class Data(unittest.TestCase):
     def test_vectors_that_do_not_fit_are_refused(self):
         with self.assertRaises(ValueError):
             problem_of(np.identity(2), [0.0, 0.0], [[1.0, 0.0]], [0.0, 0.0])

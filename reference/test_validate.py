@@ -1,16 +1,15 @@
-"""Tests of the validation as a command, with a stand-in for the program that can be told to be wrong."""
+"""Tests of the validation as a command, with a stand-in for the package that can be told to be wrong."""
 
 import contextlib
 import dataclasses
 import io
 import json
-import os
-import subprocess
 import sys
 import tempfile
-import threading
 import unittest
+from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 from unittest import mock
 
 import meshio
@@ -23,7 +22,7 @@ import table
 import validate
 from cases import GAPS, RAW_CASES, SCENE_CASES, Case
 from problem import Answer
-from program import METHODS, Run
+from program import METHODS, ProgramFailed, Run, write_files
 from settle import contact_set, settle
 from solvers import osqp_direct
 from vtu import vtu_faults
@@ -36,51 +35,50 @@ BLOCK = Case(
 )
 
 
-class WithProgram(unittest.TestCase):
+EXAMPLES = Path(__file__).parent.parent / "examples"
+
+
+class WithStandIn(unittest.TestCase):
     def setUp(self):
         temporary = tempfile.TemporaryDirectory()
         self.addCleanup(temporary.cleanup)
         self.folder = Path(temporary.name)
         self.program = self.folder / "signorini"
-        self.program.write_text(f"#!/bin/sh\nexec '{sys.executable}' '{Path(stand_in.__file__).resolve()}' \"$@\"\n")
-        self.program.chmod(0o755)
-        self.examples = self.folder / "examples"
-        self.examples.mkdir()
-        (self.examples / "indentation.json").write_text(json.dumps({"gap": -0.01}))
+        self.program.touch()
+        scene = json.loads((EXAMPLES / "indentation.json").read_text())
+        for axis, divisions in (("x", "columns"), ("y", "layers")):
+            scene["body"]["rectangle"][axis]["divisions"] = [stand_in.BLOCK[divisions]]
+        (self.folder / "indentation.json").write_text(json.dumps(scene))
+
+    def standing_in(self, fault: str):
+        """The stand-in in place of the package and of the program."""
+        stack = contextlib.ExitStack()
+        stack.enter_context(mock.patch("program.sg.solve", partial(stand_in.solve, fault=fault)))
+        stack.enter_context(mock.patch("program.subprocess.run", stand_in.run))
+        return stack
 
     def verdicts(self, case: Case, fault: str = "") -> dict:
-        """Verdicts of a case by the name of the answer; the stand-in runs in this process, which is quicker."""
+        """Verdicts of a case by the name of the answer."""
         folder = Path(tempfile.mkdtemp(dir=self.folder))
-        with mock.patch.dict(os.environ, STAND_IN_FAULT=fault), mock.patch("program.subprocess.run", run_here):
-            found, _ = validate.run_case(case, self.program, self.examples, folder, None)
+        with self.standing_in(fault):
+            found, _ = validate.run_case(case, self.program, self.folder, folder, None)
         return {verdict.solver: verdict for verdict in found}
 
 
-ALONE = threading.Lock()
-"""Of all threads one at a time may redirect standard output."""
-
-
-def run_here(arguments, **_) -> subprocess.CompletedProcess:
-    """The stand-in as `subprocess.run` would run it."""
-    with ALONE, contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()) as err:
-        code = stand_in.main(arguments[1:])
-    return subprocess.CompletedProcess(arguments, code, out.getvalue(), err.getvalue())
-
-
-class RightProgram(WithProgram):
-    def test_a_right_program_passes_on_a_scene(self):
+class RightAnswers(WithStandIn):
+    def test_right_answers_pass_on_a_scene(self):
         verdicts = self.verdicts(BLOCK)
         self.assertEqual([verdict.failures for verdict in verdicts.values()], [[]] * len(verdicts))
         for name in ("assembled again", "signorini qp", "signorini penalty", "signorini scene, .vtu"):
             self.assertIn(name, verdicts)
 
-    def test_a_right_program_passes_on_a_floating_body(self):
+    def test_right_answers_pass_on_a_floating_body(self):
         rod = next(case for case in RAW_CASES if case.name == "floating rod")
         verdicts = self.verdicts(rod)
         self.assertEqual([verdict.failures for verdict in verdicts.values()], [[]] * len(verdicts))
 
 
-class WrongProgram(WithProgram):
+class WrongAnswers(WithStandIn):
     def test_every_wrong_answer_fails_for_qp_and_active_set(self):
         for fault in stand_in.WRONG_ANSWERS:
             with self.subTest(fault):
@@ -89,8 +87,8 @@ class WrongProgram(WithProgram):
                 self.assertFalse(verdicts["signorini active-set"].passed)
                 self.assertTrue(verdicts["signorini penalty"].passed)
 
-    def test_every_wrong_report_fails(self):
-        for fault in stand_in.WRONG_REPORTS:
+    def test_every_wrong_word_fails(self):
+        for fault in (*stand_in.WRONG_WORDS, "not_certified"):
             with self.subTest(fault):
                 verdicts = self.verdicts(BLOCK, fault)
                 self.assertFalse(all(verdicts[f"signorini {method}"].passed for method in METHODS))
@@ -99,9 +97,15 @@ class WrongProgram(WithProgram):
         verdicts = self.verdicts(BLOCK, "full_differs")
         self.assertRegex(verdicts["signorini qp"].failures[0], "^u differs by .* from that on all dofs$")
 
-    def test_a_refusal_shows_its_exit_code_and_sentence(self):
+    def test_a_refusal_shows_its_sentence(self):
         verdicts = self.verdicts(BLOCK, "refused")
-        self.assertEqual(verdicts["signorini qp"].failures, ["exit code 3: the body is not held"])
+        self.assertEqual(verdicts["signorini qp"].failures, ["the body is not held"])
+
+    def test_a_program_that_fails_shows_its_exit_code_and_sentence(self):
+        self.program.write_text("#!/bin/sh\necho 'the disk is full' >&2\nexit 1\n")
+        self.program.chmod(0o755)
+        with self.assertRaisesRegex(ProgramFailed, "^exit code 1: the disk is full$"):
+            write_files(self.program, self.folder / "indentation.json", self.folder)
 
     def test_another_stiffness_is_seen_by_the_twin(self):
         softer = dataclasses.replace(BLOCK, twin=lambda: elastic_block.indentation(-0.05, young=5e6, **stand_in.BLOCK))
@@ -109,10 +113,10 @@ class WrongProgram(WithProgram):
 
     def test_a_missing_scene_fails_by_name(self):
         verdicts = self.verdicts(Case("missing", scene="nowhere.json", gap=-0.01))
-        self.assertIn("nowhere.json", verdicts["signorini export"].failures[0])
+        self.assertIn("nowhere.json", verdicts["signorini scene"].failures[0])
 
 
-class Command(WithProgram):
+class Command(WithStandIn):
     def run_main(self, *arguments: str) -> tuple[int, str]:
         """Exit code and output of the command."""
         arguments = mock.patch.object(sys, "argv", ["validate.py", *arguments])
@@ -120,12 +124,13 @@ class Command(WithProgram):
             return validate.main(), out.getvalue()
 
     def test_exit_code_and_last_line_count_the_checks(self):
-        code, text = self.run_main("--signorini", str(self.program), "--cases", "two springs")
+        with self.standing_in(""):
+            code, text = self.run_main("--signorini", str(self.program), "--cases", "two springs")
         self.assertEqual(code, 0, text)
         self.assertRegex(text.splitlines()[-1], r"^\d+ passed, 0 failed$")
 
-    def test_a_wrong_program_gives_a_nonzero_exit_code(self):
-        with mock.patch.dict(os.environ, STAND_IN_FAULT="flipped_sign"):
+    def test_wrong_answers_give_a_nonzero_exit_code(self):
+        with self.standing_in("flipped_sign"):
             code, text = self.run_main("--signorini", str(self.program), "--cases", "two springs")
         self.assertEqual(code, 1)
         self.assertRegex(text.splitlines()[-1], r"^\d+ passed, 2 failed$")
@@ -139,6 +144,7 @@ class Parts(unittest.TestCase):
     def setUp(self):
         self.problem = elastic_block.indentation(-0.05, **stand_in.BLOCK)
         self.settled = settle(self.problem, contact_set(self.problem, osqp_direct(self.problem).answer))
+        self.told = SimpleNamespace(contact_set=np.flatnonzero(self.settled.closed))
 
     def test_a_stored_result_is_recognised_and_a_changed_one_is_not(self):
         entry = json.loads(json.dumps(snapshot.record(self.problem, self.settled, "osqp")))
@@ -154,7 +160,7 @@ class Parts(unittest.TestCase):
         answer = self.settled.answer
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
-            run = Run(answer, {"contact": {"count": int(self.settled.closed.sum())}}, 0, 0.0)
+            run = Run(answer, self.told, True)
             self.assertEqual(vtu_faults(folder, run), ["0 .vtu files instead of one"])
             stand_in.write_vtu(answer, self.problem, folder)
             self.assertEqual(vtu_faults(folder, run), [])
@@ -169,8 +175,14 @@ class Parts(unittest.TestCase):
         with tempfile.TemporaryDirectory() as name:
             stand_in.write_vtu(self.settled.answer, self.problem, Path(name))
             doubled = Answer(2.0 * self.settled.answer.displacement, self.settled.answer.multiplier)
-            run = Run(doubled, {"contact": {"count": int(self.settled.closed.sum())}}, 0, 0.0)
-            self.assertEqual(len(vtu_faults(Path(name), run)), 1)
+            self.assertEqual(len(vtu_faults(Path(name), Run(doubled, self.told, True))), 1)
+
+    def test_a_vtu_of_another_contact_set_is_seen(self):
+        with tempfile.TemporaryDirectory() as name:
+            stand_in.write_vtu(self.settled.answer, self.problem, Path(name))
+            fewer = SimpleNamespace(contact_set=self.told.contact_set[1:])
+            faults = vtu_faults(Path(name), Run(self.settled.answer, fewer, True))
+        self.assertRegex(faults[0], "^contact is set at 5 points, the answer has 4$")
 
     def test_the_table_has_a_line_for_answers_and_for_failures(self):
         right = validate.judge(

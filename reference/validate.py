@@ -1,18 +1,18 @@
 """Checks the program against independent solvers: `python reference/validate.py [--signorini PATH]`.
 
 For every case: solve with cvxpy and OSQP, settle each answer on its own contact set, hold them against each other,
-closed forms and dense oracles; run the program with its three methods and hold its files and reports against all of
-them. Exits with 1 on any disagreement, with 2 when there is nothing to run.
+closed forms and dense oracles; solve with the package by its three methods and hold its answers, and the files that
+the program writes, against all of them. Exits with 1 on any disagreement, with 2 when there is nothing to run.
 """
 
 import argparse
-import os
 import sys
 import tempfile
 import time
-from concurrent.futures import ThreadPoolExecutor
 from fnmatch import fnmatch
 from pathlib import Path
+
+import signorini as sg
 
 import oracles
 import snapshot
@@ -20,8 +20,8 @@ import table
 from cases import CLOSED_FORM_TOLERANCE, RAW_CASES, SCENE_CASES, Case, scene_file
 from compare import EXACT, RAW, Verdict, broken, judge
 from kkt import Rejected
-from problem import Answer, Problem, read_problem, write_problem
-from program import METHODS, ProgramFailed, bound_faults, condensation_faults, export, report_faults, solve
+from problem import Answer, Problem
+from program import METHODS, ProgramFailed, bound_faults, condensation_faults, problem_of_scene, solve, told_faults, write_files
 from settle import Settled, Unsettled, contact_set, settle
 from solvers import SOLVERS, NoAnswer
 from twin import twin_faults
@@ -76,40 +76,31 @@ def known(case: Case, problem: Problem, settled: dict[str, Settled]) -> list[Ver
     return [*verdicts, judge(case.name, name, problem, found, references, EXACT)]
 
 
-def tested(case: Case, problem: Problem, directory: Path, program: Path, references: list[Answer]) -> list[Verdict]:
-    """The verdicts on the program's answers to a problem directory, the methods side by side."""
-    with ThreadPoolExecutor(max_workers=os.cpu_count()) as pool:
-        runs = [pool.submit(method_verdict, case, problem, directory, program, references, name) for name in METHODS]
-        return [run.result() for run in runs]
-
-
-def method_verdict(
-    case: Case, problem: Problem, directory: Path, program: Path, references: list[Answer], method: str
-) -> Verdict:
-    """The verdict on the program's answer by a method, condensed and, where that is exact, on all dofs."""
+def tested(case: Case, problem: Problem, references: list[Answer], method: str) -> Verdict:
+    """The verdict on the package's answer by a method, condensed and, where that is exact, on all dofs."""
     name = f"signorini {method}"
     try:
-        result = solve(program, directory, method, directory / method)
-        faults = report_faults(problem, method, result) + bound_faults(problem, result, references)
+        result = solve(problem, method)
+        faults = told_faults(problem, method, result) + bound_faults(problem, result, references)
         # The penalty answer is near and says how near; the other two are exact.
         exact = method != "penalty"
         if exact:
-            full = solve(program, directory, method, directory / f"{method}-full", "--no-condense")
-            faults += condensation_faults(problem, result, full)
-        note = f"{result.seconds:.2f} s" + ("" if exact else f", bound {result.energy_error_bound:.1e}")
+            faults += condensation_faults(problem, result, solve(problem, method, condense=False))
+        note = f"{result.told.seconds:.2f} s" + ("" if exact else f", bound {result.told.energy_error_bound:.1e}")
         tolerances = EXACT if exact else RAW
         return judge(case.name, name, problem, result.answer, references, tolerances, exact, faults, note)
-    except (ProgramFailed, ValueError) as error:
+    except (sg.SignoriniError, ValueError) as error:
         return broken(case.name, name, str(error))
 
 
 def pictured(case: Case, scene: Path, program: Path, folder: Path, problem: Problem, references) -> Verdict:
-    """The verdict on a scene solved without the detour over a problem directory, and on its .vtu file."""
+    """The verdict on the .vtu file that the program writes of a scene."""
     try:
-        result = solve(program, scene, "qp", folder)
+        write_files(program, scene, folder)
+        result = solve(problem, "qp")
         faults = vtu_faults(folder, result)
         return judge(case.name, "signorini scene, .vtu", problem, result.answer, references, EXACT, failures=faults)
-    except (ProgramFailed, ValueError) as error:
+    except (ProgramFailed, sg.SignoriniError, ValueError) as error:
         return broken(case.name, "signorini scene, .vtu", str(error))
 
 
@@ -117,16 +108,11 @@ def run_case(
     case: Case, program: Path | None, examples: Path, folder: Path, stored: dict
 ) -> tuple[list[Verdict], dict]:
     """All verdicts on a case, and what is to be stored of it."""
-    directory, scene = folder / "problem", None
-    if case.scene:
-        try:
-            scene = scene_file(case, examples, folder)
-            export(program, scene, directory)
-        except (OSError, ValueError, ProgramFailed) as error:
-            return [broken(case.name, "signorini export", str(error))], {}
-    else:
-        write_problem(case.generate(), directory)
-    problem = read_problem(directory)
+    try:
+        scene = scene_file(case, examples, folder) if case.scene else None
+        problem = problem_of_scene(scene) if scene else case.generate()
+    except (OSError, sg.SignoriniError) as error:
+        return [broken(case.name, "signorini scene", str(error))], {}
 
     settled, verdicts = independent(case, problem)
     if not settled:
@@ -140,7 +126,7 @@ def run_case(
             faults = snapshot.stored_faults(stored[case.name], problem, result)
         verdicts.append(judge(case.name, "results.json", problem, result.answer, references, EXACT, failures=faults))
     if program:
-        verdicts += tested(case, problem, directory, program, references)
+        verdicts += [tested(case, problem, references, method) for method in METHODS]
     if scene:
         verdicts.append(pictured(case, scene, program, folder / "scene", problem, references))
     return verdicts, snapshot.record(problem, result, solver)

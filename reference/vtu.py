@@ -1,4 +1,4 @@
-"""The .vtu file of a scene, read back with meshio and held against the files of the same run."""
+"""The .vtu file of a scene, read back with meshio and held against the answer of the package."""
 
 from pathlib import Path
 
@@ -42,17 +42,17 @@ def vtu_faults(folder: Path, run: Run) -> list[str]:
         return faults
 
     points = {name: np.asarray(values, float) for name, values in mesh.point_data.items()}
-    count = run.report.get("contact", {}).get("count")
+    count = len(run.told.contact_set)
     # 1 marks a closed candidate, 0 an open one, -1 a node that is no candidate.
     closed = int(np.count_nonzero(points["contact"] == 1)) if "contact" in points else count
     if closed != count:
-        faults.append(f"contact is set at {closed} points, the report has {count}")
+        faults.append(f"contact is set at {closed} points, the answer has {count}")
     if "pressure" in points and np.min(points["pressure"], initial=0.0) < 0.0:
         faults.append(f"pressure goes down to {points['pressure'].min():.3g}")
     if "u" in points:
         apart = farthest_from(points["u"].ravel(), run.answer.displacement)
         if apart > TEXT_TOLERANCE * largest(run.answer.displacement):
-            faults.append(f"u.mtx has displacements that are not in the file, the farthest by {apart:.1e}")
+            faults.append(f"the answer has displacements that are not in the file, the farthest by {apart:.1e}")
     return faults
 
 

@@ -43,9 +43,14 @@ fn count(list: &str) -> Option<f64> {
 /// The program counts the bytes that it uses; code and stacks that it only reserves are subtracted.
 pub(crate) fn address_space_left() -> f64 {
     let Some(limit) = field("/proc/self/limits", "Max address space") else { return f64::INFINITY };
-    let kilobytes = |name| field("/proc/self/status", name).unwrap_or(0.0);
-    let reserved = 1024.0 * (kilobytes("VmSize:") - kilobytes("VmRSS:"));
+    let size = field("/proc/self/status", "VmSize:").map_or(0.0, |kilobytes| 1024.0 * kilobytes);
+    let reserved = size - held();
     (USABLE * (limit - reserved - packed_blocks())).max(0.0)
+}
+
+/// Bytes that the process holds.
+pub(crate) fn held() -> f64 {
+    field("/proc/self/status", "VmRSS:").map_or(0.0, |kilobytes| 1024.0 * kilobytes)
 }
 
 /// The number after `name` in a file of the system.

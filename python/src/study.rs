@@ -123,26 +123,28 @@ pub fn measured<'py>(
     }
 }
 
-/// A scene at several gaps: its answers, and what happens between, as dictionaries.
+/// A scene over several `gaps` or `forces`: its answers, and what happens between, as dictionaries.
 #[pyfunction]
-#[pyo3(name = "_swept", signature = (scene, gaps, method, threads))]
+#[pyo3(name = "_swept", signature = (scene, over, values, method, threads))]
 pub fn swept<'py>(
     scene: &Bound<'py, Scene>,
-    gaps: &Bound<'py, PyAny>,
+    over: &str,
+    values: &Bound<'py, PyAny>,
     method: Option<Bound<'py, PyAny>>,
     threads: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let py = scene.py();
-    let gaps = reals("gaps", gaps)?;
-    if gaps.is_empty() {
-        return Err(bad_input(py, "gaps is empty; a sweep takes one gap at least"));
+    let values = reals(over, values)?;
+    if values.is_empty() {
+        return Err(bad_input(py, format!("{over} is empty; a sweep takes one value at least")));
     }
+    let sweep = if over == "forces" { study::Sweep::over_forces } else { study::sweep };
     let model = scene.get().model(py)?;
     let options = Options { method, threads, proof: Some(false), ..Options::default() };
     let settings = options.settings(Some(model.problem()))?;
     let (goal, own, of_work) = (settings.goal(), scene.clone().unbind(), model.clone());
     let found =
-        match run(py, Place::Apart, move |watch: &Watch| study::sweep(&of_work, &gaps, &settings.watched(watch)))? {
+        match run(py, Place::Apart, move |watch: &Watch| sweep(&of_work, &values, &settings.watched(watch)))? {
             End::Done(Ok(found)) => found,
             End::Done(Err(error)) => return Err(scene_exception(py, &own, &model, goal, error)),
             End::Signalled(signal, _) => return Err(signalled(py, signal, None)),
@@ -150,13 +152,15 @@ pub fn swept<'py>(
     let whole = PyDict::new(py);
     whole.set_item("events", as_object(py, &found.events)?)?;
     whole.set_item("corners", as_object(py, &found.corners)?)?;
-    let (answers, gaps) = (PyList::empty(py), PyList::empty(py));
+    let (answers, gaps, forces) = (PyList::empty(py), PyList::empty(py), PyList::empty(py));
     for point in found.points {
         gaps.append(point.gap)?;
+        point.force.map_or(Ok(()), |force| forces.append(force))?;
         let model = point.answer.model().clone();
         answers.append(SceneSolution::object(py, own.clone_ref(py), model, point.summary.solution, goal)?)?;
     }
     whole.set_item("gaps", gaps)?;
+    whole.set_item("forces", forces)?;
     whole.set_item("solutions", answers)?;
     Ok(whole)
 }

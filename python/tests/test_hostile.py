@@ -166,10 +166,33 @@ HOSTILE: dict[str, tuple[Callable[[], Any], type[Exception], str]] = {
     "scene in itself": (lambda: sg.Scene(circle()), ValueError, "JSON"),
     "scene without a file": (lambda: sg.Scene("nowhere.json"), OSError, "cannot read nowhere.json"),
     "sweep of nothing": (lambda: sg.sweep(K, [1.0]), TypeError, "a Problem or a Scene"),
+    "sweep over nothing": (lambda: sg.sweep(two_springs()), ValueError, "a sweep over nothing; a problem is swept over gaps or g1, f1"),
+    "sweep over two things": (lambda: sg.sweep(two_springs(), [[1.0]], g1=[2.0]), ValueError, "over gaps and g1, f1"),
+    "sweep of a problem over forces": (lambda: sg.sweep(two_springs(), forces=[1.0]), ValueError, "a sweep over forces"),
+    "sweep to gaps of another length": (lambda: sg.sweep(two_springs(), g1=[1.0, 2.0]), ValueError, "length 2"),
+    "sweep of one point": (lambda: sg.sweep(two_springs(), g1=[2.0], points=1), ValueError, "points is 1"),
+    "sweep of half a point": (lambda: sg.sweep(two_springs(), g1=[2.0], points=2.5), ValueError, "points is 2.5"),
+    "sweep over no gaps": (lambda: sg.sweep(plane_scene(), []), ValueError, "gaps is empty"),
+    "sweep over a force that pulls": (lambda: sg.sweep(plane_scene(force=1.0), forces=[-2.0]), sg.SceneError, "-2 would pull"),
+    "sweep over a force that presses nothing": (lambda: sg.sweep(plane_scene(), forces=[1.0]), sg.SceneError, "0 of them have"),
+    "sweep of a scene to other gaps": (lambda: sg.sweep(plane_scene(), g1=[1.0]), ValueError, "a scene is swept over gaps or forces"),
     "tradeoff of nothing": (lambda: sg.tradeoff(K), TypeError, "a Problem or a Scene"),
     "tradeoff refined backwards": (lambda: sg.tradeoff(two_springs(), refinements=-1), ValueError, "refinements is -1"),
     "compare nothing": (lambda: sg.compare(None), TypeError, "a Problem or a Scene"),
 }
+
+
+def plane_scene(**of_obstacle: float) -> sg.Scene:
+    axis = {"points": [0, 1], "divisions": [2]}
+    obstacle = {"boundary": "top", "approach": "+y", "shape": {"plane": {"point": [0, 1], "normal": [0, 1]}}, **of_obstacle}
+    return sg.Scene(
+        {
+            "body": {"rectangle": {"x": axis, "y": axis}},
+            "material": {"young": 1e7, "poisson": 0.3},
+            "supports": [{"on": {"boundary": "bottom"}, "x": 0, "y": 0}],
+            "obstacles": [obstacle],
+        }
+    )
 
 
 def circle() -> dict[str, Any]:

@@ -8,6 +8,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -49,9 +50,9 @@ def column(file: Path) -> np.ndarray:
 ENDINGS = {1: (sg.BadInput, sg.NumericalError, sg.TooLarge), 3: (sg.Infeasible, sg.Unbounded, sg.UnderHeld)}
 
 
-def run(target: Path, out: Path) -> tuple[int, dict[str, Any]]:
+def run(target: Path, out: Path, method: str = "auto") -> tuple[int, dict[str, Any]]:
     """Exit code and report of `signorini solve`."""
-    command = [program(), "solve", target, "--out", out, "--format", "json", "--max-memory", "8GB"]
+    command = [program(), "solve", target, "--method", method, "--out", out, "--format", "json", "--max-memory", "8GB"]
     ended = subprocess.run(command, capture_output=True, text=True, check=False)
     return ended.returncode, json.loads(ended.stdout) if ended.stdout else {}
 
@@ -96,9 +97,9 @@ def of_folder(folder: Path) -> sg.Problem:
     return sg.Problem(mmread(folder / "K.mtx"), f, mmread(folder / "B.mtx"), g, near_null)
 
 
-def same_as_program(folder: Path, out: Path) -> None:
-    code, _ = run(folder, out)
-    agree(code, lambda: sg.solve(of_folder(folder), memory=8e9), out)
+def same_as_program(folder: Path, out: Path, method: str = "auto") -> None:
+    code, _ = run(folder, out, method)
+    agree(code, lambda: sg.solve(of_folder(folder), method=method, memory=8e9), out)
 
 
 @pytest.mark.parametrize("scene", SCENES, ids=lambda path: path.stem)
@@ -111,7 +112,8 @@ def test_an_exported_problem_has_the_bits_of_the_program(scene: Path, tmp_path: 
 @pytest.mark.parametrize("case", REFERENCE, ids=lambda case: case.name)
 def test_a_reference_problem_has_the_bits_of_the_program(case: cases.Case, tmp_path: Path) -> None:
     write_problem(case.generate(), tmp_path / "problem")
-    same_as_program(tmp_path / "problem", tmp_path / "out")
+    for method in ("auto", "qp", "active-set", "penalty"):
+        same_as_program(tmp_path / "problem", tmp_path / method, method)
 
 
 @pytest.mark.parametrize("folder", FINDINGS, ids=lambda folder: folder.name)
@@ -182,6 +184,60 @@ def test_a_sweep_knows_what_happens_between_its_gaps() -> None:
     assert {event["touches"] for event in sweep.events} <= {True, False}
 
 
+def pressed() -> dict:
+    scene = block(gap=0.0)
+    scene["obstacles"][0] = {"boundary": "top", "approach": "+y", "shape": {"circle": {"apex": [0.5, 1.003], "radius": 1}}, "force": 1}
+    del scene["gap"]
+    return scene
+
+
+def test_a_sweep_over_forces_is_that_of_the_program(tmp_path: Path) -> None:
+    file = tmp_path / "scene.json"
+    file.write_text(json.dumps(pressed()))
+    command = [program(), "sweep", file, "--forces", "0:2e4:5", "--format", "json"]
+    reported = json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)["points"]
+    sweep = sg.sweep(sg.Scene(file), forces=np.linspace(0.0, 2e4, 5))
+    assert sweep.forces == [point["force"] for point in reported] == [0.0, 5e3, 1e4, 1.5e4, 2e4]
+    assert [answer.resultants for answer in sweep.solutions] == [point["resultants"] for point in reported]
+    assert np.allclose(sweep.contact_force, sweep.forces, rtol=0, atol=1e-5) and not sweep.events
+    # Without a force the obstacle stands where it first touches.
+    assert abs(sweep.solutions[0].resultants[0]["travel"] - 0.003) < 1e-15
+
+
+def test_a_sweep_to_another_end_has_the_bits_of_the_program(tmp_path: Path) -> None:
+    from scipy.io import mmwrite
+
+    problem = cases.elastic_block.indentation(-0.02, columns=8, layers=4)
+    write_problem(problem, tmp_path)
+    g1, f1 = problem.gap - 0.03, problem.load - 10.0
+    mmwrite(tmp_path / "g1.mtx", g1.reshape(-1, 1), precision=17)
+    for other_load in (False, True):
+        if other_load:
+            mmwrite(tmp_path / "f1.mtx", f1.reshape(-1, 1), precision=17)
+        command = [program(), "sweep", tmp_path, "--points", "4", "--format", "json", "--out", tmp_path / "out"]
+        reported = json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
+        sweep = sg.sweep(of_folder(tmp_path), g1=g1, f1=f1 if other_load else None, points=4)
+        assert sweep.t == [point["t"] for point in reported["points"]]
+        assert sweep.events == reported.get("events", []) and bool(sweep.events) != other_load
+        for number, answer in enumerate(sweep.solutions, start=1):
+            assert np.array_equal(answer.u, column(tmp_path / "out" / f"point-{number:02}" / "u.mtx"))
+            assert np.array_equal(answer.multiplier, column(tmp_path / "out" / f"point-{number:02}" / "lambda.mtx"))
+
+
+def test_pictures_of_sweeps_have_an_axis_for_what_was_swept() -> None:
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    scene = sg.Scene(pressed())
+    for sweep, names in (
+        (sg.sweep(scene, forces=[0.0, 1e4]), ("force [N]", "travel [m]")),
+        (sg.sweep(sg.Scene(block()), [-0.01, -0.02]), ("gap [m]", "contact force [N]")),
+        (sg.sweep(scene.problem, g1=scene.problem.g, points=2), ("way t", "contact force")),
+        (sg.sweep(scene.problem, [scene.problem.g]), ("number of the gap", "contact force")),
+    ):
+        axes = sweep.plot()
+        assert (axes.get_xlabel(), axes.get_ylabel()) == names and len(axes.lines[-1].get_xdata()) == len(sweep.solutions)
+
+
 def test_faults_are_named_with_path_line_and_column(tmp_path: Path) -> None:
     scene = block()
     scene["material"]["young"] = -1
@@ -217,7 +273,38 @@ def test_pictures_show_the_mesh() -> None:
     assert len(axes.collections[0].get_paths()) == 16 and axes.get_title() == "Block under a plane"
 
 
-def test_a_grid_of_pyvista_has_the_fields() -> None:
-    pytest.importorskip("pyvista")
-    grid = sg.Scene(block()).solve().to_pyvista()
-    assert grid.n_cells == 16 and set(grid.point_data) == {"displacement", "stress", "von_mises"}
+class Grid:
+    """What `pyvista.UnstructuredGrid` takes, which needs VTK, 600 MB: tables of nodes by the type of the cell, and points in space."""
+
+    def __init__(self, cells: dict[int, np.ndarray], points: np.ndarray) -> None:
+        assert points.shape[1] == 3 and all(0 <= nodes.min() and nodes.max() < len(points) for nodes in cells.values())
+        self.cells_dict, self.points, self.point_data = cells, points, {}
+
+
+# The names of meshio, whose numbers of cells are those of VTK.
+CELLS = {
+    "Line2": "line", "Line3": "line3", "T3": "triangle", "T6": "triangle6", "Q4": "quad", "Q8": "quad8",
+    "Tet4": "tetra", "Tet10": "tetra10", "Hex8": "hexahedron", "Hex20": "hexahedron20",
+}  # fmt: skip
+
+
+def test_the_types_of_cells_are_those_of_vtk() -> None:
+    from meshio._vtk_common import meshio_to_vtk_type
+    from signorini import _show
+
+    assert _show._VTK == {kind: meshio_to_vtk_type[name] for kind, name in CELLS.items()}
+
+
+@pytest.mark.parametrize("stands_in", [True, False], ids=["stand-in", "pyvista"])
+def test_a_grid_of_pyvista_has_the_mesh_and_the_fields(stands_in: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    if stands_in:
+        monkeypatch.setitem(sys.modules, "pyvista", SimpleNamespace(UnstructuredGrid=Grid))
+    else:
+        pytest.importorskip("pyvista")
+    answer = sg.Scene(block()).solve()
+    grid = answer.to_pyvista()
+    (kind, cells), fields = *grid.cells_dict.items(), grid.point_data
+    assert kind == 9 and np.array_equal(cells, answer.scene.elements)
+    assert np.array_equal(grid.points, np.pad(answer.scene.nodes, ((0, 0), (0, 1))))
+    assert np.array_equal(fields["displacement"], np.pad(answer.displacement, ((0, 0), (0, 1))))
+    assert np.array_equal(fields["stress"], answer.stress) and np.array_equal(fields["von_mises"], answer.von_mises)

@@ -115,6 +115,27 @@ def test_a_sweep_over_gaps_of_a_problem_is_a_series_of_answers() -> None:
     assert np.allclose(sweep.contact_force, [2.5, 1.5, 0.0], atol=1e-12)
 
 
+def test_a_sweep_to_other_gaps_finds_where_the_end_touches() -> None:
+    K, f, B, _ = bar(4)
+    problem = sg.Problem(K, f, B, [4.0])
+    sweep = sg.sweep(problem, g1=[2.0], points=5)
+    assert sweep.t == [0.0, 0.25, 0.5, 0.75, 1.0] and [gap.tolist() for gap in sweep.gaps] == [[4.0], [3.5], [3.0], [2.5], [2.0]]
+    assert np.allclose(sweep.contact_force, [0.0, 0.0, 0.0, 0.5, 1.0], atol=1e-12)
+    assert len(sweep.events) == 1 and abs(sweep.events[0]["t"] - 0.5) < 1e-12 and sweep.events[0]["touches"]
+    assert repr(sweep) == "<signorini.Sweep: 5 points, 1 events>"
+    # The load doubles while the gap opens: force 3 (1 + t) - (1 + t) = 2 (1 + t).
+    stronger = sg.sweep(problem.replace(g=[1.0]), g1=[2.0], f1=2 * f, points=3)
+    assert np.allclose(stronger.contact_force, [2.0, 3.0, 4.0], atol=1e-12) and not stronger.events
+
+
+def test_a_row_without_an_obstacle_stays_one_on_the_way() -> None:
+    K, f, B, _ = bar(4)
+    both = sg.Problem(K, f, np.vstack([B.toarray(), -B.toarray()]), [4.0, np.inf])
+    assert np.allclose(sg.sweep(both, g1=[2.0, np.inf], points=3).contact_force, [0.0, 0.0, 1.0], atol=1e-12)
+    with pytest.raises(sg.BadInput, match="the gap of row 1 goes from inf to 3"):
+        sg.sweep(both, g1=[2.0, 3.0])
+
+
 def test_limits_of_time_and_accuracy_are_kept() -> None:
     K, f, B, g = membrane(30)
     problem = sg.Problem(K, f, B, g)

@@ -203,7 +203,8 @@ impl Settings {
 
     /// The same with the available memory of the machine as the limit; no limit if the system does not state it.
     pub fn with_available_memory(self) -> Self {
-        let most = memory::available().min(memory::address_space_left());
+        // What the process holds already belongs to its caller.
+        let most = memory::available().min(memory::address_space_left() - memory::held());
         if most.is_finite() { self.with_memory(most.max(1.0)) } else { self }
     }
 

@@ -2,9 +2,7 @@
 
 use std::sync::Arc;
 
-#[cfg(feature = "cli")]
-use super::entry::finite;
-use super::entry::wrong;
+use super::entry::{finite, wrong};
 use super::obstacle::PlacedObstacle;
 use super::parts::Parts;
 use super::rigid_body_modes::RigidBodyModes;
@@ -21,9 +19,7 @@ use crate::fem::mesh::Mesh;
 use crate::qp::linear::SymmetricMatrix;
 use crate::qp::linear::multigrid::NearNullSpace;
 use crate::qp::problem::ContactProblem;
-#[cfg(feature = "cli")]
 use crate::qp::{Settings, solve};
-#[cfg(feature = "cli")]
 use crate::solution::Solution;
 
 /// Tributary areas below this, relative to the largest, are rounding of zero; radii, relative to the size of the body.
@@ -129,8 +125,7 @@ impl Model {
     /// The same scene with another force on the one obstacle that a force presses.
     ///
     /// # Errors
-    /// [`Error::Scene`] where a force presses no obstacle or several, or for a force that is not finite.
-    #[cfg(feature = "cli")]
+    /// [`Error::Scene`] where a force presses no obstacle or several, or for a force that is negative or not finite.
     pub(crate) fn pressed_by(&self, force: f64) -> Result<Self, Error> {
         let parts = &self.parts;
         let &[obstacle] = parts.unknowns.pressed() else {
@@ -138,7 +133,11 @@ impl Model {
             let message = format!("{count} of them have a `force`; a sweep over forces needs one that has");
             return Err(wrong("obstacles", message));
         };
-        finite(format!("obstacles[{obstacle}].force"), force)?;
+        let path = || format!("obstacles[{obstacle}].force");
+        finite(path(), force)?;
+        if force < 0.0 {
+            return Err(wrong(path(), format!("{force} would pull the obstacle away: forces are 0 or positive")));
+        }
         let load = self.problem.load().to_vec();
         let load = parts.unknowns.pressed_by(load, |obstacle| parts.share_of(obstacle, force));
         let problem = self.problem.with_load(load)?;
@@ -149,7 +148,6 @@ impl Model {
     ///
     /// # Errors
     /// As [`solve`].
-    #[cfg(feature = "cli")]
     pub(crate) fn touched(&self, settings: &Settings) -> Result<Solution, Error> {
         let (parts, problem) = (&self.parts, &self.problem);
         let is_pressed = |row: usize| parts.unknowns.travel(self.rows[row].obstacle).is_some();

@@ -166,7 +166,6 @@ impl Unknowns {
     }
 
     /// The same load with other forces on the pressed obstacles.
-    #[cfg(feature = "cli")]
     pub fn pressed_by(&self, mut load: Vec<f64>, force: impl Fn(usize) -> f64) -> Vec<f64> {
         load.truncate(self.of_body());
         load.extend(self.pressed.iter().map(|&obstacle| force(obstacle)));
@@ -240,7 +239,6 @@ impl Unknowns {
     ///
     /// # Errors
     /// None for a stiffness of the unknowns.
-    #[cfg(feature = "cli")]
     pub fn on_springs(&self, stiffness: &SymmetricMatrix) -> Result<SymmetricMatrix, Error> {
         let spring = stiffness.diagonal().into_iter().fold(0.0, f64::max);
         let springs = (self.of_body()..self.count()).map(|unknown| (unknown, unknown, spring));

@@ -202,28 +202,33 @@ pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, 
     Ok(Sweep { points, events, corners, path: Some(path) })
 }
 
-/// Solves a scene at every one of `forces`, 0 or positive, of the one obstacle that a force presses. Without a force the obstacle
-/// stands where it first touches the body.
-///
-/// # Errors
-/// [`Error::Scene`] where a force presses no obstacle or several; as [`solve`]; [`Error::Interrupted`] where not one force was done.
-#[cfg(feature = "cli")]
-pub(crate) fn sweep_forces(model: &Model, forces: &[f64], settings: &Settings) -> Result<Sweep, Error> {
-    let prepared = Prepared::new(model.problem(), settings).map_err(|error| model.explain(error))?;
-    let mut points = points("force", forces, settings, |force, known| {
-        let clock = Instant::now();
-        let model = model.pressed_by(force)?;
-        let assemble_seconds = clock.elapsed().as_secs_f64();
-        let solved = match force > 0.0 {
-            true => prepared.starting_from(known).solve_load(model.problem().load().to_vec()),
-            false => model.touched(settings),
-        };
-        Ok(Solved { model, solved, assemble_seconds })
-    })?;
-    for (point, &force) in points.iter_mut().zip(forces) {
-        (point.gap, point.force) = (point.answer.model().gap(), Some(force));
+impl Sweep {
+    /// Solves a scene at every one of `forces`, 0 or positive, of the one obstacle that a force presses. Without a force the obstacle
+    /// stands where it first touches the body.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] where a force presses no obstacle or several, or for a force that is negative or not finite; as [`solve`];
+    /// [`Error::Interrupted`] where not one force was done.
+    pub fn over_forces(model: &Model, forces: &[f64], settings: &Settings) -> Result<Self, Error> {
+        if forces.is_empty() {
+            return Ok(Sweep::default());
+        }
+        let prepared = Prepared::new(model.problem(), settings).map_err(|error| model.explain(error))?;
+        let mut points = points("force", forces, settings, |force, known| {
+            let clock = Instant::now();
+            let model = model.pressed_by(force)?;
+            let assemble_seconds = clock.elapsed().as_secs_f64();
+            let solved = match force > 0.0 {
+                true => prepared.starting_from(known).solve_load(model.problem().load().to_vec()),
+                false => model.touched(settings),
+            };
+            Ok(Solved { model, solved, assemble_seconds })
+        })?;
+        for (point, &force) in points.iter_mut().zip(forces) {
+            (point.gap, point.force) = (point.answer.model().gap(), Some(force));
+        }
+        Ok(Sweep { points, ..Sweep::default() })
     }
-    Ok(Sweep { points, ..Sweep::default() })
 }
 
 /// A model of a sweep with what the solver said to it.

@@ -159,7 +159,7 @@ impl ModelSize {
             dofs: problem.dofs(),
             contact_rows: problem.rows(),
             condensed_dofs: problem.dofs(),
-            stiffness_entries: 2 * problem.stiffness().lower().entries() - problem.dofs(),
+            stiffness_entries: problem.stiffness().entries(),
             ..ModelSize::default()
         }
     }

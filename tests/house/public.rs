@@ -10,6 +10,7 @@ use signorini::fem::ElasticBody;
 use signorini::fem::Mesh;
 use signorini::motion::{DynamicProblem, Integrator, Scheme, State};
 use signorini::scene::Dynamics;
+use signorini::study::ModelSize;
 use signorini::{
     BoundarySolution, Certificate, ContactProblem, ContactSet, Error, Goal, Method, Model, Path, Prepared, ProvenSet,
     Scene, Settings, Solution, SparseMatrix, SymmetricMatrix, Watch, solve,
@@ -152,6 +153,19 @@ fn triangles_that_make_no_symmetric_matrix_say_what_is_wrong() {
     assert!(
         SymmetricMatrix::from_csc(&starts, &none, &[1.0]).unwrap_err().to_string().contains("row indices has length 0")
     );
+}
+
+/// An objective without curvature, as that of a linear program, has fewer entries than dofs.
+#[test]
+fn entries_of_both_triangles_are_counted_where_diagonal_places_are_empty() {
+    for (entries, count) in [(vec![], 0), (vec![(1, 1, 2.0)], 1), (vec![(0, 0, 1.0), (2, 0, 0.5), (2, 2, 1.0)], 4)] {
+        let lower = SparseMatrix::from_triplets(3, 3, &entries).unwrap();
+        let stiffness = SymmetricMatrix::from_lower(lower).unwrap();
+        assert_eq!(stiffness.entries(), count);
+        let no_rows = SparseMatrix::from_triplets(0, 3, &[]).unwrap();
+        let problem = ContactProblem::new(stiffness, vec![0.0; 3], no_rows, vec![]).unwrap();
+        assert_eq!(ModelSize::of(&problem).stiffness_entries, count);
+    }
 }
 
 #[test]

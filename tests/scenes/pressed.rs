@@ -2,8 +2,9 @@
 
 use crate::solved_scene::{answer, built};
 use serde_json::{Value, json};
-use signorini::Error;
 use signorini::scene::{Answer, Resultant};
+use signorini::study::Sweep;
+use signorini::{Error, Settings};
 
 use crate::exact_solutions::LineContact;
 use crate::program::Desk;
@@ -149,6 +150,22 @@ fn a_sweep_over_forces_begins_where_the_obstacle_touches() {
         assert!((number(&point["contact"]["force"]) - force).abs() <= 1e-9 * 2e4, "{point}");
         assert_eq!(point["status"], "certified");
     }
+}
+
+#[test]
+fn forces_that_do_not_press_are_refused() {
+    let circle = json!({"circle": {"apex": [0.5, 1], "radius": 1}});
+    let mut scene = block(json!({"rectangle": {"x": axis(2), "y": axis(2)}}), false, "approach", circle);
+    let refused = |scene: &Value, force: f64, phrase: &str| {
+        let error = Sweep::over_forces(&built(scene).unwrap(), &[1.0, force], &Settings::default()).unwrap_err();
+        assert!(error.to_string().contains(phrase), "{error}");
+    };
+    refused(&scene, 1.0, "0 of them have a `force`");
+    scene["obstacles"][0]["force"] = 1.into();
+    refused(&scene, -2.0, "-2 would pull the obstacle away");
+    refused(&scene, f64::NAN, "NaN is not finite");
+    let none = Sweep::over_forces(&built(&scene).unwrap(), &[], &Settings::default()).unwrap();
+    assert!(none.points.is_empty());
 }
 
 #[test]

@@ -176,13 +176,28 @@ def tradeoff_plot(tradeoff: Tradeoff, ax: Any = None) -> Any:
 
 
 def sweep_plot(sweep: Sweep, ax: Any = None) -> Any:
-    """Contact force over the gap of a scene, or over the number of the gap."""
+    """Contact force over the gap of a scene, the way of a problem or the number of the gap; travel over force."""
     ax = _axes(ax)
     is_scene = bool(sweep.gaps) and np.ndim(sweep.gaps[0]) == 0
-    if is_scene and sweep.corners:
-        ax.plot([corner["gap"] for corner in sweep.corners], [corner["force"] for corner in sweep.corners], color="0.7")
-    ax.plot(sweep.gaps if is_scene else np.arange(len(sweep.gaps)), sweep.contact_force, "o", markersize=4)
     units = sweep.solutions[0].scene.units if is_scene else {"length": "", "force": ""}
-    ax.set_xlabel(("gap" + (f" [{units['length']}]" if units["length"] else "")) if is_scene else "number of the gap")
-    ax.set_ylabel("contact force" + (f" [{units['force']}]" if units["force"] else ""))
+
+    def label(name: str, unit: str) -> str:
+        return f"{name} [{unit}]" if unit else name
+
+    if sweep.forces:
+        ax.plot(sweep.forces, [_travel(solution) for solution in sweep.solutions], "o-", markersize=4)
+        ax.set_xlabel(label("force", units["force"]))
+        ax.set_ylabel(label("travel", units["length"]))
+        return ax
+    if sweep.corners:
+        ax.plot([corner["gap"] for corner in sweep.corners], [corner["force"] for corner in sweep.corners], color="0.7")
+    places = sweep.gaps if is_scene else sweep.t or np.arange(len(sweep.gaps))
+    ax.plot(places, sweep.contact_force, "o", markersize=4)
+    ax.set_xlabel(label("gap", units["length"]) if is_scene else "way t" if sweep.t else "number of the gap")
+    ax.set_ylabel(label("contact force", units["force"]))
     return ax
+
+
+def _travel(solution: SceneSolution) -> float:
+    """How far the pressed obstacle has moved."""
+    return next(float(of["travel"]) for of in solution.resultants if "travel" in of)

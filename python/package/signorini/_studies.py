@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, field
 from typing import Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from signorini import _signorini
-from signorini._signorini import Problem, Scene, SceneSolution, Solution
+from signorini._errors import BadInput, BadType, NotCertified
+from signorini._signorini import Prepared, Problem, Scene, Solution
 
 
 @dataclass(frozen=True, repr=False)
@@ -36,16 +38,20 @@ class Tradeoff:
 
 @dataclass(frozen=True, repr=False)
 class Sweep:
-    """A series of gaps."""
+    """A series of gaps or forces, or the way of a problem to another end."""
 
     gaps: list[Any]
     """The gaps: numbers for a scene, arrays for a problem."""
     solutions: list[Any]
-    """The answers, one for each gap."""
+    """The answers, one for each gap, force or point of the way."""
     events: list[dict[str, Any]]
-    """Rows that touch or release between the first and the last gap of a scene, exactly."""
+    """Rows that touch or release between the first and the last gap, exactly; empty where that is not known."""
     corners: list[dict[str, Any]]
     """The corners of force, width and pressure over the gap of a scene, exactly."""
+    forces: list[float] = field(default_factory=list)
+    """The forces, in a sweep over forces."""
+    t: list[float] = field(default_factory=list)
+    """The points of the way of a problem, from 0 to 1."""
 
     @property
     def contact_force(self) -> NDArray[np.float64]:
@@ -53,10 +59,11 @@ class Sweep:
         return np.array([solution.contact_force for solution in self.solutions])
 
     def __repr__(self) -> str:
-        return f"<signorini.Sweep: {len(self.gaps)} gaps, {len(self.events)} events>"
+        over = "forces" if self.forces else "points" if self.t else "gaps"
+        return f"<signorini.Sweep: {len(self.gaps)} {over}, {len(self.events)} events>"
 
     def plot(self, ax: Any = None) -> Any:
-        """Draws the contact force over the gaps; returns the axes. Needs matplotlib."""
+        """Draws the contact force over the gaps or the way, travels over forces; returns the axes. Needs matplotlib."""
         from signorini._show import sweep_plot
 
         return sweep_plot(self, ax)
@@ -78,42 +85,134 @@ def tradeoff(
     """
     for name, value in (("refinements", refinements), ("runs", runs), ("most_full_dofs", most_full_dofs)):
         if not isinstance(value, (int, np.integer)) or value < 0:
-            from signorini._errors import BadInput
-
             raise BadInput(f"{name} is {value!r}; it must be a whole number that is not negative")
     measured = _signorini._measured(problem, refinements, max(runs, 1), most_full_dofs, time)
     return Tradeoff(measured["meshes"], measured["points"], measured["advice"])
 
 
 @overload
-def sweep(problem: Scene, gaps: ArrayLike, *, method: str | None = None, threads: int | None = None) -> Sweep: ...
+def sweep(
+    problem: Scene,
+    gaps: ArrayLike | None = None,
+    *,
+    forces: ArrayLike | None = None,
+    method: str | None = None,
+    threads: int | None = None,
+) -> Sweep: ...
 @overload
 def sweep(
     problem: Problem, gaps: Iterable[ArrayLike], *, method: str | None = None, threads: int | None = None
 ) -> Sweep: ...
+@overload
+def sweep(
+    problem: Problem,
+    *,
+    g1: ArrayLike | None = None,
+    f1: ArrayLike | None = None,
+    points: int = 11,
+    method: str | None = None,
+    threads: int | None = None,
+) -> Sweep: ...
 
 
-def sweep(problem: Problem | Scene, gaps: Any, *, method: str | None = None, threads: int | None = None) -> Sweep:
-    """Solves a scene at several scene-wide gaps (numbers), or a problem at several gaps (an array for each).
+def sweep(
+    problem: Problem | Scene,
+    gaps: Any = None,
+    *,
+    forces: ArrayLike | None = None,
+    g1: ArrayLike | None = None,
+    f1: ArrayLike | None = None,
+    points: int = 11,
+    method: str | None = None,
+    threads: int | None = None,
+) -> Sweep:
+    """Solves a scene or a problem many times.
 
-    The stiffness is factorised once, and every solve starts from the last contact set. An answer that is not certified is an answer
-    here; its certificate says so.
+    A scene: at several scene-wide `gaps` (numbers), or under several `forces` (0 or positive) on the one obstacle that a force presses.
+    A problem: at several `gaps` (an array for each), or at `points` of the way on which its gaps go to `g1`, its load to `f1`, or
+    both, on straight lines.
+
+    The stiffness is factorised once, and every solve starts from the last answer. An answer that is not certified is an answer here;
+    its certificate says so.
     """
+    _check_kind(problem)
+    is_scene = isinstance(problem, Scene)
+    given = {"gaps": gaps is not None, "forces": forces is not None, "g1, f1": g1 is not None or f1 is not None}
+    asked = [name for name, is_given in given.items() if is_given]
+    allowed = ["gaps", "forces"] if is_scene else ["gaps", "g1, f1"]
+    if len(asked) != 1 or asked[0] not in allowed:
+        told = " and ".join(asked) or "nothing"
+        raise BadInput(f"a sweep over {told}; a {'scene' if is_scene else 'problem'} is swept over {' or '.join(allowed)}")
     if isinstance(problem, Scene):
-        found = _signorini._swept(problem, gaps, method, threads)
-        return Sweep(found["gaps"], found["solutions"], found["events"], found["corners"])
-    if not isinstance(problem, Problem):
-        from signorini._errors import BadType
-
-        raise BadType(f"the argument is of the type {type(problem).__name__}; it must be a Problem or a Scene")
-    from signorini._errors import NotCertified
-
+        found = _signorini._swept(problem, asked[0], gaps if forces is None else forces, method, threads)
+        return Sweep(found["gaps"], found["solutions"], found["events"], found["corners"], found["forces"])
+    if gaps is None:
+        return _on_the_way(problem, problem.replace(f=f1, g=g1), points, method, threads)
     all_gaps = [np.asarray(gap) for gap in gaps]
     prepared = _signorini.prepare(problem, gaps=max(len(all_gaps), 1), method=method, threads=threads, proof=False)
-    solutions: list[Solution | SceneSolution] = []
-    for gap in all_gaps:
+    return Sweep(all_gaps, _series(problem, prepared, [(gap, None) for gap in all_gaps], method, threads), [], [])
+
+
+# A sweep keeps every answer: more than this would not fit.
+_MOST_POINTS = 10_000
+
+
+def _on_the_way(problem: Problem, end: Problem, points: int, method: str | None, threads: int | None) -> Sweep:
+    """A problem on its way to another end."""
+    if not isinstance(points, (int, np.integer)) or not 2 <= points <= _MOST_POINTS:
+        raise BadInput(f"points is {points!r}; it must be a whole number from 2 to {_MOST_POINTS}")
+    changed = np.flatnonzero(np.isfinite(problem.g) != np.isfinite(end.g))
+    if len(changed):
+        row = changed[0]
+        ends = f"goes from {problem.g[row]} to {end.g[row]}"
+        raise BadInput(f"the gap of row {row} {ends}; a row without an obstacle stays one on the way")
+    same_load = np.array_equal(problem.f, end.f)
+    # Fifteen digits, so that a place comes out as it would be written: 0.3, not 0.30000000000000004.
+    t = [float(f"{place:.14e}") for place in np.linspace(0.0, 1.0, int(points))]
+    gaps = [_between(problem.g, end.g, place) for place in t]
+    loads = [None if same_load else _between(problem.f, end.f, place) for place in t]
+    prepared = _signorini.prepare(problem, gaps=len(t), method=method, threads=threads, proof=False)
+    solutions = _series(problem, prepared, list(zip(gaps, loads, strict=True)), method, threads)
+    events: list[dict[str, Any]] = []
+    if same_load:
+        # What is not condensed has no path.
+        with suppress(BadInput):
+            path = prepared.path(problem.g, end.g)
+            events = [{"t": event.at, "row": event.row, "touches": event.touches} for event in path.events]
+    return Sweep(gaps, solutions, events, [], t=t)
+
+
+def _between(first: NDArray[np.float64], last: NDArray[np.float64], t: float) -> NDArray[np.float64]:
+    """Entry by entry (1 - t) first + t last; what is the same at both ends, as an infinite gap, stays as it is."""
+    moves = first != last
+    between = first.copy()
+    between[moves] = (1.0 - t) * first[moves] + t * last[moves]
+    return between
+
+
+def _series(
+    problem: Problem, prepared: Prepared, states: list[tuple[Any, Any]], method: str | None, threads: int | None
+) -> list[Solution]:
+    """The answers for all gaps and loads (None: the problem's own), each from the one before."""
+    # Where multigrid was chosen, an answer that falls short may have another way.
+    is_by_choice = method in (None, "auto") and prepared.factor_entries == 0
+    solutions: list[Solution] = []
+    for gap, load in states:
         try:
-            solutions.append(prepared.solve(gap, start=solutions[-1] if solutions else None))
+            answer = prepared.solve(gap, load, start=solutions[-1] if solutions else None)
         except NotCertified as fell_short:
-            solutions.append(fell_short.solution)
-    return Sweep(all_gaps, solutions, [], [])
+            answer = _solved_anew(problem.replace(g=gap, f=load), threads) if is_by_choice else fell_short.solution
+        solutions.append(answer)
+    return solutions
+
+
+def _solved_anew(problem: Problem, threads: int | None) -> Solution:
+    try:
+        return _signorini.solve(problem, threads=threads, proof=False)
+    except NotCertified as fell_short:
+        return fell_short.solution
+
+
+def _check_kind(problem: object) -> None:
+    if not isinstance(problem, (Problem, Scene)):
+        raise BadType(f"the argument is of the type {type(problem).__name__}; it must be a Problem or a Scene")

@@ -22,8 +22,7 @@ pub(super) fn solved(
 ) -> Result<Solution, Error> {
     let clock = Instant::now();
     // The whole problem stays in memory beside the piece.
-    let entries = 2 * problem.stiffness().lower().entries() - problem.dofs();
-    let of_whole = bytes::of_problem(problem.dofs() as f64, entries as f64);
+    let of_whole = bytes::of_problem(problem.dofs() as f64, problem.stiffness().entries() as f64);
     let settings = &Settings { memory: settings.memory.map(|most| most - of_whole), ..settings.clone() };
     let mut answers = Vec::with_capacity(pieces.count());
     let mut errors = Vec::with_capacity(pieces.count());

@@ -87,7 +87,7 @@ impl Estimate {
         let times = if matters && has_free_mode(problem) { SINGULAR } else { 1.0 };
         Estimate {
             direct_bytes: bytes::START
-                + bytes::of_problem(dofs, 2.0 * entries - dofs)
+                + bytes::of_problem(dofs, problem.stiffness().entries() as f64)
                 + bytes::of_factor(direct.factor_entries, size_of::<f64>()),
             factor_entries: direct.factor_entries,
             direct_seconds: times * direct.seconds,
@@ -103,8 +103,7 @@ impl Estimate {
 
 /// Bytes of the iterative path at its peak, the problem itself included.
 fn multigrid_bytes(problem: &ContactProblem) -> f64 {
-    let (dofs, lower) = (problem.dofs() as f64, problem.stiffness().lower().entries() as f64);
-    bytes::START + bytes::of_hierarchy(dofs, 2.0 * lower - dofs)
+    bytes::START + bytes::of_hierarchy(problem.dofs() as f64, problem.stiffness().entries() as f64)
 }
 
 /// The data that a solve keeps beside the problem.
@@ -143,8 +142,7 @@ pub(in crate::qp) const FACTORS: f64 = 2.0;
 /// [`Error::TooLarge`].
 pub(in crate::qp) fn check_memory(problem: &ContactProblem, kept: Kept, settings: &Settings) -> Result<(), Error> {
     let Some(allowed) = settings.memory else { return Ok(()) };
-    let (dofs, lower) = (problem.dofs() as f64, problem.stiffness().lower().entries() as f64);
-    let stiffness_entries = 2.0 * lower - dofs;
+    let (dofs, stiffness_entries) = (problem.dofs() as f64, problem.stiffness().entries() as f64);
     let of_interior_point = |values: f64, is_used| if is_used { bytes::of_interior_point(values) } else { 0.0 };
     let (factor_entries, beside) = match kept {
         Kept::Nothing => (0, 0.0),

@@ -154,37 +154,63 @@ impl Lower {
         rows: &[I],
         values: &[f64],
     ) -> Result<(), Error> {
-        let (start, mut before) = (self.rows.len(), None);
+        let (start, mut above, mut least) = (self.rows.len(), 0, 0);
         for (&row, &value) in rows.iter().zip(values) {
-            let row: usize = row.try_into().map_err(|_| {
-                let [line, entry] = self.taken.words();
-                Error::Pattern { message: format!("a {entry} of {line} {column} is negative (indices from 0)") }
-            })?;
-            let place = self.taken.place(row, column);
-            if row >= dim {
-                return Err(Error::IndexOutOfRange { row: place.0, column: place.1, rows: dim, columns: dim });
+            let Ok(row) = row.try_into() else { break };
+            if !(least..column).contains(&row) || !value.is_finite() {
+                break;
             }
-            if let Some(before) = before.filter(|&before| before >= row) {
-                let [line, entry] = self.taken.words();
-                let where_to = format!("{entry} {row} of {line} {column} does not lie beyond {entry} {before}");
-                return Err(Error::Pattern { message: format!("{where_to}, the one before (indices from 0)") });
-            }
-            before = Some(row);
-            if !value.is_finite() {
-                let at = format!("{place:?}");
-                return Err(Error::NotFinite { name: "matrix", at, value, allowed: "finite" });
-            }
-            if row >= column {
-                self.rows.push(row);
-                self.values.push(value);
-            } else {
+            if !self.is_mirrored(row, column, value) {
                 self.compare(row, column, value, || diagonal_of(column, rows, values))?;
             }
+            (above, least) = (above + 1, row + 1);
+        }
+        // All else goes at once, and is looked at afterwards.
+        let of_rest = &values[above..];
+        self.rows.extend(rows[above..].iter().map(|&row| row.try_into().unwrap_or(usize::MAX)));
+        self.values.extend_from_slice(of_rest);
+        let rest = &self.rows[start..];
+        let lies_below = rest.first().is_none_or(|&row| row >= column) && rest.last().is_none_or(|&row| row < dim);
+        let increases = rest.windows(2).all(|pair| pair[0] < pair[1]);
+        if !(lies_below && increases && of_rest.iter().all(|value| value.is_finite())) {
+            return Err(self.fault(dim, column, rows, values));
         }
         self.starts.push(self.rows.len());
         let has_diagonal = self.rows.get(start) == Some(&column);
         self.cursor.push(start + usize::from(has_diagonal));
         Ok(())
+    }
+
+    /// Whether an entry above the diagonal has the very value of its mirror image, which then is passed.
+    fn is_mirrored(&mut self, row: usize, column: usize, value: f64) -> bool {
+        let place = self.cursor[row];
+        let is_next = place < self.starts[row + 1] && self.rows[place] == column;
+        let is_same = is_next && self.values[place].to_bits() == value.to_bits();
+        self.cursor[row] += usize::from(is_same);
+        is_same
+    }
+
+    /// What is wrong with a column whose rows do not increase or lie outside, or whose values are not finite.
+    #[cold]
+    fn fault<I: Copy + TryInto<usize>>(&self, dim: usize, column: usize, rows: &[I], values: &[f64]) -> Error {
+        let [line, entry] = self.taken.words();
+        let mut before = None;
+        for (&row, &value) in rows.iter().zip(values) {
+            let Ok(row) = row.try_into() else { break };
+            let place = self.taken.place(row, column);
+            if row >= dim {
+                return Error::IndexOutOfRange { row: place.0, column: place.1, rows: dim, columns: dim };
+            }
+            if let Some(before) = before.filter(|&before| before >= row) {
+                let where_to = format!("{entry} {row} of {line} {column} does not lie beyond {entry} {before}");
+                return Error::Pattern { message: format!("{where_to}, the one before (indices from 0)") };
+            }
+            before = Some(row);
+            if !value.is_finite() {
+                return Error::NotFinite { name: "matrix", at: format!("{place:?}"), value, allowed: "finite" };
+            }
+        }
+        Error::Pattern { message: format!("a {entry} of {line} {column} is negative (indices from 0)") }
     }
 
     /// Compares entry (row, column) above the diagonal with its mirror image in column `row`.

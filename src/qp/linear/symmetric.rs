@@ -122,6 +122,12 @@ impl SymmetricMatrix {
         self.lower.columns()
     }
 
+    /// Number of entries of both triangles.
+    pub fn entries(&self) -> usize {
+        let has_diagonal = |&column: &usize| self.lower.column_slices(column).0.first() == Some(&column);
+        2 * self.lower.entries() - (0..self.dim()).filter(has_diagonal).count()
+    }
+
     /// The lower triangle, diagonal included.
     pub fn lower(&self) -> &SparseMatrix {
         &self.lower
