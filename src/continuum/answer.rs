@@ -1,11 +1,11 @@
-//! What is kept of a bracket: the displacement and the stresses as a picture or a file shows them.
+//! The part of a bracket that is kept: the displacement and the stresses for a picture or a file.
 
 use super::bound::Bracket;
 use super::johnson_mercier::at;
 use super::problem::Tensor;
 use super::triangulation::Point;
 
-/// The middle of a part of a triangle.
+/// The centroid of a part of a triangle.
 const CENTRE: [f64; 3] = [1.0 / 3.0; 3];
 
 /// The answer on a mesh of triangles of six nodes: the corners, then the middles of the edges.
@@ -22,12 +22,12 @@ pub struct PlaneAnswer {
     pub displacement: Vec<Point>,
     /// The mean over each triangle of the stress of the displacement and of the stress in balance.
     pub stress: Vec<Tensor>,
-    /// What each triangle adds to half the square of the bound, in force times length.
+    /// The contribution of each triangle to half the square of the bound, in force times length.
     pub shares: Vec<f64>,
 }
 
 impl Bracket<'_> {
-    /// What there is to show.
+    /// The displacement and the stresses for a picture or a file.
     pub fn answer(&self) -> PlaneAnswer {
         let mesh = self.mesh;
         let middle = |&[a, b]: &[usize; 2]| [0, 1].map(|axis| (mesh.nodes[a][axis] + mesh.nodes[b][axis]) / 2.0);

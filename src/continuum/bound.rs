@@ -1,12 +1,13 @@
-//! The guaranteed bound: a displacement that keeps off the obstacles and a stress in balance hold the exact answer between them.
+//! The guaranteed bound: an admissible displacement and a stress in balance enclose the exact answer.
 //!
-//! With `v` such a displacement of energy J(v), and `tau` such a stress of complementary energy -D(tau),
+//! Let `v` be such a displacement of energy J(v), and `tau` such a stress of complementary energy -D(tau). Then
 //!
 //! ```text
 //! 1/2 |u - v|^2  <=  J(v) - D(tau)  =  1/2 |eps(v) - C^-1 tau|^2  +  integral of (-p) (g - v_n)
 //! ```
 //!
-//! for the exact displacement u, in the norms of energy; p is the pressure of tau on the obstacle, `p <= 0`. No constant is in it.
+//! for the exact displacement u, in the norms of energy; p is the pressure of tau on the obstacle, `p <= 0`. The bound contains no
+//! unknown constant.
 
 use super::displacement::Displacements;
 use super::johnson_mercier::{PartStress, at, mean_over_parts, traction};
@@ -20,30 +21,30 @@ use crate::qp::problem::ContactProblem;
 use crate::qp::{Prepared, Settings, solve};
 use crate::solution::{ContactSet, Solution};
 
-/// The strain that rounding makes of a displacement of one, on a triangle of size one: some hundred units in the last place.
+/// The strain from the rounding of a displacement of one on a triangle of size one: some hundred units in the last place.
 const NOISE: f64 = 100.0 * f64::EPSILON;
 
-/// A displacement and a stress that hold the exact answer between them.
+/// A displacement and a stress that enclose the exact answer.
 #[derive(Debug)]
 pub struct Bracket<'a> {
     pub problem: &'a PlaneProblem,
     pub mesh: &'a Triangulation,
     pub displacements: Displacements<'a>,
     pub stresses: Stresses<'a>,
-    /// The side of the displacement, and that of the stress.
+    /// The displacement problem and the stress problem, each with its answer.
     pub primal: Side,
     pub dual: Side,
-    /// Where the rows of the stress act.
+    /// The places at which the rows of the stress act.
     pub places: Vec<Place>,
     /// The stress on each triangle.
     pub stress: Vec<PartStress>,
-    /// What each triangle adds to J - D.
+    /// The contribution of each triangle to J - D.
     pub shares: Vec<f64>,
-    /// The part of J - D that lies in contact.
+    /// The part of J - D from contact.
     pub contact_share: f64,
     /// The square of the energy norm of the displacement.
     pub energy: f64,
-    /// The largest relative defect that the check of balance, sign and distance found.
+    /// The largest relative defect found by the check of balance, signs and distances.
     pub defect: f64,
 }
 
@@ -55,7 +56,7 @@ pub struct Side {
     pub solution: Solution,
     /// The values of all unknowns.
     pub values: Vec<f64>,
-    /// What it took, in seconds, assembly included.
+    /// Seconds, including assembly.
     pub seconds: f64,
 }
 
@@ -73,7 +74,7 @@ impl Side {
         });
         let solution = match from_start {
             Some(Ok(solution)) => solution,
-            // What a start spoils is solved without it.
+            // If the start makes the solve fail, it is repeated without a start.
             Some(Err(_)) | None => match solve(problem, settings) {
                 // The check of the bracket judges both answers.
                 Err(Error::NotCertified { solution, .. }) => *solution,
@@ -86,10 +87,10 @@ impl Side {
 }
 
 impl<'a> Bracket<'a> {
-    /// Solves both problems on a mesh, and checks what they promise. The nodes that are said to touch are where both start from.
+    /// Solves both problems on a mesh, and checks their properties. Both start from the given touching nodes.
     ///
     /// # Errors
-    /// Those of [`solve`]; [`Error::Numerical`] if the check finds a defect beyond rounding: then nothing is guaranteed.
+    /// Those of [`solve`]; [`Error::Numerical`] if the check finds a defect beyond rounding: then there is no guarantee.
     pub fn new(
         problem: &'a PlaneProblem,
         mesh: &'a Triangulation,
@@ -154,7 +155,7 @@ impl<'a> Bracket<'a> {
         self.problem.thickness * twice_area(self.mesh.corners(triangle)) / 2.0
     }
 
-    /// The strain of a displacement at weights of the corners of part k of a triangle.
+    /// The strain of a displacement at a point of part k of a triangle, given by the weights of the part's corners.
     pub fn strain(&self, coefficients: &[f64], triangle: usize, k: usize, weights: [f64; 3]) -> Tensor {
         let mut place = [weights[0] / 3.0; 3];
         place[(k + 1) % 3] += weights[1];
@@ -162,7 +163,7 @@ impl<'a> Bracket<'a> {
         self.displacements.strain(coefficients, triangle, place)
     }
 
-    /// The integral over a triangle of a product, by strain of the displacement and stress.
+    /// The integral over a triangle of a function of the strain of the displacement and the stress.
     pub fn integral(&self, triangle: usize, product: impl Fn(Tensor, Tensor) -> f64) -> f64 {
         let mean = mean_over_parts(|k, weights| {
             let strain = self.strain(&self.primal.values, triangle, k, weights);
@@ -171,7 +172,7 @@ impl<'a> Bracket<'a> {
         self.volume(triangle) * mean
     }
 
-    /// Energy, shares and what of them lies in contact.
+    /// Computes energy, shares and the share of contact.
     pub(super) fn measure(&mut self) {
         let size = |strain: Tensor| work(self.problem.stress(strain), strain);
         let triangles = 0..self.mesh.triangles.len();
@@ -194,7 +195,7 @@ impl<'a> Bracket<'a> {
         self.dual.solution.multiplier[row].min(0.0)
     }
 
-    /// The weighted mean of the displacement of an edge towards an obstacle, as a row of the stress feels it.
+    /// The weighted mean of the displacement of an edge towards an obstacle, as in a row of the stress.
     fn approached(&self, place: &Place) -> f64 {
         let facing = &self.problem.obstacles[place.obstacle];
         self.mean_on(&self.primal.values, place, facing.axis) * facing.sense
@@ -214,21 +215,22 @@ impl<'a> Bracket<'a> {
         self.shares.iter().sum()
     }
 
-    /// Do displacement and stress take no more energy than rounding the displacement makes, on every triangle?
+    /// Returns `true` if the energies of displacement and stress are at most those of the rounding of the displacement, on every
+    /// triangle.
     pub fn is_at_rest(&self) -> bool {
         let largest = self.primal.values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
         let Lame { lambda, mu } = self.problem.lame;
-        // The strain on a triangle is the noise over its size, its energy that squared, times the area: the size cancels.
+        // The strain on a triangle is the noise over its size, its energy is the square of that times the area: the size cancels.
         let of_triangle = (lambda + 2.0 * mu) * self.problem.thickness * (NOISE * largest).powi(2);
         self.energy.max(self.distance()) <= of_triangle * self.mesh.triangles.len() as f64
     }
 
-    /// The bound on |u - v| / |v|; zero for a body at rest, infinite for one at rest in v alone.
+    /// The bound on |u - v| / |v|; zero for a body at rest, infinite if only v is at rest.
     pub fn bound(&self) -> f64 {
         self.relative(2.0 * self.distance())
     }
 
-    /// The root of a square of the energy norm over |v|; not below the defect, which is rounding that no bound counts.
+    /// The root of a square of the energy norm over |v|; not below the defect, because a bound does not include that rounding.
     fn relative(&self, square: f64) -> f64 {
         if self.is_at_rest() { 0.0 } else { (square.max(0.0) / self.energy).sqrt().max(self.defect) }
     }

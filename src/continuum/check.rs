@@ -1,27 +1,27 @@
-//! The check of a bracket: balance, signs, distances and energies, from the stresses and displacements alone.
+//! The check of a bracket: balance, signs, distances and energies, from the stresses and displacements only.
 
 use super::bound::Bracket;
 use super::johnson_mercier::{part, traction};
 use super::triangulation::{outward, twice_area};
 use crate::error::Error;
 
-/// Jumps of tractions over the largest stress, and forces of the wrong sign over the largest force, that are rounding: fifty times
-/// what is measured on meshes of 1e5 unknowns at a ratio of Poisson of 0.4999.
+/// Rounding of jumps of tractions over the largest stress, and of forces of the wrong sign over the largest force: fifty times the value
+/// measured on meshes of 1e5 unknowns at a Poisson's ratio of 0.4999.
 const OUT_OF_BALANCE: f64 = 1e-8;
 
-/// Depth in an obstacle that is rounding, over the largest displacement.
+/// Depth in an obstacle over the largest displacement that counts as rounding.
 const PENETRATION: f64 = 1e-12;
 
-/// The share of J - D by which the energies may miss it, beyond their own rounding.
+/// The share of J - D by which the energies may differ from it, beyond their own rounding.
 const LOST: f64 = 1e-2;
 
 /// Rounding of a sum of many energies, over the sum of their sizes.
 const ENERGY_ROUNDING: f64 = 1e-10;
 
-/// Places along an edge at which a displacement is held against the obstacle: ends, middle, and between.
+/// Places along an edge at which a displacement is compared with the obstacle: ends, middle, and between.
 const SAMPLES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
-/// By how much a promise is missed, relative, and what of that is rounding.
+/// The relative defect of a property, and the value up to which it is rounding.
 #[derive(Clone, Copy, Debug)]
 struct Defect {
     what: &'static str,
@@ -30,7 +30,7 @@ struct Defect {
 }
 
 impl Bracket<'_> {
-    /// Refuses what is not as it was promised; the largest defect otherwise.
+    /// Refuses a bracket without the required properties; returns the largest defect otherwise.
     ///
     /// # Errors
     /// [`Error::Numerical`].
@@ -46,7 +46,7 @@ impl Bracket<'_> {
         }
     }
 
-    /// How far each promise is missed, relative, found from the stresses and displacements alone.
+    /// The relative defect of each property, from the stresses and displacements only.
     fn defects(&self) -> [Defect; 4] {
         // At rest all forces are rounding.
         let strained = |defect: fn(&Self) -> f64| if self.is_at_rest() { 0.0 } else { defect(self) };
@@ -59,7 +59,7 @@ impl Bracket<'_> {
         ]
     }
 
-    /// The largest stress, in balance or of the displacement: the former is rounding where it touches nothing yet.
+    /// The largest stress, in balance or of the displacement: the former is rounding if nothing touches yet.
     fn largest_stress(&self) -> f64 {
         const CENTRE: [f64; 3] = [1.0 / 3.0; 3];
         let strain = |triangle: usize| self.displacements.strain(&self.primal.values, triangle, CENTRE);
@@ -68,8 +68,8 @@ impl Bracket<'_> {
         of_displacement.chain(in_balance).flatten().fold(0.0, |largest: f64, entry| largest.max(entry.abs()))
     }
 
-    /// The largest jump of a traction between triangles, traction that is not the load, and divergence times length that is not
-    /// the body force, over the largest stress.
+    /// The largest jump of a traction between triangles, difference of traction and load, and sum of divergence and body force times
+    /// length, over the largest stress.
     fn imbalance(&self) -> f64 {
         let mut left = vec![[[0.0; 2]; 2]; self.mesh.edges.len()];
         let mut worst: f64 = 0.0;
@@ -103,7 +103,7 @@ impl Bracket<'_> {
         over(worst, self.largest_stress())
     }
 
-    /// The largest part of divergence and body force that do not cancel on a triangle, times its size.
+    /// The largest sum of divergence and body force on a triangle, times its size.
     fn divergence(&self, triangle: usize) -> f64 {
         let mut worst: f64 = 0.0;
         for k in 0..3 {
@@ -113,7 +113,7 @@ impl Bracket<'_> {
             for corner in 0..3 {
                 let (normal, length) = outward(corners, corner);
                 let pull = traction(self.stress[triangle][k][corner], normal);
-                // The slope of a barycentric coordinate is the opposite of the normal over the height.
+                // The slope of a barycentric coordinate is minus the normal over the height.
                 (0..2).for_each(|axis| force[axis] -= pull[axis] * length);
                 size = size.max(length);
             }
@@ -125,14 +125,14 @@ impl Bracket<'_> {
         worst
     }
 
-    /// The largest force of the wrong sign, over the largest one.
+    /// The largest force of the wrong sign, over the largest force.
     fn adhesion(&self) -> f64 {
         let multiplier = &self.dual.solution.multiplier;
         let wrong = multiplier.iter().fold(0.0, |worst: f64, force| worst.max(*force));
         over(wrong, multiplier.iter().fold(0.0, |largest: f64, force| largest.max(force.abs())))
     }
 
-    /// The deepest place of the displacement in an obstacle, over the largest displacement.
+    /// The largest depth of the displacement in an obstacle, over the largest displacement.
     fn penetration(&self) -> f64 {
         let (mut deepest, values) = (0.0_f64, &self.primal.values);
         let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
@@ -154,8 +154,8 @@ impl Bracket<'_> {
         over(deepest, largest)
     }
 
-    /// By how much J - D, from the energies, misses the sum of the shares, over that sum. Rounding of the energies is left out, and
-    /// the work of forces that rounding leaves out of balance: it grows with the distance by which a body is moved.
+    /// Difference of J - D, from the energies, and the sum of the shares, over that sum. It leaves out the rounding of the energies and
+    /// the work of forces that rounding leaves unbalanced, which grows with the rigid motion of a body.
     fn lost(&self) -> f64 {
         let [high, low] = [self.energy_of_displacement(), self.energy_of_stress()];
         let works = [self.work_of_loads(), self.work_on_supports(&self.stress), self.work_on_obstacles()];
@@ -165,7 +165,7 @@ impl Bracket<'_> {
     }
 }
 
-/// A ratio, zero for nothing over nothing.
+/// A ratio; 0/0 gives zero.
 fn over(value: f64, size: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value / size }
 }
@@ -196,7 +196,7 @@ mod tests {
         }
     }
 
-    /// A square on a clamped side, pulled on the right, heavy, under a bowl.
+    /// A square on a clamped side, with a traction on the right, a body force, and a bowl above.
     fn square() -> (PlaneProblem, Triangulation) {
         let side = |held: [Option<f64>; 2], traction: Point, obstacles: Vec<usize>| Condition {
             held,
@@ -230,7 +230,7 @@ mod tests {
         Settings::with_method(Method::ActiveSet)
     }
 
-    /// What the check says of a bracket.
+    /// The message of the check of a bracket.
     fn refusal(bracket: &Bracket) -> String {
         bracket.check().unwrap_err().to_string()
     }
@@ -273,7 +273,7 @@ mod tests {
         assert!(bracket.adhesion() > 0.01, "{}", bracket.adhesion());
     }
 
-    /// Rows at the places of the nodes bound the values there, and nothing between.
+    /// Rows at the places of the nodes bound the values there, but not between.
     #[test]
     fn rows_at_nodes_instead_of_coefficients_are_refused() {
         let (problem, mesh) = square();

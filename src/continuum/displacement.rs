@@ -1,5 +1,5 @@
-//! Displacements that are quadratic on each triangle, in the basis of Bernstein: a function whose coefficients on an edge stay below
-//! those of a bound stays below it everywhere.
+//! Displacements that are quadratic on each triangle, in the basis of Bernstein: if the coefficients of a function on an edge are below
+//! those of a bound, the function is below it everywhere.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use super::system::{Block, LOCAL, Row, Unknowns};
 use super::triangulation::{Point, Triangulation, distance, outward, twice_area};
 use crate::error::Error;
 
-/// The middles of the sides of a triangle: the mean of a quadratic function at these is its mean.
+/// The mid-sides of a triangle: the mean of a quadratic function at these points is its mean over the triangle.
 pub const MIDDLES: [[f64; 3]; 3] = [[0.0, 0.5, 0.5], [0.5, 0.0, 0.5], [0.5, 0.5, 0.0]];
 
 /// Displacements on a mesh.
@@ -33,13 +33,13 @@ impl<'a> Displacements<'a> {
         Displacements { problem, mesh, numbers: numbers.collect() }
     }
 
-    /// The three functions on an edge along an axis: those of its nodes, and of its middle between them.
+    /// The three functions on an edge along an axis: those of its start, its middle and its end.
     pub fn on_edge(&self, edge: usize, axis: usize) -> [usize; 3] {
         let [a, b] = self.mesh.edges[edge];
         [a, self.mesh.nodes.len() + edge, b].map(|node| 2 * node + axis)
     }
 
-    /// The unknowns, those on held sides prescribed.
+    /// The unknowns; those on held sides are prescribed.
     pub fn unknowns(&self) -> Unknowns {
         let mut held = vec![None; 2 * (self.mesh.nodes.len() + self.mesh.edges.len())];
         for (_, _, edge, condition) in self.mesh.outline() {
@@ -52,10 +52,10 @@ impl<'a> Displacements<'a> {
         Unknowns::new(held)
     }
 
-    /// The rows that keep a displacement off the obstacles, each function and obstacle once.
+    /// The rows that keep a displacement out of the obstacles, each function and obstacle once.
     ///
     /// # Errors
-    /// [`Error::Infeasible`] where a prescribed displacement leads into an obstacle.
+    /// [`Error::Infeasible`] if a prescribed displacement leads into an obstacle.
     pub fn rows(&self, unknowns: &Unknowns) -> Result<Vec<Row>, Error> {
         let mut gaps: BTreeMap<(usize, usize), f64> = BTreeMap::new();
         for (_, _, edge, condition) in self.mesh.outline() {
@@ -135,7 +135,7 @@ impl<'a> Displacements<'a> {
         load
     }
 
-    /// The strain of a displacement at a point of a triangle, which barycentric coordinates give.
+    /// The strain of a displacement at a point of a triangle, given in barycentric coordinates.
     pub fn strain(&self, coefficients: &[f64], triangle: usize, at: [f64; 3]) -> Tensor {
         let functions = strains_of_functions(&slopes(self.mesh.corners(triangle)), at);
         let own = self.numbers[triangle].map(|number| coefficients[number]);

@@ -1,7 +1,7 @@
-//! The force of contact between guaranteed bounds, of second order in the error.
+//! Guaranteed bounds of the contact force, of second order in the error.
 //!
-//! Let z be a displacement that is -1 towards the obstacle where contact is found, `tau_z` a stress without load, free of tractions
-//! beside contact and with a pressure `p_z <= 0`, and `r = eps(z) - C^-1 tau_z`. The exact stress lies in a ball about the mean
+//! Let z be a displacement that is -1 towards the obstacle in the computed contact, `tau_z` a stress without load, free of tractions
+//! outside the contact and with a pressure `p_z <= 0`, and `r = eps(z) - C^-1 tau_z`. The exact stress lies in a ball about the mean
 //! `tau_m` of both stresses, with `|sigma - tau_m|^2 + S = rho^2`. Then
 //!
 //! ```text
@@ -24,16 +24,16 @@ use crate::fem::material::Lame;
 use crate::qp::linear::Cholesky;
 use crate::qp::problem::ContactProblem;
 
-/// What is between 0 and -1 by less than this, or a pressure below this share of the largest, is rounding.
+/// Values between 0 and -1 by less than this, and pressures below this share of the largest, are rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// Caps of beta that are tried, over the one at which its term would reach that of the ball.
+/// Trial caps of beta, over the beta at which its term would reach that of the ball.
 const CAPS: [f64; 2] = [f64::INFINITY, 2.0];
 
-/// Rounds after which rows of the wrong sign are given up.
+/// Largest number of rounds that change rows of the wrong sign.
 const ROUNDS: usize = 12;
 
-/// What every pair takes: the matrices of the triangles, and the stress of edges at rest.
+/// The data for every pair: the matrices of the triangles, and the stress of edges at rest.
 struct Blocks {
     displacement: Vec<Block>,
     stress: Vec<Block>,
@@ -43,15 +43,15 @@ struct Blocks {
 /// A stress, and its force at each place.
 type Pressed = (Vec<PartStress>, Vec<f64>);
 
-/// A pair z, tau_z and what its rows are worth.
+/// A pair z, tau_z and the ratios of its rows.
 struct Test {
     displacement: Vec<f64>,
     stress: Vec<PartStress>,
     /// The force at each place of the bracket, `<= 0`.
     pulls: Vec<f64>,
-    /// Over the slack of each row, and over the pressure of each place: the largest is beta.
+    /// For each row the ratio over its slack, and for each place the ratio over its pressure: the largest is beta.
     ratios: [Vec<f64>; 2],
-    /// How far z goes below -1.
+    /// The distance of z below -1.
     beyond: f64,
 }
 
@@ -93,11 +93,11 @@ impl Bracket<'_> {
             }
             last = Some(test);
         }
-        // Where nothing but rounding is left, the ends may have changed places.
+        // If only rounding is left, the ends may be exchanged.
         Ok(interval.map(|[low, high]| [low.min(high), low.max(high)]))
     }
 
-    /// The interval that a pair gives, and the beta at which its term would reach that of the ball.
+    /// The interval of a pair, and the beta at which its term would reach that of the ball.
     fn interval(&self, test: &Test) -> ([f64; 2], f64) {
         let (mut base, mut square) = (self.work_on_supports(&test.stress), 0.0);
         for triangle in 0..self.mesh.triangles.len() {
@@ -137,7 +137,7 @@ impl Bracket<'_> {
         ([(low - radius * length) / (1.0 + test.beyond), high + most], length / (2.0 * radius))
     }
 
-    /// The pair for these rows held; rows of the wrong sign are bonded or released until there are none.
+    /// The pair with these rows held; rows of the wrong sign are bonded or released until there are none.
     fn test(&self, bonded: &mut [bool], pressed: &mut [bool], blocks: &Blocks) -> Result<Option<Test>, Error> {
         let Some(displacement) = self.bonded_displacement(bonded, &blocks.displacement)? else {
             return Ok(None);
@@ -151,7 +151,7 @@ impl Bracket<'_> {
             beyond = beyond.max(-open);
             of_rows.push(over(open, row.gap - row.sense * values[row.unknown]));
         }
-        // Places that a support holds move with no test, and may be touched.
+        // Places that a support holds do not move in the test, and may be touched.
         for (_, _, edge, condition) in self.mesh.outline() {
             let [from, to] = self.mesh.edges[edge].map(|node| self.mesh.nodes[node]);
             for &number in &self.problem.conditions[condition].obstacles {
@@ -190,21 +190,22 @@ impl Bracket<'_> {
         Ok(None)
     }
 
-    /// The stress under edges held at -1 where pressed, and its forces there; places that pull are released.
+    /// The stress under edges held at -1 where pressed, and its forces there; places with a pulling force are released.
     fn bonded_stress(&self, pressed: &mut [bool], blocks: &Blocks) -> Result<Option<Pressed>, Error> {
         for _ in 0..ROUNDS {
             let (unknowns, load) = with_contact_held(&self.dual, pressed);
             let posed = unknowns.problem(self.stresses.numbers().zip(blocks.stress.iter().copied()), &load, &[])?;
             let Some(free) = linear(&posed) else { return Ok(None) };
             let mut stress = self.stresses.stresses(&unknowns.expanded(&free));
-            // The difference of two answers under the same body force has none.
+            // The difference of two answers under the same body force has no body force.
             for (values, at_rest) in
                 stress.iter_mut().flatten().flatten().zip(blocks.at_rest.iter().flatten().flatten())
             {
                 *values = minus(*values, *at_rest);
             }
             let mut pulls = self.pulls(&stress);
-            // What a displacement of one would take of a body as wide as it is high: a body that nothing holds moves without force.
+            // The force for a displacement of one of a body as wide as high, for comparison: a body that nothing holds moves without
+            // force.
             let Lame { lambda, mu } = self.problem.lame;
             let unit = (lambda + 2.0 * mu) * self.problem.thickness;
             let largest = pulls.iter().fold(unit, |largest: f64, pull| largest.max(pull.abs()));
@@ -246,7 +247,7 @@ impl Bracket<'_> {
     }
 }
 
-/// The unknowns with supports at zero and the unknowns of these rows at -1 towards the obstacle; and no load.
+/// The unknowns with supports at zero and the unknowns of these rows at -1 towards the obstacle; and a zero load.
 fn with_contact_held(side: &Side, rows: &[bool]) -> (Unknowns, Vec<f64>) {
     let mut held: Vec<Option<f64>> = side.unknowns.held.iter().map(|held| held.map(|_| 0.0)).collect();
     let chosen = side.rows.iter().zip(rows).filter(|row| *row.1);
@@ -255,7 +256,7 @@ fn with_contact_held(side: &Side, rows: &[bool]) -> (Unknowns, Vec<f64>) {
     (Unknowns::new(held), load)
 }
 
-/// The displacement of a problem without rows, refined once; none where the stiffness is not definite.
+/// The displacement of a problem without rows, refined once; `None` if the stiffness is not definite.
 fn linear(problem: &ContactProblem) -> Option<Vec<f64>> {
     let factor = Cholesky::of(problem.stiffness()).ok()?;
     let mut solution = factor.solve(problem.load());
@@ -265,7 +266,7 @@ fn linear(problem: &ContactProblem) -> Option<Vec<f64>> {
     Some(solution)
 }
 
-/// A ratio of a displacement of order one, zero if that is rounding, infinite for something over nothing.
+/// A ratio with a displacement of order one as numerator: zero if that is rounding, infinite if only the denominator is zero.
 fn over(value: f64, size: f64) -> f64 {
     if value <= ROUNDING { 0.0 } else { value / size.max(0.0) }
 }

@@ -1,5 +1,5 @@
-//! The stress element of Johnson and Mercier: a triangle cut in three at its centre, the stress linear on each part, tractions
-//! continuous between them. Nine of its fifteen stresses have no divergence; they are what a triangle without body force can carry.
+//! The stress element of Johnson and Mercier: a triangle cut in three at its centre, the stress linear on each part, tractions continuous
+//! between them. Nine of its fifteen stresses have no divergence; these are the stresses of a triangle without body force.
 //!
 //! # Source
 //! C. Johnson, B. Mercier, "Some equilibrium finite element methods for two-dimensional elasticity problems", Numerische Mathematik
@@ -14,17 +14,16 @@ use super::triangulation::{Point, outward, twice_area};
 /// Stresses without divergence.
 pub const FREE: usize = 9;
 
-/// A stress on a triangle: on part k, which lies at the side opposite to corner k, its values at the centre and at the corners k+1
-/// and k+2.
+/// A stress on a triangle: for part k, next to the side opposite to corner k, its values at the centre and at the corners k+1 and k+2.
 pub type PartStress = [[Tensor; 3]; 3];
 
-/// The values of a part at the middles of its sides, by those at its corners.
+/// The values of a part at its mid-sides, from those at its corners.
 const HALVES: [[f64; 3]; 3] = [[0.0, 0.5, 0.5], [0.5, 0.0, 0.5], [0.5, 0.5, 0.0]];
 
-/// The triangle on which the stresses are made once.
+/// The triangle on which the stresses are computed once.
 const REFERENCE: [Point; 3] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
 
-/// The nine stresses without divergence on a triangle, and what follows from them.
+/// The nine stresses without divergence on a triangle, with their tractions and energies.
 #[derive(Clone, Debug)]
 pub struct Element {
     stresses: [PartStress; FREE],
@@ -32,7 +31,7 @@ pub struct Element {
     particular: PartStress,
     /// Works of the tractions of each stress with the twelve unknowns of the sides.
     tractions: [[f64; LOCAL]; FREE],
-    /// Those of the particular stress.
+    /// The same of the particular stress.
     particular_tractions: [f64; LOCAL],
     /// The Cholesky factor, lower, of the complementary energies.
     factor: [[f64; FREE]; FREE],
@@ -46,13 +45,13 @@ pub fn part(corners: [Point; 3], k: usize) -> [Point; 3] {
     [centre, corners[(k + 1) % 3], corners[(k + 2) % 3]]
 }
 
-/// The mean over a triangle of the product of two functions that are linear on each part, by the values at the middles of sides.
+/// The mean over a triangle of the product of two functions that are linear on each part, from the values at the mid-sides.
 pub fn mean_over_parts(product: impl Fn(usize, [f64; 3]) -> f64) -> f64 {
     let points = (0..3).flat_map(|k| HALVES.map(|weights| (k, weights)));
     points.map(|(k, weights)| product(k, weights)).sum::<f64>() / 9.0
 }
 
-/// A stress on part k at the point that weights of its corners give.
+/// A stress on part k at the point given by the weights of its corners.
 pub fn at(stress: &PartStress, k: usize, weights: [f64; 3]) -> Tensor {
     [0, 1, 2].map(|entry| (0..3).map(|corner| weights[corner] * stress[k][corner][entry]).sum())
 }
@@ -63,7 +62,7 @@ pub fn traction(stress: Tensor, normal: Point) -> Point {
 }
 
 impl Element {
-    /// That of a triangle with these corners.
+    /// The element on a triangle with these corners.
     pub fn new(problem: &PlaneProblem, corners: [Point; 3]) -> Self {
         let stresses = reference().map(|stress| mapped(&stress, corners));
         let particular = balancing(problem.body_force, corners);
@@ -85,7 +84,7 @@ impl Element {
         }
     }
 
-    /// The stiffness that the sides feel.
+    /// The stiffness at the sides.
     pub fn block(&self) -> Block {
         let mut halves = [[0.0; FREE]; LOCAL];
         for (unknown, half) in halves.iter_mut().enumerate() {
@@ -128,8 +127,9 @@ fn product<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// The works of the tractions with the unknowns of the sides: for each side, opposite to corner k, at its ends k+1 and k+2 along x and
-/// y. The unknowns are the coefficients of functions that meet only their own end of a linear traction: half the side's length.
+/// The works of the tractions with the unknowns of the sides: for each side, opposite to corner k, at its ends k+1 and k+2 along x and y.
+/// The unknowns are the coefficients of functions that are dual to a linear traction: each acts on its own end only, with half the side's
+/// length.
 fn tractions(stress: &PartStress, corners: [Point; 3], thickness: f64) -> [f64; LOCAL] {
     let mut works = [0.0; LOCAL];
     for (side, on_part) in stress.iter().enumerate() {
@@ -150,7 +150,7 @@ fn balancing(force: Point, corners: [Point; 3]) -> PartStress {
     [0, 1, 2].map(|k| part(corners, k).map(value))
 }
 
-/// The stress of the reference triangle on a triangle with these corners: the map of Piola keeps balance and tractions.
+/// The stress of the reference triangle on a triangle with these corners: the Piola map preserves balance and tractions.
 fn mapped(stress: &PartStress, corners: [Point; 3]) -> PartStress {
     let column = |to: usize| [0, 1].map(|axis| corners[to][axis] - corners[0][axis]);
     let ([a, c], [b, d]) = (column(1), column(2));
@@ -163,7 +163,7 @@ fn mapped(stress: &PartStress, corners: [Point; 3]) -> PartStress {
     })
 }
 
-/// The nine stresses on the reference triangle: what balance and continuity leave of 27 values.
+/// The nine stresses on the reference triangle: the subspace of 27 values that satisfies balance and continuity.
 fn reference() -> &'static [PartStress; FREE] {
     static STRESSES: OnceLock<[PartStress; FREE]> = OnceLock::new();
     STRESSES.get_or_init(|| {
@@ -199,7 +199,7 @@ fn conditions() -> Vec<[f64; VALUES]> {
             divergence[1][place(k, corner, 1)] = slope[1];
         }
         conditions.extend(divergence);
-        // The line from the centre to corner k lies between part k+1, where that is the last corner, and part k+2.
+        // The line from the centre to corner k lies between part k+1, of which it is the last corner, and part k+2.
         let (before, after) = ((k + 1) % 3, (k + 2) % 3);
         let line = [REFERENCE[k][0] - corners[0][0], REFERENCE[k][1] - corners[0][1]];
         let normal = [line[1], -line[0]];
@@ -217,7 +217,7 @@ fn conditions() -> Vec<[f64; VALUES]> {
     conditions
 }
 
-/// A basis of what all rows take to zero, by elimination; the rows are independent.
+/// A basis of the null space of all rows, by elimination; the rows are independent.
 fn null_space(mut rows: Vec<[f64; VALUES]>) -> Vec<[f64; VALUES]> {
     let mut pivots = Vec::with_capacity(rows.len());
     for index in 0..rows.len() {
@@ -296,7 +296,7 @@ mod tests {
         sum
     }
 
-    /// In balance with the body force, and with tractions that pass from part to part, whatever the sides do.
+    /// The stress is in balance with the body force, and its tractions are continuous between parts, for any motion of the sides.
     #[test]
     fn stresses_are_in_balance_and_continuous() {
         let element = Element::new(&material(), CORNERS);
@@ -316,7 +316,7 @@ mod tests {
         }
     }
 
-    /// A motion of the sides as a rigid body makes no stress, and nothing else does: the rank is nine.
+    /// A rigid motion of the sides gives no stress, and no other motion does: the rank is nine.
     #[test]
     fn only_rigid_body_motions_cost_nothing() {
         let material = PlaneProblem { body_force: [0.0; 2], ..material() };

@@ -1,4 +1,4 @@
-//! Any other displacement judged by the ball in which the exact stress lies.
+//! Judges any other displacement by the ball that contains the exact stress.
 
 use super::bound::{Bracket, minus};
 use super::johnson_mercier::{at, part};
@@ -6,20 +6,20 @@ use super::problem::{Tensor, work};
 use super::triangulation::Point;
 use crate::fem::element::{FacetKind, Tabulated};
 
-/// How far a displacement w is from others, in the energy norm.
+/// The distance of a displacement w from others, in the energy norm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Judged {
-    /// At least |u - w|, u being exact.
+    /// An upper bound of |u - w|; u is exact.
     pub bound: f64,
-    /// |v - w|, v being the displacement of the bracket.
+    /// |v - w|; v is the displacement of the bracket.
     pub from_displacement: f64,
     /// |w|.
     pub norm: f64,
 }
 
 impl Bracket<'_> {
-    /// Judges a displacement by its strain in an element of the first mesh, at a point. It needs no other property: the bound is its
-    /// distance to the centre of the ball and the radius. Integrals are by 25 points on each third of a triangle.
+    /// Judges a displacement by its strain in an element of the first mesh, at a point. The displacement needs no other property: the
+    /// bound follows from its distance to the centre of the ball and the radius. Integrals are by 25 points on each third of a triangle.
     pub fn judged<S: Fn(Point) -> Tensor>(&self, strain_in: impl Fn(usize) -> S) -> Judged {
         let rule = Tabulated::fine(FacetKind::T3.reference()).points;
         let (mut from_centre, mut from_displacement, mut norm) = (0.0_f64, 0.0_f64, 0.0_f64);

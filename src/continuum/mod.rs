@@ -1,5 +1,5 @@
-//! The guaranteed error against the continuum, in the plane: a displacement that keeps off the obstacles between nodes too, a stress in
-//! balance, and what lies between their energies.
+//! The guaranteed error against the continuum, in the plane: from a displacement that stays out of the obstacles between nodes too, a
+//! stress in balance, and the difference of their energies.
 
 mod answer;
 mod bound;

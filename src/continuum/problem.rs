@@ -1,4 +1,4 @@
-//! The contact problem of a body in the plane as it stands before any mesh: what holds on its outline.
+//! The contact problem of a body in the plane before any mesh: the conditions on its outline.
 
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -13,9 +13,9 @@ pub struct PlaneProblem {
     pub lame: Lame,
     /// Depth across the plane, in length.
     pub thickness: f64,
-    /// Force per volume, the same everywhere.
+    /// Force per volume, constant.
     pub body_force: Point,
-    /// What holds on the sides of the outline.
+    /// The conditions on the sides of the outline.
     pub conditions: Vec<Condition>,
     /// The obstacles.
     pub obstacles: Vec<Facing>,
@@ -23,24 +23,24 @@ pub struct PlaneProblem {
     pub boundaries: Vec<String>,
 }
 
-/// What holds on a side of the outline, the same along it.
+/// The condition on a side of the outline, constant along it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Condition {
     /// The prescribed component of the displacement along each axis, in length.
     pub held: [Option<f64>; 2],
-    /// The traction along each axis, in force per area; along one that is held it does no work that matters, and is not used.
+    /// The traction along each axis, in force per area; along a held axis its work is constant, and it is not used.
     pub traction: Point,
     /// The pressure against the outward normal, in force per area.
     pub pressure: f64,
-    /// The obstacles that it may touch.
+    /// The obstacles that the side may touch.
     pub obstacles: Vec<usize>,
-    /// The named parts of the outline that it belongs to.
+    /// The named parts of the outline that the side belongs to.
     pub boundaries: Vec<usize>,
-    /// The circle on which new nodes are set; they halve the straight side if there is none.
+    /// The circle on which new nodes are placed; without it they halve the straight side.
     pub circle: Option<Circle>,
 }
 
-/// A circle that a side stands for.
+/// A circle that a side approximates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Circle {
     /// Its centre.
@@ -56,31 +56,31 @@ impl Condition {
     }
 }
 
-/// A rigid obstacle whose rows lie along one axis.
+/// A rigid obstacle with rows along one axis.
 #[derive(Clone, Debug)]
 pub struct Facing {
     /// The axis, 0 or 1.
     pub axis: usize,
     /// 1 if the obstacle lies towards larger coordinates, else -1.
     pub sense: f64,
-    /// Its distance.
+    /// Its distance function.
     pub surface: Arc<dyn Distance>,
 }
 
-/// How far the obstacle is.
+/// The distance to an obstacle.
 pub trait Distance: Debug + Send + Sync {
-    /// The gap along the straight way between two points; `None` if the obstacle is out of reach on all of it.
+    /// The gap along the straight line between two points; `None` if the obstacle is out of reach on all of the line.
     fn gap(&self, from: Point, to: Point) -> Option<Enclosure>;
 }
 
-/// A function on an edge, held between two quadratic ones: `q - below <= g <= q + above`.
+/// A function on an edge, enclosed by two quadratic functions: `q - below <= g <= q + above`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Enclosure {
-    /// q at the beginning, in the middle and at the end.
+    /// q at the start, in the middle and at the end.
     pub values: [f64; 3],
-    /// How far below q the function may lie, `>= 0`.
+    /// Largest distance of the function below q, `>= 0`.
     pub below: f64,
-    /// How far above q it may lie, `>= 0`; infinite where nothing is there to be touched.
+    /// Largest distance above q, `>= 0`; infinite if nothing can be touched there.
     pub above: f64,
 }
 
@@ -91,7 +91,7 @@ impl Enclosure {
         [first, 2.0 * middle - (first + last) / 2.0, last]
     }
 
-    /// Coefficients of Bernstein that a quadratic function must not exceed to stay below g everywhere.
+    /// Bernstein coefficients that a quadratic function must not exceed to stay below g everywhere.
     pub fn lower(&self) -> [f64; 3] {
         self.bernstein().map(|coefficient| coefficient - self.below)
     }
@@ -113,8 +113,8 @@ impl PlaneProblem {
         self.conditions.iter().any(|condition| condition.circle.is_some())
     }
 
-    /// The mesh in which the marked triangles are refined; new nodes of sides that stand for circles lie on these, unless a triangle
-    /// would fold: then the new sides are straight.
+    /// The mesh in which the marked triangles are refined; new nodes of sides that approximate circles lie on the circles, unless a
+    /// triangle would fold: then the new sides are straight.
     pub fn refined(&self, mesh: &Triangulation, marked: &[bool]) -> Triangulation {
         let straight = mesh.refined(marked, |_, middle| middle);
         if !self.has_circles() {
@@ -130,7 +130,7 @@ impl PlaneProblem {
         if round.is_folded_beside(&straight) { straight } else { round }
     }
 
-    /// Do all obstacles lie in one direction from the body?
+    /// Returns `true` if all obstacles lie in one direction from the body.
     pub fn has_one_direction(&self) -> bool {
         let mut directions = self.obstacles.iter().map(|facing| (facing.axis, facing.sense));
         let first = directions.next();
@@ -141,7 +141,7 @@ impl PlaneProblem {
     pub fn compliance(&self, stress: Tensor) -> Tensor {
         let Lame { lambda, mu } = self.lame;
         let [half_difference, mean] = [(stress[0] - stress[1]) / 2.0, (stress[0] + stress[1]) / 2.0];
-        // The parts apart: near incompressibility their sum would lose digits.
+        // The parts are kept separate: near incompressibility their sum would lose digits.
         let [shear, volume] = [half_difference / (2.0 * mu), mean / (2.0 * (lambda + mu))];
         [volume + shear, volume - shear, stress[2] / (2.0 * mu)]
     }
@@ -164,7 +164,7 @@ pub fn work(stress: Tensor, strain: Tensor) -> f64 {
 mod tests {
     use super::*;
 
-    /// The bounds of an enclosure hold the function `s^2` itself, and one that leaves it by the margins.
+    /// The bounds of an enclosure hold for the function `s^2` itself, and for one that leaves it by the margins.
     /// A flat triangle on a chord: the middle of the arc lies beyond its tip, or not.
     #[test]
     fn a_node_goes_onto_its_circle_unless_a_triangle_would_fold() {

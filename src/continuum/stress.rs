@@ -1,7 +1,7 @@
-//! Stresses in balance: the stress element of every triangle, tied by displacements of the edges.
+//! Stresses in balance: the stress element of every triangle, coupled by displacements of the edges.
 //!
-//! The displacements of the edges are the unknowns. On each edge they are coefficients of functions that meet only one end of a linear
-//! traction, so that a row of the balance is one of tractions at that end, and a contact row bounds one unknown.
+//! The displacements of the edges are the unknowns. On each edge they are coefficients of functions that are dual to a linear traction:
+//! each acts on one end only. So a row of the balance contains the tractions at that end, and a contact row bounds one unknown.
 
 use super::johnson_mercier::{Element, PartStress};
 use super::problem::PlaneProblem;
@@ -17,7 +17,7 @@ pub struct Stresses<'a> {
     numbers: Vec<[usize; LOCAL]>,
 }
 
-/// Where a contact row of the stress acts.
+/// The place at which a contact row of the stress acts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
     /// The edge.
@@ -53,7 +53,7 @@ impl<'a> Stresses<'a> {
         }
     }
 
-    /// The unknowns, those on held sides prescribed.
+    /// The unknowns; those on held sides are prescribed.
     pub fn unknowns(&self) -> Unknowns {
         let mut held = vec![None; 4 * self.mesh.edges.len()];
         for (_, _, edge, condition) in self.mesh.outline() {
@@ -64,7 +64,8 @@ impl<'a> Stresses<'a> {
         Unknowns::new(held)
     }
 
-    /// The contact rows, two for each side and obstacle, and where they act. The gaps are upper bounds on its weighted means.
+    /// The contact rows, two for each side and obstacle, and their places. The gaps are upper bounds on the weighted means of the
+    /// distance.
     pub fn rows(&self, unknowns: &Unknowns) -> (Vec<Row>, Vec<Place>) {
         let (mut rows, mut places) = (Vec::new(), Vec::new());
         for (_, _, edge, condition) in self.mesh.outline() {
@@ -111,7 +112,7 @@ impl<'a> Stresses<'a> {
         load
     }
 
-    /// Half the area of an edge: what a traction at an end is multiplied with.
+    /// Half the area of an edge: the factor of a traction at an end.
     pub fn half_area(&self, edge: usize) -> f64 {
         let [from, to] = self.mesh.edges[edge].map(|node| self.mesh.nodes[node]);
         self.problem.thickness * distance(from, to) / 2.0

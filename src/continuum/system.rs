@@ -1,4 +1,4 @@
-//! The contact problem of triangles with twelve unknowns each, some of them prescribed, with rows of one unknown.
+//! The contact problem of triangles with twelve unknowns each, some of which are prescribed, with rows of one unknown.
 
 use crate::error::Error;
 use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
@@ -21,7 +21,7 @@ pub struct Row {
     pub gap: f64,
 }
 
-/// Which unknowns are free, and what the others are.
+/// The free unknowns and the values of the others.
 #[derive(Clone, Debug)]
 pub struct Unknowns {
     /// The prescribed values.
@@ -32,7 +32,7 @@ pub struct Unknowns {
 }
 
 impl Unknowns {
-    /// Numbers those that are not held.
+    /// Numbers the unknowns that are not held.
     pub fn new(held: Vec<Option<f64>>) -> Self {
         let mut free = 0;
         let number = |value: &Option<f64>| match value {
@@ -46,12 +46,12 @@ impl Unknowns {
         Unknowns { held, numbers, free }
     }
 
-    /// How many are free.
+    /// Number of free unknowns.
     pub fn free(&self) -> usize {
         self.free
     }
 
-    /// Is the unknown free?
+    /// Returns `true` if the unknown is free.
     pub fn is_free(&self, unknown: usize) -> bool {
         self.numbers[unknown].is_some()
     }
@@ -62,7 +62,7 @@ impl Unknowns {
         self.held.iter().zip(&self.numbers).map(value).collect()
     }
 
-    /// The free ones of all values.
+    /// The values of the free unknowns among all values.
     pub fn reduced(&self, all: &[f64]) -> Vec<f64> {
         all.iter().zip(&self.numbers).filter(|entry| entry.1.is_some()).map(|entry| *entry.0).collect()
     }

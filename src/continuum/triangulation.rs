@@ -16,25 +16,26 @@ pub struct Triangulation {
     pub edges: Vec<[usize; 2]>,
     /// The edges of each triangle; edge k lies opposite to its node k.
     pub sides: Vec<[usize; 3]>,
-    /// The element of the first mesh of which each triangle is a piece.
+    /// The element of the first mesh that contains each triangle.
     pub origins: Vec<usize>,
-    /// What holds on each edge of the outline: the number of a condition. `None` inside.
+    /// The number of the condition of each edge of the outline. `None` inside.
     pub conditions: Vec<Option<usize>>,
-    /// The ends of the edge that each of the last nodes halves; none in a first mesh.
+    /// The ends of the edge that each new node halves, for the last nodes; empty in a first mesh.
     parents: Vec<[usize; 2]>,
 }
 
-/// A triangle that keeps less than this share of its area when its nodes are moved is nearly flat then, or folded.
+/// If moved nodes leave a triangle less than this share of its area, it is nearly flat or folded.
 const FOLDED: f64 = 0.1;
 
-/// What tells an edge: its two nodes, increasing.
+/// The key of an edge: its two nodes, increasing.
 fn key(a: usize, b: usize) -> [usize; 2] {
     [a.min(b), a.max(b)]
 }
 
 impl Triangulation {
-    /// The triangulation of these triangles (counterclockwise), pieces of the elements `origins`, turned so that the longest edge of each is bisected first, with the
-    /// condition of each edge of the outline. `None` if an edge of the outline has no condition, or one inside has one.
+    /// The triangulation of these triangles (counterclockwise), pieces of the elements `origins`, with corners rotated so that the
+    /// longest edge of each is bisected first, with the condition of each edge of the outline. `None` if an edge of the outline has no
+    /// condition, or one inside has one.
     pub fn new(
         nodes: Vec<Point>,
         mut triangles: Vec<[usize; 3]>,
@@ -73,7 +74,7 @@ impl Triangulation {
         Triangulation { nodes, triangles, edges, sides, origins, conditions, parents: Vec::new() }
     }
 
-    /// Has a triangle lost most of the area that it has in a mesh of the same triangles, whose nodes stand elsewhere?
+    /// Returns `true` if a triangle has lost most of its area in a mesh of the same triangles with other node positions.
     pub fn is_folded_beside(&self, other: &Triangulation) -> bool {
         let area = |mesh: &Triangulation, triangle: usize| twice_area(mesh.corners(triangle));
         (0..self.triangles.len()).any(|triangle| area(self, triangle) <= FOLDED * area(other, triangle))
@@ -95,8 +96,8 @@ impl Triangulation {
         (0..self.triangles.len()).flat_map(of_triangle)
     }
 
-    /// The mesh in which every edge of the marked triangles is halved, and what else that takes. The outline keeps its conditions,
-    /// and no angle becomes smaller than the fourfold bisection of the first mesh makes it. `placed` moves the middle of a side of the
+    /// The mesh in which every edge of the marked triangles is halved, with the further bisections that this needs. The outline keeps its
+    /// conditions, and no angle becomes smaller than after four bisections of the first mesh. `placed` moves the middle of a side of the
     /// outline, given the number of its condition.
     pub fn refined(&self, marked: &[bool], placed: impl Fn(usize, Point) -> Point) -> Self {
         let mut halved = vec![false; self.edges.len()];
@@ -145,7 +146,7 @@ impl Triangulation {
         Triangulation { parents, ..Self::of(nodes, triangles, origins, &outline) }
     }
 
-    /// What is true of nodes of the mesh before, carried to this one: of a new node it is true if it is of both ends of its edge.
+    /// A property of nodes of the previous mesh, carried to this one: a new node has it if both ends of its edge have it.
     pub fn carried(&self, mut of_nodes: Vec<bool>) -> Vec<bool> {
         let of_new: Vec<bool> = self.parents.iter().map(|ends| ends.iter().all(|&end| of_nodes[end])).collect();
         of_nodes.extend(of_new);
@@ -188,7 +189,7 @@ mod tests {
             let marked: Vec<bool> = (0..mesh.triangles.len()).map(|index| index % 3 == step % 3).collect();
             mesh = mesh.refined(&marked, |_, middle| middle);
             let area: f64 = (0..mesh.triangles.len()).map(|index| twice_area(mesh.corners(index)) / 2.0).sum();
-            // Every coordinate is a short binary fraction: nothing is rounded.
+            // Every coordinate is a short binary fraction: there is no rounding.
             assert_eq!(area, 1.0);
             let mut triangles_at = vec![0; mesh.edges.len()];
             mesh.sides.iter().flatten().for_each(|&edge| triangles_at[edge] += 1);
@@ -201,7 +202,7 @@ mod tests {
             }
             assert_eq!(lengths, [1.0; 4]);
             for (triangle, origin) in mesh.origins.iter().enumerate() {
-                // The diagonal parts the square.
+                // The diagonal separates the two triangles of the square.
                 let [x, y] = mesh.corners(triangle).iter().fold([0.0; 2], |sum, at| [sum[0] + at[0], sum[1] + at[1]]);
                 assert_eq!(*origin, usize::from(y > x));
             }

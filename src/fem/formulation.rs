@@ -1,10 +1,10 @@
-//! What a model leaves out: the smallest space that holds its physics.
+//! The formulation of a model: the smallest space that contains its physics.
 
 use std::f64::consts::TAU;
 
 use crate::error::Error;
 
-/// The dimension of a model and what happens in the directions that it leaves out.
+/// The dimension of a model and the assumption for the directions that it leaves out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Formulation {
     /// A bar along x; no stress across it.
@@ -34,7 +34,7 @@ impl Formulation {
     /// Checks area or thickness.
     ///
     /// # Errors
-    /// [`Error::Setting`] where it is not positive and finite.
+    /// [`Error::Setting`] if it is not positive and finite.
     pub fn check(&self) -> Result<(), Error> {
         let (name, value) = match *self {
             Formulation::Bar { area } => ("area", area),
@@ -83,8 +83,8 @@ impl Formulation {
         matches!(self, Formulation::Axisymmetric)
     }
 
-    /// What a unit of length, area or volume of the model stands for, at the coordinate `x`: cross-section, thickness,
-    /// the circumference `2 pi x`, or 1.
+    /// The cross-section, thickness, circumference `2 pi x`, or 1, by which a length, area or volume of the model is multiplied at the
+    /// coordinate `x`.
     #[inline]
     pub fn measure(&self, x: f64) -> f64 {
         match *self {
@@ -95,7 +95,7 @@ impl Formulation {
         }
     }
 
-    /// Returns `true` if elements can lock near incompressibility. They cannot if the body is free to move across.
+    /// Returns `true` if elements can lock near incompressibility. They cannot if the body is free to strain across the plane or the bar.
     pub fn can_lock(&self) -> bool {
         !matches!(self, Formulation::Bar { .. } | Formulation::PlaneStress { .. })
     }

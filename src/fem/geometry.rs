@@ -1,4 +1,4 @@
-//! Vectors in space, `[x, y, z]`, where in the plane z is zero; symmetric tensors.
+//! Vectors in space, `[x, y, z]`, with z = 0 in the plane; symmetric tensors.
 
 /// The scalar product.
 #[inline]
@@ -27,7 +27,7 @@ pub(crate) fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     length(minus(a, b))
 }
 
-/// The vector at length 1; zero stays zero.
+/// The vector scaled to length 1; zero stays zero.
 pub(crate) fn unit(vector: [f64; 3]) -> [f64; 3] {
     let length = length(vector);
     if length > 0.0 { vector.map(|component| component / length) } else { vector }

@@ -15,7 +15,7 @@ pub struct ExactState {
     pub strain: Symmetric,
 }
 
-/// How far a discrete solution is from the exact one.
+/// The relative error of a discrete solution against the exact one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorNorms {
     /// `sqrt(integral of sigma(e) : eps(e))` over the same of the exact solution.
@@ -24,23 +24,23 @@ pub struct ErrorNorms {
     pub l2: f64,
 }
 
-/// A part of a cell is halved again until that changes the whole by less than this.
+/// A part of a cell is halved further until that changes the total by less than this.
 const DIVISION_SHARE: f64 = 1e-5;
 
 /// Relative errors below this are rounding: no cell is divided for them.
 const ERROR_ROUNDING: f64 = 1e-12;
 
-/// The most halvings of a cell: where the strain is as sharp as at the tip of a crack, the last part holds 2^-12 of it.
+/// The most halvings of a cell: at a strain singularity like that of a crack tip, the last part holds 2^-12 of the error.
 const HALVINGS: usize = 12;
 
 /// The relative errors of the nodal displacement `displacement` (length `dim * n_nodes`) against `exact(point)`.
 ///
-/// Integrals are by five quadrature points in each direction of an element and of its halves along each direction, and
-/// so on where halves change the sum: in four digits right, also where the exact strain is singular at a point.
-/// The errors are infinite or NaN where the exact solution is zero.
+/// Integrals use five quadrature points in each direction of an element and of its halves along each direction. Parts are halved further
+/// as long as the halves change the sum: four digits are correct, also if the exact strain is singular at a point. The errors are
+/// infinite or NaN if the exact solution is zero.
 ///
 /// # Errors
-/// [`Error::Length`] where the displacement does not have `dim` entries per node.
+/// [`Error::Length`] if the displacement does not have `dim` entries per node.
 ///
 /// ```
 /// use signorini::fem::ElasticBody;
@@ -118,7 +118,7 @@ impl Sums {
         ErrorNorms { energy: ratio(self.energy), l2: ratio(self.l2) }
     }
 
-    /// What a part may be off by in the squares of the error: in energy and in L2.
+    /// The allowed error of a part in the squares of the error: in energy and in L2.
     fn allowed(&self) -> [f64; 2] {
         [self.energy, self.l2].map(|[error, exact]| DIVISION_SHARE * error + ERROR_ROUNDING * ERROR_ROUNDING * exact)
     }
@@ -129,7 +129,7 @@ impl Sums {
     }
 }
 
-/// The halves of a part of the reference cell, and how often they may be halved.
+/// The halves of a part of the reference cell, and the number of further halvings allowed.
 struct Halves {
     parts: Vec<Part>,
     tables: Vec<Tabulated>,
@@ -144,14 +144,14 @@ impl Halves {
     }
 }
 
-/// What is integrated.
+/// The integrands.
 struct Squares<'a, F> {
     body: &'a ElasticBody,
     exact: F,
 }
 
 impl<F: Fn([f64; 3]) -> ExactState> Squares<'_, F> {
-    /// Over the points of a table of one element with the given displacement of its nodes.
+    /// The sums over the points of a table of one element with the given displacements of its nodes.
     fn over(&self, element: &BodyElement, local: &PerNode<[f64; 3]>, table: &Tabulated) -> Sums {
         let (cell, law) = (&element.cell, element.phase.law());
         let scale = cell.unit().powi(self.body.dimension() as i32);
@@ -177,7 +177,7 @@ impl<F: Fn([f64; 3]) -> ExactState> Squares<'_, F> {
         sums
     }
 
-    /// Over a part of an element that has `sums` by its own points: those of its halves, halved on where they differ.
+    /// The sums over a part of an element that has `sums` by its own points: those of its halves, halved further if they differ.
     fn refined(
         &self,
         element: &BodyElement,

@@ -11,7 +11,7 @@ use crate::qp::{Method, Settings};
 use crate::solution::ContactSet;
 use crate::watch::Watch;
 
-/// Rounding of the displacement and the gaps, relative to the largest of them: no penetration at the start.
+/// Rounding of the displacement and the gaps, relative to the largest of them: below this there is no penetration at the start.
 const GAP_ROUNDING: f64 = 1e-12;
 
 /// A motion with its scheme and its step.
@@ -22,10 +22,10 @@ pub struct Integrator {
     problem: DynamicProblem,
     step: f64,
     scheme: Box<dyn Advance>,
-    /// Where in a step the scheme takes the loads, from 0 to 1.
+    /// The times in a step at which the scheme evaluates the loads, from 0 to 1.
     load_times: &'static [f64],
     state: State,
-    /// The state one step earlier; none before the first step of this integrator, or since it resumed.
+    /// The state one step earlier; `None` before the first step of this integrator, or of the first after a resume.
     before: Option<State>,
     watch: Watch,
     /// Seconds of the longest step so far.
@@ -33,12 +33,11 @@ pub struct Integrator {
 }
 
 impl Integrator {
-    /// Prepares the motion of `problem` in steps of `step`; `settings` choose how the contact problem of a step is solved.
+    /// Prepares the motion of `problem` in steps of `step`; `settings` choose the method for the contact problem of a step.
     ///
-    /// # Errors
-    /// [`Error::Setting`] for a step that is not positive and finite, a parameter of the scheme or a setting out of its
-    /// range, an initial penetration, a mass that does not suit the scheme; [`Error::Numerical`] for a step beyond the
-    /// stable one of an explicit scheme; those of [`Prepared::new`](crate::Prepared::new).
+    /// # Errors [`Error::Setting`] for a step that is not positive and finite, a parameter of the scheme or a setting out of its range,
+    /// an initial penetration, a form of the mass that the scheme cannot use; [`Error::Numerical`] for a step beyond the stable one of an
+    /// explicit scheme; the errors of [`Prepared::new`](crate::Prepared::new).
     pub fn new(problem: DynamicProblem, scheme: Scheme, step: f64, settings: &Settings) -> Result<Self, Error> {
         if !(step.is_finite() && step > 0.0) {
             return Err(Error::Setting { name: "step", value: step, allowed: "positive and finite" });
@@ -85,11 +84,10 @@ impl Integrator {
         Ok(Integrator { problem, step, scheme: prepared, load_times, state, before: None, watch, longest: 0.0 })
     }
 
-    /// One step further.
+    /// Advances by one step.
     ///
-    /// # Errors
-    /// Those of a contact solve; [`Error::Numerical`] where the motion grows beyond all bounds; [`Error::Interrupted`] where
-    /// the watch of the settings ends the run, in the state after the last whole step.
+    /// # Errors Those of a contact solve; [`Error::Numerical`] if the motion grows without bound; [`Error::Interrupted`] if the watch of
+    /// the settings ends the run, in the state after the last whole step.
     pub fn advance(&mut self) -> Result<&State, Error> {
         if self.watch.time_left().is_some_and(|left| left <= self.longest) {
             return Err(Error::Interrupted);
@@ -98,7 +96,7 @@ impl Integrator {
         let next = self.scheme.advance(&self.problem, self.step, &self.state);
         self.longest = self.longest.max(clock.elapsed().as_secs_f64());
         if self.watch.is_stopped() {
-            // The solves of this step may have been cut short.
+            // The solves of this step may be incomplete.
             return Err(Error::Interrupted);
         }
         let mut next = next?;
@@ -112,12 +110,12 @@ impl Integrator {
         Ok(&self.state)
     }
 
-    /// The state now.
+    /// The current state.
     pub fn state(&self) -> &State {
         &self.state
     }
 
-    /// Goes on from a state that an integrator of the same problem, scheme and step left.
+    /// Continues from a state of an earlier integrator of the same problem, scheme and step.
     ///
     /// # Errors
     /// [`Error::Length`] for a state of another problem.
@@ -139,8 +137,8 @@ impl Integrator {
         Ok(())
     }
 
-    /// The balance of forces that the last step solved, at some of the dofs; `None` before the first step, or the first one
-    /// since a resume.
+    /// The balance of forces that the last step solved, at some of the dofs; `None` before the first step, and before the first step
+    /// after a resume.
     pub(crate) fn balance(&self, at: &[usize]) -> Option<Balance> {
         let before = self.before.as_ref()?;
         Some(self.scheme.balance(self.step, before, &self.state, at))
@@ -161,7 +159,7 @@ impl Integrator {
         &self.problem
     }
 
-    /// Energies, force and penetration now.
+    /// The current energies, force and penetration.
     pub fn observe(&self) -> Observation {
         let State { displacement, velocity, elastic, momentum, multiplier, contact_set, .. } = &self.state;
         let [strain, potential] = self.problem.energies(displacement, elastic, self.time());

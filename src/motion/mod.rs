@@ -4,7 +4,7 @@
 //! K_eff w = r + B' lambda,   B w <= g - B u^,   K_eff = M/(beta dt^2) + C gamma/(beta dt) + K,   u = u^ + w
 //! ```
 //!
-//! The unknown of a step is the change w against a prediction u^, so that a body that has moved far loses no digits.
+//! The unknown of a step is the change w against a prediction u^, so that no digits are lost after a large motion.
 //!
 //! ```
 //! use signorini::motion::{DynamicProblem, Integrator, Scheme};

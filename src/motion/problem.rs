@@ -11,12 +11,11 @@ use crate::qp::problem::ContactProblem;
 /// M a + C v + K u = f(t) + B' lambda,   B u - g <= 0,   lambda <= 0,   lambda_i (B u - g)_i = 0,   C = c_m M + c_k K
 /// ```
 ///
-/// Time, mass, length and force are of one consistent system of units. A dof whose diagonal entry of M is zero has no
-/// mass.
+/// Time, mass, length and force are in one consistent system of units. A dof has no mass if its diagonal entry of M is zero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DynamicProblem {
     statics: ContactProblem,
-    /// Transposed contact rows: the entries of a row are a column.
+    /// Transposed contact rows: the entries of a row form a column.
     by_row: SparseMatrix,
     mass: SymmetricMatrix,
     /// c_m and c_k.
@@ -24,15 +23,15 @@ pub struct DynamicProblem {
     loads: Vec<(TimeFunction, Vec<f64>)>,
     displacement: Vec<f64>,
     velocity: Vec<f64>,
-    /// Forces on the free dofs that hold prescribed displacements, and their strain energy.
+    /// Forces on the free dofs from prescribed displacements, and the strain energy of these displacements.
     held: (Vec<f64>, f64),
 }
 
 impl DynamicProblem {
-    /// The motion from rest of the body of `statics`, whose load is constant, with the mass M (n x n).
+    /// The motion from rest of the body of `statics`, under its constant load, with the mass M (n x n).
     ///
     /// # Errors
-    /// [`Error::Shape`] for a mass that does not fit, [`Error::Setting`] for a negative diagonal entry.
+    /// [`Error::Shape`] for a mass of another size, [`Error::Setting`] for a negative diagonal entry.
     pub fn new(statics: ContactProblem, mass: SymmetricMatrix) -> Result<Self, Error> {
         let dofs = statics.dofs();
         if mass.dim() != dofs {
@@ -55,7 +54,7 @@ impl DynamicProblem {
         })
     }
 
-    /// The same with Rayleigh damping `C = mass M + stiffness K`, in one over time and in time.
+    /// The same with Rayleigh damping `C = mass M + stiffness K`; `mass` in one over time, `stiffness` in time.
     ///
     /// # Errors
     /// [`Error::Setting`] for a coefficient that is negative or not finite.
@@ -72,7 +71,7 @@ impl DynamicProblem {
     /// The same with one more load (length n, in force), multiplied by a factor that changes with time.
     ///
     /// # Errors
-    /// As [`TimeFunction::check`]; [`Error::Length`] and [`Error::NotFinite`] for a load that does not fit.
+    /// As [`TimeFunction::check`]; [`Error::Length`] and [`Error::NotFinite`] for a load of another length or not finite.
     pub fn with_load(mut self, factor: TimeFunction, load: Vec<f64>) -> Result<Self, Error> {
         factor.check()?;
         let load = self.statics.with_load(load)?.load().to_vec();
@@ -83,7 +82,7 @@ impl DynamicProblem {
     /// The same from another displacement and velocity (length n each, in length and length over time).
     ///
     /// # Errors
-    /// [`Error::Length`] and [`Error::NotFinite`] for vectors that do not fit.
+    /// [`Error::Length`] and [`Error::NotFinite`] for vectors of another length or not finite.
     pub fn starting_from(mut self, displacement: Vec<f64>, velocity: Vec<f64>) -> Result<Self, Error> {
         for (name, values) in [("initial displacement", &displacement), ("initial velocity", &velocity)] {
             let (found, expected) = (values.len(), self.statics.dofs());
@@ -98,8 +97,8 @@ impl DynamicProblem {
         Ok(self)
     }
 
-    /// The same, told which part of the constant load holds prescribed displacements (length n, in force), and the
-    /// strain energy of these alone: it tells strain energy from potential energy, nothing else.
+    /// The same with the part of the constant load that holds prescribed displacements (length n, in force), and the strain energy of
+    /// these displacements alone. They are used only to separate strain energy from potential energy.
     pub fn holding(mut self, forces: Vec<f64>, energy: f64) -> Self {
         self.held = (forces, energy);
         self
@@ -156,7 +155,7 @@ impl DynamicProblem {
         self.remaining_gap(displacement).into_iter().fold(0.0, |deepest, gap| (-gap).max(deepest))
     }
 
-    /// What is left of the gaps after a displacement, `g - B u`, one entry per row.
+    /// The remaining gaps after a displacement, `g - B u`, one entry per row.
     pub(super) fn remaining_gap(&self, displacement: &[f64]) -> Vec<f64> {
         let moved = |row: usize| self.by_row.column(row).map(|(dof, b)| b * displacement[dof]).sum::<f64>();
         self.statics.gap().iter().enumerate().map(|(row, gap)| gap - moved(row)).collect()
@@ -186,15 +185,15 @@ impl DynamicProblem {
         }
     }
 
-    /// Work of the loads on the way between two displacements: of the mean of their values at some times, without the part
-    /// that holds prescribed displacements.
+    /// Work of the loads between two displacements, with the mean of their values at some times, without the part that holds prescribed
+    /// displacements.
     pub(super) fn work(&self, times: impl ExactSizeIterator<Item = f64>, from: &[f64], to: &[f64]) -> f64 {
         let count = times.len() as f64;
         let moved: Vec<f64> = to.iter().zip(from).map(|(to, from)| to - from).collect();
         times.map(|t| dot(&self.load_at(t), &moved)).sum::<f64>() / count - dot(&self.held.0, &moved)
     }
 
-    /// Strain energy of a displacement whose elastic forces K u are given, and the potential of the loads at time `t`.
+    /// Strain energy of a displacement with the elastic forces K u, and the potential of the loads at time `t`.
     pub(super) fn energies(&self, displacement: &[f64], elastic: &[f64], t: f64) -> [f64; 2] {
         let (forces, energy) = &self.held;
         let of_held = dot(forces, displacement);

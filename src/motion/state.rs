@@ -1,20 +1,19 @@
-//! What a step starts from and what it leaves.
+//! The state before and after a step.
 
 use serde::{Deserialize, Serialize};
 
 use crate::solution::ContactSet;
 
-/// The state of a body after some steps: all that the next step depends on.
+/// The state of a body after some steps: all data that the next step depends on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// Steps so far.
     pub steps: usize,
     /// Displacement u, one entry per dof, in length.
     pub displacement: Vec<f64>,
-    /// Velocity v, one entry per dof, in length over time; of a dof without mass the mean over the last step.
+    /// Velocity v, one entry per dof, in length over time; for a dof without mass, the mean over the last step.
     pub velocity: Vec<f64>,
-    /// Acceleration a, one entry per dof, in length over time squared; only schemes of Newmark's kind and central
-    /// differences keep one.
+    /// Acceleration a, one entry per dof, in length over time squared; only schemes of Newmark's kind and central differences store it.
     pub acceleration: Vec<f64>,
     /// Elastic forces K u, one entry per dof, in force.
     pub elastic: Vec<f64>,
@@ -26,16 +25,16 @@ pub struct State {
     pub penalties: usize,
     /// Contact multiplier of the last step, one entry per contact row, in force, `<= 0`.
     pub multiplier: Vec<f64>,
-    /// Rows that were closed in the last step: where the search of the next one starts. What writes a state lists them itself.
+    /// Rows that were closed in the last step: the start of the search in the next step. Code that writes a state lists them itself.
     #[serde(skip)]
     pub contact_set: ContactSet,
-    /// Displacement at the middle of the last step, one entry per dof, in length, where that is not the mean of both ends; empty
-    /// elsewhere. No later step depends on it.
+    /// Displacement at the middle of the last step, one entry per dof, in length, if that is not the mean of both ends; otherwise empty.
+    /// No later step depends on it.
     #[serde(skip)]
     pub(crate) middle: Vec<f64>,
 }
 
-/// Numbers of a state.
+/// The numbers of a state.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Observation {
     /// Time.
@@ -48,7 +47,7 @@ pub struct Observation {
     pub penetration: f64,
     /// Kinetic energy, `v'M v / 2`.
     pub kinetic: f64,
-    /// Strain energy, `u'K u / 2` where nothing is prescribed but zero.
+    /// Strain energy, `u'K u / 2` if nothing but zero is prescribed.
     pub strain: f64,
     /// Potential of the loads, `-f'u`.
     pub potential: f64,
@@ -59,7 +58,7 @@ pub struct Observation {
 }
 
 impl Observation {
-    /// The sum of the three energies: constant while loads are constant and nothing damps.
+    /// The sum of the three energies: constant if the loads are constant and there is no damping.
     pub fn energy(&self) -> f64 {
         self.kinetic + self.strain + self.potential
     }

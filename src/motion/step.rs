@@ -1,4 +1,4 @@
-//! What every scheme needs: what it says of itself, the trait of its steps, their prepared contact problem, sums of vectors.
+//! Common parts of all schemes: their description, the trait of their steps, the prepared contact problem of a step, sums of vectors.
 
 use std::fmt;
 
@@ -10,29 +10,30 @@ use crate::qp::problem::ContactProblem;
 use crate::qp::{Prepared, Settings};
 use crate::solution::ContactSet;
 
-/// What a scheme says of itself.
+/// The description of a scheme.
 pub(super) struct About {
     /// Its name in scenes and reports.
     pub name: &'static str,
     /// Its parameter, if it has one.
     pub parameter: Option<Parameter>,
-    /// The forms of the mass that it can use; the first one suits it.
+    /// The forms of the mass that it can use; the first one is preferred.
     pub masses: &'static [MassForm],
-    /// It can gain energy at a blow.
+    /// `true` if it can gain energy at an impact.
     pub gains_energy: bool,
-    /// Closed rows give way like springs.
+    /// `true` if closed rows are springs.
     pub penetrates: bool,
-    /// Its step is limited.
+    /// `true` if its step is limited.
     pub is_explicit: bool,
-    /// Where in a step it takes the loads, from 0 to 1, each with equal weight: by these the work of the loads is measured.
+    /// The times in a step at which it evaluates the loads, from 0 to 1, with equal weights; the work of the loads is measured at these
+    /// times.
     pub load_times: &'static [f64],
-    /// The forms of the mass that let its energy grow wherever bodies touch.
+    /// The forms of the mass with which its energy grows whenever bodies touch.
     pub unstable_in_contact: &'static [MassForm],
     /// Prepares a motion in steps of one length, with the value of the parameter.
     pub prepare: Prepare,
 }
 
-/// Prepares the steps of a scheme: the motion, the step, the parameter, how the contact problem of a step is solved.
+/// Prepares the steps of a scheme: the motion, the step, the parameter, the settings of the contact problem of a step.
 pub(super) type Prepare = fn(&DynamicProblem, f64, f64, &Settings) -> Result<Box<dyn Advance>, Error>;
 
 /// The parameter of a scheme.
@@ -40,7 +41,7 @@ pub(super) type Prepare = fn(&DynamicProblem, f64, f64, &Settings) -> Result<Box
 pub struct Parameter {
     /// Its name in scenes.
     pub name: &'static str,
-    /// The value of a scene that leaves it out.
+    /// The value if a scene leaves it out.
     pub default: f64,
     /// Returns `true` if a value is in its range.
     pub allows: fn(f64) -> bool,
@@ -48,7 +49,7 @@ pub struct Parameter {
     pub range: &'static str,
 }
 
-/// A scheme with everything prepared that does not change from step to step.
+/// A scheme with everything prepared that stays the same from step to step.
 pub(super) trait Advance: fmt::Debug + Send + Sync {
     /// The first state.
     fn start(&self, problem: &DynamicProblem, step: f64, state: State) -> Result<State, Error>;
@@ -58,13 +59,13 @@ pub(super) trait Advance: fmt::Debug + Send + Sync {
     fn balance(&self, step: f64, before: &State, after: &State, at: &[usize]) -> Balance;
 }
 
-/// A matrix prepared for one contact problem after another on the rows of a motion.
+/// A prepared matrix for a sequence of contact problems on the rows of a motion.
 #[derive(Debug)]
 pub(super) struct Stepping {
     prepared: Prepared,
 }
 
-/// What a step found: change of the displacement, multipliers, closed rows.
+/// The result of a step: change of the displacement, multipliers, closed rows.
 pub(super) struct Found {
     pub change: Vec<f64>,
     pub multiplier: Vec<f64>,
@@ -79,14 +80,14 @@ impl Stepping {
         Self::new(&ContactProblem::new(matrix, vec![0.0; statics.dofs()], contact, gap)?, settings)
     }
 
-    /// Factorises the matrix of `problem`; its load and gaps say nothing but which rows there are.
+    /// Factorises the matrix of `problem`; its load and gaps only determine which rows exist.
     pub fn new(problem: &ContactProblem, settings: &Settings) -> Result<Self, Error> {
         Stepping { prepared: Prepared::new(problem, settings)? }.under(settings)
     }
 
-    /// The same matrix under other settings.
+    /// The same matrix with other settings.
     pub fn under(&self, settings: &Settings) -> Result<Self, Error> {
-        // A step is done whole or not at all: there is no half of it to return.
+        // A step is completed or not done at all: there is no partial step.
         let unhurried = Settings { watch: settings.watch.unhurried(), time: None, ..settings.clone() };
         Ok(Stepping { prepared: self.prepared.with_settings(&unhurried)? })
     }
@@ -103,12 +104,12 @@ impl Stepping {
         Ok(Found { change, multiplier: boundary.multiplier, contact_set: boundary.contact_set })
     }
 
-    /// The change that a force alone causes, as if no row were closed; `None` without a factor of the matrix.
+    /// The change under a force alone, as if no row were closed; `None` without a factor of the matrix.
     pub fn response(&self, force: Vec<f64>) -> Result<Option<Vec<f64>>, Error> {
         Ok(self.prepared.with_load(force)?.response())
     }
 
-    /// The change of the displacement alone; certified only where the method did not settle on a set.
+    /// The change of the displacement alone; it is certified only if the method did not settle on a set.
     pub fn change(&self, force: Vec<f64>, gap: Vec<f64>, start: &ContactSet) -> Result<Vec<f64>, Error> {
         let at_step = self.prepared.with_load(force)?.starting_from(start);
         match at_step.settled(&gap)? {

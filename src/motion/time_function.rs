@@ -1,4 +1,4 @@
-//! Factors over time: how loads change.
+//! Factors over time: the change of loads.
 
 use std::f64::consts::{PI, TAU};
 
@@ -18,16 +18,16 @@ pub enum TimeFunction {
     },
     /// 0 until `start`, a straight line to 1 at `end`, 1 from there on.
     Ramp {
-        /// Where it starts, in time.
+        /// Its start, in time.
         start: f64,
-        /// Where it ends, in time.
+        /// Its end, in time.
         end: f64,
     },
     /// Half a sine wave from `start` to `end`, 0 before and after.
     Pulse {
-        /// Where it starts, in time.
+        /// Its start, in time.
         start: f64,
-        /// Where it ends, in time.
+        /// Its end, in time.
         end: f64,
     },
 }

@@ -1,4 +1,4 @@
-//! An answer: a model joined with displacements and multipliers. What follows from them is computed once.
+//! An answer: a model with displacements and multipliers. The results that follow from them are computed once.
 
 use std::sync::{Arc, OnceLock};
 
@@ -14,19 +14,19 @@ use crate::fem::recovery::discretisation::EstimatedError;
 use crate::fem::recovery::{self, StressField};
 use crate::solution::{ContactSet, Solution};
 
-/// Reactions below this times the largest nodal force of temperatures and initial stresses are what the solve leaves of these, which cancel
-/// where the body is free.
+/// Reactions below this times the largest nodal force of temperatures and initial stresses are rounding of the solve: these forces cancel
+/// if the body is free.
 const OWN_ROUNDING: f64 = 1e-10;
 
-/// Displacements, multipliers and closed rows of a model, and what follows from them: stresses, pressures, forces. Stresses
-/// and forces are computed if somebody asks for them, and only once.
+/// Displacements, multipliers and closed rows of a model, and the results that follow: stresses, pressures, forces. Stresses and forces
+/// are computed on demand, and only once.
 #[derive(Clone, Debug)]
 pub struct Answer {
     model: Arc<Model>,
     displacement: Vec<f64>,
     /// The values of all unknowns.
     unknowns: Vec<f64>,
-    /// That of each obstacle that a force presses, in length.
+    /// The travel of each obstacle that a force presses, in length.
     travel: Vec<Option<f64>>,
     multiplier: Vec<f64>,
     contact_set: ContactSet,
@@ -55,12 +55,12 @@ impl Answer {
     /// The answer of a solver.
     ///
     /// # Errors
-    /// [`Error::Length`] if it is not one to this model.
+    /// [`Error::Length`] if it is not an answer to this model.
     pub fn of(model: Arc<Model>, solution: &Solution) -> Result<Self, Error> {
         Self::new(model, &solution.displacement, &solution.multiplier, &solution.contact_set)
     }
 
-    /// The displacement of the free dofs (one entry per free dof, in length) with the multiplier (one entry per contact
+    /// An answer from the displacement of the free dofs (one entry per free dof, in length) with the multiplier (one entry per contact
     /// row, in force) and the closed rows.
     ///
     /// # Errors
@@ -101,17 +101,18 @@ impl Answer {
         &self.displacement
     }
 
-    /// How far an obstacle that a force presses has moved against its approach direction, in length; `None` for one that stands still.
+    /// Displacement of an obstacle that a force presses, against its approach direction, in length; `None` for an obstacle that stands
+    /// still.
     pub fn travel(&self, obstacle: usize) -> Option<f64> {
         self.travel.get(obstacle).copied().flatten()
     }
 
-    /// The whole shift of an obstacle along its approach direction, in length: that of the scene, its own, less its travel.
+    /// The whole shift of an obstacle along its approach direction, in length: the gap of the scene plus its own gap, minus its travel.
     pub(crate) fn shift(&self, obstacle: usize) -> f64 {
         self.model.obstacles()[obstacle].shift(self.model.gap()) - self.travel(obstacle).unwrap_or(0.0)
     }
 
-    /// What is left of the gap at the node of each row, in length, `>= 0` but for rounding.
+    /// The remaining gap at the node of each row, in length, `>= 0` up to rounding.
     pub fn remaining_gaps(&self) -> Vec<f64> {
         let dimension = self.model.body().dimension();
         let moved = |row: &ContactRow| -> f64 {
@@ -178,7 +179,7 @@ impl Answer {
         found.map(Vec::as_slice)
     }
 
-    /// The error of the mesh, relative in energy, estimated from the stress.
+    /// The discretisation error, relative in energy, estimated from the stress.
     ///
     /// # Errors
     /// As [`Model::stress`].
@@ -199,7 +200,7 @@ impl Answer {
     }
 }
 
-/// What a cell holds, found if it is empty.
+/// The content of a cell, computed by `find` if the cell is empty.
 fn once<T>(cell: &OnceLock<T>, find: impl FnOnce() -> Result<T, Error>) -> Result<&T, Error> {
     match cell.get() {
         Some(found) => Ok(found),
@@ -213,11 +214,11 @@ fn once<T>(cell: &OnceLock<T>, find: impl FnOnce() -> Result<T, Error>) -> Resul
 impl Model {
     /// Nodal support reactions on the body, in force; zero along free dofs, so that a roller pushes along its normal.
     ///
-    /// What the stress in the elements asks for at the supported dofs, less load and contact force there. The
-    /// multiplier enters because a contact row may press on a supported dof.
+    /// They are the internal forces at the supported dofs, minus load and contact force there. The multiplier enters because a contact
+    /// row may press on a supported dof.
     ///
     /// # Errors
-    /// [`Error::Length`] where `displacement` or `multiplier` do not fit.
+    /// [`Error::Length`] if `displacement` or `multiplier` do not fit.
     pub fn reactions(&self, displacement: &[f64], multiplier: &[f64]) -> Result<Vec<f64>, Error> {
         Ok(self.forces(&self.nodal_displacement(displacement)?, multiplier)?.reactions)
     }
@@ -258,9 +259,9 @@ impl Model {
             false => Vec::new(),
         };
         if !own.is_empty() {
-            // These balance each other: they are the scale of what a free body leaves of them.
+            // These forces balance each other: they are the scale of their rounding in a free body.
             all.push(&own);
-            // Each body has a scale of its own.
+            // Each body has its own scale.
             let dimension = self.body().dimension();
             for region in self.body().regions() {
                 let dofs = dimension * region.nodes().start..dimension * region.nodes().end;

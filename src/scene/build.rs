@@ -1,4 +1,4 @@
-//! From a scene to a model: every value is checked where it is used, and named by its JSON path.
+//! From a scene to a model: every value is checked at its use, and errors name it by its JSON path.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use crate::fem::assembly::DofMap;
 use crate::fem::body::ElasticBody;
 
 impl Scene {
-    /// Discretises the scene and poses its contact problem.
+    /// Discretises the scene and sets up its contact problem.
     ///
     /// # Errors
     /// [`Error::Scene`] for a value that describes no problem, [`Error::UnderHeld`] for a rigid-body mode that neither
@@ -25,8 +25,7 @@ impl Scene {
         self.build_with(&[])
     }
 
-    /// The same with obstacles of a user's own behind those of the scene, each with the name of the boundary whose nodes
-    /// may touch it.
+    /// The same with user-defined obstacles after those of the scene, each with the name of the boundary that may touch it.
     ///
     /// # Errors
     /// As [`Scene::build`]; [`Error::Scene`] for a boundary that does not exist, and for a direction or a normal that is
@@ -40,7 +39,7 @@ impl Scene {
         Files { folder: self.folder.as_deref().unwrap_or(Path::new("")), reads_outside: self.reads_outside }
     }
 
-    /// The same of bodies that stand for those of the scene, in their order: on other meshes.
+    /// The same for other meshes of the bodies, given in the order of the scene.
     pub(crate) fn build_of(
         &self,
         bodies: Vec<ElasticBody>,
@@ -96,7 +95,7 @@ impl Scene {
         )
     }
 
-    /// The dofs with coefficients on the quadratic faces that may touch.
+    /// The dofs with coefficients on the quadratic faces that may touch an obstacle.
     fn with_contact_faces(&self, dofs: DofMap, body: &ElasticBody, further: &[(&str, Arc<dyn Obstacle>)]) -> DofMap {
         let of_scene = self
             .obstacles

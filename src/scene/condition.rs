@@ -12,11 +12,11 @@ use crate::fem::geometry::dot;
 /// Radii below this times the body's size lie on the axis of revolution.
 const ON_THE_AXIS: f64 = 1e-12;
 
-/// The normals of a flat boundary are one direction but for the rounding of coordinates: one less the cosine of their angle.
+/// The normals of a flat boundary have one direction up to the rounding of coordinates: one minus the cosine of their angle.
 const FLAT: f64 = 1e-9;
 
 impl Scene {
-    /// What holds the nodes.
+    /// The prescribed components of all nodes.
     pub(super) fn held(&self, body: &ElasticBody) -> Result<Held, Error> {
         let mesh = body.mesh();
         let mut held = Held::default();
@@ -46,7 +46,7 @@ impl Scene {
         Ok(held)
     }
 
-    /// Does a support let a flat boundary slide along itself, and nothing else? That may be a plane of symmetry.
+    /// Returns `true` if a support lets a flat boundary slide along itself and prescribes nothing else: it may be a plane of symmetry.
     pub(super) fn may_be_part(&self, body: &ElasticBody) -> Result<bool, Error> {
         if body.dimension() == 1 {
             return Ok(false);
@@ -64,7 +64,7 @@ impl Scene {
         Ok(false)
     }
 
-    /// The components that support number `index` prescribes.
+    /// The components prescribed by support number `index`.
     pub(super) fn components(&self, index: usize, support: &SupportSpec) -> Result<Vec<Component>, Error> {
         let path = format!("supports[{index}]");
         let by = |field| Holder::Support { index, field };

@@ -15,14 +15,14 @@ use crate::fem::material::Stiffness;
 use crate::fem::mesh::Mesh;
 use crate::fem::mesh::triangle_pieces::TrianglePieces;
 
-/// The part of a unit vector across a coordinate axis that is rounding of written components.
+/// The component of a unit vector normal to a coordinate axis below which it is rounding of the written components.
 const ALONG_AXIS: f64 = 1e-14;
 
 impl Scene {
-    /// Refuses what has no answer in the continuum.
+    /// Refuses a scene without an answer in the continuum.
     ///
     /// # Errors
-    /// [`Error::Scene`] for a force at a point, but for that on a bar.
+    /// [`Error::Scene`] for a force at a point, except on a bar.
     pub(crate) fn check_continuum(&self) -> Result<(), Error> {
         match self.loads.iter().position(LoadSpec::is_at_point) {
             Some(index) if self.model.dimension() > 1 => {
@@ -34,10 +34,10 @@ impl Scene {
         }
     }
 
-    /// The plane problem of the polygon that the mesh of `model` fills, and the triangles to begin with.
+    /// The plane problem of the polygon that the mesh of `model` fills, and the initial triangles.
     ///
     /// # Errors
-    /// [`Error::Scene`] for what has no guaranteed bound, with the reason.
+    /// [`Error::Scene`] for a problem without a guaranteed bound, with the reason.
     pub(crate) fn plane_problem(&self, model: &Model) -> Result<(PlaneProblem, Triangulation), Error> {
         let body = model.body();
         let formulation = *body.formulation();
@@ -78,7 +78,7 @@ impl Scene {
         for load in &self.loads {
             let (force, density) = match load {
                 LoadSpec::BodyForce(force) => (force, 1.0),
-                // The model is built: there is a density.
+                // The model is built, so that the density exists.
                 LoadSpec::Gravity(acceleration) => (acceleration, phase.material().density().unwrap_or_default()),
                 _ => continue,
             };
@@ -159,10 +159,10 @@ impl Scene {
     }
 }
 
-/// Path, boundary, traction and pressure of a load on the outline; none of another one.
+/// Path, boundary, traction and pressure of a load on the outline; `None` for another load.
 type OnOutline<'a> = Option<(String, &'a str, Point, f64)>;
 
-/// What load number `index` puts on the outline.
+/// The traction and pressure of load number `index` on the outline.
 ///
 /// # Errors
 /// [`Error::Scene`] for a load that is not constant.
@@ -195,7 +195,7 @@ fn on_outline<'a>(model: &Model, index: usize, load: &'a LoadSpec) -> Result<OnO
     }
 }
 
-/// The edges of one triangle alone, by their nodes, increasing, and the condition of each.
+/// The edges that belong to only one triangle, by their nodes, increasing, with the condition of each.
 struct Outline<'a> {
     mesh: &'a Mesh,
     pieces: &'a TrianglePieces,
@@ -214,7 +214,7 @@ impl<'a> Outline<'a> {
         Outline { mesh, pieces, edges: outer.map(|(edge, _)| (edge, Condition::default())).collect() }
     }
 
-    /// Changes the condition on each edge of a boundary that stands at a JSON path.
+    /// Changes the condition on each edge of a boundary at a JSON path.
     fn change(&mut self, path: &str, name: &str, change: impl Fn(&mut Condition)) -> Result<(), Error> {
         for edge in self.pieces.edges_of(self.mesh, name) {
             let Some(condition) = self.edges.get_mut(&edge) else {
@@ -226,7 +226,7 @@ impl<'a> Outline<'a> {
         Ok(())
     }
 
-    /// Changes what of a boundary belongs to the outline.
+    /// Changes the condition on those edges of a boundary that belong to the outline.
     fn change_outer(&mut self, name: &str, change: impl Fn(&mut Condition)) {
         for edge in self.pieces.edges_of(self.mesh, name) {
             self.edges.get_mut(&edge).into_iter().for_each(&change);
@@ -245,12 +245,12 @@ impl<'a> Outline<'a> {
     }
 }
 
-/// The axis along which a unit vector lies.
+/// The axis of a unit vector, if it lies along one.
 fn axis_of(direction: [f64; 3]) -> Option<usize> {
     (0..2).find(|&axis| direction[1 - axis].abs() <= ALONG_AXIS)
 }
 
-/// An obstacle whose rows lie along one axis.
+/// An obstacle with rows along one axis.
 fn facing(index: usize, obstacle: &PlacedObstacle, gap: f64) -> Result<Facing, Error> {
     let path = format!("obstacles[{index}]");
     if obstacle.force().is_some() {

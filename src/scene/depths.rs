@@ -1,4 +1,4 @@
-//! How deep a displaced body lies in rigid obstacles between its nodes, where no row holds it.
+//! The depth of a displaced body in rigid obstacles between its nodes, where no row holds it.
 
 use super::answer::Answer;
 use crate::error::Error;
@@ -7,15 +7,15 @@ use crate::fem::element::{Tabulated, TabulatedPoint};
 /// Depths between nodes.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Depths {
-    /// The largest one on each element, in length; zero where nothing lies deep.
+    /// The largest depth on each element, in length; zero on an element outside all obstacles.
     pub of_elements: Vec<f64>,
-    /// How far the obstacles push the body, or would: the largest displacement along a row of a place that touches, or the largest
-    /// depth before any displacement, in length.
+    /// The displacement that the obstacles impose, or would impose: the largest displacement along a row at a penetrating place, or the
+    /// largest depth before any displacement, in length.
     pub pushed: f64,
 }
 
 impl Depths {
-    /// The largest depth over how far the obstacles push.
+    /// The largest depth over the displacement that the obstacles impose.
     pub fn relative(&self) -> f64 {
         let deepest = self.of_elements.iter().fold(0.0, |deepest: f64, depth| deepest.max(*depth));
         if deepest > 0.0 { deepest / self.pushed } else { 0.0 }
@@ -23,11 +23,11 @@ impl Depths {
 }
 
 impl Answer {
-    /// The depths at five points in each direction of every facet that may touch a rigid obstacle. What is narrower than the space
-    /// between them is not seen.
+    /// The depths at five points in each direction of every facet that may touch a rigid obstacle. Parts of an obstacle narrower than the
+    /// distance of these points are missed.
     ///
     /// # Errors
-    /// [`Error::Scene`] for a place that has no row because it lies too deep.
+    /// [`Error::Scene`] for a place without a row because it lies too deep.
     pub(crate) fn depths_between_nodes(&self) -> Result<Depths, Error> {
         let (model, mesh) = (self.model(), self.model().mesh());
         let mut depths = Depths { of_elements: vec![0.0; mesh.element_count()], pushed: 0.0 };

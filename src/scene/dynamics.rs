@@ -1,4 +1,4 @@
-//! The motion that a scene asks for: mass, scheme, step, initial state, loads in time.
+//! The motion of a scene: mass, scheme, step, initial state, loads in time.
 
 use super::entry::{COORDINATE_ROUNDING, located, number, point, refused, vector, wrong};
 use super::loads_in_time::NodalLoads;
@@ -14,26 +14,26 @@ use crate::qp::linear::{SparseMatrix, SymmetricMatrix, dot};
 use crate::qp::problem::ContactProblem;
 use crate::qp::{Method, Settings, solve};
 
-/// Where the fields stand in a scene.
+/// The JSON path of the fields in a scene.
 const PATH: &str = "analysis.dynamic";
 
-/// Steps and durations that differ by less than this, relative, differ by rounding.
+/// Steps and durations that differ by less than this, relative, are equal up to rounding.
 const STEP_ROUNDING: f64 = 1e-12;
 
-/// Steps that no run would see the end of.
+/// Largest number of steps: no run would end within reasonable time.
 const MOST_STEPS: f64 = 1e9;
 
-/// States that no folder would hold.
+/// Largest number of states that are written.
 const MOST_FRAMES: usize = 10_000;
 
-/// The usual steps, in the time of a wave through the smallest cell, and in the largest stable step.
+/// The default steps, in the time of a wave through the smallest cell, and in the largest stable step.
 const COURANT: [f64; 2] = [0.5, 0.9];
 
 /// Contact forces are averaged over this share of the time in which a pressure wave crosses the body.
 ///
-/// A blow lasts two such times or more, so this is a tenth of it at most: the mean over it takes 0.4 % off the peak of half a
-/// sine wave. The ringing of a mesh behind a wave front is shorter the finer the cells are, and leaves this mean; the largest
-/// force of a single step keeps it.
+/// An impact lasts at least two such times, so this is at most a tenth of it: the mean over it reduces the peak of half a sine wave by
+/// 0.4 %. The oscillations of a mesh behind a wave front are shorter the finer the cells are, and disappear from this mean; the largest
+/// force of a single step contains them.
 const WINDOW: f64 = 0.2;
 
 /// A motion to be computed: the problem, the scheme, the steps.
@@ -45,23 +45,23 @@ pub struct Dynamics {
     pub scheme: Scheme,
     /// The step, in time.
     pub step: f64,
-    /// How many of them.
+    /// Number of steps.
     pub steps: usize,
-    /// States to be written, beside the first.
+    /// Number of states to be written, besides the first.
     pub frames: usize,
-    /// Time over which contact forces are averaged, for a peak without the ringing of the mesh: a fifth of the time in which a
+    /// Time over which contact forces are averaged, for a peak without the oscillations of the mesh: a fifth of the time in which a
     /// pressure wave crosses the body along the first contact normal; zero without contact rows.
     pub window: f64,
-    /// Points whose motion is written at every step.
+    /// Points with output at every step.
     pub watched: Vec<WatchedPoint>,
-    /// What the supports bear.
+    /// The data for the reactions of the supports.
     supports: MovingSupports,
-    /// What a reader of the answer should know.
+    /// Warnings for the reader of the answer.
     pub warnings: Vec<Warning>,
 }
 
 impl Scene {
-    /// The specification of the motion, where the scene asks for one.
+    /// The specification of the motion, if the scene has one.
     pub fn dynamic(&self) -> Option<&DynamicSpec> {
         self.analysis.as_ref().map(|AnalysisSpec::Dynamic(spec)| spec)
     }
@@ -152,7 +152,7 @@ impl Scene {
         Ok(problem)
     }
 
-    /// The same from the initial state, which is checked.
+    /// The same from the initial state, after a check.
     fn starting(model: &Model, spec: &DynamicSpec, problem: DynamicProblem) -> Result<DynamicProblem, Error> {
         let (displacement, velocity) = spec.initial(model.body())?;
         let mut displacement = model.dofs().restrict(&displacement)?;
@@ -187,17 +187,17 @@ impl Dynamics {
     /// The resultants of contact forces and support reactions of the last step, obstacle by obstacle and then support by
     /// support. `integrator` moves [`problem`](Self::problem), that of `model`.
     ///
-    /// Both are those of the balance that the scheme solved in the step: at its middle (`midpoint`, `contact-stabilised`), at
-    /// its end (`trapezoidal`, `penalty`, `penalty-loop`), `1 + alpha` times that of the end less `alpha` times that of the
-    /// beginning (`hht`), the mean of both ends (`central-difference`). The reactions on the body are, at supported dofs,
+    /// Both are those of the balance that the scheme solved in the step: at its middle (`midpoint`, `contact-stabilised`), at its end
+    /// (`trapezoidal`, `penalty`, `penalty-loop`), `1 + alpha` times that of the end minus `alpha` times that of the beginning (`hht`),
+    /// the mean of both ends (`central-difference`). The reactions on the body are, at supported dofs,
     ///
     /// ```text
     /// R = M a + C v + K u - f(t) - B' lambda
     /// ```
     ///
-    /// where a is the acceleration at the end of the step by the rules of Newmark's kind, and the mean one of the step
-    /// elsewhere. So contact forces, reactions and loads add up to the change of momentum. Before the first step, and between
-    /// a resume and the next step, there is no such balance: the supports are left out.
+    /// where a is the acceleration at the end of the step in schemes of Newmark's kind, and the mean of the step in others. So contact
+    /// forces, reactions and loads add up to the change of momentum. Before the first step, and between a resume and the next step, this
+    /// balance does not exist, and the supports are left out.
     ///
     /// # Errors
     /// [`Error::Length`] for an integrator of another model.
@@ -224,7 +224,7 @@ impl DynamicSpec {
         self.scheme.with(given.and_then(|(_, value)| value))
     }
 
-    /// The same with another scheme, and without the parameters that it has not.
+    /// The same with another scheme, without the parameters that it does not have.
     pub fn with_scheme(mut self, scheme: SchemeSpec) -> Self {
         self.scheme = scheme;
         let own = scheme.parameter().map(|parameter| parameter.name);
@@ -234,7 +234,7 @@ impl DynamicSpec {
         self
     }
 
-    /// The parameters of all schemes, as they are given.
+    /// The given parameters of all schemes.
     fn parameters(&self) -> [(&'static str, Option<f64>); 4] {
         [
             ("alpha", self.alpha),
@@ -301,7 +301,7 @@ impl DynamicSpec {
                     return Err(refused("unstable", format!("{PATH}.courant"), message));
                 }
                 let unit = stable.unwrap_or_else(|| wave_time(body));
-                // Whatever the duration: a run can then go on to a longer one.
+                // Independent of the duration: a run can then be continued to a longer one.
                 let step = (courant * unit).min(self.duration);
                 counted(step, (self.duration / step * (1.0 - STEP_ROUNDING)).ceil())
             }
@@ -361,7 +361,7 @@ impl FieldSpec {
 }
 
 impl MassSpec {
-    /// The word for it in a scene.
+    /// Its word in a scene.
     fn word(self) -> &'static str {
         match self {
             MassSpec::Consistent => "consistent",
@@ -379,7 +379,7 @@ impl MassSpec {
     }
 }
 
-/// A parameter of the scheme at its place.
+/// A parameter of the scheme at its JSON path.
 fn in_place(error: Error) -> Error {
     located(error, &format!("{PATH}."))
 }
@@ -389,7 +389,7 @@ fn not_positive(field: &str, value: f64) -> Error {
     wrong(format!("{PATH}.{field}"), message)
 }
 
-/// The shortest time in which a pressure wave goes from one node of an element to another.
+/// The shortest time of a pressure wave from one node of an element to another.
 fn wave_time(body: &ElasticBody) -> f64 {
     let nodes = body.mesh().nodes();
     let away = |a: usize, b: usize| (0..3).map(|axis| (nodes[a][axis] - nodes[b][axis]).powi(2)).sum::<f64>();
@@ -404,13 +404,13 @@ fn wave_time(body: &ElasticBody) -> f64 {
     times.fold(f64::INFINITY, f64::min)
 }
 
-/// The speed of pressure waves in a phase whose material has a density, in length over time.
+/// The speed of pressure waves in a phase with a density, in length over time.
 fn wave_speed(phase: &Phase) -> f64 {
     (phase.law().wave_modulus() / phase.material().density().unwrap_or(f64::NAN)).sqrt()
 }
 
-/// The time in which a pressure wave crosses the body behind the row with the smallest gap, along its normal; of several
-/// obstacles the shortest, of several materials that of the fastest. `None` without contact rows.
+/// The time in which a pressure wave crosses the body behind the row with the smallest gap, along its normal; for several obstacles the
+/// shortest, for several materials that of the fastest. `None` without contact rows.
 fn crossing_time(model: &Model) -> Option<f64> {
     let (body, nodes) = (model.body(), model.mesh().nodes());
     let of_obstacle = (0..model.obstacles().len()).filter_map(|obstacle| {
@@ -441,7 +441,7 @@ fn deepest(model: &Model, displacement: &[f64]) -> Option<Error> {
     Some(wrong(format!("{PATH}.initial"), message))
 }
 
-/// The admissible displacement that is nearest to a given one in the norm of a mass.
+/// The admissible displacement nearest to a given one in the norm of a mass.
 fn projected(problem: &ContactProblem, mass: SymmetricMatrix, displacement: &[f64]) -> Result<Vec<f64>, Error> {
     let load = mass.mul(displacement);
     let nearest = ContactProblem::new(mass, load, problem.contact().clone(), problem.gap().to_vec())?;

@@ -11,29 +11,29 @@ use crate::fem::body::{ElasticBody, Integration, Region};
 use crate::fem::formulation::Formulation;
 use crate::fem::mesh::Mesh;
 
-/// Above this ratio linear elements are known to lock noticeably; measured, quadratic ones do above the second.
+/// Poisson's ratios above which elements lock: linear elements noticeably above the first; measured, quadratic elements above the second.
 const LOCKING_POISSON: [f64; 2] = [0.49, 0.499];
 
-/// Young's moduli of one body that differ by more than this leave few digits of the soft part's strain, and make iterations slow.
+/// Young's moduli of one body that differ by more than this leave few digits in the strain of the soft part, and slow down iterations.
 const STIFFNESS_JUMP: f64 = 1e4;
 
-/// A body as a scene describes it, and where.
+/// A body as a scene describes it, with its place.
 struct DescribedBody<'a> {
     scene: &'a Scene,
     spec: &'a BodySpec,
     materials: BodyMaterials<'a>,
     unstrained: Unstrained<'a>,
-    /// What stands before its JSON paths.
+    /// The prefix of its JSON paths.
     place: String,
 }
 
 impl Scene {
-    /// The bodies of the scene, each for itself.
+    /// The bodies of the scene, separately.
     pub(crate) fn bodies(&self) -> Result<Vec<ElasticBody>, Error> {
         self.described().map(|described| described.elastic_body()).collect()
     }
 
-    /// Bodies in the order of the scene in one.
+    /// The bodies in the order of the scene, combined in one.
     pub(super) fn joined(&self, bodies: Vec<ElasticBody>) -> Result<ElasticBody, Error> {
         let (mut bodies, mut described) = (bodies.into_iter(), self.described());
         let (Some(mut joined), Some(_)) = (bodies.next(), described.next()) else {
@@ -78,7 +78,7 @@ impl DescribedBody<'_> {
         format!("{}body.{}{field}", self.place, self.spec.about().name)
     }
 
-    /// Are groups of elements named?
+    /// Returns `true` if groups of elements are named.
     fn names_groups(&self) -> bool {
         let materials = self.materials.parts.iter().map(|part| &part.group);
         let temperature = self.unstrained.temperature.iter().map(|entry| &entry.group);
@@ -97,7 +97,7 @@ impl DescribedBody<'_> {
         self.spec.shape().mesh(&site).map_err(|error| self.at_body(error))
     }
 
-    /// An error of the mesh at its place in the scene; what has a file and a line of its own stays there.
+    /// An error of the mesh at its place in the scene; an error with its own file and line keeps them.
     fn at_body(&self, error: Error) -> Error {
         match error {
             Error::Mesh { message } => wrong(self.path(""), message),
@@ -135,7 +135,7 @@ impl DescribedBody<'_> {
         let formulation = self.formulation()?;
         self.materials.check(&formulation)?;
         let at_body = |error| match error {
-            // A setting that stands beside the body: the thickness.
+            // A setting next to the body: the thickness.
             Error::Setting { .. } => located(error, ""),
             other => self.at_body(other),
         };
@@ -148,7 +148,7 @@ impl DescribedBody<'_> {
     }
 }
 
-/// The warning of a body whose elements lock.
+/// The warning for a body with elements that lock.
 pub(super) fn locking(body: &ElasticBody) -> Option<Warning> {
     let kind = body.mesh().kind();
     let ratios = body.phases().iter().filter_map(|phase| phase.material().poisson());
@@ -158,7 +158,7 @@ pub(super) fn locking(body: &ElasticBody) -> Option<Warning> {
     locks.then(|| Warning::NearlyIncompressible { poisson, element: kind.name() })
 }
 
-/// The warnings of bodies whose materials differ much in stiffness.
+/// The warnings for bodies with materials of very different stiffness.
 pub(super) fn stiffness_jumps(body: &ElasticBody) -> Vec<Warning> {
     let jump = |region: &Region| {
         let [soft, stiff] = [f64::min, f64::max].map(|of| {

@@ -1,11 +1,11 @@
-//! Entries of a scene: how they are checked, and named in messages.
+//! Entries of a scene: their checks, and their form in messages.
 
 use crate::error::{Error, nearly};
 use crate::fem::geometry::distance;
 use crate::fem::mesh::{Boundary, Mesh};
 
-/// A point named in a scene must lie on a node, and a table must reach a candidate, to within this times the body's
-/// size: above the rounding of written decimals, far below any cell.
+/// Tolerance, in units of the body's size, for a point on a node and for a table that reaches a candidate: above the rounding of written
+/// decimals, far below the size of any cell.
 pub(super) const PLACE_TOLERANCE: f64 = 1e-9;
 
 /// Lengths below this times the body's size are rounding of coordinates.
@@ -15,7 +15,7 @@ pub(super) fn wrong(path: impl Into<String>, message: impl Into<String>) -> Erro
     Error::Scene { path: path.into(), message: message.into() }
 }
 
-/// The refusal of a scene whose answer would be to another question than was meant.
+/// The refusal of a scene that poses another problem than was meant.
 pub(crate) fn refused(code: &'static str, path: impl Into<String>, message: String) -> Error {
     Error::Refused { code, place: "scene, ".to_string(), path: path.into(), message }
 }
@@ -29,7 +29,7 @@ pub(super) fn finite_pair(path: &str, pair: [f64; 2]) -> Result<(), Error> {
     finite(format!("{path}[1]"), pair[1])
 }
 
-/// Checks a table at a JSON path: as many factors as `places`, at least one, which have this name, and increase.
+/// Checks a table at a JSON path: as many factors as `places`, at least one; the places have this name, and increase.
 pub(super) fn table(path: &str, (name, places): (&str, &[f64]), factors: &[f64]) -> Result<(), Error> {
     if places.len() != factors.len() || places.is_empty() {
         let message = format!("{} {name} and {} factors; give as many, at least one", places.len(), factors.len());
@@ -46,13 +46,13 @@ pub(super) fn table(path: &str, (name, places): (&str, &[f64]), factors: &[f64])
     Ok(())
 }
 
-/// A number as a reader writes it: plain in the middle, with an exponent at the extremes.
+/// A number as a person writes it: plain for moderate sizes, with an exponent for extremes.
 pub(super) fn number(value: f64) -> String {
     let size = value.abs();
     if size == 0.0 || (1e-4..1e7).contains(&size) { format!("{value}") } else { format!("{value:e}") }
 }
 
-/// A point as a reader writes it, with as many coordinates as it has entries.
+/// A point as a person writes it, with all of its entries.
 pub(super) fn point(at: &[f64]) -> String {
     let coordinates: Vec<String> = at.iter().map(|&coordinate| number(coordinate)).collect();
     format!("({})", coordinates.join(", "))
@@ -72,7 +72,7 @@ pub(super) fn vector(path: &str, entries: &[f64], dimension: usize) -> Result<[f
     Ok(vector)
 }
 
-/// A setting that a lower module refused, at its place in the scene.
+/// A setting that a lower module refused, with its place in the scene.
 pub(super) fn located(error: Error, prefix: &str) -> Error {
     match error {
         Error::Setting { name, value, allowed } => {

@@ -9,7 +9,7 @@ use crate::error::Error;
 const LISTED_NODES: usize = 3;
 
 impl Model {
-    /// Rewrites an error of a solver into the words of this scene; other errors come back as they are.
+    /// Rewrites an error of a solver into the words of this scene; other errors are returned unchanged.
     ///
     /// [`Error::Unbounded`] and [`Error::UnderHeld`] name the rigid-body mode; [`Error::Infeasible`] names nodes,
     /// coordinates and obstacles.

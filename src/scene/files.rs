@@ -5,17 +5,17 @@ use std::path::{Path, PathBuf};
 use super::entry::wrong;
 use crate::error::Error;
 
-/// Where the files of a scene are looked for, and which of them it may read.
+/// The folder of the files of a scene, and the permission to read them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Files<'a> {
-    /// Where relative names start; the folder of a scene that is named alone is the empty path.
+    /// The folder in which relative names start; for a scene given without a folder it is the empty path.
     pub folder: &'a Path,
-    /// Files outside the folder may be read.
+    /// `true` if files outside the folder may be read.
     pub reads_outside: bool,
 }
 
 impl Files<'_> {
-    /// The file of this name at a JSON path, which lies below the folder of the scene once `..` and links are followed, unless the
+    /// The file of this name at a JSON path, which must lie in the folder of the scene after `..` and links are followed, unless the
     /// scene may read outside.
     pub fn named(&self, name: &str, path: String) -> Result<PathBuf, Error> {
         let file = self.folder.join(name);
@@ -36,7 +36,7 @@ impl Files<'_> {
         Ok(file)
     }
 
-    /// The length of the file of this name, in bytes; zero where there is none.
+    /// The length of the file of this name, in bytes; zero if it does not exist.
     pub fn length(&self, name: &str) -> f64 {
         std::fs::metadata(self.folder.join(name)).map_or(0.0, |about| about.len() as f64)
     }

@@ -1,4 +1,4 @@
-//! What holds the nodes: prescribed components of their displacement, combined in one frame a node.
+//! Prescribed components of nodal displacements, combined in one frame per node.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use crate::fem::assembly::{DofMap, Frame, perpendicular};
 use crate::fem::geometry::dot;
 use crate::fem::mesh::Mesh;
 
-/// A normal that leans by less than this out of those before it depends on them: the rounding of written components.
+/// A normal depends on the earlier ones if the sine of its angle to their span is below this: the rounding of written components.
 const DEPENDENT_NORMAL: f64 = 1e-9;
 
 /// Dependent normals must agree in their values to within this, relative to the largest of them.
@@ -19,10 +19,10 @@ const NO_COMPONENT: f64 = 1e-14;
 
 pub(super) const COORDINATES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// Who prescribes a component.
+/// The source of a prescribed component.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Holder {
-    /// On the axis of revolution nothing moves radially.
+    /// The axis of revolution: there the radial displacement is zero.
     Axis,
     /// A plane of symmetry.
     Symmetry,
@@ -51,7 +51,7 @@ pub(super) struct Component {
     pub by: Holder,
 }
 
-/// The space that the directions of a node's components span.
+/// The space spanned by the directions of a node's components.
 #[derive(Debug, Default)]
 struct Span {
     /// Orthonormal.
@@ -71,12 +71,12 @@ impl Held {
         self.nodes.entry(node).or_default().push(component);
     }
 
-    /// Takes what is prescribed at a node away, and returns it.
+    /// Removes the prescribed components of a node, and returns them.
     pub fn release(&mut self, node: usize) -> Vec<Component> {
         self.nodes.remove(&node).unwrap_or_default()
     }
 
-    /// The dofs of `mesh`: a node that is held along coordinate axes alone, or fully, needs no frame.
+    /// The dofs of `mesh`: a node that is held along coordinate axes only, or fully, needs no frame.
     ///
     /// # Errors
     /// [`Error::Scene`] for components of a node that contradict each other.
@@ -127,14 +127,14 @@ impl Held {
         })
     }
 
-    /// The force at each held node, shared among those who hold it: each along its own direction, the first of those who hold the
-    /// same one.
+    /// The force at each held node, shared among its holders: each gets the part along its own direction; if several have the same
+    /// direction, the first gets it.
     pub fn shares(&self, force: impl Fn(usize) -> [f64; 3]) -> impl Iterator<Item = (usize, Vec<(Holder, [f64; 3])>)> {
         self.nodes.iter().map(move |(&node, components)| (node, shared(components, force(node))))
     }
 }
 
-/// A force in the space of the directions of some components, as a sum of forces along these.
+/// A force in the span of the directions of some components, as a sum of forces along these directions.
 fn shared(components: &[Component], force: [f64; 3]) -> Vec<(Holder, [f64; 3])> {
     let mut independent: Vec<(Component, [f64; 3])> = Vec::new();
     for component in components {
@@ -144,7 +144,7 @@ fn shared(components: &[Component], force: [f64; 3]) -> Vec<(Holder, [f64; 3])> 
             independent.push((*component, axis));
         }
     }
-    // The last direction alone has a part along its own axis.
+    // Only the last direction has a component along its own axis.
     let mut left = force;
     let mut shares = Vec::with_capacity(independent.len());
     for (component, axis) in independent.iter().rev() {
@@ -156,7 +156,7 @@ fn shared(components: &[Component], force: [f64; 3]) -> Vec<(Holder, [f64; 3])> 
     shares
 }
 
-/// The unit vector of a normal; one along a coordinate axis is exactly that axis, or its opposite. `None` for zero.
+/// The unit vector of a normal; a normal along a coordinate axis gives exactly that axis, or its opposite. `None` for zero.
 pub(super) fn unit_normal(normal: [f64; 3]) -> Option<[f64; 3]> {
     let largest = normal.iter().fold(0.0_f64, |largest, part| largest.max(part.abs()));
     let scaled = normal.map(|part| part / largest);
@@ -166,10 +166,10 @@ pub(super) fn unit_normal(normal: [f64; 3]) -> Option<[f64; 3]> {
 }
 
 impl Span {
-    /// The coordinate axes go first: what is prescribed along them stays as it was written.
+    /// The span of some components. The coordinate axes go first: the values along them stay as they were written.
     ///
     /// # Errors
-    /// Which component contradicts others, and in words which, but for the node.
+    /// The component that contradicts others, and the contradiction in words, without the node.
     fn of(mut components: Vec<Component>) -> Result<Self, (Holder, String)> {
         components.sort_by_key(|component| coordinate_of(component.direction).is_none());
         let mut span = Span::default();
@@ -195,7 +195,7 @@ impl Span {
 
     /// Adds the axis along `rest`, the part of the component's direction at right angles to the span.
     fn extend(&mut self, component: &Component, implied: f64, rest: [f64; 3]) {
-        // Once more: what is left of a direction close to the others is at right angles to them only roughly.
+        // Once more: if a direction is close to the others, its rest is only roughly perpendicular to them.
         let Some(axis) = unit_normal(rest).and_then(|rest| unit_normal(perpendicular(rest, &self.axes))) else {
             return;
         };
@@ -205,12 +205,12 @@ impl Span {
     }
 }
 
-/// The coordinate along which a vector lies, in either sense.
+/// The coordinate axis of a vector along it, in either sense.
 fn coordinate_of(vector: [f64; 3]) -> Option<usize> {
     (0..3).find(|&axis| (0..3).all(|other| (vector[other] != 0.0) == (other == axis)))
 }
 
-/// A contradiction in words, up to the node.
+/// A contradiction in words, without the node.
 fn contradiction(component: &Component, implied: f64, before: &[Component]) -> String {
     let parallel = |other: &&Component| {
         let rest = perpendicular(component.direction, &[other.direction]);

@@ -1,12 +1,12 @@
-//! The JSON Schema of scenes, from the same types that read them.
+//! The JSON Schema of scenes, from the types that read them.
 
 use serde_json::Value;
 
 use super::Scene;
 
 impl Scene {
-    /// The JSON Schema of scenes: fields, choices and the ranges of single numbers. What several fields must fulfil together only
-    /// [`Scene::build`] tells.
+    /// The JSON Schema of scenes: fields, choices and the ranges of single numbers. Only [`Scene::build`] checks conditions between
+    /// several fields.
     pub fn json_schema() -> Value {
         let mut schema = schemars::schema_for!(Scene).to_value();
         without_null(&mut schema);
@@ -16,7 +16,7 @@ impl Scene {
     }
 }
 
-/// Takes `null` out of the kinds of values: a field that is left out is absent, not null.
+/// Removes `null` from the allowed values: a field that is left out is absent, not null.
 fn without_null(schema: &mut Value) {
     match schema {
         Value::Object(map) => {

@@ -50,10 +50,10 @@ impl Scene {
     }
 }
 
-/// The traction of a force that is spread over a boundary, in force per area.
+/// The constant traction of a force on a boundary, in force per area.
 ///
 /// # Errors
-/// [`Error::Scene`] at the JSON path of the boundary if that has no area.
+/// [`Error::Scene`] at the JSON path of the boundary if its area is zero.
 pub(super) fn spread(body: &ElasticBody, boundary: &Boundary, force: [f64; 3], path: &str) -> Result<[f64; 3], Error> {
     let area: f64 = tributary_areas(body, boundary).into_iter().map(|(_, area)| area).sum();
     let largest = body.mesh().size().powi(2);
@@ -64,7 +64,7 @@ pub(super) fn spread(body: &ElasticBody, boundary: &Boundary, force: [f64; 3], p
     Ok(force.map(|component| component / area))
 }
 
-/// A load at its JSON path, on the bodies.
+/// A load at its JSON path, with the bodies.
 struct PlacedLoad<'a> {
     body: &'a ElasticBody,
     path: String,
@@ -197,7 +197,7 @@ impl PlacedLoad<'_> {
         add_centrifugal(self.body, spec.omega, (axis, point), load)
     }
 
-    /// Every material needs a density.
+    /// Checks that every material has a density.
     fn check_density(&self) -> Result<(), Error> {
         let lacks = |region: &Region| self.body.materials(region).any(|material| material.density().is_none());
         let without = self.body.regions().iter().position(lacks);

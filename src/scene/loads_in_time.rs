@@ -1,4 +1,4 @@
-//! Loads that change with time, from a scene.
+//! Loads of a scene that change with time.
 
 use super::entry::{located, table as check_table, wrong};
 use super::schema::{DynamicSpec, FactorSpec, LoadInTimeSpec, Scene};
@@ -6,17 +6,17 @@ use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::motion::TimeFunction;
 
-/// The loads on the nodes, in force, length `dim * n_nodes` each; or on some nodes, in their order.
+/// The loads on all nodes, in force, length `dim * n_nodes` each; or on some nodes, in their order.
 #[derive(Clone, Debug)]
 pub(super) struct NodalLoads {
-    /// The sum of those that do not change.
+    /// The sum of the constant loads.
     pub constant: Vec<f64>,
-    /// Each of the others, with its factor.
+    /// Each changing load with its factor.
     pub changing: Vec<(TimeFunction, Vec<f64>)>,
 }
 
 impl NodalLoads {
-    /// The same on some nodes alone.
+    /// The same on some nodes only.
     pub fn at_nodes(&self, nodes: &[usize], dimension: usize) -> Self {
         let gather = |load: &[f64]| -> Vec<f64> {
             nodes.iter().flat_map(|&node| &load[dimension * node..dimension * (node + 1)]).copied().collect()
@@ -39,10 +39,10 @@ impl NodalLoads {
 }
 
 impl Scene {
-    /// The loads on all nodes of `body`, those of `loads-in-time` with their factors; `path` is where the motion stands.
+    /// The loads on all nodes of `body`, those of `loads-in-time` with their factors; `path` is the JSON path of the motion.
     ///
     /// # Errors
-    /// [`Error::Scene`] for a load that does not exist, has two factors, or a factor that is none.
+    /// [`Error::Scene`] for a load that does not exist or has two factors, and for an invalid factor.
     pub(super) fn loads_in_time(
         &self,
         body: &ElasticBody,
@@ -70,7 +70,7 @@ impl Scene {
 }
 
 impl LoadInTimeSpec {
-    /// The factor, checked; `path` is its JSON path, `loads` how many loads there are.
+    /// The factor, checked; `path` is its JSON path, `loads` the number of loads.
     pub(super) fn function(&self, path: &str, loads: usize) -> Result<TimeFunction, Error> {
         if self.load >= loads {
             let message = format!("there is no loads[{}]; the scene has {loads} loads, counted from 0", self.load);

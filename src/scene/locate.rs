@@ -1,4 +1,4 @@
-//! Where a value stands in the text of a scene, by its JSON path.
+//! The position of a value in the text of a scene, by its JSON path.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::file::{MOST_OF_SCENE, read_text_capped};
 
 impl Scene {
-    /// An error of a value at its line and column, where the scene was read from a file that can be read again.
+    /// An error of a value with its line and column, if the scene was read from a file that can be read again.
     pub fn located(error: Error, file: &Path) -> Error {
         let place_of = |path: &str| match read_text_capped(file, MOST_OF_SCENE) {
             Ok(text) if file.is_file() => position(&text, path),
@@ -29,8 +29,8 @@ impl Scene {
     }
 }
 
-/// Line and column, from 1, of the value at `path` as `supports[0].on.boundary`; of what it would stand in where it is
-/// missing. `None` for a text that is no JSON up to there.
+/// Line and column, from 1, of the value at `path` as `supports[0].on.boundary`; if it is missing, of the value that should contain it.
+/// `None` if the text is not valid JSON up to there.
 fn position(text: &str, path: &str) -> Option<(usize, usize)> {
     let mut at = Scanner { bytes: text.as_bytes(), place: 0 };
     at.skip_space();
@@ -48,7 +48,7 @@ fn position(text: &str, path: &str) -> Option<(usize, usize)> {
     Some((line, column))
 }
 
-/// A place in a JSON text.
+/// A position in a JSON text.
 struct Scanner<'a> {
     bytes: &'a [u8],
     place: usize,
@@ -67,7 +67,7 @@ impl Scanner<'_> {
         }
     }
 
-    /// Where the value of `key`, or the item of that number, begins; `Some(None)` where there is none.
+    /// The start of the value of `key`, or of the item with that number; `Some(None)` if it does not exist.
     fn enter(mut self, key: &str) -> Option<Option<usize>> {
         let open = self.peek()?;
         if open != b'{' && open != b'[' {
@@ -86,7 +86,7 @@ impl Scanner<'_> {
                 let name: Option<String> = serde_json::from_slice(&self.bytes[start..self.place]).ok();
                 found = name.as_deref() == Some(key);
                 self.skip_space();
-                // The colon.
+                // Skip the colon.
                 self.place += 1;
                 self.skip_space();
             }

@@ -10,18 +10,18 @@ use crate::fem::material::Material;
 
 /// The materials of a body as a scene describes them.
 pub(super) struct BodyMaterials<'a> {
-    /// That of all that the parts leave over.
+    /// The material of all elements outside the parts.
     pub material: Option<&'a MaterialSpec>,
     pub parts: &'a [MaterialPartSpec],
-    /// What stands before the JSON paths of the body.
+    /// The prefix of the JSON paths of the body.
     pub place: String,
     pub model: ModelSpec,
-    /// The analysis is dynamic, and needs densities.
+    /// `true` if the analysis is dynamic and needs densities.
     pub moves: bool,
 }
 
 impl BodyMaterials<'_> {
-    /// The materials in the order of the scene with their JSON paths, that of all the rest first.
+    /// The materials in the order of the scene with their JSON paths; the material of all other elements comes first.
     fn given(&self) -> impl Iterator<Item = (&MaterialSpec, String)> {
         let rest = self.material.map(|spec| (spec, format!("{}material", self.place)));
         let parts = self.parts.iter().enumerate();
@@ -32,20 +32,20 @@ impl BodyMaterials<'_> {
         rest.into_iter().chain(parts.map(of_part))
     }
 
-    /// The first material: that of all the rest, or of the first part.
+    /// The first material: that of all other elements, or of the first part.
     ///
     /// # Errors
-    /// [`Error::Scene`] for a material that is none, or if there is none.
+    /// [`Error::Scene`] for an invalid material, or if there is no material.
     pub fn first(&self) -> Result<Material, Error> {
         let missing = || wrong(format!("{}material", self.place), "is missing; a body needs a material");
         let (spec, path) = self.given().next().ok_or_else(missing)?;
         self.material(spec, &path)
     }
 
-    /// Checks all materials, whether they have elements or not.
+    /// Checks all materials, also those without elements.
     ///
     /// # Errors
-    /// [`Error::Scene`] for a material that is none in the formulation.
+    /// [`Error::Scene`] for a material that is invalid in the formulation.
     pub fn check(&self, formulation: &Formulation) -> Result<(), Error> {
         for (spec, path) in self.given() {
             self.material(spec, &path)?.law(formulation).map_err(|error| self.in_material(error, &path))?;
@@ -53,7 +53,7 @@ impl BodyMaterials<'_> {
         Ok(())
     }
 
-    /// The body, which has the first material everywhere, with the materials of its parts.
+    /// The body with the materials of its parts; given is the body with the first material everywhere.
     ///
     /// # Errors
     /// [`Error::Scene`] for a part without elements, elements without a material.
@@ -76,7 +76,7 @@ impl BodyMaterials<'_> {
         }
     }
 
-    /// The error of elements without a material, of which `first` is one.
+    /// The error for elements without a material; `first` is one of these elements.
     fn without_material(&self, body: &ElasticBody, first: usize, has_material: &[bool]) -> Error {
         let groups = body.mesh().groups().iter();
         let of_group = groups.filter(|group| group.elements.contains(&first)).map(|group| format!("`{}`", group.name));
@@ -95,7 +95,7 @@ impl BodyMaterials<'_> {
         wrong(format!("{}materials", self.place), message)
     }
 
-    /// The material that stands at `path`.
+    /// The material at the JSON path `path`.
     fn material(&self, spec: &MaterialSpec, path: &str) -> Result<Material, Error> {
         let at = |error| self.in_material(error, path);
         let material = match (spec.young, spec.poisson, &spec.orthotropic) {
@@ -158,7 +158,7 @@ impl BodyMaterials<'_> {
         }
     }
 
-    /// An error of the material that stands at `path`; the allowed range is that of the model.
+    /// An error of the material at the JSON path `path`; the allowed range is that of the model.
     fn in_material(&self, error: Error, path: &str) -> Error {
         let prefix = format!("{path}.");
         let allowed = match self.model {

@@ -1,4 +1,4 @@
-//! What supports bear in a motion: the forces at their nodes that the balance of a step leaves open.
+//! Reactions of supports in a motion: the forces at their nodes that the balance of a step requires.
 
 use super::Model;
 use super::loads_in_time::NodalLoads;
@@ -7,12 +7,12 @@ use crate::fem::assembly::{mass_columns, stiffness_columns};
 use crate::motion::Balance;
 use crate::qp::linear::SparseMatrix;
 
-/// Stiffness, mass and loads of the nodes with supported dofs, and the free dofs that act on these: all that a step needs.
+/// Stiffness, mass and loads of the nodes with supported dofs, and the free dofs coupled to them: all data that a step needs.
 ///
 /// Prescribed displacements are constant: supported dofs have neither velocity nor acceleration.
 #[derive(Clone, Debug)]
 pub(super) struct MovingSupports {
-    /// The nodes, increasing; none where the scene has no support.
+    /// The nodes, increasing; empty if the scene has no support.
     nodes: Vec<usize>,
     /// The free dofs that share an element with them, increasing.
     around: Vec<usize>,
@@ -22,21 +22,21 @@ pub(super) struct MovingSupports {
     mass: SparseMatrix,
     /// c_m and c_k.
     damping: [f64; 2],
-    /// Forces on the nodes that hold the prescribed displacements alone, length `dim * nodes.len()`.
+    /// Forces on the nodes from the prescribed displacements only, length `dim * nodes.len()`.
     holding: Vec<f64>,
     /// The loads on the nodes, length `dim * nodes.len()` each.
     loads: NodalLoads,
 }
 
-/// What each free dof does to a force: entries (free dof, force, coefficient).
+/// The effect of each free dof on a force: entries (free dof, force, coefficient).
 type Effects = Vec<(usize, usize, f64)>;
 
 impl MovingSupports {
-    /// Those of `model` with a nodal mass (the lower triangle, `n_nodes x n_nodes`), the damping c_m and c_k, and the loads on
-    /// all nodes.
+    /// The data of `model` with a nodal mass (the lower triangle, `n_nodes x n_nodes`), the damping c_m and c_k, and the loads on all
+    /// nodes.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] where the stiffness overflows.
+    /// [`Error::NotFinite`] if the stiffness overflows.
     pub fn new(model: &Model, mass: &SparseMatrix, damping: [f64; 2], loads: &NodalLoads) -> Result<Self, Error> {
         let (body, dofs) = (model.body(), model.dofs());
         let dimension = body.dimension();
@@ -69,19 +69,19 @@ impl MovingSupports {
         Ok(MovingSupports { nodes, around, stiffness, mass, damping, holding, loads })
     }
 
-    /// The free dofs whose motion [`reactions`](Self::reactions) asks for.
+    /// The free dofs whose motion [`reactions`](Self::reactions) needs.
     pub fn around(&self) -> &[usize] {
         &self.around
     }
 
-    /// The forces that supports put on their nodes, by number of the node, in force; other nodes have none:
+    /// The forces of supports on their nodes, by number of the node, in force; zero at other nodes:
     ///
     /// ```text
     /// R = M a + C v + K u - f - B' lambda,   C = c_m M + c_k K
     /// ```
     ///
-    /// with u, v, a (one entry for each dof of [`around`](Self::around)) and f of the balance that the scheme solved, and its
-    /// contact forces, one multiplier per contact row. Along free dofs it is what the solve left of their balance.
+    /// with u, v, a (one entry for each dof of [`around`](Self::around)) and f of the balance that the scheme solved, and its contact
+    /// forces, one multiplier per contact row. Along free dofs R is the residual of the solve.
     pub fn reactions(&self, model: &Model, balance: Balance, multiplier: &[f64]) -> impl Fn(usize) -> [f64; 3] {
         let dimension = model.body().dimension();
         let Balance { mut displacement, velocity, mut acceleration, loads } = balance;
@@ -107,7 +107,7 @@ impl MovingSupports {
     }
 }
 
-/// The vector of a length along an axis.
+/// The vector of the given length along an axis.
 fn along_axis(axis: usize, length: f64) -> [f64; 3] {
     let mut vector = [0.0; 3];
     vector[axis] = length;

@@ -10,12 +10,12 @@ use crate::error::{Error, nearly};
 use crate::file::{MOST_OF_SCENE, read_text_capped};
 
 impl Scene {
-    /// Reads a scene from JSON text, in which lines that begin with `//` are comments; `source_name` stands in the error's first words.
+    /// Reads a scene from JSON text, in which lines that begin with `//` are comments; errors begin with `source_name`.
     ///
     /// # Errors
-    /// [`Error::SceneSyntax`] for text that is no JSON, or does not have the form of a scene.
+    /// [`Error::SceneSyntax`] for text that is not JSON, or does not have the form of a scene.
     pub fn from_json(text: &str, source_name: &str) -> Result<Scene, Error> {
-        // Some editors put a byte order mark in front.
+        // Some editors write a byte order mark at the start.
         let text = without_comments(text.strip_prefix('\u{feff}').unwrap_or(text));
         let mut json = serde_json::Deserializer::from_str(&text);
         let mut track = serde_path_to_error::Track::new();
@@ -27,13 +27,13 @@ impl Scene {
             path,
             message: in_words(&error).replace("trailing characters", trailing),
         };
-        // The parser knows one word for an array that is too long and for text behind the end.
+        // The parser has one message for an array that is too long and for text after the end.
         let scene = scene.map_err(|error| fail(known_path(track), "the array has too many entries", error))?;
         json.end().map_err(|error| fail(".".into(), "there is more text behind the scene", error))?;
         Ok(scene)
     }
 
-    /// Reads a scene from a JSON file; names of further files in it start from its folder.
+    /// Reads a scene from a JSON file; relative names of other files start in its folder.
     ///
     /// # Errors
     /// [`Error::File`] for a file that cannot be read, and as [`Scene::from_json`].
@@ -49,7 +49,7 @@ impl Scene {
     }
 }
 
-/// The text with lines of comment left empty, so that all others keep their numbers.
+/// The text with empty lines instead of comments, so that all other lines keep their numbers.
 fn without_comments(text: &str) -> Cow<'_, str> {
     let is_comment = |line: &str| line.trim_start().starts_with("//");
     if !text.lines().any(is_comment) {
@@ -58,7 +58,7 @@ fn without_comments(text: &str) -> Cow<'_, str> {
     Cow::Owned(text.split('\n').map(|line| if is_comment(line) { "" } else { line }).collect::<Vec<_>>().join("\n"))
 }
 
-/// Where the parser stood, without the key that it could not read.
+/// The position of the parser, without the key that it could not read.
 fn known_path(track: serde_path_to_error::Track) -> String {
     match track.path().to_string().trim_end_matches('?').trim_end_matches('.') {
         "" => ".".into(),
@@ -66,7 +66,7 @@ fn known_path(track: serde_path_to_error::Track) -> String {
     }
 }
 
-/// The parser's message without its position, and in the words of JSON instead of the words of Rust.
+/// The parser's message without its position, in the terms of JSON instead of those of Rust.
 fn in_words(error: &serde_json::Error) -> String {
     const WORDS: [(&str, &str); 10] = [
         ("invalid type: map, expected enum", "the object is empty, expected a single key"),
@@ -89,12 +89,12 @@ fn in_words(error: &serde_json::Error) -> String {
     message + &meant
 }
 
-/// What may be meant by a field or a choice that the parser does not know; it names all that it knows.
+/// A suggestion for an unknown field or choice; the parser's message names all known ones.
 fn meant(message: &str) -> String {
     let unknown = ["unknown field `", "unknown choice `"].iter().find_map(|start| message.strip_prefix(start));
     let Some((name, known)) = unknown.and_then(|unknown| unknown.split_once("`, expected ")) else {
         return String::new();
     };
-    // Of the pieces between marks every second one is a name.
+    // Between the quotation marks, every second piece is a name.
     nearly(name, known.split('`').skip(1).step_by(2))
 }

@@ -1,4 +1,4 @@
-//! Parts of boundaries: facets chosen by where they lie and where they look.
+//! Parts of boundaries: facets chosen by their position and their normal.
 
 use super::entry::{PLACE_TOLERANCE, boundary, finite, number, point, vector, wrong};
 use super::schema::part::PartBoxSpec;
@@ -9,14 +9,14 @@ use crate::fem::body::ElasticBody;
 use crate::fem::geometry::{cross, distance, dot, length, unit};
 use crate::fem::mesh::Boundary;
 
-/// Normals farther out than the given angle by less than this, in degrees, are rounding of coordinates.
+/// Deviations of normals beyond the given angle by less than this, in degrees, are rounding of coordinates.
 const SAME_ANGLE: f64 = 1e-6;
 
 impl Scene {
-    /// The body with the parts of its boundaries that the scene names, behind the others.
+    /// The body with the parts of its boundaries that the scene names, after the others.
     ///
     /// # Errors
-    /// [`Error::Scene`] for a name that is taken, a boundary that does not exist, a region that is none, a part without a facet.
+    /// [`Error::Scene`] for a name that exists, a boundary that does not exist, an invalid region, a part without a facet.
     pub(super) fn with_parts(&self, mut body: ElasticBody) -> Result<ElasticBody, Error> {
         for (index, spec) in self.parts.iter().enumerate() {
             let path = format!("parts[{index}]");
@@ -41,7 +41,7 @@ impl Scene {
 }
 
 impl PartSpec {
-    /// The boundary, or the whole surface, that it is a part of.
+    /// The boundary, or the whole surface, of which it is a part.
     fn whole(&self, body: &ElasticBody, path: &str) -> Result<Boundary, Error> {
         let mesh = body.mesh();
         let Some(name) = &self.of else {
@@ -55,10 +55,10 @@ impl PartSpec {
 }
 
 impl PartBoxSpec {
-    /// The smallest and the largest coordinates of the box of what stands at `path`.
+    /// The smallest and the largest coordinates of the box at the JSON path `path`.
     ///
     /// # Errors
-    /// [`Error::Scene`] for a corner that is no point of the model, or a box without inside.
+    /// [`Error::Scene`] for a corner that is not a point of the model, or an empty box.
     pub(super) fn corners(&self, path: &str, dimension: usize) -> Result<[[f64; 3]; 2], Error> {
         let low = vector(&format!("{path}.box.min"), &self.min, dimension)?;
         let high = vector(&format!("{path}.box.max"), &self.max, dimension)?;
@@ -72,7 +72,7 @@ impl PartBoxSpec {
     }
 }
 
-/// Where the facets of a part lie, and where they look.
+/// The region of the centroids and the directions of the normals of a part.
 struct Region {
     /// The smallest and the largest coordinates.
     cuboid: Option<[[f64; 3]; 2]>,
@@ -82,7 +82,7 @@ struct Region {
     normal: Option<([f64; 3], f64)>,
 }
 
-/// How far out of a region a facet is.
+/// The distance of a facet from a region.
 struct Outside {
     /// The centre of the facet.
     at: [f64; 3],
@@ -141,7 +141,7 @@ impl Region {
     }
 }
 
-/// That no facet lies in a part, and which one is nearest, in a body of this size.
+/// A message that no facet lies in a part, and the nearest facet, in a body of this size.
 fn nearest(whole: &str, outside: &[Outside], size: f64, dimension: usize) -> String {
     let far = |one: &&Outside| one.away / size + one.aside / 180.0;
     let Some(nearest) = outside.iter().min_by(|a, b| far(a).total_cmp(&far(b))) else {

@@ -1,4 +1,4 @@
-//! What a model consists of before its contact rows.
+//! The components of a model before its contact rows.
 
 use super::held::Held;
 use super::obstacle::PlacedObstacle;
@@ -11,18 +11,18 @@ use crate::fem::assembly::{DofMap, Springs};
 use crate::fem::body::ElasticBody;
 use crate::qp::linear::SymmetricMatrix;
 
-/// What a change of the gap leaves alone.
+/// The data that do not depend on the gap.
 #[derive(Debug)]
 pub(super) struct Parts {
     pub title: String,
     pub units: Units,
     pub body: ElasticBody,
     pub dofs: DofMap,
-    /// What holds the nodes.
+    /// The prescribed components of the nodes.
     pub held: Held,
     /// Number of supports in the scene.
     pub supports: usize,
-    /// `true` if a support may stand for the other half of a symmetric body.
+    /// `true` if a support may replace the other half of a symmetric body.
     pub is_part: bool,
     /// External load at all nodes, length `dim * n_nodes`.
     pub load: Vec<f64>,
@@ -42,7 +42,7 @@ impl Parts {
     /// The stiffness of the free dofs with the springs added.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] where it overflows.
+    /// [`Error::NotFinite`] if it overflows.
     pub fn on_springs(&self, of_body: SymmetricMatrix) -> Result<SymmetricMatrix, Error> {
         let add = |stiffness: SymmetricMatrix, springs: &Springs| {
             springs.added_to(&stiffness, &self.dofs, self.body.dimension())
@@ -50,7 +50,7 @@ impl Parts {
         self.springs.iter().try_fold(of_body, add)
     }
 
-    /// The external load with what springs put on nodes where supports prescribe displacements.
+    /// The external load with the forces of springs on nodes with prescribed displacements.
     ///
     /// # Errors
     /// None for the dofs of the body.
@@ -73,7 +73,7 @@ impl Parts {
         forces
     }
 
-    /// The share of the modelled part in a force that presses an obstacle.
+    /// The share of the modelled part of the body in a force that presses an obstacle.
     pub fn share_of(&self, obstacle: usize, force: f64) -> f64 {
         force / self.symmetry.parts_of_obstacle(self.obstacles[obstacle].approach())
     }

@@ -1,4 +1,4 @@
-//! Factors over space: how loads and prescribed displacements change along a direction.
+//! Factors over space: the change of loads and prescribed displacements along a direction.
 
 use super::entry::{table, vector, wrong};
 use super::schema::profile::ProfileSpec;
@@ -7,21 +7,21 @@ use crate::fem::assembly::Kinks;
 use crate::fem::geometry::{dot, unit};
 use crate::motion::between;
 
-/// A factor of the place, checked.
+/// A factor that depends on the place, checked.
 #[derive(Debug)]
 pub(super) struct Profile {
     /// A unit vector.
     along: [f64; 3],
     places: Vec<f64>,
-    /// The places again, each with its factor.
+    /// The same places, each with its factor.
     points: Vec<(f64, f64)>,
 }
 
 impl Profile {
-    /// That of a JSON path, in a model of `dimension` coordinates.
+    /// The factor at a JSON path, in a model of `dimension` coordinates.
     ///
     /// # Errors
-    /// [`Error::Scene`] for a direction that is none, and for a table that does not increase.
+    /// [`Error::Scene`] for an invalid direction, and for a table that does not increase.
     pub fn of(spec: &ProfileSpec, path: &str, dimension: usize) -> Result<Self, Error> {
         let field = format!("{path}.along");
         let along = unit(vector(&field, &spec.along, dimension)?);
@@ -38,7 +38,7 @@ impl Profile {
         between(&self.points, dot(self.along, point))
     }
 
-    /// Where it has kinks.
+    /// The places of its kinks.
     pub fn kinks(&self) -> Kinks<'_> {
         Kinks { along: self.along, at: &self.places }
     }

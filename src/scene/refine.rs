@@ -5,10 +5,10 @@ use super::schema::Scene;
 use crate::error::Error;
 
 impl Scene {
-    /// The scene with every cell of its bodies cut into `times` along each edge; graded meshes are nested.
+    /// The scene with every cell of its bodies cut into `times` parts along each edge; graded meshes are nested.
     ///
     /// # Errors
-    /// [`Error::Scene`] for `times` 0, and for a body from a mesh file, which says nothing of a finer one.
+    /// [`Error::Scene`] for `times` 0, and for a body from a mesh file, which cannot be refined.
     pub fn refined(&self, times: usize) -> Result<Scene, Error> {
         if times == 0 {
             return Err(wrong("body", "cells cannot be cut into 0"));

@@ -15,49 +15,49 @@ use crate::fem::assembly::Springs;
 use crate::fem::formulation::Formulation;
 use crate::fem::geometry::{cross, dot, length, minus};
 
-/// Forces that cancel each other to this share of the sum of their magnitudes leave rounding, which has no line of action.
+/// Forces that cancel to this share of the sum of their magnitudes leave only rounding, which has no line of action.
 const CANCELS: f64 = 1e-10;
 
-/// All forces of one kind on the body, in one.
+/// The resultant of all forces of one kind on the body.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Resultant {
-    /// What they come from: `obstacles[0]`; `pair[0]` for the first obstacle that is another body; `supports[0]`; `loads`.
+    /// The source of the forces: `obstacles[0]`; `pair[0]` for the first obstacle that is another body; `supports[0]`; `loads`.
     pub of: String,
-    /// The body that they act on, where there are several; the first one is called `body`.
+    /// The body on which the forces act, if there are several; the first one is called `body`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub on: Option<String>,
-    /// How the rows of the obstacle are made; none for an obstacle of a user's own, and for supports and loads.
+    /// The rule for the rows of the obstacle; `None` for a user-defined obstacle, and for supports and loads.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rule: Option<Rule>,
-    /// How many nodes they act on.
+    /// Number of nodes on which the forces act.
     pub nodes: usize,
-    /// The force on the body, a component for each coordinate. In an axisymmetric model the radial one is summed around the
-    /// circle, where it cancels.
+    /// The force on the body, a component for each coordinate. In an axisymmetric model the radial component is summed around the circle
+    /// and cancels.
     pub force: Vec<f64>,
-    /// The moment about the origin, in force times length, of the undeformed body: about z in the plane, three components in space,
-    /// none on a line and in an axisymmetric model.
+    /// The moment about the origin, in force times length, of the undeformed body: about z in the plane, three components in space, empty
+    /// on a line and in an axisymmetric model.
     pub moment: Vec<f64>,
-    /// A point on the line of action: with the force there the moment is what is given, but for a part along the force.
-    /// Of parallel forces it is their centre. None where the forces cancel.
+    /// A point on the line of action: the force at this point gives the moment above, except its part along the force. For parallel
+    /// forces it is their centre. `None` if the forces cancel.
     pub centre: Option<Vec<f64>>,
-    /// How far an obstacle that a force presses has moved against its approach direction, in length.
+    /// Displacement of an obstacle that a force presses, against its approach direction, in length.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub travel: Option<f64>,
-    /// How a rigid face has moved.
+    /// The motion of a rigid face.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub motion: Option<FaceMotion>,
 }
 
-/// How a rigid face has moved.
+/// The motion of a rigid face.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FaceMotion {
-    /// Its centre, in length, a component for each coordinate.
+    /// Displacement of its centre, in length, a component for each coordinate.
     pub displacement: Vec<f64>,
-    /// Its rotation, in radians: about z in the plane, three components in space, none elsewhere.
+    /// Its rotation, in radians: about z in the plane, three components in space, otherwise empty.
     pub rotation: Vec<f64>,
 }
 
-/// Forces at points, added up.
+/// The sum of forces at points.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sum {
     at: Vec<[f64; 3]>,
@@ -81,8 +81,8 @@ impl Sum {
         [0, 1, 2].map(|axis| moments().fold(0.0, |sum, moment| sum + moment[axis]))
     }
 
-    /// The centre of the forces along their resultant, moved across it onto the line of action where forces have moments: those of
-    /// an axisymmetric model have none.
+    /// The centre of the forces along their resultant, moved perpendicular to it onto the line of action if the forces have moments; in
+    /// an axisymmetric model they have no moments.
     pub fn centre(&self, formulation: &Formulation) -> Option<[f64; 3]> {
         let (force, moment) = (self.force(), self.moment());
         let magnitudes = self.forces.iter().fold(0.0, |sum, &force| sum + length(force));
@@ -90,7 +90,7 @@ impl Sum {
         if square.sqrt() <= CANCELS * magnitudes {
             return None;
         }
-        // From the first point, so that a body far from the origin loses no digits.
+        // Relative to the first point, so that a body far from the origin loses no digits.
         let first = self.at.first().copied()?;
         let weighted = self.at.iter().zip(&self.forces).fold([0.0; 3], |sum, (&at, &of)| {
             let (away, weight) = (minus(at, first), dot(of, force) / square);
@@ -127,7 +127,7 @@ impl Sum {
     }
 }
 
-/// Takes the centre of each force that is rounding beside the largest one: it would be anywhere.
+/// Removes the centre of each force that is rounding relative to the largest one: its position would be arbitrary.
 pub(super) fn without_rounding(all: &mut [Resultant]) {
     let size = |resultant: &Resultant| resultant.force.iter().fold(0.0, |size: f64, part| size.hypot(*part));
     let largest = all.iter().map(size).fold(0.0, f64::max);
@@ -137,16 +137,16 @@ pub(super) fn without_rounding(all: &mut [Resultant]) {
 }
 
 impl Model {
-    /// The resultants of the contact forces, obstacle by obstacle, of the multipliers of all rows.
+    /// The resultants of the contact forces, obstacle by obstacle, from the multipliers of all rows.
     ///
     /// # Errors
-    /// [`Error::Length`] where `multiplier` does not have one entry per contact row.
+    /// [`Error::Length`] if `multiplier` does not have one entry per contact row.
     pub fn contact_resultants(&self, multiplier: &[f64]) -> Result<Vec<Resultant>, Error> {
         self.check_multiplier(multiplier)?;
         let mut sums = vec![Sum::default(); self.obstacles().len()];
         for (row, &lambda) in self.rows().iter().zip(multiplier) {
             let force = row.normal.map(|component| 0.0 + lambda * component);
-            // A plane across its way gives an obstacle a twin, whose force is not its own.
+            // A plane of symmetry normal to its approach direction gives an obstacle a mirror image, whose force does not count here.
             let approach = self.obstacles()[row.obstacle].approach();
             self.add_images(&mut sums[row.obstacle], self.place(row.node), force, |axis| approach[axis] == 0.0);
         }
@@ -159,7 +159,7 @@ impl Model {
         Ok(sums.iter().enumerate().map(resultant).collect())
     }
 
-    /// The names of the obstacles in reports: `obstacles[i]`, and `pair[k]` for the k-th one that is another body.
+    /// The names of the obstacles in reports: `obstacles[i]`, and `pair[k]` for the k-th obstacle that is another body.
     pub(crate) fn obstacle_names(&self) -> Vec<String> {
         let mut pairs = 0..;
         let name = |(index, obstacle): (usize, &PlacedObstacle)| match obstacle.rigid() {
@@ -174,7 +174,8 @@ impl Model {
         (0..self.parts().supports).map(|index| format!("supports[{index}]"))
     }
 
-    /// Those of the support reactions, support by support, of the force on each held node; its part along free dofs is left out.
+    /// The resultants of the support reactions, support by support, from the force on each held node; its part along free dofs is left
+    /// out.
     pub(super) fn support_resultants(&self, reaction: impl Fn(usize) -> [f64; 3]) -> Vec<Resultant> {
         let nodes = self.mesh().nodes();
         let mut supports = vec![Sum::default(); self.parts().supports];
@@ -200,12 +201,12 @@ impl Model {
         supports.iter().zip(held).zip(self.support_names()).map(of_support).collect()
     }
 
-    /// Adds a force on the modelled part with its mirror images across those planes of symmetry whose axis `across` keeps.
+    /// Adds a force on the modelled part with its mirror images in those planes of symmetry for whose axis `across` is `true`.
     fn add_images(&self, sum: &mut Sum, at: [f64; 3], force: [f64; 3], across: impl Fn(usize) -> bool) {
         self.parts().symmetry.images(at, force, across).into_iter().for_each(|(at, force)| sum.add(at, force));
     }
 
-    /// Those of the springs on the body, in the order of the scene, in a nodal displacement.
+    /// The resultants of the springs on the body, in the order of the scene, at a nodal displacement.
     pub(super) fn spring_resultants(&self, displacement: &[f64]) -> Vec<Resultant> {
         let nodes = self.mesh().nodes();
         let of_springs = |(index, springs): (usize, &Springs)| {
@@ -218,10 +219,10 @@ impl Model {
         self.parts().springs.iter().enumerate().map(of_springs).collect()
     }
 
-    /// The forces on the nodes of those rigid faces that `keeps` says, among all forces that hold the body.
+    /// The forces on the nodes of those rigid faces for which `keeps` returns `true`, among all forces that hold the body.
     ///
     /// # Errors
-    /// [`Error::Length`] where the forces are not those of all nodes.
+    /// [`Error::Length`] if the forces are not those of all nodes.
     pub(super) fn force_of_faces(&self, forces: &[f64], keeps: impl Fn(usize) -> bool) -> Result<Vec<f64>, Error> {
         let faces = self.parts().rigid_faces.iter().enumerate().filter(|(index, _)| keeps(*index));
         let mut on_face = vec![false; self.mesh().nodes().len()];
@@ -230,7 +231,7 @@ impl Model {
         self.dofs().part(forces, |dof| on_face[dof / dimension])
     }
 
-    /// Those of the rigid faces on the body, in the order of the scene, with their motions.
+    /// The resultants of the rigid faces on the body, in the order of the scene, with their motions.
     ///
     /// # Errors
     /// As [`Model::force_of_faces`].
@@ -258,7 +259,7 @@ impl Model {
         Ok(all)
     }
 
-    /// That of the loads, if there are any.
+    /// The resultant of the loads, if there are any.
     pub(super) fn load_resultant(&self) -> Option<Resultant> {
         let nodes = self.mesh().nodes();
         let mut loads = Sum::default();
@@ -274,16 +275,17 @@ impl Model {
         [0, 1, 2].map(|axis| of_node.get(axis).copied().unwrap_or(0.0))
     }
 
-    /// The body of a node, where there are several.
+    /// The body of a node, if there are several.
     fn name_of_body(&self, node: Option<usize>) -> Option<String> {
         let regions = self.body().regions();
         let region = regions.iter().find(|region| node.is_some_and(|node| region.nodes().contains(&node)))?;
         (regions.len() > 1).then(|| if region.name().is_empty() { "body".into() } else { region.name().into() })
     }
 
-    /// What the forces of a report are those of, as `per metre, of the modelled part`; empty if they are those of the whole body.
+    /// The reference of the forces in a report, as `per metre, of the modelled part`; empty if they are those of the whole body.
     ///
-    /// The whole is that of planes of symmetry. A part is modelled if a support lets a flat boundary slide along itself and nothing else: that may be a plane of symmetry.
+    /// With planes of symmetry the report gives the forces of the whole, a multiple of the modelled part. Without them the body counts as a
+    /// part if a support lets a flat boundary slide along itself and prescribes nothing else: that may be a plane of symmetry.
     pub fn basis_of_forces(&self) -> String {
         let unit = match self.units().length.as_str() {
             "m" => "metre",
@@ -313,7 +315,7 @@ mod tests {
 
     const PLANE: Formulation = Formulation::PlaneStrain { thickness: 1.0 };
 
-    /// Parallel forces 1 and 3 at the ends of a rod of length 4: the centre stands at three quarters.
+    /// Parallel forces 1 and 3 at the ends of a rod of length 4: the centre is at three quarters.
     #[test]
     fn the_centre_of_parallel_forces_is_their_weighted_mean() {
         let mut sum = Sum::default();

@@ -1,4 +1,4 @@
-//! Rigid faces of a scene: u = t + omega x (x - c) at the nodes of a boundary; each part of t and omega is prescribed or an unknown.
+//! Rigid faces of a scene: u = t + omega x (x - c) at the nodes of a boundary; each component of t and omega is prescribed or an unknown.
 
 use std::collections::BTreeMap;
 
@@ -21,9 +21,9 @@ const NAMES: [&str; 6] = ["x", "y", "z", "rotation.x", "rotation.y", "rotation.z
 pub(super) struct RigidFace {
     nodes: Vec<usize>,
     pub centre: [f64; 3],
-    /// The largest distance of a node from the centre: a rotation is measured by the displacement there.
+    /// The largest distance of a node from the centre: a rotation is measured by the displacement at that distance.
     reach: f64,
-    /// The motions that the model has: displacements along x, y, z, then rotations about them.
+    /// The motions of the model: displacements along x, y, z, then rotations about them.
     pub motions: Vec<Motion>,
 }
 
@@ -32,25 +32,25 @@ pub(super) struct RigidFace {
 pub(super) struct Motion {
     /// 0 to 2 along x, y, z; 3 to 5 about them.
     pub kind: usize,
-    /// In length, or in radians; `None` where it is an unknown.
+    /// In length, or in radians; `None` if it is an unknown.
     pub prescribed: Option<f64>,
-    /// The force or the moment along it.
+    /// The force along the displacement, or the moment about the axis of the rotation.
     pub force: f64,
 }
 
 impl Motion {
-    /// As it is written.
+    /// Its name in a scene.
     pub fn name(&self) -> &'static str {
         NAMES[self.kind]
     }
 }
 
 impl Scene {
-    /// The rigid faces; what holds their nodes besides is released, because the faces move them so.
+    /// The rigid faces. Other prescribed components of their nodes are removed if the faces move the nodes in the same way.
     ///
     /// # Errors
-    /// [`Error::Scene`] for a face that is no boundary, shares nodes with another one or has motions or forces that the model does not
-    /// have, and for a node that a support or a plane of symmetry holds otherwise than its face moves.
+    /// [`Error::Scene`] for a face that is not a boundary, shares nodes with another face or has motions or forces that the model does
+    /// not have, and for a node at which a support or a plane of symmetry contradicts the motion of its face.
     pub(super) fn rigid_faces(&self, body: &ElasticBody, held: &mut Held) -> Result<Vec<RigidFace>, Error> {
         if !self.rigid_faces.is_empty() && self.analysis.is_some() {
             return Err(wrong("rigid-faces", "rigid faces are for equilibria; a motion has supports alone"));
@@ -94,12 +94,12 @@ impl RigidFace {
         Ok(RigidFace { nodes, centre, reach: if reach > 0.0 { reach } else { 1.0 }, motions })
     }
 
-    /// The nodes that move with it.
+    /// The nodes that move with the face.
     pub fn nodes(&self) -> &[usize] {
         &self.nodes
     }
 
-    /// The unit of a motion: one in length, or the rotation that moves the farthest node by one.
+    /// The unit of a motion: one in length, or the rotation with a displacement of one at the farthest node.
     pub fn unit(&self, motion: &Motion) -> f64 {
         if motion.kind < 3 { 1.0 } else { 1.0 / self.reach }
     }
@@ -111,7 +111,7 @@ impl RigidFace {
         if motion.kind < 3 { axis } else { cross(axis, minus(at, self.centre)) }
     }
 
-    /// The displacement of a place by what is prescribed.
+    /// The displacement of a place by the prescribed motions.
     pub fn prescribed(&self, at: [f64; 3]) -> [f64; 3] {
         self.motions.iter().fold([0.0; 3], |sum, motion| {
             let by_one = self.displacement(motion, at);
@@ -120,7 +120,7 @@ impl RigidFace {
         })
     }
 
-    /// Releases a node from what holds it, if the face moves it so.
+    /// Removes the prescribed components of a node if the face moves it in the same way.
     fn release(&self, node: usize, at: [f64; 3], held: &mut Held, path: &str) -> Result<(), Error> {
         for component in held.release(node) {
             let moves = |motion: &&Motion| {
@@ -148,7 +148,7 @@ impl RigidFace {
 }
 
 impl RigidFaceSpec {
-    /// The motions that the model has, with what is prescribed and what acts along them.
+    /// The motions of the model, with their prescribed values and forces.
     fn motions(&self, path: &str, body: &ElasticBody) -> Result<Vec<Motion>, Error> {
         let dimension = body.dimension();
         let revolved = body.formulation().is_axisymmetric();
@@ -189,7 +189,7 @@ impl RigidFaceSpec {
             if prescribed.is_some() && along != 0.0 {
                 return Err(wrong(field, "is prescribed, so that a force along it does nothing; give one of them"));
             }
-            // A ring about its axis does not widen as a rigid body.
+            // As a rigid body, a ring about its axis does not widen.
             let prescribed = if revolved && kind == 0 { Some(prescribed.unwrap_or(0.0)) } else { prescribed };
             motions.push(Motion { kind, prescribed, force: along });
         }

@@ -10,45 +10,45 @@ use crate::fem::assembly::DofMap;
 use crate::fem::geometry::dot;
 use crate::qp::linear::SparseMatrix;
 
-/// One contact row: `normal . u <= gap` at a node, or `normal . (u - u_partner) <= gap` between two.
+/// One contact row: `normal . u <= gap` at a node, or `normal . (u - u_partner) <= gap` between two nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactRow {
     /// The node.
     pub node: usize,
-    /// The node across it, where the obstacle is another body.
+    /// The node opposite to it, if the obstacle is another body.
     pub partner: Option<usize>,
-    /// The obstacle, from 0 in the order of the scene.
+    /// The obstacle, numbered from 0 in the order of the scene.
     pub obstacle: usize,
     /// Unit vector [x, y, z] into the obstacle; zero beyond the dimension of the model.
     pub normal: [f64; 3],
     /// Signed distance of the undeformed node to the obstacle, or to its partner, along `normal`, in length; negative inside.
     ///
-    /// The gap of the problem is this less what prescribed displacements of its nodes take up. At mid-side nodes of quadratic
-    /// faces in space row and gap of the problem are those of a coefficient (see
+    /// The gap of the problem is this value minus the prescribed displacements of its nodes along the normal. At mid-side nodes of
+    /// quadratic faces in space, row and gap of the problem are those of a coefficient (see
     /// [`DofMap::with_contact_faces`](crate::fem::DofMap::with_contact_faces)).
     pub gap: f64,
-    /// Integral of the node's shape function over the candidate boundary, in area: thickness, cross-section or
-    /// circumference included. On quadratic faces in space the function is one with a positive integral.
+    /// Integral of the node's shape function over the candidate boundary, in area: thickness, cross-section or circumference included. On
+    /// quadratic faces in space the shape function is one with a positive integral.
     pub tributary_area: f64,
-    /// Outward unit normal [x, y, z] of the body at the node: the mean over the facets around it; zero where these cancel.
+    /// Outward unit normal [x, y, z] of the body at the node: the mean over the facets around it; zero if these cancel.
     pub outward: [f64; 3],
 }
 
 impl ContactRow {
-    /// The tributary area as it is seen along `normal`: what a pressure on it times this is the force of the row. The area
-    /// itself where the boundary faces away from the obstacle, which carries no force.
+    /// The tributary area projected along `normal`: a pressure times this area is the force of the row. The area itself if the boundary
+    /// faces away from the obstacle, where there is no force.
     pub fn projected_area(&self) -> f64 {
         let facing = dot(self.normal, self.outward);
         if facing > 0.0 { self.tributary_area * facing.min(1.0) } else { self.tributary_area }
     }
 
-    /// The nodes that the row ties: its own with the sign 1, and the partner with -1.
+    /// The nodes that the row couples: its own with the sign 1, and the partner with -1.
     pub fn ends(&self) -> impl Iterator<Item = (usize, f64)> {
         [(Some(self.node), 1.0), (self.partner, -1.0)].into_iter().filter_map(|(node, sign)| Some((node?, sign)))
     }
 }
 
-/// The rows of all obstacles, and the matrix B and the vector g that they make in the free dofs.
+/// The rows of all obstacles, with their matrix B and vector g in the free dofs.
 pub(super) struct Rows {
     pub rows: Vec<ContactRow>,
     pub contact: SparseMatrix,
@@ -58,8 +58,8 @@ pub(super) struct Rows {
 
 /// Builds the rows with all obstacles shifted by `scene_gap`.
 ///
-/// A row whose dofs are all supported holds or fails by itself: it is left out where it holds, and stays as an empty
-/// row with a negative gap where it fails.
+/// If all dofs of a row are supported, no unknown can change it: it is left out if it is satisfied, and stays as an empty row with a
+/// negative gap if it is violated.
 pub(super) fn build(parts: &Parts, scene_gap: f64) -> Result<Rows, Error> {
     finite("gap", scene_gap)?;
     let (mesh, dofs) = (parts.body.mesh(), &parts.dofs);
@@ -84,7 +84,7 @@ pub(super) fn build(parts: &Parts, scene_gap: f64) -> Result<Rows, Error> {
         for row in found {
             check_pair(dofs, &by_node, &row)?;
             let mut free = Vec::new();
-            // Beyond the rim of the obstacle its gap goes on as it is at the node.
+            // Beyond the rim of the obstacle its gap is continued with the value at the node.
             let mut remaining =
                 dofs.coefficient(row.node, |node| by_node.get(&node).map_or(row.gap, |other| other.gap));
             for (node, sign) in row.ends() {
@@ -133,7 +133,7 @@ fn of_obstacle(parts: &Parts, index: usize, scene_gap: f64) -> Result<Vec<Contac
     Ok(rows)
 }
 
-/// Checks that the node across a mid-side node is one too, between the nodes across the ends of its edge.
+/// Checks that the node opposite to a mid-side node is a mid-side node too, between the nodes opposite to the ends of its edge.
 fn check_pair(dofs: &DofMap, by_node: &BTreeMap<usize, ContactRow>, row: &ContactRow) -> Result<(), Error> {
     let Some(partner) = row.partner.filter(|_| !dofs.basis().is_nodal()) else { return Ok(()) };
     let across = |end: usize| by_node.get(&end).and_then(|row| row.partner);

@@ -1,8 +1,8 @@
-//! Contact segments: what of an obstacle's boundary is closed in one piece, and how far it reaches.
+//! Contact segments: connected closed parts of an obstacle's boundary, and their extent.
 //!
-//! Rows stand at nodes, so that the edge of the contact lies somewhere between the last closed node and the next open one. Pressures
-//! near the edge of a smooth contact fall like the root of the distance: their squares lie on a straight line, and the edge is
-//! estimated where this line through the last two nodes comes to zero. Half of the cells at the edge are given as uncertainty.
+//! Rows exist only at nodes, so that the edge of the contact lies between the last closed node and the next open one. Near the edge of a
+//! smooth contact pressures are proportional to the square root of the distance: their squares lie on a straight line. The edge is
+//! estimated at the zero of this line through the last two nodes. Half of the cells at the edge are given as uncertainty.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,19 +13,19 @@ use super::resultants::Sum;
 use crate::fem::element::FacetKind;
 use crate::fem::geometry::{cross, distance, dot, length, minus};
 
-/// The direction from an inner node to the last closed one may turn by this cosine towards the open one.
+/// Least cosine of the angle between the direction from an inner node to the last closed one and the direction to the open one.
 const AHEAD: f64 = 0.5;
 
-/// How far a contact reaches, estimated from the pressures next to its edge, and what that may be off by.
+/// The extent of a contact, estimated from the pressures next to its edge, with its uncertainty.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct ContactExtent {
-    /// Half of what the largest pressure differs by from the mean of its node and the closed ones around.
+    /// Half of the difference of the largest pressure from the mean over its node and the closed nodes around.
     pub pressure_uncertainty: f64,
     /// Estimated area; thickness or circumference included.
     pub area: f64,
     /// Half of the area that lies in cells at the edge.
     pub area_uncertainty: f64,
-    /// Estimated length along the boundary, where the model is plane or axisymmetric.
+    /// Estimated length along the boundary, if the model is plane or axisymmetric.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub width: Option<f64>,
     /// Half of the length that lies in cells at the edge.
@@ -33,10 +33,10 @@ pub struct ContactExtent {
     pub width_uncertainty: Option<f64>,
 }
 
-/// Closed rows of one obstacle that hang together on its boundary.
+/// Connected closed rows of one obstacle on its boundary.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Segment {
-    /// The obstacle, from 0 in the order of the scene.
+    /// The obstacle, numbered from 0 in the order of the scene.
     pub obstacle: usize,
     /// The closed nodes, in the order of the boundary.
     pub nodes: Vec<usize>,
@@ -46,20 +46,20 @@ pub struct Segment {
     pub centre: Option<Vec<f64>>,
     /// The largest pressure.
     pub pressure_max: f64,
-    /// How far it reaches.
+    /// The extent of the segment.
     #[serde(flatten)]
     pub extent: ContactExtent,
-    /// The node of the largest pressure, if it is next to an open one although others are not: an edge of the obstacle, where the
-    /// pressure of the exact answer has no limit.
+    /// The node of the largest pressure, if it is next to an open node although other closed nodes are not: an edge of the obstacle,
+    /// where the exact pressure is unbounded.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub edge_peak: Option<usize>,
-    /// The estimated ends [x, y] on the undeformed boundary, where the model is plane or axisymmetric and there are two.
+    /// The estimated ends [x, y] on the undeformed boundary, if the model is plane or axisymmetric and there are two ends.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ends: Option<[Vec<f64>; 2]>,
 }
 
 impl ContactExtent {
-    /// That of all segments together; `None` where there is none.
+    /// The extent of all segments together; `None` if there are none.
     pub(crate) fn of(segments: &[Segment]) -> Option<Self> {
         let peak = segments.iter().max_by(|a, b| a.pressure_max.total_cmp(&b.pressure_max))?;
         let extents = || segments.iter().map(|segment| &segment.extent);
@@ -73,7 +73,7 @@ impl ContactExtent {
     }
 }
 
-/// A size with what it may be off by.
+/// A size with its uncertainty.
 #[derive(Clone, Copy, Debug, Default)]
 struct Size {
     inner: f64,
@@ -82,13 +82,13 @@ struct Size {
 }
 
 impl Size {
-    /// Adds a cell whose nodes are all closed.
+    /// Adds a cell with only closed nodes.
     fn add_closed(&mut self, whole: f64) {
         self.inner += whole;
         self.add_edge(whole, whole);
     }
 
-    /// Adds a cell at the edge, of which a part is covered.
+    /// Adds a cell at the edge, a part of which is covered.
     fn add_edge(&mut self, covered: f64, whole: f64) {
         self.estimate += covered;
         self.outer += whole;
@@ -129,9 +129,10 @@ impl Answer {
     }
 }
 
-/// The straight cells of a facet: the nodes of each around it.
+/// The straight cells of a facet: the nodes around each cell.
 pub(crate) fn straight_cells(kind: FacetKind, facet: &[usize]) -> Vec<Vec<usize>> {
-    // A quadratic triangle in four: the corners and the middle. A quadratic quadrilateral in four corners and the middle.
+    // A quadratic triangle is cut into four: the corners and the middle. A quadratic quadrilateral is cut into four corners and the
+    // middle.
     const QUARTERS: [[usize; 3]; 4] = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]];
     const CORNERS_AND_MIDDLE: [&[usize]; 5] = [&[0, 4, 7], &[4, 1, 5], &[5, 2, 6], &[6, 3, 7], &[4, 5, 6, 7]];
     let of_facet = |cell: &[usize]| cell.iter().map(|&local| facet[local]).collect();
@@ -157,7 +158,7 @@ struct Patch<'a> {
 }
 
 impl Patch<'_> {
-    /// The other nodes of the cells around a closed node, one as often as it shares a cell.
+    /// The other nodes of the cells around a closed node, each as often as it shares a cell.
     fn around(&self, node: usize) -> impl Iterator<Item = usize> {
         let cells = self.cells_of.get(&node).into_iter().flatten();
         cells.flat_map(|&cell| self.cells[cell].iter().copied()).filter(move |&other| other != node)
@@ -175,7 +176,7 @@ impl Patch<'_> {
         self.answer.model().mesh().nodes()[node]
     }
 
-    /// The closed nodes in pieces: those of one cell belong together.
+    /// The closed nodes in connected pieces: nodes of one cell belong together.
     fn pieces(&self, order: &[usize]) -> Vec<Vec<usize>> {
         let closed: Vec<usize> = order.iter().copied().filter(|&node| self.is_closed(node)).collect();
         let mut root: BTreeMap<usize, usize> = closed.iter().map(|&node| (node, node)).collect();
@@ -238,7 +239,7 @@ impl Patch<'_> {
             }
         }
         let is_line = dimension == 2;
-        // Where the boundary ends, so does the contact.
+        // The contact ends at the end of the boundary.
         let stops = |node: &&usize| is_line && self.around(**node).count() == 1;
         ends.extend(nodes.iter().filter(stops).map(|&node| self.place(node)));
         let highest = nodes.iter().copied().max_by(|&a, &b| self.pressure(a).total_cmp(&self.pressure(b)));
@@ -269,7 +270,7 @@ impl Patch<'_> {
         }
     }
 
-    /// Half of what the pressure at a closed node differs by from the mean of it and the closed ones around.
+    /// Half of the difference of the pressure at a closed node from the mean over it and the closed nodes around.
     fn spread(&self, node: usize) -> f64 {
         let mut near: BTreeSet<usize> = self.around(node).filter(|&other| self.is_closed(other)).collect();
         near.insert(node);
@@ -277,7 +278,7 @@ impl Patch<'_> {
         0.5 * (self.pressure(node) - mean).abs()
     }
 
-    /// The outline of what is closed of a cell.
+    /// The outline of the closed part of a cell.
     fn covered(&self, cell: &[usize]) -> Vec<[f64; 3]> {
         let mut outline = Vec::new();
         for (place, &node) in cell.iter().enumerate() {
@@ -285,7 +286,7 @@ impl Patch<'_> {
                 outline.push(self.place(node));
             }
             let next = cell[(place + 1) % cell.len()];
-            // A line has one way between its nodes, not two.
+            // A line has one connection between its nodes, not two.
             let is_way = cell.len() > 2 || place == 0;
             if is_way && self.is_closed(node) != self.is_closed(next) {
                 let (closed, open) = if self.is_closed(node) { (node, next) } else { (next, node) };
@@ -295,7 +296,7 @@ impl Patch<'_> {
         outline
     }
 
-    /// Where the contact ends on the way from a closed to an open node.
+    /// The point at which the contact ends, between a closed and an open node.
     fn edge(&self, closed: usize, open: usize) -> [f64; 3] {
         let (from, to) = (self.place(closed), self.place(open));
         let way = minus(to, from);
@@ -311,7 +312,7 @@ impl Patch<'_> {
             Some(inner) => {
                 let (last, before) = (self.pressure(closed).powi(2), self.pressure(inner).powi(2));
                 let reach = last / (before - last) * distance(from, self.place(inner)) / length(way);
-                // Pressures that rise towards the edge tell nothing of it.
+                // Pressures that rise towards the edge give no estimate of it.
                 if before > last { reach.min(1.0) } else { 0.5 }
             }
             None => 0.5,

@@ -5,17 +5,17 @@ use super::schema::part::PartBoxSpec;
 use crate::error::{Error, nearly};
 use crate::fem::body::ElasticBody;
 
-/// Which elements of a body are meant: those of a group, those whose centroid lies in a box, those in both; all if neither is given.
+/// The selected elements of a body: those of a group, those with the centroid in a box, those in both; all if neither is given.
 pub(super) struct Selection<'a> {
     pub group: Option<&'a str>,
     pub cuboid: Option<&'a PartBoxSpec>,
 }
 
 impl Selection<'_> {
-    /// The elements, from 0, of what stands at `path`.
+    /// The elements, numbered from 0, of the selection at the JSON path `path`.
     ///
     /// # Errors
-    /// [`Error::Scene`] for a group that does not exist, a box that is none, or if no element is meant.
+    /// [`Error::Scene`] for a group that does not exist, an invalid box, or an empty selection.
     pub fn elements(&self, body: &ElasticBody, path: &str) -> Result<Vec<usize>, Error> {
         let mut elements: Vec<usize> = match self.group {
             None => (0..body.mesh().element_count()).collect(),

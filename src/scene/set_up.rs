@@ -1,31 +1,31 @@
-//! What stands around the body before anything is solved, node by node, for pictures.
+//! Supports, springs and rigid faces around the body, node by node, for pictures.
 
 use super::model::Model;
 
-/// What holds a node.
+/// The kind of a hold of a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Hold {
-    /// A support, the axis of revolution or a plane of symmetry, which prescribes the displacement along the direction.
+    /// A support, the axis of revolution or a plane of symmetry; it prescribes the displacement along the direction.
     Support,
     /// A spring to the ground.
     Spring,
-    /// A rigid face, with which the node moves.
+    /// A rigid face; the node moves with it.
     RigidFace,
 }
 
-/// A node that something holds.
+/// A held node.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct HeldNode {
     /// The node.
     pub node: usize,
-    /// What holds it.
+    /// The kind of its hold.
     pub hold: Hold,
-    /// The directions [x, y, z] along which it does, of unit length; none of a rigid face.
+    /// The directions [x, y, z] of the hold, of unit length; empty for a rigid face.
     pub directions: Vec<[f64; 3]>,
 }
 
 impl Model {
-    /// The nodes that something holds: supports first, then springs, then rigid faces.
+    /// The held nodes: supports first, then springs, then rigid faces.
     pub(crate) fn held_nodes(&self) -> Vec<HeldNode> {
         let parts = self.parts();
         let mut nodes = Vec::new();

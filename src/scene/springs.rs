@@ -11,7 +11,7 @@ impl Scene {
     /// The springs, in the order of the scene.
     ///
     /// # Errors
-    /// [`Error::Scene`] for springs that hold nothing, have no positive stiffness or no place.
+    /// [`Error::Scene`] for springs without a direction, a positive stiffness or a place.
     pub(super) fn springs(&self, body: &ElasticBody) -> Result<Vec<Springs>, Error> {
         if !self.springs.is_empty() && self.analysis.is_some() {
             return Err(wrong("springs", "springs are for equilibria; a motion has supports alone"));

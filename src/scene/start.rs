@@ -1,4 +1,4 @@
-//! A first scene for a mesh: what the file has, and a scene that runs, to be changed.
+//! A first scene for a mesh: the content of the file, and a scene that runs and can be changed.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -13,34 +13,34 @@ use crate::fem::material::Material;
 use crate::fem::mesh::gmsh::GmshFile;
 use crate::fem::mesh::{Boundary, Mesh};
 
-/// A body larger than this is taken to be given in millimetres: few parts are larger in metres.
+/// A body larger than this is assumed to be given in millimetres: few parts are larger in metres.
 const LARGEST_IN_METRES: f64 = 5.0;
 
 /// Young's modulus of steel in pascals.
 const STEEL: f64 = 2.1e11;
 
-/// The force makes about this strain: far from large, far above rounding.
+/// The approximate strain under the force: far from large, far above rounding.
 const STRAIN: f64 = 1e-4;
 
-/// Words in the name of a boundary that is held, and of one that is pressed.
+/// Words in the name of a boundary that is held, and of a boundary that is pressed.
 const HELD: [&str; 9] = ["fix", "clamp", "support", "held", "base", "bottom", "root", "cut", "ground"];
 const PRESSED: [&str; 8] = ["contact", "touch", "press", "top", "upper", "seat", "round", "arc"];
 
-/// A mean normal shorter than this belongs to a boundary that faces all ways.
+/// A mean normal shorter than this belongs to a boundary that faces all directions.
 const FACING: f64 = 0.5;
 
-/// A boundary, as it is listed.
+/// A boundary in the list.
 struct Listed {
     name: String,
     facets: usize,
     area: f64,
-    /// The mean of the outward normals; short where they cancel.
+    /// The mean of the outward normals; short if they cancel.
     normal: [f64; 3],
     low: [f64; 3],
     high: [f64; 3],
 }
 
-/// The text of a scene for the mesh `file`, with lines of comment; `named` is what the scene calls the file.
+/// The text of a scene for the mesh `file`, with comment lines; `named` is the name of the file in the scene.
 ///
 /// # Errors
 /// As [`GmshFile::read`] and [`GmshFile::mesh`].
@@ -61,7 +61,7 @@ pub(crate) fn start_scene(file: &Path, named: &str) -> Result<String, Error> {
     let whole = listed.pop_if(|last| last.name.is_empty() && named_in_file > 2);
     let axis = mesh.dimension() - 1;
     let mut text = head(named, &mesh, &listed, &groups, millimetres);
-    // Without two names, the sides that look up and down.
+    // Without two names, take the sides that face up and down.
     let by_sides = listed.iter().filter(|boundary| !boundary.name.is_empty()).count() < 2;
     let (held, pressed) = match by_sides {
         true => (String::from("lower"), String::from("upper")),
@@ -84,7 +84,7 @@ pub(crate) fn start_scene(file: &Path, named: &str) -> Result<String, Error> {
     Ok(text)
 }
 
-/// All boundaries, and behind them the whole surface, which has no name.
+/// All boundaries, followed by the whole surface, which has no name.
 fn listed(mesh: Mesh, formulation: Formulation) -> Result<Vec<Listed>, Error> {
     let body = ElasticBody::new(mesh, Material::new(1.0, 0.3)?, formulation)?;
     let mesh = body.mesh();
@@ -103,7 +103,8 @@ fn listed(mesh: Mesh, formulation: Formulation) -> Result<Vec<Listed>, Error> {
     Ok(mesh.boundaries().iter().chain([&surface]).map(of).collect())
 }
 
-/// The boundaries that are held and pressed, of two at least: by their names, or else the last one is pressed and the first held.
+/// The boundaries that are held and pressed, from at least two: by their names, or else the last one is pressed and the first one is
+/// held.
 fn roles(listed: &[Listed]) -> [&str; 2] {
     let names: Vec<&str> =
         listed.iter().map(|boundary| boundary.name.as_str()).filter(|name| !name.is_empty()).collect();
@@ -118,11 +119,11 @@ fn roles(listed: &[Listed]) -> [&str; 2] {
     [held.or(first).unwrap_or_default(), pressed]
 }
 
-/// A component within this share of the largest one is as large: a boundary that looks along several axes alike.
+/// A component within this share of the largest one counts as equal: the boundary faces several axes alike.
 const ALIKE: f64 = 0.99;
 
-/// The axis and the sense in which a boundary looks; the vertical axis if it looks along that as much as along another, and up if it
-/// looks all ways.
+/// The axis and the sense of a boundary's normal; the vertical axis if the normal is as close to it as to another, and up if the boundary
+/// faces all directions.
 fn facing(normal: [f64; 3], up: usize) -> (usize, f64) {
     if length(normal) < FACING {
         return (up, 1.0);
@@ -136,18 +137,18 @@ fn quoted(name: &str) -> String {
     serde_json::Value::from(name).to_string()
 }
 
-/// A vector as it is written in a scene: to the last digit, as a plane must touch the body.
+/// A vector as it is written in a scene: with all digits, because a plane must touch the body.
 fn vector(values: &[f64]) -> String {
     let values: Vec<String> = values.iter().map(|&value| number(value + 0.0)).collect();
     format!("[{}]", values.join(", "))
 }
 
-/// A vector to be read, in six digits.
+/// A vector for the reader, in six digits.
 fn shown(values: &[f64]) -> String {
     vector(&values.iter().map(|value| format!("{value:.5e}").parse().unwrap_or(*value)).collect::<Vec<f64>>())
 }
 
-/// Comments: what the file has.
+/// Comments on the content of the file.
 fn head(named: &str, mesh: &Mesh, listed: &[Listed], groups: &[String], millimetres: bool) -> String {
     let (dimension, (low, high)) = (mesh.dimension(), mesh.extent());
     let size: Vec<f64> = (0..dimension).map(|axis| high[axis] - low[axis]).collect();
@@ -190,7 +191,7 @@ fn body(text: &mut String, named: &str, mesh: &Mesh, group: Option<&String>, (yo
     );
 }
 
-/// Parts that look down and up.
+/// Parts that face down and up.
 fn sides(text: &mut String, dimension: usize) {
     let direction = |sense: f64| {
         let mut direction = vec![0.0; dimension];
@@ -218,7 +219,7 @@ fn rest(
     let components: Vec<String> = ["x", "y", "z"][..dimension].iter().map(|name| format!("\"{name}\": 0")).collect();
     let at = if sense > 0.0 { of_pressed.high } else { of_pressed.low };
     let size = mesh.size();
-    // Across its normal the plane may stand anywhere: in six digits of the size of the body.
+    // The position of the point within the plane is free: six digits of the size of the body are enough.
     let rounded = |value: f64| (value / size * 1e6).round() / 1e6 * size;
     let mut point = [0, 1, 2].map(|other| rounded((of_pressed.low[other] + of_pressed.high[other]) / 2.0));
     point[axis] = at[axis];
@@ -226,7 +227,7 @@ fn rest(
     normal[axis] = sense;
     let across = (0..dimension).filter(|&other| other != axis);
     let area: f64 = across.map(|other| of_pressed.high[other] - of_pressed.low[other]).product();
-    // One significant digit.
+    // One significant digit is enough.
     let force: f64 = format!("{:.0e}", STRAIN * young * area).parse().unwrap_or(1.0);
     let approach = format!("{}{}", if sense > 0.0 { "+" } else { "-" }, ["x", "y", "z"][axis]);
     let _ = write!(

@@ -1,4 +1,4 @@
-//! What is legal in a scene and seldom meant: supports, loads, obstacles and meshes that do not do what they seem to.
+//! Legal but rarely intended parts of a scene: supports, loads, obstacles and meshes without the expected effect.
 
 use std::collections::BTreeMap;
 
@@ -12,17 +12,17 @@ use crate::fem::assembly::DofMap;
 use crate::fem::body::ElasticBody;
 use crate::fem::geometry::dot;
 
-/// What is left of a load on the free dofs is rounding below this share of it.
+/// A load on the free dofs below this share of the whole load is rounding.
 const NOTHING: f64 = 1e-9;
 
-/// Two rows of a node are the same where the sine of their angle is below this: the rounding of written normals.
+/// Two rows of a node are the same if the sine of their angle is below this: the rounding of written normals.
 const PARALLEL: f64 = 1e-9;
 
-/// The name of a cut at a plane of symmetry, in the meshes of the program, begins so.
+/// Prefix of the name of a cut at a plane of symmetry, in the meshes of the program.
 const SYMMETRY: &str = "symmetry-";
 
 impl Scene {
-    /// What is suspect in supports, loads and mesh.
+    /// The suspect supports, loads and properties of the mesh.
     ///
     /// # Errors
     /// As [`Scene::build`].
@@ -55,14 +55,14 @@ impl Scene {
         };
         let names = body.mesh().boundaries().iter().map(|boundary| boundary.name.as_str());
         let is_cut = |name: &&str| name.rsplit('.').next().is_some_and(|own| own.starts_with(SYMMETRY));
-        // In a section about its axis the axis holds itself.
+        // In an axisymmetric section the axis itself holds the cut.
         let on_axis = |name: &&str| body.formulation().is_axisymmetric() && name.ends_with("symmetry-x");
         let free = names.filter(is_cut).filter(|name| !is_held(name) && !on_axis(name));
         free.map(|name| Warning::FreeSymmetry { boundary: name.to_string() }).collect()
     }
 }
 
-/// Nodes of one body at the same place: a mesh that hangs together only where it is drawn.
+/// Nodes of one body at the same place: the mesh is connected only in the drawing.
 fn coincident_nodes(body: &ElasticBody) -> Option<Warning> {
     let nodes = body.mesh().nodes();
     let cell = COORDINATE_ROUNDING * body.mesh().size();
@@ -86,7 +86,7 @@ fn coincident_nodes(body: &ElasticBody) -> Option<Warning> {
     found
 }
 
-/// Obstacles whose candidates are mostly held by supports, and obstacles that make the same rows as one before them.
+/// Obstacles with candidates that are mostly held by supports, and obstacles with the same rows as an earlier one.
 pub(super) fn suspect_rows(parts: &Parts, rows: &[ContactRow]) -> Vec<Warning> {
     let dimension = parts.body.dimension();
     let mut warnings = Vec::new();

@@ -1,4 +1,4 @@
-//! Planes of symmetry of a scene: where they lie, what they hold, and the whole that the body is a part of.
+//! Planes of symmetry of a scene: their positions, their effect on nodes, and the whole body of which the model is a part.
 
 use super::entry::{COORDINATE_ROUNDING, number, wrong};
 use super::held::{COORDINATES, Component, Held, Holder};
@@ -9,18 +9,18 @@ use crate::fem::body::ElasticBody;
 /// The planes of symmetry of a model.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Symmetry {
-    /// The axis across each plane, and where it lies along it.
+    /// The axis normal to each plane, and the coordinate of the plane along it.
     planes: Vec<(usize, f64)>,
     /// Lengths below this are rounding of coordinates.
     rounding: f64,
 }
 
 impl Scene {
-    /// The planes of symmetry, which lie where the body ends flat.
+    /// The planes of symmetry; they lie at flat ends of the body.
     ///
     /// # Errors
-    /// [`Error::Scene`] for a plane that is named twice or does not exist in the model, where the body ends nowhere flat across it, or
-    /// where both of its ends are flat and none lies at zero.
+    /// [`Error::Scene`] for a plane that is named twice or does not exist in the model, if the body has no flat end normal to its axis,
+    /// or if both ends are flat and neither lies at zero.
     pub(super) fn planes_of_symmetry(&self, body: &ElasticBody) -> Result<Symmetry, Error> {
         let rounding = COORDINATE_ROUNDING * body.mesh().size();
         let mut symmetry = Symmetry { planes: Vec::new(), rounding };
@@ -44,7 +44,7 @@ impl Scene {
     }
 }
 
-/// Where the body ends flat across an axis, which is the plane of symmetry.
+/// The coordinate of the flat end of the body along an axis: the plane of symmetry.
 fn flat_end(body: &ElasticBody, axis: usize, rounding: f64) -> Result<f64, String> {
     let (mesh, name) = (body.mesh(), ["x", "y", "z"][axis]);
     let surface = mesh.surface(0..mesh.element_count());
@@ -72,7 +72,7 @@ fn flat_end(body: &ElasticBody, axis: usize, rounding: f64) -> Result<f64, Strin
 }
 
 impl Symmetry {
-    /// Holds the nodes on the planes.
+    /// Prescribes the displacement of the nodes on the planes.
     pub fn hold(&self, body: &ElasticBody, held: &mut Held) {
         for &(axis, at) in &self.planes {
             let lies = |node: &usize| (body.mesh().nodes()[*node][axis] - at).abs() <= self.rounding;
@@ -82,17 +82,18 @@ impl Symmetry {
         }
     }
 
-    /// How many parts make the whole.
+    /// Number of parts that make up the whole.
     pub fn parts(&self) -> f64 {
         2.0_f64.powi(self.planes.len() as i32)
     }
 
-    /// How many parts one obstacle presses that comes along `approach`: a plane across its way gives it a twin on the other side.
+    /// Number of parts that one obstacle with the approach direction `approach` presses: a plane normal to it gives a second obstacle on
+    /// the other side.
     pub fn parts_of_obstacle(&self, approach: [f64; 3]) -> f64 {
         2.0_f64.powi(self.planes.iter().filter(|plane| approach[plane.0] == 0.0).count() as i32)
     }
 
-    /// A force at a place with its mirror images, of planes that `across` keeps.
+    /// A force at a place with its mirror images, in the planes for whose axis `across` is `true`.
     pub fn images(&self, at: [f64; 3], force: [f64; 3], across: impl Fn(usize) -> bool) -> Vec<([f64; 3], [f64; 3])> {
         let mut all = vec![(at, force)];
         for &(axis, plane) in self.planes.iter().filter(|plane| across(plane.0)) {

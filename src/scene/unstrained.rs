@@ -1,4 +1,4 @@
-//! Temperatures and initial stresses of a body of a scene: the stress that there is before any strain.
+//! Temperatures and initial stresses of a body of a scene: the stress without strain.
 
 use super::entry::{finite, point, vector, wrong};
 use super::schema::{AnalysisSpec, InitialStressSpec, TemperatureSpec};
@@ -16,10 +16,10 @@ pub(super) struct Unstrained<'a> {
 }
 
 impl Unstrained<'_> {
-    /// The body with them; `place` stands before its JSON paths.
+    /// The body with them; `place` is the prefix of its JSON paths.
     ///
     /// # Errors
-    /// [`Error::Scene`] for values that are none, elements that are not there, a material that does not expand, a dynamic analysis.
+    /// [`Error::Scene`] for invalid values, elements that do not exist, a material without expansion, a dynamic analysis.
     pub fn placed(
         &self,
         mut body: ElasticBody,
@@ -42,7 +42,7 @@ impl Unstrained<'_> {
     }
 }
 
-/// The body with the temperature that stands at `path`.
+/// The body with the temperature at the JSON path `path`.
 fn warmed(body: ElasticBody, spec: &TemperatureSpec, path: &str) -> Result<ElasticBody, Error> {
     finite(format!("{path}.value"), spec.value)?;
     let gradient = match spec.gradient.is_empty() {
@@ -60,7 +60,7 @@ fn warmed(body: ElasticBody, spec: &TemperatureSpec, path: &str) -> Result<Elast
     body.with_temperature(&elements, spec.value, gradient)
 }
 
-/// The body with the initial stress that stands at `path`.
+/// The body with the initial stress at the JSON path `path`.
 fn stressed(body: ElasticBody, spec: &InitialStressSpec, path: &str) -> Result<ElasticBody, Error> {
     let stress = [spec.xx, spec.yy, spec.zz, spec.xy, spec.yz, spec.zx];
     let own = body.formulation().stresses();

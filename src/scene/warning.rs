@@ -1,12 +1,12 @@
-//! Warnings: what can be solved but may mislead, and what to do next.
+//! Warnings: models that can be solved but may mislead, with a remedy.
 
 use crate::fem::ElementKind;
 
-/// Something about a scene that a reader of its answer should know.
+/// A fact about a scene that a reader of its answer should know.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Warning {
-    /// Elements lock when the material keeps its volume.
+    /// Elements lock if the material is nearly incompressible.
     #[error(
         "Poisson's ratio {poisson} locks {element} elements: pressures can come out several times too large; take \
          `\"integration\": \"mean-dilatation\"` with {} elements, a smaller ratio, or compare with a finer mesh \
@@ -31,9 +31,9 @@ pub enum Warning {
         body: String,
         /// The largest modulus, in force per area.
         stiff: f64,
-        /// The smallest one.
+        /// The smallest modulus, in force per area.
         soft: f64,
-        /// One over the other.
+        /// Their ratio.
         ratio: f64,
     },
     /// No node of the candidate boundary faces the obstacle.
@@ -42,7 +42,7 @@ pub enum Warning {
          its approach direction and its radius"
     )]
     NoContactRow {
-        /// Which obstacle, from 0.
+        /// Number of the obstacle, from 0.
         obstacle: usize,
     },
     /// Most candidates of an obstacle are held by supports.
@@ -51,11 +51,11 @@ pub enum Warning {
          them; free that boundary, or name another one"
     )]
     HeldCandidates {
-        /// Which obstacle, from 0.
+        /// Number of the obstacle, from 0.
         obstacle: usize,
-        /// Candidates that are held.
+        /// Number of held candidates.
         held: usize,
-        /// All of them.
+        /// Number of all candidates.
         of: usize,
     },
     /// Two obstacles make the same rows.
@@ -64,17 +64,17 @@ pub enum Warning {
          of them out"
     )]
     DoubledObstacle {
-        /// Which obstacle, from 0.
+        /// Number of the obstacle, from 0.
         first: usize,
-        /// The one behind it.
+        /// Number of the later obstacle.
         second: usize,
     },
-    /// A load acts on supported dofs alone.
+    /// A load acts on supported dofs only.
     #[error(
         "loads[{load}] acts where supports hold the body: it goes into them and moves nothing; load another boundary"
     )]
     LoadOnSupport {
-        /// Which load, from 0.
+        /// Number of the load, from 0.
         load: usize,
     },
     /// A force acts on a single node of a body in the plane or in space.
@@ -83,10 +83,10 @@ pub enum Warning {
          as a traction if they matter"
     )]
     PointLoad {
-        /// Which load, from 0.
+        /// Number of the load, from 0.
         load: usize,
     },
-    /// A body is cut at a plane of symmetry that nothing holds.
+    /// A body is cut at a plane of symmetry, but nothing holds the cut.
     #[error(
         "no support holds the boundary `{boundary}`: the body is free at its cut, and not half of a symmetric one; hold the component \
          across it"
@@ -95,7 +95,7 @@ pub enum Warning {
         /// The boundary.
         boundary: String,
     },
-    /// Nodes of one body stand at the same place.
+    /// Nodes of one body have the same place.
     #[error(
         "{count} nodes of the mesh stand where others do, as nodes {first} and {second}: its parts are not joined there; merge them in \
          the mesher, unless a slit is meant"
@@ -103,9 +103,9 @@ pub enum Warning {
     CoincidentNodes {
         /// A node.
         first: usize,
-        /// Another one at its place.
+        /// Another node at the same place.
         second: usize,
-        /// How many such nodes there are.
+        /// Number of such nodes.
         count: usize,
     },
     /// The scheme can gain energy.

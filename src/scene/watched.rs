@@ -1,16 +1,16 @@
-//! Points of a body that a motion is asked to tell of: nodes, or points within elements.
+//! Points of a body with output in a motion: nodes, or points within elements.
 
 use super::Model;
 use super::entry::{PLACE_TOLERANCE, number, point, vector, wrong};
 use super::schema::WatchSpec;
 use crate::error::Error;
 
-/// A point whose motion is written at every step.
+/// A point with output at every step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WatchedPoint {
-    /// What a table calls it, as `node 12` or `point (0.5 1)`.
+    /// Its name in a table, as `node 12` or `point (0.5 1)`.
     pub name: String,
-    /// The nodes around it with their weights, which add up to one: the shape functions of its element; a node has itself.
+    /// The nodes around it with their weights, which add up to one: the shape functions of its element; a node has only itself.
     pub nodes: Vec<(usize, f64)>,
 }
 
@@ -22,7 +22,7 @@ impl WatchedPoint {
         (0..dimension).map(along).collect()
     }
 
-    /// The point that `spec`, which stands at `path` in the scene, asks for.
+    /// The point of `spec`, which is at the JSON path `path`.
     ///
     /// # Errors
     /// [`Error::Scene`] for a node that does not exist or a point outside the body.

@@ -1,4 +1,4 @@
-//! One problem solved by three methods, and how far the answers agree.
+//! One problem solved by three methods, and the agreement of their answers.
 
 use serde::Serialize;
 
@@ -9,20 +9,20 @@ use crate::qp::problem::ContactProblem;
 use crate::qp::{Method, Settings, solve};
 use crate::solution::Solution;
 
-/// Two exact methods agree in the displacement to this share of its largest entry: both end with a linear solve, whose
-/// rounding the condition of the stiffness may enlarge a millionfold.
+/// Two exact methods must agree in the displacement to this share of its largest entry: both end with a linear solve, and the condition
+/// number of the stiffness may amplify its rounding a millionfold.
 pub const DISPLACEMENT_AGREEMENT: f64 = 1e-8;
 
 /// As [`DISPLACEMENT_AGREEMENT`], for the multipliers, which are differences of larger forces.
 pub const MULTIPLIER_AGREEMENT: f64 = 1e-7;
 
-/// Rows whose multiplier and distance are both below this, relative, are weakly active: they may be in the set or not.
+/// Rows whose multiplier and distance are both below this, relative, are weakly active: both sets may contain them or not.
 pub const WEAKLY_ACTIVE: f64 = 1e-9;
 
 /// Rounding of an energy norm that is recomputed.
 const NORM_ROUNDING: f64 = 1e-12;
 
-/// What one method answered.
+/// The answer of one method.
 #[derive(Clone, Debug)]
 pub struct MethodAnswer {
     /// The answer, certified or not.
@@ -31,7 +31,7 @@ pub struct MethodAnswer {
     pub certified: bool,
 }
 
-/// How far an answer is from that of the QP.
+/// The difference of an answer from that of the QP.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Difference {
     /// Largest difference of displacements, relative to the largest displacement.
@@ -44,7 +44,7 @@ pub struct Difference {
     pub energy: f64,
 }
 
-/// How far the methods agree.
+/// The agreement of the methods.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Agreement {
     /// QP and active set: certified both, same contact set, displacement to 1e-8, multiplier to 1e-7.
@@ -76,8 +76,7 @@ pub struct Comparison {
 /// Solves `problem` by all three methods.
 ///
 /// # Errors
-/// As [`solve`], but an answer that is not certified is an answer here; [`Error::Interrupted`] where not all three are
-/// there.
+/// As [`solve`], but an answer that is not certified is an answer here; [`Error::Interrupted`] if not all three answers were computed.
 pub fn compare(problem: &ContactProblem, settings: &Settings) -> Result<Comparison, Error> {
     let answer = |method| {
         let mut settings = settings.clone();

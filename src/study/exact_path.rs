@@ -1,4 +1,4 @@
-//! The answers of a sweep between its gaps: the exact path with the scene that it belongs to.
+//! The answers of a sweep between its gaps: the exact path and its scene.
 
 #[cfg(feature = "cli")]
 use std::sync::Arc;
@@ -10,11 +10,11 @@ use crate::scene::Answer;
 use crate::scene::Model;
 use crate::solution::ContactSet;
 
-/// Corners that are nearer to each other than this are one, as shares of the way.
+/// Two corners closer than this are one, as shares of the path.
 #[cfg(feature = "cli")]
 const SAME_PLACE: f64 = 1e-13;
 
-/// What happens to a scene on the way from one gap to another, exactly: between two corners everything is linear in the gap.
+/// The exact changes of a scene from one gap to another: between two corners everything is linear in the gap.
 #[derive(Clone, Debug)]
 pub(crate) struct ExactPath {
     path: Path,
@@ -25,7 +25,7 @@ pub(crate) struct ExactPath {
 }
 
 impl ExactPath {
-    /// The `path` of the rows of `model`, which stands at the gap `first`, to the gap `last`.
+    /// The `path` of the rows of `model`, which has the gap `first`, to the gap `last`.
     pub fn new(path: Path, model: Model, last: f64) -> Self {
         let first = model.gap();
         ExactPath { path, model, first, last }
@@ -35,7 +35,7 @@ impl ExactPath {
         &self.path
     }
 
-    /// The scene-wide gap at a share of the way.
+    /// The scene-wide gap at a share of the path.
     pub fn gap(&self, share: f64) -> f64 {
         (1.0 - share) * self.first + share * self.last
     }
@@ -45,7 +45,7 @@ impl ExactPath {
         self.path.pieces().len()
     }
 
-    /// Where a stretch begins and ends, as shares of the way.
+    /// The start and end of a stretch, as shares of the path.
     pub fn ends(&self, piece: usize) -> [f64; 2] {
         [self.path.pieces()[piece].from, self.path.pieces()[piece].to]
     }
@@ -69,7 +69,7 @@ impl ExactPath {
         Ok([self.model.pressure(&from)?, self.model.pressure(&to)?])
     }
 
-    /// The beginning, every event and the end, as shares of the way.
+    /// The start, every event and the end, as shares of the path.
     #[cfg(feature = "cli")]
     pub fn corners(&self) -> Vec<f64> {
         let mut corners = self.path.corners();
@@ -77,7 +77,7 @@ impl ExactPath {
         corners
     }
 
-    /// The answer at a share of the way, without a certificate of its own.
+    /// The answer at a share of the path, without its own certificate.
     ///
     /// # Errors
     /// As [`Prepared::boundary`](crate::Prepared::boundary) and [`Model::with_gap`].

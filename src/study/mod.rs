@@ -1,4 +1,4 @@
-//! What is learnt from more than one solve, and the numbers that a report shows.
+//! Studies that take more than one solve, and the numbers of a report.
 
 mod compare;
 mod exact_path;

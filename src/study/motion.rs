@@ -1,4 +1,4 @@
-//! The numbers of a motion: what the report of a run says, gathered step by step.
+//! The numbers of a motion for the report of a run, gathered step by step.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,29 +6,29 @@ use super::moving_mean::MovingMean;
 use super::warnings::AnswerWarning;
 use crate::motion::Observation;
 
-/// Energy may grow by this share of what the motion has from its start and its loads; beyond, it is not to be trusted.
+/// Largest allowed growth of the energy, relative to the initial energy and the work of the loads; a motion beyond it is not reliable.
 ///
-/// It stands in a gap between what was measured on bars, blocks and discs: 0.01 % by `midpoint`, none by `contact-stabilised`, up
-/// to 0.5 % by central differences and by other schemes where they do well; from 5 % to 6,000 % where they gain energy. A gain of
-/// 1 % is 0.5 % of the speeds.
+/// It lies between two groups of measurements on bars, blocks and discs: 0.01 % by `midpoint`, none by `contact-stabilised`, up to 0.5 %
+/// by central differences and by other schemes in good cases; from 5 % to 6,000 % in schemes that gain energy. A gain of 1 % is 0.5 % of
+/// the speeds.
 const MOST_GROWTH: f64 = 0.01;
 
-/// What a run has come to, gathered step by step; its size does not depend on how many there were.
+/// The summary of a run, gathered step by step; its size does not depend on the number of steps.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MotionSummary {
     /// Steps so far.
     pub steps: usize,
     /// Time so far.
     pub time: f64,
-    /// Time at which the first contact force acted, at the middle of its step; none where nothing touched.
+    /// Time at which the first contact force acted, at the middle of its step; `None` if nothing touched.
     pub first_contact: Option<f64>,
     /// Time at which the last contact force acted.
     pub last_contact: Option<f64>,
     /// Time with a contact force.
     pub contact_time: f64,
-    /// Largest contact force of a single step: in a mesh that rings behind a wave front it does not converge.
+    /// Largest contact force of a single step; it does not converge in a mesh that oscillates behind a wave front.
     pub force_max: f64,
-    /// The same on the mean over a window of time.
+    /// Mean of the contact force over a window of time, and its largest value.
     force_mean: MovingMean,
     /// Integral of the contact force over time.
     pub impulse: f64,
@@ -36,25 +36,25 @@ pub struct MotionSummary {
     pub penetration_max: f64,
     /// Kinetic, strain and potential energy at the start.
     pub energy_first: [f64; 3],
-    /// The same now.
+    /// The same at present.
     pub energy_last: [f64; 3],
     /// Smallest and largest sum of the three.
     pub energy_range: [f64; 2],
-    /// Largest sum of kinetic and strain energy: what energies are compared with.
+    /// Largest sum of kinetic and strain energy: the reference for energies.
     pub energy_scale: f64,
-    /// Penalties that all steps tried together, and the most of one; 0 in schemes without a loop over penalties.
+    /// Total number of penalties in all steps, and the largest number in one step; 0 in schemes without a loop over penalties.
     pub penalties: [usize; 2],
     /// Work of the loads since the start.
     pub work: f64,
-    /// The largest work on the way, `>= 0`.
+    /// The largest work so far, `>= 0`.
     pub work_max: f64,
-    /// The most by which kinetic and strain energy have grown beyond the work of the loads, `>= 0`, in energy.
+    /// The largest excess of kinetic and strain energy over the work of the loads, `>= 0`, in energy.
     pub excess_max: f64,
 }
 
 impl MotionSummary {
-    /// A run that starts as `seen`; the force is averaged over the whole number of steps of length `step` that is nearest to
-    /// `window`, in time.
+    /// A run that starts as `seen`; the force is averaged over a whole number of steps of length `step`: the one nearest to `window`, in
+    /// time.
     pub fn starting(seen: &Observation, window: f64, step: f64) -> Self {
         let energies = [seen.kinetic, seen.strain, seen.potential];
         MotionSummary {
@@ -69,7 +69,7 @@ impl MotionSummary {
         }
     }
 
-    /// One step of length `step` further.
+    /// Adds one step of length `step`.
     pub fn add(&mut self, seen: &Observation, step: f64) {
         self.steps += 1;
         self.time = seen.time;
@@ -108,21 +108,19 @@ impl MotionSummary {
         self.energy_first[0] + self.energy_first[1]
     }
 
-    /// Kinetic and strain energy now and the largest on the way, over that at the start; `None` for a motion that starts
-    /// with none.
+    /// Present and largest kinetic and strain energy over the initial one; `None` for a motion that starts with zero energy.
     pub fn over_initial(&self) -> Option<[f64; 2]> {
         let initial = self.initial_energy();
         (initial > 0.0).then(|| [self.energy_last[0] + self.energy_last[1], self.energy_scale].map(|now| now / initial))
     }
 
-    /// The most by which energy has grown that no load put in, over the energy at the start and the largest work of the
-    /// loads.
+    /// The largest growth of energy without work of the loads, over the initial energy and the largest work of the loads.
     pub fn growth(&self) -> f64 {
         let given = self.initial_energy() + self.work_max;
         if self.excess_max > 0.0 { self.excess_max / given } else { 0.0 }
     }
 
-    /// What may mislead in this motion: with the code `unstable`, that its energy grew by more than 1 %.
+    /// Warnings for this motion: with the code `unstable` if its energy grew by more than 1 %.
     pub fn warnings(&self) -> Vec<AnswerWarning> {
         let growth = self.growth();
         if growth <= MOST_GROWTH {
@@ -141,12 +139,12 @@ impl MotionSummary {
         vec![AnswerWarning { code: "unstable", message }]
     }
 
-    /// The sum of the energies now less that at the start, over the largest energy of motion and strain.
+    /// The present sum of the energies minus the initial sum, over the largest kinetic and strain energy.
     pub fn energy_change(&self) -> f64 {
         self.relative(self.energy_last.iter().sum())
     }
 
-    /// The largest sum of the energies less that at the start, over the largest energy of motion and strain.
+    /// The largest sum of the energies minus the initial sum, over the largest kinetic and strain energy.
     pub fn energy_gain(&self) -> f64 {
         self.relative(self.energy_range[1])
     }

@@ -1,4 +1,4 @@
-//! What a digit of a motion costs: every scheme at several steps, timed, against the same mesh at a far smaller step.
+//! The cost of accuracy in a motion: every scheme at several steps, timed, against the same mesh at a far smaller step.
 
 use std::time::Instant;
 
@@ -14,11 +14,11 @@ use crate::scene::{Dynamics, Model, Scene};
 /// Times at which displacements are compared.
 const SAMPLES: usize = 20;
 
-/// Steps of an implicit scheme over those of the scene, and of the reference, as quarters.
+/// Numbers of steps of an implicit scheme, and of the reference, over a quarter of those of the scene.
 const QUARTERS: [usize; 4] = [1, 2, 4, 8];
 const REFERENCE: usize = 32;
 
-/// Steps of the explicit scheme over the fewest that are stable.
+/// Numbers of steps of the explicit scheme over the smallest stable number.
 const EXPLICIT: [usize; 2] = [1, 2];
 
 /// One scheme at one step.
@@ -28,15 +28,15 @@ pub struct MotionPoint {
     pub scheme: &'static str,
     /// The step, in time.
     pub step: f64,
-    /// How many steps.
+    /// Number of steps.
     pub steps: usize,
     /// Seconds from the assembled problem to the last step.
     pub seconds: f64,
-    /// Root of the mean square of the displacement's error at the sampled times, relative to the way of the reference.
+    /// Root mean square error of the displacement at the sampled times, relative to the motion of the reference.
     pub displacement_error: f64,
-    /// Error of the impulse, relative; that of nothing is nothing.
+    /// Relative error of the impulse; zero if both impulses are zero.
     pub impulse_error: f64,
-    /// Energy at the end less that at the start, over the largest energy of motion and strain.
+    /// Energy at the end minus that at the start, over the largest kinetic and strain energy.
     pub energy_change: f64,
     /// Deepest penetration, in length.
     pub penetration: f64,
@@ -44,29 +44,29 @@ pub struct MotionPoint {
     pub best: bool,
 }
 
-/// A motion by every scheme.
+/// A motion computed by every scheme.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MotionTradeoff {
     /// Unknown displacements.
     pub dofs: usize,
-    /// Step of the reference, which is of the scheme `midpoint`.
+    /// Step of the reference, which uses the scheme `midpoint`.
     pub reference_step: f64,
     /// The points, scheme by scheme.
     pub points: Vec<MotionPoint>,
 }
 
-/// Runs a scene that moves by every scheme at several steps.
+/// Runs a scene with a motion by every scheme at several steps.
 ///
-/// A run that breaks down has an infinite error. Where the watch of `settings` is asked to stop, the points are those of the
-/// runs until then.
+/// A run that fails has an infinite error. If the watch of `settings` is asked to stop, the result holds the points of the completed
+/// runs.
 ///
 /// # Errors
-/// As [`Scene::build`] and [`Scene::dynamics`]; [`Error::Scene`] for a scene that does not move; [`Error::Interrupted`] where
-/// not one run has ended.
+/// As [`Scene::build`] and [`Scene::dynamics`]; [`Error::Scene`] for a scene without a motion; [`Error::Interrupted`] if no run was
+/// completed.
 pub fn motion_tradeoff(scene: &Scene, settings: &Settings) -> Result<MotionTradeoff, Error> {
     let model = scene.build()?;
     let own = scene.dynamics(&model)?.ok_or_else(still)?;
-    // The samples fall on steps.
+    // The samples coincide with steps.
     let quarter = own.steps.div_ceil(4 * SAMPLES).max(1);
     let of = |scheme, steps: usize| with(scene, &model, scheme, Some(steps));
     let reference = run(of(SchemeSpec::default(), SAMPLES * quarter * REFERENCE)?, settings)?;
@@ -115,7 +115,7 @@ pub fn motion_tradeoff(scene: &Scene, settings: &Settings) -> Result<MotionTrade
     Ok(MotionTradeoff { dofs: model.problem().dofs(), reference_step: duration / steps as f64, points })
 }
 
-/// What a run came to.
+/// The result of a run.
 #[derive(Default)]
 struct Run {
     seconds: f64,
@@ -166,7 +166,7 @@ fn run(dynamics: Dynamics, settings: &Settings) -> Result<Run, Error> {
     })
 }
 
-/// The motion of the scene by a scheme with its own form of the mass, in this number of steps or in that of its default.
+/// The motion of the scene by a scheme with its own form of the mass, in this number of steps or in the default number.
 fn with(scene: &Scene, model: &Model, scheme: SchemeSpec, steps: Option<usize>) -> Result<Dynamics, Error> {
     let mut scene = scene.clone();
     if let Some(AnalysisSpec::Dynamic(spec)) = &mut scene.analysis {

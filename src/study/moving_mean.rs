@@ -1,42 +1,42 @@
-//! The largest mean of a force over any window of time: a peak without the ringing that is shorter than the window.
+//! The largest mean of a force over any window of time: a peak without oscillations shorter than the window.
 
 use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
-/// Bins of a window: more steps than this are gathered, several in a bin. The window then moves by a 64th of itself, and its
-/// memory does not grow with the number of steps.
+/// Bins of a window: with more steps, several steps share a bin. The window then moves by 1/64 of its length, and its memory does not
+/// grow with the number of steps.
 const MOST_BINS: usize = 64;
 
-/// A mean over a window that moves with time, and the largest so far. Before the first step there is no force.
+/// The mean over a window that moves with time, and the largest mean so far. Before the first step the force is zero.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct MovingMean {
     /// Steps of a bin.
     per_bin: usize,
     /// Bins of a window.
     bins: usize,
-    /// Sums of the forces of whole bins, the oldest first; as many as are in the window.
+    /// Sums of the forces of complete bins in the window, the oldest first.
     sums: VecDeque<f64>,
-    /// Steps in the bin that is being filled, and the sum of their forces.
+    /// Steps in the current bin, and the sum of their forces.
     filling: (usize, f64),
     /// The largest mean so far.
     pub largest: f64,
 }
 
 impl MovingMean {
-    /// The mean over the whole number of steps that is nearest to this many, at least one.
+    /// The mean over the whole number of steps nearest to `steps`, at least one.
     pub fn over(steps: f64) -> Self {
         let steps = (steps.round() as usize).max(1);
         let per_bin = steps.div_ceil(MOST_BINS);
         MovingMean { per_bin, bins: (steps / per_bin).max(1), ..MovingMean::default() }
     }
 
-    /// The steps of the window.
+    /// The number of steps of the window.
     pub fn steps(&self) -> usize {
         self.per_bin * self.bins
     }
 
-    /// The force of one more step.
+    /// Adds the force of one more step.
     pub fn add(&mut self, force: f64) {
         let (count, sum) = (self.filling.0 + 1, self.filling.1 + force);
         if count < self.per_bin {

@@ -1,4 +1,4 @@
-//! A problem on its way to another end: gaps, load or both change on a straight line.
+//! A problem that moves to another end: gaps, load or both change linearly.
 
 use serde::Serialize;
 
@@ -9,20 +9,20 @@ use crate::qp::problem::ContactProblem;
 use crate::qp::{Method, Prepared, Settings, Start, solve};
 use crate::solution::Solution;
 
-/// One point of the way.
+/// One point of the path.
 #[derive(Clone, Debug, Serialize)]
 pub struct ProblemPoint {
-    /// How far: 0 for the problem itself, 1 for its other end.
+    /// Position on the path: 0 for the problem itself, 1 for its other end.
     pub t: f64,
     /// The solution with its numbers.
     #[serde(flatten)]
     pub summary: Summary,
 }
 
-/// A row that touches or releases on the way.
+/// A row that touches or releases on the path.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ProblemEvent {
-    /// Where, exactly.
+    /// The exact position.
     pub t: f64,
     /// The contact row.
     pub row: usize,
@@ -30,24 +30,24 @@ pub struct ProblemEvent {
     pub touches: bool,
 }
 
-/// A problem at several points of the way.
+/// A problem at several points of the path.
 #[derive(Clone, Debug, Serialize)]
 pub struct ProblemSweep {
     /// The answers at the points, from 0 to 1.
     pub points: Vec<ProblemPoint>,
-    /// What happens between; `None` where that is not known: the load changes, or the problem is not condensed.
+    /// The events between the points; `None` if they are not known: the load changes, or the problem is not condensed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub events: Option<Vec<ProblemEvent>>,
 }
 
-/// Solves `first` at `count` points of the way to `last`, the same body and rows with other gaps, another load, or both; an
-/// answer that is not certified is an answer here.
+/// Solves `first` at `count` points of the path to `last`, the same body and rows with other gaps, another load, or both. An answer that
+/// is not certified counts as an answer here.
 ///
-/// The body is factorised once, or a hierarchy is built once, and every solve starts from the last answer. A sweep that is
-/// interrupted has the points that were done until then.
+/// The body is factorised once, or a hierarchy is built once, and every solve starts from the last answer. An interrupted sweep holds the
+/// points that were solved before.
 ///
 /// # Errors
-/// As [`solve`]; [`Error::Interrupted`] where not one point was done.
+/// As [`solve`]; [`Error::Interrupted`] if no point was solved.
 pub(crate) fn sweep_problem(
     first: &ContactProblem,
     last: &ContactProblem,
@@ -72,7 +72,7 @@ pub(crate) fn sweep_problem(
         };
         let solution = match solved {
             Ok(solution) => solution,
-            // What was cut short is no answer to this point.
+            // An interrupted solve is no answer to this point.
             Err(_) if settings.watch.is_stopped() => break,
             Err(Error::NotCertified { solution, .. }) => *solution,
             Err(error) => return Err(error),
@@ -95,7 +95,7 @@ fn point(problem: &ContactProblem, t: f64, solution: Solution, settings: &Settin
     ProblemPoint { t, summary: problem_summary(problem, solution, settings.goal(), 0.0) }
 }
 
-/// Entry by entry `(1 - t) first + t last`; what is the same at both ends, as an infinite gap, stays as it is.
+/// Entry by entry `(1 - t) first + t last`; an entry that is equal at both ends, as an infinite gap, stays unchanged.
 fn between(first: &[f64], last: &[f64], t: f64) -> Vec<f64> {
     let mix = |(&first, &last): (&f64, &f64)| if first == last { first } else { (1.0 - t) * first + t * last };
     first.iter().zip(last).map(mix).collect()

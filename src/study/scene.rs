@@ -18,10 +18,10 @@ use crate::qp::{Event, Method, Prepared, Settings, Start, solve};
 use crate::scene::{Answer, ContactExtent, Model};
 use crate::solution::{ContactSet, Goal, Solution};
 
-/// Gaps half way that differ by this from the mean of the ends, relative, are not on a straight line.
+/// Gaps at the middle that differ by more than this from the mean of the ends, relative, are not on a straight line.
 const STRAIGHT_LINE: f64 = 1e-12;
 
-/// The numbers of `solution`, whose `answer` to a scene this is: with pressures, the width of the contact, and the balance of all forces.
+/// The numbers of `solution`, the solution behind `answer`: with pressures, the width of the contact, and the balance of all forces.
 ///
 /// # Errors
 /// [`Error::Refused`] for an obstacle that pulls; as [`Model::reactions`].
@@ -43,7 +43,7 @@ pub fn scene_summary(
     };
     let mut summary = Summary::new(solution, size, goal, assemble_seconds);
     if summary.solution.lost_pivot.is_some() && !model.is_supported() {
-        // The pivot is that of a mode which contact alone holds: no digit is lost.
+        // The small pivot belongs to a rigid-body mode that only contact holds: no digit is lost.
         summary.warnings.clear();
     }
     summary.warnings.extend(warnings);
@@ -77,14 +77,14 @@ pub fn problem_summary(
     summary
 }
 
-/// Area of the boundary that the closed rows stand for; thickness, cross-section or circumference included.
+/// Area of the boundary that belongs to the closed rows; thickness, cross-section or circumference included.
 fn contact_area(model: &Model, closed: &ContactSet) -> f64 {
     let of_part =
         closed.iter().filter_map(|row| model.rows().get(row)).fold(0.0, |area, row| area + row.tributary_area);
     model.parts_of_whole() * of_part
 }
 
-/// Length of the boundary that the closed rows stand for, in the unit of length, where the model has a thickness.
+/// Length of the boundary that belongs to the closed rows, in the unit of length, if the model has a thickness.
 fn contact_width(model: &Model, closed: &ContactSet) -> Option<f64> {
     match *model.body().formulation() {
         Formulation::PlaneStrain { thickness } | Formulation::PlaneStress { thickness } => {
@@ -99,30 +99,30 @@ fn contact_width(model: &Model, closed: &ContactSet) -> Option<f64> {
 pub struct SweepPoint {
     /// The scene-wide gap.
     pub gap: f64,
-    /// The force that presses the obstacle, in a sweep over forces.
+    /// The force on the obstacle, in a sweep over forces.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub force: Option<f64>,
     /// The solution with its numbers.
     #[serde(flatten)]
     pub summary: Summary,
-    /// The answer, joined with the scene at this gap.
+    /// The answer, with the model at this gap.
     #[serde(skip)]
     pub answer: Answer,
 }
 
 #[cfg(feature = "pictures")]
 impl SweepPoint {
-    /// How far the pressed obstacle has moved, in a sweep over forces.
+    /// The displacement of the pressed obstacle, in a sweep over forces.
     pub(crate) fn travel(&self) -> Option<f64> {
         self.force?;
         (0..self.answer.model().obstacles().len()).find_map(|obstacle| self.answer.travel(obstacle))
     }
 }
 
-/// A row that touches or releases on the way from the first to the last gap of a sweep.
+/// A row that touches or releases between the first and the last gap of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SweepEvent {
-    /// The gap, exactly.
+    /// The exact gap.
     pub gap: f64,
     /// The contact row.
     pub row: usize,
@@ -132,14 +132,14 @@ pub struct SweepEvent {
     pub touches: bool,
 }
 
-/// A corner of the polylines over the gap. Where the contact set changes there are two, before and after.
+/// A corner of the polylines over the gap. At a change of the contact set there are two, before and after.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SweepCorner {
     /// The gap.
     pub gap: f64,
     /// Total contact force.
     pub force: f64,
-    /// Length of the boundary in contact, where the model has a thickness.
+    /// Length of the boundary in contact, if the model has a thickness.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub width: Option<f64>,
     /// Area of the boundary in contact.
@@ -151,28 +151,28 @@ pub struct SweepCorner {
 /// A scene at several gaps, or forces.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Sweep {
-    /// The answers at the gaps or forces that were asked for.
+    /// The answers at the requested gaps or forces.
     pub points: Vec<SweepPoint>,
-    /// What happens between the first and the last gap; empty where the rows do not move on straight lines.
+    /// The events between the first and the last gap; empty if the rows do not move on straight lines.
     pub events: Vec<SweepEvent>,
-    /// Force, width and pressure between, exactly; empty where the events are.
+    /// Exact force, width and pressure in between; empty if the events are.
     pub corners: Vec<SweepCorner>,
-    /// The answers between, if the events are known.
+    /// The answers in between, if the events are known.
     #[serde(skip)]
     #[cfg_attr(not(feature = "cli"), allow(dead_code))]
     pub(crate) path: Option<ExactPath>,
 }
 
-/// Solves a scene at every one of `gaps`; an answer that is not certified is an answer here.
+/// Solves a scene at every one of `gaps`; an answer that is not certified counts as an answer here.
 ///
-/// The stiffness is factorised once, or a hierarchy is built once, and every solve starts from the last contact set. Where the
-/// body is condensed and the rows move on straight lines (rows along the approach direction do), everything that happens between
-/// the first and the last gap is found.
+/// The stiffness is factorised once, or a hierarchy is built once, and every solve starts from the last contact set. If the body is
+/// condensed and the rows move on straight lines (rows along the approach direction do), all events between the first and the last gap
+/// are found.
 ///
-/// A sweep that is interrupted has the gaps that were done until then, and nothing between.
+/// An interrupted sweep holds the gaps that were solved before, and nothing in between.
 ///
 /// # Errors
-/// As [`Model::with_gap`] and [`solve`]; [`Error::Interrupted`] where not one gap was done.
+/// As [`Model::with_gap`] and [`solve`]; [`Error::Interrupted`] if no gap was solved.
 pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, Error> {
     let (Some(&first), Some(&last)) = (gaps.first(), gaps.last()) else { return Ok(Sweep::default()) };
     let at_first = model.with_gap(first)?;
@@ -203,12 +203,12 @@ pub fn sweep(model: &Model, gaps: &[f64], settings: &Settings) -> Result<Sweep, 
 }
 
 impl Sweep {
-    /// Solves a scene at every one of `forces`, 0 or positive, of the one obstacle that a force presses. Without a force the obstacle
+    /// Solves a scene at every one of `forces`, 0 or positive, of the one obstacle that a force presses. At the force 0 the obstacle
     /// stands where it first touches the body.
     ///
     /// # Errors
-    /// [`Error::Scene`] where a force presses no obstacle or several, or for a force that is negative or not finite; as [`solve`];
-    /// [`Error::Interrupted`] where not one force was done.
+    /// [`Error::Scene`] if a force presses no obstacle or several, or for a force that is negative or not finite; as [`solve`];
+    /// [`Error::Interrupted`] if no force was solved.
     pub fn over_forces(model: &Model, forces: &[f64], settings: &Settings) -> Result<Self, Error> {
         if forces.is_empty() {
             return Ok(Sweep::default());
@@ -231,14 +231,14 @@ impl Sweep {
     }
 }
 
-/// A model of a sweep with what the solver said to it.
+/// A model of a sweep with its solution.
 struct Solved {
     model: Model,
     solved: Result<Solution, Error>,
     assemble_seconds: f64,
 }
 
-/// The answers at all values of what is swept, each from the start that the last one makes.
+/// The answers at all values of the swept quantity; each solve starts from the last answer.
 fn points(
     name: &'static str,
     values: &[f64],
@@ -252,7 +252,7 @@ fn points(
         let Solved { model, solved, assemble_seconds } = solved_at(value, known)?;
         let solution = match solved {
             Ok(solution) => solution,
-            // What was cut short is no answer to this value.
+            // An interrupted solve is no answer to this value.
             Err(_) if settings.watch.is_stopped() => break,
             Err(Error::NotCertified { solution, .. }) => *solution,
             Err(error) => return Err(model.explain(error)),
@@ -267,7 +267,7 @@ fn points(
     if points.is_empty() { Err(Error::Interrupted) } else { Ok(points) }
 }
 
-/// The exact path between two gaps; none where the rows turn on the way, or where the body is not condensed.
+/// The exact path between two gaps; `None` if the rows rotate on the path, or if the body is not condensed.
 fn between(prepared: &Prepared, at_first: &Model, last: f64) -> Result<Option<ExactPath>, Error> {
     let first = at_first.gap();
     let (at_last, at_middle) = (at_first.with_gap(last)?, at_first.with_gap((first + last) / 2.0)?);
@@ -279,7 +279,7 @@ fn between(prepared: &Prepared, at_first: &Model, last: f64) -> Result<Option<Ex
             && from.iter().zip(to).zip(at_middle.problem().gap()).all(|((from, to), middle)| {
                 ((from + to) / 2.0 - middle).abs() <= STRAIGHT_LINE * (from.abs() + to.abs())
             });
-    // Without a factor there is no path.
+    // Without a factor no path can be computed.
     if first == last || !is_straight || prepared.hierarchy().is_some() {
         return Ok(None);
     }
@@ -318,7 +318,7 @@ fn corners(path: &ExactPath, model: &Model) -> Result<Vec<SweepCorner>, Error> {
 pub fn even_gaps(first: f64, last: f64, count: usize) -> Vec<f64> {
     let share = |i: usize| i as f64 / (count.max(2) - 1) as f64;
     let between = |i: usize| first * (1.0 - share(i)) + last * share(i);
-    // Fifteen digits, so that gaps come out as they would be written: -0.03, not -0.030000000000000002.
+    // Fifteen digits, so that gaps appear as a person would write them: -0.03, not -0.030000000000000002.
     let written = |gap: f64| format!("{gap:.14e}").parse().unwrap_or(gap);
     let gap = |i: usize| match i {
         0 => first,

@@ -1,4 +1,4 @@
-//! An answer with what is known of its model, serialised as the JSON that the command line prints.
+//! An answer with the data of its model, serialised as the JSON that the command line prints.
 
 use serde::Serialize;
 
@@ -7,20 +7,20 @@ use crate::qp::problem::ContactProblem;
 use crate::scene::{ContactExtent, Resultant, Segment};
 use crate::solution::{Certificate, Goal, Seconds, Solution};
 
-/// How an answer was judged.
+/// The judgement of an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
-    /// It meets its goal.
+    /// The answer meets its goal.
     Certified,
-    /// It does not.
+    /// The answer does not meet its goal.
     NotCertified,
-    /// A motion whose energy grew more than its loads put in: not to be trusted, however good its single steps.
+    /// A motion with an energy growth that its loads do not explain: not reliable, even if every single step is accurate.
     Unstable,
 }
 
 impl Status {
-    /// As a report says it in text.
+    /// The status in words, for text reports.
     pub fn words(self) -> &'static str {
         match self {
             Status::Certified => "certified",
@@ -37,18 +37,18 @@ impl FromIterator<Status> for Status {
     }
 }
 
-/// An answer, judged, with the numbers that its model adds to it.
+/// An answer with its judgement and the numbers that its model adds.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
-    /// Does it meet its goal?
+    /// The judgement against the goal.
     pub status: Status,
-    /// What the certificate was held against.
+    /// The goal against which the certificate was judged.
     #[serde(flatten)]
     pub goal: Goal,
     /// The answer.
     #[serde(flatten)]
     pub solution: Solution,
-    /// What may mislead in these numbers.
+    /// Warnings about these numbers.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<AnswerWarning>,
     /// Closed rows and forces.
@@ -56,21 +56,21 @@ pub struct Summary {
     /// Forces, moments and centres of obstacles, supports and loads; only in a scene.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub resultants: Vec<Resultant>,
-    /// What is closed, piece by piece; only in a scene.
+    /// The contact segments; only in a scene.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub segments: Vec<Segment>,
-    /// What all forces are those of, as `per metre`; left out if they are those of the whole body.
+    /// The reference of all forces, as `per metre`; left out if they are those of the whole body.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub force_basis: String,
-    /// The error of the mesh, estimated, relative in energy; only in a scene, where it was asked for.
+    /// The estimated discretisation error, relative in energy; only in a scene, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub discretisation_error: Option<f64>,
-    /// The strain energy of the body, in force times length; only in a scene, where it was asked for.
+    /// The strain energy of the body, in force times length; only in a scene, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub strain_energy: Option<f64>,
     /// Sizes of the model.
     pub model: ModelSize,
-    /// What it cost.
+    /// Its cost in time.
     pub seconds: RunSeconds,
 }
 
@@ -81,16 +81,16 @@ pub struct ContactSummary {
     pub count: usize,
     /// Total contact force `-sum(lambda)`.
     pub force: f64,
-    /// Largest contact pressure; only a scene has areas to divide by.
+    /// Largest contact pressure; only in a scene, because only a scene has areas.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pressure_max: Option<f64>,
-    /// Length of the boundary that closed rows stand for; only in a scene in plane strain or plane stress.
+    /// Length of the boundary that belongs to closed rows; only in a scene in plane strain or plane stress.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub width: Option<f64>,
-    /// Area of the boundary that closed rows stand for; only in a scene.
+    /// Area of the boundary that belongs to closed rows; only in a scene.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub area: Option<f64>,
-    /// Estimates between the nodes; only in a scene whose contact has an extent.
+    /// Estimates between the nodes; only in a scene with a contact of some extent.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub estimate: Option<ContactExtent>,
     /// Imbalance of loads, reactions and contact forces, relative; only in a scene.
@@ -105,7 +105,7 @@ pub struct ModelSize {
     pub dofs: usize,
     /// Contact rows.
     pub contact_rows: usize,
-    /// Unknowns that the method worked on.
+    /// Number of unknowns of the method.
     pub condensed_dofs: usize,
     /// Entries of the stiffness, both triangles.
     pub stiffness_entries: usize,
@@ -122,15 +122,15 @@ pub struct ModelSize {
 pub struct RunSeconds {
     /// Reading, meshing and assembly.
     pub assemble: f64,
-    /// Factorisations, the analysis of the pattern included; of a motion those before its first step.
+    /// Factorisations, including the analysis of the pattern; in a motion those before its first step.
     pub factor: f64,
-    /// The solve without its factorisations and its proof, the certificate included; of a motion all steps, writing included.
+    /// The solve without its factorisations and its proof, including the certificate; in a motion all steps, including writing.
     pub solve: f64,
-    /// What of that the certificate took.
+    /// The part of `solve` for the certificate.
     pub certificate: f64,
-    /// Proving which rows are open and closed.
+    /// The proof which rows are open and closed.
     pub proof: f64,
-    /// All of it.
+    /// The sum.
     pub total: f64,
 }
 
@@ -142,7 +142,7 @@ impl RunSeconds {
             .summed()
     }
 
-    /// The seconds of the three stages of what is not proven, with their sum.
+    /// The seconds of the three stages of an answer without a proof, with their sum.
     pub fn new(assemble: f64, factor: f64, solve: f64) -> Self {
         RunSeconds { assemble, factor, solve, ..RunSeconds::default() }.summed()
     }
@@ -166,7 +166,7 @@ impl ModelSize {
 }
 
 impl Summary {
-    /// The report of `solution` to a raw problem; a scene adds what it knows to `contact` and `model`.
+    /// The report of `solution` to a raw problem; a scene adds its data to `contact` and `model`.
     pub fn new(solution: Solution, model: ModelSize, goal: impl Into<Goal>, assemble_seconds: f64) -> Self {
         let goal = goal.into();
         let is_met = goal.is_met_by(&solution.certificate);
@@ -196,20 +196,20 @@ impl Summary {
     }
 }
 
-/// The certificate of an answer that came from elsewhere.
+/// The certificate of an answer from another source.
 #[derive(Clone, Debug, Serialize)]
 pub struct Verification {
-    /// Does it meet its goal?
+    /// The judgement against the tolerance.
     pub status: Status,
-    /// Relative tolerance that the certificate was held against.
+    /// Relative tolerance of the judgement.
     pub tolerance: f64,
-    /// The total force; a row counts as closed where its multiplier is not zero.
+    /// The total force; a row counts as closed if its multiplier is not zero.
     pub contact: ContactSummary,
     /// The recomputed conditions.
     pub certificate: Certificate,
     /// Sizes of the model.
     pub model: ModelSize,
-    /// What may mislead in these numbers.
+    /// Warnings about these numbers.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<AnswerWarning>,
 }

@@ -16,19 +16,19 @@ use crate::watch::Watch;
 /// Tolerances of the interior point.
 const TOLERANCES: [f64; 6] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
 
-/// Accuracies of the multigrid method, whose knob is the error bound that it reaches.
+/// Accuracies of the multigrid method; its setting is the error bound to reach.
 const ACCURACIES: [f64; 5] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10];
 
-/// The two fastest runs of a point differ by less than this share, or there are [`MOST_RUNS`] times as many as were asked for.
+/// The two fastest runs of a point differ by less than this share, or there are [`MOST_RUNS`] times as many runs as requested.
 const REPEATED: f64 = 0.03;
 
 /// See [`REPEATED`].
 const MOST_RUNS: usize = 4;
 
-/// A mesh of so many times the unknowns takes so many times the seconds to this power, all methods together.
+/// The seconds of a mesh grow with this power of its unknowns, for all methods together.
 const PER_UNKNOWN: f64 = 1.5;
 
-/// Last penalties of the penalty ladder, in multiples of the local stiffness; the best is 1e8.
+/// Last penalties of the penalty ladder, in multiples of the local stiffness; 1e8 is the best.
 const PENALTIES: [f64; 9] = [1e0, 1e2, 1e4, 1e6, 1e7, 1e8, 1e10, 1e12, 1e14];
 
 /// Tolerances for which the report names the cheapest method.
@@ -50,16 +50,16 @@ const ERROR_ROUNDING: f64 = 1e-12;
 /// The QP whose contact set is settled by active-set steps.
 const POLISHED: &str = "qp, polished";
 
-/// What is varied, and how well it is timed.
+/// The varied parameters and the effort of the timing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TradeoffGrid {
-    /// Number of meshes beside the scene's own, each with half the cell size of the one before.
+    /// Number of meshes besides the scene's own, each with half the cell size of the previous one.
     pub refinements: usize,
     /// Runs of each point, at least 1, and up to four times as many until the two fastest differ by less than 3 %; the fastest counts.
     pub runs: usize,
     /// Points of more dofs than this are solved on the contact boundary only.
     pub most_full_dofs: usize,
-    /// No finer mesh is begun that would end later than so many seconds after the start, by what the last one took.
+    /// No finer mesh is started if, by the time of the last one, it would end later than this many seconds after the start.
     pub seconds: f64,
 }
 
@@ -78,7 +78,7 @@ pub struct TradeoffMesh {
     pub dofs: usize,
     /// Contact rows.
     pub contact_rows: usize,
-    /// Estimated error of the mesh, relative in energy; a problem directory has no mesh.
+    /// Estimated discretisation error, relative in energy; a problem directory has no mesh.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub discretisation_error: Option<f64>,
 }
@@ -99,21 +99,21 @@ pub struct TradeoffPoint {
     pub mixed: bool,
     /// The fastest run, in seconds, from the checked problem to the answer at the tolerance of the method.
     pub seconds: f64,
-    /// What its certificate took, in seconds.
+    /// Seconds for its certificate.
     pub certificate_seconds: f64,
-    /// What its proof of the contact set took, in seconds.
+    /// Seconds for its proof of the contact set.
     pub proof_seconds: f64,
-    /// Are the two fastest runs within 3 % of each other?
+    /// `true` if the two fastest runs are within 3 % of each other.
     pub is_repeated: bool,
-    /// Energy norm of the error of the displacement over that of the displacement, as the bound has it.
+    /// Energy norm of the error of the displacement over that of the displacement, defined as in the bound.
     pub energy_error: f64,
-    /// Error against the exact answer of the scene, relative in energy: that of the algebra and the estimated one of the mesh, which
-    /// are nearly at right angles, together; none in a problem directory.
+    /// Error against the exact answer of the scene, relative in energy: the algebraic error and the estimated discretisation error
+    /// together, which are nearly orthogonal; `None` in a problem directory.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub total_error: Option<f64>,
     /// Error of the contact force, relative.
     pub force_error: f64,
-    /// Error of the largest pressure, relative; none in a problem directory, which has no areas.
+    /// Error of the largest pressure, relative; `None` in a problem directory, which has no areas.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pressure_error: Option<f64>,
     /// Misclassified rows: closed in one contact set and open in the other.
@@ -124,7 +124,7 @@ pub struct TradeoffPoint {
     pub best: bool,
 }
 
-/// What to choose.
+/// The recommended choice.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Advice {
     /// The energy error to reach on the scene's own mesh.
@@ -133,7 +133,7 @@ pub struct Advice {
     pub total_error: Option<f64>,
     /// Seconds to spend: for the least energy error on the scene's own mesh, or for the least total error on any mesh.
     pub seconds: Option<f64>,
-    /// `true` if a mesh is chosen, too.
+    /// `true` if a mesh is chosen too.
     pub chooses_mesh: bool,
     /// Index of the point to choose; `None` if no point is good enough.
     pub point: Option<usize>,
@@ -146,7 +146,7 @@ pub struct Tradeoff {
     pub meshes: Vec<TradeoffMesh>,
     /// The points, mesh by mesh.
     pub points: Vec<TradeoffPoint>,
-    /// What to choose on the scene's own mesh, then on any of the meshes.
+    /// The recommended choices on the scene's own mesh, then on any of the meshes.
     pub advice: Vec<Advice>,
     /// Runs of each point.
     pub runs: usize,
@@ -159,8 +159,8 @@ pub struct Tradeoff {
 /// If `watch` is asked to stop, the result holds the points measured until then.
 ///
 /// # Errors
-/// As [`Scene::refined`], [`Scene::build`] and [`solve`]; an answer that is not certified is an answer here.
-/// [`Error::Interrupted`] where not one point was measured.
+/// As [`Scene::refined`], [`Scene::build`] and [`solve`]; an answer that is not certified counts as an answer here.
+/// [`Error::Interrupted`] if no point was measured.
 pub fn tradeoff(scene: &Scene, grid: &TradeoffGrid, watch: &Watch) -> Result<Tradeoff, Error> {
     let mut result = Tradeoff::new(grid);
     let clock = Instant::now();
@@ -193,10 +193,10 @@ impl TradeoffMesh {
 }
 
 impl Tradeoff {
-    /// Solves a problem that comes as matrices by all methods: errors of the algebra alone.
+    /// Solves a problem given as matrices by all methods: algebraic errors only.
     ///
     /// # Errors
-    /// As [`solve`]; [`Error::Interrupted`] where not one point was measured.
+    /// As [`solve`]; [`Error::Interrupted`] if no point was measured.
     pub fn of_problem(problem: &ContactProblem, grid: &TradeoffGrid, watch: &Watch) -> Result<Self, Error> {
         let mut result = Tradeoff::new(grid);
         Measured { problem, peak: &|_| Ok(None), mesh: 0 }.all(grid, watch, &mut result.points)?;
@@ -208,7 +208,7 @@ impl Tradeoff {
         Tradeoff { meshes: Vec::new(), points: Vec::new(), advice: Vec::new(), runs: grid.runs.max(1) }
     }
 
-    /// With what follows from all points together.
+    /// With the results that follow from all points together.
     fn advised(mut self) -> Result<Self, Error> {
         if self.points.is_empty() {
             return Err(Error::Interrupted);
@@ -235,7 +235,7 @@ struct Measured<'a> {
 }
 
 impl Measured<'_> {
-    /// Adds the points of all ways; the exact answer, or none if `watch` was asked to stop before.
+    /// Adds the points of all ways; returns the exact answer, or `None` if `watch` was asked to stop before.
     fn all(
         &self,
         grid: &TradeoffGrid,
@@ -272,7 +272,7 @@ impl Measured<'_> {
         Ok(Some(exact))
     }
 
-    /// How far an answer is from the exact one.
+    /// The errors of an answer against the exact one.
     fn errors(&self, solution: &Solution, exact: &Solution) -> Result<TradeoffPoint, Error> {
         let norm = |u: &[f64]| dot(u, &self.problem.stiffness().mul(u)).max(0.0).sqrt();
         let relative = |value: f64, scale: f64| if value == 0.0 { 0.0 } else { (value / scale).abs() };
@@ -302,7 +302,7 @@ impl Measured<'_> {
     }
 }
 
-/// One way to an answer.
+/// One way to an answer: a method with its settings.
 struct Way {
     method: &'static str,
     knob: Option<f64>,
@@ -318,11 +318,11 @@ fn ways(condense: Condense, precision: Precision) -> Vec<Way> {
     };
     let mut ways = Vec::new();
     let mixed = precision == Precision::Mixed;
-    // What an interior point leaves undone is more than single precision does.
+    // The error of an interior point is larger than that of single precision.
     for (method, polish) in [("qp", false), (POLISHED, true)].into_iter().filter(|way| way.1 || !mixed) {
         for tolerance in TOLERANCES {
             let settings = base(Method::Qp(InteriorPoint { polish, tolerance }));
-            // A loose answer is not held against more than it was asked for: it would be looked at again, and pay for that.
+            // A loose answer is judged only by its own tolerance: otherwise it would be refined again, and the time would count.
             let settings = if polish { settings } else { unjudged(settings) };
             ways.push(Way { method, knob: Some(tolerance), settings });
         }
@@ -340,12 +340,12 @@ fn ways(condense: Condense, precision: Precision) -> Vec<Way> {
     ways
 }
 
-/// The same settings, whose answers no tolerance judges.
+/// The same settings without a tolerance that judges the answers.
 fn unjudged(settings: Settings) -> Settings {
     Settings { tolerance: f64::MAX, ..settings }
 }
 
-/// Multigrid to its accuracies, on all dofs.
+/// Multigrid to each of its accuracies, on all dofs.
 fn multigrid_ways() -> Vec<Way> {
     let way = |accuracy| Way {
         method: Method::Mprgp.name(),
@@ -381,7 +381,7 @@ fn timed(problem: &ContactProblem, ways: &[Way], runs: usize, watch: &Watch) -> 
         let solved = Prepared::new(problem, &way.settings).and_then(|prepared| prepared.solve(problem.gap()));
         let seconds = clock.elapsed().as_secs_f64();
         if watch.is_stopped() {
-            // What was cut short measures nothing.
+            // An interrupted run gives no measurement.
             return Ok(None);
         }
         let mixed = way.settings.precision == Precision::Mixed;
@@ -455,7 +455,7 @@ fn advice(points: &[TradeoffPoint]) -> Vec<Advice> {
     advice
 }
 
-/// Which mesh and which method reach a total error soonest, and come nearest in a time.
+/// The mesh and method that reach a total error first, and those with the smallest total error within a time.
 fn advice_of_meshes(points: &[TradeoffPoint]) -> Vec<Advice> {
     let by = |measure: fn(&TradeoffPoint) -> [f64; 2], is_allowed: &dyn Fn(&TradeoffPoint) -> bool| {
         let allowed = points.iter().enumerate().filter(|(_, point)| is_allowed(point));
@@ -473,7 +473,7 @@ fn advice_of_meshes(points: &[TradeoffPoint]) -> Vec<Advice> {
         chooses_mesh: true,
         ..Advice::default()
     });
-    // Of errors that differ by a hundredth the one that is found sooner.
+    // Of errors that differ by less than about a hundredth, the one that is found first.
     let rounded =
         |point: &TradeoffPoint| [(100.0 * point.total_error.map_or(f64::INFINITY, f64::ln)).round(), point.seconds];
     let of_budgets = BUDGETS.iter().map(|&seconds| Advice {

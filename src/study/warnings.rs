@@ -1,4 +1,4 @@
-//! What may mislead in an answer, with its numbers: warnings, and the refusal of a scene that asks for something else than was meant.
+//! Warnings about an answer, with their numbers, and the refusal of a scene that poses another problem than was meant.
 
 use std::collections::BTreeMap;
 
@@ -11,50 +11,50 @@ use crate::qp::problem::ContactProblem;
 use crate::scene::{Answer, ContactRow, Model, Resultant, Rule, Segment, refused, straight_cells};
 use crate::solution::{Certificate, Solution};
 
-/// Strains above this are beyond small strains, for which the equations hold.
+/// Strains above this are no longer small, as the equations assume.
 const LARGE_STRAIN: f64 = 0.1;
 
-/// Forces of a row below this share of the largest of its obstacle are rounding.
+/// Forces of a row below this share of the largest force of its obstacle are rounding.
 const NO_FORCE: f64 = 1e-9;
 
-/// Forces of a row below this share of the largest of all obstacles are rounding of the solve.
+/// Forces of a row below this share of the largest force of all obstacles are rounding of the solve.
 const ROUNDING: f64 = 1e-13;
 
-/// A direction may lean on the wrong side of a surface by this sine: rounding of the geometry.
+/// A direction may point to the wrong side of a surface by this sine: rounding of the geometry.
 const SIDEWAYS: f64 = 1e-9;
 
-/// Surfaces that lean by more degrees than this from the direction of their rows make another force: the cosine is 1.5 % off.
+/// If the normal of a surface is more than this many degrees off the direction of its rows, the force differs: the cosine is 1.5 % off.
 const LEANING: f64 = 10.0;
 
-/// A force of a support above this share of the largest is felt.
+/// A force of a support above this share of the largest counts as a force.
 const FELT: f64 = 1e-6;
 
-/// A boundary that faces away from its obstacle by more than the angle of this cosine, 60 degrees, is hardly the one that was meant.
+/// A boundary that faces away from its obstacle by more than the angle of this cosine, 60 degrees, is probably not the intended one.
 const ASIDE: f64 = 0.5;
 
-/// Between its nodes a body may go into an obstacle by this share of how far the contact moves it: with two cells to each half of a
-/// smooth contact it is a sixteenth.
+/// Allowed depth of a body in an obstacle between its nodes, as a share of the displacement that contact imposes: with two cells in each
+/// half of a smooth contact it is a sixteenth.
 const BETWEEN: f64 = 0.25;
 
-/// Beside a corner of a surface, in units of the size of the mesh: above rounding, below every cell.
+/// Offset beside a corner of a surface, in units of the size of the mesh: above rounding, below every cell.
 const BESIDE: f64 = 1e-6;
 
-/// A contact of so few nodes has no shape that could be seen.
+/// A contact with at most this many nodes has no visible shape.
 const FEW_NODES: usize = 2;
 
-/// A peak that half of the difference to the mean around it makes uncertain by more than this is that of the mesh.
+/// A peak depends on the mesh if half of its difference to the mean around it, relative to the peak, is larger than this.
 const SCATTER: f64 = 0.2;
 
-/// Something about an answer that its reader should know, certified or not.
+/// A fact about an answer that its reader should know, certified or not.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct AnswerWarning {
     /// The name of the kind of warning, the same in every version.
     pub code: &'static str,
-    /// What it is, with numbers, its likely cause, and what helps.
+    /// The fact with its numbers, its likely cause, and a remedy.
     pub message: String,
 }
 
-/// That the entries of the stiffness determine few digits of the answer, however good its certificate.
+/// Warns that the entries of the stiffness determine few digits of the answer, even with a good certificate.
 pub(super) fn lost_digits(solution: &Solution) -> Option<AnswerWarning> {
     let (digits, pivot) = (solution.digits_of_stiffness()?, solution.lost_pivot?);
     let digits = match digits {
@@ -71,7 +71,7 @@ pub(super) fn lost_digits(solution: &Solution) -> Option<AnswerWarning> {
     Some(AnswerWarning { code: "lost-digits", message })
 }
 
-/// That multipliers have the sign of rows that pull.
+/// Warns that multipliers have the sign of rows that pull.
 pub(super) fn opposite_sign(certificate: &Certificate, multiplier: &[f64], tolerance: f64) -> Option<AnswerWarning> {
     let count = |sign: f64| multiplier.iter().filter(|&&lambda| sign * lambda > 0.0).count();
     let (pulling, pushing) = (count(1.0), count(-1.0));
@@ -86,7 +86,7 @@ pub(super) fn opposite_sign(certificate: &Certificate, multiplier: &[f64], toler
     Some(AnswerWarning { code: "opposite-sign", message })
 }
 
-/// What may mislead in an answer to a scene.
+/// The warnings about an answer to a scene.
 pub(super) fn of_scene(answer: &Answer, solution: &Solution, segments: &[Segment]) -> Vec<AnswerWarning> {
     let model = answer.model();
     let of_model =
@@ -102,7 +102,7 @@ pub(super) fn of_scene(answer: &Answer, solution: &Solution, segments: &[Segment
     of_model.chain(of_answer.into_iter().flatten()).collect()
 }
 
-/// That a support on a single node carries a force.
+/// Warns that a support on a single node carries a force.
 pub(super) fn point_support(dimension: usize, resultants: &[Resultant]) -> Option<AnswerWarning> {
     let size = |one: &Resultant| one.force.iter().fold(0.0, |size: f64, part| size.hypot(*part));
     let largest = resultants.iter().map(size).fold(0.0, f64::max);
@@ -116,7 +116,7 @@ pub(super) fn point_support(dimension: usize, resultants: &[Resultant]) -> Optio
     Some(AnswerWarning { code: "point-support", message })
 }
 
-/// The rows that carry force.
+/// The rows that carry a force.
 fn loaded_rows<'a>(model: &'a Model, multiplier: &[f64]) -> Vec<&'a ContactRow> {
     let mut largest = vec![0.0_f64; model.obstacles().len()];
     let rows = || model.rows().iter().zip(multiplier);
@@ -126,7 +126,7 @@ fn loaded_rows<'a>(model: &'a Model, multiplier: &[f64]) -> Vec<&'a ContactRow> 
     rows().filter(|(row, lambda)| -**lambda > least(row)).map(|(row, _)| row).collect()
 }
 
-/// That rows with force lie aside of the boundary's normals.
+/// Warns that rows with force deviate from the boundary's normals.
 fn across_approach(answer: &Answer) -> Option<AnswerWarning> {
     let loaded = loaded_rows(answer.model(), answer.multiplier());
     let lean = |row: &ContactRow| dot(row.normal, row.outward);
@@ -141,7 +141,7 @@ fn across_approach(answer: &Answer) -> Option<AnswerWarning> {
     Some(AnswerWarning { code: "across-approach", message })
 }
 
-/// That the body goes into an obstacle between its nodes, where no row is.
+/// Warns that the body penetrates an obstacle between its nodes, where no row exists.
 fn between_nodes(answer: &Answer) -> Option<AnswerWarning> {
     let model = answer.model();
     let (nodes, dimension) = (model.mesh().nodes(), model.mesh().dimension());
@@ -179,7 +179,7 @@ fn between_nodes(answer: &Answer) -> Option<AnswerWarning> {
     Some(AnswerWarning { code: "between-nodes", message })
 }
 
-/// That no row of a problem without a scene is closed and none carries a force, with the nearest one.
+/// Warns that no row of a problem without a scene is closed and none carries a force; names the nearest row.
 #[cfg(feature = "cli")]
 pub(super) fn untouched(problem: &ContactProblem, solution: &Solution) -> Option<AnswerWarning> {
     if is_touched(solution) {
@@ -203,7 +203,7 @@ fn nearest(problem: &ContactProblem, solution: &Solution) -> Option<(usize, f64)
     left.enumerate().filter(|(_, gap)| gap.is_finite()).min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// A gap as one would write it.
+/// A gap as a person would write it.
 fn written(gap: f64) -> String {
     if gap < 1e-3 {
         format!("{gap:.1e}")
@@ -212,8 +212,8 @@ fn written(gap: f64) -> String {
     }
 }
 
-/// That rows along the approach direction carry force where the surface leans: the force of a frictionless contact is along its
-/// normal.
+/// Warns that rows along the approach direction carry force where the surface is inclined: the force of a frictionless contact is along
+/// its normal.
 fn leaning_normals(answer: &Answer) -> Option<AnswerWarning> {
     let model = answer.model();
     let nodes = model.mesh().nodes();
@@ -233,7 +233,7 @@ fn leaning_normals(answer: &Answer) -> Option<AnswerWarning> {
         let place: BTreeMap<usize, usize> =
             (0..).zip(obstacle.candidates()).map(|(at, &(node, _))| (node, at)).collect();
         for row in loaded.iter().filter(|row| row.obstacle == index) {
-            // At a corner of the surface every normal between those beside it will do.
+            // At a corner of the surface every normal between those of both sides is allowed.
             let beside = shifts.iter().map(|shift| [0, 1, 2].map(|axis| nodes[row.node][axis] + shift[axis]));
             let normals = beside.filter_map(|at| obstacle.surface_normal(place[&row.node], at, answer.shift(index)));
             let Some(lean) = normals.map(|surface| dot(surface, row.normal)).reduce(f64::max) else { continue };
@@ -252,7 +252,7 @@ fn leaning_normals(answer: &Answer) -> Option<AnswerWarning> {
     Some(AnswerWarning { code: "leaning-normals", message })
 }
 
-/// That the mesh is too coarse for what is said of the contact: segments of one or two nodes, a peak that its neighbours do not share.
+/// Warns that the mesh is too coarse for the numbers of the contact: segments of one or two nodes, a peak unlike its neighbours.
 fn mesh_dependent(model: &Model, segments: &[Segment]) -> Option<AnswerWarning> {
     if model.mesh().dimension() == 1 {
         return None;
@@ -294,7 +294,7 @@ fn mesh_dependent(model: &Model, segments: &[Segment]) -> Option<AnswerWarning> 
     Some(AnswerWarning { code: "mesh-dependent", message })
 }
 
-/// That no row is closed and none carries a force, with the nearest one.
+/// Warns that no row is closed and none carries a force; names the nearest row.
 fn nothing_touches(model: &Model, solution: &Solution) -> Option<AnswerWarning> {
     if is_touched(solution) {
         return None;
@@ -311,7 +311,7 @@ fn nothing_touches(model: &Model, solution: &Solution) -> Option<AnswerWarning> 
     Some(AnswerWarning { code: "nothing-touches", message })
 }
 
-/// That strains are too large for the equations of small strains.
+/// Warns that strains are too large for the equations of small strains.
 fn large_strain(answer: &Answer) -> Option<AnswerWarning> {
     let body = answer.model().body();
     let (element, strain) = largest_strain(body, answer.displacement())?;
@@ -337,7 +337,7 @@ fn largest_strain(body: &ElasticBody, displacement: &[f64]) -> Option<(usize, f6
     body.elements().map(of_element).enumerate().max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Refuses an answer whose obstacles pull: at a row that carries force the direction into the obstacle points into the body.
+/// Refuses an answer with obstacles that pull: at a row that carries force the direction into the obstacle points into the body.
 ///
 /// # Errors
 /// [`Error::Refused`] with the code `approach-away`.

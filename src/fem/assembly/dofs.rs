@@ -8,19 +8,19 @@ use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::fem::mesh::Mesh;
 
-/// Stands where a free dof has its number.
+/// Takes the place of the number at a supported dof.
 const SUPPORTED: usize = usize::MAX;
 
-/// A part of a vector along an axis of a frame below this, relative to the vector, is rounding of the frame.
+/// A component of a vector along an axis of a frame below this, relative to the vector, is rounding of the frame.
 const NO_COMPONENT: f64 = 1e-14;
 
-/// Which dofs are free, their numbers in the problem, and the displacement of the supported ones.
+/// The free dofs, their numbers in the problem, and the displacement of the supported dofs.
 ///
-/// The dofs of a node run along the coordinate axes; those of a node with a [`Frame`] run along its axes, and are its
-/// local dofs. Nodal vectors run along the coordinate axes always.
+/// The dofs of a node run along the coordinate axes; those of a node with a [`Frame`] run along the axes of the frame and are called
+/// local dofs. Nodal vectors always run along the coordinate axes.
 ///
-/// On quadratic faces in space that may touch an obstacle the dofs of a mid-side node are coefficients of shape functions with
-/// positive integrals; those of all other nodes are their displacements.
+/// On quadratic faces in space that may touch an obstacle, the dofs of a mid-side node are coefficients of shape functions with positive
+/// integrals; those of all other nodes are their displacements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DofMap {
     /// Zero at free dofs.
@@ -28,23 +28,24 @@ pub struct DofMap {
     /// [`SUPPORTED`] at supported dofs.
     number: Vec<usize>,
     free: Vec<usize>,
-    /// Dofs of a node; only frames ask.
+    /// Dofs of a node; used only for frames.
     dimension: usize,
     frames: BTreeMap<usize, Frame>,
     basis: PositiveBasis,
 }
 
-/// The displacement of a node, or its coefficient, along a vector: the sum of `coefficient * free dof`, and what supports prescribe.
+/// The displacement of a node, or its coefficient, along a vector: the sum of `coefficient * free dof` and of the part of the supported
+/// dofs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Along {
     /// Numbers of free dofs with their coefficients.
     pub free: Vec<(usize, f64)>,
-    /// The part of the supported dofs, in length.
+    /// The part of the supported dofs, in units of length.
     pub prescribed: f64,
 }
 
 impl DofMap {
-    /// From one entry per nodal dof: the prescribed displacement, or `None` where the dof is free.
+    /// From one entry per nodal dof: the prescribed displacement, or `None` for a free dof.
     ///
     /// # Errors
     /// [`Error::NotFinite`] for a prescribed displacement that is not finite.
@@ -69,11 +70,10 @@ impl DofMap {
         Ok(DofMap { prescribed, number, free, dimension: 1, frames, basis })
     }
 
-    /// From one entry per dof, `dimension` a node, where those of the nodes in `frames` are local: along the axes of
-    /// their frame.
+    /// From one entry per dof, `dimension` per node; those of the nodes in `frames` are local: along the axes of their frame.
     ///
     /// # Errors
-    /// As [`DofMap::new`]; [`Error::Mesh`] for a frame of a node that is not there.
+    /// As [`DofMap::new`]; [`Error::Mesh`] for a frame of a node that the mesh does not have.
     pub fn with_frames(
         prescribed: Vec<Option<f64>>,
         dimension: usize,
@@ -86,12 +86,11 @@ impl DofMap {
         }
     }
 
-    /// The same with coefficients at the mid-side nodes of `boundaries`, where obstacles may touch them, if `body` has quadratic
-    /// faces in space: of shape functions with positive integrals, so that a uniform pressure pushes at every
-    /// node.
+    /// The same with coefficients at the mid-side nodes of `boundaries`, which obstacles may touch, if `body` has quadratic faces in
+    /// space. The coefficients belong to shape functions with positive integrals, so that a uniform pressure pushes at every node.
     ///
-    /// A node keeps its displacement where a support holds it, but not the ends of its edge alike. A boundary that the mesh does
-    /// not have is passed over.
+    /// A mid-side node keeps its displacement if a support holds it but does not hold both ends of its edge in the same way. Boundaries
+    /// that the mesh does not have are ignored.
     ///
     /// # Source
     /// A. Popp, B. I. Wohlmuth, M. W. Gee, W. A. Wall, *Dual quadratic mortar finite element methods for 3D finite deformation
@@ -117,14 +116,14 @@ impl DofMap {
         DofMap { dimension, basis, ..self }
     }
 
-    /// The coefficient at a node of a function with these values at the nodes: the gap of its contact row. It is the value itself
-    /// but at mid-side nodes of [contact faces](Self::with_contact_faces).
+    /// The coefficient at a node of a function with these values at the nodes: the gap of its contact row. It is the value itself, except
+    /// at mid-side nodes of [contact faces](Self::with_contact_faces).
     pub fn coefficient(&self, node: usize, value: impl Fn(usize) -> f64) -> f64 {
         self.basis.coefficient(node, value)
     }
 
-    /// The tributary areas of contact rows from those of the nodes of a boundary, in its order: the integrals of the functions that
-    /// their dofs belong to. They are the areas themselves but on [contact faces](Self::with_contact_faces).
+    /// The tributary areas of contact rows from those of the nodes of a boundary, in its order: the integrals of the shape functions of
+    /// their dofs. They are the areas themselves, except on [contact faces](Self::with_contact_faces).
     pub fn row_areas(&self, of_nodes: &[(usize, f64)]) -> Vec<(usize, f64)> {
         let mut areas: BTreeMap<usize, f64> = BTreeMap::new();
         if !self.basis.is_nodal() {
@@ -139,7 +138,7 @@ impl DofMap {
         &self.basis
     }
 
-    /// All dofs of `mesh` free, but for those of the nodes of `boundaries`: they move by `displacement(point)`.
+    /// All dofs of `mesh` free, except those of the nodes of `boundaries`: they move by `displacement(point)`.
     ///
     /// # Errors
     /// As [`DofMap::new`]; [`Error::Mesh`] for a boundary that the mesh does not have.
@@ -167,14 +166,14 @@ impl DofMap {
         self.prescribed.len()
     }
 
-    /// The frame of a node whose dofs are local.
+    /// The frame of a node with local dofs.
     #[inline]
     pub fn frame(&self, node: usize) -> Option<&Frame> {
         self.frames.get(&node)
     }
 
-    /// The displacement of `node` along `vector`, which has one entry per coordinate: how a contact row or a measured
-    /// displacement is written in the free dofs. Of a mid-side node with a coefficient it is that of the coefficient.
+    /// The displacement of `node` along `vector`, which has one entry per coordinate, in terms of the free dofs: the form of a contact
+    /// row or of a measured displacement. At a mid-side node with a coefficient it is the coefficient.
     pub fn along(&self, node: usize, vector: &[f64]) -> Along {
         let mut local = vector.to_vec();
         if let Some(frame) = self.frame(node) {
@@ -193,7 +192,7 @@ impl DofMap {
         along
     }
 
-    /// The displacement of `node` itself along `vector`, which has one entry per coordinate.
+    /// The displacement of `node` itself, never its coefficient, along `vector`, which has one entry per coordinate.
     pub(crate) fn displacement_along(&self, node: usize, vector: &[f64]) -> Along {
         let mut sum = Along { free: Vec::new(), prescribed: 0.0 };
         for (of, share) in self.basis.values(node) {
@@ -209,13 +208,13 @@ impl DofMap {
         &self.free
     }
 
-    /// The number of nodal dof `dof` among the free ones; `None` where it is supported.
+    /// The number of nodal dof `dof` among the free dofs; `None` if it is supported.
     #[inline]
     pub fn number(&self, dof: usize) -> Option<usize> {
         self.number.get(dof).copied().filter(|&number| number != SUPPORTED)
     }
 
-    /// The displacement of nodal dof `dof` where it is supported.
+    /// The displacement of nodal dof `dof` if it is supported.
     pub fn prescribed(&self, dof: usize) -> Option<f64> {
         let supported = self.number.get(dof) == Some(&SUPPORTED);
         self.prescribed.get(dof).copied().filter(|_| supported)
@@ -224,7 +223,7 @@ impl DofMap {
     /// Nodal displacements from those of the free dofs; supported dofs take their prescribed values.
     ///
     /// # Errors
-    /// [`Error::Length`] where `free` does not have one entry per free dof.
+    /// [`Error::Length`] if `free` does not have one entry per free dof.
     pub fn expand(&self, free: &[f64]) -> Result<Vec<f64>, Error> {
         self.expand_with(free, |dof| self.prescribed(dof).unwrap_or(0.0))
     }
@@ -252,7 +251,7 @@ impl DofMap {
     /// The entries of nodal forces at the free dofs.
     ///
     /// # Errors
-    /// [`Error::Length`] where `nodal` does not have one entry per nodal dof.
+    /// [`Error::Length`] if `nodal` does not have one entry per nodal dof.
     pub fn restrict(&self, nodal: &[f64]) -> Result<Vec<f64>, Error> {
         let local = self.turned_in(nodal)?;
         Ok(self.free.iter().map(|&dof| local[dof]).collect())
@@ -278,7 +277,7 @@ impl DofMap {
         Ok(part)
     }
 
-    /// Nodal forces as those on coefficients, with the entries of the nodes with frames along their axes.
+    /// Nodal forces as forces on coefficients; the entries of nodes with frames run along the axes of the frame.
     fn turned_in<'a>(&self, nodal: &'a [f64]) -> Result<Cow<'a, [f64]>, Error> {
         if nodal.len() != self.nodal_count() {
             let (found, expected) = (nodal.len(), self.nodal_count());

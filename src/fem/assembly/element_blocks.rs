@@ -1,6 +1,6 @@
-//! The stiffness of one element, block by block, and its shape functions changed.
+//! The stiffness of one element, block by block, and changes of its shape functions.
 
-/// A block of a pair of nodes: row axis, column axis.
+/// A block for a pair of nodes: row axis, column axis.
 pub(super) type Block = [[f64; 3]; 3];
 
 /// The stiffness of one element, in force per length: a block for every pair of its nodes.
@@ -10,7 +10,7 @@ pub struct ElementStiffness {
 }
 
 impl ElementStiffness {
-    /// Of the blocks of nodes a >= b, pair by pair.
+    /// From the blocks of nodes a >= b, pair by pair.
     pub(super) fn of(blocks: Vec<Block>) -> Self {
         ElementStiffness { blocks }
     }
@@ -22,7 +22,7 @@ impl ElementStiffness {
         &self.blocks[pair(a, b)]
     }
 
-    /// Adds `factor` times the function of local node `other` to that of `node`: rows and columns of the stiffness alike.
+    /// Adds `factor` times the function of local node `other` to that of `node`, in rows and columns of the stiffness.
     pub(super) fn add_function(&mut self, node: usize, other: usize, factor: f64) {
         let nodes = (0..).take_while(|&count| pair(count, 0) < self.blocks.len()).count();
         let of = |blocks: &[Block], a: usize, b: usize| match a >= b {
@@ -65,7 +65,7 @@ fn each(block: &mut Block, mut change: impl FnMut(usize, usize, &mut f64)) {
     }
 }
 
-/// The place of nodes a >= b among the pairs of an element.
+/// The index of nodes a >= b among the pairs of an element.
 #[inline]
 pub(super) fn pair(a: usize, b: usize) -> usize {
     a * (a + 1) / 2 + b

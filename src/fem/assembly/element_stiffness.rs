@@ -16,10 +16,10 @@ pub fn element_stiffness(body: &ElasticBody, element: &BodyElement, table: &Tabu
     ElementStiffness::of(blocks)
 }
 
-/// That of an isotropic material.
+/// The stiffness of an isotropic element.
 ///
-/// In a body of revolution d_a has the hoop part N_a/r along r, which brings `2 mu h_a h_b`, h = N/r, too. With mean
-/// dilatation d is its mean over the element.
+/// In a body of revolution d_a has the hoop part N_a/r along r, which adds the term `2 mu h_a h_b`, h = N/r. With mean dilatation d is
+/// replaced by its mean over the element.
 fn isotropic_stiffness(body: &ElasticBody, lame: Lame, table: &Tabulated, cell: &Cell) -> Vec<Block> {
     let nodes = table.reference.nodes.len();
     let dilatation = match body.integration() {
@@ -27,7 +27,7 @@ fn isotropic_stiffness(body: &ElasticBody, lame: Lame, table: &Tabulated, cell: 
         Integration::Standard if body.formulation().is_axisymmetric() => Dilatation::Revolved,
         Integration::Standard => Dilatation::Trace,
     };
-    // Gradients are per unit of the cell and determinants in units: what is left of it.
+    // Gradients are per unit of the cell and determinants in powers of the unit: this is the remaining power.
     let scale = cell.unit().powi(table.reference.dimension as i32 - 2);
     let mut products = vec![[[0.0; 3]; 3]; pair(nodes, 0)];
     let mut radial = if dilatation == Dilatation::Trace { Radial::of(0) } else { Radial::of(nodes) };
@@ -62,8 +62,7 @@ fn isotropic_stiffness(body: &ElasticBody, lame: Lame, table: &Tabulated, cell: 
     products
 }
 
-/// Makes the stiffness of a pair of nodes out of the integral of grad N_a grad N_b, that of the dilatations, and that of
-/// h_a h_b.
+/// Computes the stiffness of a pair of nodes from the integral of grad N_a grad N_b, that of the dilatations, and that of h_a h_b.
 #[inline]
 fn finish(block: &mut Block, Lame { lambda, mu }: Lame, dilatation: &Block, squares: f64) {
     let g = *block;
@@ -77,7 +76,7 @@ fn finish(block: &mut Block, Lame { lambda, mu }: Lame, dilatation: &Block, squa
     block[0][0] += 2.0 * mu * squares;
 }
 
-/// What the dilatation d_a of a unit displacement is.
+/// The form of the dilatation d_a of a unit displacement.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Dilatation {
     /// grad N_a.
@@ -102,7 +101,7 @@ struct Radial {
 }
 
 impl Radial {
-    /// Zeros for an element of so many nodes.
+    /// Zeros for an element with this number of nodes.
     fn of(nodes: usize) -> Self {
         let pairs = pair(nodes, 0);
         Radial {
@@ -136,7 +135,7 @@ impl Radial {
         }
     }
 
-    /// The integral of d_a d_b, where `g` is that of grad N_a grad N_b.
+    /// The integral of d_a d_b; `g` is the integral of grad N_a grad N_b.
     #[inline]
     fn dilatation(&self, of: Dilatation, (a, b): (usize, usize), g: Block) -> Block {
         let place = pair(a, b);

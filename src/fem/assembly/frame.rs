@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::fem::geometry::{dot, unit};
 
-/// Axes of unit length and right angles, however they were computed, are so to within this.
+/// Given axes of unit length at right angles are accepted to within this.
 const ORTHONORMAL: f64 = 1e-12;
 
 /// The orthonormal axes along which the local dofs of a node are counted.
@@ -13,11 +13,11 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// The frame of a node in `dimension` coordinates whose first axes are `given`: unit vectors [x, y, z] at right
+    /// The frame of a node in `dimension` coordinates with first axes `given`: unit vectors [x, y, z] at right
     /// angles, zero beyond the dimension.
     ///
     /// # Errors
-    /// [`Error::Setting`] where they are not, or where there are more of them than coordinates.
+    /// [`Error::Setting`] if they are not, or if there are more axes than coordinates.
     pub fn completing(given: &[[f64; 3]], dimension: usize) -> Result<Self, Error> {
         let wrong = |value: f64| Error::Setting { name: "frame", value, allowed: "orthonormal: off by 1e-12 at most" };
         let dimension = dimension.min(3);
@@ -39,7 +39,7 @@ impl Frame {
         let mut axes = given.to_vec();
         for space in [dimension, 3] {
             while axes.len() < space {
-                // The coordinate axis that leans least on those so far: all of it but that is left.
+                // Take the coordinate axis with the largest component perpendicular to the axes so far.
                 let rests = (0..space).map(|axis| {
                     let mut unit = [0.0; 3];
                     unit[axis] = 1.0;
@@ -54,12 +54,12 @@ impl Frame {
         Ok(frame)
     }
 
-    /// The axes, unit vectors [x, y, z]; in the plane the third is across it.
+    /// The axes, unit vectors [x, y, z]; in a plane model the third is normal to the plane.
     pub fn axes(&self) -> &[[f64; 3]; 3] {
         &self.axes
     }
 
-    /// Turns the entries of a node from the coordinate axes, one each, to those of the frame.
+    /// Turns the entries of a node, one per axis, from the coordinate axes to the axes of the frame.
     pub(super) fn turn_in(&self, entries: &mut [f64]) {
         let local = self.axes.map(|axis| entries.iter().zip(axis).map(|(entry, part)| entry * part).sum());
         entries.iter_mut().zip(local).for_each(|(entry, value): (_, f64)| *entry = value);
@@ -75,7 +75,7 @@ impl Frame {
     }
 }
 
-/// What is left of a vector after its parts along orthonormal `axes` are taken away.
+/// The component of a vector perpendicular to orthonormal `axes`.
 pub(crate) fn perpendicular(vector: [f64; 3], axes: &[[f64; 3]]) -> [f64; 3] {
     axes.iter().fold(vector, |rest, axis| {
         let along = dot(rest, *axis);

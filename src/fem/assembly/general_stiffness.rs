@@ -6,7 +6,7 @@ use crate::fem::body::{ElasticBody, LocalPoint};
 use crate::fem::element::{Cell, Tabulated};
 use crate::fem::geometry::Symmetric;
 
-/// The blocks of all pairs of nodes, of the stiffness C.
+/// The blocks of all pairs of nodes, for the stiffness C.
 pub(super) fn general_stiffness(
     body: &ElasticBody,
     stiffness: &[Symmetric; 6],
@@ -14,7 +14,7 @@ pub(super) fn general_stiffness(
     cell: &Cell,
 ) -> Vec<Block> {
     let nodes = table.reference.nodes.len();
-    // Gradients are per unit of the cell and determinants in units: what is left of it.
+    // Gradients are per unit of the cell and determinants in powers of the unit: this is the remaining power.
     let scale = cell.unit().powi(table.reference.dimension as i32 - 2);
     let mut blocks = vec![[[0.0; 3]; 3]; pair(nodes, 0)];
     for at in &table.points {

@@ -5,11 +5,11 @@ use crate::fem::body::ElasticBody;
 
 /// The nodal forces (length `dim * n_nodes`, in force) that hold the body in the nodal displacement `displacement`.
 ///
-/// Computed from the strains, element by element: a rigid translation gives exactly zero, but for the radial one of a
-/// body of revolution, which is none; and but for temperatures and initial stresses, whose stress is there without strain.
+/// Computed from the strains, element by element: a rigid translation gives exactly zero. Exceptions: a radial translation of a body of
+/// revolution is not rigid, and temperatures and initial stresses give a stress without strain.
 ///
 /// # Errors
-/// [`Error::Length`] where the displacement does not have `dim` entries per node.
+/// [`Error::Length`] if the displacement does not have `dim` entries per node.
 pub fn internal_force(body: &ElasticBody, displacement: &[f64]) -> Result<Vec<f64>, Error> {
     body.check_nodal("nodal displacement", displacement.len())?;
     let dimension = body.dimension();

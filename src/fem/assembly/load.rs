@@ -20,8 +20,8 @@ pub fn add_traction(body: &ElasticBody, boundary: &Boundary, traction: [f64; 3],
     for_each_point(body, boundary, &mut |point| add_share(body, point, traction, load));
 }
 
-/// Adds to the nodal load (length `dim * n_nodes`) a pressure (force per area) on a boundary: positive pushes against
-/// the outward normal.
+/// Adds to the nodal load (length `dim * n_nodes`) a pressure (force per area) on a boundary: a positive pressure acts against the
+/// outward normal.
 pub fn add_pressure(body: &ElasticBody, boundary: &Boundary, pressure: f64, load: &mut [f64]) {
     let visit = &mut |point: &FacetPoint| {
         add_share(body, point, point.normal.map(|component| -pressure * component), load);
@@ -40,14 +40,14 @@ pub fn add_traction_field(
     add_traction_with_kinks(body, boundary, Kinks { along: [0.0; 3], at: &[] }, field, load);
 }
 
-/// Planes across a unit vector, at these coordinates along it, increasing.
+/// Planes normal to a unit vector, at these coordinates along it, increasing.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Kinks<'a> {
     pub along: [f64; 3],
     pub at: &'a [f64],
 }
 
-/// The same of a field that has kinks: facets are cut there, and every piece has five quadrature points in each direction.
+/// The same for a field with kinks: facets are cut at the kinks, and every piece has five quadrature points in each direction.
 pub(crate) fn add_traction_with_kinks(
     body: &ElasticBody,
     boundary: &Boundary,
@@ -72,8 +72,8 @@ pub(crate) fn add_traction_with_kinks(
     for_each_point_of(body, boundary, &table_of, visit);
 }
 
-/// Adds to the nodal load (length `dim * n_nodes`) the traction `omega x (x - c)` on a boundary, c its centre of area, whose moment
-/// (force times length) is the one given; its force is zero. `None` for a moment that no such traction has.
+/// Adds to the nodal load (length `dim * n_nodes`) the traction `omega x (x - c)` on a boundary, c its centre of area, which has the
+/// given moment (force times length) and zero force. `None` for a moment that no such traction has.
 pub(crate) fn add_moment(body: &ElasticBody, boundary: &Boundary, moment: [f64; 3], load: &mut [f64]) -> Option<()> {
     let table = Tabulated::fine(boundary.kind.reference());
     let visit = |visit: &mut dyn FnMut(&FacetPoint)| {
@@ -93,7 +93,7 @@ pub(crate) fn add_moment(body: &ElasticBody, boundary: &Boundary, moment: [f64; 
         let away = Vector3::from(minus(point.at, centre));
         inertia += (Matrix3::identity() * away.norm_squared() - away * away.transpose()) * point.area;
     });
-    // The search for its axes does not end on what is not a number.
+    // The eigenvalue iteration does not end if an entry is not a number.
     if !inertia.iter().all(|entry| entry.is_finite()) {
         return None;
     }
@@ -113,7 +113,7 @@ pub(crate) fn add_moment(body: &ElasticBody, boundary: &Boundary, moment: [f64; 
     Some(())
 }
 
-/// Adds the force of a traction on the share of a quadrature point.
+/// Adds the force of a traction on the area of a quadrature point.
 fn add_share(body: &ElasticBody, point: &FacetPoint, traction: [f64; 3], load: &mut [f64]) {
     for (&node, share) in point.nodes.iter().zip(point.shape) {
         add_at(body, node, traction, share * point.area, load);
@@ -143,8 +143,8 @@ pub(crate) fn add_gravity(body: &ElasticBody, acceleration: [f64; 3], load: &mut
     Ok(())
 }
 
-/// Adds to the nodal load (length `dim * n_nodes`) the force of a rotation by `omega` (radians per time) about the axis through
-/// `point` along the unit vector `axis`: the density times omega squared times the way from the axis.
+/// Adds to the nodal load (length `dim * n_nodes`) the force of a rotation by `omega` (radians per time) about the axis through `point`
+/// along the unit vector `axis`: the density times omega squared times the vector from the axis to the point.
 ///
 /// # Errors
 /// [`Error::Setting`] for a material without density.
@@ -178,11 +178,11 @@ fn add_force_at(body: &ElasticBody, table: &Tabulated, field: impl Fn(usize, [f6
     }
 }
 
-/// The load of the free dofs: the nodal load (length `dim * n_nodes`) there, less the forces that hold the prescribed
-/// displacements, and those of temperatures and initial stresses.
+/// The load of the free dofs: the nodal load (length `dim * n_nodes`) at the free dofs, minus the internal forces of the prescribed
+/// displacements, temperatures and initial stresses.
 ///
 /// # Errors
-/// [`Error::Length`] where load or dofs do not belong to the mesh.
+/// [`Error::Length`] if load or dofs do not belong to the mesh.
 pub fn free_load(body: &ElasticBody, dofs: &DofMap, nodal: &[f64]) -> Result<Vec<f64>, Error> {
     let mut load = nodal.to_vec();
     let is_moved = || (0..dofs.nodal_count()).any(|dof| dofs.prescribed(dof).is_some_and(|value| value != 0.0));

@@ -1,4 +1,4 @@
-//! M = integral of rho N_a N_b, in the free dofs: consistent, lumped, or redistributed so that contact nodes have none.
+//! M = integral of rho N_a N_b, in the free dofs: consistent, lumped, or redistributed so that contact nodes have no mass.
 
 use super::DofMap;
 use super::redistribution::{ElementMass, Redistribution};
@@ -10,32 +10,31 @@ use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
 /// The form of a mass matrix.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MassForm {
-    /// That of the shape functions.
+    /// Consistent: from the shape functions.
     #[default]
     Consistent,
-    /// Diagonal: the sum of each row; on quadratic elements, where that is zero or negative at corners, the diagonal
-    /// scaled to the mass of the element.
+    /// Diagonal: the sum of each row. On quadratic elements this sum is zero or negative at corners; they take the diagonal of the
+    /// consistent mass, scaled to the mass of the element.
     Lumped,
-    /// Consistent, but for the contact nodes: they have no mass, and their neighbours have theirs. Total mass and centre
-    /// of each body are kept.
+    /// Consistent, except for the contact nodes: they have no mass, and their neighbours take it over. Total mass and centre of mass of
+    /// each body are preserved.
     ///
-    /// A contact node without inertia does not bounce: it follows the body and the obstacle, so that the contact
-    /// pressure is that of the body and no sequence of blows.
+    /// A contact node without inertia does not bounce: it follows the body and the obstacle, so that the contact pressure is that of the
+    /// body and not a sequence of impacts.
     Redistributed,
 }
 
-/// The mass matrix of the free dofs, of the densities of the materials; `contact_nodes` are those that lose their mass
-/// where it is redistributed.
+/// The mass matrix of the free dofs, from the densities of the materials; `contact_nodes` lose their mass if it is redistributed.
 ///
-/// The quadrature has five points in each direction: exact on straight elements of both orders, about an axis too.
+/// The quadrature has five points in each direction: exact on straight elements of both orders, also in bodies of revolution.
 ///
 /// # Errors
-/// [`Error::Setting`] for a material without density, [`Error::Length`] where `dofs` does not belong to the mesh,
-/// [`Error::Mesh`] for a mesh too coarse to redistribute its mass, [`Error::NotFinite`] where the mass overflows.
+/// [`Error::Setting`] for a material without density, [`Error::Length`] if `dofs` does not belong to the mesh,
+/// [`Error::Mesh`] for a mesh too coarse to redistribute its mass, [`Error::NotFinite`] if the mass overflows.
 ///
 /// # Source
-/// H. B. Khenous, P. Laborde, Y. Renard, *Mass redistribution method for finite element contact problems in
-/// elastodynamics*, Eur. J. Mech. A 27 (2008) 918-932: the mass matrix without contact nodes that keeps mass and centre.
+/// H. B. Khenous, P. Laborde, Y. Renard, *Mass redistribution method for finite element contact problems in elastodynamics*, Eur. J.
+/// Mech. A 27 (2008) 918-932: the mass matrix without mass at contact nodes that preserves mass and centre of mass.
 pub fn mass(
     body: &ElasticBody,
     dofs: &DofMap,
@@ -45,8 +44,8 @@ pub fn mass(
     free_mass(body, dofs, &nodal_mass(body, form, contact_nodes)?)
 }
 
-/// The mass of the nodes (`n_nodes x n_nodes`, the lower triangle), the same for each axis; `contact_nodes` are those that lose
-/// theirs where it is redistributed.
+/// The mass of the nodes (`n_nodes x n_nodes`, the lower triangle), the same for each axis; `contact_nodes` lose their mass if it is
+/// redistributed.
 ///
 /// # Errors
 /// As [`mass`].
@@ -76,7 +75,7 @@ pub(crate) fn nodal_mass(body: &ElasticBody, form: MassForm, contact_nodes: &[us
     SparseMatrix::from_triplets(nodes, nodes, &nodal)
 }
 
-/// The consistent mass of every element, in its order.
+/// The consistent mass of every element, in the order of the elements.
 fn element_masses(body: &ElasticBody) -> Result<Vec<ElementMass>, Error> {
     let table = Tabulated::fine(body.mesh().kind().reference());
     let of_element = |(BodyElement { nodes, cell, .. }, density): (BodyElement<'_>, f64)| {
@@ -105,7 +104,7 @@ fn lumped(element: &ElementMass) -> Vec<f64> {
 /// The mass of the free dofs from that of the nodes, as [`nodal_mass`].
 ///
 /// # Errors
-/// [`Error::Length`] where `dofs` does not belong to the mesh, [`Error::NotFinite`] where the mass overflows.
+/// [`Error::Length`] if `dofs` does not belong to the mesh, [`Error::NotFinite`] if the mass overflows.
 pub(crate) fn free_mass(body: &ElasticBody, dofs: &DofMap, nodal: &SparseMatrix) -> Result<SymmetricMatrix, Error> {
     body.check_nodal("dof map", dofs.nodal_count())?;
     let dimension = body.dimension();

@@ -1,18 +1,18 @@
-//! Columns of stiffness and mass at some nodes: their transpose tells which forces a motion of all nodes asks of these.
+//! Columns of stiffness and mass at some nodes: their transpose maps a motion of all nodes to the forces on these nodes.
 
 use super::element_stiffness;
 use crate::error::Error;
 use crate::fem::body::ElasticBody;
 use crate::qp::linear::SparseMatrix;
 
-/// Stands where a node is none of those that are asked for.
+/// Marks a node that is not among the requested ones.
 const OTHER: usize = usize::MAX;
 
-/// The columns of the stiffness at `nodes`, in force per length: `nodal dofs x (dim * nodes.len())`, free and supported dofs
-/// alike, along the coordinate axes. Only elements around these nodes are computed.
+/// The columns of the stiffness at `nodes`, in force per length: `nodal dofs x (dim * nodes.len())`, free and supported dofs, along the
+/// coordinate axes. Only elements around these nodes are computed.
 ///
 /// # Errors
-/// [`Error::NotFinite`] where the stiffness overflows.
+/// [`Error::NotFinite`] if the stiffness overflows.
 pub(crate) fn stiffness_columns(body: &ElasticBody, nodes: &[usize]) -> Result<SparseMatrix, Error> {
     let dimension = body.dimension();
     let place = places(body, nodes);
@@ -39,7 +39,7 @@ pub(crate) fn stiffness_columns(body: &ElasticBody, nodes: &[usize]) -> Result<S
     SparseMatrix::from_triplets(body.nodal_dofs(), dimension * nodes.len(), &entries)
 }
 
-/// The columns at `nodes` of a nodal mass whose lower triangle is given (`n_nodes x n_nodes`): `n_nodes x nodes.len()`, the
+/// The columns at `nodes` of a nodal mass, given by its lower triangle (`n_nodes x n_nodes`): `n_nodes x nodes.len()`, the
 /// same for each axis.
 ///
 /// # Errors

@@ -1,9 +1,9 @@
-//! The sparsity pattern of the lower triangle: two dofs meet where their nodes share an element.
+//! The sparsity pattern of the lower triangle: two dofs are coupled if their nodes share an element.
 
 use super::DofMap;
 use crate::fem::mesh::Mesh;
 
-/// No column has looked at this node yet.
+/// No column has visited this node yet.
 const NEVER: u32 = u32::MAX;
 
 /// The elements around every node, by one counting sort.
@@ -45,7 +45,7 @@ pub(super) fn lower_pattern(mesh: &Mesh, dofs: &DofMap) -> (Vec<usize>, Vec<usiz
     let around = Around::new(mesh);
     let mut seen = vec![NEVER; mesh.nodes().len()];
     let mut neighbours: Vec<usize> = Vec::new();
-    // The neighbours of a node that are not before it, in no order.
+    // The neighbours of a node with the same or a larger number, unsorted.
     let mut collect = |node: usize, round: u32, neighbours: &mut Vec<usize>| {
         neighbours.clear();
         for &element in around.of(node) {

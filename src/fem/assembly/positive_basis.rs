@@ -3,10 +3,10 @@
 //! On a quadratic face the integral of a corner's shape function is zero (T6) or negative (Q8): a uniform pressure pulls at the
 //! corners. With `N'_corner = N_corner + w (sum of N_mid around it)`, `N'_mid = (1 - 2 w) N_mid` and w = 1/4 all integrals are
 //! positive: 1/6 of a triangle each; 1/12 of a quadrilateral at corners and 1/6 at mid-sides. On edges and on triangles these are the
-//! Bernstein polynomials, which are nowhere negative; inside quadrilaterals they reach -0.04. They span the same functions, so that
-//! nothing is lost: the value at a mid-side node is `u_mid = (1 - 2 w) c_mid + w (c_a + c_b)`, that at a corner is its
-//! coefficient. A contact row holds one coefficient, so that rows stay bounds; on triangles coefficients below their gaps keep
-//! the whole face below the gap that these make.
+//! Bernstein polynomials, which are nowhere negative; inside quadrilaterals their minimum is -0.04. They span the same space, so that
+//! nothing is lost: the value at a mid-side node is `u_mid = (1 - 2 w) c_mid + w (c_a + c_b)`; the value at a corner is its coefficient.
+//! A contact row holds one coefficient, so that rows stay bounds. On triangles, coefficients below their gaps keep the whole face below
+//! the gap function that these gaps define.
 //!
 //! # Source
 //! A. Popp, B. I. Wohlmuth, M. W. Gee, W. A. Wall, *Dual quadratic mortar finite element methods for 3D finite deformation
@@ -18,8 +18,8 @@ use super::element_blocks::ElementStiffness;
 use crate::fem::body::ElasticBody;
 use crate::fem::mesh::Boundary;
 
-/// The share w that each end of an edge takes of the function of its mid-side node. Measured on quadrilaterals: 3/8, which leaves no
-/// function negative anywhere, has up to 1.8 times the error in energy.
+/// The share w that each end of an edge takes of the function of its mid-side node. Measured on quadrilaterals: 3/8, with which no
+/// function is negative anywhere, has up to 1.8 times the error in energy.
 const WEIGHT: f64 = 0.25;
 
 /// The change from nodal values to coefficients at mid-side nodes.
@@ -30,7 +30,7 @@ pub(crate) struct PositiveBasis {
 }
 
 impl PositiveBasis {
-    /// The basis of the mid-side nodes on `boundaries` of a body in space with quadratic faces; of all others none changes.
+    /// The basis of the mid-side nodes on `boundaries` of a body in space with quadratic faces; for all other bodies nothing changes.
     pub fn on<'a>(body: &ElasticBody, boundaries: impl IntoIterator<Item = &'a Boundary>) -> Self {
         let facet = body.mesh().kind().facet().reference();
         let mut basis = PositiveBasis::default();
@@ -45,7 +45,7 @@ impl PositiveBasis {
         basis
     }
 
-    /// Keeps the nodes that `keep` says, given with the ends of their edges.
+    /// Keeps the nodes for which `keep` returns `true`, given the node and the ends of its edge.
     pub fn retain(&mut self, keep: impl Fn(usize, [usize; 2]) -> bool) {
         self.ends.retain(|&middle, ends| keep(middle, *ends));
     }
@@ -61,7 +61,7 @@ impl PositiveBasis {
         self.ends.get(&node).copied()
     }
 
-    /// The coefficients that make the value at a node, each with its share.
+    /// The coefficients that make up the value at a node, each with its share.
     pub fn values(&self, node: usize) -> impl Iterator<Item = (usize, f64)> {
         let ends = self.ends(node);
         let own = if ends.is_some() { 1.0 - 2.0 * WEIGHT } else { 1.0 };
@@ -76,12 +76,12 @@ impl PositiveBasis {
         }
     }
 
-    /// The coefficient of the place: where a force on a coefficient has its moment.
+    /// The coefficient of the position: the point at which a force on a coefficient acts, for its moment.
     pub fn place(&self, nodes: &[[f64; 3]], node: usize) -> [f64; 3] {
         [0, 1, 2].map(|axis| self.coefficient(node, |node| nodes[node][axis]))
     }
 
-    /// Replaces coefficients (`dimension` a node) by the values at the nodes.
+    /// Replaces coefficients (`dimension` per node) by the values at the nodes.
     pub fn evaluate(&self, coefficients: &mut [f64], dimension: usize) {
         for (&middle, &ends) in &self.ends {
             for axis in 0..dimension {
@@ -92,7 +92,8 @@ impl PositiveBasis {
         }
     }
 
-    /// Replaces the integrals of the shape functions of some nodes by those of their functions; all ends are among them.
+    /// Replaces the integrals of the nodal shape functions of some nodes by those of the positive functions; all ends must be among the
+    /// nodes.
     pub fn gather_areas(&self, areas: &mut BTreeMap<usize, f64>) {
         for (middle, ends) in &self.ends {
             let Some(own) = areas.get_mut(middle) else { continue };
@@ -105,7 +106,7 @@ impl PositiveBasis {
         }
     }
 
-    /// Replaces forces on the nodes (`dimension` a node) by those on the coefficients.
+    /// Replaces forces on the nodes (`dimension` per node) by forces on the coefficients.
     pub fn gather(&self, forces: &mut [f64], dimension: usize) {
         for (&middle, &ends) in &self.ends {
             for axis in 0..dimension {
@@ -116,7 +117,7 @@ impl PositiveBasis {
         }
     }
 
-    /// Replaces forces on the coefficients by those on the nodes.
+    /// Replaces forces on the coefficients by forces on the nodes.
     pub fn scatter(&self, forces: &mut [f64], dimension: usize) {
         for (&middle, &ends) in &self.ends {
             for axis in 0..dimension {

@@ -6,10 +6,10 @@ use nalgebra::{DMatrix, DVector};
 use crate::error::Error;
 use crate::fem::body::{ElasticBody, Region};
 
-/// Largest change of mass and of the centre of mass, relative to the mass and the size of the body.
+/// Largest allowed change of the mass and of the centre of mass, relative to the mass and the size of the body.
 const MASS_TOLERANCE: f64 = 1e-10;
 
-/// A factor on the density of an element below this is no small correction: the mesh is too coarse.
+/// A factor on the density of an element below this is not a small correction: the mesh is too coarse.
 const LEAST_FACTOR: f64 = 0.1;
 
 /// The mass of one element, node by node.
@@ -20,7 +20,7 @@ pub(super) struct ElementMass {
 }
 
 impl ElementMass {
-    /// The zero mass of an element of so many nodes.
+    /// The zero mass of an element with this number of nodes.
     pub fn zero(nodes: usize) -> Self {
         ElementMass { nodes, values: vec![0.0; nodes * nodes] }
     }
@@ -91,7 +91,7 @@ impl Redistribution {
         let (nodes, dimension) = (body.mesh().nodes(), body.dimension());
         let (low, high) = crate::fem::mesh::extent(&nodes[region.nodes()]);
         let size = (0..3).fold(0.0, |size: f64, axis| size.max(high[axis] - low[axis]));
-        // Coordinates relative to the middle of the body and its size, a one in front.
+        // Coordinates relative to the centre of the body, divided by its size, with a leading one.
         let place = |at: [f64; 3]| {
             let mut place = [1.0; 4];
             (0..3).for_each(|axis| place[axis + 1] = (at[axis] - (low[axis] + high[axis]) / 2.0) / size);
@@ -149,8 +149,8 @@ impl Redistribution {
     }
 }
 
-/// Who inherits the mass of each massless node: its neighbours by the mass that they share with it, ring by ring where
-/// those have none either.
+/// The nodes that take over the mass of each massless node: its neighbours, weighted by the mass that they share with it, ring by ring if
+/// the neighbours are massless too.
 fn heirs(body: &ElasticBody, elements: &[ElementMass], massless: &[usize]) -> Result<Vec<Vec<(usize, f64)>>, Error> {
     let count = body.mesh().nodes().len();
     let mut waiting: Vec<bool> = vec![false; count];

@@ -1,12 +1,12 @@
-//! The rigid-body modes of a body at its free dofs: what costs no energy but for the supports.
+//! The rigid-body modes of a body at its free dofs: motions without strain energy, apart from the supports.
 
 use super::DofMap;
 use crate::fem::body::ElasticBody;
 
-/// The rigid-body modes at the free dofs, one vector each: the translations, then the rotations about the middle of the mesh,
-/// over half its size so that all are dimensionless and of order one.
+/// The rigid-body modes at the free dofs, one vector each: the translations, then the rotations about the centre of the mesh, divided by
+/// half its size so that all are dimensionless and of order one.
 ///
-/// A body of revolution is taken for its half plane: its cells do not know how far the axis is.
+/// A body of revolution is treated as its half plane: the distance from the axis is ignored.
 pub fn rigid_body_modes(body: &ElasticBody, dofs: &DofMap) -> Vec<Vec<f64>> {
     let (mesh, dimension) = (body.mesh(), body.dimension());
     let (least, most) = mesh.extent();

@@ -7,13 +7,13 @@ use crate::fem::body::ElasticBody;
 use crate::fem::mesh::Boundary;
 use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
 
-/// A block of a pair of nodes: row axis, column axis.
+/// A block for a pair of nodes: row axis, column axis.
 type Block = [[f64; 3]; 3];
 
 /// Springs to the ground, in force per length.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Springs {
-    /// The force on the first node against the displacement of the second one; every pair in both orders.
+    /// The force on the first node against the displacement of the second node; every pair in both orders.
     pairs: Vec<(usize, usize, Block)>,
 }
 
@@ -41,7 +41,7 @@ impl Springs {
         Springs { pairs }
     }
 
-    /// The forces that the springs put on the nodes (length `dim * n_nodes`) in a nodal displacement.
+    /// The forces of the springs on the nodes (length `dim * n_nodes`) at a nodal displacement.
     pub fn forces(&self, displacement: &[f64], dimension: usize) -> Vec<f64> {
         let mut forces = vec![0.0; displacement.len()];
         for (a, b, block) in &self.pairs {
@@ -53,7 +53,7 @@ impl Springs {
         forces
     }
 
-    /// The directions in which nodes are held, of unit length: each with its node.
+    /// The directions in which nodes are held, as unit vectors, each with its node.
     pub fn held(&self) -> impl Iterator<Item = (usize, [f64; 3])> + '_ {
         let own = self.pairs.iter().filter(|(a, b, _)| a == b);
         own.flat_map(|(node, _, block)| block.iter().map(move |row| (*node, *row))).filter_map(|(node, row)| {
@@ -65,7 +65,7 @@ impl Springs {
     /// The stiffness of the free dofs with the springs added.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] where it overflows.
+    /// [`Error::NotFinite`] if it overflows.
     pub fn added_to(
         &self,
         stiffness: &SymmetricMatrix,

@@ -1,4 +1,4 @@
-//! K = sum of the element stiffnesses, in the free dofs; straight into the lower triangle in compressed columns.
+//! K = sum of the element stiffnesses, in the free dofs, assembled directly into the lower triangle in compressed columns.
 
 use super::element_blocks::Block;
 use super::pattern::lower_pattern;
@@ -8,7 +8,7 @@ use crate::fem::body::ElasticBody;
 use crate::fem::element::MAX_NODES;
 use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
 
-/// The free dofs of one node: the number of the first, how many, and the axis of each, of the frame where there is one.
+/// The free dofs of one node: the number of the first, how many there are, and the axis of each: of the frame if the node has one.
 #[derive(Clone, Copy, Default)]
 struct FreeAxes<'a> {
     first: usize,
@@ -36,7 +36,7 @@ impl<'a> FreeAxes<'a> {
 /// The stiffness K of the free dofs, in force per length; only its lower triangle is ever built.
 ///
 /// # Errors
-/// [`Error::Length`] where `dofs` does not belong to the mesh, [`Error::NotFinite`] where the stiffness overflows.
+/// [`Error::Length`] if `dofs` does not belong to the mesh, [`Error::NotFinite`] if the stiffness overflows.
 pub fn stiffness(body: &ElasticBody, dofs: &DofMap) -> Result<SymmetricMatrix, Error> {
     body.check_nodal("dof map", dofs.nodal_count())?;
     let dimension = body.dimension();
@@ -89,7 +89,7 @@ pub fn stiffness(body: &ElasticBody, dofs: &DofMap) -> Result<SymmetricMatrix, E
     SymmetricMatrix::from_lower(SparseMatrix::from_parts(dofs.free().len(), starts, rows, values))
 }
 
-/// T_a K_ab T_b', where the rows of T are the axes of a frame.
+/// T_a K_ab T_b'; the rows of T are the axes of a frame.
 fn turn(block: &Block, of_rows: Option<&Frame>, of_columns: Option<&Frame>) -> Block {
     let mut turned = *block;
     if let Some(frame) = of_columns {

@@ -1,4 +1,4 @@
-//! Integrals over boundaries: areas that belong to nodes, with their normals.
+//! Integrals over boundaries: the areas and normals of nodes.
 
 use std::borrow::Cow;
 
@@ -15,19 +15,19 @@ pub(super) struct FacetPoint<'a> {
     pub shape: PerNode<f64>,
     /// Coordinates.
     pub at: [f64; 3],
-    /// Outward unit normal; of either sense where the boundary is no face of the mesh.
+    /// Outward unit normal; of either sense if the boundary is not a face of the mesh.
     pub normal: [f64; 3],
     /// Share of the area that the point stands for; thickness, cross-section or circumference included.
     pub area: f64,
 }
 
-/// Hands every quadrature point of a boundary to `visit`, facet by facet.
+/// Calls `visit` for every quadrature point of a boundary, facet by facet.
 pub(super) fn for_each_point(body: &ElasticBody, boundary: &Boundary, visit: &mut dyn FnMut(&FacetPoint)) {
     let table = Tabulated::new(boundary.kind.reference(), body.rule());
     for_each_point_of(body, boundary, &|_| Cow::Borrowed(&table), visit);
 }
 
-/// The same with the points that `table_of` gives a facet, by its nodes.
+/// The same with the quadrature points that `table_of` gives for the nodes of a facet.
 pub(super) fn for_each_point_of<'a>(
     body: &ElasticBody,
     boundary: &Boundary,
@@ -64,10 +64,10 @@ pub(super) fn for_each_point_of<'a>(
     }
 }
 
-/// 1 where a facet's nodes run as those of the element's face, whose area vector points outwards, or else -1.
+/// 1 if the nodes of a facet run as those of the element's face, whose area vector points outwards, else -1.
 fn sense(kind: FacetKind, facet: &[usize], face: &[usize], number: usize) -> f64 {
     let alike = match kind {
-        // The end of a bar has no order: its first face looks along -x.
+        // The end of a bar has no order: the normal of its first face is -x.
         FacetKind::Point1 => number > 0,
         FacetKind::Line2 | FacetKind::Line3 => facet.first() == face.first(),
         FacetKind::T3 | FacetKind::Q4 | FacetKind::T6 | FacetKind::Q8 => {
@@ -92,8 +92,8 @@ pub fn tributary_areas(body: &ElasticBody, boundary: &Boundary) -> Vec<(usize, f
     nodes.into_iter().map(|node| (node, area.get(node).copied().unwrap_or(0.0))).collect()
 }
 
-/// The nodes of a boundary in its order, each with its outward unit normal: the mean over the facets around the node.
-/// Zero where these cancel.
+/// The nodes of a boundary in its order, each with its outward unit normal: the mean over the facets around the node. Zero if these
+/// cancel.
 pub fn node_normals(body: &ElasticBody, boundary: &Boundary) -> Vec<(usize, [f64; 3])> {
     let nodes = boundary.nodes();
     let mut sums = vec![[0.0; 3]; body.mesh().nodes().len()];

@@ -18,46 +18,46 @@ use crate::fem::geometry::{Symmetric, trace};
 use crate::fem::material::{Material, Stiffness};
 use crate::fem::mesh::{Boundary, Mesh};
 
-/// Radii of a body of revolution above minus this times its size are rounding of zero.
+/// Radii of a body of revolution that are negative by less than this times its size are rounding of zero.
 const ON_THE_AXIS: f64 = 1e-12;
 
-/// How the stiffness of an element is integrated.
+/// The integration of the stiffness of an element.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema), schemars(rename = "IntegrationSpec"))]
 #[serde(rename_all = "kebab-case")]
 pub enum Integration {
-    /// All of it at all quadrature points.
+    /// The full strain at all quadrature points.
     #[default]
     Standard,
-    /// The dilatation is replaced by its mean over the element: for `q4` and `hex8`, which then do not lock as
-    /// Poisson's ratio nears 0.5.
+    /// The dilatation is replaced by its mean over the element: for `q4` and `hex8`, which then do not lock if Poisson's ratio is near
+    /// 0.5.
     MeanDilatation,
 }
 
-/// An elastic body of one material or several, or several bodies that only contact joins; checked once, when it is built.
+/// An elastic body of one material or several, or several bodies that only contact couples; checked once, when it is built.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ElasticBody {
     mesh: Mesh,
     formulation: Formulation,
     integration: Integration,
-    /// In the order of their nodes and elements; one where there is one body.
+    /// In the order of their nodes and elements; one region for one body.
     regions: Vec<Region>,
-    /// Those of a region follow each other; each has an element.
+    /// The phases of a region are consecutive; each has an element.
     phases: Vec<Phase>,
     /// The phase of each element.
     of_elements: Vec<u32>,
 }
 
-/// An element in place.
+/// An element with the coordinates of its nodes.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyElement<'a> {
     /// Its nodes, in the order of its kind.
     pub nodes: &'a [usize],
-    /// The element in place.
+    /// The cell with its coordinates.
     pub cell: Cell,
-    /// What it is made of.
+    /// Its material and its stress without strain.
     pub phase: &'a Phase,
-    /// The number of that among the phases of the body.
+    /// The number of the phase among the phases of the body.
     pub phase_number: u32,
 }
 
@@ -98,8 +98,8 @@ impl ElasticBody {
     /// The same body with another integration of its stiffness.
     ///
     /// # Errors
-    /// [`Error::Mesh`] for mean dilatation with an element that does not [take it](ElementKind::takes_mean_dilatation), or in
-    /// plane stress.
+    /// [`Error::Mesh`] for mean dilatation with an element that does not [allow it](ElementKind::takes_mean_dilatation), or in plane
+    /// stress.
     pub fn with_integration(mut self, integration: Integration) -> Result<Self, Error> {
         if integration == Integration::MeanDilatation {
             let element = self.mesh.kind();
@@ -118,7 +118,7 @@ impl ElasticBody {
         Ok(self)
     }
 
-    /// The mean dilatation is that of the isotropic law.
+    /// Mean dilatation is defined for the isotropic law only.
     fn check_integration(&self) -> Result<(), Error> {
         let is_general = |phase: &Phase| matches!(phase.law().stiffness(), Stiffness::General(_));
         match self.integration == Integration::MeanDilatation && self.phases.iter().any(is_general) {
@@ -127,12 +127,12 @@ impl ElasticBody {
         }
     }
 
-    /// This body and `other` in one: two bodies that no element joins, so that nothing but contact can.
+    /// This body and `other` in one: no element joins the two bodies, so that only contact can couple them.
     ///
     /// Nodes and elements of `other` follow those of this body; its boundaries are called `name.boundary`.
     ///
     /// # Errors
-    /// [`Error::Mesh`] where formulation, element or integration of the two differ, or a boundary of that name exists.
+    /// [`Error::Mesh`] if formulation, element or integration of the two differ, or a boundary of that name exists.
     pub fn beside(mut self, other: &ElasticBody, name: &str) -> Result<Self, Error> {
         let fail = |message| Err(Error::Mesh { message });
         if self.formulation != other.formulation {
@@ -156,7 +156,8 @@ impl ElasticBody {
         Ok(self)
     }
 
-    /// The same single body on a mesh of parts of its elements: for each element of that mesh the one that it is a part of.
+    /// The same single body on a mesh of parts of its elements; the second argument gives, for each element of that mesh, the element
+    /// that it is a part of.
     ///
     /// # Errors
     /// As [`ElasticBody::new`].
@@ -181,7 +182,7 @@ impl ElasticBody {
         &self.mesh
     }
 
-    /// The bodies that it is made of: one, but for [`ElasticBody::beside`].
+    /// The bodies that it consists of: one, except after [`ElasticBody::beside`].
     pub fn regions(&self) -> &[Region] {
         &self.regions
     }
@@ -191,7 +192,7 @@ impl ElasticBody {
         &self.formulation
     }
 
-    /// How the stiffness is integrated.
+    /// The integration of the stiffness.
     pub fn integration(&self) -> Integration {
         self.integration
     }
@@ -206,17 +207,17 @@ impl ElasticBody {
         self.dimension() * self.mesh.nodes().len()
     }
 
-    /// The shape functions of the element, tabulated at the quadrature points that the formulation asks for.
+    /// The shape functions of the element, tabulated at the quadrature points of the formulation.
     pub fn tabulated(&self) -> Tabulated {
         Tabulated::new(self.mesh.kind().reference(), self.rule())
     }
 
-    /// The quadrature that the formulation asks for.
+    /// The quadrature of the formulation.
     pub(crate) fn rule(&self) -> Rule {
         if self.formulation.is_axisymmetric() { Rule::Revolved } else { Rule::Straight }
     }
 
-    /// Every element in place, region by region.
+    /// Every element with its coordinates, region by region.
     pub fn elements(&self) -> impl Iterator<Item = BodyElement<'_>> + '_ {
         let reference = self.mesh.kind().reference();
         self.mesh.elements().zip(&self.of_elements).map(move |(nodes, &phase_number)| {
@@ -263,7 +264,7 @@ impl ElasticBody {
         }
     }
 
-    /// The strain of a nodal displacement in an element, at points in place; of a body that is not one of revolution.
+    /// The strain of a nodal displacement in an element, at points given in coordinates; not for a body of revolution.
     #[cfg(feature = "cli")]
     pub(crate) fn strain_in(&self, displacement: &[f64], element: usize) -> impl Fn([f64; 3]) -> Symmetric {
         let (reference, nodes) = (self.mesh.kind().reference(), self.mesh.element(element));
@@ -276,7 +277,7 @@ impl ElasticBody {
         }
     }
 
-    /// The mean dilatation of an element where its integration asks for it, per length; `None` where it does not.
+    /// The mean dilatation of an element, per length, if its integration needs it; `None` otherwise.
     pub(crate) fn mean_dilatation(
         &self,
         cell: &Cell,
@@ -298,7 +299,7 @@ impl ElasticBody {
     /// Checks that a nodal vector has `dimension` entries per node.
     ///
     /// # Errors
-    /// [`Error::Length`] where it has not.
+    /// [`Error::Length`] if it has not.
     pub(crate) fn check_nodal(&self, name: &'static str, found: usize) -> Result<(), Error> {
         let expected = self.nodal_dofs();
         if found != expected {
@@ -319,7 +320,7 @@ impl BodyElement<'_> {
         }
     }
 
-    /// The stress at a tabulated point without any strain, where there is one.
+    /// The stress at a tabulated point without any strain, if there is one.
     #[inline]
     pub fn own_stress(&self, at: &TabulatedPoint) -> Option<Symmetric> {
         self.phase.own().map(|own| own.at(self.cell.place(&at.shape)))

@@ -1,4 +1,4 @@
-//! A phase: what the elements of one material and one state without strain share.
+//! A phase: the material and the stress without strain that a set of elements shares.
 
 use crate::error::Error;
 use crate::fem::formulation::Formulation;
@@ -13,7 +13,7 @@ pub struct Phase {
     own: Option<OwnStress>,
 }
 
-/// How much warmer than without stress a place is, linear in space.
+/// The temperature above the stress-free one, linear in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Temperature {
     /// At the origin, in degrees.
@@ -26,20 +26,20 @@ pub struct Temperature {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OwnStress {
     initial: Symmetric,
-    /// `- C alpha`.
+    /// `- C alpha`, the stress per degree.
     per_degree: Symmetric,
     temperature: Temperature,
 }
 
 impl OwnStress {
-    /// None at all.
+    /// No stress without strain.
     const NONE: OwnStress = OwnStress {
         initial: [0.0; 6],
         per_degree: [0.0; 6],
         temperature: Temperature { value: 0.0, gradient: [0.0; 3] },
     };
 
-    /// At a place.
+    /// The stress at a point.
     #[inline]
     pub fn at(&self, place: [f64; 3]) -> Symmetric {
         let warmer = self.temperature.value + dot(self.temperature.gradient, place);
@@ -101,7 +101,7 @@ impl Phase {
         &self.law
     }
 
-    /// The stress without strain, where there is one.
+    /// The stress without strain, if there is one.
     #[inline]
     pub fn own(&self) -> Option<&OwnStress> {
         self.own.as_ref()

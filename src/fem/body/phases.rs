@@ -1,4 +1,4 @@
-//! The phases of a body: which material each element has.
+//! The phases of a body: the material of each element.
 
 use super::{ElasticBody, Phase, Region, Temperature};
 use crate::error::Error;
@@ -6,10 +6,10 @@ use crate::fem::geometry::Symmetric;
 use crate::fem::material::Material;
 
 impl ElasticBody {
-    /// The same body with another material of some elements, from 0.
+    /// The same body with another material in some elements, numbered from 0.
     ///
     /// # Errors
-    /// As [`ElasticBody::new`] for the material; [`Error::Mesh`] for an element that is not there, for a body that is several, for
+    /// As [`ElasticBody::new`] for the material; [`Error::Mesh`] for an element that does not exist, for a body of several regions, for
     /// an orthotropic material with mean dilatation.
     pub fn with_material(self, elements: &[usize], material: Material) -> Result<Self, Error> {
         let formulation = self.formulation;
@@ -18,8 +18,8 @@ impl ElasticBody {
         Ok(body)
     }
 
-    /// The same body with some elements, from 0, warmer than without stress: by `value` at the origin (degrees) and `gradient` (x, y, z;
-    /// degrees per length) from there. Another temperature of an element counts no more.
+    /// The same body with some elements, numbered from 0, warmer than the stress-free state: by `value` at the origin (degrees) and
+    /// `gradient` (x, y, z; degrees per length) from there. It replaces an earlier temperature of an element.
     ///
     /// # Errors
     /// [`Error::Setting`] for a material without coefficients of expansion, or numbers that are not finite; [`Error::Mesh`] as
@@ -29,8 +29,8 @@ impl ElasticBody {
         self.with_phase(elements, |phase| phase.clone().with_temperature(temperature))
     }
 
-    /// The same body with a stress `[xx, yy, zz, xy, yz, zx]` (force per area, tension positive) in some elements, from 0, that is there
-    /// without strain. Another one of an element counts no more.
+    /// The same body with a stress `[xx, yy, zz, xy, yz, zx]` (force per area, tension positive) in some elements, numbered from 0, that
+    /// acts without strain. It replaces an earlier initial stress of an element.
     ///
     /// # Errors
     /// [`Error::Setting`] for a component that is not finite, or that the formulation does not have; [`Error::Mesh`] as
@@ -40,12 +40,12 @@ impl ElasticBody {
         self.with_phase(elements, |phase| phase.clone().with_initial_stress(stress, &formulation))
     }
 
-    /// Is there stress without strain?
+    /// Returns `true` if there is stress without strain.
     pub(crate) fn has_own_stress(&self) -> bool {
         self.phases.iter().any(|phase| phase.own().is_some())
     }
 
-    /// The same with another phase of some elements, made of their present one.
+    /// The same with another phase in some elements, made from their present phase.
     fn with_phase(mut self, elements: &[usize], make: impl Fn(&Phase) -> Result<Phase, Error>) -> Result<Self, Error> {
         if self.regions.len() > 1 {
             return Err(Error::Mesh { message: "bodies have their materials before they are joined".into() });
@@ -57,7 +57,7 @@ impl ElasticBody {
                 let message = format!("there is no element {element}; the mesh has {count}, from 0");
                 return Err(Error::Mesh { message });
             };
-            // An element that is named twice has its new phase already.
+            // An element that is named twice already has its new phase.
             let Some(place) = made.get_mut(*own as usize) else { continue };
             if place.is_none() {
                 *place = Some(self.phases.len() as u32);
@@ -91,12 +91,12 @@ impl ElasticBody {
         &self.phases[first..=last]
     }
 
-    /// The materials of a region, one of the bodies.
+    /// The materials of a region.
     pub fn materials(&self, region: &Region) -> impl Iterator<Item = &Material> {
         self.phases_of(region).iter().map(Phase::material)
     }
 
-    /// The material of an element, from 0.
+    /// The material of an element, numbered from 0.
     pub(crate) fn material_of(&self, element: usize) -> &Material {
         self.phases[self.of_elements[element] as usize].material()
     }

@@ -1,19 +1,18 @@
-//! A point in an element: gradients, hoop terms, weight; strains there.
+//! A point in an element: gradients, hoop terms, weight; the strain there.
 
 use crate::fem::element::PerNode;
 use crate::fem::geometry::Symmetric;
 
-/// The shape functions at a point of an element in place, in the unit of the cell.
+/// The shape functions at a point of an element with coordinates, in the unit of the cell.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalPoint {
     /// Gradients, per unit.
     pub gradients: PerNode<[f64; 3]>,
-    /// Shape function over radius, per unit: the hoop strain of a unit radial displacement. Zero but in bodies of
-    /// revolution.
+    /// Shape function over radius, per unit: the hoop strain of a unit radial displacement. Zero except in bodies of revolution.
     pub hoop: PerNode<f64>,
     /// Number of nodes of the element.
     pub nodes: usize,
-    /// Quadrature weight times determinant times area, thickness or circumference; the determinant in units.
+    /// Quadrature weight times determinant times area, thickness or circumference; the determinant in powers of the unit.
     pub weight: f64,
 }
 
@@ -24,7 +23,7 @@ impl LocalPoint {
         let mut slope = [[0.0; 3]; 3];
         let mut hoop = self.hoop[0] * displacement[0][0];
         for node in 1..self.nodes {
-            // Relative to the first node: a translation strains nothing, to the last bit.
+            // Relative to the first node: a translation then gives exactly zero strain.
             for (axis, row) in slope.iter_mut().enumerate() {
                 let relative = displacement[node][axis] - displacement[0][axis];
                 for (entry, gradient) in row.iter_mut().zip(&self.gradients[node]) {

@@ -3,13 +3,13 @@
 use super::{MAX_NODES, PerNode, ReferenceElement, Shape, Tabulated};
 use crate::fem::geometry::{cross, dot};
 
-/// The Jacobian of an element that is turned inside out or has no volume.
+/// The Jacobian of an element that is inverted or has no volume.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("the Jacobian determinant is {value:e} at its local node or quadrature point {point}; it must be positive")]
 pub struct NonPositiveJacobian {
     /// The smallest determinant, relative to the element's size to the power of its dimension.
     pub value: f64,
-    /// Where: local nodes first, then quadrature points, from 0.
+    /// The worst point: local nodes first, then quadrature points, from 0.
     pub point: usize,
 }
 
@@ -17,17 +17,16 @@ pub struct NonPositiveJacobian {
 /// no volume.
 const NO_VOLUME: f64 = 1e-14;
 
-/// Newton's steps towards the reference coordinates of a point: a straight cell takes one, a curved one a few.
+/// Steps of Newton's method to the reference coordinates of a point: a straight cell takes one, a curved cell a few.
 const LOCATING_STEPS: usize = 20;
 
-/// Reference coordinates that move by less than this are found.
+/// The iteration ends when the reference coordinates move by less than this.
 const LOCATED: f64 = 1e-14;
 
 /// A reference cell with the coordinates of its nodes.
 ///
-/// The coordinates are kept relative to the first node and in a unit that is the power of two next to the cell's size:
-/// a change of the unit of length by a power of two changes no bit of what follows, and no size overflows on the way to
-/// it.
+/// The coordinates are stored relative to the first node and in a unit: the power of two next to the cell's size. A change of the unit of
+/// length by a power of two then changes no bit of the results, and no size overflows in between.
 #[derive(Clone, Copy, Debug)]
 pub struct Cell {
     reference: &'static ReferenceElement,
@@ -93,7 +92,7 @@ impl Cell {
         let (reference, at) = (self.reference, self.reference_coordinates(point));
         let weights = (reference.shape)(at);
         let place = self.place(&weights);
-        // Off the line or the plane of the cell no reference coordinates lead to the point.
+        // The point is not on the line or in the plane of the cell: no reference coordinates lead to it.
         let is_met = (0..3).all(|axis| (point[axis] - place[axis]).abs() <= tolerance * self.unit);
         let own = &at[..reference.dimension];
         let is_inside = match reference.form {
@@ -103,14 +102,14 @@ impl Cell {
         (is_met && is_inside).then_some(weights)
     }
 
-    /// The reference coordinates of a point in the cell, or near it, by the method of Newton.
+    /// The reference coordinates of a point in or near the cell, by Newton's method.
     pub fn reference_coordinates(&self, point: [f64; 3]) -> [f64; 3] {
         let reference = self.reference;
         let mut at = reference.centroid;
         for _ in 0..LOCATING_STEPS {
             let place = self.place(&(reference.shape)(at));
             let away = [0, 1, 2].map(|axis| (point[axis] - place[axis]) / self.unit);
-            // The shape functions make every linear function, the reference coordinates too: their gradients invert the Jacobian.
+            // The shape functions reproduce every linear function, also the reference coordinates: their gradients invert the Jacobian.
             let gradients = self.map(&(reference.derivative)(at)).gradients;
             let mut change = [0.0; 3];
             for (node, gradient) in reference.nodes.iter().zip(gradients) {
@@ -128,7 +127,7 @@ impl Cell {
     /// Checks that the determinant of the Jacobian is positive at the nodes and the quadrature points of `table`.
     ///
     /// # Errors
-    /// `NonPositiveJacobian` with the worst place.
+    /// `NonPositiveJacobian` with the worst point.
     pub fn check(&self, table: &Tabulated) -> Result<(), NonPositiveJacobian> {
         let mut worst = NonPositiveJacobian { value: f64::INFINITY, point: 0 };
         for (point, tabulated) in table.nodes.iter().chain(&table.points).enumerate() {
@@ -158,12 +157,12 @@ impl Cell {
         jacobian
     }
 
-    /// Gradients and determinant at the point with the given shape function derivatives; the cell fills its space.
+    /// Gradients and determinant at the point with the given shape function derivatives; the cell has the dimension of its space.
     #[inline]
     pub fn map(&self, derivative: &PerNode<[f64; 3]>) -> Mapping {
         let dimension = self.reference.dimension;
         let mut j = self.jacobian(derivative);
-        // The unused directions map onto themselves.
+        // The unused directions map to themselves.
         for (axis, row) in j.iter_mut().enumerate().skip(dimension) {
             row[axis] = 1.0;
         }
@@ -180,11 +179,11 @@ impl Cell {
         Mapping { gradients, determinant }
     }
 
-    /// The area vector of a facet at the point with the given shape function derivatives: normal to the facet, its
-    /// length is the ratio of area in place (in powers of the unit of the cell) to area on the reference cell.
+    /// The area vector of a facet at the point with the given shape function derivatives: normal to the facet; its length is the ratio of
+    /// area in place (in powers of the unit of the cell) to area on the reference cell.
     ///
-    /// To the right of an edge that runs along its nodes; towards the side from which a face's nodes are
-    /// counterclockwise; along x for a point.
+    /// It points to the right of an edge that runs along its nodes; to the side from which a face's nodes are counterclockwise; along x
+    /// for a point.
     pub fn area_vector(&self, derivative: &PerNode<[f64; 3]>) -> [f64; 3] {
         let tangents = self.jacobian(derivative);
         match self.reference.dimension {

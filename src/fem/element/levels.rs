@@ -1,4 +1,4 @@
-//! Quadrature of functions with kinks: a cell of up to two dimensions, cut where a linear function takes given values.
+//! Quadrature of functions with kinks: a cell of up to two dimensions, cut along the levels of a linear function.
 
 use super::quadrature::fine;
 use super::{Part, QuadraturePoint, ReferenceElement, Shape};
@@ -6,10 +6,10 @@ use super::{Part, QuadraturePoint, ReferenceElement, Shape};
 /// A corner of a piece: reference coordinates, and the value of the function.
 type Corner = ([f64; 3], f64);
 
-/// Five points in each direction of every piece of a cell between `levels` of a function that has the values `at_corners`, and is
-/// linear between them along the sides of the cell and the cuts.
+/// Five points in each direction of every piece of a cell between `levels` of a function with the values `at_corners`, linear between
+/// them along the sides of the cell and along the cuts.
 ///
-/// On a cell in place that is an affine image of its reference the pieces are those of a linear function of the place.
+/// If the cell in place is an affine image of its reference, these are the pieces of a function that is linear in the coordinates.
 pub fn between_levels(reference: &ReferenceElement, at_corners: &[f64], levels: &[f64]) -> Vec<QuadraturePoint> {
     let whole: Vec<Corner> = reference.nodes.iter().copied().zip(at_corners.iter().copied()).collect();
     let mut pieces = vec![whole];
@@ -22,9 +22,9 @@ pub fn between_levels(reference: &ReferenceElement, at_corners: &[f64], levels: 
     pieces.iter().flat_map(|piece| points(reference.dimension, piece)).collect()
 }
 
-/// What of a line, or of a polygon, lies on the kept side of the level.
+/// The part of a line or of a polygon on the kept side of the level.
 fn clipped(piece: &[Corner], level: f64, keeps: impl Fn(f64) -> bool) -> Vec<Corner> {
-    // The sides of a polygon close it; a line has one.
+    // A polygon is closed; a line has one side.
     let sides = if piece.len() == 2 { 1 } else { piece.len() };
     let mut kept = Vec::with_capacity(piece.len() + 1);
     for (index, &(at, value)) in piece.iter().enumerate() {
@@ -40,7 +40,7 @@ fn clipped(piece: &[Corner], level: f64, keeps: impl Fn(f64) -> bool) -> Vec<Cor
     kept
 }
 
-/// The points of a piece: a line, or a polygon in triangles around its first corner.
+/// The points of a piece: a line, or a polygon that is cut into triangles around its first corner.
 fn points(dimension: usize, piece: &[Corner]) -> Vec<QuadraturePoint> {
     let minus = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|axis| a[axis] - b[axis]);
     match (dimension, piece) {

@@ -1,7 +1,7 @@
 //! Reference cells, their quadrature, and their map into space.
 //!
-//! An element is a [`ReferenceElement`] in a file of its own and a line in [`ElementKind`], which stands here; everything
-//! else works on any of them. Reference coordinates are `[xi, eta, zeta]`; those beyond the dimension of the cell are zero.
+//! An element is a [`ReferenceElement`] in its own file and a line in [`ElementKind`], which is defined here; all other code works for
+//! any element. Reference coordinates are `[xi, eta, zeta]`; those beyond the dimension of the cell are zero.
 
 mod cell;
 mod hex20;
@@ -38,7 +38,7 @@ use t6::T6;
 use tet4::TET4;
 use tet10::TET10;
 
-/// The elements that a mesh can be made of.
+/// The elements of which a mesh can consist.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ElementKind {
     /// Bar of two nodes.
@@ -64,11 +64,11 @@ pub enum ElementKind {
 }
 
 impl ElementKind {
-    /// What a displacement that is quadratic on triangles is written as.
+    /// The triangle with a quadratic displacement.
     #[cfg(feature = "cli")]
     pub(crate) const QUADRATIC_TRIANGLE: ElementKind = ElementKind::T6;
 
-    /// What is refined in space by bisection.
+    /// The element that bisection refines in space.
     #[cfg(feature = "cli")]
     pub(crate) const LINEAR_TETRAHEDRON: ElementKind = ElementKind::Tet4;
 
@@ -100,7 +100,7 @@ impl ElementKind {
         }
     }
 
-    /// What a face of the element is.
+    /// The kind of a face of the element.
     pub fn facet(self) -> FacetKind {
         self.reference().facet
     }
@@ -139,13 +139,13 @@ impl ElementKind {
         self.reference().form == Shape::Product
     }
 
-    /// Returns `true` if the mean of the dilatation over the element can stand for the dilatation: the linear products in
-    /// the plane and in space.
+    /// Returns `true` if the mean of the dilatation over the element can replace the dilatation: the linear products in the plane and in
+    /// space.
     pub fn takes_mean_dilatation(self) -> bool {
         self.is_product() && !self.is_quadratic() && self.dimension() > 1
     }
 
-    /// The names of the elements that take mean dilatation, as `Q4 and Hex8` with the word `and`.
+    /// The names of the elements that allow mean dilatation, as `Q4 and Hex8` with the word `and`.
     pub fn of_mean_dilatation(join: &str) -> String {
         let names = Self::ALL.into_iter().filter(|kind| kind.takes_mean_dilatation()).map(Self::name);
         names.collect::<Vec<_>>().join(&format!(" {join} "))

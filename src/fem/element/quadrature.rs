@@ -105,7 +105,7 @@ pub(super) const TRIANGLE_6: [QuadraturePoint; 6] = {
 /// The centroid of the tetrahedron (0,0,0), (1,0,0), (0,1,0), (0,0,1), exact for linear functions.
 pub(super) const TETRAHEDRON_1: [QuadraturePoint; 1] = [point(0.25, 0.25, 0.25, 1.0 / 6.0)];
 
-/// Eight points inside the tetrahedron, exact for cubics: what the stiffness of curved edges takes to pass the patch test.
+/// Eight points inside the tetrahedron, exact for cubics: with curved edges the stiffness needs this to pass the patch test.
 ///
 /// # Source
 /// Y. Jinyun, *Symmetric Gaussian quadrature formulae for tetrahedronal regions*, Comput. Methods Appl. Mech. Engrg. 43 (1984)
@@ -136,7 +136,7 @@ const GAUSS_5: [(f64, f64); 5] = [
     (0.906_179_845_938_664, 0.236_926_885_056_189_1),
 ];
 
-/// A cube inside [-1, 1]^dimension, which halving gets to any point of it.
+/// A cube inside [-1, 1]^dimension; repeated halving reaches any point of that cube.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Part {
     /// Its lowest corner.
@@ -146,7 +146,7 @@ pub struct Part {
 }
 
 impl Part {
-    /// All of the cube.
+    /// The whole cube.
     pub const WHOLE: Part = Part { low: [-1.0; 3], size: 2.0 };
 
     /// Its 2^dimension halves along every axis.
@@ -160,8 +160,8 @@ impl Part {
     }
 }
 
-/// Five Gauss points in each direction of a part of the cell; on a simplex those of the product of intervals that is
-/// folded onto it. Exact for polynomials of total degree six and more.
+/// Five Gauss points in each direction of a part of the cell; on a simplex the points of the product of intervals, mapped onto the
+/// simplex. Exact for polynomials of total degree six and more.
 pub(super) fn fine(form: Shape, dimension: usize, part: Part) -> Vec<QuadraturePoint> {
     let mut points = vec![point(0.0, 0.0, 0.0, 1.0)];
     for axis in 0..dimension {
@@ -178,12 +178,12 @@ pub(super) fn fine(form: Shape, dimension: usize, part: Part) -> Vec<QuadratureP
     }
     if form == Shape::Simplex {
         for point in &mut points {
-            // Each coordinate takes its share of what the later ones leave.
+            // Each coordinate takes its share of what the later coordinates leave.
             let mut left = 1.0;
             for axis in (0..dimension).rev() {
                 let share = (1.0 + point.at[axis]) / 2.0;
                 point.at[axis] = left * share;
-                // The interval [-1, 1] shrinks to `left`, on a simplex of the coordinates before this one.
+                // On a simplex the interval [-1, 1] of this coordinate shrinks to length `left`.
                 point.weight *= left / 2.0;
                 left *= 1.0 - share;
             }

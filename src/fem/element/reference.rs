@@ -1,19 +1,19 @@
-//! What an element says of itself: the form in which each has a file of its own.
+//! The description of an element: each element gives it in its own file.
 
-/// The largest number of nodes that an element here has.
+/// The largest number of nodes of an element.
 pub const MAX_NODES: usize = 20;
 
 /// One value per node of an element; entries beyond its nodes are zero.
 pub type PerNode<T> = [T; MAX_NODES];
 
-/// The values of the nodes of an element, with zeros behind them.
+/// The values of the nodes of an element, followed by zeros.
 pub(super) fn padded<T: Copy + Default, const N: usize>(values: [T; N]) -> PerNode<T> {
     let mut all = [T::default(); MAX_NODES];
     all[..N].copy_from_slice(&values);
     all
 }
 
-/// What a reference cell is the product or the hull of.
+/// The shape of a reference cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
     /// A simplex: origin and unit vectors; linear functions have total degree one.
@@ -44,11 +44,11 @@ pub struct ReferenceElement {
     pub nodes: &'static [[f64; 3]],
     /// Number of corners.
     pub corners: usize,
-    /// The corners between which each node behind the corners lies, in the order of these nodes.
+    /// The two corners next to each mid-side node, in the order of these nodes.
     pub mid_sides: &'static [[usize; 2]],
     /// Local nodes of every face, in the order of the facet's own reference cell, seen from outside counterclockwise.
     pub faces: &'static [&'static [usize]],
-    /// Local nodes in the order along the cell; the own order where the cell is no line.
+    /// Local nodes in the order along the cell; their own order if the cell is not a line.
     pub along: &'static [usize],
     /// Values of the shape functions at a reference point.
     pub shape: fn([f64; 3]) -> PerNode<f64>,
@@ -56,24 +56,23 @@ pub struct ReferenceElement {
     pub derivative: fn([f64; 3]) -> PerNode<[f64; 3]>,
     /// Quadrature that integrates stiffness and constant loads of an undistorted cell exactly.
     pub quadrature: &'static [QuadraturePoint],
-    /// The same for a cell that is revolved about an axis: the radius is one degree more.
+    /// The same for a cell of a body of revolution: the radius adds one degree.
     pub quadrature_revolved: &'static [QuadraturePoint],
     /// Reference coordinates of the centroid.
     pub centroid: [f64; 3],
-    /// What a face of the element is; of a point and of an edge, which are no elements of a body in the plane, its ends.
+    /// The kind of a face of the element; for points and edges, which are no elements of a plane body, the kind of its ends.
     pub facet: FacetKind,
-    /// The number by which a file of Gmsh knows the element.
+    /// The number of the element in a file of Gmsh.
     pub gmsh: usize,
-    /// The place of each node among those of an element in a file of Gmsh.
+    /// The position of each node in an element of a Gmsh file.
     pub gmsh_order: &'static [usize],
-    /// The number by which a file of VTK knows it, with its nodes in the same order.
+    /// The number of the element in a VTK file, with its nodes in the same order.
     pub vtk: u8,
-    /// What a cell of a structured mesh brings with it.
+    /// The counts that a cell of a structured mesh adds.
     pub counts: LatticeCounts,
 }
 
-/// What a cell of a large structured mesh brings with it: a quadrilateral or a brick, cut into simplices where the element
-/// is one.
+/// The counts that a cell of a large structured mesh adds: a quadrilateral or a brick, cut into simplices if the element is a simplex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LatticeCounts {
     /// Nodes that a cell adds.
@@ -82,18 +81,17 @@ pub struct LatticeCounts {
     pub line: f64,
     /// Nodes of the elements of a cell together.
     pub connections: f64,
-    /// Nodes whose stiffness a node meets, itself among them, on average.
+    /// Nodes coupled to a node by the stiffness, the node included, on average.
     pub neighbours: f64,
 }
 
 impl LatticeCounts {
-    /// Of what no mesh is made.
+    /// For a cell of which no mesh consists.
     pub const NONE: Self = LatticeCounts { nodes: 0.0, line: 0.0, connections: 0.0, neighbours: 0.0 };
 }
 
 impl ReferenceElement {
-    /// The local nodes in the order that a mirrored element has: that of the cell with xi and eta exchanged, or, on a
-    /// line, with xi reversed.
+    /// The local nodes in the order of a mirrored element: that of the cell with xi and eta exchanged, or, on a line, with xi reversed.
     pub fn mirrored(&self) -> Vec<usize> {
         let mirror = |[xi, eta, zeta]: [f64; 3]| match self.dimension {
             1 => [-xi, eta, zeta],

@@ -5,7 +5,7 @@ use super::reference::{FacetKind, LatticeCounts, MAX_NODES, PerNode, ReferenceEl
 
 /// The linear triangle.
 ///
-/// Revolved it takes three points: with one, a turn about the centroid would cost no energy.
+/// In a body of revolution it takes three points: with one point, a rotation about the centroid would have no strain energy.
 pub(super) static T3: ReferenceElement = ReferenceElement {
     name: "T3",
     form: Shape::Simplex,

@@ -9,8 +9,8 @@ const SIDES: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
 /// The slopes of the barycentric coordinates.
 const SLOPES: [[f64; 2]; 3] = [[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]];
 
-/// The quadratic triangle; its rule integrates the stiffness of straight sides exactly, revolved ones included but for
-/// the hoop terms.
+/// The quadratic triangle; its rule integrates the stiffness exactly if the sides are straight, in bodies of revolution too, except the
+/// hoop terms.
 pub(super) static T6: ReferenceElement = ReferenceElement {
     name: "T6",
     form: Shape::Simplex,

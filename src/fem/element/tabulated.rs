@@ -7,7 +7,7 @@ use super::{Part, PerNode, QuadraturePoint, ReferenceElement, Shape, quadrature}
 /// The shape functions at one reference point.
 #[derive(Clone, Copy, Debug)]
 pub struct TabulatedPoint {
-    /// Quadrature weight; zero where the point belongs to no rule.
+    /// Quadrature weight; zero if the point belongs to no rule.
     pub weight: f64,
     /// Values.
     pub shape: PerNode<f64>,
@@ -15,12 +15,12 @@ pub struct TabulatedPoint {
     pub derivative: PerNode<[f64; 3]>,
 }
 
-/// Which quadrature of an element.
+/// The quadrature of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
-    /// That of a bar, in the plane and in space.
+    /// The rule for bars, plane models and space.
     Straight,
-    /// That of a body of revolution: the radius is one degree more.
+    /// The rule for bodies of revolution: the radius adds one degree.
     Revolved,
 }
 
@@ -48,7 +48,7 @@ impl Tabulated {
         Self::with_rule(reference, rule.to_vec())
     }
 
-    /// Tabulates `reference` at five points in each direction, for functions that are no polynomials of the element.
+    /// Tabulates `reference` at five points in each direction, for functions that are not polynomials of the element.
     pub fn fine(reference: &'static ReferenceElement) -> Self {
         Self::fine_in(reference, Part::WHOLE)
     }
@@ -74,8 +74,8 @@ impl Tabulated {
         }
     }
 
-    /// The weights that carry values at the quadrature points to the nodes, n_nodes x n_points: the least-squares fit
-    /// of a linear function (multilinear on a product of intervals; a constant where one point is all there is).
+    /// The weights that carry values at the quadrature points to the nodes, n_nodes x n_points: the least-squares fit of a linear
+    /// function (multilinear on a product of intervals; a constant if there is only one point).
     pub fn extrapolation(&self) -> DMatrix<f64> {
         let basis = |at: [f64; 3]| -> Vec<f64> {
             let dimension = self.reference.dimension;
@@ -93,7 +93,7 @@ impl Tabulated {
         };
         let at_points = rows(self.rule.iter().map(|point| point.at).collect());
         let at_nodes = rows(self.reference.nodes.to_vec());
-        // The basis is independent on every rule here; an inverse that failed would leave the mean value.
+        // The basis is independent on every rule here; if the inverse failed, the mean value would be used.
         let mean = || DMatrix::from_element(at_nodes.nrows(), at_points.nrows(), 1.0 / at_points.nrows() as f64);
         let normal = at_points.transpose() * &at_points;
         normal.try_inverse().map_or_else(mean, |inverse| &at_nodes * inverse * at_points.transpose())

@@ -9,7 +9,7 @@ pub type Matrix = [[f64; 6]; 6];
 /// The Lamé constants of a material in a formulation, in force per area.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lame {
-    /// lambda, for the trace of the strains that the formulation has.
+    /// lambda, which multiplies the trace of the strains of the formulation.
     pub lambda: f64,
     /// mu, the shear modulus; half of Young's modulus in a bar, which has no shear.
     pub mu: f64,
@@ -18,9 +18,9 @@ pub struct Lame {
 /// The stiffness of a material in a formulation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Stiffness {
-    /// Of an isotropic one.
+    /// Of an isotropic material.
     Isotropic(Lame),
-    /// Of any other.
+    /// Of any other material.
     General(Box<Matrices>),
 }
 
@@ -29,7 +29,7 @@ pub enum Stiffness {
 pub struct Matrices {
     /// From engineering strain to stress, in force per area: zero where the formulation has no stress.
     pub stiffness: Matrix,
-    /// Back, for the components whose strain the formulation has; zero elsewhere.
+    /// From stress to engineering strain, for the components whose strain the formulation has; zero elsewhere.
     pub compliance: Matrix,
 }
 
@@ -51,8 +51,7 @@ impl Law {
         &self.stiffness
     }
 
-    /// The stress of a strain. In an isotropic material `dilatation` stands for its trace, which a mean over the element may
-    /// replace.
+    /// The stress of a strain. In an isotropic material `dilatation` replaces the trace; it may be a mean over the element.
     #[inline]
     pub fn stress(&self, strain: &Symmetric, dilatation: f64) -> Symmetric {
         match &self.stiffness {
@@ -68,7 +67,8 @@ impl Law {
         }
     }
 
-    /// The stress that holds a free strain back: minus that of the strain, without what the formulation leaves free.
+    /// The stress that suppresses a free strain: minus the stress of that strain, without the components that the formulation leaves
+    /// free.
     pub fn holding(&self, free: &Symmetric) -> Symmetric {
         let mut held = [0.0; 6];
         self.formulation.stresses().iter().for_each(|&component| held[component] = free[component]);
@@ -77,7 +77,7 @@ impl Law {
 
     /// `sigma : C^-1 : sigma`, twice the density of the complementary energy, of the components whose strain the formulation has.
     ///
-    /// In an isotropic material it is (s : s - lambda/(2 mu + n lambda) (tr s)^2)/(2 mu) of their n normal ones.
+    /// In an isotropic material it is (s : s - lambda/(2 mu + n lambda) (tr s)^2)/(2 mu), with n normal components.
     pub fn complementary_energy(&self, stress: &Symmetric) -> f64 {
         let &Lame { lambda, mu } = match &self.stiffness {
             Stiffness::Isotropic(lame) => lame,
@@ -97,8 +97,8 @@ impl Law {
         (normal + 2.0 * shear - lambda / (2.0 * mu + normals as f64 * lambda) * trace * trace) / (2.0 * mu)
     }
 
-    /// The stiffness to a strain along one direction alone, which the speed of pressure waves follows; of an orthotropic material
-    /// the largest along a coordinate axis.
+    /// The stiffness against a strain along one direction alone, which gives the speed of pressure waves; in an orthotropic material the
+    /// largest along a coordinate axis.
     pub fn wave_modulus(&self) -> f64 {
         match &self.stiffness {
             Stiffness::Isotropic(lame) => lame.lambda + 2.0 * lame.mu,

@@ -65,7 +65,7 @@ impl Material {
         Ok(Material { elasticity, ..self })
     }
 
-    /// The same material with a density (mass per volume), which motions and forces of inertia ask for.
+    /// The same material with a density (mass per volume), which motions and inertia forces need.
     ///
     /// # Errors
     /// [`Error::Setting`] for a density that is not positive and finite.
@@ -76,8 +76,8 @@ impl Material {
         Ok(Material { density: Some(density), ..self })
     }
 
-    /// The same material with coefficients of thermal expansion (strain per degree) along its axes, those of an isotropic material along x,
-    /// y and z; a temperature asks for them.
+    /// The same material with coefficients of thermal expansion (strain per degree) along its axes, for an isotropic material along x, y
+    /// and z; temperatures need them.
     ///
     /// # Errors
     /// [`Error::Setting`] for a coefficient that is not finite.
@@ -88,7 +88,7 @@ impl Material {
         }
     }
 
-    /// The strain of a body that is a degree warmer, where the material has coefficients of expansion.
+    /// The strain of a body that is one degree warmer, if the material has coefficients of expansion.
     pub(crate) fn expansion(&self) -> Option<Symmetric> {
         let along = self.expansion?;
         Some(match &self.elasticity {
@@ -97,12 +97,12 @@ impl Material {
         })
     }
 
-    /// The density, in mass per volume, where there is one.
+    /// The density, in mass per volume, if there is one.
     pub fn density(&self) -> Option<f64> {
         self.density
     }
 
-    /// The smallest and the largest Young's modulus; those of an isotropic material are the same.
+    /// The smallest and the largest Young's modulus; they are equal in an isotropic material.
     pub fn young(&self) -> [f64; 2] {
         match &self.elasticity {
             Elasticity::Isotropic { young, .. } => [*young; 2],
@@ -121,8 +121,8 @@ impl Material {
     /// The law of stress and strain in `formulation`.
     ///
     /// # Errors
-    /// [`Error::Setting`] for nu = 0.5 where the volume would be kept: in plane strain, axisymmetric bodies and space; for
-    /// orthotropic axes that leave the plane of a plane model; for an orthotropic stiffness that overflows.
+    /// [`Error::Setting`] for nu = 0.5 if the formulation would preserve the volume: plane strain, axisymmetric bodies and space; for
+    /// orthotropic axes out of the plane of a plane model; for an orthotropic stiffness that overflows.
     pub fn law(&self, formulation: &Formulation) -> Result<Law, Error> {
         let stiffness = match &self.elasticity {
             &Elasticity::Isotropic { young, poisson } => Stiffness::Isotropic(lame(young, poisson, formulation)?),

@@ -7,10 +7,10 @@ use crate::error::Error;
 use crate::fem::formulation::Formulation;
 use crate::fem::geometry::{Symmetric, cross, dot, length, turned, unit};
 
-/// Axes that lean by less than this, as a sine, lean by rounding.
+/// Axes that deviate by less than this, as a sine, deviate by rounding.
 const SAME_DIRECTION: f64 = 1e-9;
 
-/// What is allowed of the determinant of Poisson's ratios.
+/// The allowed determinant of Poisson's ratios.
 const DEFINITE: &str = "such that the stiffness is positive definite";
 
 /// Moduli and ratios along the axes of a material.
@@ -39,7 +39,7 @@ impl Orthotropic {
         if let Some(&(name, value)) = names.iter().find(|(_, value)| !(value.is_normal() && *value > 0.0)) {
             return Err(Error::Setting { name, value, allowed: "positive and finite" });
         }
-        // The other ratios of each pair: nu_ji = nu_ij E_j / E_i.
+        // The other ratio of each pair: nu_ji = nu_ij E_j / E_i.
         let [nu12, nu23, nu13] = poisson;
         let [nu21, nu32, nu31] = [nu12 * young[1] / young[0], nu23 * young[2] / young[1], nu13 * young[2] / young[0]];
         let pairs = [
@@ -87,7 +87,8 @@ impl Orthotropic {
             return Err(Error::Setting { name: "orthotropic.axes", value: lean, allowed });
         }
         let compliance = self.compliance();
-        // Where the stress vanishes, the compliance of the rest is inverted; where the strain does, the stiffness of the rest.
+        // The compliance of the components with stress is inverted if the other stresses vanish, the stiffness of the rest if the strains
+        // do.
         let stressed = formulation.stresses();
         let strained = if let Formulation::PlaneStrain { .. } = formulation { &[0, 1, 3] } else { stressed };
         let stiffness = inverse(&compliance, stressed).ok_or_else(|| self.overflow())?;
@@ -136,7 +137,7 @@ impl Orthotropic {
     }
 }
 
-/// The inverse of a symmetric matrix in some components, symmetric, zero in the others; `None` where there is none.
+/// The inverse of a symmetric matrix in some components, symmetric, zero in the others; `None` if it is singular.
 fn inverse(of: &Matrix, components: &[usize]) -> Option<Matrix> {
     let count = components.len();
     let own = DMatrix::from_fn(count, count, |i, j| of[components[i]][components[j]]);

@@ -15,7 +15,7 @@ pub struct Axis {
     /// Cells of each interval between breakpoints, at least 1.
     #[cfg_attr(feature = "cli", schemars(extend("minItems" = 1, "items" = {"type": "integer", "format": "uint", "minimum": 1})))]
     pub divisions: Vec<usize>,
-    /// Last cell size over first cell size of each interval, positive; all 1 where left out.
+    /// Last cell size over first cell size of each interval, positive; all 1 if left out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[cfg_attr(feature = "cli", schemars(extend("items" = {"type": "number", "format": "double", "exclusiveMinimum": 0})))]
     pub ratios: Vec<f64>,
@@ -25,9 +25,9 @@ pub struct Axis {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{field}: {message}")]
 pub struct AxisError {
-    /// The field, with its index where it has one.
+    /// The field, with its index if it has one.
     pub field: String,
-    /// What is wrong, and what is allowed.
+    /// The fault, and the allowed values.
     pub message: String,
 }
 
@@ -72,9 +72,9 @@ impl Axis {
         }
     }
 
-    /// Cuts every cell into `times`; graded axes are nested.
+    /// Cuts every cell into `times` cells; the meshes of graded axes are nested.
     pub(crate) fn refine(&mut self, times: usize) {
-        // The size of cell after cell grows by q = ratio^(1/(n - 1)); in the finer mesh by the times-th root of it.
+        // Cell sizes grow by q = ratio^(1/(n - 1)) from cell to cell; in the finer mesh by the times-th root of q.
         for (ratio, &cells) in self.ratios.iter_mut().zip(&self.divisions) {
             if cells > 1 {
                 let finer = cells.saturating_mul(times) - 1;
@@ -139,8 +139,8 @@ fn collapsed(interval: usize) -> AxisError {
     AxisError { field: format!("divisions[{interval}]"), message: message.into() }
 }
 
-/// Where line `cell` of `cells` lies, as a fraction of the interval: cell sizes grow by the constant factor
-/// q = ratio^(1/(cells-1)), so that the fraction is (q^cell - 1)/(q^cells - 1).
+/// The position of line `cell` of `cells`, as a fraction of the interval: cell sizes grow by the constant factor q = ratio^(1/(cells-1)),
+/// so that the fraction is (q^cell - 1)/(q^cells - 1).
 fn graded_fraction(cell: usize, cells: usize, ratio: f64) -> f64 {
     if ratio == 1.0 || cells == 1 {
         return cell as f64 / cells as f64;

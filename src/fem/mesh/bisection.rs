@@ -1,4 +1,4 @@
-//! Tetrahedra refined by bisection, where they are marked.
+//! Refinement of marked tetrahedra by bisection.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -6,13 +6,13 @@ use super::{Boundary, ElementKind, Mesh};
 use crate::error::Error;
 use crate::fem::geometry::distance;
 
-/// A marked tetrahedron is halved so many times over. Measured on a block under a sphere, 1 takes more meshes and 3 goes too far.
+/// Number of times that a marked tetrahedron is halved. Measured on a block under a sphere: 1 needs more meshes, and 3 refines too much.
 const GENERATIONS: usize = 2;
 
-/// A mesh of tetrahedra with what bisection needs to know of each.
+/// A mesh of tetrahedra with the data that bisection needs of each.
 ///
 /// Every face has a marked edge, which is halved before its other two, and tetrahedra that share a face agree on it: so halves always
-/// meet in whole faces, whatever the first mesh is. Shapes repeat after a few generations, so that no angle tends to zero.
+/// meet in whole faces, for any first mesh. Shapes repeat after a few generations, so that no angle tends to zero.
 ///
 /// # Source
 /// D. N. Arnold, A. Mukherjee, L. Pouly, "Locally adapted tetrahedral meshes using bisection", SIAM J. Sci. Comput. 22 (2000) 431-448.
@@ -29,16 +29,16 @@ pub(crate) struct Tetrahedra {
 #[derive(Clone, Copy, Debug)]
 struct Marked {
     nodes: [usize; 4],
-    /// The marked edges of the faces opposite to the first and to the second node; that of the other two is the edge to be halved.
+    /// The marked edges of the faces opposite to the first and to the second node; that of the other two faces is the edge to be halved.
     opposite: [[usize; 2]; 2],
-    /// Did bisection make it of a tetrahedron whose marked edges lie in one face?
+    /// `true` if bisection made it from a tetrahedron whose marked edges lie in one face.
     is_second: bool,
     /// The tetrahedron of the first mesh that it is a part of.
     parent: usize,
 }
 
 impl Tetrahedra {
-    /// Those of a mesh, the longest edge of each face marked; none of another kind of mesh.
+    /// From a mesh, with the longest edge of each face marked; `None` for another kind of mesh.
     pub fn of(mesh: &Mesh) -> Option<Self> {
         if mesh.kind() != ElementKind::LINEAR_TETRAHEDRON {
             return None;
@@ -56,7 +56,7 @@ impl Tetrahedra {
         Some(Tetrahedra { nodes, cells, facets, names })
     }
 
-    /// For each tetrahedron the one of the first mesh that it is a part of.
+    /// For each tetrahedron, the tetrahedron of the first mesh that it is a part of.
     pub fn parents(&self) -> Vec<usize> {
         self.cells.iter().map(|cell| cell.parent).collect()
     }
@@ -76,7 +76,8 @@ impl Tetrahedra {
         Mesh::new(self.nodes.clone(), kind, connectivity, self.names.iter().enumerate().map(boundary).collect())
     }
 
-    /// Cuts each marked tetrahedron into four, and what else that takes. Pieces stand where the whole stood.
+    /// Cuts each marked tetrahedron into four, and further tetrahedra with a hanging node. The pieces replace the whole in
+    /// the order.
     pub fn refine(&mut self, marked: &[bool]) {
         let mut middles = HashMap::new();
         let mut left: Vec<usize> = marked.iter().map(|&marked| if marked { GENERATIONS } else { 0 }).collect();
@@ -100,7 +101,7 @@ impl Tetrahedra {
         }
     }
 
-    /// Both halves, and the facets that are halved with it.
+    /// Both halves of a tetrahedron; its facets on boundaries are halved too.
     fn halves(&mut self, cell: Marked, middles: &mut HashMap<[usize; 2], usize>) -> [Marked; 2] {
         let [a, b, c, d] = cell.nodes;
         let nodes = &mut self.nodes;
@@ -126,7 +127,7 @@ impl Tetrahedra {
             let [s] = [kept, c, d].into_iter().filter(|&node| node != p && node != q).collect::<Vec<_>>()[..] else {
                 return cell;
             };
-            // A face with the new node has the edge opposite to that marked, but for the face between.
+            // In a face with the new node the edge opposite to it is marked, except in the face between the halves.
             let face = |x: usize, y: usize| if key(x, y) == key(c, d) { between } else { key(x, y) };
             Marked {
                 nodes: [p, q, s, middle],
@@ -168,7 +169,7 @@ impl Marked {
     }
 }
 
-/// What tells an edge: its two nodes, increasing.
+/// The key of an edge: its two nodes, increasing.
 fn key(a: usize, b: usize) -> [usize; 2] {
     [a.min(b), a.max(b)]
 }
@@ -196,7 +197,7 @@ mod tests {
     use super::*;
     use crate::fem::mesh::gmsh::GmshFile;
 
-    /// The ratio of the radii of inner and outer sphere, times three: 1 for the regular tetrahedron, 0 for a flat one.
+    /// The ratio of the radii of inscribed and circumscribed sphere, times three: 1 for the regular tetrahedron, 0 for a flat one.
     fn quality(corners: [[f64; 3]; 4]) -> f64 {
         let area = |[a, b, c]: [[f64; 3]; 3]| {
             let (u, v) = ([0, 1, 2].map(|k| b[k] - a[k]), [0, 1, 2].map(|k| c[k] - a[k]));
@@ -207,7 +208,7 @@ mod tests {
         let faces = area([b, c, d]) + area([a, c, d]) + area([a, b, d]) + area([a, b, c]);
         let volume = volume(corners).abs();
         let longest = [(a, b), (a, c), (a, d), (b, c), (b, d), (c, d)].map(|(p, q)| distance(p, q));
-        // The inner radius over the longest edge, 1 where all edges are equal.
+        // The inner radius over the longest edge, 1 if all edges are equal.
         3.0 * volume / faces / longest.into_iter().fold(0.0, f64::max) * 24.0_f64.sqrt()
     }
 
@@ -216,7 +217,7 @@ mod tests {
         GmshFile::read(path).unwrap().mesh(None, 1.0).unwrap()
     }
 
-    /// Every inner face lies between two tetrahedra, and every other one on the surface.
+    /// Every inner face lies between two tetrahedra, and every other face on the surface.
     fn faces_of_one(cells: &[Marked]) -> usize {
         let mut faces: HashMap<[usize; 3], usize> = HashMap::new();
         for [a, b, c, d] in cells.iter().map(|cell| cell.nodes) {
@@ -240,14 +241,14 @@ mod tests {
         let [volume, worst] = whole(&mesh);
         assert_eq!(faces_of_one(&mesh.cells), mesh.facets.values().map(|_| 1).sum::<usize>());
         for step in 0..7 {
-            // What lies about a corner, and some others.
+            // The tetrahedra around a corner, and some others.
             let marked: Vec<bool> =
                 mesh.cells.iter().enumerate().map(|(k, cell)| cell.nodes.contains(&0) || k % 41 == step).collect();
             mesh.refine(&marked);
             let [now, shape] = whole(&mesh);
             assert!((now / volume - 1.0).abs() < 1e-12, "{now} {volume}");
             assert!(shape > 0.25 * worst, "{shape} {worst}");
-            // The boundaries are all of the surface, and stay so.
+            // The boundaries are the whole surface before and after.
             assert_eq!(faces_of_one(&mesh.cells), mesh.facets.len());
         }
         let refined = mesh.mesh().unwrap();

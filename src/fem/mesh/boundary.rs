@@ -7,10 +7,10 @@ use crate::fem::element::FacetKind;
 pub struct Boundary {
     /// Its name, as `top`.
     pub name: String,
-    /// What its facets are.
+    /// The kind of its facets.
     pub kind: FacetKind,
-    /// The nodes of facet 0, then of facet 1, ..., each in the order of its reference cell; edges stand in their order
-    /// along the boundary where they make a line.
+    /// The nodes of facet 0, then of facet 1, ..., each in the order of its reference cell; edges are in their order along the boundary
+    /// if they form a line.
     pub connectivity: Vec<usize>,
 }
 
@@ -30,7 +30,7 @@ impl Boundary {
         self.connectivity.chunks_exact(self.kind.nodes())
     }
 
-    /// The nodes, each once, in the order in which one meets them along the facets.
+    /// The nodes, each once, in the order of their first appearance along the facets.
     pub fn nodes(&self) -> Vec<usize> {
         let along = self.kind.reference().along;
         let mut seen = vec![false; self.connectivity.iter().max().map_or(0, |&last| last + 1)];

@@ -1,4 +1,4 @@
-//! From linear elements to quadratic ones: a node in the middle of every edge.
+//! From linear elements to quadratic elements: a node in the middle of every edge.
 
 use std::collections::HashMap;
 
@@ -49,7 +49,7 @@ impl Mesh {
     }
 }
 
-/// The nodes so far, and those in the middle of edges by the ends of these.
+/// The nodes so far, and the mid-edge nodes by the ends of their edges.
 struct Middles {
     nodes: Vec<[f64; 3]>,
     of: HashMap<[usize; 2], usize>,

@@ -1,4 +1,4 @@
-//! Which element a facet belongs to.
+//! The element that a facet belongs to.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -7,7 +7,7 @@ use super::outline::chained;
 use super::{Boundary, Mesh, fail};
 use crate::error::Error;
 
-/// The most nodes that a facet has.
+/// The largest number of nodes of a facet.
 const MOST_NODES: usize = 8;
 
 /// The nodes of a facet in increasing order, padded at the end: the same for a face of any orientation.
@@ -23,8 +23,8 @@ fn key(nodes: impl Iterator<Item = usize>) -> Key {
 }
 
 impl Mesh {
-    /// The element and its local face that each facet of a boundary is; the first one where the boundary lies between
-    /// two elements, `None` where the facet is no face of any element.
+    /// The element and its local face for each facet of a boundary: the first one if the boundary lies between two elements, `None` if
+    /// the facet is not a face of any element.
     pub fn faces_of(&self, boundary: &Boundary) -> Vec<Option<(usize, usize)>> {
         let mut places: HashMap<Key, Vec<usize>> = HashMap::with_capacity(boundary.facet_count());
         let mut marked = vec![false; self.nodes().len()];

@@ -1,4 +1,4 @@
-//! Nodes of structured meshes by their place in a lattice, and cells cut into elements.
+//! Nodes of structured meshes by their position in a lattice, and cells cut into elements.
 //!
 //! Keys count half steps, so that mid-sides have keys too; only nodes that an element uses are made.
 
@@ -48,7 +48,7 @@ impl<K: Copy + Eq + Hash> Lattice<K> {
     }
 }
 
-/// The lines of an axis at half steps: between each two lines their mean.
+/// The lines of an axis at half steps: the mean of each two lines is inserted between them.
 pub(crate) fn half_steps(lines: &[f64]) -> Vec<f64> {
     let mut fine = Vec::with_capacity(2 * lines.len());
     for (index, &line) in lines.iter().enumerate() {

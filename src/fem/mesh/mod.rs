@@ -24,8 +24,8 @@ pub use zone::Zone;
 use crate::error::Error;
 use crate::fem::geometry::distance;
 
-/// More nodes than this are refused before anything is allocated: ten million dofs are far beyond what a direct
-/// factorisation of a plane problem holds in memory.
+/// More nodes than this are refused before memory is allocated: a direct factorisation of a plane problem with ten million dofs does not
+/// fit in memory.
 pub const MAX_NODES: usize = 5_000_000;
 
 /// A mesh of one kind of element, checked once, when it is built.
@@ -46,9 +46,9 @@ impl Mesh {
     /// indices from 0.
     ///
     /// # Errors
-    /// [`Error::Mesh`] for a mesh without elements, coordinates that are not finite or lie outside the space of the
-    /// element, a connectivity that is no multiple of the nodes of an element, a node beyond the last, a node that no
-    /// element uses, two boundaries of one name, facets of the wrong kind, a facet that is no face of an element.
+    /// [`Error::Mesh`] for a mesh without elements, coordinates that are not finite or lie outside the space of the element, a
+    /// connectivity whose length is not a multiple of the nodes of an element, a node beyond the last, a node that no element uses, two
+    /// boundaries of one name, facets of the wrong kind, a facet that is not a face of an element.
     pub fn new(
         nodes: Vec<[f64; 3]>,
         kind: ElementKind,
@@ -118,7 +118,7 @@ impl Mesh {
         &self.nodes
     }
 
-    /// What the elements are.
+    /// The kind of the elements.
     pub fn kind(&self) -> ElementKind {
         self.kind
     }
@@ -141,7 +141,7 @@ impl Mesh {
     /// The nodes of one element, from 0.
     ///
     /// # Panics
-    /// Where there is no such element.
+    /// If there is no such element.
     #[inline]
     pub(crate) fn element(&self, element: usize) -> &[usize] {
         let each = self.kind.nodes();
@@ -158,7 +158,7 @@ impl Mesh {
         self.boundaries.iter().find(|boundary| boundary.name == name)
     }
 
-    /// The groups of elements; a mesh that no file made has none.
+    /// The groups of elements; only a mesh from a file has groups.
     pub(crate) fn groups(&self) -> &[ElementGroup] {
         &self.groups
     }
@@ -180,8 +180,8 @@ impl Mesh {
         self
     }
 
-    /// This mesh and `other` in one, sharing no node: nodes and elements of `other` follow those of this mesh, and its
-    /// boundaries are called `name.boundary`, its groups of elements alike.
+    /// This mesh and `other` in one, sharing no node: nodes and elements of `other` follow those of this mesh; its boundaries are called
+    /// `name.boundary`, and its groups of elements `name.group`.
     ///
     /// # Errors
     /// [`Error::Mesh`] for meshes of two kinds, or a boundary name that exists.
@@ -205,10 +205,10 @@ impl Mesh {
         Ok(Self::new(self.nodes, self.kind, self.connectivity, self.boundaries)?.with_groups(self.groups))
     }
 
-    /// The same mesh with one boundary more, behind the others.
+    /// The same mesh with one more boundary, after the others.
     ///
     /// # Errors
-    /// [`Error::Mesh`] for a name that exists, facets of the wrong kind, a facet that is no face of an element.
+    /// [`Error::Mesh`] for a name that exists, facets of the wrong kind, a facet that is not a face of an element.
     pub(crate) fn with_boundary(mut self, boundary: Boundary) -> Result<Self, Error> {
         self.boundaries.push(boundary);
         self.check_boundaries()?;

@@ -1,19 +1,18 @@
-//! The outline of a mesh: faces found by their nodes, edges put in their order.
+//! The outline of a mesh: faces found by their nodes, edges sorted into chains.
 
 use std::collections::{HashMap, HashSet};
 
 use super::{Boundary, FacetKind, Mesh};
 
 impl Mesh {
-    /// The mesh with these boundaries alone, each of all faces whose nodes are all marked; a boundary without a face is left
-    /// out.
+    /// The mesh with these boundaries alone, each with all faces that have only marked nodes; a boundary without a face is left out.
     pub(crate) fn with_sides(mut self, sides: &[(&str, &dyn Fn(usize) -> bool)]) -> Self {
         self.boundaries = sides.iter().filter_map(|(name, marked)| self.boundary_where(name, marked)).collect();
         self
     }
 
-    /// The boundary of all faces whose nodes are all marked, seen from outside; edges in the order in which they follow
-    /// each other. `None` if there is no such face.
+    /// The boundary of all faces that have only marked nodes, seen from outside; edges in the order in which they follow each other.
+    /// `None` if there is no such face.
     fn boundary_where(&self, name: &str, marked: impl Fn(usize) -> bool) -> Option<Boundary> {
         let faces = self.kind().reference().faces;
         let mut connectivity = Vec::new();
@@ -36,7 +35,7 @@ impl Boundary {
     }
 }
 
-/// Edges in the order in which they follow each other; other facets as they are.
+/// Edges in the order in which they follow each other; other facets unchanged.
 pub(super) fn chained(kind: FacetKind, connectivity: Vec<usize>) -> Vec<usize> {
     if kind.reference().dimension != 1 {
         return connectivity;
@@ -47,7 +46,7 @@ pub(super) fn chained(kind: FacetKind, connectivity: Vec<usize>) -> Vec<usize> {
     let ends: HashSet<usize> = edges.iter().map(|edge| edge[1]).collect();
     let mut waiting = vec![true; edges.len()];
     let mut ordered = Vec::with_capacity(connectivity.len());
-    // Open lines from their beginnings, then closed ones from any place.
+    // Open lines from their start, then closed lines from any edge.
     let beginnings = (0..edges.len()).filter(|&index| !ends.contains(&edges[index][0]));
     for first in beginnings.chain(0..edges.len()) {
         let mut next = Some(first);

@@ -4,7 +4,7 @@ use super::Zone;
 use crate::error::Error;
 use crate::fem::geometry::length;
 
-/// Half the width of the core over the radius: cells neither flat at its corners nor small in its middle.
+/// Half the width of the core divided by the radius: cells are neither flat at its corners nor small in its middle.
 const CORE: f64 = 0.4;
 
 /// The lines of a round body around its core.
@@ -14,7 +14,7 @@ pub(crate) struct Grading {
     pub aside: Vec<f64>,
     /// Arc lengths from the cut to the corner of the core.
     pub down: Vec<f64>,
-    /// Where the shells lie, from 0 at the core to 1 at the surface, fine at 1.
+    /// The positions of the shells, from 0 at the core to 1 at the surface, fine at 1.
     pub shells: Vec<f64>,
 }
 
@@ -25,7 +25,7 @@ impl Grading {
         zone.check(radius)?;
         let quarter = radius * std::f64::consts::FRAC_PI_4;
         let aside = zone.lines(quarter)?;
-        // About as wide as the last cell beside them.
+        // About as wide as the last cell next to them.
         let last = quarter - aside[aside.len() - 2];
         let rows = (quarter / last).round().max(2.0);
         let down = (0..=rows as usize).map(|row| quarter * row as f64 / rows).collect();
@@ -41,8 +41,8 @@ impl Grading {
         if angle.abs() >= std::f64::consts::FRAC_PI_4 { angle.signum() } else { angle.tan() }
     }
 
-    /// The place, seen from the centre, of a point of the core, given in halves of its width, that is moved `outward`
-    /// from there (0) to the surface (1) along its ray.
+    /// The position, relative to the centre, of a point of the core (given in halves of the core's width) that is moved along its ray by
+    /// `outward`: from the core (0) to the surface (1).
     pub fn place(&self, core: [f64; 3], outward: f64) -> [f64; 3] {
         if outward == 0.0 {
             return core.map(|value| value * CORE * self.radius);
@@ -52,7 +52,7 @@ impl Grading {
     }
 }
 
-/// The lines from 0 on, and their mirror images.
+/// The lines from 0 on, with their mirror images.
 pub(crate) fn mirrored(lines: &[f64]) -> Vec<f64> {
     lines.iter().skip(1).rev().map(|line| -line).chain(lines.iter().copied()).collect()
 }

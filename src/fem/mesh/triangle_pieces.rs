@@ -4,11 +4,10 @@ use super::{Mesh, fail};
 use crate::error::Error;
 use crate::fem::geometry::distance;
 
-/// A node in the middle of an edge that lies off its chord by less than this, relative to the chord, is rounding.
+/// A mid-edge node that lies off the chord by less than this, relative to the chord, is rounding.
 const STRAIGHT: f64 = 1e-9;
 
-/// Straight triangles that make up the elements of a plane mesh: by the corners alone where all edges are straight, else by all
-/// nodes.
+/// Straight triangles that make up the elements of a plane mesh: of the corners alone if all edges are straight, else of all nodes.
 #[derive(Clone, Debug)]
 pub(crate) struct TrianglePieces {
     /// The nodes of triangles, in the order of the mesh.
@@ -17,15 +16,15 @@ pub(crate) struct TrianglePieces {
     pub triangles: Vec<[usize; 3]>,
     /// The element of each triangle.
     pub elements: Vec<usize>,
-    /// The number of each node of the mesh; none for one in the middle of a straight edge.
+    /// The number of each node of the mesh; `None` for a mid-edge node of a straight edge.
     numbers: Vec<Option<usize>>,
 }
 
 impl TrianglePieces {
-    /// Those of a plane mesh.
+    /// The triangles of a plane mesh.
     ///
     /// # Errors
-    /// [`Error::Mesh`] for an element whose edges are so curved that a triangle has no area.
+    /// [`Error::Mesh`] for an element with edges that are so curved that a triangle has no area.
     pub fn of(mesh: &Mesh) -> Result<Self, Error> {
         let straight = is_straight(mesh);
         let mut used = vec![!straight; mesh.nodes().len()];
@@ -55,7 +54,7 @@ impl TrianglePieces {
         Ok(TrianglePieces { nodes, triangles, elements, numbers })
     }
 
-    /// The edges of triangles that a boundary is made of, each by its two nodes, increasing.
+    /// The edges of triangles that form a boundary, each by its two nodes, increasing.
     pub fn edges_of(&self, mesh: &Mesh, boundary: &str) -> Vec<[usize; 2]> {
         let key = |a: usize, b: usize| Some([a.min(b), a.max(b)]);
         let of_facet = |facet: &[usize]| {
@@ -84,7 +83,7 @@ fn cut(mesh: &Mesh, element: &[usize], straight: bool) -> Vec<[usize; 3]> {
         [a, b, c] => pieces.push([a, b, c]),
         [a, b, c, d] => {
             let length = |a: usize, b: usize| distance(mesh.nodes()[a], mesh.nodes()[b]);
-            // The shorter diagonal: its triangles are less flat.
+            // Cut along the shorter diagonal: its triangles are less flat.
             pieces.extend(if length(a, c) <= length(b, d) { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] });
         }
         _ => {}
@@ -92,7 +91,7 @@ fn cut(mesh: &Mesh, element: &[usize], straight: bool) -> Vec<[usize; 3]> {
     pieces
 }
 
-/// Do all nodes in the middle of edges lie in the middle of their chords?
+/// Returns `true` if all mid-edge nodes lie in the middle of their chords.
 fn is_straight(mesh: &Mesh) -> bool {
     let nodes = mesh.nodes();
     mesh.elements().all(|element| {
@@ -110,7 +109,7 @@ mod tests {
     use super::super::{Boundary, ElementKind, FacetKind};
     use super::*;
 
-    /// One triangle of six nodes, its middle nodes first by number, the middle of one side moved out by `bulge`.
+    /// One triangle of six nodes with its mid-edge nodes numbered first; the middle node of one side is moved out by `bulge`.
     fn triangle(bulge: f64) -> Mesh {
         let nodes = [[0.5, 0.0], [0.5 + bulge, 0.5 + bulge], [0.0, 0.5], [0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
         let nodes = nodes.map(|[x, y]| [x, y, 0.0]).to_vec();

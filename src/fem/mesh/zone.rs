@@ -1,4 +1,4 @@
-//! Grading towards a place of contact: fine cells of one size there, growing cells beyond.
+//! Grading towards a contact zone: fine cells of one size there, growing cells beyond.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,7 +10,7 @@ use crate::error::Error;
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema), schemars(rename = "ZoneSpec"))]
 #[serde(deny_unknown_fields)]
 pub struct Zone {
-    /// How far the cells of one size reach from the lowest point, to each side and into the body: positive, at most the
+    /// Distance over which the cells have one size, from the lowest point to each side and into the body: positive, at most the
     /// radius. Twice the expected contact half-width is a good choice.
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub width: f64,
@@ -27,7 +27,7 @@ fn growth() -> f64 {
     1.2
 }
 
-/// A cell smaller than this times the radius is lost in the rounding of coordinates.
+/// A cell smaller than this times the radius is below the rounding of coordinates.
 const SMALLEST: f64 = 1e-8;
 
 impl Zone {
@@ -49,7 +49,7 @@ impl Zone {
         Ok(())
     }
 
-    /// How many cells there will be on `length`, about, and the size of the last one.
+    /// The approximate number of cells on `length`, and the size of the last cell.
     pub fn count(&self, length: f64) -> (f64, f64) {
         let size = self.width / self.divisions as f64;
         let rest = length - self.width;
@@ -63,7 +63,7 @@ impl Zone {
         (self.divisions as f64 + growing, size * self.growth.powf(growing))
     }
 
-    /// Cuts every cell into `times`.
+    /// Cuts every cell into `times` cells.
     pub(crate) fn refine(&mut self, times: usize) {
         self.divisions = self.divisions.saturating_mul(times);
         self.growth = self.growth.powf(1.0 / times as f64);
@@ -87,7 +87,7 @@ impl Zone {
                 return Err(Error::Setting { name, value: self.growth, allowed });
             }
         }
-        // All growing cells shrink alike, so that they end where they should.
+        // All growing cells are scaled by one factor, so that the last line is at `length`.
         let factor = (length - reach) / total;
         let mut at = reach;
         for cell in growing {

@@ -1,4 +1,4 @@
-//! The error of the mesh, estimated: the stress of the elements against the recovered one.
+//! The estimated discretisation error: the stress of the elements against the recovered stress.
 
 use super::{Stress, StressField};
 use crate::error::Error;
@@ -6,33 +6,33 @@ use crate::fem::body::ElasticBody;
 use crate::fem::element::{MAX_NODES, PerNode, Rule, Tabulated};
 use crate::fem::geometry::Symmetric;
 
-/// Estimates the relative error in energy norm of the nodal displacement `displacement` (length `dim * n_nodes`), whose
-/// stress is `field`, against the solution of the continuum: `||sigma* - sigma_h|| / sqrt(||sigma_h||^2 + ||sigma* -
-/// sigma_h||^2)` in the norm of the complementary energy, where sigma* has the averaged stresses of the nodes and is
-/// carried inwards by the shape functions; where materials meet, by those within each. Zero where there is no stress.
+/// Estimates the relative error in energy norm of the nodal displacement `displacement` (length `dim * n_nodes`), whose stress is
+/// `field`, against the solution of the continuum: `||sigma* - sigma_h|| / sqrt(||sigma_h||^2 + ||sigma* - sigma_h||^2)` in the norm of
+/// the complementary energy, where sigma* interpolates the averaged nodal stresses by the shape functions; where materials meet, the
+/// average is taken within each. Zero if there is no stress.
 ///
 /// # Source
 /// O. C. Zienkiewicz, J. Z. Zhu, 1987, "A simple error estimator and adaptive procedure for practical engineering
 /// analysis".
 ///
 /// # Errors
-/// [`Error::Length`] where displacement or field do not belong to the body.
+/// [`Error::Length`] if displacement or field do not belong to the body.
 pub fn discretisation_error(body: &ElasticBody, displacement: &[f64], field: &StressField) -> Result<f64, Error> {
     Ok(EstimatedError::of(body, displacement, field)?.relative())
 }
 
-/// The estimate in the squares of its norms: twice an energy.
+/// The estimate as squares of its norms: twice an energy.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct EstimatedError {
     /// `||sigma* - sigma_h||^2` on each element.
     pub of_elements: Vec<f64>,
     /// `||sigma_h||^2`.
     pub whole: f64,
-    /// Of the stress that there would be without strain: that of a free body cancels it but for rounding.
+    /// The same of the stress without strain: in a free body it is cancelled except for rounding.
     unstrained: f64,
 }
 
-/// Stresses below this times those without strain are rounding.
+/// Stresses below this times the stress without strain are rounding.
 const ROUNDING: f64 = 1e-12;
 
 impl EstimatedError {
@@ -46,7 +46,7 @@ impl EstimatedError {
         if found != expected {
             return Err(Error::Length { name: "nodal stress", found, expected, of: "nodes" });
         }
-        // The rule for bodies of revolution integrates the squares of linear differences too.
+        // The rule for bodies of revolution also integrates the squares of linear differences.
         let table = Tabulated::new(body.mesh().kind().reference(), Rule::Revolved);
         let standard = body.tabulated();
 

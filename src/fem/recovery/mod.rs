@@ -1,4 +1,4 @@
-//! Stress recovery: at the centroids, and extrapolated to the nodes and averaged there; the error of the mesh from it.
+//! Stress recovery: at the centroids, and extrapolated to the nodes and averaged there; the discretisation error from it.
 
 pub(crate) mod discretisation;
 
@@ -26,22 +26,22 @@ pub struct Stress {
     pub sigma_zz: f64,
     /// Shear stress between x and y.
     pub sigma_xy: f64,
-    /// Shear stress between y and z; 0 but in space.
+    /// Shear stress between y and z; 0 except in space.
     pub sigma_yz: f64,
-    /// Shear stress between z and x; 0 but in space.
+    /// Shear stress between z and x; 0 except in space.
     pub sigma_zx: f64,
-    /// The largest principal stress; of those in the plane, but in space.
+    /// The largest principal stress; except in space, the largest of those in the plane.
     pub sigma_1: f64,
     /// The second principal stress. In the plane the smaller one, and so the largest compression there.
     pub sigma_2: f64,
-    /// The smallest principal stress in space; elsewhere sigma_zz, whatever its size.
+    /// The smallest principal stress in space; otherwise sigma_zz, whatever its size.
     pub sigma_3: f64,
     /// The von Mises stress of all components.
     pub von_mises: f64,
 }
 
 impl Stress {
-    /// The stress of the given components in the plane, and across it.
+    /// The stress with the given components in the plane and normal to it.
     pub fn new(sigma_xx: f64, sigma_yy: f64, sigma_xy: f64, sigma_zz: f64) -> Self {
         let centre = (sigma_xx + sigma_yy) / 2.0;
         let radius = ((sigma_xx - sigma_yy) / 2.0).hypot(sigma_xy);
@@ -52,7 +52,7 @@ impl Stress {
         Stress { sigma_xx, sigma_yy, sigma_zz, sigma_xy, sigma_yz, sigma_zx, sigma_1, sigma_2, sigma_3, von_mises }
     }
 
-    /// The stress of the components `[xx, yy, zz, xy, yz, zx]` in space.
+    /// The stress with the components `[xx, yy, zz, xy, yz, zx]` in space.
     pub fn in_space([sigma_xx, sigma_yy, sigma_zz, sigma_xy, sigma_yz, sigma_zx]: Symmetric) -> Self {
         let tensor =
             Matrix3::new(sigma_xx, sigma_xy, sigma_zx, sigma_xy, sigma_yy, sigma_yz, sigma_zx, sigma_yz, sigma_zz);
@@ -74,12 +74,12 @@ pub struct StressField {
     pub elements: Vec<Stress>,
     /// One per node: extrapolated from the quadrature points, averaged over the elements around the node, of all materials.
     pub nodes: Vec<Stress>,
-    /// Where several phases meet, the average over the elements of each, by node and phase: there the stress jumps.
+    /// The average over the elements of each phase, by node and phase, where several phases meet: there the stress jumps.
     sides: BTreeMap<(usize, u32), Stress>,
 }
 
 impl StressField {
-    /// The stress of a node in a phase whose element it belongs to.
+    /// The stress of a node in a phase with an element at that node.
     fn within(&self, node: usize, phase: u32) -> &Stress {
         match self.sides.is_empty() {
             true => &self.nodes[node],
@@ -107,7 +107,7 @@ fn interfaces(body: &ElasticBody) -> BTreeSet<usize> {
 /// quadrilaterals and hexahedra) that fits the stresses at the quadrature points by least squares.
 ///
 /// # Errors
-/// [`Error::Length`] where the displacement does not have `dim` entries per node.
+/// [`Error::Length`] if the displacement does not have `dim` entries per node.
 pub fn stress(body: &ElasticBody, displacement: &[f64]) -> Result<StressField, Error> {
     body.check_nodal("nodal displacement", displacement.len())?;
     let node_count = body.mesh().nodes().len();

@@ -6,10 +6,10 @@ use super::triangle::Triangle;
 use crate::error::Error;
 use crate::fem::geometry::{distance, dot, length, minus};
 
-/// A volume below this times area and extent is rounding: a sheet that lies on itself encloses none.
+/// A volume below this times area and extent is rounding: a sheet folded onto itself encloses no volume.
 const NO_VOLUME: f64 = 1e-13;
 
-/// The surface of a solid, or of several.
+/// The surface of one solid or several.
 #[derive(Debug)]
 pub struct ClosedSurface {
     vertices: Vec<[f64; 3]>,
@@ -50,7 +50,7 @@ impl Around {
 }
 
 impl ClosedSurface {
-    /// Checks that the triangles close, turns them if all run clockwise, and makes the tree.
+    /// Checks that the triangles form closed surfaces, reverses them if all run clockwise, and builds the tree.
     pub(super) fn new(mut facets: Facets) -> Result<Self, Error> {
         let around = Around::new(facets.vertices.len(), &facets.corners);
         check_edges(&facets, &around)?;
@@ -99,7 +99,7 @@ fn limits(triangle: Triangle) -> Limits {
     triangle.0.into_iter().fold(NOWHERE, |sum, corner| joined(sum, [corner; 2]))
 }
 
-/// Edges with one fault.
+/// Edges with one kind of fault.
 #[derive(Clone, Copy, Debug)]
 struct Faulty {
     /// Their number, counted once for each triangle along them.
@@ -115,7 +115,7 @@ fn check_edges(facets: &Facets, around: &Around) -> Result<(), Error> {
     for (triangle, corners) in facets.corners.iter().enumerate() {
         for corner in 0..3 {
             let edge = [corners[corner], corners[(corner + 1) % 3]];
-            // The end with fewer triangles: at the tip of a cone there are very many.
+            // Look at the end with fewer triangles: the tip of a cone has very many.
             let [from, to] = edge.map(|end| around.at(end));
             let (mut along, mut against) = (0, 0);
             for &other in if from.len() < to.len() { from } else { to } {

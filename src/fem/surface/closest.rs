@@ -1,21 +1,21 @@
-//! The closest point of a surface, the normal there, and the distance with its sign.
+//! The closest point of a surface, the normal there, and the signed distance.
 
 use super::closed::ClosedSurface;
 use super::triangle::Part;
 use crate::fem::geometry::{distance, dot, length, minus, unit};
 
-/// As many closest points lie all around a node, as around the centre of a ball: one of them is as good as any.
+/// With this many closest points a node has them all around, like the centre of a ball: any one of these points can be used.
 const MOST_FEET: usize = 64;
 
-/// Normals whose mean is shorter than this cancel: what is left of them is no direction.
+/// Normals cancel if their mean is shorter than this: the remainder gives no direction.
 const CANCELLED: f64 = 1e-6;
 
-/// How a point lies to a surface.
+/// The position of a point relative to a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closest {
     /// Unit normal out of the solid at the closest point.
     pub outward: [f64; 3],
-    /// Along it from the surface to the point, in length; negative inside.
+    /// Signed distance along `outward` from the surface to the point, in length; negative inside.
     pub height: f64,
 }
 
@@ -29,13 +29,14 @@ struct Foot {
 }
 
 impl ClosedSurface {
-    /// How `point` lies to the surface. Lengths below `tolerance` are rounding.
+    /// The position of `point` relative to the surface. Lengths below `tolerance` are rounding.
     ///
-    /// The normal is that of the triangle, or the way to an edge or a corner; on the surface itself the mean over the triangles that
-    /// meet there, weighted by their angles. A point that is equally close to several places takes their mean normal and the height
-    /// over the planes through them; where these cancel or are very many, the normal most against `towards`, the way into the solid.
+    /// The normal is that of the triangle, or the direction to an edge or a corner; for a point on the surface it is the mean over the
+    /// triangles that meet there, weighted by their angles. If several points of the surface are equally close, it is their mean normal,
+    /// and the height is measured from the planes through them. If these normals cancel or there are too many, it is the normal most
+    /// against `towards`, the direction into the solid.
     ///
-    /// The sign is that of the crossings of a line, which is right for solids that go through each other, too.
+    /// The sign follows from the crossings of a line, which is correct also for solids that intersect.
     ///
     /// # Source
     /// J. A. Baerentzen, H. Aanaes, *Signed distance computation using the angle weighted pseudonormal*, IEEE Trans. Vis. Comput.
@@ -45,7 +46,7 @@ impl ClosedSurface {
         let against = |outward: [f64; 3]| -dot(outward, towards);
         let nearest = feet.iter().fold(f64::INFINITY, |nearest: f64, foot| nearest.min(foot.distance));
         if nearest <= tolerance {
-            // Several triangles tell of an edge or a corner, of which one alone may still take it for its inside.
+            // At an edge or a corner several triangles have a foot; for one of them it may still lie inside by rounding.
             let sharpest = feet.iter().max_by_key(|foot| foot.part.rank());
             let outward = sharpest.map_or([0.0; 3], |foot| self.pseudonormal(foot));
             let outward = if outward == [0.0; 3] { towards.map(|part| -part) } else { outward };
@@ -67,7 +68,7 @@ impl ClosedSurface {
             return alone;
         }
         let outward = unit(sum);
-        // Along its own normal a foot is as far as it is; along a mean normal the plane through it is farther.
+        // Along its own normal the foot is at its distance; along a mean normal the plane through the foot is farther away.
         Closest { outward, height: alone.height / dot(alone.outward, outward) }
     }
 
@@ -90,8 +91,8 @@ impl ClosedSurface {
         feet
     }
 
-    /// The first feet that lie apart: on one smooth piece those that are as close but for `tolerance` lie within the root of
-    /// twice that times the distance.
+    /// The first feet that lie apart. On one smooth piece, feet that are equally close up to `tolerance` lie within the square root of
+    /// twice the tolerance times the distance.
     fn apart(feet: &[Foot], point: [f64; 3], tolerance: f64) -> Vec<Foot> {
         let mut apart: Vec<Foot> = Vec::new();
         for &foot in feet {
@@ -106,12 +107,12 @@ impl ClosedSurface {
         apart
     }
 
-    /// How a point off the surface is seen from one foot.
+    /// The relative position of a point off the surface, by one foot.
     fn seen(&self, foot: &Foot, point: [f64; 3], sign: f64) -> Closest {
         let way = minus(point, foot.at).map(|part| sign * part / foot.distance);
         let triangle = self.triangle(foot.triangle);
         let normal = triangle.normal();
-        // Inside of several solids the closest triangle may face inwards.
+        // Inside several solids the closest triangle may face inwards.
         if foot.part == Part::Face && dot(normal, way) > 0.0 {
             return Closest { outward: normal, height: dot(normal, minus(point, triangle.0[0])) };
         }

@@ -1,16 +1,16 @@
-//! Where a line along an axis goes through a surface, without leaks: the line is moved aside by two infinitely small steps, so that
-//! it meets no edge and no corner, and on which side of an edge it runs is decided exactly.
+//! The crossings of a line along an axis with a surface, without leaks: the line is moved aside by two infinitely small steps, so that it
+//! meets no edge and no corner; the side of an edge on which it runs is decided exactly.
 
 use robust::{Coord, orient2d};
 
 use super::closed::ClosedSurface;
 
-/// Where a line goes through a surface.
+/// A crossing of a line with a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Crossing {
     /// The coordinate along the axis.
     pub at: f64,
-    /// By how much the number of solids around the line grows there, going along the axis: 1 into one, -1 out of one.
+    /// Change of the number of solids around the line at the crossing, in the direction of the axis: 1 into a solid, -1 out of a solid.
     pub turns: i32,
 }
 
@@ -30,7 +30,7 @@ impl ClosedSurface {
                 [-1, -1, -1] => 1,
                 _ => return,
             };
-            // Each side weighs the corner across it.
+            // The area on each side is the weight of the opposite corner.
             let sum: f64 = sides.iter().map(|side| side.1).sum();
             let share = |corner: usize| if sum == 0.0 { 0.0 } else { sides[corner].1 / sum };
             let [a, b, c] = corners.map(|corner| corner[axis]);
@@ -42,15 +42,14 @@ impl ClosedSurface {
 
     /// Returns `true` for a point inside a solid.
     pub(super) fn contains(&self, point: [f64; 3]) -> bool {
-        // Any axis will do.
+        // The choice of the axis does not matter.
         let before = self.crossings(2, point).into_iter().filter(|crossing| crossing.at < point[2]);
         before.map(|crossing| crossing.turns).sum::<i32>() > 0
     }
 }
 
-/// On which side of the line from `a` to `b` the point lies, once it has been moved by an infinitely small step along x and by one
-/// infinitely smaller still along y: 1 to the left, -1 to the right, 0 if `a` and `b` are the same; and twice the area of the triangle
-/// that they make before.
+/// The side of the line from `a` to `b` on which the point lies after an infinitely small step along x and an infinitely smaller step
+/// along y: 1 left, -1 right, 0 if `a` and `b` are the same; and twice the area of their triangle before these steps.
 fn side(a: Coord<f64>, b: Coord<f64>, point: Coord<f64>) -> (i32, f64) {
     let area = orient2d(a, b, point);
     let moved = if area != 0.0 {

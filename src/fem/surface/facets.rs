@@ -1,27 +1,27 @@
-//! The triangles of a file, with equal vertices welded, and where each stands in the file.
+//! The triangles of a file, with equal vertices merged, and the position of each in the file.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
 
-/// Coordinates beyond this are refused: their products in three factors would overflow.
+/// Coordinates larger than this are refused: products of three would overflow.
 const LARGEST: f64 = 1e90;
 
-/// Triangles as they stand in a file.
+/// Triangles in the order of the file.
 #[derive(Debug)]
 pub(super) struct Facets {
     file: PathBuf,
     pub vertices: Vec<[f64; 3]>,
-    /// Three different vertices of each triangle: what is only an edge or a point is left out. Its edges lie on each other, so
-    /// that no surface is opened by that.
+    /// Three different vertices of each triangle. A triangle that is only an edge or a point is left out; its edges coincide, so that
+    /// this opens no surface.
     pub corners: Vec<[u32; 3]>,
     places: Vec<u32>,
     unit: Unit,
     welded: HashMap<[u64; 3], u32>,
 }
 
-/// What the places of a file are counted in.
+/// The unit of positions in a file.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Unit {
     /// Lines, from 1.
@@ -42,7 +42,7 @@ impl Facets {
         }
     }
 
-    /// The number of the vertex with bitwise these coordinates; -0 is 0.
+    /// The number of the vertex with bitwise equal coordinates; -0 counts as 0.
     pub fn vertex(&mut self, at: [f64; 3], place: usize) -> Result<u32, Error> {
         if let Some(bad) = at.iter().find(|coordinate| !coordinate.is_finite()) {
             return Err(self.fault(place, format!("a coordinate of the vertex is {bad}; it must be finite")));
@@ -56,7 +56,7 @@ impl Facets {
         Ok(number)
     }
 
-    /// Adds a triangle that stands at `place`.
+    /// Adds a triangle at position `place` of the file.
     pub fn add(&mut self, [a, b, c]: [u32; 3], place: usize) {
         if a != b && b != c && c != a {
             self.corners.push([a, b, c]);
@@ -64,12 +64,12 @@ impl Facets {
         }
     }
 
-    /// Where a triangle stands in the file.
+    /// The position of a triangle in the file.
     pub fn place(&self, triangle: usize) -> usize {
         self.places.get(triangle).map_or(0, |&place| place as usize)
     }
 
-    /// A fault of the file at a place.
+    /// An error of the file at a position.
     pub fn fault(&self, place: usize, message: impl Into<String>) -> Error {
         let (file, message) = (self.file.clone(), message.into());
         match self.unit {
@@ -78,9 +78,9 @@ impl Facets {
         }
     }
 
-    /// The same in the units and at the place of a scene.
+    /// The same surface, scaled and moved to its position in a scene.
     pub fn placed(mut self, scale: f64, origin: [f64; 3]) -> Result<Self, Error> {
-        // What is welded is done with.
+        // Merging is finished.
         self.welded = HashMap::new();
         for vertex in &mut self.vertices {
             *vertex = [0, 1, 2].map(|axis| scale * vertex[axis] + origin[axis]);

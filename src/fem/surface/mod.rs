@@ -1,7 +1,7 @@
-//! Closed surfaces of triangles from files: the closest point, the side of a point, the way of a line through them.
+//! Closed surfaces of triangles from files: the closest point, the side on which a point lies, the crossings of a line.
 //!
-//! The readers are short and refuse with a place; the tree is the contact search itself, and its triangles need what
-//! libraries of collision detection leave out: edges without leaks, and all closest points that tie.
+//! The readers are short and give the position of every error; the tree is the contact search itself. Its triangles need two things that
+//! libraries of collision detection leave out: edges without leaks, and all closest points at equal distance.
 
 mod closed;
 mod closest;
@@ -22,7 +22,7 @@ use crate::error::Error;
 use crate::file::{MOST_OF_SURFACE, read_capped};
 
 impl ClosedSurface {
-    /// Reads a surface from an STL file, binary or ASCII, or from an OBJ file, as its name ends; its coordinates are
+    /// Reads a surface from an STL file, binary or ASCII, or from an OBJ file, by the extension of its name; its coordinates are
     /// multiplied by `scale` and moved by `origin`.
     ///
     /// # Errors

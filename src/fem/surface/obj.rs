@@ -1,4 +1,4 @@
-//! Wavefront OBJ: of its lines `v`, the vertices, and `f`, the faces, are read; a polygon is cut into a fan from its first corner.
+//! Wavefront OBJ: only lines `v` (vertices) and `f` (faces) are read; a polygon is cut into a fan from its first corner.
 
 use std::path::Path;
 
@@ -53,6 +53,6 @@ pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Facets, Error> {
 fn among(numbers: &[u32], index: i64) -> Option<u32> {
     let behind = i64::try_from(numbers.len()).ok()?;
     let place = if index > 0 { index - 1 } else { behind + index };
-    // 0 would lead behind the last.
+    // 0 would mean the vertex after the last.
     usize::try_from(place).ok().and_then(|place| numbers.get(place)).copied()
 }

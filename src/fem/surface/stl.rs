@@ -1,5 +1,4 @@
-//! STL: binary, 84 bytes and then 50 for each triangle, or ASCII. Normals that are stored are not read: the order of the
-//! corners says where the outside is.
+//! STL: binary, 84 bytes and then 50 for each triangle, or ASCII. Stored normals are ignored: the order of the corners gives the outside.
 
 use std::path::Path;
 
@@ -12,7 +11,7 @@ const HEADER: usize = 84;
 /// Bytes of a triangle: its normal, three vertices, an attribute.
 const RECORD: usize = 50;
 
-/// Reads the bytes of a file: binary if its length is what its header announces.
+/// Reads the bytes of a file: binary if its length agrees with its header.
 pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Facets, Error> {
     let announced =
         bytes.get(HEADER - 4..HEADER).map(|count| u32::from_le_bytes([count[0], count[1], count[2], count[3]]));
@@ -99,7 +98,7 @@ fn ascii(file: &Path, bytes: &[u8]) -> Result<Facets, Error> {
     }
 }
 
-/// Three numbers, and nothing behind them.
+/// Three numbers, with nothing after them.
 fn vertex<'a>(words: &mut impl Iterator<Item = &'a str>) -> Option<[f64; 3]> {
     let mut at = [0.0; 3];
     for coordinate in &mut at {

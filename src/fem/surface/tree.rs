@@ -1,16 +1,16 @@
 //! A tree of boxes around triangles, halved at the median along their longest extent.
 
-/// Triangles of a leaf: fewer make more boxes than they save.
+/// Triangles of a leaf: with fewer triangles more boxes are tested than triangles are saved.
 const LEAF: usize = 4;
 
-/// A box around things, and what is in it.
+/// A box around items, and its content.
 #[derive(Clone, Copy, Debug)]
 struct Branch {
     low: [f64; 3],
     high: [f64; 3],
-    /// Of a leaf the place of its first thing in the order; else the place of its second half. The first half follows it.
+    /// In a leaf the index of its first item in the order; else the index of its second half. The first half follows directly.
     next: u32,
-    /// Number of things of a leaf; zero for what has halves.
+    /// Number of items of a leaf; zero for a branch with halves.
     count: u32,
 }
 
@@ -21,7 +21,7 @@ pub(super) struct Tree {
     order: Vec<u32>,
 }
 
-/// A thing while the tree is built: the middle of its box, relative to the box of all.
+/// An item while the tree is built: the middle of its box, relative to the box of all.
 #[derive(Clone, Copy, Debug)]
 struct Thing {
     middle: [f32; 3],
@@ -31,7 +31,7 @@ struct Thing {
 /// Lowest and highest coordinates.
 pub(super) type Limits = [[f64; 3]; 2];
 
-/// The limits of nothing.
+/// The limits of an empty set.
 pub(super) const NOWHERE: Limits = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
 
 /// The limits of both.
@@ -40,7 +40,7 @@ pub(super) fn joined(a: Limits, b: Limits) -> Limits {
 }
 
 impl Tree {
-    /// The tree of things with these numbers.
+    /// The tree of items with these numbers.
     pub fn new(numbers: &[u32], limits: impl Fn(u32) -> Limits) -> Self {
         let [low, high] = numbers.iter().fold(NOWHERE, |sum, &number| joined(sum, limits(number)));
         let widest = (0..3).map(|axis| high[axis] - low[axis]).fold(f64::MIN_POSITIVE, f64::max);
@@ -57,7 +57,7 @@ impl Tree {
         tree
     }
 
-    /// Adds the branch of these things, and returns its limits. The median halves them, so that branches are few.
+    /// Adds the branch of these items, and returns its limits. The median halves the items, so that the depth is small.
     fn grow(&mut self, things: &mut [Thing], limits: &impl Fn(u32) -> Limits) -> Limits {
         let own = self.branches.len();
         let first = self.order.len() as u32;
@@ -89,8 +89,8 @@ impl Tree {
         self.branches.first().map_or(NOWHERE, |all| [all.low, all.high])
     }
 
-    /// Visits the things near a point, roughly from near to far; `visit` tells the square of the distance up to which the
-    /// next ones matter.
+    /// Visits the things near a point, roughly from near to far; `visit` returns the squared distance beyond which the remaining items do
+    /// not matter.
     pub fn near(&self, point: [f64; 3], mut visit: impl FnMut(u32) -> f64) {
         let mut reach = f64::INFINITY;
         let far = |place: usize| self.branches[place].squared_distance(point);
@@ -111,7 +111,7 @@ impl Tree {
         }
     }
 
-    /// Visits all things whose boxes a line along `axis` through a point meets.
+    /// Visits all items whose boxes a line along `axis` through a point meets.
     pub fn along(&self, axis: usize, point: [f64; 3], mut visit: impl FnMut(u32)) {
         let across = [(axis + 1) % 3, (axis + 2) % 3];
         let mut open = vec![0];
@@ -127,7 +127,7 @@ impl Tree {
         }
     }
 
-    /// The things of a leaf; none of what has halves.
+    /// The items of a leaf; empty for a branch with halves.
     fn things(&self, branch: Branch) -> &[u32] {
         let (first, count) = (branch.next as usize, branch.count as usize);
         if count == 0 { &[] } else { &self.order[first..first + count] }

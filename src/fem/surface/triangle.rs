@@ -1,12 +1,12 @@
-//! One triangle: its normal, and the point of it that is closest to a node.
+//! One triangle: its normal, and its closest point to a node.
 
 use crate::fem::geometry::{cross, distance, dot, length, minus, unit};
 
-/// A triangle that is lower than this share of its longest side is no more than its sides: rounding turns its normal by
-/// 1e-7, and no other choice moves a closest point by more.
+/// A triangle with a height below this share of its longest side is treated as its sides only: rounding turns its normal by 1e-7, and no
+/// other choice moves a closest point by more.
 const FLAT: f64 = 1e-9;
 
-/// What of a triangle is closest.
+/// The closest part of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Part {
     /// Its inside.
@@ -22,7 +22,7 @@ pub(super) enum Part {
 pub(super) struct Triangle(pub [[f64; 3]; 3]);
 
 impl Triangle {
-    /// Normal to the outside, twice the area long.
+    /// Normal to the outside; its length is twice the area.
     pub fn area_normal(&self) -> [f64; 3] {
         let [a, b, c] = self.0;
         cross(minus(b, a), minus(c, a))
@@ -60,7 +60,7 @@ impl Triangle {
             if share >= 1.0 {
                 return (self.0[(corner + 1) % 3], Part::Corner((corner + 1) % 3));
             }
-            // A side so short that its square is zero has no share that is a number.
+            // A side so short that its square is zero gives NaN as share.
             if share > 0.0 {
                 return ([0, 1, 2].map(|axis| from[axis] + share * along[axis]), Part::Side(corner));
             }

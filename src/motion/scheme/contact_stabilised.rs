@@ -25,7 +25,7 @@ pub(super) static ABOUT: About = About {
     load_times: &[0.5],
     unstable_in_contact: &[],
     prepare: |problem, step, _, settings| {
-        // Twice the equation above.
+        // The equation above, multiplied by two.
         let matrix = problem.combination(4.0 / (step * step), 2.0 / step, 1.0)?;
         let stepping = Stepping::of(problem, matrix, settings)?;
         Ok(Box::new(ContactStabilised { stepping, mass: MassProjection::new(problem, settings)? }))

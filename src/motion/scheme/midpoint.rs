@@ -5,12 +5,12 @@
 //! u+ = u + 2 w,   v+ = 4 w/dt - v
 //! ```
 //!
-//! Where contact nodes have no mass the rest moves under forces that are continuous in its displacement, which the
-//! midpoint rule integrates without chatter; the end of a step satisfies every constraint.
+//! If contact nodes have no mass, the other nodes move under forces that are continuous in their displacement. The midpoint rule
+//! integrates these without chatter; the end of a step satisfies every constraint.
 //!
-//! In a step in which contact nodes close or open, the force of the middle does more or less work than they store. Where
-//! that matters the force of the step becomes `R + s ((R_n + R_n+1)/2 - R)`, between that of the middle, R, and the mean of
-//! those at both ends, with the share s that keeps the energy: of a spring that closes the middle takes too little, the ends
+//! In a step in which contact nodes close or open, the work of the force at the middle differs from the energy that they store. If the
+//! difference is not small, the force of the step becomes `R + s ((R_n + R_n+1)/2 - R)`: between the force at the middle, R, and the mean
+//! of those at both ends, with the share s that preserves the energy. For a spring that closes, the middle gives too little and the ends
 //! too much.
 //!
 //! # Source
@@ -26,16 +26,16 @@ use crate::qp::linear::{SparseMatrix, SymmetricMatrix, dot, largest};
 use crate::qp::problem::ContactProblem;
 use crate::solution::ContactSet;
 
-/// Energy that a step may be off by, relative to that of motion and strain, before its contact force is corrected.
+/// Error in energy of a step, relative to kinetic and strain energy, above which its contact force is corrected.
 const TOLERATED: f64 = 1e-5;
 
-/// What a corrected step may be off by.
+/// Remaining error of a corrected step, relative as above.
 const CORRECTION_TOLERANCE: f64 = 1e-7;
 
-/// A contact force below this, relative to the largest, is none.
+/// A contact force below this, relative to the largest, counts as zero.
 const NEGLIGIBLE_FORCE: f64 = 1e-9;
 
-/// Shares of the correction that are tried.
+/// Largest number of trial shares of the correction.
 const TRIALS: usize = 8;
 
 pub(super) static ABOUT: About = About {
@@ -46,10 +46,10 @@ pub(super) static ABOUT: About = About {
     penetrates: false,
     is_explicit: false,
     load_times: &[0.5],
-    // A node with mass that is held at the wall in the middle of a step is as far inside it at one end as it was outside at
-    // the other. A step that starts inside by d gains 2 |lambda| d, one that starts outside loses that, and nothing balances
-    // the two. Measured on two bars, a block and a disc at steps of 0.25 to 3 waves through a cell: the energy grows up to 160
-    // times, by 5 % at least; only in a bar that flies freely is it kept, at steps of one wave and more.
+    // A node with mass that is held at the wall at the middle of a step is as far inside the wall at one end as it was outside at the
+    // other. A step that starts inside by d gains the energy 2 |lambda| d, one that starts outside loses it, and nothing balances the
+    // two. Measured on two bars, a block and a disc at steps of 0.25 to 3 times the time of a wave through a cell: the energy grows by at
+    // least 5 % and up to 160 times. It is preserved only in a bar that flies freely, at steps of one such time and more.
     unstable_in_contact: &[MassForm::Consistent, MassForm::Lumped],
     prepare: |problem, step, _, settings| {
         let matrix = problem.combination(4.0 / (step * step), 2.0 / step, 1.0)?;
@@ -66,13 +66,13 @@ struct Midpoint {
     massless: Option<Massless>,
 }
 
-/// The dofs without mass, held by the others.
+/// The dofs without mass, in equilibrium with the others.
 #[derive(Debug)]
 struct Massless {
     dofs: Vec<usize>,
-    /// Their rows among all.
+    /// Their rows in the whole problem.
     rows: Vec<usize>,
-    /// Columns of K of these dofs.
+    /// Columns of K at these dofs.
     columns: SparseMatrix,
     stepping: Stepping,
 }
@@ -113,8 +113,8 @@ impl Massless {
         Ok(Massless { dofs, rows, columns, stepping })
     }
 
-    /// Puts the dofs without mass in equilibrium with the others, whose displacement and velocity are those of `state`;
-    /// `before` is the displacement a step earlier.
+    /// Puts the dofs without mass in equilibrium with the others, which have the displacement and velocity of `state`; `before` is the
+    /// displacement a step earlier.
     fn settle(&self, problem: &DynamicProblem, step: f64, before: &[f64], state: &mut State) -> Result<(), Error> {
         let mut residual = plus(&problem.load_at(state.steps as f64 * step), -1.0, &state.elastic);
         self.dofs.iter().for_each(|&dof| state.velocity[dof] = (state.displacement[dof] - before[dof]) / step);
@@ -162,8 +162,8 @@ impl Advance for Midpoint {
         }
     }
 
-    /// At the middle of the step. Dofs without mass stand there where the contact forces of the step hold them, which is not
-    /// the mean of both ends.
+    /// At the middle of the step. There the contact forces of the step determine the dofs without mass; they are not the mean of both
+    /// ends.
     fn balance(&self, step: f64, before: &State, after: &State, at: &[usize]) -> Balance {
         let mean = Balance::of_middle(step, before, after, at);
         if after.middle.is_empty() {
@@ -175,7 +175,7 @@ impl Advance for Midpoint {
 }
 
 impl Midpoint {
-    /// The end of the step from `state` with the change at its middle that was found.
+    /// The end of the step from `state` with the given change at its middle.
     fn after(&self, problem: &DynamicProblem, step: f64, state: &State, found: &Found) -> Result<State, Error> {
         let mut displacement = plus(&state.displacement, 2.0, &found.change);
         let changes = state.velocity.iter().zip(&found.change);
@@ -194,8 +194,8 @@ impl Midpoint {
         Ok(end)
     }
 
-    /// The end of the step with the contact force that keeps the energy; `None` where the step to `next` keeps it, or no
-    /// force between those of the middle and the ends does.
+    /// The end of the step with the contact force that preserves the energy; `None` if the step to `next` preserves it, or if no force
+    /// between those of the middle and the ends does.
     fn balanced(
         &self,
         problem: &DynamicProblem,
@@ -226,7 +226,7 @@ impl Midpoint {
         let Some(response) = self.stepping.response(correction)? else { return Ok(None) };
         let at = |share: f64| -> Result<(State, f64), Error> {
             let mut multiplier = plus(&found.multiplier, share, &of_rows);
-            // Open rows feel no more than the rounding of a balance of forces.
+            // Open rows carry only the rounding of a balance of forces.
             let rounding = NEGLIGIBLE_FORCE * largest(&multiplier);
             multiplier.iter_mut().filter(|lambda| **lambda > -rounding).for_each(|lambda| *lambda = 0.0);
             let contact_set = ContactSet::from_fn(multiplier.len(), |row| multiplier[row] < 0.0);
@@ -239,7 +239,7 @@ impl Midpoint {
     }
 }
 
-/// The multiplier of each row whose force is the part of `force` along the row.
+/// The multiplier of each row, from the component of `force` along the row.
 fn along_rows(contact: &SparseMatrix, force: &[f64]) -> Vec<f64> {
     let mut squares = vec![0.0; contact.rows()];
     contact.triplets().for_each(|(row, _, b)| squares[row] += b * b);
@@ -247,7 +247,7 @@ fn along_rows(contact: &SparseMatrix, force: &[f64]) -> Vec<f64> {
     contact.mul(force).into_iter().zip(&squares).map(share_of_row).collect()
 }
 
-/// The state at the share from 0 to 1 where what `at` is off by is zero, to within `kept`; `first` is that at 0. `None` if
+/// The state at the share from 0 to 1 at which the imbalance of `at` is zero to within `kept`; `first` is the imbalance at 0. `None` if
 /// the signs at both ends are equal.
 fn regula_falsi(
     first: f64,
@@ -266,7 +266,7 @@ fn regula_falsi(
         if off.abs() <= kept {
             break;
         }
-        // An end that stays counts half.
+        // Illinois rule: the value at the end that stays is halved.
         if (off > 0.0) == (low.1 > 0.0) {
             (low, high.1) = ((share, off), high.1 / 2.0);
         } else {
@@ -281,7 +281,7 @@ fn energy(state: &State) -> f64 {
     (dot(&state.velocity, &state.momentum) + dot(&state.displacement, &state.elastic)) / 2.0
 }
 
-/// Kinetic and strain energy gained in a step, less the work of a load.
+/// Kinetic and strain energy gained in a step, minus the work of a load.
 fn imbalance(before: &State, after: &State, load: &[f64]) -> f64 {
     let mut sum = 0.0;
     for (dof, load) in load.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! The schemes: a file each, named here and nowhere else.
+//! The schemes: each has its own file and is named only there and here.
 
 mod central_difference;
 mod contact_stabilised;
@@ -25,25 +25,25 @@ use crate::fem::assembly::MassForm;
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum SchemeSpec {
-    /// Midpoint rule, its contact nodes without mass: keeps energy, and the pressure does not chatter.
+    /// Midpoint rule; contact nodes have no mass: preserves energy, and the pressure does not chatter.
     #[default]
     Midpoint,
-    /// Trapezoidal Newmark with the constraint at the end of each step: gains energy at every blow. For comparison.
+    /// Trapezoidal Newmark with the constraint at the end of each step: gains energy at every impact. For comparison.
     Trapezoidal,
-    /// Newmark with a contact-stabilised prediction: loses a little energy at every blow, never gains.
+    /// Newmark with a contact-stabilised prediction: loses a little energy at every impact, never gains.
     ContactStabilised,
-    /// HHT-alpha: damps what the mesh does not resolve.
+    /// HHT-alpha: damps waves that the mesh does not resolve.
     Hht,
-    /// Trapezoidal Newmark with penalty springs: penetrates, and gains energy where they are stiff. For comparison.
+    /// Trapezoidal Newmark with penalty springs: penetrates, and gains energy if the springs are stiff. For comparison.
     Penalty,
-    /// Trapezoidal Newmark with the classical loop: the penalty grows by ten until nothing penetrates. For comparison.
+    /// Trapezoidal Newmark with the classical loop: the penalty grows by factors of ten until nothing penetrates. For comparison.
     PenaltyLoop,
     /// Explicit central differences with Moreau's impact law; steps are small and cheap.
     CentralDifference,
 }
 
 impl SchemeSpec {
-    /// All schemes: the default first, those that are there for comparison behind those that answer, the explicit one last.
+    /// All schemes: the default first, those for comparison after the others, the explicit scheme last.
     pub const ALL: [SchemeSpec; 7] = [
         SchemeSpec::Midpoint,
         SchemeSpec::ContactStabilised,
@@ -54,7 +54,7 @@ impl SchemeSpec {
         SchemeSpec::CentralDifference,
     ];
 
-    /// The scheme with a value of its parameter, or with the default of that.
+    /// The scheme with a value of its parameter, or with the default value.
     pub fn with(self, value: Option<f64>) -> Scheme {
         let value = value.or(self.parameter().map(|parameter| parameter.default)).unwrap_or_default();
         match self {
@@ -98,25 +98,24 @@ impl SchemeSpec {
 
 /// A scheme of time integration.
 ///
-/// | scheme | energy at a blow | pressure | penetration |
+/// | scheme | energy at an impact | pressure | penetration |
 /// |---|---|---|---|
-/// | midpoint, redistributed mass | kept to about 1e-5 a step | smooth | none |
+/// | midpoint, redistributed mass | preserved to about 1e-5 per step | smooth | none |
 /// | trapezoidal | **gained**, more the smaller the step | chatters | none |
 /// | contact-stabilised | lost a little, never gained | smooth after some steps | none |
 /// | HHT-alpha | **gained**, less than by the trapezoidal rule | chatters, damped | none |
-/// | penalty | **gained** where the springs are stiff | chatters | force over penalty |
+/// | penalty | **gained** if the springs are stiff | chatters | force over penalty |
 /// | penalty-loop | **gained**, as by the trapezoidal rule | chatters | below a threshold |
 /// | central differences | lost a little: the mass of the contact nodes stops | smooth on lumped mass | none |
 ///
-/// Alone the midpoint rule takes the force of the middle of a step, where a node that closes in its second half does not
-/// touch yet. A bar of length L and cells h that hits a wall flatly would gain or lose up to `(c dt/h)^2 h/(4 L)` of its
-/// energy. A step that is off by more than 1e-5 therefore takes a force between those of its middle and of its ends that
-/// does the right work, at the cost of a few steps; bodies whose nodes close one after the other hardly need it, and with
-/// damping it is left out.
+/// On its own the midpoint rule uses the force at the middle of a step; a node that closes in the second half does not touch yet at that
+/// time. A bar of length L and cells h that hits a wall flatly would gain or lose up to `(c dt/h)^2 h/(4 L)` of its energy. If the energy
+/// of a step is wrong by more than 1e-5, the step therefore uses a force between those of its middle and of its ends that does the right
+/// work, at the cost of a few solves. Bodies with nodes that close one after the other hardly need it; with damping it is not applied.
 ///
-/// Implicit steps slow short waves, a consistent mass quickens them: along a uniform mesh of linear elements the wave number
-/// k travels with `c (1 + (1/12 - (c dt/h)^2/6) (k h)^2/2)`. The front that comes back is smeared over some cells, and what
-/// trails behind it stays in the body: the rebound is slow by a share that falls with h^(2/3).
+/// Implicit steps slow down short waves, and a consistent mass speeds them up: along a uniform mesh of linear elements the wave number k
+/// travels with `c (1 + (1/12 - (c dt/h)^2/6) (k h)^2/2)`. The returning front is smeared over some cells, and the waves behind it stay
+/// in the body: the rebound is too slow by a share that falls with h^(2/3).
 ///
 /// `tools/impact` prints the figures.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -126,14 +125,14 @@ pub enum Scheme {
     Midpoint,
     /// Newmark's trapezoidal rule, beta = 1/4 and gamma = 1/2, with the constraint at the end of each step.
     ///
-    /// **Gains energy**: the acceleration that stops a node in one step returns in the next. Kept to show it.
+    /// **Gains energy**: the acceleration that stops a node in one step returns in the next. Kept to show this effect.
     Trapezoidal,
     /// Newmark's rule with a prediction that is projected onto the admissible displacements in the norm of the mass,
     /// contact forces implicit.
     ContactStabilised,
     /// HHT-alpha with beta = (1 - alpha)^2/4, gamma = 1/2 - alpha, and the constraint at the end of each step.
     ///
-    /// **Gains energy** at a blow as the trapezoidal rule does, and damps it afterwards.
+    /// **Gains energy** at an impact as the trapezoidal rule does, and damps it afterwards.
     Hht {
         /// From -1/3 (most damping) to 0 (the trapezoidal rule).
         alpha: f64,
@@ -141,13 +140,13 @@ pub enum Scheme {
     /// The trapezoidal rule with closed rows as springs in every step: `(K_eff + eps C) u = f_eff + eps C g` until C
     /// repeats.
     ///
-    /// **Gains energy** where the springs are stiff, and penetrates where they are soft.
+    /// **Gains energy** if the springs are stiff, and penetrates if they are soft.
     Penalty {
         /// Stiffness of the springs eps in multiples of the local stiffness of a step, positive.
         penalty: f64,
     },
-    /// The trapezoidal rule with the classical loop in every step: the penalty of [`Scheme::Penalty`] grows by ten, and C is
-    /// found anew, until norm\[C (u - g)\] is below a threshold.
+    /// The trapezoidal rule with the classical loop in every step: the penalty of [`Scheme::Penalty`] grows by factors of ten, and C is
+    /// found again, until norm\[C (u - g)\] is below a threshold.
     ///
     /// **Gains energy** as the trapezoidal rule does, because the last springs are stiff.
     PenaltyLoop {
@@ -156,7 +155,7 @@ pub enum Scheme {
     },
     /// Central differences: explicit; a node that would cross the obstacle gets an impulse, by Moreau's law.
     CentralDifference {
-        /// Velocity after over before the blow of a node, from 0 to 1.
+        /// Velocity of a node after its impact over that before, from 0 to 1.
         restitution: f64,
     },
 }
@@ -191,23 +190,23 @@ impl Scheme {
         self.spec().name()
     }
 
-    /// Returns `true` if the scheme can gain energy at a blow.
+    /// Returns `true` if the scheme can gain energy at an impact.
     pub fn gains_energy(self) -> bool {
         self.spec().about().gains_energy
     }
 
-    /// Returns `true` if closed rows give way like springs, so that no answer of a step is certified.
+    /// Returns `true` if closed rows are springs, so that no answer of a step is certified.
     pub fn penetrates(self) -> bool {
         self.spec().about().penetrates
     }
 
-    /// The form of the mass that suits it.
+    /// The preferred form of the mass.
     pub fn mass_form(self) -> MassForm {
         self.spec().about().masses[0]
     }
 
-    /// Returns `true` if the scheme can use a mass of this form. Only the midpoint rule knows dofs without mass, and the
-    /// explicit scheme needs a diagonal.
+    /// Returns `true` if the scheme can use a mass of this form. Only the midpoint rule allows dofs without mass; the explicit scheme
+    /// needs a diagonal mass.
     pub fn allows(self, form: MassForm) -> bool {
         self.spec().about().masses.contains(&form)
     }
@@ -217,12 +216,12 @@ impl Scheme {
         self.spec().is_explicit()
     }
 
-    /// Returns `true` if the energy grows wherever bodies touch, with a mass of this form.
+    /// Returns `true` if, with a mass of this form, the energy grows whenever bodies touch.
     pub fn is_unstable_in_contact(self, form: MassForm) -> bool {
         self.spec().about().unstable_in_contact.contains(&form)
     }
 
-    /// Where in a step the scheme takes the loads, from 0 to 1.
+    /// The times in a step at which the scheme evaluates the loads, from 0 to 1.
     pub(super) fn load_times(self) -> &'static [f64] {
         self.spec().about().load_times
     }
@@ -230,7 +229,7 @@ impl Scheme {
     /// Checks the range of the parameter.
     ///
     /// # Errors
-    /// [`Error::Setting`] for a value outside of it.
+    /// [`Error::Setting`] for a value outside its range.
     pub fn check(self) -> Result<(), Error> {
         let value = self.value();
         match self.spec().parameter() {
@@ -241,7 +240,7 @@ impl Scheme {
         }
     }
 
-    /// What prepares the steps.
+    /// The function that prepares the steps.
     pub(super) fn prepare(self) -> Prepare {
         self.spec().about().prepare
     }

@@ -28,8 +28,7 @@ pub(super) struct Newmark {
     mass: MassProjection,
 }
 
-/// What a step starts from: displacement and velocity as they would be without its acceleration, and the contact problem of
-/// the change.
+/// The start of a step: displacement and velocity as they would be without its acceleration, and the contact problem of the change.
 pub(super) struct Predicted {
     pub displacement: Vec<f64>,
     velocity: Vec<f64>,
@@ -38,8 +37,7 @@ pub(super) struct Predicted {
 }
 
 impl Newmark {
-    /// The rule of the parameter alpha; the contact problems with the mass are solved with `rigid`, those of the steps
-    /// with `settings`.
+    /// The rule with parameter alpha; `rigid` are the settings of the contact problems with the mass, `settings` those of the steps.
     pub fn new(
         problem: &DynamicProblem,
         step: f64,
@@ -55,7 +53,7 @@ impl Newmark {
         Ok(Newmark { alpha, beta, gamma, stepping, mass: MassProjection::new(problem, rigid)? })
     }
 
-    /// The contact problems of the steps on the same factor, under other settings.
+    /// The contact problems of the steps with the same factor and other settings.
     pub fn under(&self, settings: &Settings) -> Result<Stepping, Error> {
         self.stepping.under(settings)
     }
@@ -79,7 +77,7 @@ impl Newmark {
         Predicted { displacement, velocity, force, gap }
     }
 
-    /// The end of the step from `state` with the change that was found.
+    /// The end of the step from `state` with the given change.
     pub fn arrive(
         &self,
         problem: &DynamicProblem,
@@ -98,7 +96,7 @@ impl Newmark {
 }
 
 impl Advance for Newmark {
-    /// The acceleration with which the motion starts; rows that would be violated within the step hold against it.
+    /// The initial acceleration; contact rows that would be violated within the step act against it.
     fn start(&self, problem: &DynamicProblem, step: f64, state: State) -> Result<State, Error> {
         let mut force = plus(&problem.load_at(0.0), -1.0, &state.elastic);
         problem.damp(1.0, &state.velocity, &mut force);
@@ -115,7 +113,7 @@ impl Advance for Newmark {
         Ok(self.arrive(problem, step, state, &predicted, found))
     }
 
-    /// At the end of the step, or with alpha < 0 as much before it; the acceleration is that of the end.
+    /// The balance at the end of the step, or with alpha < 0 earlier by the share `-alpha`; the acceleration is that of the end.
     fn balance(&self, step: f64, before: &State, after: &State, at: &[usize]) -> Balance {
         let acceleration = at.iter().map(|&dof| after.acceleration[dof]).collect();
         Balance { acceleration, ..Balance::between(step, before, after, 1.0 + self.alpha, at) }

@@ -1,4 +1,4 @@
-//! The trapezoidal rule with springs of `penalty` times the local stiffness in place of closed rows.
+//! The trapezoidal rule with springs of `penalty` times the local stiffness instead of closed rows.
 
 use super::newmark::{MASSES, Newmark};
 use crate::motion::step::{About, Parameter};
@@ -23,9 +23,9 @@ pub(super) static ABOUT: About = About {
     },
 };
 
-/// The settings with springs of one penalty, in multiples of the local stiffness, in place of closed rows.
+/// The settings with springs of one penalty, in multiples of the local stiffness, instead of closed rows.
 pub(super) fn springs(settings: &Settings, penalty: f64) -> Settings {
     let one = Penalty { first: penalty, last: penalty, penetration_threshold: 0.0, ..Penalty::default() };
-    // Springs give; no certificate of rigid contact can be asked of them.
+    // Springs yield, so that no certificate of rigid contact is possible.
     Settings { method: Method::Penalty(one), tolerance: f64::MAX, ..settings.clone() }
 }

@@ -6,7 +6,7 @@
 //!     stop when norm[C (u - g)] < threshold times the largest displacement of the body
 //! ```
 //!
-//! The contact set of a penalty is found from that of the one before, the first from that of the last step.
+//! The contact set of a penalty starts from that of the penalty before, the first from that of the last step.
 
 use super::newmark::{MASSES, Newmark};
 use super::penalty::springs;
@@ -15,8 +15,8 @@ use crate::motion::step::{About, Advance, Parameter, Stepping};
 use crate::motion::{Balance, DynamicProblem, State};
 use crate::qp::linear::largest;
 
-/// Penalties that are tried, each ten times the one before, from the local stiffness on. At the last one, 1e8, the rounding of
-/// double precision and what is left of the penetration are of one size; beyond it the loop would run into noise.
+/// Number of penalties, each ten times the one before, from the local stiffness on. At the last one, 1e8, the rounding of double
+/// precision and the remaining penetration are equally large; larger penalties would only add noise.
 const PENALTIES: i32 = 9;
 
 pub(super) static ABOUT: About = About {
@@ -44,9 +44,9 @@ pub(super) static ABOUT: About = About {
 #[derive(Debug)]
 struct PenaltyLoop {
     threshold: f64,
-    /// The rule, with the first penalty.
+    /// The rule with the first penalty.
     newmark: Newmark,
-    /// The later penalties, on the same factor.
+    /// The larger penalties, with the same factor.
     stiffer: Vec<Stepping>,
 }
 

@@ -1,4 +1,4 @@
-//! Contact problems with the mass for a matrix: initial accelerations, projected predictions, impulses.
+//! Contact problems with the mass as matrix: initial accelerations, projected predictions, impulses.
 
 use crate::error::Error;
 use crate::motion::DynamicProblem;
@@ -22,7 +22,7 @@ impl MassProjection {
         self.stepping.solve(force, bound, start)
     }
 
-    /// The smallest x in the norm of the mass with `B x <= bound`; nothing is solved where that is zero.
+    /// The smallest x in the norm of the mass with `B x <= bound`; `None`, without a solve, if that is zero.
     pub fn smallest(&self, bound: Vec<f64>, start: &ContactSet) -> Result<Option<Found>, Error> {
         if bound.iter().all(|&bound| bound >= 0.0) {
             return Ok(None);

@@ -4,21 +4,21 @@ use crate::error::Error;
 use crate::motion::DynamicProblem;
 use crate::qp::linear::largest;
 
-/// Steps of the iteration for the largest frequency; each bound is one, later ones are sharper.
+/// Steps of the iteration for the largest frequency; each gives a bound, later bounds are sharper.
 const STEPS: usize = 60;
 
-/// The limit may be met but for rounding.
+/// The step may exceed the limit by this share: rounding.
 const LIMIT_ROUNDING: f64 = 1e-12;
 
-/// The largest step over the stable one where bodies touch.
+/// The largest allowed share of the stable step if bodies touch.
 ///
-/// At 1 the shortest wave has a double root: each blow adds to it, and it grows with time. Below 1, at the share C, it carries
-/// up to 1/(1 - C^2) times the energy of the blows that feed it: 50 at 0.99. Measured on the bar of period 3 over 20 periods, the
-/// energy grows by 0.1 % at 0.9, by 0.4 % at 0.99, by 6 % at 0.999, by 420 % at 0.9999 and by 100 % at 1.
+/// At 1 the shortest wave has a double root: each impact adds to it, and it grows with time. Below 1, at the share C, it carries up to
+/// 1/(1 - C^2) times the energy of the impacts that feed it: 50 at 0.99. Measured on the bar of period 3 over 20 periods, the energy
+/// grows by 0.1 % at 0.9, by 0.4 % at 0.99, by 6 % at 0.999, by 420 % at 0.9999 and by 100 % at 1.
 pub(crate) const MOST_IN_CONTACT: f64 = 0.99;
 
-/// A step, in time, up to which central differences with the diagonal mass of `problem` are stable:
-/// `2/omega (sqrt(1 + xi^2) - xi)` with a bound from above of the largest frequency omega, its damping ratio xi.
+/// A step, in time, up to which central differences with the diagonal mass of `problem` are stable: `2/omega (sqrt(1 + xi^2) - xi)` with
+/// an upper bound of the largest frequency omega and its damping ratio xi.
 ///
 /// The bound is that of Collatz for the matrix of magnitudes `|M^-1 K|`: `omega^2 <= max_i (|M^-1 K| x)_i / x_i` for
 /// every positive x. It is sharp in a bar and a few percent to some ten percent large elsewhere.
@@ -50,7 +50,7 @@ pub fn stable_step(problem: &DynamicProblem) -> Result<f64, Error> {
         if size <= 0.0 {
             break;
         }
-        // The mean with the last vector stays positive and does not swing.
+        // The mean with the last vector stays positive and does not oscillate.
         x.iter_mut().zip(&product).for_each(|(x, p)| *x = (*x + p / size) / 2.0);
     }
     let omega = bound.sqrt();

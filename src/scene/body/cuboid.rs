@@ -19,8 +19,8 @@ const CORNERS: [[usize; 3]; 8] =
 const TETRAHEDRA: [[usize; 4]; 6] =
     [[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]];
 
-/// The sides: name, axis across, upper end or not, and the corners of a cell's face seen from outside
-/// counterclockwise, the first one being the lowest or the highest of the face.
+/// The sides: name, axis normal to the side, upper end or not, and the corners of a cell's face seen from outside counterclockwise, the
+/// first one being the lowest or the highest of the face.
 const SIDES: [(&str, usize, bool, [usize; 4]); 6] = [
     ("left", 0, false, [0, 4, 7, 3]),
     ("right", 0, true, [1, 2, 6, 5]),
@@ -47,7 +47,7 @@ pub struct BoxSpec {
     /// The element.
     #[serde(default, deserialize_with = "word")]
     pub element: SolidElementSpec,
-    /// How its stiffness is integrated.
+    /// The integration of its stiffness.
     #[serde(default, deserialize_with = "word")]
     pub integration: Integration,
 }
@@ -83,8 +83,7 @@ impl BodyShape for BoxSpec {
 /// outside.
 ///
 /// # Errors
-/// [`Error::Mesh`] for an element that is not in space, fewer than two lines, lines that do not increase, or more than
-/// `MAX_NODES` nodes.
+/// [`Error::Mesh`] for an element of lower dimension, fewer than two lines, lines that do not increase, or more than `MAX_NODES` nodes.
 pub fn cuboid(x: &[f64], y: &[f64], z: &[f64], kind: ElementKind) -> Result<Mesh, Error> {
     if kind.dimension() != 3 {
         return fail(format!("a box is no mesh of {}", kind.name()));
@@ -125,7 +124,7 @@ pub fn cuboid(x: &[f64], y: &[f64], z: &[f64], kind: ElementKind) -> Result<Mesh
             if of_bricks {
                 facets.extend(nodes);
             } else {
-                // Along the diagonal from the lowest to the highest node of the face.
+                // Cut along the diagonal from the lowest to the highest node of the face.
                 let first = (0..4).min_by_key(|&place| nodes[place]).unwrap_or(0);
                 facets.extend([0, 1, 2, 0, 2, 3].map(|step| nodes[(first + step) % 4]));
             }

@@ -11,8 +11,7 @@ use crate::scene::entry::{refused, wrong};
 use crate::scene::files::Files;
 use crate::scene::schema::json::word;
 
-/// Bytes of a mesh file for one node and the elements that belong to it, about: files of Gmsh of either version, ASCII or
-/// binary, have 87 to 237.
+/// Approximate bytes of a mesh file for one node and its elements: files of Gmsh of either version, ASCII or binary, have 87 to 237.
 const OF_MESH_FILE: f64 = 150.0;
 
 /// A mesh written by Gmsh: a `.msh` file of version 4.1 or 2.2, ASCII or binary. A bar has the cross-section 1.
@@ -20,17 +19,17 @@ const OF_MESH_FILE: f64 = 150.0;
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct GmshSpec {
-    /// The file, below the folder of the scene unless that is allowed to read outside; a relative name starts there.
+    /// The file, inside the folder of the scene unless reading outside is allowed; a relative name starts in that folder.
     pub file: String,
-    /// What the coordinates of the file are multiplied by, positive.
+    /// Factor of the coordinates of the file, positive.
     #[serde(default = "unchanged")]
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub scale: f64,
-    /// The physical group that is the body; may be left out if no more than one has elements of the highest dimension, or
-    /// if `materials` name the groups.
+    /// The physical group of the body; may be left out if at most one group has elements of the highest dimension, or if `materials` name
+    /// the groups.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub group: Option<String>,
-    /// How the stiffness is integrated.
+    /// The integration of the stiffness.
     #[serde(default, deserialize_with = "word")]
     pub integration: Integration,
 }
@@ -70,7 +69,7 @@ impl BodyShape for GmshSpec {
 
     fn block(&self, files: Option<Files>) -> Block {
         let bytes = files.map_or(0.0, |files| files.length(&self.file));
-        // What is plane has fewer elements for a node, which its own estimate hardly notices.
+        // A plane mesh has fewer elements per node; the estimate of its size hardly depends on that.
         let side = (bytes / OF_MESH_FILE).sqrt();
         Block { cells: vec![side; 2], lengths: Vec::new(), counts: ElementKind::T3.reference().counts }
     }

@@ -16,7 +16,7 @@ use crate::scene::schema::json::{object, word, words};
 /// Corners of a face of the core, in steps along its two directions, counterclockwise seen from outside.
 const AROUND: [[usize; 2]; 4] = [[0, 0], [1, 0], [1, 1], [0, 1]];
 
-/// Half of a ball, the lower one where not said otherwise, of `hex8` or `hex20`.
+/// Half of a ball, the lower half by default, of `hex8` or `hex20`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -24,7 +24,7 @@ pub struct HalfBallSpec {
     /// The centre [x, y, z].
     #[serde(default)]
     pub centre: [f64; 3],
-    /// Which half; the upper one is the mirror image of the lower one, graded towards its highest point.
+    /// The half; the upper half is the mirror image of the lower half, graded towards its highest point.
     #[serde(default, deserialize_with = "word", skip_serializing_if = "HalfSpec::is_lower")]
     pub half: HalfSpec,
     /// Radius, positive.
@@ -37,15 +37,15 @@ pub struct HalfBallSpec {
     /// `symmetry-x` and `symmetry-y`.
     #[serde(default, deserialize_with = "words")]
     pub symmetric: Vec<SymmetrySpec>,
-    /// The element: `hex8`, or `hex20`, whose edges follow the sphere.
+    /// The element: `hex8`, or `hex20` with edges that follow the sphere.
     #[serde(default, deserialize_with = "word", skip_serializing_if = "SolidElementSpec::is_default")]
     pub element: SolidElementSpec,
-    /// How its stiffness is integrated.
+    /// The integration of its stiffness.
     #[serde(default, deserialize_with = "word")]
     pub integration: Integration,
 }
 
-/// The axis across a plane of symmetry.
+/// The axis normal to a plane of symmetry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
@@ -82,7 +82,7 @@ impl BodyShape for HalfBallSpec {
     fn block(&self, _: Option<Files>) -> Block {
         let RoundCells { aside, down, shells } = RoundCells::of(&self.zone, self.radius);
         let halves = self.symmetric.len().min(2) as i32;
-        // Top and four sides of the core, less what symmetry leaves out.
+        // Top and four sides of the core, without the parts that symmetry leaves out.
         let around = (4.0 * aside * aside + 8.0 * aside * down) / 2.0_f64.powi(halves);
         let core = 4.0 * aside * aside * down / 2.0_f64.powi(halves);
         let side = around.sqrt();
@@ -173,7 +173,7 @@ fn faces_of_core([i, j, k]: Corner, sides: [Sides; 2]) -> Vec<[Corner; 4]> {
             }
         }
     };
-    // The first direction, the second one and the outside are right-handed; lines down run against z.
+    // The first direction, the second direction and the outside are right-handed; lines down run against z.
     add(j, i, &|y, x| [x, y, k]);
     add(k, j, &|down, y| [i, y, down]);
     add(i, k, &|x, down| [x, j, down]);

@@ -12,7 +12,7 @@ use crate::scene::files::Files;
 use crate::scene::schema::cells::{ElementSpec, HalfSpec};
 use crate::scene::schema::json::{object, word};
 
-/// Half of a disc, the lower one where not said otherwise.
+/// Half of a disc, the lower half by default.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -20,7 +20,7 @@ pub struct HalfDiscSpec {
     /// The centre [x, y].
     #[serde(default)]
     pub centre: [f64; 2],
-    /// Which half; the upper one is the mirror image of the lower one, graded towards its highest point.
+    /// The half; the upper half is the mirror image of the lower half, graded towards its highest point.
     #[serde(default, deserialize_with = "word", skip_serializing_if = "HalfSpec::is_lower")]
     pub half: HalfSpec,
     /// Radius, positive.
@@ -35,7 +35,7 @@ pub struct HalfDiscSpec {
     /// The element.
     #[serde(default, deserialize_with = "word")]
     pub element: ElementSpec,
-    /// How its stiffness is integrated.
+    /// The integration of its stiffness.
     #[serde(default, deserialize_with = "word")]
     pub integration: Integration,
 }
@@ -77,8 +77,8 @@ impl BodyShape for HalfDiscSpec {
 /// The lower half of the disc of `radius` about `centre`, of a plane element, graded towards its lowest point; with
 /// [`Sides::Beyond`] only the part right of the centre.
 ///
-/// The boundaries are `cut` (the flat side, y = centre), `arc` and, with [`Sides::Beyond`], `symmetry-x` (x = centre). The
-/// mid-sides of quadratic elements stand on the arc.
+/// The boundaries are `cut` (the flat side, y = centre), `arc` and, with [`Sides::Beyond`], `symmetry-x` (x = centre). Quadratic elements
+/// have their mid-sides on the arc.
 ///
 /// ```
 /// use signorini::fem::{ElementKind, Zone};
@@ -109,7 +109,7 @@ pub fn half_disc(centre: [f64; 2], radius: f64, zone: &Zone, sides: Sides, kind:
         return fail(format!("{cells} cells make more than the {MAX_NODES} nodes that are allowed"));
     }
 
-    // Keys are [shell, column, row] in half steps: shell 0 is the core, where columns run right and rows run down.
+    // Keys are [shell, column, row] in half steps. Shell 0 is the core, in which columns run right and rows run down.
     let mut lattice = Lattice::new();
     let mut connectivity = Vec::new();
     for row in 0..rows {
@@ -118,7 +118,7 @@ pub fn half_disc(centre: [f64; 2], radius: f64, zone: &Zone, sides: Sides, kind:
             lattice.add_cell(kind, key, &mut connectivity);
         }
     }
-    // Around the core, its inside to the left: down its left side, along its bottom, up its right side.
+    // Around the core, with its inside on the left: down its left side, along its bottom, up its right side.
     let left = (0..2 * rows).map(|row| [0, row]).filter(|_| sides == Sides::Both);
     let bottom = (0..2 * columns).map(|column| [column, 2 * rows]);
     let right = (0..=2 * rows).rev().map(|row| [2 * columns, row]);

@@ -1,4 +1,4 @@
-//! Body shapes: a file each, named here and nowhere else.
+//! Body shapes: each has its own file and is named only there and here.
 
 mod bar;
 mod cuboid;
@@ -31,30 +31,30 @@ use shape::About;
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum BodySpec {
-    /// A rectangle with a structured mesh; its boundaries are `left`, `right`, `bottom`, `top`. In an axisymmetric
-    /// model its section.
+    /// A rectangle with a structured mesh; its boundaries are `left`, `right`, `bottom`, `top`. In an axisymmetric model it is the
+    /// section of the body.
     Rectangle(#[serde(deserialize_with = "object")] RectangleSpec),
     /// A bar along x; its boundaries are `left`, `right`.
     Bar(#[serde(deserialize_with = "object")] BarSpec),
     /// A box with a structured mesh; its boundaries are `left`, `right` (along x), `front`, `back` (along y), `bottom`,
     /// `top` (along z).
     Box(#[serde(deserialize_with = "object")] BoxSpec),
-    /// A disc, graded towards its lowest and its highest point; its boundaries are `lower` and `upper` and, where it is
-    /// symmetric, `symmetry-x`. In an axisymmetric model, symmetric about x = 0, a ball.
+    /// A disc, graded towards its lowest and its highest point; its boundaries are `lower`, `upper` and, if only its right part is
+    /// meshed, `symmetry-x`. In an axisymmetric model the right part with its centre at x = 0 is a ball.
     Disc(#[serde(deserialize_with = "object")] DiscSpec),
-    /// Half of a disc, graded towards its lowest (highest) point; its boundaries are `cut` (flat), `arc` and, where it
-    /// is symmetric, `symmetry-x`. In an axisymmetric model, symmetric about x = 0, half a ball.
+    /// Half of a disc, graded towards its lowest (highest) point; its boundaries are `cut` (flat), `arc` and, if only its right part is
+    /// meshed, `symmetry-x`. In an axisymmetric model the right part with its centre at x = 0 is half a ball.
     HalfDisc(#[serde(deserialize_with = "object")] HalfDiscSpec),
     /// Half of a ball, or a quarter or an eighth of one, graded towards its lowest (highest) point; its boundaries are
     /// `cut` (flat), `round` and the planes `symmetry-x` and `symmetry-y`.
     HalfBall(#[serde(deserialize_with = "object")] HalfBallSpec),
-    /// A ring or a sector of it; its boundaries are `inner`, `outer` and, where it does not close, `start` and `end`.
+    /// A ring or a sector of a ring; its boundaries are `inner`, `outer` and, if it is not closed, `start` and `end`.
     Ring(#[serde(deserialize_with = "object")] RingSpec),
     /// A mesh written by Gmsh; its physical groups are the boundaries.
     Gmsh(#[serde(deserialize_with = "object")] GmshSpec),
 }
 
-/// What all body shapes are called, in the order in which messages name them.
+/// The names of all body shapes, in the order of messages.
 const ALL: [About; 8] = [
     rectangle::ABOUT,
     bar::ABOUT,
@@ -67,17 +67,17 @@ const ALL: [About; 8] = [
 ];
 
 impl BodySpec {
-    /// What the shape is called, and where it belongs.
+    /// The name of the shape and the models that allow it.
     pub(super) fn about(&self) -> About {
         self.told().0
     }
 
-    /// The shape, whichever it is.
+    /// The shape of any kind.
     pub(super) fn shape(&self) -> &dyn BodyShape {
         self.told().1
     }
 
-    /// What the shape is called, and the shape, whichever it is.
+    /// The name and the models of the shape, and the shape of any kind.
     fn told(&self) -> (About, &dyn BodyShape) {
         match self {
             BodySpec::Rectangle(spec) => (rectangle::ABOUT, spec),
@@ -91,7 +91,7 @@ impl BodySpec {
         }
     }
 
-    /// The shape, to be changed.
+    /// The shape, for changes.
     pub(super) fn shape_mut(&mut self) -> &mut dyn BodyShape {
         match self {
             BodySpec::Rectangle(spec) => spec,
@@ -105,7 +105,7 @@ impl BodySpec {
         }
     }
 
-    /// The bodies that a model of `dimension` coordinates has, as `box, half-ball or gmsh`.
+    /// The bodies allowed in a model of `dimension` coordinates, as `box, half-ball or gmsh`.
     pub(super) fn fitting(dimension: usize) -> String {
         let fits = |about: &&About| about.dimension.is_none_or(|own| own == dimension);
         let names: Vec<&str> = ALL.iter().filter(fits).map(|about| about.name).collect();

@@ -11,7 +11,7 @@ use crate::scene::files::Files;
 use crate::scene::schema::cells::ElementSpec;
 use crate::scene::schema::json::{object, word};
 
-/// No node stands here: the middle of a quadratic quadrilateral.
+/// Marks a place without a node: the middle of a quadratic quadrilateral.
 const NO_NODE: usize = usize::MAX;
 
 /// A rectangle: the product of two divided axes.
@@ -28,7 +28,7 @@ pub struct RectangleSpec {
     /// The element.
     #[serde(default, deserialize_with = "word")]
     pub element: ElementSpec,
-    /// How its stiffness is integrated.
+    /// The integration of its stiffness.
     #[serde(default, deserialize_with = "word")]
     pub integration: Integration,
 }
@@ -57,9 +57,9 @@ impl BodyShape for RectangleSpec {
 
 /// The mesh of the lines `x` and `y` (coordinates, strictly increasing, at least two each), of a plane element.
 ///
-/// Nodes are numbered along x first; those of quadratic elements stand at mid-sides. Triangles come from cutting each
-/// cell from its lower left to its upper right corner. The boundaries are `left`, `right`, `bottom` and `top`, their
-/// edges in the direction of growing coordinates.
+/// Nodes are numbered along x first; quadratic elements have nodes at mid-sides too. Triangles come from cutting each cell from its lower
+/// left to its upper right corner. The boundaries are `left`, `right`, `bottom` and `top`, their edges in the direction of growing
+/// coordinates.
 ///
 /// # Errors
 /// [`Error::Mesh`] for an element that is not plane, fewer than two lines, lines that do not increase, or more than

@@ -1,4 +1,4 @@
-//! The structured ring, or a sector of it: the product of a radial axis and an angle.
+//! The structured ring, or a sector of a ring: the product of a radial axis and an angle.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +11,7 @@ use crate::scene::files::Files;
 use crate::scene::schema::cells::ElementSpec;
 use crate::scene::schema::json::{object, word};
 
-/// A ring or a sector of it: the product of a radial axis and an angle.
+/// A ring or a sector of a ring: the product of a radial axis and an angle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -22,13 +22,13 @@ pub struct RingSpec {
     /// The radial axis, from the inner to the outer radius.
     #[serde(deserialize_with = "object")]
     pub radius: Axis,
-    /// The angle in degrees, counterclockwise from x; the ring closes where it spans 360.
+    /// The angle in degrees, counterclockwise from x; the ring is closed if the angle spans 360.
     #[serde(deserialize_with = "object")]
     pub angle: Axis,
     /// The element.
     #[serde(default, deserialize_with = "word")]
     pub element: ElementSpec,
-    /// How its stiffness is integrated.
+    /// The integration of its stiffness.
     #[serde(default, deserialize_with = "word")]
     pub integration: Integration,
 }
@@ -53,7 +53,7 @@ impl BodyShape for RingSpec {
     }
 
     fn block(&self, _: Option<Files>) -> Block {
-        // An angle is no length.
+        // An angle is not a length.
         Block { lengths: Vec::new(), ..Block::product(&[&self.radius, &self.angle], self.element.kind()) }
     }
 
@@ -66,8 +66,8 @@ impl BodyShape for RingSpec {
 /// The mesh of the circles of radius `radii` and the rays at `angles` (degrees, counterclockwise from x) about
 /// `centre`, of a plane element, the mid-sides on the circles.
 ///
-/// The boundaries are `inner` and `outer`, and where the ring does not close `start` (first angle) and `end` (last
-/// angle). It closes where the angles span 360 degrees.
+/// The boundaries are `inner` and `outer`, and, if the ring is not closed, `start` (first angle) and `end` (last angle). It is closed if
+/// the angles span 360 degrees.
 ///
 /// # Errors
 /// [`Error::Mesh`] for an element that is not plane, fewer than two radii or angles, values that do not increase, an

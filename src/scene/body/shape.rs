@@ -1,4 +1,4 @@
-//! What every body shape tells: its mesh, its size before anything is built, the same on finer cells.
+//! The trait of every body shape: its mesh, its size before the mesh is built, its refinement.
 
 use crate::error::Error;
 use crate::fem::Integration;
@@ -8,21 +8,21 @@ use crate::scene::entry::wrong;
 use crate::scene::files::Files;
 use crate::scene::schema::model::ModelSpec;
 
-/// The corner to corner part of a round body's radius that is not core, about.
+/// The approximate part of a round body's radius outside the core, along the diagonal.
 const SHELLS: f64 = 0.6;
 
-/// What a body shape is called, and where it belongs.
+/// The name of a body shape and the models that allow it.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::scene) struct About {
-    /// As it is written.
+    /// The name in a scene.
     pub name: &'static str,
-    /// The coordinates that the body has; `None` if only its file tells.
+    /// The number of coordinates of the body; `None` if only its file determines it.
     pub dimension: Option<usize>,
 }
 
 /// A body shape with its numbers.
 pub(in crate::scene) trait BodyShape {
-    /// How the stiffness is integrated.
+    /// The integration of the stiffness.
     fn integration(&self) -> Integration;
 
     /// The cross-section of a bar, in area.
@@ -30,30 +30,30 @@ pub(in crate::scene) trait BodyShape {
         1.0
     }
 
-    /// The boundaries that stand for circles in the plane, with centre and radius.
+    /// The boundaries that approximate circles in the plane, with centre and radius.
     #[cfg(feature = "cli")]
     fn circles(&self) -> Vec<(&'static str, [f64; 2], f64)> {
         Vec::new()
     }
 
-    /// The mesh; errors that are not of the scene yet are those of the body as a whole.
+    /// The mesh; errors without a place in the scene count as errors of the whole body.
     fn mesh(&self, site: &Site) -> Result<Mesh, Error>;
 
-    /// A block of cells that stands for the mesh, which may be one of `files`.
+    /// A block of cells that represents the mesh, which may be one of `files`.
     fn block(&self, files: Option<Files>) -> Block;
 
-    /// Cuts every cell into `times` along each edge.
+    /// Cuts every cell into `times` cells along each edge.
     fn refine(&mut self, times: usize) -> Result<(), Error>;
 }
 
-/// Where a body stands in a scene.
+/// The place of a body in a scene.
 pub(in crate::scene) struct Site<'a> {
     /// Its JSON path, as `body.ring`.
     pub path: String,
     pub model: ModelSpec,
     /// The files of the scene.
     pub files: Files<'a>,
-    /// The scene names groups of elements, which have materials of their own.
+    /// `true` if the scene names groups of elements with their own materials.
     pub names_groups: bool,
 }
 
@@ -63,10 +63,10 @@ impl Site<'_> {
         axis.coordinates().map_err(|error| wrong(format!("{}.{name}.{}", self.path, error.field), error.message))
     }
 
-    /// Refuses a product of divisions that makes more nodes than are allowed, before its lines are made.
+    /// Refuses a product of divisions with more nodes than allowed, before its lines are made.
     pub fn check_product(&self, axes: &[&Axis]) -> Result<(), Error> {
         let cells: Vec<usize> = axes.iter().map(|axis| axis.cells()).collect();
-        // A single axis of too many is refused at its own path.
+        // A single axis with too many cells is refused at its own path.
         let possible = cells.iter().all(|&cells| cells <= MAX_NODES);
         let product = cells.iter().fold(1_usize, |product, &cells| product.saturating_mul(cells));
         if possible && product > MAX_NODES {
@@ -77,7 +77,7 @@ impl Site<'_> {
         Ok(())
     }
 
-    /// The same by an estimate, which refuses only what is far beyond.
+    /// The same by an estimate, which refuses only sizes far beyond the limit.
     pub fn check_estimate(&self, block: &Block) -> Result<(), Error> {
         let cells: f64 = block.cells.iter().product();
         if cells > 4.0 * MAX_NODES as f64 {
@@ -88,7 +88,7 @@ impl Site<'_> {
     }
 }
 
-/// What of a round body is meshed along an axis across its lowest point.
+/// The meshed part of a round body along an axis through its centre.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sides {
     /// Both sides of the centre.
@@ -97,13 +97,13 @@ pub enum Sides {
     Beyond,
 }
 
-/// A block of cells that stands for the mesh of a body.
+/// A block of cells that represents the mesh of a body.
 pub(in crate::scene) struct Block {
     /// Cells along each axis.
     pub cells: Vec<f64>,
-    /// Lengths along each axis, where they are known.
+    /// Lengths along each axis, if they are known.
     pub lengths: Vec<f64>,
-    /// What each cell brings with it.
+    /// The counts of one cell.
     pub counts: LatticeCounts,
 }
 
@@ -119,7 +119,7 @@ impl Block {
     }
 }
 
-/// Cells of a round body, estimated: from the lowest point to the corner of its core, from there to the cut, in the shells.
+/// Estimated cells of a round body: from the lowest point to the corner of its core, from there to the cut, in the shells.
 pub(in crate::scene) struct RoundCells {
     pub aside: f64,
     pub down: f64,

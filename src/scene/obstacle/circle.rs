@@ -1,4 +1,4 @@
-//! A circle seen from outside, the half that faces the body: h(s) = R - sqrt(R^2 - s^2); or from inside: h(s) = sqrt(R^2 - s^2) - R.
+//! A circle: from outside, the half that faces the body, h(s) = R - sqrt(R^2 - s^2); or from inside, h(s) = sqrt(R^2 - s^2) - R.
 
 use std::sync::Arc;
 
@@ -19,13 +19,13 @@ pub struct CircleSpec {
     /// The centre.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub centre: Option<[f64; 2]>,
-    /// The centre less the radius along the approach direction, the point nearest to the body; from inside the centre plus it.
+    /// The centre minus the radius along the approach direction, the point nearest to the body; from inside, the centre plus the radius.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub apex: Option<[f64; 2]>,
     /// Radius, positive. Nodes beyond its reach have no contact row.
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub radius: f64,
-    /// Where the body lies: `outside`, or `inside` as a pin in a hole and all around is the obstacle.
+    /// The side of the body: `outside`, or `inside`, as a pin in a hole, with the obstacle all around.
     #[serde(default, deserialize_with = "word", skip_serializing_if = "Side::is_outside")]
     pub side: Side,
 }
@@ -65,7 +65,7 @@ impl Surface for Circle {
         (along.abs() <= self.radius).then(|| along * (along / (self.radius + rest.max(0.0).sqrt())))
     }
 
-    /// The remainder of an interpolation at both ends and in the middle of a stretch of half length k is at most `|h'''| k^3/(9 sqrt 3)`.
+    /// The error of the interpolation at both ends and in the middle of a stretch of half length k is at most `|h'''| k^3/(9 sqrt 3)`.
     fn enclosed(&self, from: f64, to: f64) -> Option<([f64; 3], [f64; 2])> {
         let heights = self.heights(from, to)?;
         let (furthest, half) = (from.abs().max(to.abs()), (to - from).abs() / 2.0);
@@ -76,7 +76,7 @@ impl Surface for Circle {
         Some((heights, [remainder.min(2.0 * self.radius); 2]))
     }
 
-    /// Distance to the centre less the radius; a node behind the centre has no closest point on the facing half.
+    /// Distance to the centre minus the radius; a node behind the centre has no closest point on the facing half.
     fn closest(&self, [along, towards]: Local, tolerance: f64) -> Result<Option<Foot>, &'static str> {
         let (r, rest) = (self.radius, self.radius - towards);
         let to_centre = along.hypot(rest);
@@ -86,7 +86,7 @@ impl Surface for Circle {
         if along.abs() <= tolerance {
             return Ok(Some(Foot { normal: [0.0, 1.0], distance: -towards }));
         }
-        // A node level with the centre has a closest point; rounding must not take it away.
+        // A node level with the centre has a closest point; rounding must not remove it.
         if rest < -tolerance {
             return Err("lies deeper in the circle than its centre");
         }
@@ -100,7 +100,7 @@ impl Surface for Circle {
     }
 }
 
-/// What lies around a circle with its apex at the origin and its centre at (0, -R): the mirror image of the circle as a graph.
+/// The outside of a circle with its apex at the origin and its centre at (0, -R): as a graph, the mirror image of the circle.
 #[derive(Debug)]
 struct Hollow(Circle);
 
@@ -114,7 +114,7 @@ impl Surface for Hollow {
         Some((self.heights(from, to)?, [above, below]))
     }
 
-    /// The radius less the distance to the centre, all around; from the centre straight along the approach direction.
+    /// The radius minus the distance to the centre, in all directions; from the centre along the approach direction.
     fn closest(&self, [along, towards]: Local, tolerance: f64) -> Result<Option<Foot>, &'static str> {
         let (r, rest) = (self.0.radius, self.0.radius + towards);
         let to_centre = along.hypot(rest);

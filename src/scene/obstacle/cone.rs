@@ -1,4 +1,4 @@
-//! A cone: a wedge turned about the approach direction.
+//! A cone: a wedge rotated about the approach direction.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! A cylinder without ends, seen from outside or inside: a circle drawn out along the axis.
+//! A cylinder without ends, seen from outside or inside: a circle extruded along the axis.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,7 +10,7 @@ use crate::fem::geometry::dot;
 use crate::scene::entry::{point, wrong};
 use crate::scene::schema::json::word;
 
-/// An axis of a cylinder may lean by the rounding of its written components.
+/// Deviation of a cylinder's axis from the right angle that is rounding of its written components.
 const PERPENDICULAR: f64 = 1e-9;
 
 /// A cylinder without ends, given by a point of its axis or of its apex line.
@@ -21,15 +21,16 @@ pub struct CylinderSpec {
     /// Any point of the axis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub centre: Option<[f64; 3]>,
-    /// Any point of the axis less the radius along the approach direction, the line nearest to the body; from inside plus it.
+    /// Any point of the axis minus the radius along the approach direction, on the line nearest to the body; from inside, plus the
+    /// radius.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub apex: Option<[f64; 3]>,
-    /// Direction of the axis, perpendicular to the approach direction. Of any length but zero.
+    /// Direction of the axis, perpendicular to the approach direction, of any length except zero.
     pub axis: [f64; 3],
     /// Radius, positive. Nodes beyond its reach have no contact row.
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub radius: f64,
-    /// Where the body lies: `outside`, or `inside` as a pin in a hole and all around is the obstacle.
+    /// The side of the body: `outside`, or `inside`, as a pin in a hole, with the obstacle all around.
     #[serde(default, deserialize_with = "word", skip_serializing_if = "Side::is_outside")]
     pub side: Side,
 }

@@ -12,11 +12,11 @@ use crate::fem::mesh::{Boundary, FacetKind};
 use crate::scene::entry::{PLACE_TOLERANCE, boundary, point, refused, wrong};
 use crate::scene::schema::approach::Rule;
 
-/// A partner may be aside by this times its distance: at the end of a curved boundary the facets on one side only give
-/// the normal, half the angle of a facet off.
+/// Allowed lateral offset of a partner, in units of its distance: at the end of a curved boundary only the facets on one side give the
+/// normal, which is wrong by half the angle of a facet.
 const ASLANT: f64 = 0.2;
 
-/// The surface of another elastic body: across every candidate lies one of its nodes.
+/// The surface of another elastic body: every candidate lies opposite one of its nodes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -28,7 +28,7 @@ pub struct FacingSpec {
 pub(super) const ABOUT: About = About { name: "body", dimensions: &[1, 2, 3] };
 
 impl ObstacleShape for FacingSpec {
-    /// Finds the node of the other body across each candidate.
+    /// Finds the node of the other body opposite to each candidate.
     fn place(&self, site: &Site) -> Result<Geometry, Error> {
         let mesh = site.body.mesh();
         let own = boundary(mesh, site.boundary, &format!("{}.boundary", site.obstacle))?;
@@ -61,7 +61,7 @@ fn unpaired(site: &Site, message: String) -> Error {
     refused("unpaired-nodes", site.field("boundary"), message)
 }
 
-/// Which of the bodies a boundary belongs to.
+/// The body to which a boundary belongs.
 fn region(body: &ElasticBody, of: &Boundary) -> Option<usize> {
     let first = of.connectivity.first().copied().unwrap_or(0);
     body.regions().iter().position(|region| region.nodes().contains(&first))
@@ -78,9 +78,9 @@ struct Search<'a> {
     tolerance: f64,
 }
 
-/// The way from a candidate to a node of the other boundary.
+/// The vector from a candidate to a node of the other boundary.
 struct Way {
-    /// Offset across the direction of the row, in length.
+    /// Offset perpendicular to the direction of the row, in length.
     aside: f64,
     pair: Pair,
 }
@@ -97,7 +97,7 @@ impl Search<'_> {
             Way { aside, pair: Pair { partner, normal, mean, distance } }
         });
         let nearest = match rule {
-            // Of the nodes straight across, the nearest; or else the one that is least aside.
+            // The nearest of the nodes straight across; if there is none, the node with the smallest offset.
             Rule::Approach => ways.min_by(|a, b| {
                 let straight = |way: &Way| way.aside.max(self.tolerance);
                 let far = |way: &Way| way.pair.distance.abs();
@@ -135,7 +135,7 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// Checks that no node of the other boundary faces the inside of a facet: it has no row, and would go through.
+    /// Checks that no node of the other boundary faces the inside of a facet: it would have no row, and would penetrate.
     fn check_others(&self, pairs: &[Pair]) -> Result<(), Error> {
         let mesh = self.site.body.mesh();
         let nodes = mesh.nodes();
@@ -163,19 +163,20 @@ impl Search<'_> {
     }
 }
 
-/// Nearer to an edge of a facet than this share of its length is on the edge.
+/// A place nearer to an edge of a facet than this share of the edge's length counts as on the edge.
 const ON_EDGE: f64 = 1e-6;
 
-/// A place across the inside of a facet.
+/// A place opposite to the inside of a facet.
 struct Across {
     /// Unit vector from the facet to the other body.
     normal: [f64; 3],
-    /// Along it, in length.
+    /// Distance along the normal, in length.
     distance: f64,
 }
 
 impl Across {
-    /// The place `at` if it lies across the inside of `facet`, no further than its pairs do and the facet is long.
+    /// The place `at` if it is opposite to the inside of `facet`, at most as far as the distance of its pairs plus the length of the
+    /// facet.
     fn of(
         kind: FacetKind,
         facet: &[usize],

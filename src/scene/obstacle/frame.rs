@@ -1,11 +1,11 @@
-//! The frame of an obstacle: one axis across the approach direction, one along it.
+//! The frame of an obstacle: one axis perpendicular to the approach direction, one along it.
 
 use crate::scene::schema::approach::Approach;
 
 /// Coordinates `[along, towards]`: along the surface, and towards the obstacle.
 pub(in crate::scene) type Local = [f64; 2];
 
-/// The axes of an obstacle. A point and a direction are carried over alike: the frame has the scene's origin.
+/// The axes of an obstacle. Points and directions are transformed in the same way: the frame has the scene's origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::scene) struct Frame {
     /// 0 or 1: the axis of the approach direction.
@@ -15,7 +15,7 @@ pub(in crate::scene) struct Frame {
 }
 
 impl Frame {
-    /// The frame of an approach direction in the plane; a model in the plane has no other.
+    /// The frame of an approach direction in the plane; a plane model has no other frame.
     pub fn of(approach: Approach) -> Self {
         let (axis, sense) = approach.axis();
         Frame { axis: axis.min(1), sense }
@@ -33,7 +33,7 @@ impl Frame {
         global
     }
 
-    /// The axis across the approach direction: 0 for x, 1 for y.
+    /// The axis perpendicular to the approach direction: 0 for x, 1 for y.
     pub fn along_axis(&self) -> usize {
         1 - self.axis
     }

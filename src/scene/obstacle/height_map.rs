@@ -11,23 +11,23 @@ use crate::error::Error;
 use crate::fem::geometry::dot;
 use crate::scene::entry::{PLACE_TOLERANCE, finite, number, point, wrong};
 
-/// Feet closer together than this, relative to the body's size, are one: neighbouring cells share their edges, and a
-/// search ends at the square root of rounding.
+/// Feet closer together than this, relative to the body's size, are one point: neighbouring cells share their edges, and the accuracy of
+/// a search is the square root of rounding.
 const SAME_FOOT: f64 = 1e-6;
 
-/// Unit normals closer than this are those of one smooth piece.
+/// Unit normals closer than this belong to one smooth piece.
 const SAME_NORMAL: f64 = 1e-12;
 
-/// Heights on a grid over the two coordinates across the approach direction.
+/// Heights on a grid over the two coordinates perpendicular to the approach direction.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct HeightMapSpec {
-    /// Grid lines of the first coordinate across the approach direction (x, or y where that is along x): at least two,
-    /// increasing, from the first candidate to the last or further.
+    /// Grid lines of the first coordinate perpendicular to the approach direction (x, or y if that direction is along x): at least two,
+    /// increasing, from the first candidate to the last or beyond.
     #[cfg_attr(feature = "cli", schemars(extend("minItems" = 2)))]
     pub x: Vec<f64>,
-    /// Grid lines of the second coordinate across it (z, or y where the approach direction is along z), likewise.
+    /// Grid lines of the second coordinate perpendicular to it (z, or y if the approach direction is along z), likewise.
     #[cfg_attr(feature = "cli", schemars(extend("minItems" = 2)))]
     pub y: Vec<f64>,
     /// `heights[i][j]`: the surface's coordinate along the axis of the approach direction over `x[i]`, `y[j]`.
@@ -49,14 +49,14 @@ impl ObstacleShape for HeightMapSpec {
 #[derive(Debug)]
 struct HeightMap {
     lines: [Vec<f64>; 2],
-    /// Row by row of the first lines.
+    /// Row by row, one row per line of the first coordinate.
     heights: Vec<f64>,
     names: [&'static str; 2],
     /// The body's size.
     size: f64,
 }
 
-/// Where a height map ends short of a place.
+/// The end of a height map before a place.
 struct Reach {
     field: &'static str,
     name: &'static str,
@@ -92,7 +92,7 @@ impl HeightMap {
         Ok(HeightMap { lines: [spec.x.clone(), spec.y.clone()], heights, names, size: site.body.mesh().size() })
     }
 
-    /// The coordinate in which the map does not reach over a place, if there is one.
+    /// The coordinate in which the map does not reach a place, if there is one.
     fn beyond(&self, at: [f64; 2]) -> Option<Reach> {
         let rim = PLACE_TOLERANCE * self.size;
         (0..2).find_map(|axis| {
@@ -103,7 +103,7 @@ impl HeightMap {
         })
     }
 
-    /// The normal at a foot: of the surface where it is smooth there or the node lies on it, else the way to the foot.
+    /// The normal at a foot: of the surface if it is smooth there or the node lies on it, else the direction to the foot.
     fn normal(&self, node: [f64; 3], foot: &Foot, sense: f64, tolerance: f64) -> [f64; 3] {
         let near = [0, 1].map(|axis| {
             let cell = |at: f64| self.cell_at(axis, at);
@@ -126,7 +126,7 @@ impl HeightMap {
             return mean;
         }
         let way = [0, 1, 2].map(|axis| sense * (foot.at[axis] - node[axis]) / foot.distance);
-        // On a smooth rim the foot may still be where the normal meets the surface: take the digits of the surface.
+        // On a smooth rim the foot may still be a normal foot: the normal of the surface then has more correct digits.
         let same = (0..3).all(|axis| (way[axis] - mean[axis]).abs() <= SAME_NORMAL.sqrt());
         if smooth && same { mean } else { way }
     }
@@ -136,7 +136,7 @@ impl HeightMap {
         (lines[0], lines[lines.len() - 1])
     }
 
-    /// The cell over a coordinate; beyond the rim the last one.
+    /// The cell over a coordinate; beyond the rim the outermost cell.
     fn cell_at(&self, axis: usize, at: f64) -> usize {
         let lines = &self.lines[axis];
         lines.partition_point(|&line| line <= at).saturating_sub(1).min(lines.len() - 2)
@@ -184,7 +184,7 @@ impl Grid for HeightMap {
         }
         let nearest = best(&feet);
         feet.retain(|foot| foot.distance <= nearest + tolerance);
-        // A foot inside a cell is more exact than the one on an edge next to it.
+        // A foot inside a cell is more accurate than the foot on an edge next to it.
         feet.sort_by_key(|foot| foot.on_edge);
         let mut apart: Vec<Foot> = Vec::new();
         for foot in feet {
@@ -200,14 +200,14 @@ impl Grid for HeightMap {
         let sum = normals.iter().fold([0.0; 3], |sum, normal| [0, 1, 2].map(|axis| sum[axis] + normal[axis]));
         let length = dot(sum, sum).sqrt();
         let normal = sum.map(|part| part / length);
-        // Along its own normal a foot is as far as it is; along a mean normal the plane through it is farther.
+        // Along its own normal the foot is at its distance; along a mean normal the plane through the foot is farther away.
         let (foot, own) = (apart.first()?, *normals.first()?);
         let to_foot = [0, 1, 2].map(|axis| foot.at[axis] - node[axis]);
         Some((normal, dot(own, to_foot) / dot(own, normal)))
     }
 }
 
-/// Every candidate must lie over the grid: a height map says nothing beyond its rim.
+/// Checks that every candidate lies over the grid: a height map is undefined beyond its rim.
 fn check_reach(map: &HeightMap, site: &Site) -> Result<(), Error> {
     let across = across(site.approach);
     for &(node, _) in site.candidates {

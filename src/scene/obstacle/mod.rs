@@ -1,4 +1,4 @@
-//! Obstacles: a row for every point. Each shape has a file, and is named here and nowhere else.
+//! Obstacles: each gives a row for every point. Each shape has its own file and is named only there and here.
 
 mod circle;
 mod cone;
@@ -44,7 +44,7 @@ use serde::{Deserialize, Serialize};
 use super::schema::json::object;
 use shape::{About, ObstacleShape};
 
-/// The surface of an obstacle, over the coordinates across the approach direction.
+/// The surface of an obstacle, over the coordinates perpendicular to the approach direction.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
@@ -61,13 +61,13 @@ pub enum ShapeSpec {
     Table(#[serde(deserialize_with = "object")] TableSpec),
     /// In space: a sphere, seen from outside or inside.
     Sphere(#[serde(deserialize_with = "object")] SphereSpec),
-    /// In space: a cylinder, seen from outside or inside, its axis across the approach direction.
+    /// In space: a cylinder, seen from outside or inside, with its axis perpendicular to the approach direction.
     Cylinder(#[serde(deserialize_with = "object")] CylinderSpec),
-    /// In space: a cone that points at the body, its axis along the approach direction.
+    /// In space: a cone that points at the body, with its axis along the approach direction.
     Cone(#[serde(deserialize_with = "object")] ConeSpec),
     /// In space: heights on a grid, bilinear in between.
     HeightMap(#[serde(deserialize_with = "object")] HeightMapSpec),
-    /// In space: a torus, its axis along or across the approach direction.
+    /// In space: a torus, with its axis along the approach direction or perpendicular to it.
     Torus(#[serde(deserialize_with = "object")] TorusSpec),
     /// In space: a closed surface of triangles from a file.
     Surface(#[serde(deserialize_with = "object")] SurfaceSpec),
@@ -75,7 +75,7 @@ pub enum ShapeSpec {
     Body(#[serde(deserialize_with = "object")] FacingSpec),
 }
 
-/// What all shapes are called, in the order in which messages name them.
+/// The names of all shapes, in the order of messages.
 const ALL: [About; 12] = [
     plane::ABOUT,
     parabola::ABOUT,
@@ -92,17 +92,17 @@ const ALL: [About; 12] = [
 ];
 
 impl ShapeSpec {
-    /// What the shape is called, and where it belongs.
+    /// The name of the shape and the models that allow it.
     fn about(&self) -> About {
         self.told().0
     }
 
-    /// The shape, whichever it is.
+    /// The shape of any kind.
     pub(super) fn shape(&self) -> &dyn ObstacleShape {
         self.told().1
     }
 
-    /// What the shape is called, and the shape, whichever it is.
+    /// The name and the models of the shape, and the shape of any kind.
     fn told(&self) -> (About, &dyn ObstacleShape) {
         match self {
             ShapeSpec::Plane(spec) => (plane::ABOUT, spec),
@@ -120,7 +120,7 @@ impl ShapeSpec {
         }
     }
 
-    /// Says that a model of `dimension` coordinates does not have the shape, and what there is instead; `None` if it has.
+    /// A message that a model of `dimension` coordinates does not allow the shape, with the allowed shapes; `None` if it does.
     fn misfit(&self, dimension: usize) -> Option<String> {
         let about = self.about();
         if about.dimensions.contains(&dimension) {
@@ -135,5 +135,5 @@ impl ShapeSpec {
     }
 }
 
-/// Where a model of one, two and three coordinates lives.
+/// The space of a model of one, two and three coordinates.
 const PLACES: [&str; 3] = ["on a line", "in the plane", "in space"];

@@ -10,7 +10,7 @@ use super::shape::{About, Geometry, ObstacleShape, Site};
 use super::surface::{Foot, Surface};
 use crate::error::Error;
 
-/// Newton's method from the right of the root of a convex cubic converges monotonically; it never needs as many.
+/// Newton's method from the right of the root of a convex cubic converges monotonically; it never needs as many steps.
 const NEWTON_STEPS: usize = 200;
 
 /// A parabola.
@@ -54,7 +54,7 @@ impl Surface for Parabola {
     fn closest(&self, [along, towards]: Local, tolerance: f64) -> Result<Option<Foot>, &'static str> {
         let stiffness = 1.0 - towards / self.radius;
         if along.abs() <= tolerance && stiffness < 0.0 {
-            // On the axis beyond the centre of curvature both sides are equally close: go straight back.
+            // On the axis beyond the centre of curvature both sides are equally close: take the direction of the axis.
             return Ok(Some(Foot { normal: [0.0, 1.0], distance: -towards }));
         }
         let slope = positive_root(stiffness, along.abs() / self.radius).copysign(along);
@@ -71,11 +71,11 @@ fn positive_root(c: f64, p: f64) -> f64 {
     if p == 0.0 && c >= 0.0 {
         return 0.0;
     }
-    // Upper bounds: where one of the two growing terms alone outweighs the rest.
+    // Upper bounds: the values at which one of the two growing terms alone outweighs the rest.
     let mut x = if c > 0.0 { (p / c).min((2.0 * p).cbrt()) } else { (4.0 * p).cbrt().max(2.0 * (-c).sqrt()) };
     for _ in 0..NEWTON_STEPS {
         let next = x - (x * x * x / 2.0 + c * x - p) / (1.5 * x * x + c);
-        // Until rounding stops the descent.
+        // Iterate until rounding stops the descent.
         if next.is_nan() || next >= x {
             break;
         }

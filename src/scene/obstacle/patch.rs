@@ -1,27 +1,27 @@
-//! One bilinear cell of a height map: the points of it that are closest to a node.
+//! One bilinear cell of a height map: its closest points to a node.
 
 use crate::fem::geometry::dot;
-/// Number of strips of a cell in which local minima of the distance are sought; one cell has a handful of them at most.
+/// Number of strips of a cell in which local minima of the distance are searched; a cell has only a few minima.
 const STRIPS: usize = 16;
 
-/// Golden sections of a strip: they end at the square root of rounding, from where Newton's method goes on.
+/// Golden sections of a strip: they reach the square root of rounding; from there Newton's method continues.
 const SECTIONS: usize = 40;
 
-/// Newton's method doubles eight digits in one step and has all in the next; the third is for safety.
+/// Newton's method reaches eight correct digits in one step and all digits in the next; the third is for safety.
 const NEWTON_STEPS: usize = 3;
 
-/// A longer step, in the cell's own coordinates, does not come from the rounding of a search: inside the cell the
-/// distance has no curvature there, and the search has the last word.
+/// A longer step, in the cell's own coordinates, does not come from the rounding of a search: the distance has no curvature there, and
+/// the result of the search is used.
 const LONG_STEP: f64 = 1e-3;
 
-/// A search that ends at an edge ends this near to it, in the cell's own coordinates.
+/// A search that ends at an edge is within this distance of it, in the cell's own coordinates.
 const AT_EDGE: f64 = 1e-7;
 
-/// A point of a cell that is closer to a node than those around it in the cell.
+/// A point of a cell that is closer to a node than its neighbourhood in the cell.
 pub(super) struct Foot {
     pub at: [f64; 3],
     pub distance: f64,
-    /// Found on an edge of the cell.
+    /// `true` if it was found on an edge of the cell.
     pub on_edge: bool,
 }
 
@@ -43,7 +43,7 @@ impl Patch {
         self.point([0, 1].map(|axis| (at[axis] - self.low[axis]) / self.size[axis]))[2]
     }
 
-    /// Derivatives of the height by u and v.
+    /// Derivatives of the height with respect to u and v.
     fn slopes(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         let [a, b, c, d] = self.corners;
         [(1.0 - v) * (b - a) + v * (d - c), (1.0 - u) * (c - a) + u * (d - b)]
@@ -72,7 +72,7 @@ impl Patch {
         [self.along_segment(node, low, high), v]
     }
 
-    /// The closest place on the straight line of the surface between two places of its own coordinates, from 0 to 1.
+    /// The closest place on the straight line on the surface between two places in the cell's coordinates, as a share from 0 to 1.
     fn along_segment(&self, node: [f64; 3], from: [f64; 2], to: [f64; 2]) -> f64 {
         let (start, end) = (self.point(from), self.point(to));
         let along = [0, 1, 2].map(|axis| end[axis] - start[axis]);
@@ -86,10 +86,10 @@ impl Patch {
         Foot { at, distance: way[0].hypot(way[1]).hypot(way[2]), on_edge: false }
     }
 
-    /// The closest points of the four edges, and all points inside the cell that are closer than those around them.
+    /// The closest points of the four edges, and all points inside the cell that are closer than their neighbourhood.
     ///
-    /// The edges are straight. For the inside, the distance to the closest point of each ruling is searched in strips,
-    /// every valley by golden section, and settled by Newton's method.
+    /// The edges are straight. Inside, the distance to the closest point of each ruling is searched in strips: every local minimum by
+    /// golden section, then by Newton's method.
     pub fn feet(&self, node: [f64; 3]) -> Vec<Foot> {
         let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         let mut feet: Vec<Foot> = (0..4)
@@ -120,13 +120,13 @@ impl Patch {
         feet
     }
 
-    /// Newton's method on the gradient of half the squared distance, while it comes no farther away; `None` where the
-    /// foot lies on an edge.
+    /// Newton's method on the gradient of half the squared distance, as long as the distance does not grow; `None` if the foot lies on an
+    /// edge.
     fn settled(&self, node: [f64; 3], start: [f64; 2]) -> Option<[f64; 2]> {
         let [a, b, c, d] = self.corners;
         let twist = a - b - c + d;
         let distance = |own: [f64; 2]| self.foot(node, own).distance;
-        // A distance is as exact as the coordinates that it comes from, however short it is.
+        // A distance is as accurate as the coordinates from which it is computed, however short it is.
         let far = [0, 1].map(|axis| self.low[axis] + self.size[axis]);
         let coordinates = node.iter().chain(&self.low).chain(&far).chain(&self.corners);
         let slack = 4.0 * f64::EPSILON * coordinates.fold(0.0_f64, |largest, part| largest.max(part.abs()));
@@ -143,7 +143,7 @@ impl Patch {
                 (uu * gradient[1] - uv * gradient[0]) / determinant,
             ];
             let (next, length) = ([own[0] - step[0], own[1] - step[1]], step[0].hypot(step[1]));
-            // Where the determinant is zero the step is no number.
+            // If the determinant is zero, the step is NaN or infinite.
             if length.is_nan() || length > LONG_STEP {
                 let inside = own.iter().all(|part| (AT_EDGE..=1.0 - AT_EDGE).contains(part));
                 return inside.then_some(own);

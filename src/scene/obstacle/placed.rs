@@ -16,7 +16,7 @@ use crate::scene::schema::obstacle::ObstacleSpec;
 /// A component of a unit normal below this is rounding of the geometry, not a direction.
 const NO_COMPONENT: f64 = 1e-14;
 
-/// A normal is of unit length to within this: rounding of whoever made it.
+/// A given normal is of unit length to within this rounding.
 const UNIT: f64 = 1e-9;
 
 /// An obstacle of a model: rigid, or the surface of another body.
@@ -29,16 +29,16 @@ pub struct PlacedObstacle {
     approach: [f64; 3],
     dimension: usize,
     geometry: Geometry,
-    /// How its rows are made; none for an obstacle of a user's own.
+    /// The rule for its rows; `None` for a user-defined obstacle.
     rule: Option<Rule>,
-    /// Shift along the approach direction besides that of the scene, in length.
+    /// Shift along the approach direction in addition to that of the scene, in length.
     gap: f64,
-    /// What presses it against its approach direction, in force.
+    /// The force that presses it against its approach direction, in force.
     force: Option<f64>,
 }
 
 impl PlacedObstacle {
-    /// Checks the obstacle at JSON path `path`.
+    /// Checks the obstacle at the JSON path `path`.
     pub(in crate::scene) fn of_scene(
         spec: &ObstacleSpec,
         path: &str,
@@ -86,7 +86,7 @@ impl PlacedObstacle {
         })
     }
 
-    /// An obstacle of a user's own, number `path` of all.
+    /// A user-defined obstacle, at `path`.
     pub(in crate::scene) fn of_user(
         boundary: &str,
         obstacle: Arc<dyn Obstacle>,
@@ -114,7 +114,7 @@ impl PlacedObstacle {
         }
     }
 
-    /// Name of the boundary whose nodes are its candidates.
+    /// Name of the boundary that contains its candidates.
     pub fn boundary(&self) -> &str {
         &self.boundary
     }
@@ -127,8 +127,8 @@ impl PlacedObstacle {
         }
     }
 
-    /// Where it stands if the scene shifts all obstacles by `gap`: its whole shift along the approach direction, in length, without the
-    /// travel of one that a force presses.
+    /// Its whole shift along the approach direction if the scene shifts all obstacles by `gap`, in length, without the travel under a
+    /// force.
     pub(crate) fn shift(&self, gap: f64) -> f64 {
         gap + self.gap
     }
@@ -138,7 +138,7 @@ impl PlacedObstacle {
         self.force
     }
 
-    /// How its rows are made; `None` for an obstacle of a user's own.
+    /// The rule for its rows; `None` for a user-defined obstacle.
     pub fn rule(&self) -> Option<Rule> {
         self.rule
     }
@@ -153,15 +153,14 @@ impl PlacedObstacle {
         &self.candidates
     }
 
-    /// The surface as a polyline [x, y] for pictures: over the body's extent and a little more, shifted by `gap`
-    /// along the approach direction, in `segments` pieces (10,000 at most), corners met exactly. The obstacle lies on
-    /// the side that [`approach`](Self::approach) points to. Empty where the surface does not reach over the body, for
-    /// another body, and outside the plane.
+    /// The surface as a polyline [x, y] for pictures: over the body's extent and a margin, shifted by `gap` along the approach direction,
+    /// in `segments` pieces (10,000 at most), with exact corners. The obstacle lies on the side to which [`approach`](Self::approach)
+    /// points. Empty if the surface does not reach over the body, for another body, and outside the plane.
     pub fn outline(&self, gap: f64, segments: usize) -> Vec<[f64; 2]> {
         self.rigid().map_or_else(Vec::new, |obstacle| obstacle.outline(gap, segments))
     }
 
-    /// The node of another body across the candidate of this index; `None` if the obstacle is rigid.
+    /// The node of another body opposite to the candidate of this index; `None` if the obstacle is rigid.
     pub(in crate::scene) fn partner(&self, candidate: usize) -> Option<usize> {
         match &self.geometry {
             Geometry::Pairs(pairs) => pairs.get(candidate).map(|pair| pair.partner),
@@ -169,13 +168,13 @@ impl PlacedObstacle {
         }
     }
 
-    /// The outward normal of the body at the candidate of this index; zero where the facets around it cancel.
+    /// The outward normal of the body at the candidate of this index; zero if the facets around it cancel.
     pub(in crate::scene) fn outward(&self, candidate: usize) -> [f64; 3] {
         self.outward.get(candidate).copied().unwrap_or_default()
     }
 
-    /// The unit normal of the surface, into the obstacle, where the row of the candidate of this index meets it; for another body
-    /// the mean of both. `None` if it is out of reach.
+    /// The unit normal of the surface, into the obstacle, at the point where the row of the candidate of this index meets it; for another
+    /// body the mean of both normals. `None` if it is out of reach.
     pub(crate) fn surface_normal(&self, candidate: usize, node: [f64; 3], gap: f64) -> Option<[f64; 3]> {
         match &self.geometry {
             Geometry::Rigid(obstacle) => obstacle.surface_normal(node, gap),
@@ -183,11 +182,10 @@ impl PlacedObstacle {
         }
     }
 
-    /// The row of the candidate of this index, which lies at `node`, the surface shifted by `gap`, or `None` if it is
-    /// out of reach.
+    /// The row of the candidate of this index, at the place `node`, with the surface shifted by `gap`; `None` if it is out of reach.
     ///
     /// # Errors
-    /// A predicate of the node, if it has no row that makes sense.
+    /// A predicate of the node, if no meaningful row exists.
     pub(in crate::scene) fn row(
         &self,
         candidate: usize,
@@ -210,7 +208,7 @@ impl PlacedObstacle {
     }
 }
 
-/// Where an obstacle stands, besides the gap of the scene, and the force that presses it.
+/// The shift of an obstacle in addition to the gap of the scene, and the force that presses it.
 fn pressing(spec: &ObstacleSpec, path: &str) -> Result<(f64, Option<f64>), Error> {
     finite(format!("{path}.gap"), spec.gap.unwrap_or(0.0))?;
     if let Some(force) = spec.force {
@@ -237,7 +235,7 @@ fn candidates(body: &ElasticBody, name: &str, path: &str) -> Result<(Vec<(usize,
     Ok((tributary_areas(body, boundary), outward))
 }
 
-/// What is wrong with a node, and what helps.
+/// The fault of a node, and a remedy.
 fn away(reason: &str) -> String {
     format!("{reason}; move the obstacle away from it")
 }

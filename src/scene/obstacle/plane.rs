@@ -22,7 +22,7 @@ use crate::scene::schema::approach::Rule;
 pub struct PlaneSpec {
     /// A point of the plane.
     pub point: Vec<f64>,
-    /// Its normal, pointing into the obstacle: on the side of the approach direction. Of any length but zero.
+    /// Its normal, which points into the obstacle, to the side of the approach direction; of any length except zero.
     pub normal: Vec<f64>,
 }
 
@@ -72,7 +72,7 @@ struct Line {
 
 impl Surface for Line {
     fn height(&self, along: f64) -> Option<f64> {
-        // A product with a zero that came from a division would be a negative zero; the sum takes its sign away.
+        // A product with a zero from a division may be a negative zero; the sum removes its sign.
         Some(0.0 - self.normal[0] / self.normal[1] * along)
     }
 

@@ -1,4 +1,4 @@
-//! A polyline over the coordinate along it, extended by a ray at either end: wedge and table.
+//! A polyline over the coordinate along it, extended by a ray at each end: wedge and table.
 
 use super::frame::Local;
 use super::surface::{Foot, Surface};
@@ -16,7 +16,7 @@ struct Candidate {
     distance: f64,
     normal: Local,
     anchor: Local,
-    /// The knot that is closest, where it is an end of the piece.
+    /// The closest knot, if it is an end of the piece.
     knot: Option<usize>,
 }
 
@@ -75,7 +75,7 @@ impl Surface for Polyline {
         }
     }
 
-    /// The chord, and by how much the knots on the stretch lie off it.
+    /// The chord, and the largest distances of the knots on the stretch from it.
     fn enclosed(&self, from: f64, to: f64) -> Option<([f64; 3], [f64; 2])> {
         let [first, _, last] = self.heights(from, to)?;
         let mut off = [0.0_f64; 2];

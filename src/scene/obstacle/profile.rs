@@ -9,10 +9,10 @@ use super::shape::Site;
 use super::surface::{Foot, Surface};
 use crate::scene::schema::approach::Rule;
 
-/// The pictured surface goes beyond the body by this part of the body's extent on either side.
+/// The pictured surface extends beyond the body by this part of the body's extent on each side.
 const OUTLINE_MARGIN: f64 = 0.3;
 
-/// No picture resolves more pieces of a surface.
+/// Largest number of pieces of a pictured surface; more cannot be seen.
 const MAX_SEGMENTS: usize = 10_000;
 
 /// A surface in the plane, in its frame.
@@ -73,7 +73,7 @@ impl RigidSurface for Profile {
         if start == end {
             return None;
         }
-        // On a part of the way: nothing higher than the lowest height there.
+        // The surface reaches only over a part of the way: take the lowest height there.
         let ([first, middle, last], [below, _]) = self.surface.enclosed(start, end)?;
         let lowest = first.min(last).min(2.0 * middle - (first + last) / 2.0) - below;
         Some(([lowest - low.max(high); 3], [0.0, f64::INFINITY]))

@@ -1,4 +1,4 @@
-//! What an obstacle is: a contact row for every point.
+//! The definition of an obstacle: a contact row for every point.
 
 use std::fmt::Debug;
 
@@ -12,7 +12,7 @@ pub struct ObstacleRow {
 }
 
 impl ObstacleRow {
-    /// Where the row of a node at `point` meets the obstacle.
+    /// The point where the row of a node at `point` meets the obstacle.
     pub(super) fn foot(&self, point: [f64; 3]) -> [f64; 3] {
         [0, 1, 2].map(|axis| point[axis] + self.gap * self.normal[axis])
     }
@@ -20,8 +20,7 @@ impl ObstacleRow {
 
 /// A rigid obstacle: it gives the node at any point its contact row.
 ///
-/// All rigid shapes of a scene are obstacles. One of a user's own stands beside them by
-/// [`Scene::build_with`](crate::Scene::build_with).
+/// All rigid shapes of a scene are obstacles. A user-defined obstacle is added by [`Scene::build_with`](crate::Scene::build_with).
 ///
 /// ```
 /// use std::sync::Arc;
@@ -66,10 +65,10 @@ pub trait Obstacle: Debug + Send + Sync {
     /// reach there.
     ///
     /// # Errors
-    /// What is wrong with the node, to stand behind "node 7 at (0, 1)", as "lies deeper in the circle than its centre".
+    /// The fault of the node, as it follows "node 7 at (0, 1)" in a message: "lies deeper in the circle than its centre".
     fn row(&self, point: [f64; 3]) -> Result<Option<ObstacleRow>, String>;
 
-    /// The same with the obstacle moved by `shift` along its approach direction, in length.
+    /// The same, with the obstacle moved by `shift` along its approach direction, in length.
     ///
     /// # Errors
     /// As [`row`](Self::row).
@@ -78,23 +77,22 @@ pub trait Obstacle: Debug + Send + Sync {
         self.row([0, 1, 2].map(|axis| point[axis] - shift * approach[axis]))
     }
 
-    /// The unit normal of the surface, into the obstacle, where the row of a node at `point` meets it, the obstacle moved by `shift`.
-    /// It is that of the row, unless rows lie along the approach direction whatever the surface; `None` if the obstacle does not
-    /// reach there.
+    /// The unit normal of the surface, into the obstacle, at the point where the row of a node at `point` meets it, with the obstacle
+    /// moved by `shift`. It is the normal of the row, unless rows lie along the approach direction for any surface; `None` if the
+    /// obstacle does not reach there.
     fn surface_normal(&self, point: [f64; 3], shift: f64) -> Option<[f64; 3]> {
         Some(self.shifted_row(point, shift).ok()??.normal)
     }
 
-    /// The gap along the approach direction on the straight way between two points, the obstacle moved by `shift`: its values
-    /// `[from, middle, to]`, and by how much `[below, above]` it may leave the quadratic function through these, all in length;
-    /// infinitely far above if the obstacle ends on the way. The guaranteed bound of the total error asks for it; `None` if the obstacle
-    /// does not reach there, or cannot tell.
+    /// The gap along the approach direction on the straight line between two points, with the obstacle moved by `shift`: its values
+    /// `[from, middle, to]`, and its largest distances `[below, above]` from the quadratic function through these, all in length; `above`
+    /// is infinite if the obstacle ends on the line. The guaranteed bound of the total error needs it; `None` if the obstacle does not
+    /// reach there, or cannot give it.
     fn gap_along(&self, _from: [f64; 3], _to: [f64; 3], _shift: f64) -> Option<([f64; 3], [f64; 2])> {
         None
     }
 
-    /// The surface in the plane as a polyline [x, y] for pictures, moved by `shift`, in `segments` pieces; empty if there
-    /// is none to show.
+    /// The surface in the plane as a polyline [x, y] for pictures, moved by `shift`, in `segments` pieces; empty if it has no outline.
     fn outline(&self, _shift: f64, _segments: usize) -> Vec<[f64; 2]> {
         Vec::new()
     }

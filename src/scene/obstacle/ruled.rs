@@ -1,4 +1,4 @@
-//! The rigid surfaces of a scene: their rows are made by one of two rules, and what follows from that is the same for all.
+//! The rigid surfaces of a scene: one of two rules makes their rows; everything else is the same for all.
 
 use std::fmt::Debug;
 
@@ -10,7 +10,7 @@ pub(super) trait RigidSurface: Debug + Send + Sync {
     /// The approach direction, a unit vector [x, y, z].
     fn approach(&self) -> [f64; 3];
 
-    /// The row by one of the rules, the surface moved by `shift`.
+    /// The row by one of the rules, with the surface moved by `shift`.
     fn row_by(&self, rule: Rule, node: [f64; 3], shift: f64) -> Result<Option<ObstacleRow>, String>;
 
     /// As [`Obstacle::gap_along`], by rule `approach`.
@@ -24,7 +24,7 @@ pub(super) trait RigidSurface: Debug + Send + Sync {
     }
 }
 
-/// A rigid surface with the rule that makes its rows.
+/// A rigid surface with the rule for its rows.
 #[derive(Clone, Debug)]
 pub(super) struct Ruled<S> {
     pub surface: S,

@@ -1,4 +1,4 @@
-//! What every obstacle shape tells: where it belongs, and its surface in a model.
+//! The trait of every obstacle shape: the models that allow it, and its surface in a model.
 
 use std::sync::Arc;
 
@@ -14,37 +14,37 @@ use crate::scene::entry::{COORDINATE_ROUNDING, finite, number, vector, wrong};
 use crate::scene::files::Files;
 use crate::scene::schema::approach::{Approach, Rule};
 
-/// What an obstacle shape is called, and where it belongs.
+/// The name of an obstacle shape and the models that allow it.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::scene) struct About {
-    /// As it is written.
+    /// The name in a scene.
     pub name: &'static str,
-    /// The numbers of coordinates of the models that have it.
+    /// The allowed numbers of coordinates of a model.
     pub dimensions: &'static [usize],
 }
 
 /// An obstacle shape with its numbers.
 pub(in crate::scene) trait ObstacleShape {
-    /// Checks the numbers, and puts the surface where it stands.
+    /// Checks the numbers, and places the surface.
     fn place(&self, site: &Site) -> Result<Geometry, Error>;
 
-    /// The boundary that is the surface, if that is one of another body.
+    /// The boundary that forms the surface, if it is the surface of another body.
     fn other_boundary(&self) -> Option<&str> {
         None
     }
 
-    /// A length, beyond which the surface does not reach or touch.
+    /// A length beyond which the surface cannot be touched.
     fn radius(&self) -> f64 {
         f64::INFINITY
     }
 
-    /// Memory that it takes beside its rows, estimated, in bytes.
+    /// Estimated memory in addition to its rows, in bytes.
     fn bytes(&self, _files: Files) -> f64 {
         0.0
     }
 }
 
-/// What an obstacle of a model looks like.
+/// The geometry of an obstacle in a model.
 #[derive(Clone, Debug)]
 pub(in crate::scene) enum Geometry {
     /// A rigid surface.
@@ -54,19 +54,19 @@ pub(in crate::scene) enum Geometry {
 }
 
 impl Geometry {
-    /// A rigid surface whose rows the rule of the site makes.
+    /// A rigid surface; the rule of the site makes its rows.
     pub(super) fn rigid(site: &Site, surface: impl RigidSurface + 'static) -> Self {
         Geometry::Rigid(Arc::new(Ruled { surface, rule: site.rule }))
     }
 }
 
-/// Where an obstacle stands in a scene.
+/// The place of an obstacle in a scene.
 pub(in crate::scene) struct Site<'a> {
     /// JSON path of the obstacle, as `obstacles[0]`.
     pub obstacle: &'a str,
-    /// That of its shape, as `obstacles[0].shape.plane`.
+    /// JSON path of its shape, as `obstacles[0].shape.plane`.
     pub path: String,
-    /// The boundary whose nodes are the candidates.
+    /// The boundary that contains the candidates.
     pub boundary: &'a str,
     pub approach: Approach,
     pub rule: Rule,
@@ -76,12 +76,12 @@ pub(in crate::scene) struct Site<'a> {
     pub files: Files<'a>,
 }
 
-/// Where the body lies to a round or closed surface.
+/// The side of the body relative to a round or closed surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Side {
-    /// The body lies outside; the obstacle is what the surface encloses.
+    /// The body lies outside; the obstacle is enclosed by the surface.
     #[default]
     Outside,
     /// The body lies inside, as a ball in a cup or a pin in a hole; the obstacle is all around it.
@@ -93,7 +93,7 @@ impl Side {
         *self == Side::Outside
     }
 
-    /// A radius with its sign along the approach direction from the apex to the centre.
+    /// A radius, signed along the approach direction from the apex to the centre.
     pub(super) fn signed(self, radius: f64) -> f64 {
         match self {
             Side::Outside => radius,
@@ -131,7 +131,7 @@ impl Site<'_> {
         vector(&self.field(name), entries, entries.len())
     }
 
-    /// A field that is a direction of any length but zero, its largest component scaled to 1.
+    /// A field that is a direction of any length except zero, its largest component scaled to 1.
     pub fn axis(&self, name: &str, entries: &[f64; 3]) -> Result<[f64; 3], Error> {
         let path = self.field(name);
         let axis = vector(&path, entries, 3)?;
@@ -153,7 +153,7 @@ impl Site<'_> {
         }
     }
 
-    /// The apex of a round shape, which it tells itself or by its centre: that lies `radius` further along the approach direction.
+    /// The apex of a round shape, given directly or by its centre, which lies `radius` further along the approach direction.
     pub fn apex<const N: usize>(
         &self,
         centre: Option<[f64; N]>,

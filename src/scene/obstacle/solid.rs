@@ -1,4 +1,4 @@
-//! Obstacles in space: a graph over two coordinates, most of them a curve of the plane turned or drawn out.
+//! Obstacles in space: a graph over two coordinates, in most cases a curve of the plane rotated or extruded.
 
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -13,25 +13,25 @@ use crate::scene::schema::approach::{Approach, Rule};
 /// A surface in space, in its frame.
 #[derive(Clone, Debug)]
 pub(super) struct Solid {
-    /// Orthonormal: two across the approach direction, and the approach direction.
+    /// Orthonormal: two axes perpendicular to the approach direction, and the approach direction.
     axes: [[f64; 3]; 3],
     origin: [f64; 3],
     form: Form,
     rounding: f64,
 }
 
-/// How the surface is made.
+/// The construction of the surface.
 #[derive(Clone, Debug)]
 pub(super) enum Form {
-    /// A curve symmetric to its axis, turned about it: towards = h(hypot(t1, t2)).
+    /// A curve symmetric to its axis, rotated about it: towards = h(hypot(t1, t2)).
     Turned(Arc<dyn Surface>),
-    /// A curve drawn out along the second axis: towards = h(t1).
+    /// A curve extruded along the second axis: towards = h(t1).
     DrawnOut(Arc<dyn Surface>),
     /// A grid: towards = h(t1, t2).
     Grid(Arc<dyn Grid>),
 }
 
-/// A surface over a grid of the two coordinates across the approach direction.
+/// A surface over a grid of the two coordinates perpendicular to the approach direction.
 pub(super) trait Grid: Debug + Send + Sync {
     /// The height at a place, or `None` beyond the rim.
     fn height(&self, at: [f64; 2]) -> Option<f64>;
@@ -50,7 +50,7 @@ impl Solid {
         Solid { axes, origin, form, rounding: site.rounding() }
     }
 
-    /// The same drawn out along another unit vector across the approach direction.
+    /// The same surface extruded along another unit vector perpendicular to the approach direction.
     pub fn along(mut self, axis: [f64; 3]) -> Self {
         self.axes[1] = axis;
         self.axes[0] = cross(axis, self.axes[2]);
@@ -74,7 +74,7 @@ impl RigidSurface for Solid {
             (Form::Grid(map), Rule::Approach) => along_approach(map.height([t1, t2])),
             (Form::Turned(curve), Rule::ClosestPoint) => {
                 let radius = t1.hypot(t2);
-                // The closest point lies in the half plane of the node; on the axis the normal has no part across it.
+                // The closest point lies in the half plane of the node; on the axis the normal has no component perpendicular to it.
                 let outwards = if radius > 0.0 { [t1 / radius, t2 / radius] } else { [0.0; 2] };
                 let foot = curve.closest([radius, towards], self.rounding)?;
                 foot.map(|foot| {
@@ -95,7 +95,7 @@ impl RigidSurface for Solid {
     }
 }
 
-/// The two axes across an approach direction, increasing.
+/// The two axes perpendicular to an approach direction, increasing.
 pub(super) fn across(approach: Approach) -> [usize; 2] {
     [[1, 2], [0, 2], [0, 1]][approach.axis().0]
 }

@@ -1,4 +1,4 @@
-//! A sphere, seen from outside or inside: a circle turned about the approach direction.
+//! A sphere, seen from outside or inside: a circle rotated about the approach direction.
 
 use serde::{Deserialize, Serialize};
 
@@ -16,13 +16,13 @@ pub struct SphereSpec {
     /// The centre.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub centre: Option<[f64; 3]>,
-    /// The centre less the radius along the approach direction, the point nearest to the body; from inside the centre plus it.
+    /// The centre minus the radius along the approach direction, the point nearest to the body; from inside, the centre plus the radius.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub apex: Option<[f64; 3]>,
     /// Radius, positive. Nodes beyond its reach have no contact row.
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub radius: f64,
-    /// Where the body lies: `outside`, or `inside` as a ball in a cup and all around is the obstacle.
+    /// The side of the body: `outside`, or `inside`, as a ball in a cup, with the obstacle all around.
     #[serde(default, deserialize_with = "word", skip_serializing_if = "Side::is_outside")]
     pub side: Side,
 }

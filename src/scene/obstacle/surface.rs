@@ -1,15 +1,15 @@
-//! What every obstacle surface can tell, in its own frame.
+//! The trait of every obstacle surface, in its own frame.
 
 use std::fmt::Debug;
 
 use super::frame::Local;
 
-/// The way from a node to the surface.
+/// The connection from a node to the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::scene) struct Foot {
     /// Unit normal at the foot, into the obstacle.
     pub normal: Local,
-    /// Signed distance along it; negative inside.
+    /// Signed distance along the normal; negative inside.
     pub distance: f64,
 }
 
@@ -18,17 +18,16 @@ pub(in crate::scene) trait Surface: Debug + Send + Sync {
     /// The height towards the obstacle, or `None` beyond the surface's reach.
     fn height(&self, along: f64) -> Option<f64>;
 
-    /// The heights at both ends of a stretch within reach and in its middle, and by how much `[below, above]` the surface may leave the
-    /// quadratic function through these.
+    /// The heights at both ends of a stretch within reach and in its middle, and the largest distances `[below, above]` of the surface
+    /// from the quadratic function through these.
     fn enclosed(&self, from: f64, to: f64) -> Option<([f64; 3], [f64; 2])>;
 
-    /// The foot closest to `node`, or `None` where no part of the surface faces it; lengths below `tolerance` are
-    /// rounding.
+    /// The foot closest to `node`, or `None` if no part of the surface faces it; lengths below `tolerance` are rounding.
     ///
-    /// A node behind a vertex or on an axis, equally close to both sides, goes straight back.
+    /// For a node behind a vertex or on an axis, equally close to both sides, the direction is along the axis.
     ///
     /// # Errors
-    /// A predicate of the node, where it lies so deep that no closest point makes sense.
+    /// A predicate of the node if it lies so deep that no meaningful closest point exists.
     fn closest(&self, node: Local, tolerance: f64) -> Result<Option<Foot>, &'static str>;
 
     /// The reach, along the surface.
@@ -41,7 +40,7 @@ pub(in crate::scene) trait Surface: Debug + Send + Sync {
         Some([self.height(from)?, self.height((from + to) / 2.0)?, self.height(to)?])
     }
 
-    /// Where the surface has corners, along it.
+    /// The places of the corners of the surface, along it.
     fn corners(&self) -> Vec<f64> {
         Vec::new()
     }

@@ -1,4 +1,4 @@
-//! A polyline through points; it says nothing beyond its ends.
+//! A polyline through points; it is undefined beyond its ends.
 
 use std::sync::Arc;
 
@@ -17,8 +17,8 @@ use crate::scene::entry::{PLACE_TOLERANCE, finite_pair, number, point, wrong};
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct TableSpec {
-    /// At least two points [x, y], increasing in the coordinate across the approach direction, from the first
-    /// candidate to the last or further.
+    /// At least two points [x, y], increasing in the coordinate perpendicular to the approach direction, from the first candidate to the
+    /// last or beyond.
     #[cfg_attr(feature = "cli", schemars(extend("minItems" = 2)))]
     pub points: Vec<[f64; 2]>,
 }
@@ -55,7 +55,7 @@ impl ObstacleShape for TableSpec {
     }
 }
 
-/// Every candidate must lie over the surface.
+/// Checks that every candidate lies over the surface.
 fn check_reach(table: &Polyline, site: &Site) -> Result<(), Error> {
     let (frame, path) = (Frame::of(site.approach), site.field("points"));
     let axis = ["x", "y"][frame.along_axis()];

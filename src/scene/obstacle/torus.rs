@@ -1,4 +1,4 @@
-//! A torus: the points at the distance `minor` from a ring of the radius `major`.
+//! A torus: the points at the distance `minor` from a ring of radius `major`.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,18 +10,18 @@ use crate::fem::geometry::{dot, minus, unit};
 use crate::scene::entry::{number, point, wrong};
 use crate::scene::schema::approach::Rule;
 
-/// An axis may lean by the rounding of its written components.
+/// Deviation of an axis that is rounding of its written components.
 const ALIGNED: f64 = 1e-9;
 
-/// A torus, a ring of round section.
+/// A torus, a ring of circular section.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct TorusSpec {
     /// The centre.
     pub centre: [f64; 3],
-    /// Direction of the axis, along the approach direction (the ring lies flat before the body) or perpendicular to it (the ring
-    /// stands upright). Of any length but zero.
+    /// Direction of the axis, along the approach direction (the ring lies flat in front of the body) or perpendicular to it (the ring
+    /// stands upright), of any length except zero.
     pub axis: [f64; 3],
     /// Radius of the ring in the middle of the tube.
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
@@ -65,12 +65,12 @@ impl ObstacleShape for TorusSpec {
     }
 }
 
-/// How a ring stands before the body.
+/// The position of a ring in front of the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stands {
     /// Its axis along the approach direction.
     Flat,
-    /// Its axis across.
+    /// Its axis perpendicular to the approach direction.
     Upright,
 }
 
@@ -86,25 +86,26 @@ struct Torus {
 }
 
 impl Torus {
-    /// Along the approach direction from the centre to where the outside faces the body over a place.
+    /// Distance along the approach direction from the centre to the outside that faces the body, over a place.
     fn height(&self, from_centre: [f64; 3]) -> Option<f64> {
         let over = dot(from_centre, self.approach);
         let across = minus(from_centre, self.approach.map(|part| over * part));
-        // The height of a circle over a place, or none beyond it.
+        // The height of a circle over a place, or `None` beyond it.
         let half = |radius: f64, at: f64| (at.abs() <= radius).then(|| ((radius - at) * (radius + at)).sqrt());
         match self.stands {
             Stands::Flat => half(self.minor, dot(across, across).sqrt() - self.major),
             Stands::Upright => {
                 let along = dot(across, self.axis);
                 let aside = minus(across, self.axis.map(|part| along * part));
-                // The section across the axis is a ring, whose outer circle faces the body.
+                // The section perpendicular to the axis is a ring; its outer circle faces the body.
                 half(self.minor, along).and_then(|tube| half(self.major + tube, dot(aside, aside).sqrt()))
             }
         }
         .map(|height| -height)
     }
 
-    /// Unit normal into the torus at the closest point that faces the body, and the distance along it; `None` where none does.
+    /// Unit normal into the torus at the closest point that faces the body, and the distance along it; `None` if no closest point faces
+    /// the body.
     fn closest(&self, from_centre: [f64; 3]) -> Result<Option<([f64; 3], f64)>, String> {
         let along = dot(from_centre, self.axis);
         let aside = minus(from_centre, self.axis.map(|part| along * part));
@@ -115,10 +116,11 @@ impl Torus {
         }
         let distance = to_ring - self.minor;
         if radius <= self.rounding && self.stands == Stands::Flat {
-            // On the axis the ring is equally close all around: straight on to where the planes through the closest points meet.
+            // On the axis the ring is equally close all around: go straight on to the point where the planes through the closest points
+            // meet.
             return Ok((along < -self.rounding).then(|| (self.approach, distance * to_ring / -along)));
         }
-        // On the axis of a ring that stands upright the closest point lies straight on.
+        // On the axis of an upright ring the closest point lies straight ahead.
         let outwards = if radius <= self.rounding { self.approach } else { aside.map(|part| part / radius) };
         let part = |axis: usize| (radius - self.major) / to_ring * outwards[axis] + along / to_ring * self.axis[axis];
         let normal = [0, 1, 2].map(|axis| -part(axis));
@@ -126,7 +128,7 @@ impl Torus {
         match (facing > 0.0, distance >= 0.0) {
             (true, _) => Ok(Some((normal, distance))),
             (false, true) => Ok(None),
-            // Level with the ring there is a closest point; rounding must not take it away.
+            // A node level with the ring has a closest point; rounding must not remove it.
             (false, false) if -facing * to_ring <= self.rounding => Ok(Some((normal, distance))),
             (false, false) => Err("lies deeper in the torus than the middle of its tube".into()),
         }

@@ -15,28 +15,28 @@ use crate::scene::files::Files;
 use crate::scene::schema::approach::{Approach, Rule};
 use crate::scene::schema::json::word;
 
-/// Bytes of memory for a byte of the file, about: 2.5 for a binary STL, the densest form.
+/// Approximate bytes of memory for a byte of the file: 2.5 for a binary STL, the densest form.
 const OF_FILE: f64 = 3.0;
 
 /// A closed surface of triangles from an STL file, binary or ASCII, or an OBJ file; flat triangles, never smoothed.
 ///
-/// Every edge must join two triangles. Which way a triangle faces is the order of its corners, counterclockwise seen from outside;
-/// if all run clockwise, all are turned.
+/// Every edge must join two triangles. The order of its corners gives the outside of a triangle: counterclockwise seen from outside; if
+/// all run clockwise, all are reversed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct SurfaceSpec {
-    /// The file, `.stl` or `.obj`, below the folder of the scene unless that is allowed to read outside; a relative name starts
-    /// there.
+    /// The file, `.stl` or `.obj`, inside the folder of the scene unless reading outside is allowed; a relative name starts in that
+    /// folder.
     pub file: String,
-    /// What the coordinates of the file are multiplied by, positive.
+    /// Factor of the coordinates of the file, positive.
     #[serde(default = "unchanged")]
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub scale: f64,
-    /// Where the origin of the file lies.
+    /// The position of the origin of the file.
     #[serde(default, skip_serializing_if = "is_origin")]
     pub origin: [f64; 3],
-    /// Where the body lies: `outside` of a solid, or `inside` of a hole and all around is the obstacle.
+    /// The side of the body: `outside` of a solid, or `inside` a hole, with the obstacle all around.
     #[serde(default, deserialize_with = "word", skip_serializing_if = "Side::is_outside")]
     pub side: Side,
 }
@@ -70,7 +70,7 @@ impl ObstacleShape for SurfaceSpec {
     }
 }
 
-/// A surface as an obstacle. A model of another gap shares it.
+/// A surface as an obstacle. Models with other gaps share it.
 #[derive(Clone, Debug)]
 struct Triangulated {
     surface: Arc<ClosedSurface>,
@@ -81,8 +81,8 @@ struct Triangulated {
 }
 
 impl Triangulated {
-    /// The way along the approach direction from a node to where it enters the obstacle: the first place ahead, or the last one behind
-    /// for a node in the obstacle; `None` if there is none.
+    /// The distance along the approach direction from a node to its entry into the obstacle: the first entry ahead, or the last one
+    /// behind for a node in the obstacle; `None` if no entry exists.
     fn entry(&self, node: [f64; 3]) -> Option<f64> {
         let (axis, sense) = self.approach.axis();
         let mut crossings: Vec<Crossing> = self.surface.crossings(axis, node);

@@ -1,4 +1,4 @@
-//! Rigid-body modes: which of them nothing resists, and their names.
+//! Rigid-body modes: those that nothing resists, and their names.
 
 mod unit;
 
@@ -12,19 +12,19 @@ use crate::fem::body::ElasticBody;
 use crate::qp::linear::dot;
 use unit::{NAMED, Sense, UnitMotions};
 
-/// A motion is held where the singular value that belongs to it exceeds this times the largest; exact geometry gives
-/// zero to rounding, 1e-16, and any support or normal that a scene means is far above.
+/// A motion is held if its singular value exceeds this times the largest. A free motion has zero up to rounding, 1e-16, and any intended
+/// support or normal gives a value far above.
 const HELD: f64 = 1e-10;
 
-/// The rigid-body modes of the bodies of a model, each body moving for itself.
+/// The rigid-body modes of the bodies of a model; each body moves independently.
 ///
-/// Amplitudes are the multiples of the unit motions, six for each body in turn.
+/// Amplitudes are multiples of the unit motions, six for each body in turn.
 #[derive(Clone, Debug)]
 pub(super) struct RigidBodyModes {
-    /// The elastic bodies, and behind them the pressed obstacles.
+    /// The elastic bodies, followed by the pressed obstacles.
     bodies: Vec<UnitMotions>,
     dimension: usize,
-    /// The obstacles that stand behind the bodies.
+    /// The obstacles that follow the bodies.
     obstacles: Vec<usize>,
 }
 
@@ -37,7 +37,7 @@ impl RigidBodyModes {
         }
     }
 
-    /// The same with those of the obstacles that a force presses: each moves along its approach direction.
+    /// The same with the pressed obstacles: each moves along its approach direction.
     pub fn of_parts(parts: &Parts) -> Self {
         let mut modes = Self::of(&parts.body);
         let size = parts.body.mesh().size();
@@ -47,7 +47,7 @@ impl RigidBodyModes {
         modes
     }
 
-    /// The places of those amplitudes whose motions cost no energy.
+    /// The indices of those amplitudes whose motions have no strain energy.
     fn modes(&self) -> Vec<usize> {
         let of_body = |(body, motions): (usize, &UnitMotions)| motions.modes.iter().map(move |mode| 6 * body + mode);
         self.bodies.iter().enumerate().flat_map(|entry| of_body(entry).collect::<Vec<_>>()).collect()
@@ -62,14 +62,14 @@ impl RigidBodyModes {
         self.bodies.iter().flat_map(of_body).collect()
     }
 
-    /// The component of each unit motion at a nodal dof: along an axis of the node's frame where it has one.
+    /// The component of each unit motion at a nodal dof: along an axis of the node's frame if it has one.
     fn at_dof(&self, parts: &Parts, dof: usize) -> Vec<f64> {
         let (nodes, node, axis) = (parts.body.mesh().nodes(), dof / self.dimension, dof % self.dimension);
         let direction = parts.dofs.frame(node).map_or_else(|| unit::along_axis(axis), |frame| frame.axes()[axis]);
         self.along(nodes, node, direction)
     }
 
-    /// The component of each unit motion along a contact row: how much it closes the row.
+    /// The component of each unit motion along a contact row, positive towards closing.
     fn in_row(&self, nodes: &[[f64; 3]], row: &ContactRow) -> Vec<f64> {
         let mut components = vec![0.0; 6 * self.bodies.len()];
         for (node, sign) in row.ends() {
@@ -84,7 +84,7 @@ impl RigidBodyModes {
         components
     }
 
-    /// The travel of each pressed obstacle in a motion: against its approach direction.
+    /// The travel of each pressed obstacle in a motion, against its approach direction.
     fn travels(&self, parts: &Parts, amplitudes: &[f64]) -> Vec<f64> {
         let first = self.bodies.len() - self.obstacles.len();
         let travel = |(place, &obstacle): (usize, &usize)| {
@@ -109,7 +109,8 @@ impl RigidBodyModes {
             if motion.kind < 3 {
                 return at(face.centre, unit::along_axis(motion.kind));
             }
-            // A rotation is how much farther the place one step along the next axis moves along the one behind it.
+            // A rotation is the difference along the second next axis between the motions of the centre and of a place one step along the
+            // next axis.
             let mut beside = face.centre;
             beside[one] += 1.0 / face.unit(motion);
             let [near, far] = [face.centre, beside].map(|place| at(place, unit::along_axis(two)));
@@ -121,7 +122,7 @@ impl RigidBodyModes {
     /// Refuses bodies with a rigid-body mode that neither supports nor contact rows resist.
     ///
     /// # Errors
-    /// [`Error::UnderHeld`] that names every such motion.
+    /// [`Error::UnderHeld`] with the names of all such motions.
     pub fn check_held(&self, parts: &Parts, rows: &[ContactRow]) -> Result<(), Error> {
         let free = self.free(parts, rows);
         let Some(first) = free.first() else { return Ok(()) };
@@ -135,7 +136,7 @@ impl RigidBodyModes {
         Err(Error::UnderHeld { mode: format!("{}: {}", names.join(", "), advice(rows)), direction })
     }
 
-    /// Returns `true` if the supports alone hold all bodies.
+    /// Returns `true` if the supports without contact hold all bodies.
     pub fn are_supported(&self, parts: &Parts) -> bool {
         self.free(parts, &[]).is_empty()
     }
@@ -151,7 +152,7 @@ impl RigidBodyModes {
         let of_faces = parts.rigid_faces.iter().flat_map(|face| self.prescribed(face));
         let mut resisted: Vec<Vec<f64>> = of_supports.chain(of_rows).chain(of_springs).chain(of_faces).collect();
         let (modes, amplitudes) = (self.modes(), 6 * self.bodies.len());
-        // A row for each motion at least, or the decomposition leaves out what they do not span.
+        // At least one row for each motion; otherwise the decomposition would omit part of the null space.
         resisted.resize(resisted.len().max(modes.len()), vec![0.0; amplitudes]);
         let matrix = DMatrix::from_fn(resisted.len(), modes.len(), |row, column| resisted[row][modes[column]]);
         let svd = matrix.svd(false, true);
@@ -163,7 +164,7 @@ impl RigidBodyModes {
             modes.iter().enumerate().for_each(|(column, &mode)| motion[mode] = right[(row, column)]);
             null.push(motion);
         }
-        // Rotate the basis towards the unit motions, then take what is left.
+        // Rotate the basis towards the unit motions, then add the rest.
         let mut basis: Vec<Vec<f64>> = Vec::new();
         for mode in modes {
             if null.iter().map(|motion| motion[mode].powi(2)).sum::<f64>() > 1.0 - NAMED {
@@ -188,7 +189,7 @@ impl RigidBodyModes {
         basis
     }
 
-    /// The name of the rigid-body mode next to a nodal motion (length `dim * n_nodes`), if every body moves rigidly.
+    /// The name of the rigid-body mode closest to a nodal motion (length `dim * n_nodes`), if every body moves rigidly.
     pub fn name_of(&self, nodes: &[[f64; 3]], motion: &[f64]) -> Option<String> {
         if !motion.iter().all(|value| value.is_finite()) {
             return None;
@@ -204,7 +205,7 @@ impl RigidBodyModes {
         (rest <= NAMED * whole && whole > 0.0).then(|| self.describe(&amplitudes, Sense::Told))
     }
 
-    /// The name of a motion, body by body where there are several.
+    /// The name of a motion, body by body if there are several.
     fn describe(&self, amplitudes: &[f64], sense: Sense) -> String {
         let whole = dot(amplitudes, amplitudes).sqrt();
         let mut names = Vec::new();
@@ -222,9 +223,8 @@ impl RigidBodyModes {
         names.join(" with ")
     }
 
-    /// The largest virtual work of the nodal `forces` (each of length `dim * n_nodes`) on the unit motions of the
-    /// bodies, relative to the sum of the magnitudes of all forces; those along motions that the bodies have not are
-    /// left out.
+    /// The largest virtual work of the nodal `forces` (each of length `dim * n_nodes`) on the unit motions of the bodies, relative to the
+    /// sum of the magnitudes of all forces; works on motions that a body does not have are left out.
     pub fn imbalance(&self, nodes: &[[f64; 3]], forces: &[&[f64]]) -> f64 {
         let (mut largest, mut magnitude) = (0.0_f64, 0.0);
         for body in &self.bodies {
@@ -247,7 +247,7 @@ impl RigidBodyModes {
     }
 }
 
-/// The same space of motions, its translations before what turns: orthonormal before and after.
+/// A basis of the same space of motions with translations before rotations: orthonormal before and after.
 fn translations_first(motions: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let amplitudes = motions.first().map_or(0, Vec::len);
     let turning = |row: usize, part: usize| if part % 6 < 3 { 0.0 } else { motions[row][part] };
@@ -256,11 +256,11 @@ fn translations_first(motions: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let Some(mix) = mix else { return motions.to_vec() };
     let part = |column: usize, part: usize| (0..motions.len()).map(|row| mix[(row, column)] * motions[row][part]).sum();
     let mixed = |column: usize| (0..amplitudes).map(|place| part(column, place)).collect();
-    // Singular values decrease: what turns least stands last.
+    // Singular values decrease: the motion with the least rotation comes last.
     (0..motions.len()).rev().map(mixed).collect()
 }
 
-/// What to do about a free motion.
+/// The advice for a free motion.
 pub(super) fn advice(rows: &[ContactRow]) -> &'static str {
     if rows.is_empty() { "add a support" } else { "a frictionless obstacle does not hold it, add a guide" }
 }

@@ -9,16 +9,16 @@ use crate::fem::mesh::extent;
 use crate::qp::linear::dot;
 use crate::scene::entry::point;
 
-/// A part of a motion below this, relative to the whole, does not enter its name.
+/// A part of a motion below this, relative to the whole, is left out of its name.
 pub(super) const NAMED: f64 = 1e-6;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Translations along x, y, z, and rotations about axes through the centre along x, y, z, as multiples of unit motions:
-/// a rotation is measured by the displacement that it gives at the distance `size` from the axis.
+/// Translations along x, y, z, and rotations about axes through the centre along x, y, z, as multiples of unit motions: a rotation is
+/// measured by the displacement at the distance `size` from the axis.
 pub(super) type Amplitudes = [f64; 6];
 
-/// Whether the name of a motion gives its sense.
+/// The form of the name of a motion: with or without its sense.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Sense {
     Told,
@@ -34,7 +34,7 @@ pub(super) struct UnitMotions {
     centre: [f64; 3],
     size: f64,
     dimension: usize,
-    /// Which of the six unit motions cost no energy: one in a bar and in a body of revolution, three in the plane.
+    /// The unit motions without strain energy: one in a bar and in a body of revolution, three in the plane, all six in space.
     pub modes: &'static [usize],
 }
 
@@ -58,7 +58,7 @@ impl UnitMotions {
         }
     }
 
-    /// That of a rigid obstacle, by its number, which moves along its approach direction.
+    /// The unit motions of a rigid obstacle, given by its number; it moves along its approach direction.
     pub fn of_obstacle(index: usize, approach: [f64; 3], size: f64) -> Self {
         let modes: &[usize] = match approach.map(|component| component != 0.0) {
             [true, ..] => &[0],
@@ -81,7 +81,7 @@ impl UnitMotions {
         }
     }
 
-    /// The component along `direction` of each unit motion at a point; motions that the body has not give 0.
+    /// The component along `direction` of each unit motion at a point; zero for motions that the body does not have.
     pub fn along(&self, point: [f64; 3], direction: [f64; 3]) -> Amplitudes {
         let mut components = [0.0; 6];
         for &mode in self.modes {
@@ -90,7 +90,7 @@ impl UnitMotions {
         components
     }
 
-    /// The amplitudes next to a motion of `nodes` (`dim` entries each) by least squares, and the length of what is left.
+    /// The amplitudes closest to a motion of `nodes` (`dim` entries each) by least squares, and the length of the rest.
     pub fn fit(&self, nodes: &[[f64; 3]], motion: &[f64]) -> Option<(Amplitudes, f64)> {
         let unit = |axis: usize| [0, 1, 2].map(|other| if other == axis { 1.0 } else { 0.0 });
         let components: Vec<Amplitudes> =
@@ -115,7 +115,7 @@ impl UnitMotions {
             };
         }
         let axis = along_one_axis(turn).map_or_else(|| direction(&turn), |axis| AXES[axis].into());
-        // Where translation and rotation cancel, but for what runs along the axis.
+        // The pole: there translation and rotation cancel, except the part along the axis.
         let [u, v, w] = [
             (turn[1] * shift[2] - turn[2] * shift[1]) / (angle * angle),
             (turn[2] * shift[0] - turn[0] * shift[2]) / (angle * angle),
@@ -137,22 +137,22 @@ pub(super) fn along_axis(axis: usize) -> [f64; 3] {
     [0, 1, 2].map(|other| if other == axis { 1.0 } else { 0.0 })
 }
 
-/// The axis along which a vector lies, but for rounding.
+/// The axis of a vector along one axis, up to rounding.
 fn along_one_axis(vector: [f64; 3]) -> Option<usize> {
     let length = dot(&vector, &vector).sqrt();
     (0..3).find(|&axis| (0..3).all(|other| other == axis || vector[other].abs() <= NAMED * length))
 }
 
-/// A direction in words, of length 1.
+/// A direction of length 1 in words.
 fn direction(vector: &[f64]) -> String {
     let length = dot(vector, vector).sqrt();
-    // Adding zero takes the sign off a part that is rounded to nothing.
+    // Adding zero removes the sign of a component that is rounded to zero.
     let three_digits = |part: &f64| (part / length * 1e3).round() / 1e3 + 0.0;
     let components: Vec<String> = vector.iter().map(|part| format!("{:.3}", three_digits(part))).collect();
     format!("({})", components.join(", "))
 }
 
-/// Rounded to six significant digits: a pole is a computed place.
+/// Rounded to six significant digits: the position of a pole is computed.
 fn six_digits(value: f64) -> f64 {
     format!("{value:.5e}").parse().unwrap_or(value)
 }

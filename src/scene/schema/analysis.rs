@@ -1,4 +1,4 @@
-//! What is to be found out about a scene: its equilibrium, or, where it says so, its motion.
+//! The analysis of a scene: its equilibrium, or, if requested, its motion.
 
 use serde::{Deserialize, Serialize};
 
@@ -19,67 +19,64 @@ pub enum AnalysisSpec {
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct DynamicSpec {
-    /// How long, positive, in time.
+    /// Duration, positive, in time.
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub duration: f64,
-    /// Time step, positive. Where it is left out, `courant` chooses it.
+    /// Time step, positive. If it is left out, `courant` determines it.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub step: Option<f64>,
-    /// Time step over the time in which a pressure wave crosses the shortest distance between two nodes of an element,
-    /// 0.5 where it is left out; with `central-difference` the step over the largest stable one, at most 1 and 0.9
-    /// where it is left out.
+    /// Time step over the time in which a pressure wave crosses the shortest distance between two nodes of an element, 0.5 if left out.
+    /// With `central-difference`: the step over the largest stable step, at most 1, and 0.9 if left out.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub courant: Option<f64>,
     /// The scheme.
     #[serde(default, deserialize_with = "word")]
     pub scheme: SchemeSpec,
-    /// The form of the mass; `redistributed` for `midpoint`, `lumped` for `central-difference`, `consistent` for the
-    /// others where it is left out.
+    /// The form of the mass. If left out: `redistributed` for `midpoint`, `lumped` for `central-difference`, `consistent` for the others.
     #[serde(default, deserialize_with = "given_word", skip_serializing_if = "Option::is_none")]
     pub mass: Option<MassSpec>,
-    /// Damping of `hht`: from -1/3 to 0, -0.1 where it is left out.
+    /// Damping of `hht`: from -1/3 to 0, -0.1 if left out.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "cli", schemars(extend("minimum" = -1.0 / 3.0, "maximum" = 0)))]
     pub alpha: Option<f64>,
-    /// Stiffness of `penalty` in multiples of the local stiffness of a step, positive; 10 where it is left out.
+    /// Stiffness of `penalty` in multiples of the local stiffness of a step, positive; 10 if left out.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub penalty: Option<f64>,
-    /// Penetration at which the loop of `penalty-loop` ends, as the norm over all closed rows, relative to the largest
-    /// displacement of the body; positive and at most 0.1, 1e-6 where it is left out.
+    /// Penetration at which the loop of `penalty-loop` ends, as the norm over all closed rows, relative to the largest displacement of
+    /// the body; positive and at most 0.1, 1e-6 if left out.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0, "maximum" = 0.1)))]
     pub threshold: Option<f64>,
-    /// Velocity of a node after over before its blow in `central-difference`, from 0 to 1; 0 where it is left out.
-    /// Above 0 the energy of a mesh can grow, the less the smaller the step.
+    /// Velocity of a node after its impact over that before, in `central-difference`, from 0 to 1; 0 if left out. Above 0 the energy of a
+    /// mesh can grow; smaller steps reduce the growth.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "cli", schemars(extend("minimum" = 0, "maximum" = 1)))]
     pub restitution: Option<f64>,
     /// Rayleigh damping.
     #[serde(default, deserialize_with = "object")]
     pub damping: DampingSpec,
-    /// Initial displacements and velocities; what is left out is zero, and of two entries for one body the later one
-    /// counts.
+    /// Initial displacements and velocities; zero if left out. Of two entries for one body the later one counts.
     #[serde(default, deserialize_with = "objects")]
     pub initial: Vec<InitialSpec>,
-    /// What to do with nodes that start inside an obstacle.
+    /// The treatment of nodes that start inside an obstacle.
     #[serde(default, deserialize_with = "word")]
     pub initial_penetration: PenetrationSpec,
-    /// How the loads of the scene change with time; a load that is not mentioned is constant.
+    /// The change of the loads of the scene with time; a load that is not mentioned is constant.
     #[serde(default, deserialize_with = "objects")]
     pub loads_in_time: Vec<LoadInTimeSpec>,
-    /// States of the body that are written and shown, evenly over the duration, beside the first; at most 10000.
+    /// States of the body that are written and shown, evenly over the duration, besides the first; at most 10000.
     #[serde(default = "frames")]
     #[cfg_attr(feature = "cli", schemars(extend("minimum" = 1, "maximum" = 10000)))]
     pub frames: usize,
-    /// Points whose time, displacement, velocity and contact force are written at every step, into `watch.csv` of `--out`.
+    /// Points with output at every step: time, displacement, velocity and contact force, in `watch.csv` of `--out`.
     #[serde(default, deserialize_with = "choices", skip_serializing_if = "Vec::is_empty")]
     pub watch: Vec<WatchSpec>,
 }
 
-/// A point to be watched.
+/// A point with output at every step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
@@ -99,11 +96,11 @@ fn frames() -> usize {
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum MassSpec {
-    /// That of the shape functions.
+    /// From the shape functions.
     Consistent,
     /// Diagonal.
     Lumped,
-    /// That of the shape functions without contact nodes; total mass and centre are kept.
+    /// From the shape functions, without mass at contact nodes; total mass and centre of mass are preserved.
     Redistributed,
 }
 
@@ -125,7 +122,7 @@ pub struct DampingSpec {
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct InitialSpec {
-    /// Name of a further body; all bodies where it is left out.
+    /// Name of a further body; all bodies if left out.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     pub body: Option<String>,
     /// Initial displacement.
@@ -143,29 +140,29 @@ pub struct InitialSpec {
 pub struct FieldSpec {
     /// Value at the origin, one entry for each coordinate.
     pub value: Vec<f64>,
-    /// Rows of the gradient, one for each component of the field with one entry for each coordinate; zero where left out.
+    /// Rows of the gradient, one row for each component of the field, with one entry for each coordinate; zero if left out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub gradient: Vec<Vec<f64>>,
 }
 
-/// What to do with nodes that start inside an obstacle.
+/// The treatment of nodes that start inside an obstacle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum PenetrationSpec {
-    /// An error that says where and by how much.
+    /// An error with the node and the depth.
     #[default]
     Refuse,
-    /// They are moved onto its surface before the start.
+    /// The nodes are moved onto the surface before the start.
     Project,
 }
 
-/// How one load changes with time.
+/// The change of one load with time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct LoadInTimeSpec {
-    /// Which entry of `loads`, from 0.
+    /// Number of the entry of `loads`, from 0.
     pub load: usize,
     /// Its factor over time.
     #[serde(deserialize_with = "choice")]
@@ -195,7 +192,7 @@ pub struct FactorTableSpec {
     /// Times, at least one, increasing.
     #[cfg_attr(feature = "cli", schemars(extend("minItems" = 1)))]
     pub times: Vec<f64>,
-    /// The factor at each.
+    /// The factor at each time.
     #[cfg_attr(feature = "cli", schemars(extend("minItems" = 1)))]
     pub factors: Vec<f64>,
 }
@@ -218,10 +215,10 @@ pub struct SineSpec {
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct IntervalSpec {
-    /// Its beginning.
+    /// Start of the interval.
     #[serde(default)]
     pub start: f64,
-    /// Its end, later.
+    /// End of the interval, later than its start.
     pub end: f64,
 }
 

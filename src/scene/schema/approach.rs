@@ -1,4 +1,4 @@
-//! From which side an obstacle comes, and how its rows are made.
+//! The side from which an obstacle comes, and the rule for its rows.
 
 use serde::{Deserialize, Serialize};
 
@@ -39,7 +39,7 @@ impl Approach {
         }
     }
 
-    /// As it is written.
+    /// Its name in a scene.
     pub fn name(self) -> &'static str {
         match self {
             Approach::PlusX => "+x",
@@ -52,7 +52,7 @@ impl Approach {
     }
 }
 
-/// How a candidate node's contact row is made.
+/// The rule for the contact row of a candidate node.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]

@@ -22,17 +22,17 @@ pub struct MaterialSpec {
     /// Elasticity with three planes of symmetry, instead of `young` and `poisson`.
     #[serde(default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
     pub orthotropic: Option<OrthotropicSpec>,
-    /// Thermal expansion in all directions, in strain per degree; a `temperature` asks for it.
+    /// Thermal expansion in all directions, in strain per degree; needed for a `temperature`.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     pub expansion: Option<f64>,
-    /// Density, positive, in mass per volume; a dynamic analysis, gravity and centrifugal forces ask for it.
+    /// Density, positive, in mass per volume; needed for a dynamic analysis, gravity and centrifugal forces.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub density: Option<f64>,
 }
 
-/// Orthotropic elasticity, along the axes 1, 2, 3 of the material: x, y, z unless they are turned; about an axis the radius, y and the
-/// hoop. A bar lies along axis 1.
+/// Orthotropic elasticity, along the axes 1, 2, 3 of the material. These are x, y, z unless they are rotated; in an axisymmetric model
+/// the radius, y and the hoop direction. A bar lies along axis 1.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -49,17 +49,17 @@ pub struct OrthotropicSpec {
     /// Thermal expansion along axes 1, 2, 3, in strain per degree.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     pub expansion: Option<[f64; 3]>,
-    /// The angle from x to axis 1, counterclockwise, in degrees; in the plane and about an axis.
+    /// The angle from x to axis 1, counterclockwise, in degrees; only in plane and axisymmetric models.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     pub angle: Option<f64>,
-    /// In space a vector along axis 1, and a second one: axis 2 lies in the plane of both, at right angles to axis 1.
+    /// In space a vector along axis 1, and a second one: axis 2 lies in the plane of both vectors, at right angles to axis 1.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     pub axes: Option<[Vec<f64>; 2]>,
 }
 
-/// The material of a part of a body: of the elements of a group, of those whose centroid lies in a box, or of those in both.
+/// The material of a part of a body: of the elements of a group, of the elements with the centroid in a box, or of the elements in both.
 ///
-/// Of several parts that hold an element the last one counts. The elements are chosen on every mesh anew.
+/// If several parts contain an element, the last one counts. The elements are chosen again on every mesh.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -75,8 +75,8 @@ pub struct MaterialPartSpec {
     pub material: MaterialSpec,
 }
 
-/// How much warmer a body is than without stress, or the part of it in a group, in a box, or in both: `value` plus the gradient times the
-/// place. Of several entries that hold an element the last one counts; elements in none are as warm as without stress.
+/// The temperature of a body above the stress-free one, or of its part in a group, in a box, or in both: `value` plus the gradient times
+/// the position. If several entries contain an element, the last one counts; elements in no entry are stress-free.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -87,17 +87,18 @@ pub struct TemperatureSpec {
     /// A box along the coordinate axes.
     #[serde(rename = "box", default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
     pub cuboid: Option<PartBoxSpec>,
-    /// The difference at the origin, in degrees.
+    /// The temperature difference at the origin, in degrees.
     pub value: f64,
-    /// Its gradient, in degrees per length; zero where it is left out.
+    /// Its gradient, in degrees per length; zero if left out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub gradient: Vec<f64>,
 }
 
-/// A stress that is there without strain, in a body or in the part of it in a group, in a box, or in both, in force per area; tension is
-/// positive. Of several entries that hold an element the last one counts.
+/// A stress that acts without strain, in a body or in its part in a group, in a box, or in both, in force per area; tension is positive.
+/// If several entries contain an element, the last one counts.
 ///
-/// A bar has xx, plane stress xx, yy, xy, plane strain zz too, an axisymmetric body zz as its hoop stress, space all six.
+/// Allowed components: xx in a bar; xx, yy, xy in plane stress; also zz in plane strain; also zz, the hoop stress, in an axisymmetric
+/// body; all six in space.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -114,7 +115,7 @@ pub struct InitialStressSpec {
     /// Normal stress along y.
     #[serde(default)]
     pub yy: f64,
-    /// Normal stress along z; about an axis the hoop stress.
+    /// Normal stress along z; in an axisymmetric model the hoop stress.
     #[serde(default)]
     pub zz: f64,
     /// Shear stress between x and y.
@@ -128,7 +129,7 @@ pub struct InitialStressSpec {
     pub zx: f64,
 }
 
-/// An elastic body beside the first: of the same model, thickness and element.
+/// An elastic body besides the first, with the same model, thickness and element.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
@@ -139,16 +140,16 @@ pub struct FurtherBodySpec {
     /// The body.
     #[serde(deserialize_with = "choice")]
     pub body: BodySpec,
-    /// Its material; that of all that `materials` leave over.
+    /// The material of all elements outside `materials`.
     #[serde(default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
     pub material: Option<MaterialSpec>,
     /// The materials of its parts.
     #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
     pub materials: Vec<MaterialPartSpec>,
-    /// How much warmer it is than without stress.
+    /// Its temperatures above the stress-free one.
     #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
     pub temperature: Vec<TemperatureSpec>,
-    /// Stresses that are there without strain.
+    /// Stresses that act without strain.
     #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
     pub initial_stress: Vec<InitialStressSpec>,
 }

@@ -1,4 +1,4 @@
-//! Cells of a mesh: their element; the half of a body that they fill.
+//! Cells of a mesh: their element, and the half of a body that they fill.
 
 use serde::{Deserialize, Serialize};
 
@@ -60,7 +60,7 @@ impl ElementSpec {
 }
 
 impl SolidElementSpec {
-    /// Returns `true` for the element of a scene that names none.
+    /// Returns `true` for the default element of a scene.
     pub(in crate::scene) fn is_default(&self) -> bool {
         *self == Self::default()
     }
@@ -80,7 +80,7 @@ impl HalfSpec {
         *self == HalfSpec::Lower
     }
 
-    /// The half of a body of which `lower` is the lower one, the cut lying where the coordinate `axis` is `centre`.
+    /// This half of a body, from its lower half `lower`; the cut lies where the coordinate `axis` is `centre`.
     pub(in crate::scene) fn of(self, lower: Mesh, axis: usize, centre: f64) -> Mesh {
         match self {
             HalfSpec::Lower => lower,

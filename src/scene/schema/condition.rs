@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::json::{choice, given, given_object, number};
 use super::profile::ProfileSpec;
 
-/// Where on the body.
+/// The place on the body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
@@ -16,15 +16,15 @@ pub enum Place {
     Point(Vec<f64>),
 }
 
-/// A support: a direction that is left out is free, a number is the prescribed displacement.
+/// A support: a direction that is left out is free; a number is the prescribed displacement.
 ///
-/// A `normal` makes it a roller on an inclined plane: the component of the displacement along it is prescribed, those
-/// along the plane are free. About an axis the plane is a cone.
+/// A `normal` makes it a roller on an inclined plane: the component of the displacement along it is prescribed, the components along the
+/// plane are free. In an axisymmetric model the plane is a cone.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct SupportSpec {
-    /// Where.
+    /// The place.
     #[serde(deserialize_with = "choice")]
     pub on: Place,
     /// Prescribed displacement along x.
@@ -36,13 +36,13 @@ pub struct SupportSpec {
     /// Prescribed displacement along z.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub z: Option<f64>,
-    /// Normal of an inclined plane, of either sense and of any length but zero.
+    /// Normal of an inclined plane, of either sense and of any length except zero.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     pub normal: Option<Vec<f64>>,
-    /// Prescribed displacement along the normal, in length; 0 where it is left out.
+    /// Prescribed displacement along the normal, in length; 0 if left out.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub value: Option<f64>,
-    /// A factor of all these displacements that changes along a direction.
+    /// A factor for all these displacements that changes along a direction.
     #[serde(default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
     pub profile: Option<ProfileSpec>,
 }

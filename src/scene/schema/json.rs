@@ -1,4 +1,4 @@
-//! What JSON a field accepts: what serde would take beside it is refused.
+//! The JSON values that a field accepts; further values that serde would accept are refused.
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -10,7 +10,7 @@ use serde::{Deserialize, Deserializer};
 /// The format of scenes that this program reads.
 const FORMAT: u32 = 1;
 
-/// Accepts an object where a struct is expected, and nothing else: serde itself would take an array for it too.
+/// Accepts only an object for a struct; serde itself would also accept an array.
 pub(in crate::scene) fn object<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<T, D::Error> {
     struct OfObject<T>(PhantomData<T>);
     impl<'de, T: Deserialize<'de>> Visitor<'de> for OfObject<T> {
@@ -25,7 +25,7 @@ pub(in crate::scene) fn object<'de, D: Deserializer<'de>, T: Deserialize<'de>>(d
     deserializer.deserialize_map(OfObject(PhantomData))
 }
 
-/// Accepts an object with a single key that chooses what its value is: the parser itself has no words for another form.
+/// Accepts an object with a single key that chooses the kind of its value: the parser itself has no message for another form.
 pub(in crate::scene) fn choice<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<T, D::Error> {
     struct OfSingleKey<T>(PhantomData<T>);
     impl<'de, T: Deserialize<'de>> Visitor<'de> for OfSingleKey<T> {
@@ -58,7 +58,7 @@ pub(in crate::scene) fn choices<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
     Ok(items.into_iter().map(|OneChoice(item)| item).collect())
 }
 
-/// Accepts a word out of a list, and no other JSON value.
+/// Accepts a word from a list, and no other JSON value.
 pub(in crate::scene) fn word<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<T, D::Error> {
     struct OfWord<T>(PhantomData<T>);
     impl<'de, T: Deserialize<'de>> Visitor<'de> for OfWord<T> {
@@ -114,7 +114,7 @@ pub(in crate::scene) fn objects<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
     deserializer.deserialize_seq(OfObjects(PhantomData))
 }
 
-/// Accepts a number, and no `null`: some writers put `null` for a number that they could not compute.
+/// Accepts a number, but not `null`: some programs write `null` for a number that they could not compute.
 pub(in crate::scene) fn number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
     match Option::<f64>::deserialize(deserializer)? {
         Some(value) => Ok(Some(value)),
@@ -132,14 +132,14 @@ pub(in crate::scene) fn format<'de, D: Deserializer<'de>>(deserializer: D) -> Re
     }
 }
 
-/// Accepts a value, and no `null`.
+/// Accepts a value, but not `null`.
 pub(in crate::scene) fn given<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
     deserializer: D,
 ) -> Result<Option<T>, D::Error> {
     T::deserialize(deserializer).map(Some)
 }
 
-/// Accepts an object, and no `null`.
+/// Accepts an object, but not `null`.
 pub(in crate::scene) fn given_object<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
     deserializer: D,
 ) -> Result<Option<T>, D::Error> {

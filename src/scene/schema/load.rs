@@ -20,7 +20,7 @@ pub enum LoadSpec {
     Moment(#[serde(deserialize_with = "object")] MomentSpec),
     /// A constant body force, in force per volume.
     BodyForce(Vec<f64>),
-    /// The acceleration of gravity, in length per time squared: a body force of density times it. Needs a density.
+    /// The acceleration of gravity, in length per time squared: a body force of density times acceleration. Needs a density.
     Gravity(Vec<f64>),
     /// The centrifugal force of a rotation. Needs a density.
     Centrifugal(#[serde(deserialize_with = "object")] CentrifugalSpec),
@@ -42,7 +42,7 @@ pub struct TractionSpec {
     pub boundary: String,
     /// The traction, in force per area.
     pub value: Vec<f64>,
-    /// A factor of it that changes along a direction.
+    /// A factor for the traction that changes along a direction.
     #[serde(default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
     pub profile: Option<ProfileSpec>,
 }
@@ -54,9 +54,9 @@ pub struct TractionSpec {
 pub struct PressureSpec {
     /// The boundary.
     pub boundary: String,
-    /// The pressure, in force per area; positive pushes on the body.
+    /// The pressure, in force per area; a positive pressure pushes on the body.
     pub value: f64,
-    /// A factor of it that changes along a direction.
+    /// A factor for the pressure that changes along a direction.
     #[serde(default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
     pub profile: Option<ProfileSpec>,
 }
@@ -66,27 +66,28 @@ pub struct PressureSpec {
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ForceSpec {
-    /// The point; there must be a node.
+    /// The point; a node must lie there.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     pub at: Option<Vec<f64>>,
     /// The boundary, instead of a point.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     pub boundary: Option<String>,
-    /// The force on the whole thickness, or on the full circle of a body of revolution, where its radial component is summed up.
+    /// The force on the whole thickness, or on the full circle of a body of revolution; its radial component is summed around the circle.
     pub value: Vec<f64>,
 }
 
-/// A moment on a boundary: a traction that grows with the distance from the centre of the boundary, at right angles to the way from
-/// there and to an axis; across a flat end that of pure bending. Its force is zero, so that its moment is the same about every point.
+/// A moment on a boundary: a traction proportional to the distance from the centre of the boundary, at right angles to the vector from
+/// there and to an axis; on a flat end it is the traction of pure bending. Its force is zero, so that its moment is the same about every
+/// point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct MomentSpec {
-    /// The boundary; needed.
+    /// The boundary; required.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "cli", schemars(required))]
     pub boundary: Option<String>,
-    /// Refused: a node of a solid has no rotation, and carries no moment.
+    /// Refused: a node of a solid has no rotation, and cannot carry a moment.
     #[cfg_attr(feature = "cli", schemars(skip))]
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     pub at: Option<Vec<f64>>,
@@ -95,19 +96,19 @@ pub struct MomentSpec {
     pub value: Vec<f64>,
 }
 
-/// The centrifugal force of a rotation: density times the square of omega times the way from the axis.
+/// The centrifugal force of a rotation: density times the square of omega times the vector from the axis.
 ///
-/// In the plane the axis is at right angles to it, about an axis it is that one.
+/// In a plane model the axis is normal to the plane; in an axisymmetric model it is the axis of revolution.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct CentrifugalSpec {
     /// The angular velocity, in radians per time.
     pub omega: f64,
-    /// The direction of the axis, of any length but zero; in space alone, and needed there.
+    /// The direction of the axis, of any length except zero; only in space, and required there.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     pub axis: Option<Vec<f64>>,
-    /// A point on the axis, the origin where it is left out; not in an axisymmetric model.
+    /// A point on the axis; the origin if left out; not in an axisymmetric model.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     pub point: Option<Vec<f64>>,
 }

@@ -68,16 +68,16 @@ pub struct Scene {
     /// The elastic body.
     #[serde(deserialize_with = "choice")]
     pub body: BodySpec,
-    /// Its material; that of all that `materials` leave over.
+    /// The material of the body, except of the elements that `materials` name.
     #[serde(default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
     pub material: Option<MaterialSpec>,
     /// The materials of its parts.
     #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
     pub materials: Vec<MaterialPartSpec>,
-    /// How much warmer it is than without stress.
+    /// Temperature above that of the body without stress.
     #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
     pub temperature: Vec<TemperatureSpec>,
-    /// Stresses that are there without strain.
+    /// Stresses at zero strain.
     #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
     pub initial_stress: Vec<InitialStressSpec>,
     /// Further elastic bodies, that only contact joins to the first and to each other.

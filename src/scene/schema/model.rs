@@ -2,26 +2,26 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The space of a model, and what happens in the directions that it leaves out.
+/// The space of a model, and the assumption for the directions that it leaves out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum ModelSpec {
-    /// A bar along x, free across.
+    /// A bar along x; no stress across it.
     Bar,
     /// No strain across the plane: a long body.
     #[default]
     PlaneStrain,
     /// No stress across the plane: a thin body.
     PlaneStress,
-    /// A body of revolution about the y axis, x being the radius; forces are those of the full circle.
+    /// A body of revolution about the y axis; x is the radius; forces are those of the full circle.
     Axisymmetric,
     /// Three dimensions.
     Space,
 }
 
 impl ModelSpec {
-    /// As it is written.
+    /// Its name in a scene.
     pub fn name(self) -> &'static str {
         match self {
             ModelSpec::Bar => "bar",
@@ -32,7 +32,7 @@ impl ModelSpec {
         }
     }
 
-    /// Coordinates of a point: 1 in a bar, 2 in the plane and about an axis, 3 in space.
+    /// Coordinates of a point: 1 in a bar, 2 in plane and axisymmetric models, 3 in space.
     pub fn dimension(self) -> usize {
         match self {
             ModelSpec::Bar => 1,

@@ -11,19 +11,20 @@ use crate::scene::obstacle::ShapeSpec;
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ObstacleSpec {
-    /// The boundary whose nodes are the candidates.
+    /// The boundary that contains the candidate nodes.
     pub boundary: String,
     /// The direction from the body to the obstacle.
     #[serde(deserialize_with = "word")]
     pub approach: Approach,
-    /// How a node's contact row is made.
+    /// The rule for the contact row of a node.
     #[serde(default, deserialize_with = "word")]
     pub rule: Rule,
-    /// Shift of this obstacle along its approach direction, besides that of the whole scene; negative moves it towards the body.
+    /// Shift of this obstacle along its approach direction, in addition to that of the whole scene; a negative shift moves it towards the
+    /// body.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub gap: Option<f64>,
-    /// The force, positive, that presses the obstacle against its approach direction, along which alone it moves: in force, on a body
-    /// of revolution that of the full circle. Its travel is found.
+    /// The force, positive, that presses the obstacle against its approach direction; the obstacle moves only along this direction. In
+    /// force; for a body of revolution that of the full circle. The travel of the obstacle is computed.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "cli", schemars(extend("exclusiveMinimum" = 0)))]
     pub force: Option<f64>,

@@ -4,18 +4,18 @@ use serde::{Deserialize, Serialize};
 
 use super::json::{given, given_object};
 
-/// A part of a boundary: all facets of it whose centroids lie in the box and in the sphere, and whose outward normals lie around
-/// the direction. What is left out asks for nothing.
+/// A part of a boundary: all its facets with the centroid in the box and in the sphere, and with the outward normal around the direction.
+/// A condition that is left out is always met.
 ///
-/// The facets are chosen on every mesh anew: a part that ends within a facet changes with the mesh.
+/// The facets are chosen again on every mesh: a part that ends within a facet changes with the mesh.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct PartSpec {
-    /// Its name: a boundary for supports, loads, obstacles and the parts behind it.
+    /// Its name: a boundary for supports, loads, obstacles and later parts.
     #[cfg_attr(feature = "cli", schemars(extend("minLength" = 1)))]
     pub name: String,
-    /// The boundary, or the further body whose whole surface is meant; the whole surface of the first body where it is left out.
+    /// The boundary, or a further body to choose its whole surface; the whole surface of the first body if left out.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     pub of: Option<String>,
     /// A box along the coordinate axes.
@@ -52,14 +52,14 @@ pub struct PartSphereSpec {
     pub radius: f64,
 }
 
-/// Directions around one.
+/// Directions around a given one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct PartNormalSpec {
-    /// The direction in their middle, of any length but zero.
+    /// The direction in their middle, of any length except zero.
     pub direction: Vec<f64>,
-    /// The largest angle to it, in degrees, from 0 to 180.
+    /// The largest angle to this direction, in degrees, from 0 to 180.
     #[cfg_attr(feature = "cli", schemars(extend("minimum" = 0, "maximum" = 180)))]
     pub within: f64,
 }

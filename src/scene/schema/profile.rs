@@ -7,12 +7,12 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ProfileSpec {
-    /// The direction, of any length but zero.
+    /// The direction, of any length except zero.
     pub along: Vec<f64>,
-    /// Places along it, at least one, increasing: lengths from the plane through the origin at right angles to it.
+    /// Places along it, at least one, increasing: distances from the plane through the origin normal to the direction.
     #[cfg_attr(feature = "cli", schemars(extend("minItems" = 1)))]
     pub places: Vec<f64>,
-    /// The factor at each.
+    /// The factor at each place.
     #[cfg_attr(feature = "cli", schemars(extend("minItems" = 1)))]
     pub factors: Vec<f64>,
 }

@@ -4,15 +4,15 @@ use serde::{Deserialize, Serialize};
 
 use super::json::{given, given_object, number};
 
-/// A boundary that moves as a rigid plate: its centre by a displacement, and turned about it. What is not prescribed follows the force
-/// and the moment.
+/// A boundary that moves as a rigid plate: a displacement of its centre and a rotation about it. Components that are not prescribed
+/// follow from the force and the moment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RigidFaceSpec {
     /// The boundary.
     pub boundary: String,
-    /// The centre, about which it turns and at which the force acts; that of its area where it is left out.
+    /// The centre of rotation, at which the force acts; the centroid of the boundary's area if left out.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     pub centre: Option<Vec<f64>>,
     /// Prescribed displacement of the centre along x.
@@ -27,15 +27,15 @@ pub struct RigidFaceSpec {
     /// Prescribed rotations about the centre.
     #[serde(default, deserialize_with = "given_object", skip_serializing_if = "Option::is_none")]
     pub rotation: Option<RotationSpec>,
-    /// The force on it; zero where it is left out.
+    /// The force on it; zero if left out.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     pub force: Option<Vec<f64>>,
-    /// The moment on it about the centre: about z in the plane, three components in space; zero where it is left out.
+    /// The moment on it about the centre: about z in the plane, three components in space; zero if left out.
     #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     pub moment: Option<Vec<f64>>,
 }
 
-/// Prescribed rotations, in radians, small; one that is left out is free.
+/// Prescribed rotations, in radians, small; a rotation that is left out is free.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]

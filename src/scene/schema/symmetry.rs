@@ -2,21 +2,21 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A plane of symmetry, by the axis across it: where the body ends flat, at zero if it does there.
+/// A plane of symmetry, given by the axis normal to it. It lies at the flat end of the body, at zero if the body has a flat end there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum SymmetryPlane {
-    /// Across x.
+    /// Normal to x.
     X,
-    /// Across y.
+    /// Normal to y.
     Y,
-    /// Across z.
+    /// Normal to z.
     Z,
 }
 
 impl SymmetryPlane {
-    /// The axis across the plane, 0 to 2.
+    /// The axis normal to the plane, 0 to 2.
     pub fn axis(self) -> usize {
         match self {
             SymmetryPlane::X => 0,
@@ -25,7 +25,7 @@ impl SymmetryPlane {
         }
     }
 
-    /// As it is written.
+    /// Its name in a scene.
     pub fn name(self) -> &'static str {
         ["x", "y", "z"][self.axis()]
     }

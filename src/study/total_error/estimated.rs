@@ -1,4 +1,4 @@
-//! The search by an estimate: where nothing is guaranteed, the recovered stress tells how far the mesh is from the continuum.
+//! The search with an estimate, if no guarantee exists: the recovered stress gives the distance of the mesh from the continuum.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -15,19 +15,19 @@ use crate::scene::{Answer, Model, Scene};
 use crate::solution::Solution;
 use crate::study::Status;
 
-/// The share of the total error that the algebra may take: the errors are nearly at right angles, so that it adds half a hundredth.
+/// The share of the total error allowed for the algebraic error: the errors are nearly orthogonal, so that it adds half a hundredth.
 const OF_ALGEBRA: f64 = 0.1;
 
-/// A mesh of so many times the unknowns takes so many times the seconds to this power.
+/// The seconds of a mesh grow with this power of its unknowns.
 const PER_UNKNOWN: f64 = 1.3;
 
-/// Unknowns of a bisected mesh over those of the one before.
+/// Unknowns of a bisected mesh over those of the previous one.
 const BISECTED: f64 = 2.0;
 
-/// Exponents of the cell size that an error is believed to follow: that of a strong singularity, and of smooth quadratic elements.
+/// Allowed exponents of the error in the cell size: from a strong singularity to smooth quadratic elements.
 const RATES: [f64; 2] = [0.25, 2.0];
 
-/// One mesh on the way.
+/// One mesh of the search.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct EstimatedLevel {
     /// Elements.
@@ -36,15 +36,15 @@ pub(crate) struct EstimatedLevel {
     pub dofs: usize,
     /// Contact rows.
     pub contact_rows: usize,
-    /// How the contact problem was solved.
+    /// The method for the contact problem.
     pub method: String,
-    /// The estimated error of the mesh, relative in energy.
+    /// The estimated discretisation error, relative in energy.
     pub discretisation_error: f64,
-    /// The bound on the error of the algebra, relative in energy.
+    /// The bound on the algebraic error, relative in energy.
     pub energy_error_bound: f64,
-    /// Both together.
+    /// Both errors together.
     pub total_error: f64,
-    /// The largest depth in an obstacle between nodes, over how far the obstacles push the body.
+    /// The largest depth in an obstacle between nodes, over the displacement that the obstacles impose.
     pub depth_between_nodes: f64,
     /// The sum of the contact forces, in force.
     pub contact_force: f64,
@@ -53,7 +53,7 @@ pub(crate) struct EstimatedLevel {
 }
 
 impl EstimatedLevel {
-    /// A mesh that does not see the tip of an obstacle between its nodes has no error that its stresses tell.
+    /// If the mesh misses the tip of an obstacle between its nodes, the stresses do not show that error.
     fn meets(&self, goal: TotalErrorGoal) -> bool {
         self.total_error <= goal.total_error && self.depth_between_nodes <= goal.total_error
     }
@@ -65,13 +65,13 @@ pub(crate) struct Estimated {
     pub status: Status,
     pub goal: TotalErrorGoal,
     pub ended: Ended,
-    /// |u - v| / |v| in the energy norm, about: u the exact displacement, v the answer.
+    /// |u - v| / |v| in the energy norm, estimated: u the exact displacement, v the answer.
     pub total_error: Bound,
-    /// Why it is not guaranteed.
+    /// The reason for which it is not guaranteed.
     pub reason: String,
     pub levels: Vec<EstimatedLevel>,
     pub seconds: f64,
-    /// The cells of each mesh as they are seen: of a body in space the facets that may touch, along the approach direction.
+    /// The cells of each mesh for pictures: in space the facets that may touch, along the approach direction.
     #[serde(skip)]
     pub views: Vec<Vec<Vec<[f64; 2]>>>,
     /// The answer on the last mesh.
@@ -82,14 +82,14 @@ pub(crate) struct Estimated {
 }
 
 impl Estimated {
-    /// What the algebra was asked for, relative in energy.
+    /// The requested algebraic accuracy, relative in energy.
     pub fn algebra(&self) -> f64 {
         OF_ALGEBRA * self.goal.total_error
     }
 }
 
-/// Refines the meshes of a scene until the estimate is as small as asked for, or time, memory or meshes end: tetrahedra where the
-/// estimate is made, other elements everywhere.
+/// Refines the meshes of a scene until the estimate is small enough, or time, memory or meshes end: tetrahedra where the estimate is
+/// large, other elements everywhere.
 ///
 /// # Errors
 /// Those of [`solve`] on the first mesh.
@@ -144,7 +144,7 @@ pub(super) fn total_error(
     })
 }
 
-/// The cells of a plane mesh, or the facets that may touch of one in space, seen along the approach direction; none of a bar.
+/// The cells of a plane mesh, or in space the facets that may touch, seen along the approach direction; empty for a bar.
 fn view(model: &Model) -> Vec<Vec<[f64; 2]>> {
     let (mesh, nodes) = (model.mesh(), model.mesh().nodes());
     if mesh.dimension() == 2 {
@@ -164,14 +164,13 @@ fn view(model: &Model) -> Vec<Vec<[f64; 2]>> {
     facets
 }
 
-/// How finer meshes are made.
+/// The way to finer meshes.
 enum Refinement {
-    /// By bisection of the tetrahedra of each body.
-    /// Each as the scene has it, which knows the materials of its elements.
+    /// By bisection of the tetrahedra of each body. Each body is as the scene has it, with the materials of its elements.
     Bisected(Vec<(ElasticBody, Tetrahedra)>, Answering),
-    /// By cutting every cell of the scene into so many along each edge.
+    /// By division of each edge of the scene's mesh into this number of parts.
     Divided(usize),
-    /// Not at all.
+    /// None.
     Fixed,
 }
 
@@ -179,7 +178,7 @@ impl Refinement {
     fn of(scene: &Scene) -> Result<Self, Error> {
         let bodies = scene.bodies()?;
         let bisected = bodies.into_iter().map(|body| Tetrahedra::of(body.mesh()).map(|cells| (body, cells)));
-        // Only a mesh file has no finer mesh.
+        // Only a mesh file cannot be divided further.
         let divided = || if scene.refined(2).is_ok() { Refinement::Divided(1) } else { Refinement::Fixed };
         Ok(bisected
             .collect::<Option<_>>()
@@ -196,7 +195,7 @@ struct Found {
     depths: Depths,
 }
 
-/// What stays the same from mesh to mesh.
+/// The data that stay the same from mesh to mesh.
 struct Search<'a> {
     scene: &'a Scene,
     settings: Settings,
@@ -204,11 +203,11 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The answer of a model; its numbers go to the levels.
+    /// The answer of a model; its numbers are added to the levels.
     fn solved(&self, model: Arc<Model>, levels: &mut Vec<EstimatedLevel>) -> Result<Found, Error> {
         self.settings.watch.step("mesh", levels.len());
         let solution = match solve(model.problem(), &self.settings) {
-            // The answer of the mesh before is better than what time cut short.
+            // The answer of the previous mesh is better than an interrupted one.
             Err(Error::NotCertified { .. }) if !levels.is_empty() && self.settings.watch.is_over() => {
                 return Err(Error::Interrupted);
             }
@@ -233,7 +232,7 @@ impl Search<'_> {
         Ok(Found { answer, solution, shares: estimated.of_elements, depths })
     }
 
-    /// The model on the next mesh; none if there is no time for one.
+    /// The model on the next mesh; `None` if there is no time for one.
     fn next(
         &self,
         refinement: &mut Refinement,
@@ -276,7 +275,7 @@ impl Search<'_> {
         }
     }
 
-    /// Is there time for a mesh of so many times the unknowns of the last?
+    /// Returns `true` if there is time for a mesh with `growth` times the unknowns of the last one.
     fn allows(&self, levels: &[EstimatedLevel], growth: f64) -> bool {
         let before = levels.len().checked_sub(2).map_or(0.0, |before| levels[before].seconds);
         let taken = levels.last().map_or(0.0, |last| last.seconds - before);
@@ -284,8 +283,8 @@ impl Search<'_> {
     }
 }
 
-/// Into how many each cell of the scene is cut next: as many as the rate of the last two meshes says, but not more than twice as many
-/// as now.
+/// The next number of parts of each edge of the scene's mesh: from the convergence rate of the last two meshes, but at most twice the
+/// present number.
 fn finer(levels: &[EstimatedLevel], times: usize, goal: f64, dimension: i32) -> usize {
     let [.., before, last] = levels else { return 2 * times };
     let size = (last.dofs as f64 / before.dofs as f64).ln() / f64::from(dimension);
@@ -315,8 +314,9 @@ mod tests {
         }
     }
 
-    /// A column of height 2 under its weight, its sides on rollers: u_z is quadratic and the square of its energy norm b^2 h^3 A / 3M.
-    /// Without contact the square of the norm of the error is that less twice the work of the load, plus that of the answer.
+    /// A column of height 2 under its weight, its sides on rollers: u_z is quadratic, and the square of its energy norm is b^2 h^3 A /
+    /// 3M. Without contact the square of the norm of the error is this value minus twice the work of the load, plus the square of the
+    /// norm of the answer.
     #[test]
     fn a_column_of_tetrahedra_is_about_as_far_off_as_the_estimate_says() {
         let text = r#"{
@@ -345,7 +345,7 @@ mod tests {
         let error = ((whole - 2.0 * dot(problem.load(), moved) + stored) / whole).sqrt();
         let last = found.levels.last().unwrap();
         assert!(last.total_error <= 0.05 && found.levels.len() > 2, "{:?}", found.levels);
-        // Measured 0.66: an estimate is no bound.
+        // Measured 0.66: an estimate is not a bound.
         let share = last.total_error / error;
         assert!(0.6 < share && share < 1.1, "{share}");
     }
@@ -353,11 +353,11 @@ mod tests {
     #[test]
     fn the_next_mesh_follows_the_rate_of_the_last_two() {
         assert_eq!(finer(&[level(100, 0.2)], 1, 0.1, 2), 2);
-        // First order: from 0.1 to 0.06 the cells must be 0.6 of what they are.
+        // First order: from 0.1 to 0.06 the cells must shrink to 0.6 of their size.
         assert_eq!(finer(&[level(100, 0.2), level(400, 0.1)], 2, 0.06, 2), 4);
         assert_eq!(finer(&[level(100, 0.2), level(400, 0.1)], 8, 0.09, 2), 9);
         assert_eq!(finer(&[level(100, 0.2), level(800, 0.1)], 8, 0.0501, 3), 16);
-        // At most twice as fine, whatever the rate is.
+        // At most twice as fine, at any rate.
         assert_eq!(finer(&[level(100, 0.2), level(400, 0.2)], 2, 0.1, 2), 4);
     }
 }

@@ -1,26 +1,26 @@
-//! What is asked of a total error, and how a search for it goes on and ends.
+//! The goal of a total error, and the continuation and end of the search for it.
 
 use serde::Serialize;
 
 use crate::error::Error;
 
-/// The share of the square of the error that the refined elements make together.
+/// The refined elements hold this share of the square of the error.
 ///
 /// # Source
 /// W. Doerfler, "A convergent adaptive algorithm for Poisson's equation", SIAM J. Numer. Anal. 33 (1996) 1106-1124.
 pub(super) const MARKED: f64 = 0.5;
 
-/// What is asked for.
+/// The goal.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct TotalErrorGoal {
-    /// The most that |u - v| / |v| may be, in the energy norm.
+    /// The largest allowed |u - v| / |v|, in the energy norm.
     pub total_error: f64,
-    /// The most that the force may be off, as half the width of its interval over the force.
+    /// The largest allowed error of the force: half the width of its interval over the force.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub force_error: Option<f64>,
 }
 
-/// Why no finer mesh was made.
+/// The reason for which no finer mesh was made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Ended {
@@ -28,22 +28,22 @@ pub(crate) enum Ended {
     Goal,
     /// The next mesh would have taken more time than was left.
     Time,
-    /// The next mesh would have taken more memory than there is.
+    /// The next mesh would have taken more memory than available.
     Memory,
-    /// There is no finer mesh: that of a file, of elements that are not bisected.
+    /// No finer mesh exists: the mesh is from a file, and its elements are not bisected.
     Mesh,
 }
 
 /// The total error in reports.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct Bound {
-    /// At least |u - v| / |v|; only about so much if that is not guaranteed.
+    /// Upper bound of |u - v| / |v|; an approximate value if that is not guaranteed.
     pub bound: f64,
-    /// Whether it is proven, and not estimated.
+    /// `true` if it is proven, not estimated.
     pub guaranteed: bool,
 }
 
-/// How a refinement answers: what share of the square of the error it removes, over the share that is refined.
+/// The response to a refinement: the share of the square of the error that it removes, over the share that is refined.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Answering {
     refined: f64,
@@ -55,7 +55,7 @@ impl Answering {
         Answering { refined: MARKED, before: None }
     }
 
-    /// The share to refine at this error: [`MARKED`], or what by the last step just meets the goal.
+    /// The share to refine at this error: [`MARKED`], or the share that by the response of the last step just meets the goal.
     pub fn share(&mut self, error: f64, goal: f64) -> f64 {
         let removed = |before: f64, after: f64| 1.0 - (after / before).powi(2);
         let wanted = removed(error, AIM * goal);
@@ -66,7 +66,7 @@ impl Answering {
     }
 }
 
-/// What an error says is short.
+/// The resource that an error reports as short.
 pub(super) fn shortage(error: &Error) -> Option<Ended> {
     match error {
         Error::OutOfTime { .. } | Error::Interrupted => Some(Ended::Time),
@@ -75,13 +75,13 @@ pub(super) fn shortage(error: &Error) -> Option<Ended> {
     }
 }
 
-/// The goal is aimed at with so much to spare.
+/// The search aims at the goal times this factor.
 const AIM: f64 = 0.95;
 
-/// The least share that is refined: less would take too many meshes.
+/// The smallest share that is refined: a smaller one would take too many meshes.
 const LEAST: f64 = 0.1;
 
-/// The fewest elements whose shares make `share` of the whole.
+/// The smallest set of elements whose shares make up `share` of the whole.
 pub(super) fn marked(shares: &[f64], share: f64) -> Vec<bool> {
     let mut order: Vec<usize> = (0..shares.len()).collect();
     order.sort_by(|&a, &b| shares[b].total_cmp(&shares[a]));
@@ -112,14 +112,14 @@ mod tests {
     fn the_last_mesh_is_no_finer_than_the_goal_asks() {
         let mut answering = Answering::new();
         assert_eq!(answering.share(0.4, 0.095), MARKED);
-        // Half of the square was refined, and three quarters of it went: what is 0.1 / 0.95 off needs less than that.
+        // Half of the square was refined, and three quarters of it were removed: to reach 0.1 / 0.95, less than that is needed.
         let goal = 0.1 / AIM;
         let share = answering.share(0.2, goal);
         assert_eq!(share, MARKED);
         let share = answering.share(0.125, goal);
         let gain = (1.0 - (0.125_f64 / 0.2).powi(2)) / MARKED;
         assert!((share - 0.36 / gain).abs() < 1e-12, "{share}");
-        // A step that gained nothing teaches nothing.
+        // A step without gain gives no information.
         assert_eq!(answering.share(0.125, goal), MARKED);
         assert_eq!(answering.share(0.0951, 0.1), LEAST);
     }

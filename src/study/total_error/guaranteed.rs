@@ -1,4 +1,4 @@
-//! The total error: a mesh refined where the guaranteed bound is made, until it is small enough.
+//! The total error with a guaranteed bound: a mesh refined where the elements contribute most to the bound, until it is small enough.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -12,10 +12,10 @@ use crate::qp::{Method, Settings, solve};
 use crate::scene::{Answer, Model, Scene};
 use crate::study::Status;
 
-/// The next mesh takes about as many times the seconds of this one.
+/// The seconds of the next mesh over those of this one, approximately.
 const GROWTH: f64 = 2.2;
 
-/// One mesh on the way.
+/// One mesh of the search.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct TotalErrorLevel {
     /// Triangles.
@@ -28,19 +28,19 @@ pub(crate) struct TotalErrorLevel {
     pub bound: f64,
     /// The bound on the error of the mean stress, over |v|.
     pub mean_stress_bound: f64,
-    /// The force of contact of the displacement, in force.
+    /// The contact force of the displacement, in force.
     pub contact_force: f64,
-    /// The force of contact lies between these, where that was asked for.
+    /// The interval that contains the exact contact force, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub force_interval: Option<[f64; 2]>,
-    /// Seconds since the start, the interval of the force included.
+    /// Seconds since the start, including the interval of the force.
     pub seconds: f64,
-    /// Those of the displacement on this mesh, and those of the stress.
+    /// Seconds for the displacement on this mesh, and for the stress.
     pub displacement_seconds: f64,
     pub stress_seconds: f64,
 }
 
-/// The answer on the scene's own mesh, judged.
+/// The answer on the scene's own mesh, with its judgement.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct OwnMesh {
     /// Its elements.
@@ -49,17 +49,17 @@ pub(crate) struct OwnMesh {
     pub dofs: usize,
     /// The bound on |u - w| / |w|, w its displacement.
     pub total_error: Bound,
-    /// What recovered stresses make of the same error: an estimate.
+    /// The error by recovered stresses: an estimate.
     pub estimated: f64,
 }
 
-/// The body that a bound is of.
+/// The body for which a bound holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Domain {
     /// The polygon of the first mesh.
     FirstPolygon,
-    /// The polygon of the last mesh, whose nodes on known circles follow these.
+    /// The polygon of the last mesh; its nodes on known circles lie on the circles.
     LastPolygon,
 }
 
@@ -69,21 +69,21 @@ pub(crate) struct TotalError {
     pub status: Status,
     pub goal: TotalErrorGoal,
     pub ended: Ended,
-    /// What body the bounds are of.
+    /// The body for which the bounds hold.
     pub domain: Domain,
     /// |u - v| / |v| in the energy norm: u the exact displacement of that body, v the answer.
     pub total_error: Bound,
     /// |sigma - tau_m| / |v|: tau_m the mean of the stress of v and of the stress in balance.
     pub mean_stress_error: Bound,
-    /// The exact potential energy lies between these, D(tau) and J(v), in force times length.
+    /// The interval that contains the exact potential energy: D(tau) and J(v), in force times length.
     pub potential_energy: [f64; 2],
     /// The sum of the contact forces of v.
     pub contact_force: f64,
-    /// The exact contact force lies between these; none if obstacles come from several directions.
+    /// The interval that contains the exact contact force; `None` if obstacles come from several directions.
     pub force_interval: Option<[f64; 2]>,
-    /// The largest defect that the check of balance, signs and distances found, relative: rounding.
+    /// The largest relative defect found by the check of balance, signs and distances: rounding.
     pub defect: f64,
-    /// What the scene's own mesh would have given; none where that has no answer.
+    /// The result on the scene's own mesh; `None` if that has no answer.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub own_mesh: Option<OwnMesh>,
     pub levels: Vec<TotalErrorLevel>,
@@ -99,10 +99,10 @@ pub(crate) struct TotalError {
     pub meshes: Vec<Triangulation>,
 }
 
-/// Refines the mesh of a plane problem until its total error is as small as asked for, or time or memory end.
+/// Refines the mesh of a plane problem until its total error is small enough, or time or memory end.
 ///
 /// # Errors
-/// Those of [`crate::solve`] on the first mesh; [`Error::Scene`] for a bound of the force before obstacles of several directions.
+/// Those of [`crate::solve`] on the first mesh; [`Error::Scene`] for a bound of the force with obstacles from several directions.
 pub(super) fn total_error(
     problem: &PlaneProblem,
     mesh: Triangulation,
@@ -115,14 +115,14 @@ pub(super) fn total_error(
             "the contact force has a guaranteed interval only if all obstacles lie in one direction from the body";
         return Err(Error::Scene { path: "obstacles".into(), message: message.into() });
     }
-    // A stress in balance comes from a linear solve with a settled contact set, and from nothing less.
+    // A stress in balance requires a linear solve with a settled contact set; other methods do not give one.
     let method = if settings.method == Method::Auto { Method::ActiveSet } else { settings.method };
     let search =
         Search { problem, model, goal, settings: Settings { method, ..settings.clone() }, clock: Instant::now() };
     search.run(mesh)
 }
 
-/// What stays the same from mesh to mesh.
+/// The data that stay the same from mesh to mesh.
 struct Search<'a> {
     problem: &'a PlaneProblem,
     model: &'a Arc<Model>,
@@ -158,7 +158,7 @@ impl Search<'_> {
                 own = self.own_answer();
             }
             let is_late = !self.settings.watch.allows(GROWTH * taken);
-            // The own answer lives on the polygon of the first mesh.
+            // The answer on the scene's own mesh belongs to the polygon of the first mesh.
             let is_same = levels.len() == 1 || !self.problem.has_circles();
             if levels.len() == 1 || is_same && (is_met || is_late) {
                 own_mesh = own.as_ref().map(|own| self.own_mesh(own, &bracket)).transpose()?;
@@ -166,7 +166,7 @@ impl Search<'_> {
             if is_met {
                 break;
             }
-            // The force has a rate of its own.
+            // The force converges at its own rate.
             let goal = if self.goal.force_error.is_some() { 0.0 } else { self.goal.total_error };
             let share = answering.share(bracket.bound(), goal);
             let finer = self.problem.refined(mesh, &marked(&bracket.shares, share));
@@ -200,13 +200,13 @@ impl Search<'_> {
         })
     }
 
-    /// The answer on the scene's own mesh; none if there is none.
+    /// The answer on the scene's own mesh; `None` if there is none.
     fn own_answer(&self) -> Option<Answer> {
         let solution = solve(self.model.problem(), &self.settings).ok()?;
         Answer::of(self.model.clone(), &solution).ok()
     }
 
-    /// That answer held against a bracket.
+    /// Judges that answer by a bracket.
     fn own_mesh(&self, own: &Answer, bracket: &Bracket) -> Result<OwnMesh, Error> {
         let (model, judged) = (self.model, judged(own, bracket));
         let bound = if judged.bound == 0.0 { 0.0 } else { judged.bound / judged.norm };
@@ -218,7 +218,7 @@ impl Search<'_> {
         })
     }
 
-    /// The numbers of a mesh; the interval of the force where it is asked for, or nothing else is.
+    /// The numbers of a mesh; the interval of the force if it is requested, or if nothing else is.
     fn level(&self, bracket: &Bracket) -> Result<TotalErrorLevel, Error> {
         let is_near = bracket.bound() <= self.goal.total_error || self.goal.force_error.is_some();
         let is_last = is_near || self.settings.watch.time_left().is_some();
@@ -243,7 +243,7 @@ impl Search<'_> {
     }
 }
 
-/// An answer held against a bracket on pieces of its elements.
+/// Judges an answer by a bracket on pieces of its elements.
 fn judged(answer: &Answer, bracket: &Bracket) -> Judged {
     bracket.judged(|element| {
         let strain = answer.model().body().strain_in(answer.displacement(), element);
@@ -254,13 +254,13 @@ fn judged(answer: &Answer, bracket: &Bracket) -> Judged {
     })
 }
 
-/// Half the width of the interval of the force, over the force; none without an interval.
+/// Half the width of the interval of the force, over the force; `None` without an interval.
 pub(crate) fn half_width(level: &TotalErrorLevel) -> Option<f64> {
     let [low, high] = level.force_interval?;
     Some(if high > low { (high - low) / 2.0 / level.contact_force.abs() } else { 0.0 })
 }
 
-/// What a study of the guarantee looks at: one mesh of several.
+/// The data of one mesh for a study of the guarantee.
 #[derive(Clone, Debug)]
 pub struct Examined {
     /// D(tau) and J(v): the exact energy lies between them.
@@ -271,9 +271,9 @@ pub struct Examined {
     pub norm: f64,
     /// The force of v.
     pub force: f64,
-    /// Its interval.
+    /// The interval of the force.
     pub force_interval: Option<[f64; 2]>,
-    /// The answer on the scene's own mesh: at least |u - w|, then |v - w| and |w|.
+    /// The answer w on the scene's own mesh: an upper bound of |u - w|, then |v - w| and |w|.
     pub own: [f64; 3],
     /// Unknowns of v.
     pub dofs: usize,

@@ -1,4 +1,4 @@
-//! The mesh refined until the error against the continuum is as small as asked for: guaranteed in the plane, estimated elsewhere.
+//! The mesh refined until the error against the continuum is small enough: guaranteed in the plane, estimated elsewhere.
 
 mod estimated;
 mod goal;
@@ -15,18 +15,18 @@ use crate::error::Error;
 use crate::qp::Settings;
 use crate::scene::{Model, Scene};
 
-/// An answer and what is known of its total error.
+/// An answer and its total error.
 pub(crate) enum Found {
-    /// A bound that is proven.
+    /// A proven bound.
     Guaranteed(Box<TotalError>),
     /// An estimate.
     Estimated(Box<Estimated>),
 }
 
-/// Refines the mesh of a scene, whose model this is, until its total error is as small as asked for, or time or memory end.
+/// Refines the mesh of a scene, given with its model, until its total error is small enough, or time or memory end.
 ///
 /// # Errors
-/// [`Error::Scene`] for a scene that has no answer in the continuum, and for a bound of the force without a guarantee; those of
+/// [`Error::Scene`] for a scene without an answer in the continuum, and for a bound of the force without a guarantee; those of
 /// [`crate::solve`] on the first mesh.
 pub(crate) fn total_error(
     scene: &Scene,

@@ -1,4 +1,4 @@
-//! The elements of the body: which they are, of which kind, in which plane, and which way round.
+//! The elements of the body: their selection, kind, plane and orientation.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -8,18 +8,18 @@ use crate::error::{Error, nearly};
 use crate::fem::element::{Cell, ElementKind, MAX_NODES, Rule, Tabulated};
 use crate::fem::mesh::{ElementGroup, Mesh, fail};
 
-/// A node farther from the plane than this times the size of the body lies outside it: far above the rounding of a mesh
-/// generator, far below any cell.
+/// A node farther from the plane than this times the size of the body lies outside the plane: the tolerance is far above the rounding of
+/// a mesh generator and far below the size of any cell.
 const FLAT: f64 = 1e-9;
 
-/// The place of a node of the file in the mesh, if it is in the body.
+/// The number in the mesh of each node of the file, if it is in the body.
 pub(super) type Numbers = Vec<Option<usize>>;
 
 /// The elements of the body.
 pub(super) struct Body<'a> {
     kind: ElementKind,
     elements: Vec<Element<'a>>,
-    /// Those that the elements belong to.
+    /// The groups of the elements.
     groups: Vec<ElementGroup>,
 }
 
@@ -79,7 +79,7 @@ impl<'a> Body<'a> {
         Ok(Body { kind, elements, groups })
     }
 
-    /// The mesh without boundaries, and the place of every node of the file in it.
+    /// The mesh without boundaries, and the number in it of every node of the file.
     pub fn mesh(&self, file: &GmshFile, scale: f64) -> Result<(Mesh, Numbers), Error> {
         let mut used = vec![false; file.nodes.len()];
         self.elements.iter().flat_map(|element| element.nodes).for_each(|&node| used[node] = true);
@@ -124,7 +124,7 @@ impl<'a> Body<'a> {
         Ok(())
     }
 
-    /// Checks that no element is turned inside out or without volume.
+    /// Checks that no element is inverted or without volume.
     fn check(&self, file: &GmshFile, nodes: &[[f64; 3]], connectivity: &[usize]) -> Result<(), Error> {
         let table = Tabulated::new(self.kind.reference(), Rule::Straight);
         for (element, places) in self.elements.iter().zip(connectivity.chunks_exact(self.kind.nodes())) {
@@ -159,7 +159,7 @@ fn kind(file: &GmshFile, elements: &[Element]) -> Result<ElementKind, Error> {
     }
 }
 
-/// The element here that an element type is.
+/// The element of this library for an element type of the file.
 fn accepted(cell: &CellType) -> Result<ElementKind, String> {
     let refused = |reason: &str| Err(format!("{} are refused: {reason}", cell.plural));
     if let Some(kind) = ElementKind::ALL.into_iter().find(|kind| kind.reference().gmsh == cell.number) {
@@ -173,7 +173,7 @@ fn accepted(cell: &CellType) -> Result<ElementKind, String> {
     }
 }
 
-/// Turns every element round, if none of them runs the right way: along x in a bar, counterclockwise in the plane.
+/// Reverses every element if all have the wrong orientation; the right one is along x in a bar, counterclockwise in the plane.
 fn turn_if_clockwise(kind: ElementKind, nodes: &[[f64; 3]], connectivity: &mut [usize]) {
     let corners = kind.corners();
     let runs_wrong = |element: &[usize]| {

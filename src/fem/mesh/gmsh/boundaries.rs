@@ -8,9 +8,9 @@ use crate::error::Error;
 use crate::fem::mesh::outline::chained;
 use crate::fem::mesh::{Boundary, Mesh};
 
-/// What becomes of facets of a group that are no faces of the body.
+/// The treatment of facets of a group that are not faces of the body.
 pub(super) enum OffBody {
-    /// They are a fault of the file.
+    /// They are an error of the file.
     Refused,
     /// They are left out: the body is a part of the file.
     LeftOut,
@@ -54,7 +54,7 @@ fn facets<'a>(file: &'a GmshFile, dimension: usize, name: &str) -> Vec<Element<'
     named.flat_map(|block| file.elements_of(block)).collect()
 }
 
-/// The nodes of facets in the numbers of the mesh; a node outside the body gets a number beyond the last.
+/// The nodes of facets in the numbers of the mesh; a node outside the body gets a number larger than the last.
 fn in_mesh(file: &GmshFile, mesh: &Mesh, facets: &[Element], numbers: &Numbers) -> Result<Vec<usize>, Error> {
     let wanted = mesh.kind().facet().nodes();
     let mut nodes = Vec::with_capacity(facets.len() * wanted);
@@ -73,7 +73,7 @@ fn in_mesh(file: &GmshFile, mesh: &Mesh, facets: &[Element], numbers: &Numbers) 
     Ok(nodes)
 }
 
-/// The nodes of a face in the order of its element: the outside is to the right of an edge.
+/// The nodes of a face in the order of its element: the outside is on the right of an edge.
 fn nodes_of(mesh: &Mesh, (element, face): (usize, usize)) -> Vec<usize> {
     let nodes = mesh.elements().nth(element).unwrap_or_default();
     mesh.kind().reference().faces[face].iter().map(|&local| nodes[local]).collect()

@@ -20,7 +20,7 @@ const fn cell(number: usize, plural: &'static str, dimension: usize, nodes: usiz
     CellType { number, plural, dimension, nodes }
 }
 
-/// Every type of first and second order: those of higher order are read by no element here.
+/// Every type of first and second order; types of higher order are not read.
 static TYPES: [CellType; 19] = [
     cell(1, "two-node lines", 1, 2),
     cell(2, "three-node triangles", 2, 3),

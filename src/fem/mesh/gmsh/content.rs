@@ -1,4 +1,4 @@
-//! What both versions fill: nodes by tag, elements in blocks.
+//! The content that both versions fill: nodes by tag, elements in blocks.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -22,7 +22,7 @@ pub(super) struct Content {
 }
 
 impl Content {
-    /// Takes the node `tag`, which stands in `record`.
+    /// Adds the node `tag`, which is in `record`.
     pub fn add_node(&mut self, record: &Record, tag: usize, at: [f64; 3]) -> Result<(), Error> {
         match self.places.entry(tag) {
             Entry::Occupied(_) => return Err(record.fault(format!("node {tag} is given twice"))),
@@ -34,7 +34,7 @@ impl Content {
         Ok(())
     }
 
-    /// Makes the last block one of elements of type `number` in these groups.
+    /// Starts a new block of elements of type `number` in these groups.
     pub fn begin_block(&mut self, record: &Record, number: usize, groups: &[u64]) -> Result<(), Error> {
         if self.blocks.last().is_some_and(|block| block.cell.number == number && block.groups == groups) {
             return Ok(());
@@ -51,7 +51,7 @@ impl Content {
         Ok(())
     }
 
-    /// Takes the element `tag` into the last block; the rest of `record` are its nodes.
+    /// Adds the element `tag` to the last block; the rest of `record` is its nodes.
     pub fn add_element(&mut self, mut record: Record, tag: usize) -> Result<(), Error> {
         let Some(block) = self.blocks.last_mut() else { return Ok(()) };
         for _ in 0..block.cell.nodes {
@@ -62,7 +62,7 @@ impl Content {
         record.end()
     }
 
-    /// Replaces the tags of nodes by their places, and checks that the groups have elements.
+    /// Replaces the tags of nodes by their indices, and checks that the groups have elements.
     pub fn finish(self, source: Source) -> Result<GmshFile, Error> {
         let Content { nodes, node_tags, node_lines, places, blocks, groups } = self;
         let (file, last_line, form) = (source.file().into(), source.place(), source.into_form());
@@ -88,7 +88,7 @@ impl Content {
     }
 }
 
-/// Reads a count and refuses one beyond all bodies; nothing is ever allocated from a count alone.
+/// Reads a count and rejects one larger than any possible body; memory is never allocated from a count alone.
 pub(super) fn announced(record: &mut Record, of: &str) -> Result<usize, Error> {
     // A tetrahedral mesh has about six times as many elements as nodes.
     const MOST: usize = 10 * MAX_NODES;

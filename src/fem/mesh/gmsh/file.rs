@@ -6,11 +6,11 @@ use super::cells::CellType;
 use super::form::Form;
 use crate::error::Error;
 
-/// What stands in a file: nodes, elements of any type, physical groups.
+/// The content of a file: nodes, elements of any type, physical groups.
 #[derive(Clone, Debug)]
 pub struct GmshFile {
     pub(super) file: PathBuf,
-    /// It tells what a line is here and below: in binary form a byte.
+    /// The form of the file. In binary form `line` here and below means a byte.
     pub(super) form: Form,
     /// In the order of the file, with their tags and lines.
     pub(super) nodes: Vec<[f64; 3]>,
@@ -27,9 +27,9 @@ pub(super) struct Block {
     pub cell: &'static CellType,
     pub groups: Vec<u64>,
     pub tags: Vec<usize>,
-    /// Where each element stands in the file.
+    /// The position of each element in the file.
     pub lines: Vec<usize>,
-    /// The nodes of element 0, then of element 1, ...: tags while the file is read, then places in `nodes`.
+    /// The nodes of element 0, then of element 1, ...: tags while the file is read, then indices into `nodes`.
     pub nodes: Vec<usize>,
 }
 

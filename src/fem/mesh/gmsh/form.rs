@@ -1,41 +1,41 @@
-//! The two forms of a file, and how each tells a place in it.
+//! The two forms of a file, and how each states a position in it.
 
 use std::path::Path;
 
 use crate::error::Error;
 
-/// How the numbers of a file are written.
+/// The form in which the numbers of a file are written.
 #[derive(Clone, Debug)]
 pub(super) enum Form {
-    /// As words in lines. A place is a line, from 1.
+    /// As words in lines. A position is a line, from 1.
     Text,
-    /// As bytes. A place is a byte, from 0.
+    /// As bytes. A position is a byte, from 0.
     Binary {
         order: ByteOrder,
         tags: TagWidth,
-        /// The place at which each section begins, and its line: a line ends at every byte 10, as in an editor.
+        /// The byte at which each section begins, and its line: a line ends at every byte 10, as in an editor.
         sections: Vec<(usize, usize)>,
     },
 }
 
-/// Which byte of a number comes first.
+/// The byte order of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ByteOrder {
     Little,
     Big,
 }
 
-/// How wide tags and counts are in binary form.
+/// The width of tags and counts in binary form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum TagWidth {
-    /// Four bytes with a sign, as in version 2.2.
+    /// Four bytes, signed, as in version 2.2.
     Int,
-    /// Eight bytes without a sign, as in version 4.1.
+    /// Eight bytes, unsigned, as in version 4.1.
     Size,
 }
 
 impl Form {
-    /// A fault at a place: of its line, or of its byte and the line in which the section begins.
+    /// An error at a position: with its line, or with its byte and the line in which the section begins.
     pub fn fault(&self, file: &Path, place: usize, message: impl Into<String>) -> Error {
         let (line, message) = match self {
             Form::Text => (place, message.into()),

@@ -42,7 +42,7 @@ fn quoted(line: &Record) -> Result<String, Error> {
 }
 
 impl GmshFile {
-    /// Every named group has elements: a group that is empty is a geometry that was not meshed.
+    /// Checks that every named group has elements: an empty group means a geometry that was not meshed.
     pub(super) fn check_groups(&self) -> Result<(), Error> {
         let mut filled = HashSet::new();
         for block in &self.blocks {
@@ -58,7 +58,7 @@ impl GmshFile {
         }
     }
 
-    /// The name of a group: its number, where the file gives none.
+    /// The name of a group: its number if the file gives no name.
     pub(super) fn name_of(&self, dimension: usize, tag: u64) -> String {
         let group = self.groups.iter().find(|group| (group.dimension, group.tag) == (dimension, tag));
         group.map_or_else(|| tag.to_string(), |group| group.name.clone())

@@ -1,7 +1,7 @@
 //! Meshes written by Gmsh: `.msh` files of version 4.1 and 2.2, in ASCII and in binary form of either byte order.
 //!
-//! Physical groups carry the names: the elements of the highest dimension are the body, and every group one dimension
-//! below becomes a boundary. A group without a name is called by its number.
+//! Physical groups give the names: the elements of the highest dimension are the body, and every group one dimension below becomes a
+//! boundary. The name of a group without a name is its number.
 //!
 //! ```
 //! use signorini::fem::GmshFile;
@@ -69,16 +69,15 @@ impl GmshFile {
     /// Reads the content of a file, a text or bytes; `file` is named in errors.
     ///
     /// # Errors
-    /// [`Error::FileSyntax`] with the line; in a binary file with the line in which the section begins, and with the byte,
-    /// from 0, at which the node, element or other record begins: for a version other than 4.1 and 2.2, a byte order or
-    /// a data size that is not known, a section that is missing or ends early or announces another number of lines than
-    /// it has, a number of the wrong kind, coordinates that are not finite, an element type that is not known, an
-    /// element whose node does not exist, a group without elements.
+    /// [`Error::FileSyntax`] with the line; in a binary file with the line in which the section begins, and with the byte, from 0, at
+    /// which the node, element or other record begins: for a version other than 4.1 and 2.2, an unknown byte order or data size, a
+    /// section that is missing or ends early or announces another number of lines than it has, a number of the wrong kind, coordinates
+    /// that are not finite, an unknown element type, an element whose node does not exist, a group without elements.
     pub fn parse(content: impl AsRef<[u8]>, file: impl AsRef<Path>) -> Result<Self, Error> {
         sections::read(file.as_ref(), content.as_ref())
     }
 
-    /// The physical groups, in the order of the file; without those that have no name.
+    /// The physical groups, in the order of the file, without those that have no name.
     pub fn groups(&self) -> &[PhysicalGroup] {
         &self.groups
     }
@@ -93,16 +92,15 @@ impl GmshFile {
     /// The mesh of the body: of the elements in the physical group called `domain`, or else of all elements of the
     /// highest dimension. Coordinates are multiplied by `scale`.
     ///
-    /// Nodes that no element of the body uses are left out; the others keep the order of the file. A plane mesh lies in
-    /// any plane z = const, a bar along x. Elements that run clockwise are turned, if all of them do. Facets of a
-    /// boundary run along each other, with the body to the left of edges, and counterclockwise seen from outside in
-    /// space. With a `domain`, groups elsewhere are left out.
+    /// Nodes that no element of the body uses are left out; the others keep the order of the file. A plane mesh lies in any plane z =
+    /// const, a bar along x. Elements that run clockwise are turned, if all of them do. Facets of a boundary have one orientation: the
+    /// body is on the left of edges; in space facets are counterclockwise seen from outside. With a `domain`, groups elsewhere are left
+    /// out.
     ///
     /// # Errors
-    /// [`Error::FileSyntax`] with the line: for elements of more than one kind, or of a kind that carries no contact, a
-    /// node outside the plane, an element that is turned inside out or has no volume, a group whose facets are no faces
-    /// of the body. [`Error::Mesh`] for a `domain` that does not exist, [`Error::Setting`] for a scale that is not
-    /// positive and finite.
+    /// [`Error::FileSyntax`] with the line: for elements of more than one kind, or of a kind without contact, a node outside the plane,
+    /// an element that is inverted or has no volume, a group with facets that are not faces of the body. [`Error::Mesh`] for a `domain`
+    /// that does not exist, [`Error::Setting`] for a scale that is not positive and finite.
     pub fn mesh(&self, domain: Option<&str>, scale: f64) -> Result<Mesh, Error> {
         if !(scale.is_normal() && scale > 0.0) {
             return Err(Error::Setting { name: "scale", value: scale, allowed: "positive and finite" });

@@ -9,14 +9,14 @@ use crate::error::Error;
 
 const WHOLE: &str = "a whole number that is not negative";
 
-/// What belongs together, as a node or an element: a line of text, or numbers in binary form.
+/// The numbers that belong together, as a node or an element: a line of text, or numbers in binary form.
 pub(super) struct Record<'s, 'a> {
     source: &'s mut Source<'a>,
     numbers: Numbers<'a>,
 }
 
 enum Numbers<'a> {
-    /// The whole line, and what of it has not been read.
+    /// The whole line, and the part of it that has not been read.
     Words {
         line: &'a [u8],
         rest: &'a [u8],
@@ -25,7 +25,7 @@ enum Numbers<'a> {
 }
 
 impl<'a> Source<'a> {
-    /// The next line of a section, which is text in either form; `what` names what stands there.
+    /// The next line of a section that is text in either form; `what` names the expected content.
     pub fn line<D: Display>(&mut self, what: impl Fn() -> D) -> Result<Record<'_, 'a>, Error> {
         let Some(line) = self.next() else {
             return Err(self.fault(format!("the file ends where {} should stand", what())));
@@ -36,7 +36,7 @@ impl<'a> Source<'a> {
         Ok(Record { source: self, numbers: Numbers::Words { line, rest: line } })
     }
 
-    /// The next record of a section; `what` names what stands there.
+    /// The next record of a section; `what` names the expected content.
     pub fn record<D: Display>(&mut self, what: impl Fn() -> D) -> Result<Record<'_, 'a>, Error> {
         let Form::Binary { order, tags, .. } = *self.form() else { return self.line(what) };
         self.begin();
@@ -48,7 +48,7 @@ impl<'a> Source<'a> {
 }
 
 impl<'a> Record<'_, 'a> {
-    /// Where the record stands.
+    /// The position of the record.
     pub fn place(&self) -> usize {
         self.source.place()
     }
@@ -76,7 +76,7 @@ impl<'a> Record<'_, 'a> {
         }
     }
 
-    /// The next number as one of either sign: the tag of an entity or a group.
+    /// The next number as an integer of either sign: the tag of an entity or a group.
     pub fn integer(&mut self, name: impl Display) -> Result<i64, Error> {
         const ALLOWED: &str = "a whole number";
         match self.numbers {
@@ -85,7 +85,7 @@ impl<'a> Record<'_, 'a> {
         }
     }
 
-    /// The next number as a finite one.
+    /// The next number, which must be finite.
     pub fn finite(&mut self, name: impl Display) -> Result<f64, Error> {
         const ALLOWED: &str = "a number";
         let value = match self.numbers {
@@ -114,7 +114,7 @@ impl<'a> Record<'_, 'a> {
         word
     }
 
-    /// The next bytes, the lowest first.
+    /// The next bytes, with the lowest byte first.
     fn bytes<const N: usize>(&mut self, order: ByteOrder, name: impl Display, allowed: &str) -> Result<[u8; N], Error> {
         let Some(mut bytes) = self.source.take() else {
             return Err(self.fault(format!("the file ends where {name} should stand, {allowed}")));
@@ -148,7 +148,7 @@ impl<'a> Record<'_, 'a> {
         self.fault(format!("{name} is `{value}`; it must be {allowed}"))
     }
 
-    /// A fault of this record.
+    /// An error at this record.
     pub fn fault(&self, message: impl Into<String>) -> Error {
         self.source.fault(message)
     }

@@ -1,4 +1,4 @@
-//! The sections of a file, whichever they are: `$Name ... $EndName`.
+//! The sections of a file, of any name: `$Name ... $EndName`.
 
 use std::path::Path;
 
@@ -19,10 +19,10 @@ enum Version {
 /// Error for a file without a mesh header; it quotes no content, which may be private.
 const NO_MESH: &str = "it is no mesh of Gmsh: a section `$MeshFormat` should begin here, which tells the version";
 
-/// The sections that are read; each stands once in a file.
+/// The sections that are read; each appears once in a file.
 const ONCE: [&str; 5] = ["MeshFormat", "PhysicalNames", "Entities", "Nodes", "Elements"];
 
-/// Reads all sections; those that say nothing about nodes, elements and groups are passed over.
+/// Reads all sections; sections without nodes, elements or groups are skipped.
 pub(super) fn read(file: &Path, content: &[u8]) -> Result<GmshFile, Error> {
     let mut source = Source::new(file, content);
     let mut content = Content::default();
@@ -103,7 +103,7 @@ fn format(source: &mut Source) -> Result<Version, Error> {
     Ok(version)
 }
 
-/// The order in which the int 1 is written.
+/// The byte order in which the int 1 is written.
 fn byte_order(source: &mut Source) -> Result<ByteOrder, Error> {
     match source.take() {
         Some([1, 0, 0, 0]) => Ok(ByteOrder::Little),

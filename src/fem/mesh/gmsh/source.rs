@@ -1,4 +1,4 @@
-//! The bytes of a file and the sections in them; every fault has its place.
+//! The bytes of a file and the sections in them; every error has its position.
 
 use std::path::Path;
 
@@ -9,19 +9,19 @@ use crate::error::Error;
 pub(super) struct Source<'a> {
     file: &'a Path,
     form: Form,
-    /// What has not been read.
+    /// The bytes that have not been read.
     rest: &'a [u8],
     /// Number of bytes that have been read, and of line ends among them.
     bytes: usize,
     line_ends: usize,
-    /// First byte and line of what was read last.
+    /// First byte and line of the last item read.
     byte: usize,
     line: usize,
 }
 
 impl<'a> Source<'a> {
     pub fn new(file: &'a Path, content: &'a [u8]) -> Self {
-        // Some editors put a byte order mark in front.
+        // Some editors write a byte order mark at the start.
         const MARK: &[u8] = "\u{feff}".as_bytes();
         let mut source = Source { file, form: Form::Text, rest: content, bytes: 0, line_ends: 0, byte: 0, line: 1 };
         if content.starts_with(MARK) {
@@ -38,17 +38,17 @@ impl<'a> Source<'a> {
         &self.form
     }
 
-    /// The form, which tells places once the file has been read.
+    /// The form, which states positions after the file has been read.
     pub fn into_form(self) -> Form {
         self.form
     }
 
-    /// Reads on in binary form, in a section that begins in line `line`.
+    /// Continues in binary form, in a section that begins in line `line`.
     pub fn turn_binary(&mut self, order: ByteOrder, tags: TagWidth, line: usize) {
         self.form = Form::Binary { order, tags, sections: vec![(0, line)] };
     }
 
-    /// Where that stands which was read last; in an empty file the first line.
+    /// The position of the last item read; in an empty file the first line.
     pub fn place(&self) -> usize {
         match self.form {
             Form::Text => self.line,
@@ -56,7 +56,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// The next line that is not empty, without the blanks around it.
+    /// The next line that is not empty, without surrounding blanks.
     pub fn next(&mut self) -> Option<&'a [u8]> {
         while !self.rest.is_empty() {
             self.begin();
@@ -78,7 +78,7 @@ impl<'a> Source<'a> {
         Some(line)
     }
 
-    /// Makes what follows the place of faults.
+    /// Makes the next item the position of errors.
     pub fn begin(&mut self) {
         (self.byte, self.line) = (self.bytes, self.line_ends + 1);
     }
@@ -94,7 +94,7 @@ impl<'a> Source<'a> {
         Some(bytes)
     }
 
-    /// The next `count` bytes, of those that are left.
+    /// The next `count` bytes of the remaining ones.
     fn pass(&mut self, count: usize) -> &'a [u8] {
         let (passed, rest) = self.rest.split_at(count);
         self.rest = rest;
@@ -118,14 +118,14 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// Passes over the section `name`, which has just begun.
+    /// Skips the section `name`, which has just begun.
     pub fn skip(&mut self, name: &[u8]) -> Result<(), Error> {
         let begin = self.line;
         let end = [b"$End", name].concat();
         let found = match self.form {
             Form::Text => std::iter::from_fn(|| self.next())
                 .find(|line| line.strip_prefix(b"$End").is_some_and(|end| end.trim_ascii() == name)),
-            // Nothing tells how long the numbers of an unknown section are.
+            // The length of the numbers in an unknown section is unknown.
             Form::Binary { .. } => {
                 let ends = |rest: &[u8]| rest.first().is_none_or(u8::is_ascii_whitespace);
                 let is_end = |at: &usize| self.rest[*at..].strip_prefix(end.as_slice()).is_some_and(ends);
@@ -141,18 +141,18 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// A fault of what was read last.
+    /// An error at the last item read.
     pub fn fault(&self, message: impl Into<String>) -> Error {
         self.fault_at(self.place(), message)
     }
 
-    /// A fault of what stands at a place.
+    /// An error at a position.
     pub fn fault_at(&self, place: usize, message: impl Into<String>) -> Error {
         self.form.fault(self.file, place, message)
     }
 }
 
-/// Bytes for a message: as text of one line, and their beginning, if they are long.
+/// Bytes for a message: as text of one line, only their beginning if they are long.
 pub(super) fn shortened(bytes: &[u8]) -> String {
     const SHOWN: usize = 60;
     // A character has at most four bytes.

@@ -21,8 +21,8 @@ pub(super) fn nodes(source: &mut Source, content: &mut Content) -> Result<(), Er
     source.end("Nodes")
 }
 
-/// The section `$Elements`: a count, which is text in either form, then `tag type number-of-tags physical-group ...
-/// node ...`; in binary form `type number-of-elements number-of-tags` stands before elements that are alike.
+/// The section `$Elements`: a count, which is text in either form, then `tag type number-of-tags physical-group ... node ...`; in binary
+/// form `type number-of-elements number-of-tags` precedes elements of one type.
 pub(super) fn elements(source: &mut Source, content: &mut Content) -> Result<(), Error> {
     let mut line = source.line(|| "the number of elements")?;
     let count = announced(&mut line, "elements")?;
@@ -58,7 +58,7 @@ pub(super) fn elements(source: &mut Source, content: &mut Content) -> Result<(),
 const TYPE: &str = "the type of an element";
 const TAGS: &str = "the number of tags";
 
-/// What elements that are alike are, and how many of them are still to come.
+/// The type of a run of elements, and the number of elements still to come.
 #[derive(Default)]
 struct Alike {
     left: usize,
@@ -67,7 +67,7 @@ struct Alike {
 }
 
 impl Alike {
-    /// The record before elements in binary form, of which at most `most` are announced.
+    /// The record before elements in binary form, which announces at most `most` elements.
     fn read(record: &mut Record, most: usize) -> Result<Self, Error> {
         let number = record.code(TYPE)?;
         let left = record.whole("the number of elements of one type")?;

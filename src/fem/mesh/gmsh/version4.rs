@@ -25,7 +25,7 @@ pub(super) fn entities(source: &mut Source, entities: &mut Entities) -> Result<(
         for index in 1..=count {
             let mut record = source.record(|| format!("number {index} of {count} {name}"))?;
             let tag = record.integer("the tag of an entity")?;
-            // A point has its place, the others their box.
+            // A point has its coordinates, the other entities their box.
             for _ in 0..if dimension == 0 { 3 } else { 6 } {
                 record.finite("a coordinate of an entity")?;
             }
@@ -34,7 +34,7 @@ pub(super) fn entities(source: &mut Source, entities: &mut Entities) -> Result<(
                 // The sign of a group is an orientation.
                 groups.push(record.integer("a physical group")?.unsigned_abs());
             }
-            // What bounds the entity is of no use here.
+            // The boundary of the entity is not used.
             if dimension > 0 {
                 for _ in 0..record.whole("the number of bounding entities")? {
                     record.integer("a bounding entity")?;
@@ -76,7 +76,7 @@ pub(super) fn nodes(source: &mut Source, content: &mut Content) -> Result<(), Er
         for tag in tags {
             let mut record = source.record(|| format!("the coordinates of node {tag}"))?;
             let at = [record.finite("x")?, record.finite("y")?, record.finite("z")?];
-            // Of no use here.
+            // Not used.
             for _ in 0..parameters {
                 record.finite("a parametric coordinate")?;
             }
@@ -104,7 +104,7 @@ pub(super) fn elements(source: &mut Source, entities: &Entities, content: &mut C
         let here = announced(&mut record, "elements in the block")?;
         let groups = match entities.get(&(dimension, entity)) {
             Some(groups) => groups.as_slice(),
-            // A file without geometry has no entities at all, and so no groups.
+            // A file without geometry has no entities, and so no groups.
             None if entities.is_empty() => &[],
             None => {
                 return Err(
@@ -127,7 +127,7 @@ pub(super) fn elements(source: &mut Source, entities: &Entities, content: &mut C
     source.end("Elements")
 }
 
-/// What begins a section of blocks: their number, the number of `what` in all, the lowest and the highest tag.
+/// The start of a section of blocks: their number, the total number of `what`, the lowest and the highest tag.
 fn counts(record: &mut Record, what: &str) -> Result<(usize, usize), Error> {
     let counts = (announced(record, "blocks")?, announced(record, what)?);
     // Tags may have gaps.
