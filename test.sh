@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Everything that can be checked, in one command; needs cargo (with rustfmt and clippy), python3 >= 3.11 with venv, and Chromium.
 # The Python packages of the reference are installed into target/reference-venv, those of python/ into target/python-venv.
+# The tests of distributed/ run if Debian's python3-petsc4py and openmpi-bin are there; DISTRIBUTED=required makes that a condition.
 #
 # One profile (dev: the crate with overflow checks, dependencies as in release) serves all steps, and every test runs once.
 set -euo pipefail
@@ -59,6 +60,16 @@ target/reference-venv/bin/python -m unittest discover --start-directory referenc
 step "schema, scenes right and wrong"; target/reference-venv/bin/python reference/schema.py "$built/signorini"
 step "reference, live validation";  target/reference-venv/bin/python reference/validate.py --signorini "$built/signorini"
 step "pages, in a real browser";    (cd reference && SIGNORINI="../$built/signorini" ../target/reference-venv/bin/python -m unittest pages)
+
+step "distributed, on PETSc"
+if /usr/bin/python3 -c "import petsc4py, numpy" 2>/dev/null && command -v mpirun >/dev/null; then
+    SIGNORINI="$PWD/$built/signorini" /usr/bin/python3 -m unittest discover --start-directory distributed/tests
+elif [ "${DISTRIBUTED:-}" = required ]; then
+    echo "the distributed tests need PETSc and MPI: apt-get install python3-petsc4py openmpi-bin" >&2
+    exit 1
+else
+    echo "skipped: there is no PETSc for /usr/bin/python3, or no mpirun; on Debian apt-get install python3-petsc4py openmpi-bin"
+fi
 
 step ""
 printf '\n%s%6d s  in all\n== all checks passed\n' "$times" $SECONDS
