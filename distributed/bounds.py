@@ -7,7 +7,7 @@ reflected; the next row of the same node must then be parallel or at right angle
 import numpy as np
 
 from problem import NO_LIMIT
-from ranks import BAD_INPUT, NO_ANSWER, PETSC_INT, PETSc, Refused
+from ranks import BAD_INPUT, NO_ANSWER, PETSC_INT, PETSc, Refused, fetch
 
 ROUNDING = 1e-12
 """Parts of a unit vector below this are rounding of the turning."""
@@ -40,16 +40,9 @@ class Bounds:
         normals = np.zeros((len(pairs), size))
         normals[of_pair, places % size] = values
         node, row = pairs[:, 0], pairs[:, 1]
-        gap = self._gaps(row)
+        gap = fetch(problem.gap, row)
         near = gap < NO_LIMIT
         self.node, self.row, self.normals, self.gap = node[near], row[near], normals[near], gap[near]
-
-    def _gaps(self, rows):
-        gap = self.problem.gap
-        wanted = PETSc.IS().createGeneral(rows.astype(PETSC_INT), comm=PETSc.COMM_SELF)
-        values = PETSc.Vec().createSeq(len(rows))
-        PETSc.Scatter().create(gap, wanted, values, None).scatter(gap, values)
-        return values.array_r.copy()
 
     def _turn(self):
         """Reflects the nodes, one row of each at a time."""
@@ -179,13 +172,7 @@ class Bounds:
 
     def closed_sides(self, multiplier):
         """Of multipliers on the contact rows: which bounded unknowns have one at the lower, which at the upper side."""
-        sides = []
-        for rows in self.side_row:
-            wanted = PETSc.IS().createGeneral(np.maximum(rows, 0).astype(PETSC_INT), comm=PETSc.COMM_SELF)
-            values = PETSc.Vec().createSeq(len(rows))
-            PETSc.Scatter().create(multiplier, wanted, values, None).scatter(multiplier, values)
-            sides.append((values.array_r < 0.0) & (rows >= 0))
-        return sides
+        return [(fetch(multiplier, np.maximum(rows, 0)) < 0.0) & (rows >= 0) for rows in self.side_row]
 
 
 def _refuse_coupling_rows(problem):

@@ -14,7 +14,8 @@ Sources: R. Kornhuber, Numer. Math. 69 (1994) 167-184 (truncated basis functions
 
 import numpy as np
 
-from ranks import PETSc, larger
+from problem import orthonormal
+from ranks import PETSc
 
 DEGREE = 3
 """Of the smoothing polynomial, before and after the coarse correction."""
@@ -36,6 +37,22 @@ SHIFT = 1e-3
 
 SINGULAR = 1e-9
 """A coarsest matrix with an eigenvalue below this, on a diagonal of one, is singular but for rounding."""
+
+
+PREFIX = "signorini_"
+
+OF_LEVELS = {"mg_levels_ksp_type": "richardson", "mg_levels_ksp_max_it": 1, "mg_levels_pc_type": "none",
+             "mg_coarse_ksp_type": "preonly", "mg_coarse_pc_type": "none"}
+"""PETSc is to prepare nothing that is not used."""
+
+OF_KIND = {
+    "gamg": {"pc_type": "gamg", "pc_gamg_coarse_eq_limit": 400},
+    "boomeramg": {"pc_type": "hmg", "pc_hmg_reuse_interpolation": "false", "hmg_inner_pc_type": "hypre",
+                  "hmg_inner_pc_hypre_type": "boomeramg", "hmg_inner_pc_hypre_boomeramg_numfunctions": 3,
+                  "hmg_inner_pc_hypre_boomeramg_strong_threshold": 0.5,
+                  "hmg_inner_pc_hypre_boomeramg_coarsen_type": "HMIS",
+                  "hmg_inner_pc_hypre_boomeramg_interp_type": "ext+i"},
+}
 
 
 class Chebyshev:
@@ -154,23 +171,31 @@ class Coarsest:
 
 
 class Hierarchy:
-    """The levels of K, and one cycle in the face that is set: all dofs but those that never move, at first."""
+    """The levels of K, and one cycle in the face that is set: at first all dofs but those of supports."""
 
-    def __init__(self, stiffness, never, candidates, kind="gamg", options=None):
-        """`never` are local dofs without any motion, `candidates` global dofs of this rank that a face may hold."""
-        multigrid = built(stiffness, kind, options or {})
+    def __init__(self, bounds, kind="gamg", petsc=""):
+        """`kind` builds the levels, gamg or boomeramg, with the options `petsc` more."""
+        self.stiffness = bounds.stiffness
+        self.first = self.stiffness.getOwnershipRange()[0]
+        self.never, self.candidates = np.flatnonzero(~bounds.problem.is_free), bounds.places
+        modes = orthonormal(bounds.modes)
+        self.stiffness.setOption(PETSc.Mat.Option.SPD, True)
+        self.stiffness.setNearNullSpace(PETSc.NullSpace().create(vectors=modes, comm=self.stiffness.comm))
+        multigrid = built(self.stiffness, kind, petsc)
         count = multigrid.getMGLevels()
         matrices = [multigrid.getMGSmoother(level).getOperators()[0] for level in range(count - 1, -1, -1)]
         prolongators = [multigrid.getMGInterpolation(level) for level in range(count - 1, 0, -1)]
+        self._multigrid = multigrid
         self.levels = [Level(matrix, prolongator) for matrix, prolongator in zip(matrices, prolongators)]
         self.coarsest = Coarsest(matrices[-1])
-        self.pc = multigrid
-        self.never, self.candidates = never, candidates
-        self.first = stiffness.getOwnershipRange()[0]
-        self.stiffness = stiffness
+        self.is_singular = self.coarsest.is_singular
+        """Is K singular, as that of a body without supports?"""
+        inverse = self.stiffness.getDiagonal()
+        inverse.reciprocal()
+        self.largest = self.levels[0].largest if self.levels else SAFETY * largest_eigenvalue(self.stiffness, inverse)
         if self.levels:
             self._prepare_faces()
-        self.hold(np.zeros(len(candidates), dtype=bool))
+        self.hold(np.zeros(len(self.candidates), dtype=bool))
 
     def unknowns(self):
         return [level.matrix.getSize()[0] for level in self.levels] + [self.coarsest.matrix.getSize()[0]]
@@ -254,18 +279,18 @@ class Hierarchy:
         level.smoother.smooth(x, rest, updated=False)
 
 
-def built(stiffness, kind, options):
-    """PETSc's multigrid for K, set up."""
-    prefix = "signorini_"
-    own = {"mg_levels_ksp_type": "richardson", "mg_levels_ksp_max_it": 1, "mg_levels_pc_type": "none",
-           "mg_coarse_ksp_type": "preonly", "mg_coarse_pc_type": "none"}
-    if kind == "gamg":
-        own |= {"pc_type": "gamg", "pc_gamg_coarse_eq_limit": 400}
-    database = PETSc.Options(prefix)
-    for name, value in (own | options).items():
-        database[name] = value
+def built(stiffness, kind, petsc):
+    """PETSc's multigrid for K, set up: its prolongators and coarse matrices. Smoothers and coarse solve are our own."""
+    options = PETSc.Options(PREFIX)
+    for name, value in (OF_LEVELS | OF_KIND[kind]).items():
+        options[name] = value
+    words = petsc.split()
+    for at, word in enumerate(words):
+        if word.startswith("-"):
+            value = words[at + 1] if at + 1 < len(words) and not words[at + 1].startswith("-") else ""
+            options[word[1:]] = value
     pc = PETSc.PC().create(comm=stiffness.comm)
-    pc.setOptionsPrefix(prefix)
+    pc.setOptionsPrefix(PREFIX)
     pc.setOperators(stiffness)
     pc.setFromOptions()
     pc.setUp()

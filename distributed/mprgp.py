@@ -17,7 +17,7 @@ Source: Z. Dostal, Optimal Quadratic Programming Algorithms, Springer (2009), al
 import numpy as np
 
 from bounds import FIXED, FREE, LOWER, UPPER
-from ranks import NO_ANSWER, Refused, larger
+from ranks import NO_ANSWER, Refused, generic, larger
 
 INSIDE = 1e-3
 """Rows that are open at the start although nothing has moved keep this share of their depth as distance."""
@@ -34,6 +34,17 @@ changes count only beyond one for each row."""
 
 NO_GAIN = 0.5
 """A residual computed anew that is above this share of the one before will not come down any more."""
+
+
+SIGN_TOLERANCE = 1e-12
+"""Forces of closed rows below this share of the strongest are rounding."""
+
+WORK_TOLERANCE, PLAY = 1e-9, 1e-9
+"""Work and speeds of a motion below this are rounding; a row this close, relative to the displacement, has no play."""
+
+MODE_CYCLES, GONE, LAST_FALL = 60, 1e-8, 0.25
+"""Cycles in which all that costs energy dies away; what is then left of a vector that had no motion without energy; and energy
+that falls by less than this in a cycle has come down to rounding."""
 
 
 class Iterate:
@@ -282,6 +293,73 @@ def solve(iterate, hierarchy, tolerance, most_cycles, told=None):
         if told is not None:
             told(progress.cycles, residual)
     return progress
+
+
+def check_held(iterate, hierarchy, settled):
+    """Refuses an answer that is not the only one, and a load that drives a motion which nothing stops.
+
+    Asked only where K is singular. Of an answer that has not settled, the closed rows and none are looked at: a displacement
+    that has run away closes any.
+    """
+    if not hierarchy.is_singular:
+        return
+    if settled:
+        held = np.abs(iterate.split()[0])
+        strongest = iterate.ranks.max(larger(held))
+        mode = without_energy(iterate, hierarchy, generic(iterate.load),
+                              (iterate.at == FIXED) | (held > SIGN_TOLERANCE * strongest))
+        if mode is not None and not _is_stopped_both_ways(iterate, mode):
+            raise under_held(iterate, mode)
+        return
+    for is_held in (np.zeros(len(iterate.at), dtype=bool), iterate.at != FREE):
+        mode = without_energy(iterate, hierarchy, iterate.load, is_held)
+        if mode is None:
+            continue
+        work = iterate.load.dot(mode)
+        speed = np.sign(work) * mode.array_r[iterate.place]
+        stops = ((speed > WORK_TOLERANCE) & np.isfinite(iterate.upper)) | ((speed < -WORK_TOLERANCE) & np.isfinite(iterate.lower))
+        if abs(work) > WORK_TOLERANCE * iterate.largest_load and not iterate.ranks.max(float(stops.any())):
+            raise under_held(iterate, mode)
+
+
+def without_energy(iterate, hierarchy, start, is_held):
+    """What cycles leave of a vector where nothing moves that is held: a motion without energy, largest entry one, or `None`."""
+    hierarchy.hold(is_held)
+    if not hierarchy.coarsest.is_singular:
+        return None
+    held = np.r_[iterate.place[is_held], hierarchy.never]
+    mode, force, step = start.duplicate(), start.copy(), start.duplicate()
+    scaled = start.duplicate()
+    force.array[held] = 0.0
+    # The smoothest part first: what a load of that form moves.
+    hierarchy.cycle(force, mode)
+    mode.array[held] = 0.0
+    whole, before = iterate.ranks.max(larger(mode.array_r)), np.inf
+    for _ in range(MODE_CYCLES):
+        iterate.product(mode, force)
+        energy = abs(mode.dot(force))
+        scaled.pointwiseMult(iterate.diagonal, mode)
+        if energy <= NO_ENERGY * scaled.dot(mode) and energy >= LAST_FALL * before:
+            size = iterate.ranks.max(larger(mode.array_r))
+            mode.scale(1.0 / size)
+            return mode if size > GONE * whole else None
+        before = energy
+        force.array[held] = 0.0
+        hierarchy.cycle(force, step)
+        step.array[held] = 0.0
+        mode.axpy(-1.0, step)
+    return None
+
+
+def _is_stopped_both_ways(iterate, mode):
+    """Do open rows without play stop the motion one way and the other?"""
+    play = PLAY * iterate.ranks.max(larger(iterate.x.array_r))
+    value, speed = iterate.x.array_r[iterate.place], mode.array_r[iterate.place]
+    stopped = []
+    for way in (1.0, -1.0):
+        room = np.where(way * speed > 0.0, iterate.upper - value, value - iterate.lower)
+        stopped.append(float(np.any((np.abs(speed) > WORK_TOLERANCE) & (room <= play))))
+    return all(iterate.ranks.max(*stopped))
 
 
 def under_held(iterate, mode):

@@ -1,7 +1,11 @@
 """PETSc, and what the ranks of a run tell each other: a few numbers at a time."""
 
 import glob
+import os
 import sys
+
+# A rank is one thread: more would take the processors of its neighbours.
+os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 try:
     import petsc4py
@@ -86,3 +90,19 @@ def _unpacked(numbers):
 def larger(values):
     """The largest magnitude of an array, 0 of an empty one, without a copy."""
     return max(values.max(), -values.min(), 0.0) if len(values) else 0.0
+
+
+def fetch(vector, places):
+    """The values of a vector at places of any rank, which this rank names."""
+    wanted = PETSc.IS().createGeneral(np.asarray(places, dtype=PETSC_INT), comm=PETSc.COMM_SELF)
+    values = PETSc.Vec().createSeq(len(places))
+    PETSc.Scatter().create(vector, wanted, values, None).scatter(vector, values)
+    return values.array_r.copy()
+
+
+def generic(like):
+    """A vector without any order, the same for every number of ranks."""
+    vector = like.duplicate()
+    first = like.getOwnershipRange()[0]
+    vector.array[:] = ((first + np.arange(like.getLocalSize())) * 0.618033988749895) % 1.0 - 0.5
+    return vector
