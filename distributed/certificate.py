@@ -65,8 +65,8 @@ def accurate_product(ranks, matrix, vector):
         part = range(min(start, rows), min(start + CHUNK, rows))
         chosen = PETSc.IS().createStride(len(part), first + part.start, 1, comm=ranks.comm)
         starts, columns, values = matrix.createSubMatrix(chosen).getValuesCSR()
-        needed, of_entry = np.unique(columns, return_inverse=True)
-        products = values.astype(np.longdouble) * fetch(vector, needed)[of_entry]
+        products = values.astype(np.longdouble)
+        products *= at_columns(vector, columns)
         counts = np.diff(starts)
         filled = np.flatnonzero(counts) + part.start
         at = starts[:-1][counts > 0]
@@ -74,6 +74,17 @@ def accurate_product(ranks, matrix, vector):
             sums[filled] = np.add.reduceat(products, at)
             terms[filled] = np.add.reduceat(np.abs(products).astype(float), at)
     return sums, terms
+
+
+def at_columns(vector, columns):
+    """The values of a vector at the columns of entries, most of them this rank's."""
+    first, last = vector.getOwnershipRange()
+    own = (columns >= first) & (columns < last)
+    values = np.empty(len(columns))
+    values[own] = vector.array_r[columns[own] - first]
+    needed, of_entry = np.unique(columns[~own], return_inverse=True)
+    values[~own] = fetch(vector, needed)[of_entry]
+    return values
 
 
 def relative(value, scale):
@@ -94,10 +105,9 @@ class Answer:
         # Magnitudes of the rows, of which every rank has its own.
         starts, columns, values = rows.getValuesCSR()
         row_of = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
-        needed, of_entry = np.unique(columns, return_inverse=True)
         root = problem.load.duplicate()
         root.array[:] = np.sqrt(self.diagonal)
-        roots = fetch(root, needed)[of_entry]
+        roots = at_columns(root, columns)
         count = len(starts) - 1
         self.reach, self.compliance = np.zeros(count), np.zeros(count)
         np.maximum.at(self.reach, row_of, np.abs(values) / roots)

@@ -148,11 +148,16 @@ class Coarsest:
         self.scatter, self.all = PETSc.Scatter.toAll(self.x)
         self.hold(None)
 
-    def hold(self, change):
-        """Inverts A - C. What is singular is held by a shift."""
+    def hold(self, change, held=None):
+        """Inverts A - C, or A where this rank's unknowns `held` do not move. What is singular is held by a shift."""
         rest = self.whole
         if change is not None:
             rest = rest - change.createSubMatrices(self.every, self.every)[0][:, :]
+        if held is not None:
+            self.x.set(1.0)
+            self.x.array[held] = 0.0
+            self.scatter.scatter(self.x, self.all)
+            rest = rest * self.all.array_r * self.all.array_r[:, None]
         before, after = np.diag(self.whole), np.diag(rest)
         gone = after <= LOST * before
         scale = np.sqrt(reciprocal(np.where(gone, 0.0, after)))
@@ -214,7 +219,7 @@ class Hierarchy:
         held = np.r_[self.never, self.candidates[closed] - self.first].astype(int)
         self.held = held
         if not self.levels:
-            self._hold_single(held)
+            self.coarsest.hold(None, held)
             return
         smoother = self.levels[0].smoother
         self.levels[0].whole.copy(smoother.inverse)

@@ -71,10 +71,11 @@ class Iterate:
         else:
             displacement.copy(self.x)
             value = self.x.array_r[self.place]
-            value = np.where(value >= self.upper, self.upper - INSIDE * np.abs(self.upper), value)
-            value = np.where(value <= self.lower, self.lower + INSIDE * np.abs(self.lower), value)
-            value = np.where(closed_lower, self.lower, value)
-            self.x.array[self.place] = np.where(closed_upper, self.upper, value)
+            for is_out, is_closed, bound, inwards in ((value >= self.upper, closed_upper, self.upper, -INSIDE),
+                                                      (value <= self.lower, closed_lower, self.lower, INSIDE)):
+                value[is_out] = bound[is_out] + inwards * np.abs(bound[is_out])
+                value[is_closed] = bound[is_closed]
+            self.x.array[self.place] = value
         self.project()
         self.refresh_gradient()
 
