@@ -2,6 +2,7 @@
 
 import json
 import os
+import sys
 
 import numpy as np
 
@@ -31,9 +32,9 @@ class Folder:
         if not has_fault:
             return
         self.discard()
-        if fault:
-            print(fault, flush=True)
-        raise Refused(f"{self.path} was not written", BAD_INPUT)
+        if fault and self.ranks.rank > 0:
+            print(fault, file=sys.stderr, flush=True)
+        raise Refused(fault or f"{self.path} was not written", BAD_INPUT)
 
     def discard(self):
         if self.ranks.rank == 0:

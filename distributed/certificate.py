@@ -65,14 +65,13 @@ def accurate_product(ranks, matrix, vector):
         part = range(min(start, rows), min(start + CHUNK, rows))
         chosen = PETSc.IS().createStride(len(part), first + part.start, 1, comm=ranks.comm)
         starts, columns, values = matrix.createSubMatrix(chosen).getValuesCSR()
-        products = values.astype(np.longdouble)
-        products *= at_columns(vector, columns)
+        factors = at_columns(vector, columns)
         counts = np.diff(starts)
         filled = np.flatnonzero(counts) + part.start
         at = starts[:-1][counts > 0]
         if len(at):
-            sums[filled] = np.add.reduceat(products, at)
-            terms[filled] = np.add.reduceat(np.abs(products).astype(float), at)
+            sums[filled] = np.add.reduceat(np.multiply(values, factors, dtype=np.longdouble), at)
+            terms[filled] = np.add.reduceat(np.abs(np.multiply(values, factors, out=values), out=values), at)
     return sums, terms
 
 

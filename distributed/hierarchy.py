@@ -48,7 +48,7 @@ OF_LEVELS = {"mg_levels_ksp_type": "richardson", "mg_levels_ksp_max_it": 1, "mg_
 OF_KIND = {
     "gamg": {"pc_type": "gamg", "pc_gamg_coarse_eq_limit": 400},
     "boomeramg": {"pc_type": "hmg", "pc_hmg_reuse_interpolation": "false", "hmg_inner_pc_type": "hypre",
-                  "hmg_inner_pc_hypre_type": "boomeramg", "hmg_inner_pc_hypre_boomeramg_numfunctions": 3,
+                  "hmg_inner_pc_hypre_type": "boomeramg", "hmg_inner_pc_hypre_boomeramg_numfunctions": "D",
                   "hmg_inner_pc_hypre_boomeramg_strong_threshold": 0.5,
                   "hmg_inner_pc_hypre_boomeramg_coarsen_type": "HMIS",
                   "hmg_inner_pc_hypre_boomeramg_interp_type": "ext+i"},
@@ -288,7 +288,7 @@ def built(stiffness, kind, petsc):
     """PETSc's multigrid for K, set up: its prolongators and coarse matrices. Smoothers and coarse solve are our own."""
     options = PETSc.Options(PREFIX)
     for name, value in (OF_LEVELS | OF_KIND[kind]).items():
-        options[name] = value
+        options[name] = stiffness.getBlockSize() if value == "D" else value
     words = petsc.split()
     for at, word in enumerate(words):
         if word.startswith("-"):

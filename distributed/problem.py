@@ -9,7 +9,7 @@ import os
 
 import numpy as np
 
-from ranks import BAD_INPUT, PETSC_INT, PETSc, Refused
+from ranks import BAD_INPUT, PETSC_INT, PETSc, Refused, generic
 
 NO_LIMIT = 1e20
 """A gap of this or more is none."""
@@ -20,7 +20,10 @@ MAT, VEC, INDEX_SET = 1211216, 1211214, 1211218
 DEPENDENT = 1e-8
 """A near-null vector of which less than this share is left after those before it is none of its own."""
 
-CASE_LENGTH = 1e12
+SYMMETRY = 1e-9
+"""Rounding of two products with K, as a share of their lengths."""
+
+LONGEST = 1e12
 """Coordinates beyond this leave no digit for a rotation."""
 
 
@@ -43,6 +46,7 @@ class Problem:
         mark.assemble()
         self.is_free[:] = mark.array_r > 0.0
         self._check_values()
+        self._check_symmetry()
 
     @property
     def dofs(self):
@@ -66,6 +70,17 @@ class Problem:
             if found is not None:
                 allowed = "positive" if name.startswith("the") else "a number"
                 raise Refused(f"{name} has {found[1]:g} in place {int(found[0])} (from 0); it must be {allowed}", BAD_INPUT)
+
+    def _check_symmetry(self):
+        """By two vectors, which an unsymmetric matrix tells apart."""
+        one, other, moved = generic(self.load), generic(self.load), self.load.duplicate()
+        other.array[:] = np.cos(1e3 * one.array_r)
+        self.stiffness.mult(one, moved)
+        there, scale = other.dot(moved), other.norm() * moved.norm()
+        self.stiffness.mult(other, moved)
+        back, scale = one.dot(moved), scale + one.norm() * moved.norm()
+        if not abs(there - back) <= SYMMETRY * scale:
+            raise Refused("K is not symmetric, or has an entry that is no number", BAD_INPUT)
 
     def on_free(self, vector):
         """The values of the free dofs, in the order of the export."""
@@ -185,7 +200,7 @@ def rigid_body_modes(problem, coordinates):
     ranks, size = problem.ranks, problem.dimension
     at = coordinates.array_r.reshape(-1, size)
     nodes = max(coordinates.getSize() // size, 1)
-    bad = np.flatnonzero(~(np.abs(at) < CASE_LENGTH))
+    bad = np.flatnonzero(~(np.abs(at) < LONGEST))
     found = ranks.first(*((problem.first + bad[0], at.ravel()[bad[0]]) if len(bad) else (np.inf, 0.0)))
     if found is not None:
         raise Refused(f"coordinates.petsc has {found[1]:g} in place {int(found[0])} (from 0); it must be a length", BAD_INPUT)
@@ -221,6 +236,8 @@ def orthonormal(modes):
         if rest.norm() > DEPENDENT * whole and whole > 0.0:
             rest.normalize()
             kept.append(rest)
+    if not kept:
+        raise Refused("the near-null space is zero: no displacement of the free dofs is told to cost little energy", BAD_INPUT)
     return kept
 
 

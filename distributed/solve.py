@@ -18,10 +18,10 @@ from answer import Folder, read_vector
 from bounds import Bounds
 from hierarchy import Hierarchy
 
-MARGIN = 0.1
-"""The method ends this much below the tolerance of the certificate, whose scales differ from its own."""
+MARGIN = 1.0
+"""The method ends at this share of the tolerance of the certificate, whose scales are wider than its own."""
 
-NEXT = 0.01
+NEXT = 0.1
 """Where the certificate is not met, the method goes on to this share of what it reached."""
 
 LEAST = 1e-15
