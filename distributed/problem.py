@@ -123,8 +123,10 @@ def _header(folder, name, classid, numbers):
         raise Refused(f"{file} begins with {found}, but a PETSc file of its kind begins with {classid}", BAD_INPUT)
     counts = [int(count) for count in head[1:]]
     if classid == MAT:
-        rows, _, entries = counts
+        rows, columns, entries = counts
         needed = 16 + 4 * rows + 12 * entries if entries < 2**31 - 1 else 0
+        # A dense matrix has no count of entries.
+        needed = 16 + 8 * rows * columns if entries < 0 else needed
     else:
         needed = 8 + (8 if classid == VEC else 4) * counts[0]
     if size < needed:
@@ -146,12 +148,11 @@ def _read_binary(ranks, folder):
     dimension = _block_size(folder)
     places, columns, _ = _header(folder, "K.petsc", MAT, 3)
     rows, of_contact, _ = _header(folder, "B.petsc", MAT, 3)
-    lengths = {name: _header(folder, name, VEC, 1)[0] for name in ("f.petsc", "coordinates.petsc", "g.petsc")}
+    for name, expected in (("f.petsc", places), ("coordinates.petsc", places), ("g.petsc", rows)):
+        (length,) = _header(folder, name, VEC, 1)
+        if length != expected:
+            raise Refused(f"{name} has length {length}, but K and B ask for {expected}", BAD_INPUT)
     (dofs,) = _header(folder, "free.petsc", INDEX_SET, 1)
-    expected = {"f.petsc": places, "coordinates.petsc": places, "g.petsc": rows}
-    for name, length in lengths.items():
-        if length != expected[name]:
-            raise Refused(f"{name} has length {length}, but K and B ask for {expected[name]}", BAD_INPUT)
     if places != columns or places % max(dimension, 1) or dimension not in (2, 3) or of_contact != places or dofs > places:
         found = f"K is {places} x {columns} in blocks of {dimension}, B has {of_contact} columns, free.petsc {dofs} dofs"
         raise Refused(f"{folder}: {found}, which do not fit", BAD_INPUT)
@@ -179,13 +180,29 @@ def _read_binary(ranks, folder):
 
     load = vector("f.petsc", own, places)
     gap = vector("g.petsc", contact.getLocalSize()[0], rows)
-    coordinates = vector("coordinates.petsc", own, places)
     free = loaded(PETSc.IS().create(comm=ranks.comm), "free.petsc")
-    outside = free.getIndices()
-    _check_places(ranks, outside, places)
+    _check_places(ranks, free.getIndices(), places)
     problem = Problem(ranks, dimension, stiffness, load, contact, gap, free, None)
-    problem.modes = rigid_body_modes(problem, coordinates)
+    if os.path.exists(os.path.join(folder, "near_null.petsc")):
+        problem.modes = _near_null(problem, folder, loaded)
+    else:
+        problem.modes = rigid_body_modes(problem, vector("coordinates.petsc", own, places))
     return problem
+
+
+def _near_null(problem, folder, loaded):
+    """The columns of near_null.petsc, a dense matrix."""
+    places, count, _ = _header(folder, "near_null.petsc", MAT, 3)
+    if places != problem.stiffness.getSize()[0] or count < 1:
+        raise Refused(f"near_null.petsc is {places} x {count}, but K has {problem.stiffness.getSize()[0]} rows", BAD_INPUT)
+    table = PETSc.Mat().create(comm=problem.ranks.comm)
+    table.setType("dense")
+    table.setSizes(((problem.last - problem.first, places), (None, count)))
+    loaded(table, "near_null.petsc")
+    columns = table.getDenseArray()
+    if problem.ranks.max(float(not np.all(np.isfinite(columns)))):
+        raise Refused("near_null.petsc holds a value that is no finite number", BAD_INPUT)
+    return [_vector_like(problem.load, column * problem.is_free) for column in columns.T]
 
 
 def _check_places(ranks, free, places):

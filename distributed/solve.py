@@ -18,7 +18,7 @@ from answer import Folder, read_vector
 from bounds import Bounds
 from hierarchy import Hierarchy
 
-MARGIN = 1.0
+MARGIN = 0.5
 """The method ends at this share of the tolerance of the certificate, whose scales are wider than its own."""
 
 NEXT = 0.1
