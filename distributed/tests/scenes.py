@@ -36,7 +36,7 @@ def on_rollers():
 
 def under_inclined_plane(divisions=6):
     inclined = plane("top", "+z", [0.05, 0.02, 1], (0.5, 0.5, 1), rule="closest-point")
-    return scene(box(divisions), ROLLERS + FLOOR, [inclined], gap=-0.01)
+    return scene(box(divisions), ROLLERS + FLOOR, [inclined], gap=-0.01, loads=PRESSED)
 
 
 def held_by_contact():
