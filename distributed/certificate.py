@@ -58,20 +58,18 @@ def certify(problem, bounds, hierarchy, u, multiplier, tolerance):
 
 def accurate_product(ranks, matrix, vector):
     """M v and |M| |v|, in extended precision where the machine has it, for this rank's rows."""
-    rows = matrix.getLocalSize()[0]
-    first = matrix.getOwnershipRange()[0]
+    starts, columns, values = matrix.getValuesCSR()
+    rows = len(starts) - 1
     sums, terms = np.zeros(rows, dtype=np.longdouble), np.zeros(rows)
     for start in range(0, int(ranks.max(float(rows))), CHUNK):
-        part = range(min(start, rows), min(start + CHUNK, rows))
-        chosen = PETSc.IS().createStride(len(part), first + part.start, 1, comm=ranks.comm)
-        starts, columns, values = matrix.createSubMatrix(chosen).getValuesCSR()
-        factors = at_columns(vector, columns)
-        counts = np.diff(starts)
-        filled = np.flatnonzero(counts) + part.start
-        at = starts[:-1][counts > 0]
-        if len(at):
-            sums[filled] = np.add.reduceat(np.multiply(values, factors, dtype=np.longdouble), at)
-            terms[filled] = np.add.reduceat(np.abs(np.multiply(values, factors, out=values), out=values), at)
+        ends = starts[min(start, rows) : min(start + CHUNK, rows) + 1]
+        part = slice(ends[0], ends[-1])
+        factors, of_part = at_columns(vector, columns[part]), values[part]
+        filled = np.flatnonzero(np.diff(ends))
+        if len(filled):
+            at, filled = ends[:-1][filled] - ends[0], filled + start
+            sums[filled] = np.add.reduceat(np.multiply(of_part, factors, dtype=np.longdouble), at)
+            terms[filled] = np.add.reduceat(np.abs(of_part * factors), at)
     return sums, terms
 
 

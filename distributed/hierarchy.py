@@ -15,7 +15,7 @@ Sources: R. Kornhuber, Numer. Math. 69 (1994) 167-184 (truncated basis functions
 import numpy as np
 
 from problem import orthonormal
-from ranks import PETSc
+from ranks import PETSC_INT, PETSc
 
 DEGREE = 3
 """Of the smoothing polynomial, before and after the coarse correction."""
@@ -101,6 +101,12 @@ class Level:
         self.smoother = Chebyshev(matrix, inverse.copy(), self.largest)
         self.x, self.rest, self.force = (inverse.duplicate() for _ in range(3))
         self.coarse = prolongator.createVecRight()
+
+
+def own_columns(matrix):
+    """All columns, each rank its own: were they left out, PETSc would list them all on every rank."""
+    first, last = matrix.getOwnershipRangeColumn()
+    return PETSc.IS().createStride(last - first, first, 1, comm=matrix.comm)
 
 
 def reciprocal(values):
@@ -206,10 +212,10 @@ class Hierarchy:
         return [level.matrix.getSize()[0] for level in self.levels] + [self.coarsest.matrix.getSize()[0]]
 
     def _prepare_faces(self):
-        rows = PETSc.IS().createGeneral(self.candidates.astype(PETSc.IntType), comm=self.stiffness.comm)
+        rows = PETSc.IS().createGeneral(self.candidates.astype(PETSC_INT), comm=self.stiffness.comm)
         prolongator = self.levels[0].prolongator
-        of_rows = self.stiffness.createSubMatrix(rows)
-        self._pb = prolongator.createSubMatrix(rows)
+        of_rows = self.stiffness.createSubMatrix(rows, own_columns(self.stiffness))
+        self._pb = prolongator.createSubMatrix(rows, own_columns(prolongator))
         self._wb = of_rows.matMult(prolongator)
         self._kbb = self.stiffness.createSubMatrix(rows, rows)
         self._share = self._kbb.createVecLeft()

@@ -24,6 +24,9 @@ MARGIN = 0.5
 NEXT = 0.1
 """Where the certificate is not met, the method goes on to this share of what it reached."""
 
+OUT_OF_MEMORY = 55
+"""PETSc's error code."""
+
 LEAST = 1e-15
 """Forces out of balance by less than this, relative, are rounding."""
 
@@ -119,7 +122,8 @@ def main(run, options):
         sys.exit(refusal.code)
     except PETSc.Error as error:
         lines = str(error).splitlines()
-        print(f"rank {ranks.rank}: PETSc ends: {lines[-1] if lines else error}", file=sys.stderr, flush=True)
+        reason = "there is not enough memory" if error.ierr == OUT_OF_MEMORY else f"PETSc ends: {lines[-1] if lines else error}"
+        print(f"rank {ranks.rank}: {reason}", file=sys.stderr, flush=True)
         os._exit(BAD_INPUT)
     except MemoryError:
         print(f"rank {ranks.rank}: there is not enough memory", file=sys.stderr, flush=True)
