@@ -7,7 +7,7 @@ import sys
 import time
 import traceback
 
-from ranks import BAD_INPUT, NO_ANSWER, NOT_CERTIFIED, PETSc, Ranks, Refused
+from ranks import BAD_INPUT, NOT_CERTIFIED, PETSc, Ranks, Refused
 
 import numpy as np
 

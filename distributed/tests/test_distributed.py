@@ -28,6 +28,9 @@ from bounds import Bounds
 from hierarchy import Hierarchy
 
 SIGNORINI = os.environ.get("SIGNORINI", "signorini")
+ENVIRONMENT = dict(os.environ)
+"""Without what MPI, which this process has begun for itself, would tell a run of its own."""
+
 MPIRUN = ["mpirun", "--allow-run-as-root", "--oversubscribe", "--quiet"]
 
 TOLERANCE = 1e-9
@@ -52,14 +55,16 @@ MEASURED = 1.2
 
 def mpi(ranks, program, *arguments, check=True):
     command = [*MPIRUN, "-n", str(ranks), sys.executable, str(PROGRAMS / program), *map(str, arguments)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120, stdin=subprocess.DEVNULL)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, stdin=subprocess.DEVNULL,
+                          env=ENVIRONMENT)
     if check and done.returncode:
         raise AssertionError(f"{program} ended with {done.returncode}: {done.stdout}{done.stderr}")
     return done
 
 
 def signorini(*arguments):
-    done = subprocess.run([SIGNORINI, *map(str, arguments)], capture_output=True, text=True, timeout=120, stdin=subprocess.DEVNULL)
+    done = subprocess.run([SIGNORINI, *map(str, arguments)], capture_output=True, text=True, timeout=120, stdin=subprocess.DEVNULL,
+                          env=ENVIRONMENT)
     if done.returncode:
         raise AssertionError(f"signorini {arguments} ended with {done.returncode}: {done.stdout}{done.stderr}")
     return done
@@ -149,7 +154,8 @@ class AnswersOfTheDirectPath(Case):
         self.assertTrue(closed[:rows].any() and closed[rows:].any())
 
     def test_a_quarter_of_a_half_ball(self):
-        self.check(scenes.quarter_ball(), (2,))
+        # Its cells are stretched up to a hundredfold, which costs any multigrid with point smoothers cycles.
+        self.check(scenes.quarter_ball(), (2,), most_cycles=100)
 
     def test_linear_tetrahedra(self):
         self.check(scenes.pressed_by_sphere(6, "tet4"), (2,))
@@ -215,7 +221,7 @@ class Certificates(Case):
         for answer in (out, self.folder):
             files = answer / "u.mtx", answer / "lambda.mtx"
             done = subprocess.run([SIGNORINI, "verify", problem, "--displacement", files[0], "--multiplier", files[1],
-                                   "--format", "json"], capture_output=True, text=True)
+                                   "--format", "json"], capture_output=True, text=True, env=ENVIRONMENT)
             theirs = json.loads(done.stdout)["certificate"]
             for ranks in (1, 3):
                 ours = json.loads(mpi(ranks, "verify.py", problem, *files, check=False).stdout)["certificate"]
@@ -329,7 +335,7 @@ class Ends(Case):
     def test_a_killed_rank_ends_all_and_leaves_no_answer(self):
         problem, out = self.exported(scenes.pressed_by_sphere(12)), self.folder / "out"
         command = [*MPIRUN, "-n", "2", sys.executable, str(PROGRAMS / "solve.py"), str(problem), "--out", str(out), "--progress"]
-        running = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        running = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
         for line in running.stdout:
             if line.startswith("cycle"):
                 break
