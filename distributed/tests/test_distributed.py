@@ -33,11 +33,8 @@ ENVIRONMENT = dict(os.environ)
 
 MPIRUN = ["mpirun", "--allow-run-as-root", "--oversubscribe", "--quiet"]
 
-TOLERANCE = 1e-9
-"""Of the answers; two of them may be that far apart each, in the norm of energy."""
-
 APART = 1e-7
-"""Largest entries of two certified answers, relative: the tolerance times what the norm of energy leaves open."""
+"""Largest entries of two answers certified to 1e-9, relative: a hundred times that is what the norm of energy leaves open."""
 
 SUMMED = 1e-6
 """A residual is a small difference of large sums: two programs agree on these digits of it."""
