@@ -1,0 +1,137 @@
+#!/usr/bin/env python3
+"""Solves a contact problem on many ranks: mpirun -n 4 python3 distributed/solve.py PROBLEM --out DIR."""
+
+import argparse
+import os
+import sys
+import time
+import traceback
+
+from ranks import BAD_INPUT, NOT_CERTIFIED, PETSc, Ranks, Refused
+
+import numpy as np
+
+import certificate
+import mprgp
+import problem as problems
+from answer import Folder, read_vector
+from bounds import Bounds
+from hierarchy import Hierarchy
+
+MARGIN = 0.5
+"""The method ends at this share of the tolerance of the certificate, whose scales are wider than its own."""
+
+NEXT = 0.1
+"""Where the certificate is not met, the method goes on to this share of what it reached."""
+
+OUT_OF_MEMORY = 55
+"""PETSc's error code."""
+
+LEAST = 1e-15
+"""Forces out of balance by less than this, relative, are rounding."""
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description="Solves a contact problem on many ranks.", epilog="Exit codes: 0 certified, "
+                                     "1 bad input or file, 2 usage, 3 infeasible or under-held, 4 not certified.")
+    parser.add_argument("problem", help="folder that signorini export wrote, with --format petsc or as Matrix Market")
+    parser.add_argument("--out", required=True, help="folder for u.mtx, lambda.mtx and log.json; made if missing")
+    parser.add_argument("--tolerance", type=float, default=1e-9, help="of the certificate (default 1e-9)")
+    parser.add_argument("--start", help="folder of an earlier answer to start from")
+    parser.add_argument("--multigrid", choices=("gamg", "boomeramg"), default="gamg", help="who builds the levels")
+    parser.add_argument("--most-cycles", type=int, default=1000, help="cycles of multigrid, at most (default 1000)")
+    parser.add_argument("--petsc", default="", help="options for PETSc's multigrid, as \"-pc_gamg_threshold 0.02\"")
+    parser.add_argument("--progress", action="store_true", help="print each cycle")
+    options = parser.parse_args()
+    if not 0.0 < options.tolerance < 1.0 or options.most_cycles < 1:
+        parser.error("--tolerance must be between 0 and 1, --most-cycles at least 1")
+    return options
+
+
+def prepared(ranks, folder, kind="gamg", petsc=""):
+    """Problem, bounds and hierarchy, and the seconds that reading and building took."""
+    clock = time.perf_counter()
+    problem = problems.read(ranks, folder)
+    bounds = Bounds(problem)
+    read = time.perf_counter()
+    hierarchy = Hierarchy(bounds, kind, petsc)
+    return problem, bounds, hierarchy, {"read": read - clock, "set_up": time.perf_counter() - read}
+
+
+def started(ranks, iterate, problem, bounds, folder):
+    """Starts from the answer of a folder, or from zero."""
+    if folder is None:
+        return iterate.start()
+    u = read_vector(ranks, os.path.join(folder, "u.mtx"), problem.dofs, "dofs")
+    multiplier = read_vector(ranks, os.path.join(folder, "lambda.mtx"), problem.rows, "contact rows")
+    return iterate.start(bounds.turned(problem.on_places(u)), *bounds.closed_sides(multiplier))
+
+
+def run(ranks, options):
+    problem, bounds, hierarchy, seconds = prepared(ranks, options.problem, options.multigrid, options.petsc)
+    folder = Folder(ranks, options.out)
+    clock = time.perf_counter()
+    iterate = mprgp.Iterate(ranks, bounds, hierarchy.largest)
+    started(ranks, iterate, problem, bounds, options.start)
+    told = (lambda cycles, rest: ranks.say(f"cycle {cycles}: imbalance {rest:.1e}")) if options.progress else None
+    tolerance, cycles, faces, judging = MARGIN * options.tolerance, 0, 0, 0.0
+    while True:
+        progress = mprgp.solve(iterate, hierarchy, tolerance, options.most_cycles - cycles, told)
+        cycles, faces = cycles + progress.cycles, faces + progress.faces
+        mprgp.check_held(iterate, hierarchy, progress.settled)
+        before = time.perf_counter()
+        u, multiplier = bounds.turned_back(iterate.x), bounds.multipliers(iterate.split()[0])
+        numbers, is_certified, looked = certificate.certify(problem, bounds, hierarchy, u, multiplier, options.tolerance)
+        judging += time.perf_counter() - before
+        tolerance *= NEXT
+        if is_certified or not progress.settled or tolerance < LEAST or cycles >= options.most_cycles:
+            break
+    seconds |= {"solve": time.perf_counter() - clock - judging, "certificate": judging}
+    closed = ranks.sum(float(np.count_nonzero(multiplier.array_r < 0.0)))
+    log = {
+        "status": "certified" if is_certified else "not_certified", "method": "mprgp", "tolerance": options.tolerance,
+        "iterations": cycles, "ranks": ranks.size,
+        "contact": {"count": int(closed), "force": -multiplier.sum()},
+        "certificate": numbers,
+        "model": {"dofs": problem.dofs, "contact_rows": problem.rows, "nodes": problem.load.getSize() // problem.dimension},
+        "seconds": seconds | {"total": sum(seconds.values())},
+        "cycles": {"contact": cycles, "certificate": looked, "faces": faces, "products": iterate.products},
+        "levels": hierarchy.unknowns(), "petsc": ".".join(map(str, PETSc.Sys.getVersion())),
+    }
+    folder.vector("u.mtx", problem.on_free(u))
+    folder.vector("lambda.mtx", multiplier)
+    folder.json("log.json", log)
+    folder.finish()
+    certified = f"certified to {options.tolerance:.1e}" if is_certified else f"NOT certified to {options.tolerance:.1e}"
+    ranks.say(f"{problem.dofs} dofs, {problem.rows} contact rows on {ranks.size} ranks: {cycles} cycles, {int(closed)} closed "
+              f"rows, force {-multiplier.sum():.6e}")
+    ranks.say(f"{certified}: stationarity {numbers['stationarity']:.1e}, penetration {numbers['penetration']:.1e}, duality gap "
+              f"{numbers['duality_gap']:.1e}, energy error at most {numbers['energy_error_bound']:.1e}, measured")
+    ranks.say("seconds: " + ", ".join(f"{name} {value:.2f}" for name, value in seconds.items()))
+    return 0 if is_certified else NOT_CERTIFIED
+
+
+def main(run, options):
+    """Runs a program on all ranks and ends each with its exit code."""
+    ranks = Ranks()
+    try:
+        sys.exit(run(ranks, options))
+    except Refused as refusal:
+        if ranks.rank == 0:
+            print(refusal, file=sys.stderr, flush=True)
+        sys.exit(refusal.code)
+    except PETSc.Error as error:
+        lines = str(error).splitlines()
+        reason = "there is not enough memory" if error.ierr == OUT_OF_MEMORY else f"PETSc ends: {lines[-1] if lines else error}"
+        print(f"rank {ranks.rank}: {reason}", file=sys.stderr, flush=True)
+        os._exit(BAD_INPUT)
+    except MemoryError:
+        print(f"rank {ranks.rank}: there is not enough memory", file=sys.stderr, flush=True)
+        os._exit(BAD_INPUT)
+    except Exception:  # The other ranks wait for this one: mpirun must end them.
+        traceback.print_exc()
+        os._exit(BAD_INPUT)
+
+
+if __name__ == "__main__":
+    main(run, arguments())

@@ -1,0 +1,348 @@
+"""The distributed programs against the direct path of signorini, on 1 to 8 ranks: python3 -m unittest discover distributed/tests
+
+Needs mpirun and petsc4py; the environment variable SIGNORINI names the program, `signorini` where it is not set.
+"""
+
+import csv
+import json
+import os
+import shutil
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parent))
+PROGRAMS = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(PROGRAMS))
+import scenes
+from ranks import Ranks
+
+import problem as problems
+from bounds import Bounds
+from hierarchy import Hierarchy
+
+SIGNORINI = os.environ.get("SIGNORINI", "signorini")
+ENVIRONMENT = dict(os.environ)
+"""Without what MPI, which this process has begun for itself, would tell a run of its own."""
+
+MPIRUN = ["mpirun", "--allow-run-as-root", "--oversubscribe", "--quiet"]
+
+APART = 1e-7
+"""Largest entries of two answers certified to 1e-9, relative: a hundred times that is what the norm of energy leaves open."""
+
+SUMMED = 1e-6
+"""A residual is a small difference of large sums: two programs agree on these digits of it."""
+
+ROUNDING = 1e-10
+"""Of a small linear solve."""
+
+LAST = 1e-17
+"""Of a number that is itself rounding: what the order of a sum leaves beside terms of order one."""
+
+MEASURED = 1.2
+"""The bound takes no more than a tenth of the square of the dual norm from its Ritz value, and the repaired witness of
+`signorini verify` is another one."""
+
+
+def mpi(ranks, program, *arguments, check=True):
+    command = [*MPIRUN, "-n", str(ranks), sys.executable, str(PROGRAMS / program), *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, stdin=subprocess.DEVNULL,
+                          env=ENVIRONMENT)
+    if check and done.returncode:
+        raise AssertionError(f"{program} ended with {done.returncode}: {done.stdout}{done.stderr}")
+    return done
+
+
+def signorini(*arguments):
+    done = subprocess.run([SIGNORINI, *map(str, arguments)], capture_output=True, text=True, timeout=120, stdin=subprocess.DEVNULL,
+                          env=ENVIRONMENT)
+    if done.returncode:
+        raise AssertionError(f"signorini {arguments} ended with {done.returncode}: {done.stdout}{done.stderr}")
+    return done
+
+
+def array(file):
+    return np.loadtxt(file, skiprows=2, ndmin=1)
+
+
+def written(file, values):
+    file.write_text(f"%%MatrixMarket matrix array real general\n{len(values)} 1\n" + "".join(f"{v!r}\n" for v in values))
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp(prefix="distributed-"))
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def exported(self, scene, form="petsc"):
+        file, folder = self.folder / "scene.json", self.folder / form
+        file.write_text(json.dumps(scene))
+        signorini("export", file, folder, "--format", form)
+        return folder
+
+    def direct(self, scene):
+        """The answer of signorini's direct path."""
+        file, folder = self.folder / "scene.json", self.folder / "direct"
+        file.write_text(json.dumps(scene))
+        signorini("solve", file, "--method", "active-set", "--pictures", "none", "--out", folder)
+        return folder
+
+    def solved(self, ranks, problem, *options):
+        out = self.folder / f"out-{ranks}-{len(list(self.folder.iterdir()))}"
+        mpi(ranks, "solve.py", problem, "--out", out, *options)
+        return out
+
+    def assert_same(self, one, other):
+        forces = array(one / "lambda.mtx"), array(other / "lambda.mtx")
+        moved = array(one / "u.mtx"), array(other / "u.mtx")
+        self.assertTrue(np.any(forces[0] < 0.0))
+        np.testing.assert_array_equal(forces[0] < 0.0, forces[1] < 0.0)
+        for a, b in (forces, moved):
+            self.assertLess(np.abs(a - b).max(), APART * np.abs(a).max())
+
+    def refused(self, ranks, problem, sentence, code, *options, program="solve.py"):
+        """Ends with this code and sentence, without a trace of Python and without a file of an answer."""
+        out = self.folder / "refused"
+        done = mpi(ranks, program, problem, "--out", out, *options, check=False)
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        self.assertIn(sentence, done.stdout + done.stderr)
+        self.assertNotIn("Traceback", done.stderr)
+        self.assertFalse((out / "u.mtx").exists() or (out / "lambda.mtx").exists())
+
+
+class AnswersOfTheDirectPath(Case):
+    def check(self, scene, ranks, form="petsc", *options, most_cycles=30):
+        direct, problem = self.direct(scene), self.exported(scene, form)
+        for count in ranks:
+            out = self.solved(count, problem, *options)
+            self.assert_same(direct, out)
+            self.assertLessEqual(json.loads((out / "log.json").read_text())["iterations"], most_cycles)
+
+    def test_a_block_under_a_sphere_on_1_2_4_and_8_ranks(self):
+        self.check(scenes.pressed_by_sphere(8), (1, 2, 4, 8))
+
+    def test_a_box_on_rollers_in_both_formats(self):
+        self.check(scenes.on_rollers(), (2,))
+        self.check(scenes.on_rollers(), (1, 3), "matrix-market")
+
+    def test_a_box_under_an_inclined_plane(self):
+        self.check(scenes.under_inclined_plane(), (1, 4))
+
+    def test_a_body_without_supports_in_a_corner(self):
+        self.check(scenes.held_by_contact(), (1, 4))
+
+    def test_unknowns_with_bounds_on_both_sides(self):
+        problem = self.exported(scenes.sheared_under_a_plane(), "matrix-market")
+        head, sizes, *entries = (problem / "B.mtx").read_text().split("\n")
+        rows, dofs, count = (int(word) for word in sizes.split())
+        more = [f"{int(row) + rows} {dof} -{b}" for row, dof, b in (line.split() for line in entries if line)]
+        (problem / "B.mtx").write_text("\n".join([head, f"{2 * rows} {dofs} {2 * count}", *filter(None, entries), *more, ""]))
+        written(problem / "g.mtx", [*array(problem / "g.mtx").tolist(), *[1e-3] * rows])
+        signorini("solve", problem, "--method", "active-set", "--out", self.folder / "direct")
+        out = self.solved(3, problem)
+        self.assert_same(self.folder / "direct", out)
+        closed = array(out / "lambda.mtx") < 0.0
+        self.assertTrue(closed[:rows].any() and closed[rows:].any())
+
+    def test_a_quarter_of_a_half_ball(self):
+        # Its cells are stretched up to a hundredfold, which costs any multigrid with point smoothers cycles.
+        self.check(scenes.quarter_ball(), (2,), most_cycles=100)
+
+    def test_linear_tetrahedra(self):
+        self.check(scenes.pressed_by_sphere(6, "tet4"), (2,))
+
+    def test_triangles_in_the_plane(self):
+        self.check(scenes.in_the_plane(), (2,))
+
+    def test_levels_of_boomeramg(self):
+        self.check(scenes.pressed_by_sphere(6), (2,), "petsc", "--multigrid", "boomeramg")
+
+    def test_more_ranks_than_nodes(self):
+        self.check(scenes.under_inclined_plane(1), (8,), most_cycles=3)
+
+
+class Cycles(Case):
+    def cycled(self, divisions):
+        """A hierarchy in the face of one closed row, its stiffness, and the cycle as a function of arrays."""
+        ranks = Ranks()
+        problem = problems.read(ranks, str(self.exported(scenes.pressed_by_sphere(divisions))))
+        hierarchy = Hierarchy(Bounds(problem))
+        hierarchy.hold(np.arange(len(hierarchy.candidates)) == 0)
+
+        def cycle(force):
+            f, x = problem.load.duplicate(), problem.load.duplicate()
+            f.array[:] = force
+            hierarchy.cycle(f, x)
+            return x.array_r.copy()
+
+        return hierarchy, cycle
+
+    def test_one_level_is_inverted_in_its_face(self):
+        hierarchy, cycle = self.cycled(1)
+        self.assertEqual(hierarchy.levels, [])
+        force = np.linspace(1.0, 2.0, hierarchy.stiffness.getSize()[0])
+        moved = cycle(force)
+        (held,) = hierarchy.held
+        rest = hierarchy.stiffness[:, :] @ moved - force
+        self.assertEqual(moved[held], 0.0)
+        self.assertGreater(abs(rest[held]), 1.0)
+        rest[held] = 0.0
+        self.assertLess(np.abs(rest).max(), ROUNDING)
+
+    def test_a_cycle_is_symmetric_and_moves_nothing_that_is_held(self):
+        hierarchy, cycle = self.cycled(4)
+        self.assertGreater(len(hierarchy.levels), 0)
+        size = hierarchy.stiffness.getSize()[0]
+        one, other = np.cos(np.arange(size)), np.sin(0.3 * np.arange(size) ** 2)
+        self.assertEqual(cycle(one)[hierarchy.held].tolist(), [0.0])
+        there, back = other @ cycle(one), one @ cycle(other)
+        self.assertLess(abs(there - back), ROUNDING * abs(there))
+        self.assertGreater(one @ cycle(one), 0.0)
+
+
+class Certificates(Case):
+    def test_the_numbers_of_signorini_verify(self):
+        problem = self.exported(scenes.pressed_by_sphere(6))
+        out = self.solved(2, problem)
+        u, forces = array(out / "u.mtx"), array(out / "lambda.mtx")
+        # An answer that is off in every way: forces out of balance, one that pulls, rows behind their obstacle.
+        forces[np.argmax(forces == 0.0)] = 1e-6 * np.abs(forces).max()
+        written(self.folder / "u.mtx", (u * (1.0 + 1e-6)).tolist())
+        written(self.folder / "lambda.mtx", forces.tolist())
+        for answer in (out, self.folder):
+            files = answer / "u.mtx", answer / "lambda.mtx"
+            done = subprocess.run([SIGNORINI, "verify", problem, "--displacement", files[0], "--multiplier", files[1],
+                                   "--format", "json"], capture_output=True, text=True, env=ENVIRONMENT)
+            theirs = json.loads(done.stdout)["certificate"]
+            for ranks in (1, 3):
+                ours = json.loads(mpi(ranks, "verify.py", problem, *files, check=False).stdout)["certificate"]
+                for name in ("stationarity", "stationarity_excess", "penetration", "adhesion", "complementarity", "duality_gap"):
+                    self.assertLessEqual(abs(ours[name] - theirs[name]), SUMMED * theirs[name] + LAST, name)
+                ratio = ours["energy_error_bound"] / theirs["energy_error_bound"]
+                self.assertGreater(ratio, 1.0 / MEASURED)
+                if answer == out:
+                    self.assertLess(ratio, MEASURED)
+
+    def test_a_wrong_answer_is_not_certified(self):
+        problem = self.exported(scenes.pressed_by_sphere(4))
+        out = self.solved(1, problem)
+        written(self.folder / "u.mtx", (array(out / "u.mtx") * 1.001).tolist())
+        done = mpi(2, "verify.py", problem, self.folder / "u.mtx", out / "lambda.mtx", check=False)
+        self.assertEqual(done.returncode, 4)
+        self.assertEqual(json.loads(done.stdout)["status"], "not_certified")
+
+    def test_an_answer_of_another_problem_is_refused(self):
+        problem = self.exported(scenes.pressed_by_sphere(4))
+        written(self.folder / "u.mtx", [0.0] * 7)
+        done = mpi(2, "verify.py", problem, self.folder / "u.mtx", self.folder / "u.mtx", check=False)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("is no array of 300 dofs", done.stderr)
+
+
+class Starts(Case):
+    def test_an_answer_is_found_at_once_from_itself_and_sooner_from_a_near_one(self):
+        problem = self.exported(scenes.pressed_by_sphere(10))
+        out = self.solved(2, problem)
+        cycles = [json.loads((self.solved(3, problem, "--start", start) / "log.json").read_text())["iterations"]
+                  for start in (out,)]
+        self.assertEqual(cycles, [0])
+        near = self.folder / "near"
+        near.mkdir()
+        written(near / "u.mtx", (array(out / "u.mtx") * (1.0 + 1e-5)).tolist())
+        shutil.copy(out / "lambda.mtx", near)
+        again = self.solved(2, problem, "--start", near)
+        self.assert_same(out, again)
+        first, second = (json.loads((folder / "log.json").read_text())["iterations"] for folder in (out, again))
+        self.assertLess(second, first)
+
+
+class Refusals(Case):
+    def test_rows_between_two_bodies(self):
+        self.refused(2, self.exported(scenes.between_two_bodies()), "couples nodes", 1)
+
+    def test_rows_of_one_node_that_are_neither_parallel_nor_at_right_angles(self):
+        self.refused(2, self.exported(scenes.under_two_inclined_planes()), "neither parallel nor at right angles", 1)
+
+    def test_a_motion_that_nothing_holds(self):
+        problem = self.exported(scenes.held_by_contact())
+        gap = problem / "g.petsc"
+        content = bytearray(gap.read_bytes())
+        with (problem / "rows.csv").open() as stream:
+            walls = [line for line, row in enumerate(csv.DictReader(stream)) if abs(float(row["normal_x"])) > 0.5]
+        self.assertTrue(walls)
+        # Without the wall at the left the load pushes the body along -x, for ever.
+        for row in walls:
+            content[8 + 8 * row : 16 + 8 * row] = struct.pack(">d", 1e20)
+        gap.write_bytes(content)
+        self.refused(2, problem, "under-held", 3)
+
+    def test_files_that_are_missing_cut_off_or_do_not_fit(self):
+        problem = self.exported(scenes.pressed_by_sphere(4))
+        self.refused(2, self.folder / "nothing", "neither K.petsc nor K.mtx", 1)
+        stiffness = (problem / "K.petsc").read_bytes()
+        (problem / "K.petsc").write_bytes(stiffness[:-8])
+        self.refused(2, problem, "is cut off", 1)
+        (problem / "K.petsc").write_bytes(b"not this" + stiffness[8:])
+        self.refused(2, problem, "begins with", 1)
+        changed = bytearray(stiffness)
+        changed[-8 * 20 : -8 * 19] = struct.pack(">d", 1e9)
+        (problem / "K.petsc").write_bytes(changed)
+        self.refused(2, problem, "not symmetric", 1)
+        (problem / "K.petsc").write_bytes(stiffness)
+        load = (problem / "f.petsc").read_bytes()
+        (problem / "f.petsc").write_bytes(load[:-8] + struct.pack(">d", float("nan")))
+        self.refused(2, problem, "f has nan in place", 1)
+        (problem / "f.petsc").write_bytes(load)
+        self.refused(2, problem, "No such file", 1, "--start", self.folder / "nothing")
+
+    def test_a_near_null_space_that_is_wrong(self):
+        problem = self.exported(scenes.pressed_by_sphere(6), "matrix-market")
+        dofs = len(array(problem / "f.mtx"))
+        right = self.solved(1, problem)
+        near_null = problem / "near_null.mtx"
+        written(near_null, [0.0] * dofs)
+        self.refused(2, problem, "near-null space is zero", 1)
+        written(near_null, [0.0] * (dofs - 1))
+        self.refused(2, problem, "near_null.mtx must have", 1)
+        # Noise costs cycles, and changes nothing about the answer.
+        written(near_null, np.random.default_rng(1).standard_normal(dofs).tolist())
+        self.assert_same(right, self.solved(2, problem))
+
+    def test_options_that_are_none(self):
+        problem = self.exported(scenes.pressed_by_sphere(2))
+        self.refused(1, problem, "--tolerance must be", 2, "--tolerance", "0")
+
+
+class Ends(Case):
+    def test_a_full_disk_leaves_nothing(self):
+        problem, out = self.exported(scenes.pressed_by_sphere(4)), self.folder / "out"
+        out.mkdir()
+        (out / ".lambda.mtx.partial").symlink_to("/dev/full")
+        done = mpi(2, "solve.py", problem, "--out", out, check=False)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("No space left", done.stderr)
+        self.assertEqual(list(out.iterdir()), [])
+
+    def test_a_killed_rank_ends_all_and_leaves_no_answer(self):
+        problem, out = self.exported(scenes.pressed_by_sphere(12)), self.folder / "out"
+        command = [*MPIRUN, "-n", "2", sys.executable, str(PROGRAMS / "solve.py"), str(problem), "--out", str(out), "--progress"]
+        running = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
+        for line in running.stdout:
+            if line.startswith("cycle"):
+                break
+        children = Path(f"/proc/{running.pid}/task/{running.pid}/children").read_text().split()
+        self.assertEqual(len(children), 2)
+        os.kill(int(children[1]), signal.SIGKILL)
+        running.communicate(timeout=60)
+        self.assertNotEqual(running.returncode, 0)
+        self.assertFalse((out / "u.mtx").exists() or (out / "lambda.mtx").exists() or (out / "log.json").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
