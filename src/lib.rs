@@ -33,6 +33,16 @@
 //! # Ok::<(), signorini::Error>(())
 //! ```
 //!
+//! # Start here
+//!
+//! | you have | take | it gives |
+//! |---|---|---|
+//! | K, f, B and g | [`ContactProblem`] and [`solve_qp`] or [`solve`] | a certified [`Solution`] |
+//! | a scene in JSON | [`Scene`] and its [`Model`] | the problem, and stresses and pressures of an answer |
+//! | many gaps or loads | [`Prepared`] | one factorisation for all of them, and the exact [`Path`] between two gaps |
+//! | an accuracy, a time, threads, a method | [`Settings`] | what [`solve`] and [`Prepared`] keep to |
+//! | a button that cancels | [`Watch`] | an end from another thread, with the best answer so far |
+//!
 //! # The rooms
 //!
 //! | module | what it holds |

@@ -91,8 +91,9 @@ pub enum Precision {
 /// ```
 /// use signorini::{Method, Settings};
 ///
-/// let settings = Settings::with_method(Method::ActiveSet).with_tolerance(1e-12).with_proof();
-/// assert_eq!(settings.tolerance, 1e-12);
+/// // Two threads for the factorisation; the answer is the same, bit by bit, as with one.
+/// let settings = Settings::with_method(Method::ActiveSet).with_tolerance(1e-12).with_threads(2).with_proof();
+/// assert_eq!((settings.tolerance, settings.threads), (1e-12, 2));
 /// ```
 ///
 /// A setting changes what `Ok` promises, or how the answer is found:

@@ -49,6 +49,15 @@ use crate::error::Error;
 /// A real matrix in compressed columns: rows sorted within each column, no duplicates, all values finite.
 ///
 /// Clones share their memory, and so do matrices of one pattern: a stiffness and its scaled form keep one set of indices.
+///
+/// ```
+/// use signorini::SparseMatrix;
+///
+/// // One contact row over three dofs: u_1 - u_2.
+/// let contact = SparseMatrix::from_triplets(1, 3, &[(0, 1, 1.0), (0, 2, -1.0)])?;
+/// assert_eq!((contact.rows(), contact.columns()), (1, 3));
+/// # Ok::<(), signorini::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct SparseMatrix {
     rows: usize,
