@@ -106,7 +106,7 @@ impl Model {
     }
 
     /// The force on the one obstacle that a force presses; `None` where there is no such obstacle, or several.
-    #[cfg(feature = "pictures")]
+    #[cfg(feature = "cli")]
     pub(crate) fn pressing_force(&self) -> Option<f64> {
         let &[force] = &self.pressing_forces()[..] else { return None };
         Some(force)
