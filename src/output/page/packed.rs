@@ -28,7 +28,7 @@ enum Form {
     Bytes,
 }
 
-/// If an array stands in the block, and how it is read.
+/// The position of an array in the block, and its form.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Packed {
     form: Form,
