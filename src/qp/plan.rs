@@ -514,7 +514,8 @@ pub(super) fn safer(tried: &Tried, settings: &Settings, fell_short: &Error) -> O
     may_gain.then(|| (Settings { condense: Condense::Never, ..safe }, start))
 }
 
-/// Returns `true` if an answer meets all conditions up to rounding of its displacement, and misses only an accuracy beyond that.
+/// Returns `true` if the conditions hold and no error bound exceeds the effect of rounding the displacement: the answer can only miss
+/// an accuracy beyond that.
 fn is_exact(certificate: &Certificate, settings: &Settings) -> bool {
     certificate.conditions_hold(settings.tolerance) && certificate.energy_error_excess == 0.0
 }
