@@ -31,7 +31,7 @@ pub(super) struct Arguments {
     pub command: Command,
 }
 
-/// Which of three knobs is which.
+/// The meaning of three similar options.
 const KNOBS: &str = "\
 --tolerance is how well the conditions of contact hold, --accuracy how far off the displacement may be,
 --time when the program must be done.";

@@ -73,7 +73,7 @@ impl Drop for Progress {
         if let Some((end, drawing)) = self.0.take() {
             drop(end);
             if drawing.join().unwrap_or(true) {
-                // Where it is closed nobody has seen the line.
+                // If standard error is closed, the line was not visible.
                 let _ = io::stderr().write_all(ERASED.as_bytes());
             }
         }

@@ -191,7 +191,7 @@ impl ContactPicture<'_> {
     }
 
     fn field_title(&self, field: &FieldPanel) -> String {
-        // If nothing is displaced, the nodes are where the body is.
+        // Without a displacement, the nodes are on the undeformed body.
         let of = if self.is_displaced() { "on the undeformed body" } else { "on the body" };
         match self.fields.len() {
             1 => format!("{} {of}", field.quantity.name),

@@ -183,7 +183,7 @@ impl Model {
         &self.parts
     }
 
-    /// What the scene shows.
+    /// The title of the scene.
     pub fn title(&self) -> &str {
         &self.parts.title
     }

@@ -25,7 +25,7 @@ pub(super) struct Page<'a> {
     pub about: &'a About,
     pub units: PageUnits,
     pub colours: Colours,
-    /// The object of `report.json`, without seconds except for a trade-off; empty for a sweep, which has its points in `sweep`.
+    /// The object of `report.json`, without seconds except for a trade-off; null for a sweep, which has its points in `sweep`.
     #[serde(skip_serializing_if = "Value::is_null")]
     pub report: Value,
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -52,7 +52,7 @@ pub struct Scene {
     #[serde(default, deserialize_with = "format", skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "cli", schemars(extend("const" = 1)))]
     pub format: Option<u32>,
-    /// What the scene shows.
+    /// Title: what the scene shows.
     #[serde(default)]
     pub title: String,
     /// Names of the units, for tables and pictures.
