@@ -79,8 +79,8 @@ impl Hierarchical {
     }
 }
 
-/// The certificate of an answer from elsewhere, with the bound of the cycles; without one if the stiffness has no hierarchy, because
-/// a dof has no stiffness or a direction negative energy.
+/// The certificate of an answer from elsewhere, with the bound of the cycles. The bound is missing if the stiffness has no hierarchy,
+/// because a dof has no stiffness or a direction has negative energy.
 ///
 /// # Errors
 /// As [`Hierarchical::new`] and [`ContactProblem::certify`].

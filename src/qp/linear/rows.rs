@@ -31,7 +31,7 @@ impl SymmetricMatrix {
     }
 
     /// Calls `take(columns, values)` for each row, from the first on, with its columns in their order. In addition to the matrix this
-    /// takes 4 and 8 bytes for each row, and 12 bytes for each of half a million entries.
+    /// takes 4 + 8 bytes for each row, and 12 bytes for each of half a million entries.
     ///
     /// # Errors
     /// Those of `take`.
