@@ -16,7 +16,7 @@ pub(super) struct MotionTable {
     path: PathBuf,
     /// Lines that are not written yet.
     lines: String,
-    /// Bytes of the file that this run has written.
+    /// Number of bytes of the file that belong to this run.
     written: u64,
 }
 

@@ -140,7 +140,7 @@ fn advice_of_meshes(tradeoff: &Tradeoff) -> String {
     text
 }
 
-/// The error of the cheapest answer of each method that is never exact, beside the active set.
+/// Time and force error of the cheapest loose answer of each method that is never exact, beside the exact active set.
 fn losses(points: &[TradeoffPoint]) -> String {
     let cheapest = |method: &str, good: &dyn Fn(&TradeoffPoint) -> bool| {
         let own = points.iter().filter(|point| point.mesh == 0 && point.method == method && good(point));
