@@ -1,5 +1,5 @@
-//! Files read up to a cap: a device without end or a file beyond all sense is refused before it fills the memory. Files of numbers
-//! that are larger than they need be in memory are read, and written, piece by piece.
+//! Files read up to a cap: an endless device or an absurdly large file is refused before it fills the memory. Files of numbers that
+//! take more room than the numbers in memory are read, and written, piece by piece.
 
 use std::fs::File;
 #[cfg(feature = "pictures")]
@@ -15,16 +15,16 @@ pub const MOST_OF_SCENE: u64 = 256 << 20;
 /// Most bytes of a mesh: more than any body that can be solved needs.
 pub const MOST_OF_TABLE: u64 = 4 << 30;
 
-/// Most bytes of a matrix in text, which does not stand in memory: fifty million dofs of a body in space.
+/// Most bytes of a matrix in text, which is not held in memory: fifty million dofs of a body in space.
 pub const MOST_OF_MATRIX: u64 = 64 << 30;
 
 /// Most bytes of a surface: twenty million triangles.
 pub const MOST_OF_SURFACE: u64 = 1 << 30;
 
-/// Most bytes of what is no regular file, and so does not say how long it is: a pipe, a device.
+/// Most bytes of an input of unknown length, not a regular file: a pipe, a device.
 const MOST_OF_STREAM: u64 = 64 << 20;
 
-/// The bytes of a file, at most `most` of them.
+/// The bytes of a file, at most `most` bytes.
 ///
 /// # Errors
 /// [`Error::File`] for a file that cannot be read, and for one that is longer.
@@ -43,7 +43,7 @@ fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 /// A file that is read up to a cap; beyond it, reading fails.
 pub struct Capped {
     file: File,
-    /// Bytes of a regular file; 0 of another, which does not say.
+    /// Bytes of a regular file; 0 for other files, of unknown length.
     pub length: u64,
     most: u64,
     left: u64,
@@ -71,7 +71,7 @@ impl Read for Capped {
     }
 }
 
-/// A file to be read piece by piece, at most `most` bytes of it.
+/// A file to be read piece by piece, at most `most` bytes.
 ///
 /// # Errors
 /// As [`read_capped`].
@@ -119,7 +119,7 @@ fn is_named_pipe(_: &Path) -> bool {
 /// The text of a file, at most `most` bytes of UTF-8.
 ///
 /// # Errors
-/// As [`read_capped`], and for bytes that are no UTF-8.
+/// As [`read_capped`], and for bytes that are not UTF-8.
 pub fn read_text_capped(path: &Path, most: u64) -> Result<String, Error> {
     String::from_utf8(read_capped(path, most)?).map_err(|_| {
         let source = io::Error::new(io::ErrorKind::InvalidData, "stream did not contain valid UTF-8");
@@ -127,7 +127,7 @@ pub fn read_text_capped(path: &Path, most: u64) -> Result<String, Error> {
     })
 }
 
-/// A file to be written, piece by piece: it never stands in memory as a whole.
+/// A file to be written piece by piece: it is never in memory as a whole.
 #[cfg(feature = "pictures")]
 pub struct Streamed<'a> {
     /// Its name in its folder.
@@ -141,7 +141,7 @@ type Contents<'a> = dyn Fn(&mut dyn Write) -> io::Result<()> + 'a;
 
 #[cfg(feature = "pictures")]
 impl<'a> Streamed<'a> {
-    /// The file of this name whose contents are written by a function, the same each time that it is called.
+    /// The file of this name; a function writes its contents, the same at each call.
     pub fn new(name: &'static str, contents: impl Fn(&mut dyn Write) -> io::Result<()> + 'a) -> Self {
         Streamed { name, contents: Box::new(contents) }
     }
@@ -158,7 +158,7 @@ impl<'a> Streamed<'a> {
     #[cfg(feature = "cli")]
     pub fn bytes(&self) -> u64 {
         let mut counter = Counter(0);
-        // A counter takes everything.
+        // Writing to a counter cannot fail.
         let _ = self.write(&mut counter);
         counter.0
     }

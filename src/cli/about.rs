@@ -1,4 +1,4 @@
-//! What a page says of where it comes from.
+//! The origin of a page, as the page states it.
 
 use std::fmt::Write;
 use std::io::Read;
@@ -7,21 +7,21 @@ use std::path::{Path, PathBuf};
 use crate::file::open_regular;
 use crate::output::page::About;
 
-/// The files of a problem directory, in the order in which they are hashed: of the one form or the other.
+/// The files of a problem directory in either form, in the order of hashing.
 const PROBLEM_FILES: [&[&str]; 2] =
     [&["K.mtx", "f.mtx", "B.mtx", "g.mtx"], &["K.petsc", "f.petsc", "B.petsc", "g.petsc", "free.petsc"]];
 
 /// Bytes that are hashed at a time.
 const PIECE: usize = 1 << 20;
 
-/// The page of `command` on the scene file or problem directory `input`, which is hashed as it stands now, if there is a folder for
-/// the page.
+/// The page of `command` on the scene file or problem directory `input`. If there is a folder for the page, the present content of
+/// `input` is hashed.
 pub(super) fn about(title: &str, command: &'static str, input: &Path, out: Option<&PathBuf>, threads: usize) -> About {
     let name = input.file_name().map_or_else(|| "-".to_string(), |name| name.to_string_lossy().into_owned());
     About::new(title.to_string(), command, name, out.and_then(|_| hash_of(input)), threads)
 }
 
-/// SHA-256 in hexadecimal digits; none of what cannot be read twice, as standard input.
+/// SHA-256 in hexadecimal digits; `None` for an input that cannot be read twice, as standard input.
 fn hash_of(input: &Path) -> Option<String> {
     let files = match input.is_dir() {
         true => PROBLEM_FILES.iter().map(|names| names.iter().map(|name| input.join(name)).collect()).collect(),

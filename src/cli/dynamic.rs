@@ -67,7 +67,7 @@ pub(super) fn run(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outco
     }))
 }
 
-/// The steps of a motion, and what they leave.
+/// The steps of a motion, and their output.
 struct Run<'a> {
     model: &'a Arc<Model>,
     dynamics: &'a Dynamics,
@@ -82,7 +82,7 @@ impl<'a> Run<'a> {
         Run { model, dynamics, integrator, summary, folder: None }
     }
 
-    /// A new run, which leaves its frames in a folder.
+    /// A new run, which writes its frames into a folder.
     fn in_folder(
         model: &'a Arc<Model>,
         dynamics: &'a Dynamics,
@@ -98,7 +98,7 @@ impl<'a> Run<'a> {
         Ok(Run { folder: Some(folder), ..run })
     }
 
-    /// The run that a folder holds, to go on with.
+    /// The run in a folder, to be resumed.
     fn resumed(
         model: &'a Arc<Model>,
         dynamics: &'a Dynamics,
@@ -119,10 +119,10 @@ impl<'a> Run<'a> {
         Ok(Run { model, dynamics, integrator, summary, folder: Some(folder) })
     }
 
-    /// All steps that are left, as long as the watch allows.
+    /// All remaining steps, until the watch stops them.
     fn advance(&mut self, watch: &Watch) -> Result<(), Error> {
         let Dynamics { steps: last, frames, step, .. } = *self.dynamics;
-        // A frame ends where the share of the steps reaches the next whole number of frames.
+        // A frame ends when the share of the steps reaches the next whole number of frames.
         let frames_until = |step: usize| step as u128 * frames as u128 / last as u128;
         while self.integrator.state().steps < last {
             watch.part("step", self.integrator.state().steps + 1, last);

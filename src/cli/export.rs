@@ -43,7 +43,7 @@ pub(super) fn run(options: &Export) -> Result<Outcome, Error> {
     Ok(Outcome::done(text))
 }
 
-/// Where the dofs of a model stand in PETSc's files.
+/// The places of the dofs of a model in PETSc's files.
 fn layout_of(model: &Model) -> Result<petsc::Layout, Error> {
     if model.meanings().any(|meaning| !matches!(meaning, Meaning::Node { .. })) {
         let message = "petsc has blocks for nodes alone, but the scene has rigid faces or obstacles that a force presses, which \

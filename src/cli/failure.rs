@@ -1,4 +1,4 @@
-//! An error as a command leaves it: one sentence, the status of its report, one exit code.
+//! The error of a command: one sentence, the status of its report, one exit code.
 
 use serde_json::json;
 
@@ -7,7 +7,7 @@ use super::outcome::{Ending, Outcome};
 use crate::error::{Error, Failure};
 use crate::output::printable;
 
-/// More characters than this of a message are left out of its middle: a file may repeat megabytes in it.
+/// If a message has more characters than this, its middle is left out: it may quote megabytes of a file.
 const LONGEST_SENTENCE: usize = 800;
 
 /// The message of an error on one line of bearable length.

@@ -1,4 +1,4 @@
-//! A scene or a problem directory: what is the same of both for the commands.
+//! A scene or a problem directory: the common interface for the commands.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -13,10 +13,10 @@ use crate::solution::{Goal, Solution};
 use crate::study::scene::problem_summary;
 use crate::study::{Summary, scene_summary};
 
-/// Stands for standard input where a file is named.
+/// The file name that means standard input.
 const STANDARD_INPUT: &str = "-";
 
-/// What there is to solve.
+/// The input to be solved.
 pub(super) struct Input {
     pub title: String,
     pub units: Units,
@@ -29,9 +29,9 @@ pub(super) enum Content {
     Directory(ContactProblem),
 }
 
-/// What was read before anything is built; a pipe is read only once.
+/// The input as read, before anything is built; a pipe is read only once.
 pub(super) enum Source {
-    /// A scene, with the seconds that reading it took.
+    /// A scene, with the time of reading it in seconds.
     Scene(Box<Scene>, f64),
     Directory(Box<Input>),
 }
@@ -88,7 +88,7 @@ impl Input {
         }
     }
 
-    /// The numbers of a solution, with what only its answer to a scene can tell.
+    /// The numbers of a solution; for a scene with those that only its answer gives.
     pub fn summary(
         &self,
         solution: Solution,
@@ -109,7 +109,7 @@ impl Input {
         }
     }
 
-    /// The warnings of the scene, one line each; none of a problem directory.
+    /// The warnings of the scene, one line each; none for a problem directory.
     pub fn warnings(&self) -> String {
         match &self.content {
             Content::Scene(model) => warnings(model),
@@ -125,7 +125,7 @@ pub(super) fn still_model(path: &Path, limits: &Limits) -> Result<Model, Error> 
     build(&scene, path)
 }
 
-/// Refuses a scene whose motion is asked for.
+/// Refuses a scene that asks for its motion.
 pub(super) fn rests(scene: &Scene) -> Result<(), Error> {
     if scene.analysis.is_none() {
         return Ok(());
@@ -136,7 +136,7 @@ pub(super) fn rests(scene: &Scene) -> Result<(), Error> {
 
 /// Reads a scene of any size.
 pub(super) fn scene_of(path: &Path, limits: &Limits) -> Result<Scene, Error> {
-    // What comes by a pipe stands in the folder in which the program runs.
+    // A scene from a pipe has the working folder of the program as its folder.
     let scene = match path == Path::new(STANDARD_INPUT) {
         true => Scene { folder: Some(PathBuf::new()), ..Scene::read("/dev/stdin")? },
         false => Scene::read(path)?,
@@ -151,12 +151,12 @@ pub(super) fn read_scene(path: &Path, limits: &Limits) -> Result<Scene, Error> {
     Ok(scene)
 }
 
-/// Builds the scene of a file; a value at fault is named with its line and column.
+/// Builds the scene of a file; an error names the line and column of the wrong value.
 pub(super) fn build(scene: &Scene, path: &Path) -> Result<Model, Error> {
     scene.build().map_err(|error| Scene::located(error, path))
 }
 
-/// The title of a scene, or its file where it has none.
+/// The title of a scene, or its file if it has none.
 pub(super) fn scene_title(model: &Model, path: &Path) -> String {
     if model.title().is_empty() { path.display().to_string() } else { model.title().to_string() }
 }

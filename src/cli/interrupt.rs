@@ -8,15 +8,15 @@ use crate::watch::Watch;
 /// The exit code of a command that was interrupted.
 pub(super) const INTERRUPTED: u8 = 130;
 
-/// The work has so long to notice that it should end, so that the program ends within a second.
+/// The time in which the work must notice the request, so that the program ends within a second.
 const PATIENCE: Duration = Duration::from_millis(800);
 
 /// Bytes of the stack of a thread that waits for a signal or a moment: the default of 2 MB would count against a limit of
 /// the address space.
 const STACK: usize = 64 << 10;
 
-/// Lets interrupts stop what `watch` watches. A factorisation cannot be stopped: what does not notice in time is ended
-/// where it is, which leaves whole files, because every file is written whole or not at all.
+/// Lets interrupts stop the work that `watch` observes. A factorisation cannot be stopped: work that does not notice in time is ended
+/// at once. Files remain complete, because every file is written as a whole or not at all.
 pub(super) fn listen(watch: &Watch) {
     let watch = watch.clone();
     let mut is_second = false;
@@ -56,7 +56,7 @@ fn on_request(mut handler: impl FnMut() + Send + 'static) {
 /// Calls `handler` at every interrupt of the terminal.
 #[cfg(not(unix))]
 fn on_request(handler: impl FnMut() + Send + 'static) {
-    // Where the system has no interrupts there are none to listen to.
+    // A system without interrupts needs no handler.
     let _ = ctrlc::set_handler(handler);
 }
 
@@ -65,7 +65,7 @@ fn end() -> ! {
     std::process::exit(INTERRUPTED.into())
 }
 
-/// What standard error says of an outcome that was reached by an interrupt.
+/// The message on standard error about an outcome after an interrupt.
 pub(super) fn sentence(watch: &Watch) -> String {
     let place = watch.activity().part.map_or_else(String::new, |part| format!(" in {part}"));
     format!("interrupted{place}: the report is of what was found until then\n")

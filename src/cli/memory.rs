@@ -1,4 +1,4 @@
-//! How much memory a command may take.
+//! The memory that a command may take.
 
 /// Bytes of a size as `500MB` or `1.5GB`.
 pub(super) fn parse_size(text: &str) -> Result<f64, String> {

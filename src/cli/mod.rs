@@ -35,12 +35,12 @@ use options::{Arguments, Command};
 use outcome::{Ending, Outcome, Pictures, warn};
 use progress::Progress;
 
-/// Runs the program with `arguments`, the first of which is its name.
+/// Runs the program with `arguments`; the first one is its name.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(help) => {
-            // A closed pipe leaves nobody to tell.
+            // With a closed pipe there is no reader for an error.
             let _ = help.print();
             return ExitCode::from(help.exit_code() as u8);
         }

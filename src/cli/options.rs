@@ -1,4 +1,4 @@
-//! The arguments. Types of the argument parser stop here, and in `shell`, which tells shells and manuals of them.
+//! The arguments. Types of the argument parser are used only here and in `shell`, which describes them to shells and manuals.
 
 use std::path::PathBuf;
 
@@ -31,7 +31,7 @@ pub(super) struct Arguments {
     pub command: Command,
 }
 
-/// Which of three knobs is which.
+/// The meaning of three similar options.
 const KNOBS: &str = "\
 --tolerance is how well the conditions of contact hold, --accuracy how far off the displacement may be,
 --time when the program must be done.";
@@ -197,7 +197,7 @@ impl ValueEnum for Medium {
 }
 
 impl Common {
-    /// What is drawn; `usual` if nothing is said.
+    /// The pictures to draw; `usual` without the option.
     pub fn wanted(&self, usual: Pictures) -> Wanted {
         Wanted { pictures: self.pictures.unwrap_or(usual), medium: self.style }
     }
@@ -217,7 +217,7 @@ pub(super) struct Solve {
     #[arg(long, visible_alias = "time-limit", value_name = "T", allow_negative_numbers = true, value_parser = parse_seconds)]
     pub time: Option<f64>,
     /// Tell what was weighed when the method was chosen, and what decided
-    #[arg(long, conflicts_with = "total_error")]
+    #[arg(long)]
     pub explain: bool,
     /// Start from the answer that an earlier --out left in this folder (u.mtx, lambda.mtx)
     #[arg(long, value_name = "FOLDER", conflicts_with_all = ["total_error", "resume"])]
@@ -250,7 +250,7 @@ pub(super) struct Solve {
 pub(super) struct New {
     /// Mesh (a .msh file of Gmsh)
     pub mesh: PathBuf,
-    /// File for the scene; standard output where it is left out
+    /// File for the scene; standard output if it is left out
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
 }
@@ -293,7 +293,7 @@ pub(super) struct Gaps {
     pub count: usize,
 }
 
-/// A sweep keeps every answer: more than this would not fit.
+/// A sweep keeps every answer in memory: more points than this would not fit.
 const MOST_GAPS: usize = 10_000;
 
 fn parse_gaps(text: &str) -> Result<Gaps, String> {
@@ -341,7 +341,7 @@ fn parse_seconds(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A relative error above this says nothing.
+/// A relative error above this has no meaning.
 const LARGEST_TOLERANCE: f64 = 0.1;
 
 fn parse_tolerance(text: &str) -> Result<f64, String> {
@@ -360,12 +360,12 @@ fn parse_total_error(text: &str) -> Result<f64, String> {
     }
 }
 
-/// What `--accuracy` asks for.
+/// The value of `--accuracy`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Accuracy {
-    /// A factor, and the contact set that no step changes any more.
+    /// The direct solution with a factor and the settled contact set.
     Exact,
-    /// So much, relative in the energy norm.
+    /// This error, relative in the energy norm.
     Within(f64),
 }
 
@@ -388,7 +388,7 @@ fn parse_threads(text: &str) -> Result<usize, String> {
     }
 }
 
-/// What a scene or a problem may take and read.
+/// Limits of memory and files for a scene or a problem.
 #[derive(Debug, Args)]
 pub(super) struct Limits {
     /// Refuse what needs more memory, as 500MB or 1.5GB [default: what the machine has available]
@@ -406,12 +406,12 @@ impl Limits {
     }
 }
 
-/// The memory that may be taken, in bytes, where so much is allowed.
+/// The memory in bytes: `allowed`, or else what is available, within the address space.
 fn most_memory(allowed: Option<f64>) -> f64 {
     allowed.unwrap_or_else(memory::available).min(memory::address_space_left())
 }
 
-/// What every solving command takes.
+/// The options of every solving command.
 #[derive(Debug, Args)]
 pub(super) struct Common {
     /// Relative tolerance of the certificate
@@ -446,7 +446,7 @@ pub(super) struct Tradeoff {
     /// Finer meshes beside the scene's own, each with half the cells; 1 if neither this nor --time is given
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=8))]
     pub refinements: Option<u8>,
-    /// Begin no finer mesh that would end later than so many seconds after the start; without --refinements as many as that allows
+    /// Begin no finer mesh that would end later than this many seconds after the start; without --refinements as many as that allows
     #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = parse_seconds)]
     pub time: Option<f64>,
     /// Runs of each point, of which the fastest counts
@@ -475,7 +475,7 @@ pub(super) struct Tradeoff {
 pub(super) struct Export {
     /// Scene (a JSON file)
     pub scene: PathBuf,
-    /// Folder for K, f, B, g and what else tells of the problem; made if missing
+    /// Folder for K, f, B, g and the other files of the problem; made if missing
     pub directory: PathBuf,
     /// Form of the files
     #[arg(long, value_enum, default_value_t = Form::MatrixMarket)]

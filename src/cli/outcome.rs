@@ -1,4 +1,4 @@
-//! What a command leaves, and what it says on the way.
+//! The output of a command, and its messages while it runs.
 
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::output::{report_json, write_files};
 use crate::study::Status;
 
-/// How a command ended, as an exit code; a usage error is 2, from the argument parser.
+/// The exit code of a command; a usage error is 2, from the argument parser.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ending {
     Certified = 0,
@@ -19,7 +19,7 @@ pub(super) enum Ending {
     NotCertified = 4,
 }
 
-/// What a command leaves: the text for standard output, how it ended, and what is drawn once the text is out.
+/// The output of a command: the text for standard output, the exit code, and the pictures to draw after the text.
 pub(super) struct Outcome {
     pub text: String,
     pub ending: Ending,
@@ -29,10 +29,10 @@ pub(super) struct Outcome {
 /// Fields and pictures are written after the report, because they take longer.
 pub(super) type Pictures = Box<dyn FnOnce() -> Result<(), Error>>;
 
-/// Takes the line of a terminal that is being written back.
+/// Erases the current line of a terminal.
 pub(super) const ERASED: &str = "\r\x1b[K";
 
-/// Writes to standard error, on a terminal in place of the line of progress; where it is closed there is nobody to tell.
+/// Writes to standard error, on a terminal in place of the line of progress; if standard error is closed, the message is dropped.
 pub(super) fn warn(text: &str) {
     if text.is_empty() {
         return;
@@ -41,7 +41,7 @@ pub(super) fn warn(text: &str) {
     let _ = io::stderr().write_all(format!("{erased}{text}").as_bytes());
 }
 
-/// A report in both of its forms.
+/// A report in both forms: text and JSON.
 pub(super) struct Report {
     text: String,
     json: String,
@@ -69,7 +69,7 @@ impl Report {
         write_files(folder, &[(name, &self.text), ("report.json", &self.json)])
     }
 
-    /// The outcome of a command that prints the report in this form and certifies nothing by it.
+    /// The outcome of a command that prints the report in this form and certifies nothing.
     pub fn printed(self, format: Format) -> Outcome {
         Outcome::done(match format {
             Format::Text => self.text,
@@ -77,7 +77,7 @@ impl Report {
         })
     }
 
-    /// The outcome of a command that prints the report, whose answers have this status, in this form.
+    /// The outcome of a command that prints the report in this form; its answers have this status.
     pub fn outcome(self, format: Format, status: Status) -> Outcome {
         let ending = match status {
             Status::Certified => Ending::Certified,
@@ -88,7 +88,7 @@ impl Report {
 }
 
 impl Outcome {
-    /// The outcome of a command that has done what it was asked for.
+    /// The outcome of a successful command without a report.
     pub fn done(text: String) -> Self {
         Outcome { text, ending: Ending::Certified, pictures: None }
     }

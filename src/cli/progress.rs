@@ -1,5 +1,5 @@
-//! What is being done: a line for each step on standard error if asked for, or one line that is redrawn, with the share that
-//! is done and the time that is left, if that is a terminal.
+//! Progress: on request a line for each step on standard error. Otherwise, if standard error is a terminal, one line that is redrawn,
+//! with the share of the work that is done and the time that is left.
 
 use std::io::{self, IsTerminal, Write};
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
@@ -9,19 +9,19 @@ use std::time::{Duration, Instant};
 use super::outcome::{ERASED, warn};
 use crate::watch::{Activity, Part, Watch};
 
-/// How often the line is drawn.
+/// The interval between two drawings of the line.
 const PERIOD: Duration = Duration::from_millis(200);
 
 /// Work that takes less shows nothing.
 const QUIET: Duration = Duration::from_secs(1);
 
-/// Places of the bar.
+/// Width of the bar in characters.
 const BAR: usize = 20;
 
-/// What takes longer than expected is not done before it is.
+/// The largest share shown for work that takes longer than expected.
 const ALMOST: f64 = 0.99;
 
-/// Fewer parts say little of those to come.
+/// Least number of finished parts for an estimate of the time left.
 const TELLING_PARTS: usize = 5;
 
 /// Longer lines would be broken by narrow terminals, and could not be erased.
@@ -36,7 +36,7 @@ pub(super) fn told() -> Watch {
 pub(super) struct Progress(Option<(Sender<()>, JoinHandle<bool>)>);
 
 impl Progress {
-    /// Shows what `watch` watches, once it takes longer than a second.
+    /// Shows the activity of `watch`, once it takes longer than a second.
     pub fn of(watch: &Watch) -> Self {
         if !io::stderr().is_terminal() {
             return Progress(None);
@@ -73,19 +73,19 @@ impl Drop for Progress {
         if let Some((end, drawing)) = self.0.take() {
             drop(end);
             if drawing.join().unwrap_or(true) {
-                // Where it is closed nobody has seen the line.
+                // If standard error is closed, the line was not visible.
                 let _ = io::stderr().write_all(ERASED.as_bytes());
             }
         }
     }
 }
 
-/// When the first part was seen, and which it was.
+/// The time at which the first part was seen, and its number.
 #[derive(Default)]
 struct Pace(Option<(Instant, Part)>);
 
 impl Pace {
-    /// The time that this part and those after it will take, once enough have been done.
+    /// The time for this part and the later ones, once enough parts are done.
     fn left(&mut self, part: &Part) -> Option<Duration> {
         let is_new = |(_, first): &(Instant, Part)| (first.name, first.of) != (part.name, part.of);
         if self.0.as_ref().is_none_or(is_new) {
@@ -115,21 +115,20 @@ fn line(activity: &Activity, elapsed: Duration, left: Option<Duration>) -> Strin
     }
 }
 
-/// The share of work that is done after so much of the time that it is expected to take, and the time left; `None` if it takes
-/// longer than expected.
+/// The finished share of the work after a part of its expected time, and the time left; `None` if it takes longer than expected.
 fn of_expected(passed: Duration, expected: Duration) -> (f64, Option<Duration>) {
     let share = passed.as_secs_f64() / expected.as_secs_f64();
     (share.min(ALMOST), expected.checked_sub(passed))
 }
 
-/// A bar with the share of it that is filled.
+/// A bar, filled to this share.
 fn bar(done: f64) -> String {
     let filled = (BAR as f64 * done) as usize;
     let bar: String = (0..BAR).map(|place| if place < filled { '#' } else { '.' }).collect();
     format!("[{bar}] {:.0} %", (100.0 * done).floor())
 }
 
-/// A time as a reader says it.
+/// A time in readable units.
 fn time(time: Duration) -> String {
     match time.as_secs_f64().round() as u64 {
         seconds @ 0..60 => format!("{seconds} s"),

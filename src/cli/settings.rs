@@ -4,7 +4,7 @@ use super::options::Common;
 use crate::qp::{Condense, Method, Settings};
 use crate::watch::Watch;
 
-/// The settings that `common` asks for, for one method, ended by `watch`.
+/// The settings from `common` for one method; `watch` can end the solve.
 pub(super) fn settings(method: Method, common: &Common, watch: &Watch) -> Settings {
     let mut settings = Settings::with_method(method);
     settings.tolerance = common.tolerance;

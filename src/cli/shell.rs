@@ -1,4 +1,4 @@
-//! `signorini completions` and `signorini man`: what a shell and a manual are told of the arguments.
+//! `signorini completions` and `signorini man`: the arguments for a shell and for the manual.
 
 use std::io;
 
@@ -9,7 +9,7 @@ use clap_mangen::Man;
 use super::options::{Arguments, Completions};
 use super::outcome::Outcome;
 
-/// What the program is called.
+/// The name of the program.
 const NAME: &str = "signorini";
 
 /// The completions of a shell.
@@ -28,7 +28,7 @@ pub(super) fn manual() -> Outcome {
     let mut is_set_up = false;
     let mut kept = String::new();
     for line in text.lines() {
-        // Every piece begins with the definition of the apostrophe; the first one holds for all.
+        // Every piece begins with the definition of the apostrophe; only the first one is needed.
         let sets_up = line.starts_with(".ie ") || line.starts_with(".el ");
         is_set_up |= !sets_up;
         if !(sets_up && is_set_up) {
@@ -56,19 +56,19 @@ fn write_manual(page: &mut Vec<u8>) -> io::Result<()> {
     whole.render_version_section(page)
 }
 
-/// What a command does, how it is called, its options, its examples.
+/// The description, the call, the options and the examples of a command.
 fn section(command: &Command) -> io::Result<String> {
     let man = Man::new(command.clone());
     let mut body = Vec::new();
     man.render_description_section(&mut body)?;
     man.render_synopsis_section(&mut body)?;
     man.render_options_section(&mut body)?;
-    // Sections of a page of its own are sections of a section here.
+    // Sections of a separate page are subsections here.
     let body = String::from_utf8_lossy(&body).replace("\n.SH ", "\n.SS ");
     Ok(format!("{body}.SS EXAMPLES\n{}", after(command)))
 }
 
-/// What stands behind the options in the help, line by line as it is.
+/// The text after the options in the help, line by line and unchanged.
 fn after(command: &Command) -> String {
     let text = command.get_after_help().map(ToString::to_string).unwrap_or_default();
     let line = |line: &str| format!("\\&{}\n", line.replace('\\', "\\e").replace('-', "\\-"));

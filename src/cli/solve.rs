@@ -19,10 +19,11 @@ use crate::solution::{Goal, Solution};
 use crate::study::total_error::TotalErrorGoal;
 use crate::watch::Watch;
 
-/// Assembly that takes at most this many seconds is done even if no time is left: the report then says what the rest needs.
+/// Assembly that takes at most this many seconds is done even if no time is left: the report can then state the time that the rest
+/// needs.
 const AT_ONCE: f64 = 1e-3;
 
-/// A report adds up what was assembled: it takes this share of the time.
+/// A report sums the assembled data: it takes this share of the assembly time.
 const REPORT: f64 = 0.5;
 
 pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
@@ -84,7 +85,7 @@ pub(super) fn run(options: &Solve, watch: &Watch) -> Result<Outcome, Error> {
     reported(&input, solution, settings.goal(), (about, options), watch)
 }
 
-/// The motion of a scene, without what is for one solve.
+/// The motion of a scene, without the options of a single solve.
 fn motion(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outcome, Error> {
     if options.start.is_some() {
         let message = "a motion starts from its initial state, not from an answer; --resume goes on with one";
@@ -96,13 +97,13 @@ fn motion(options: &Solve, scene: &Scene, watch: &Watch) -> Result<Outcome, Erro
     dynamic::run(options, scene, watch)
 }
 
-/// The answer that an earlier run left in a folder, to start from.
+/// The answer of an earlier run in a folder, as a start.
 fn earlier(folder: &Path) -> Result<Start, Error> {
     let [displacement, multiplier] = ["u.mtx", "lambda.mtx"].map(|name| read_vector(&folder.join(name)));
     Ok(Start::earlier(displacement?, &multiplier?))
 }
 
-/// Refuses a scene that does not fit into memory or time; the seconds that its assembly will take.
+/// Refuses a scene that does not fit into memory or time; returns the estimated seconds of its assembly.
 fn assembly_seconds(scene: &Scene, options: &Solve, watch: &Watch) -> Result<f64, Error> {
     let most_memory = options.common.limits.most_memory();
     let needs_factor = !matches!(options.method, Method::Auto | Method::Mprgp);
@@ -130,7 +131,7 @@ fn best_of(input: &Input, start: Start, settings: &Settings) -> Result<Solution,
     }
 }
 
-/// Reports an answer, and leaves what `--out` asks for.
+/// Reports an answer, and writes the output of `--out`.
 fn reported(
     input: &Input,
     solution: Solution,

@@ -56,7 +56,7 @@ pub(super) fn run(options: &Solve, scene: &Scene, goal: TotalErrorGoal, watch: &
     }
 }
 
-/// An estimated error with the answer that it is of.
+/// An estimated error with its answer.
 #[derive(Serialize)]
 struct EstimatedReport<'a> {
     #[serde(flatten)]

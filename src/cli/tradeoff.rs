@@ -1,4 +1,4 @@
-//! `signorini tradeoff`: one scene in every way, and what each digit costs.
+//! `signorini tradeoff`: one scene with every method, and the cost of each digit.
 
 use serde::Serialize;
 
@@ -17,7 +17,7 @@ use crate::qp::Settings;
 use crate::study::{Tradeoff, TradeoffGrid, motion_tradeoff, tradeoff};
 use crate::watch::Watch;
 
-/// Finer meshes where time alone limits them.
+/// Largest number of finer meshes if only the time limits them.
 const MOST_REFINEMENTS: usize = 8;
 
 pub(super) fn run(options: &options::Tradeoff, watch: &Watch) -> Result<Outcome, Error> {
@@ -60,7 +60,7 @@ pub(super) fn run(options: &options::Tradeoff, watch: &Watch) -> Result<Outcome,
     reported(options, watch, about, &measured, text, &csv, plots)
 }
 
-/// Reports what was measured, with its values and its pictures in the folder of the options.
+/// Reports the measurements, with their values and pictures in the folder of the options.
 fn reported(
     options: &options::Tradeoff,
     watch: &Watch,

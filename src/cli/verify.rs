@@ -9,7 +9,7 @@ use crate::study::{ModelSize, Verification};
 use crate::watch::Watch;
 
 pub(super) fn run(options: &Verify, watch: &Watch) -> Result<Outcome, Error> {
-    // What may be taken is asked before the problem takes its own.
+    // The available memory is asked for before the problem takes its own.
     let memory = Some(options.most_memory());
     let displacement = read_vector(&options.displacement)?;
     let multiplier = read_vector(&options.multiplier)?;

@@ -1,15 +1,15 @@
-//! Drawings one after another as an animated PNG: it shows wherever a PNG does, in full colour.
+//! Drawings as the frames of an animated PNG, which any viewer of PNG files shows in full colour.
 
 use tiny_skia::Pixmap;
 
 use super::Drawing;
 use crate::error::Error;
 
-/// An animated PNG of drawings, each shown for `milliseconds`; with `scale` pixels of the image for one pixel of a
-/// drawing, and the size of the first. `frame(index)` draws one after another, so that no two need memory together.
+/// An animated PNG of drawings, each shown for `milliseconds`, in the size of the first one, with `scale` pixels of the image for one
+/// pixel of a drawing. `frame(index)` draws each when it is needed, so that only one is in memory at a time.
 ///
 /// # Errors
-/// [`Error::Numerical`] where the encoder fails; those of [`Drawing::png`] and of `frame`.
+/// [`Error::Numerical`] if the encoder fails; those of [`Drawing::png`] and of `frame`.
 pub fn animate(
     count: usize,
     scale: f64,
@@ -39,7 +39,7 @@ pub fn animate(
     Ok(bytes)
 }
 
-/// Red, green and blue of each pixel of the upper left `width` x `height`, white where there is none.
+/// Red, green and blue of each pixel of the upper left `width` x `height`; white outside the image.
 fn cut(pixels: &Pixmap, width: u32, height: u32) -> Vec<u8> {
     let pixel =
         |x: u32, y: u32| pixels.pixel(x, y).map_or([255; 3], |colour| [colour.red(), colour.green(), colour.blue()]);

@@ -9,12 +9,12 @@ use super::ticks::amount;
 /// Length of the arrow of the largest force, as a share of the shorter side of the panel, and of the smallest one in pixels.
 const LONGEST: f64 = 0.17;
 const SHORTEST: f64 = 16.0;
-/// Arrows nearer to each other would be one, in pixels.
+/// Arrows closer to each other than this, in pixels, are drawn side by side.
 const BESIDE: f64 = 13.0;
 /// A force below this share of the largest has no arrow.
 const NOTHING: f64 = 1e-9;
 
-/// What a force comes from.
+/// The origin of a force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArrowKind {
     /// An obstacle, or another body.
@@ -48,11 +48,11 @@ impl ArrowKind {
 /// A force on the body.
 #[derive(Clone, Debug)]
 pub struct Arrow {
-    /// What it comes from.
+    /// Its origin.
     pub kind: ArrowKind,
-    /// Where it acts on the undeformed body, in length.
+    /// Its point of application on the undeformed body, in length.
     pub at: [f64; 2],
-    /// The displacement there, in length.
+    /// The displacement of that point, in length.
     pub moved: [f64; 2],
     /// Its components, in force.
     pub force: [f64; 2],
@@ -71,7 +71,7 @@ fn largest(arrows: &[Arrow]) -> f64 {
     arrows.iter().map(Arrow::size).fold(0.0, f64::max)
 }
 
-/// Draws the forces that are more than rounding; pushes stand outside the body as long as there is room in the frame.
+/// Draws the forces that are more than rounding. Pushing arrows stand outside the body if the frame has room for them.
 pub(super) fn draw(drawing: &mut Drawing, frame: &Frame, arrows: &[Arrow], magnification: f64) {
     let largest = largest(arrows);
     let mut drawn: Vec<[f64; 2]> = Vec::new();
@@ -85,7 +85,7 @@ pub(super) fn draw(drawing: &mut Drawing, frame: &Frame, arrows: &[Arrow], magni
         let far = |point: [f64; 2]| (point[0] - middle[0]).hypot(point[1] - middle[1]);
         let inside =
             |point: [f64; 2]| (0..2).all(|axis| (0.0..=frame.size[axis]).contains(&(point[axis] - frame.corner[axis])));
-        // With its tip where it acts, or with its tail there: what lies farther from the middle of the body, and in the frame.
+        // The tip or the tail is at the point of application: the arrow farther from the middle of the body, if it fits in the frame.
         let [push, pull] = [[along(at, -length), at], [at, along(at, length)]];
         let is_push = match (inside(push[0]), inside(pull[1])) {
             (true, false) => true,

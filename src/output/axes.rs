@@ -1,4 +1,4 @@
-//! A rectangle of the drawing with axes: from numbers to pixels, ticks outside, labels that fit.
+//! A rectangle of the drawing with axes: maps numbers to pixels, with ticks outside and labels that fit.
 
 use super::{
     colour::{FAINT, GRID, INK},
@@ -24,7 +24,7 @@ const TICK: f64 = 6.0;
 const MINOR_TICK: f64 = 3.5;
 const GAP: f64 = 5.0;
 
-/// One axis: what it shows, between which ends, with which ticks.
+/// One axis: its quantity, scale, range and ticks.
 #[derive(Clone, Debug)]
 pub(crate) struct Axis {
     pub label: String,
@@ -43,7 +43,7 @@ impl Axis {
             let spans: Vec<[f64; 2]> = places.zip(halves).map(|(at, half)| [at - half, at + half]).collect();
             spans.windows(2).all(|pair| pair[0][1] + 0.6 * SMALL < pair[1][0])
         };
-        // A single tick tells no scale: a few more are tried before one is accepted.
+        // A single tick does not define a scale: a few more are tried before one is accepted.
         let counts = (1..=most).rev().chain(most + 1..most + 4);
         let fitting: Vec<Ticks> = counts.map(|count| Ticks::new(scale, range, count)).filter(fits).collect();
         let best = fitting.iter().find(|ticks| ticks.positions.len() > 1).or(fitting.first());
@@ -71,7 +71,7 @@ impl Axis {
         TICK + GAP + self.widest() + GAP + NORMAL * LINE
     }
 
-    /// By how much the outermost labels of a horizontal axis reach beyond its frame at most.
+    /// The largest overhang of the outermost labels of a horizontal axis beyond its frame.
     pub fn overhang(&self) -> f64 {
         0.5 * self.widest()
     }
@@ -88,7 +88,7 @@ impl Axis {
 /// Room that a horizontal axis needs below its frame.
 pub(crate) const ROOM_BELOW: f64 = TICK + GAP + SMALL * LINE + NORMAL * LINE;
 
-/// Which axes of a frame have labels.
+/// The axes of a frame that have labels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Labels {
     Both,
@@ -107,7 +107,7 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
-    /// The pixel at which a point of the axes lies; not a number where an axis cannot show it.
+    /// The pixel at which a point of the axes lies; not a number if an axis cannot show it.
     pub fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         if !(self.x.scale.shows(x) && self.y.scale.shows(y)) {
             return [f64::NAN; 2];

@@ -1,4 +1,4 @@
-//! The picture of a contact answer: fields on the body as it was, and the displaced mesh under its obstacle.
+//! The picture of a contact answer: fields on the undeformed body, and the displaced mesh under its obstacle.
 
 use std::borrow::Cow;
 
@@ -20,7 +20,7 @@ pub use super::obstacle::ObstacleLine;
 
 /// Largest width and height of a panel in pixels, of two panels and of three.
 const PANELS: [[f64; 2]; 2] = [[580.0, 600.0], [440.0, 520.0]];
-/// The same on paper, where two stand side by side.
+/// The same on paper, with two panels side by side.
 const PAPER_PANEL: [f64; 2] = [400.0, 420.0];
 /// A slender body gets white space around it rather than a panel smaller than this.
 const SMALLEST: [f64; 2] = [180.0, 130.0];
@@ -34,54 +34,54 @@ pub(crate) const ROUNDING: f64 = 1e-9;
 pub struct FieldPanel<'a> {
     /// One value per node.
     pub values: &'a [f64],
-    /// What the field is, with its unit.
+    /// The quantity with its unit.
     pub quantity: Quantity,
-    /// Values at the two ends of the colours; see [`common_limits`]. Where they are not finite, the field sets them.
+    /// Values at the two ends of the colours, see [`common_limits`]; if they are not finite, the range of the field.
     pub limits: [f64; 2],
 }
 
 /// A contact answer as plain data, to be drawn as panels of the same scale side by side.
 ///
-/// Left nodal fields (usually the second principal stress, then the von Mises stress), each on the undeformed body with its colour
-/// bar; right the mesh displaced, with the obstacles, the forces, the closed candidates as filled dots and the open ones as hollow
-/// dots. A contact that is small beside the body is shown enlarged in a corner.
+/// On the left are nodal fields (usually the second principal stress, then the von Mises stress), each on the undeformed body with its
+/// colour bar. On the right is the displaced mesh with the obstacles, the forces, the closed candidates as filled dots and the open
+/// ones as hollow dots. A contact that is small beside the body is shown enlarged in a corner.
 #[derive(Clone, Debug)]
 pub struct ContactPicture<'a> {
-    /// What the picture shows: scene, gap, iteration, number of closed nodes.
+    /// The title: scene, gap, iteration, number of closed nodes.
     pub title: &'a str,
     /// Names of the two coordinates.
     pub axes: [&'a str; 2],
-    /// Unit of length of the nodes; empty where there is none.
+    /// Unit of length of the nodes; empty without units.
     pub length_unit: &'a str,
     /// Coordinates of the nodes.
     pub nodes: &'a [[f64; 2]],
-    /// The nodes of every element in order around it, indices from 0; of curved edges some between the corners.
+    /// The nodes of every element in order around it, indices from 0; a curved edge has nodes between its corners.
     pub elements: &'a [Vec<usize>],
     /// Nodal displacements, length `2 * n_nodes`, order `[u_x0, u_y0, u_x1, ...]`, in the unit of length.
     pub displacement: &'a [f64],
-    /// By what the displacement is multiplied before it is drawn; 1 shows it as it is.
+    /// Magnification of the displacement in the picture; 1 shows the true displacement.
     pub magnification: f64,
     /// The fields, a panel each.
     pub fields: &'a [FieldPanel<'a>],
-    /// Obstacles; let their edges reach beyond the body at both sides, where the picture ends. Beside a magnified displacement their
-    /// gaps must be magnified as well.
+    /// Obstacles. Their edges should reach beyond the body at both sides, to the ends of the picture. If the displacement is magnified,
+    /// their gaps must be magnified as well.
     pub obstacles: &'a [ObstacleLine<'a>],
     /// Candidate nodes, indices from 0.
     pub candidates: &'a [usize],
-    /// Which candidates are closed, one flag per candidate.
+    /// One flag per candidate, `true` if it is closed.
     pub closed: &'a [bool],
     /// Forces on the body.
     pub arrows: &'a [Arrow],
-    /// What it is drawn for.
+    /// The medium: screen or paper.
     pub medium: Medium,
-    /// The visible rectangle `[[x from, x to], [y from, y to]]`; `None` for body and obstacle with a margin. A series
-    /// of pictures shares the [`common_window`] of its [windows](ContactPicture::window).
+    /// The visible rectangle `[[x from, x to], [y from, y to]]`; `None` for body and obstacle with a margin. The pictures of a series
+    /// share the [`common_window`] of their [windows](ContactPicture::window).
     pub window: Option<[[f64; 2]; 2]>,
 }
 
 /// The smallest and the largest finite value of all fields of a series, so that its pictures share their colours.
 ///
-/// `[0, 1]` where there is no finite value.
+/// `[0, 1]` if there is no finite value.
 ///
 /// ```
 /// use signorini::internals::common_limits;
@@ -94,7 +94,7 @@ pub fn common_limits<'a>(fields: impl IntoIterator<Item = &'a [f64]>) -> [f64; 2
     if low <= high { [low, high] } else { [0.0, 1.0] }
 }
 
-/// The smallest rectangle that holds all windows of a series; `[[0, 1], [0, 1]]` where there is none.
+/// The smallest rectangle that holds all windows of a series; `[[0, 1], [0, 1]]` without a window.
 pub fn common_window(windows: impl IntoIterator<Item = [[f64; 2]; 2]>) -> [[f64; 2]; 2] {
     let join = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
     windows.into_iter().reduce(|a, b| [join(a[0], b[0]), join(a[1], b[1])]).unwrap_or([[0.0, 1.0]; 2])
@@ -116,11 +116,11 @@ impl ContactPicture<'_> {
 
     /// Draws the picture.
     ///
-    /// Values that are not finite do not stop it: elements without a value are grey, elements without a place are left
-    /// out.
+    /// Values that are not finite are no error: elements without a value are grey, elements with a coordinate that is not finite are
+    /// left out.
     ///
     /// # Errors
-    /// [`Error::Length`] where an array does not fit the number of nodes or candidates, [`Error::Setting`] where an
+    /// [`Error::Length`] if an array does not fit the number of nodes or candidates, [`Error::Setting`] if an
     /// element or a candidate names a node that does not exist.
     pub fn draw(&self) -> Result<Drawing, Error> {
         self.check()?;
@@ -191,7 +191,7 @@ impl ContactPicture<'_> {
     }
 
     fn field_title(&self, field: &FieldPanel) -> String {
-        // Where nothing is displaced, the nodes are where the body is.
+        // Without a displacement, the nodes are on the undeformed body.
         let of = if self.is_displaced() { "on the undeformed body" } else { "on the body" };
         match self.fields.len() {
             1 => format!("{} {of}", field.quantity.name),
@@ -210,7 +210,7 @@ impl ContactPicture<'_> {
         }
     }
 
-    /// Panels side by side: on a screen all of them, on paper two.
+    /// Number of panels side by side: all on a screen, two on paper.
     fn columns(&self) -> usize {
         match self.medium {
             Medium::Screen => self.fields.len() + 1,
@@ -232,7 +232,7 @@ impl ContactPicture<'_> {
         }
         let size = [x, y].map(|range| scale * (range[1] - range[0]));
         let names = self.axes.map(|name| Quantity::new(name, self.length_unit));
-        // One factor for both axes, or the same length would carry two different numbers.
+        // One factor for both axes; otherwise one length would have two different numbers.
         let exponent = common_exponent([x, y].as_flattened().iter().fold(0.0, |largest, end| end.abs().max(largest)));
         let horizontal = Axis::horizontal(&names[0], Scale::Linear, x, size[0]).in_powers_of(&names[0], exponent);
         let vertical = Axis::vertical(&names[1], Scale::Linear, y, size[1]).in_powers_of(&names[1], exponent);
@@ -284,7 +284,7 @@ impl ContactPicture<'_> {
 }
 
 impl FieldPanel<'_> {
-    /// The ends of the colours: the limits, or those of the values; of values that are all the same something around them.
+    /// The ends of the colours: the given limits, or the range of the values, widened if all values are equal.
     pub(crate) fn shown_limits(&self) -> [f64; 2] {
         let limits =
             if self.limits.iter().all(|limit| limit.is_finite()) { self.limits } else { common_limits([self.values]) };
@@ -295,7 +295,7 @@ impl FieldPanel<'_> {
         }
     }
 
-    /// The values; where they differ by rounding alone, all the same, so that no edge of a band runs through noise.
+    /// The values; if they differ by rounding alone, one value for all, so that no edge of a band runs through noise.
     fn shown_values(&self, limits: [f64; 2]) -> Cow<'_, [f64]> {
         let [low, high] = common_limits([self.values]);
         if high - low > ROUNDING * limits[0].abs().max(limits[1].abs()) {
@@ -305,7 +305,7 @@ impl FieldPanel<'_> {
         Cow::Owned(self.values.iter().map(same).collect())
     }
 
-    /// What lies outside the limits.
+    /// The kinds of values outside the limits.
     pub(crate) fn outside(&self, limits: [f64; 2]) -> Outside {
         let [low, high] = common_limits([self.values]);
         let slack = ROUNDING * (limits[1] - limits[0]).abs();
@@ -318,6 +318,6 @@ struct Layout {
     panels: Vec<Frame>,
     column: f64,
     width: f64,
-    /// From a row of panels to the next.
+    /// Distance from one row of panels to the next.
     pitch: f64,
 }

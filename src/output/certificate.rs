@@ -1,4 +1,4 @@
-//! A certificate in words: what an answer was held against, and how it did.
+//! A certificate in words: the conditions that an answer was checked against, and the result.
 
 use serde::Serialize;
 
@@ -9,14 +9,14 @@ pub(super) fn number(value: f64) -> String {
     if value == 0.0 { "0".to_string() } else { format!("{value:.1e}") }
 }
 
-/// What a certificate says.
+/// A certificate in words.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct CertificateWords {
-    /// Whether the answer meets its goal, and which.
+    /// The goal, and the statement that the answer meets it or not.
     pub verdict: String,
-    /// Name, formula and value of each condition; none where an accuracy decides alone.
+    /// Name, formula and value of each condition; empty if an accuracy alone decides.
     pub conditions: Vec<(&'static str, &'static str, String)>,
-    /// What a reader of these values should know.
+    /// Notes for the reader of these values.
     pub notes: Vec<String>,
 }
 

@@ -14,7 +14,7 @@ pub(crate) const GRID: Colour = Colour(0xe3, 0xe5, 0xe9);
 /// Values that are not numbers.
 pub(crate) const NO_VALUE: Colour = Colour(0xb9, 0xbd, 0xc4);
 
-/// Line colours that stay apart under the common colour-vision deficiencies.
+/// Line colours that remain distinct under the common colour-vision deficiencies.
 ///
 /// # Source
 /// Okabe and Ito, 2008, "Color universal design", without the yellow that is too pale for lines on white.

@@ -1,4 +1,4 @@
-//! The levels at which a field is painted, and the bar that explains them.
+//! The colour levels of a field, and their colour bar.
 
 use super::{
     axes::{Axis, LINE, NORMAL, SMALL},
@@ -8,7 +8,7 @@ use super::{
     typeface::{self, Weight},
 };
 
-/// Bands that a colour range has at least: enough to look smooth, few enough to follow a band with the eye.
+/// Least number of bands of a colour range: enough to look smooth, few enough to follow a band with the eye.
 const BANDS: f64 = 30.0;
 const HEIGHT: f64 = 18.0;
 const TICK: f64 = 5.0;
@@ -17,7 +17,7 @@ const GAP: f64 = 4.0;
 /// Room that a bar needs from its top to the end of its label.
 pub(crate) const ROOM: f64 = HEIGHT + TICK + GAP + SMALL * LINE + NORMAL * LINE;
 
-/// Are there values below and above a range, and some that are no numbers?
+/// Flags: `true` if there are values below a range, above it, and values that are not finite.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Outside {
     pub below: bool,
@@ -25,10 +25,10 @@ pub(crate) struct Outside {
     pub missing: bool,
 }
 
-/// A range of values with its bands of colour, whose edges include the ticks of the bar.
+/// A range of values with its bands of colour. The edges of the bands include the ticks of the bar.
 pub(crate) struct ColourRange {
     axis: Axis,
-    /// Every band as the level above which it is painted over the lower ones, with its colour; the first is everything.
+    /// Every band as its lower level with its colour: it is painted over the lower bands; the first one covers everything.
     bands: Vec<(f64, Colour)>,
 }
 
@@ -75,7 +75,7 @@ impl ColourRange {
         let at = |value: f64| x + length * Scale::Linear.fraction(value, range);
         let bands = &self.bands;
         for (k, &(level, colour)) in bands.iter().enumerate() {
-            // Each reaches to the end, so that no seam shows between neighbours.
+            // Each band is drawn to the end of the bar, so that no seam shows between neighbours.
             let from = if k == 0 { x } else { at(level) };
             drawing.rect([from, y], [x + length - from, HEIGHT], &Paint::fill(colour));
         }

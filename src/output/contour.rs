@@ -1,4 +1,4 @@
-//! Where a nodal field exceeds a level: outlines of the regions, for painting them one over the other.
+//! Outlines of the regions in which a nodal field exceeds a level, to be painted one over the other.
 //!
 //! The field is linear on triangles: an element with more than three corners is a fan of triangles around its centre,
 //! which carries the mean of the corners. Inside the region `value >= level` two neighbours see the same piece of
@@ -7,7 +7,7 @@
 
 use std::collections::HashMap;
 
-/// A corner of a triangle: its place in the picture and its value.
+/// A corner of a triangle: its position in the picture and its value.
 type Corner = ([f64; 2], f64);
 
 /// A mesh with a value at every node, ready to be cut at any level.
@@ -17,10 +17,10 @@ pub(crate) struct Field {
 }
 
 impl Field {
-    /// Collects the elements whose nodes all have a place and a value that are finite; `node` gives both.
+    /// Collects the elements with a finite position and a finite value at every node; `node` gives both.
     pub fn new(elements: &[Vec<usize>], node: impl Fn(usize) -> Option<Corner>) -> Self {
         let mut field = Field { triangles: Vec::new(), boundary: Vec::new() };
-        // A directed edge that no neighbour runs the other way bounds the mesh.
+        // A directed edge lies on the boundary of the mesh if no neighbour has it in the other direction.
         let mut edges: Vec<([usize; 2], i32)> = Vec::with_capacity(4 * elements.len());
         for element in elements {
             let Some(mut corners) = element.iter().map(|&index| node(index)).collect::<Option<Vec<Corner>>>() else {
@@ -93,7 +93,7 @@ impl Field {
     }
 }
 
-/// Where the value on an edge passes `level`, computed alike from both of its ends.
+/// The point of an edge with the value `level`; the same point for both orders of its ends.
 fn crossing(a: Corner, b: Corner, level: f64) -> [f64; 2] {
     let (low, high) = if a.1 < b.1 { (a, b) } else { (b, a) };
     // Halves, so that a difference of huge values does not overflow.
@@ -135,7 +135,7 @@ fn chained(pieces: &[[[f64; 2]; 2]]) -> Vec<Vec<[f64; 2]>> {
 
 /// Leaves out points that lie on the straight line through their neighbours.
 fn without_straight(points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
-    /// Distance from the line in pixels that nobody sees.
+    /// Invisible distance from the line in pixels.
     const STRAIGHT: f64 = 0.02;
     let mut kept: Vec<[f64; 2]> = Vec::with_capacity(points.len());
     for (k, &point) in points.iter().enumerate() {
@@ -148,7 +148,7 @@ fn without_straight(points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
         let length = along[0].hypot(along[1]);
         let ahead = along[0] * across[0] + along[1] * across[1];
         let aside = (along[0] * across[1] - along[1] * across[0]).abs();
-        // A spike that turns back is no straight line.
+        // A spike that turns back is not a straight line.
         if !(aside <= STRAIGHT * length && ahead >= 0.0 && ahead <= length * length && length > 0.0) {
             kept.push(point);
         }

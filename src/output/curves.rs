@@ -1,4 +1,4 @@
-//! Error over time on logarithmic axes: curves with their names beside them, a front as a band, and a level as a line.
+//! Error over time on logarithmic axes: curves with their names, the Pareto front as a band, and an error level as a line.
 
 use super::axes::{Axis, Frame, LARGE, LINE, Labels, NORMAL, ROOM_BELOW, SMALL, TITLE, draw_heading};
 use super::colour::{Colour, FAINT, PALETTE, WHITE};
@@ -11,13 +11,13 @@ use super::typeface::{self, Weight};
 /// Width of a picture with one panel, and of one with several.
 const WIDTHS: [f64; 2] = [1000.0, 1400.0];
 const HEIGHT: f64 = 600.0;
-/// An error below this is rounding: the answer is the exact one of its mesh.
+/// An error below this is rounding: the answer is exact for its mesh.
 pub(super) const EXACT: f64 = 3e-16;
-/// Room under the smallest error for those that are exact.
+/// Room under the smallest error for exact answers.
 const EXACT_ROOM: f64 = 56.0;
 
-/// Where a name may stand beside a point: to the right in pixels (negative to the left, zero in the middle), and its upper edge
-/// below the point in multiples of its height.
+/// Possible positions of a name beside a point: pixels to the right (negative to the left, zero centred), and the distance of its upper
+/// edge below the point in multiples of its height.
 const BESIDE: [(f64, f64); 14] = [
     (12.0, -0.5),
     (-12.0, -0.5),
@@ -52,9 +52,9 @@ pub(super) struct CurvePanel {
     pub title: String,
     pub x: Quantity,
     pub y: Quantity,
-    /// From the one drawn first to the one drawn over all others.
+    /// In the order of drawing: later curves cover earlier ones.
     pub curves: Vec<Curve>,
-    /// What nothing beats, by increasing time.
+    /// The Pareto front, by increasing time.
     pub band: (String, Vec<[f64; 2]>),
     /// An error to compare with.
     pub level: Option<(String, f64)>,
@@ -99,7 +99,7 @@ impl CurvePanel {
         if self.points().any(|point| point[1] <= EXACT) { EXACT_ROOM } else { 0.0 }
     }
 
-    /// The pixel of a point; exact ones lie in the strip below the axis of the errors.
+    /// The pixel of a point; exact answers lie in the strip below the axis of the errors.
     fn place(&self, frame: &Frame, [time, error]: [f64; 2]) -> [f64; 2] {
         if (0.0..=EXACT).contains(&error) {
             let [x, _] = frame.place([time, frame.y.range[0]]);
@@ -152,7 +152,7 @@ impl CurvePanel {
             let middle = [0, 1].map(|axis| frame.corner[axis] + 0.5 * frame.size[axis]);
             drawing.text(middle, "no data", NORMAL, Anchor::Middle);
         }
-        // The errors end where the exact ones begin; times stand under both.
+        // The axis of the errors ends at the strip of exact answers; the axis of times is below both.
         let without =
             Frame { x: Axis { ticks: Default::default(), label: String::new(), ..frame.x.clone() }, ..frame.clone() };
         without.draw_axes(drawing, Labels::Both);
@@ -169,7 +169,7 @@ fn darker(Colour(red, green, blue): Colour) -> Colour {
     Colour(part(red), part(green), part(blue))
 }
 
-/// Where lines and names stand already.
+/// The areas that lines and names already cover.
 struct Taken {
     low: [f64; 2],
     high: [f64; 2],
@@ -194,7 +194,7 @@ impl Taken {
         }
     }
 
-    /// Writes a name beside one of the places of its line, where it covers the least.
+    /// Writes a name beside one of the points of its line, at the position that covers the least.
     fn label(&mut self, drawing: &mut Drawing, name: &str, colour: Colour, places: &[[f64; 2]]) {
         let (text, size) = typeface::fitted(name, SMALL, Weight::Regular, 0.6 * (self.high[0] - self.low[0]));
         let (width, height) = (typeface::width(&text, size, Weight::Regular), 1.15 * size);
@@ -227,7 +227,7 @@ impl Taken {
     fn cost(&self, low: [f64; 2], high: [f64; 2]) -> f64 {
         let outside = (0..2).any(|axis| low[axis] < self.low[axis] + 4.0 || high[axis] > self.high[axis] - 4.0);
         let crosses = |other: &&[[f64; 2]; 2]| {
-            // Lines of text have room in them: they may touch above each other, and not beside each other.
+            // A line of text includes white space: texts may touch vertically, but not horizontally.
             let apart = [4.0, -2.0];
             (0..2).all(|axis| low[axis] < other[1][axis] + apart[axis] && other[0][axis] < high[axis] + apart[axis])
         };

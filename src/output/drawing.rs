@@ -9,7 +9,7 @@ use super::typeface::Weight;
 use super::{pdf, raster, svg};
 use crate::error::Error;
 
-/// Coordinates beyond this are no part of a picture; renderers compute in single precision.
+/// Coordinates beyond this are not drawn; renderers compute in single precision.
 const FARTHEST: f64 = 1e6;
 
 /// A drawing in pixels, x to the right and y downwards, on white.
@@ -17,7 +17,7 @@ const FARTHEST: f64 = 1e6;
 pub struct Drawing {
     width: f64,
     height: f64,
-    /// Width on paper in millimetres; none on a screen.
+    /// Width on paper in millimetres; `None` on a screen.
     millimetres: Option<f64>,
     shapes: Vec<Shape>,
 }
@@ -29,12 +29,12 @@ impl Drawing {
         Drawing { width: side(width), height: side(height), millimetres: None, shapes: Vec::new() }
     }
 
-    /// The same for paper, so many millimetres wide; for a screen where there is no number.
+    /// The same drawing for paper of this width in millimetres; for a screen if it is `None`.
     pub(crate) fn on_paper(self, millimetres: Option<f64>) -> Self {
         Drawing { millimetres, ..self }
     }
 
-    /// Returns `true` if it is written for paper: as PDF and SVG.
+    /// Returns `true` if the drawing is for paper, written as PDF and SVG.
     pub(crate) fn is_for_paper(&self) -> bool {
         self.millimetres.is_some()
     }
@@ -66,7 +66,7 @@ impl Drawing {
         self.polyline(&[from, to], paint);
     }
 
-    /// An open line through the points, interrupted where a coordinate is not a finite number.
+    /// An open line through the points, interrupted if a coordinate is not a finite number.
     pub(crate) fn polyline(&mut self, points: &[[f64; 2]], paint: &Paint) {
         let pieces: Vec<&[[f64; 2]]> =
             points.split(|&point| !drawable(point)).filter(|piece| piece.len() > 1).collect();
@@ -101,7 +101,7 @@ impl Drawing {
         self.coloured_text(position, text, size, anchor, INK);
     }
 
-    /// The same in a colour of its own.
+    /// The same in the given colour.
     pub(crate) fn coloured_text(&mut self, position: [f64; 2], text: &str, size: f64, anchor: Anchor, ink: Colour) {
         self.any_text(Text {
             position,
@@ -146,7 +146,7 @@ impl Drawing {
         }
     }
 
-    /// Draws what `content` draws, cut to the rectangle with its upper left corner at `corner`.
+    /// Draws `content`, clipped to the rectangle with its upper left corner at `corner`.
     pub(crate) fn clipped(&mut self, corner: [f64; 2], size: [f64; 2], content: impl FnOnce(&mut Drawing)) {
         let outside = std::mem::take(&mut self.shapes);
         content(self);
@@ -154,12 +154,12 @@ impl Drawing {
         self.shapes.push(Shape::Clipped { corner, size: size.map(|side| side.max(0.0)), shapes });
     }
 
-    /// The drawing as SVG text, with a white background; for paper in millimetres and with its letters.
+    /// The drawing as SVG text with a white background; for paper in millimetres and with embedded fonts.
     pub fn svg(&self) -> String {
         svg::written([self.width, self.height], &self.shapes, self.millimetres)
     }
 
-    /// The drawing as a page of PDF with its letters, as wide as it is on paper; 170 mm if it is for a screen.
+    /// The drawing as a PDF page with embedded fonts, in its width on paper; 170 mm wide if it is for a screen.
     pub fn pdf(&self) -> Vec<u8> {
         pdf::written([self.width, self.height], &self.shapes, self.millimetres.unwrap_or(170.0))
     }
@@ -167,8 +167,8 @@ impl Drawing {
     /// The same picture as PNG, with `scale` pixels of the image for one pixel of the drawing.
     ///
     /// # Errors
-    /// [`Error::Setting`] where the scale is not positive or makes an image of more than 1e8 pixels,
-    /// [`Error::Numerical`] where the rasteriser fails.
+    /// [`Error::Setting`] if the scale is not positive or makes an image of more than 1e8 pixels,
+    /// [`Error::Numerical`] if the rasteriser fails.
     pub fn png(&self, scale: f64) -> Result<Vec<u8>, Error> {
         raster::png(&self.pixels(scale)?)
     }
@@ -184,7 +184,7 @@ fn drawable(point: [f64; 2]) -> bool {
     point.iter().all(|coordinate| coordinate.abs() <= FARTHEST)
 }
 
-/// The points that can be drawn in hundredths of a pixel, none twice in a row.
+/// The drawable points in hundredths of a pixel, without equal neighbours.
 fn in_hundredths(points: &[[f64; 2]]) -> Vec<[i64; 2]> {
     let near = points.iter().filter(|&&point| drawable(point));
     let mut rounded: Vec<[i64; 2]> = near.map(|point| point.map(|x| (x * 100.0).round() as i64)).collect();

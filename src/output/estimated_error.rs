@@ -16,7 +16,7 @@ use crate::scene::Units;
 use crate::study::Summary;
 use crate::study::total_error::{Ended, Estimated, EstimatedLevel};
 
-/// The report: how the mesh came about, then the answer on it.
+/// The report: the refinement of the mesh, then the answer on the last mesh.
 pub(crate) fn estimated_error_text(title: &str, found: &Estimated, answer: &Summary, units: &Units) -> String {
     let mut text = format!("{}\n", printable(title));
     let (error, goal) = (found.total_error.bound, found.goal.total_error);
@@ -66,14 +66,14 @@ fn row(level: &EstimatedLevel) -> Vec<String> {
     ]
 }
 
-/// What the goal would take, from the rate of the last meshes.
+/// The unknowns that the goal would need, from the rate of the last meshes.
 fn needed(found: &Estimated) -> String {
     let [.., before, last] = &found.levels[..] else { return "a second mesh would tell what the goal takes".into() };
     let rate = (before.total_error / last.total_error).ln() / (last.dofs as f64 / before.dofs as f64).ln();
     super::total_error::unknowns_needed(rate, last.total_error / found.goal.total_error, last.dofs)
 }
 
-/// Leaves the last mesh, the table of meshes and the plot of the errors in a folder.
+/// Writes the last mesh, the table of meshes and the plot of the errors into a folder.
 pub(crate) fn write_estimated_error(
     folder: &Path,
     title: &str,

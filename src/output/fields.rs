@@ -5,10 +5,10 @@ use crate::error::Error;
 use crate::fem::recovery::Stress;
 use crate::scene::Answer;
 
-/// Flag of a node that is no candidate; candidates have 0 (open) or 1 (closed).
+/// Flag of a node that is not a candidate; candidates have 0 (open) or 1 (closed).
 const NO_CANDIDATE: f64 = -1.0;
 
-/// What the rows say at the nodes; zero where there is none.
+/// The values of the contact rows at their nodes; zero at other nodes.
 struct AtCandidates {
     gap: Vec<f64>,
     remaining: Vec<f64>,
@@ -19,7 +19,7 @@ struct AtCandidates {
 }
 
 impl AtCandidates {
-    /// A node between two obstacles shows the sum of its pressures, and the smaller of its gaps with its normal.
+    /// A node between two obstacles has the sum of its pressures, and its smaller gap with the normal of that gap.
     fn of(answer: &Answer) -> Self {
         let (model, remaining) = (answer.model(), answer.remaining_gaps());
         let count = model.mesh().nodes().len();
@@ -47,7 +47,8 @@ impl AtCandidates {
 
 /// The text of the `.vtu` file: displacement, stresses, forces, and at the candidates normal, gaps, pressure and contact flag.
 ///
-/// With a `velocity` (nodal, `dim` a node) it is that of a motion, whose reactions are not those of an equilibrium and are left out.
+/// With a `velocity` (nodal, `dim` a node) the fields are those of a motion. Its reactions are not those of an equilibrium and are left
+/// out.
 ///
 /// # Errors
 /// Those of the recovery of stresses.
@@ -112,7 +113,7 @@ fn tensor(stress: &Stress) -> [f64; 6] {
     [sigma_xx, sigma_yy, sigma_zz, sigma_xy, sigma_yz, sigma_zx]
 }
 
-/// Nodal vectors of `dimension` components with three.
+/// Nodal vectors of `dimension` components, padded to three.
 fn in_space(nodal: &[f64], dimension: usize) -> Vec<f64> {
     nodal.chunks(dimension).flat_map(|v| [0, 1, 2].map(|axis| v.get(axis).copied().unwrap_or(0.0))).collect()
 }

@@ -1,4 +1,4 @@
-//! Writing files so that nothing is ever half written.
+//! Atomic writing of files: each is written as a whole or not at all.
 
 use std::{
     io::{self, BufWriter, Write},
@@ -9,20 +9,20 @@ use super::Drawing;
 use crate::error::Error;
 use crate::file::Streamed;
 
-/// Bytes that are gathered before they are written.
+/// Size of the write buffer in bytes.
 const PIECE: usize = 1 << 20;
 
-/// Writes `contents` to `path` as a whole or not at all, and makes its folder where that is missing.
+/// Writes `contents` to `path` as a whole or not at all, and makes its folder if that is missing.
 ///
-/// The contents go to a new file beside their place, which is synced and then takes the place of `path` in one step.
+/// The contents go to a new file in the same folder, which is synced and then replaces `path` in one step.
 ///
 /// # Errors
-/// [`Error::File`] where the system refuses; an older file at `path` is then untouched, and nothing is left beside it.
+/// [`Error::File`] if the system refuses; an older file at `path` is then untouched, and nothing is left beside it.
 pub fn write_atomically(path: &Path, contents: &[u8]) -> Result<(), Error> {
     streamed_atomically(path, |out| out.write_all(contents))
 }
 
-/// Writes what `contents` writes, which need not stand in memory, as [`write_atomically`].
+/// Writes the output of `contents`, which need not be in memory, as [`write_atomically`] does.
 ///
 /// # Errors
 /// As [`write_atomically`].
@@ -35,13 +35,13 @@ fn streamed_atomically(path: &Path, contents: impl Fn(&mut dyn Write) -> io::Res
     write(folder, path, contents).map_err(|source| Error::File { action: "write", path: path.to_owned(), source })
 }
 
-/// Makes a folder, and those that it is in, where they are missing.
+/// Makes a folder and its parent folders if they are missing.
 ///
 /// # Errors
-/// [`Error::File`] where the system refuses.
+/// [`Error::File`] if the system refuses.
 pub fn make_folder(folder: &Path) -> Result<(), Error> {
     let made = std::fs::create_dir_all(folder).map_err(|error| match error.kind() {
-        // The system calls it existing, which is not what is wrong.
+        // The system reports that it exists, which is not the fault.
         io::ErrorKind::AlreadyExists => io::Error::new(io::ErrorKind::NotADirectory, "there is a file of that name"),
         _ => error,
     });
@@ -50,7 +50,7 @@ pub fn make_folder(folder: &Path) -> Result<(), Error> {
 
 fn write(folder: &Path, path: &Path, contents: impl Fn(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     let mut builder = tempfile::Builder::new();
-    // A temporary file is private by default; what takes its place is an ordinary file, as the umask wants it.
+    // A temporary file is private by default; the final file has ordinary permissions under the umask.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     let mut file = builder.prefix(".signorini-").tempfile_in(folder)?;
@@ -62,10 +62,10 @@ fn write(folder: &Path, path: &Path, contents: impl Fn(&mut dyn Write) -> io::Re
     file.persist(path).map(drop).map_err(|error| error.error)
 }
 
-/// Writes a drawing as `stem.svg` and `stem.png` (for paper `stem.svg` and `stem.pdf`) into `folder`, and tells both paths.
+/// Writes a drawing as `stem.svg` and `stem.png` (for paper `stem.svg` and `stem.pdf`) into `folder`; returns both paths.
 ///
 /// # Errors
-/// [`Error::File`] where the system refuses, [`Error::Numerical`] where the rasteriser fails (then neither file is
+/// [`Error::File`] if the system refuses, [`Error::Numerical`] if the rasteriser fails (then neither file is
 /// written).
 pub fn write_picture(folder: &Path, stem: &str, drawing: &Drawing) -> Result<[PathBuf; 2], Error> {
     let (other, bytes) = match drawing.is_for_paper() {
@@ -81,7 +81,7 @@ pub fn write_picture(folder: &Path, stem: &str, drawing: &Drawing) -> Result<[Pa
 /// Writes named texts into `folder`.
 ///
 /// # Errors
-/// [`Error::File`] where the system refuses; the files before the one that failed are complete.
+/// [`Error::File`] if the system refuses; the files before the one that failed are complete.
 pub fn write_files(folder: &Path, files: &[(&str, impl AsRef<str>)]) -> Result<(), Error> {
     files.iter().try_for_each(|(name, text)| write_atomically(&folder.join(name), text.as_ref().as_bytes()))
 }

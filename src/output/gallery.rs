@@ -1,4 +1,4 @@
-//! What `--out` leaves in a folder: answers, fields and pictures of a scene.
+//! The output of `--out` in a folder: answers, fields and pictures of a scene.
 
 use std::path::Path;
 
@@ -17,34 +17,34 @@ use crate::scene::{Answer, Model};
 use crate::solution::{ContactSet, Iteration, Solution};
 use crate::study::{Summary, Sweep, SweepCorner, SweepPoint};
 
-/// Which pictures a command draws.
+/// The pictures that a command draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pictures {
     /// None.
     None,
-    /// That of the answer: one for each command.
+    /// The picture of the answer: one for each command.
     Answer,
-    /// Those of iterations and gaps as well.
+    /// The pictures of iterations and gaps as well.
     All,
 }
 
 impl Pictures {
-    /// What a comparison or a sweep of a model draws if nothing else is asked for: all pictures in the plane, and one in space, where
-    /// each step takes a solve of its own.
+    /// The default pictures of a comparison or a sweep of a model: all pictures in the plane, and one in space, because there each step
+    /// takes its own solve.
     pub(crate) fn usual_of_series(model: &Model) -> Self {
         if model.mesh().dimension() == 3 { Pictures::Answer } else { Pictures::All }
     }
 }
 
-/// What a command draws, and for what.
+/// The pictures that a command draws, and their medium.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wanted {
     pub pictures: Pictures,
     pub medium: Medium,
 }
 
-/// Writes `u.mtx` and `lambda.mtx`; of a scene what their entries are those of, and what happens at each row (`dofs.csv`, `rows.csv`,
-/// `contact.csv`).
+/// Writes `u.mtx` and `lambda.mtx`; for a scene also the meaning of their entries (`dofs.csv`, `rows.csv`) and the state of each
+/// contact row (`contact.csv`).
 ///
 /// # Errors
 /// [`Error::File`].
@@ -56,7 +56,7 @@ pub fn write_answer(folder: &Path, solution: &Solution, answer: Option<&Answer>)
 }
 
 /// Writes the fields of an answer (`solution.vtu`) and its picture (`contact`); with all pictures also one for each
-/// iteration (`iteration-1`, ...) or each penalty (`rung-1`, ...), of more than twelve some. A bar has no picture.
+/// iteration (`iteration-1`, ...) or each penalty (`rung-1`, ...), at most twelve. A bar has no picture.
 ///
 /// # Errors
 /// [`Error::File`], and those of the recovery of stresses.
@@ -72,7 +72,7 @@ pub fn write_solve(folder: &Path, answer: &Answer, history: &[Iteration], wanted
     draw_answers(folder, shown, 1, medium)
 }
 
-/// Draws answers of one mesh, each with its name and title, with the colours and the scale of the first `leading` of them.
+/// Draws answers of one mesh, each with its name and title, with the colours and the scale of the first `leading` answers.
 fn draw_answers(
     folder: &Path,
     shown: Vec<(String, &Answer, String)>,
@@ -142,7 +142,7 @@ pub fn write_sweep(folder: &Path, sweep: &Sweep, wanted: Wanted) -> Result<(), E
         None => ("gap g", &units.length),
     };
     let over_gap = |name: &str, unit: &str, at_point: Value<SweepPoint>, at_corner: Value<SweepCorner>| {
-        // Beside the exact path the gaps are marks, which no line may join.
+        // Beside the exact path the gaps are marks without a line.
         let join = if sweep.corners.is_empty() { None } else { Some([f64::NAN; 2]) };
         let at = |point: &SweepPoint| [point.force.unwrap_or(point.gap), at_point(point)];
         let at_points = points.iter().flat_map(|point| [Some(at(point)), join]).flatten().collect();
@@ -178,22 +178,22 @@ pub fn write_sweep(folder: &Path, sweep: &Sweep, wanted: Wanted) -> Result<(), E
     Ok(())
 }
 
-/// A number of something that is plotted.
+/// A plotted value of an item.
 type Value<'a, T> = &'a dyn Fn(&T) -> f64;
 
-/// What all pictures of a model say first.
+/// The first line of all pictures of a model.
 pub(super) fn headline(model: &Model) -> String {
     [model.title(), &state(model)].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
 }
 
-/// What is seen: the scene, its state, what is shown of it unless that is its answer, and the number of closed nodes.
+/// The title: the scene, its state, the content of the picture unless it is the answer, and the number of closed nodes.
 fn title(answer: &Answer, what: &str) -> String {
     let model = answer.model();
     let parts = [headline(model), what.to_string(), closed_nodes(model, answer.contact_set())];
     parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
 }
 
-/// The closed nodes, as the legend counts them: a node between two obstacles once.
+/// The number of closed nodes in the legend: a node between two obstacles counts once.
 fn closed_nodes(model: &Model, set: &ContactSet) -> String {
     let mut nodes: Vec<usize> = set.iter().map(|row| model.rows()[row].node).collect();
     nodes.sort_unstable();

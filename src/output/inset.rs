@@ -11,9 +11,9 @@ const SMALL_CONTACT: f64 = 0.05;
 /// Side of the enlarged part as a share of the shorter side of the panel, and in pixels at most.
 const SIDE: f64 = 0.44;
 const MOST_SIDE: f64 = 240.0;
-/// The enlarged part is so many times as wide as the contact.
+/// Width of the enlarged part, as a multiple of the width of the contact.
 const AROUND: f64 = 2.2;
-/// Nor is more than this many times enlarged: a single node has no width. Less than this many times would show nothing new.
+/// Largest magnification (a single node has no width) and smallest one (less would show nothing new).
 const MOST_TIMES: f64 = 1e6;
 const FEWEST_TIMES: f64 = 2.5;
 
@@ -28,8 +28,8 @@ pub(super) struct Inset {
 }
 
 impl Inset {
-    /// The inset of a contact with these `closed` nodes, if it is small; `open` are candidates and `moved` all nodes, which it should
-    /// not cover.
+    /// The inset of a contact with these `closed` nodes, if it is small. It should not cover the `open` candidates and all `moved`
+    /// nodes.
     pub fn of(
         frame: &Frame,
         closed: &[[f64; 2]],
@@ -48,7 +48,7 @@ impl Inset {
             return None;
         }
         let middle = zone.map(|[low, high]| 0.5 * (low + high));
-        // One node alone: as far as the next candidates.
+        // A single node: up to the next candidates.
         let near = open.filter_map(|place| {
             let away = (place[0] - middle[0]).hypot(place[1] - middle[1]);
             (away > 0.6 * extent).then_some(away)
@@ -76,7 +76,7 @@ impl Inset {
         Some(Inset { frame: inner, part: ([at[0] - 0.5 * small, at[1] - 0.5 * small], small) })
     }
 
-    /// The white ground, and where the part lies in the panel.
+    /// The white ground, and a mark of the enlarged part in the panel.
     pub fn draw_ground(&self, drawing: &mut Drawing, panel: &Frame) {
         let (corner, small) = self.part;
         let seen = small.max(7.0);
@@ -94,7 +94,7 @@ impl Inset {
         drawing.rect(self.frame.corner, self.frame.size, &Paint::fill(WHITE));
     }
 
-    /// The border, and how large the part is.
+    /// The border, and the size of the enlarged part.
     pub fn draw_frame(&self, drawing: &mut Drawing, length_unit: &str) {
         let ([x, y], [side, _]) = (self.frame.corner, self.frame.size);
         drawing.rect([x, y], [side, side], &Paint::stroke(BORDER, 1.4));

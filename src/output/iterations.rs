@@ -1,4 +1,4 @@
-//! The steps of the search for the contact set, each with the body that it stands for.
+//! The steps of the search for the contact set, each with its displaced body.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use crate::qp::{Method, Penalty, Settings, solve, with_contact_sets};
 use crate::scene::{Answer, Model};
 use crate::solution::Iteration;
 
-/// Of more iterations than this some are left out.
+/// Largest number of iterations that are shown.
 const MOST_ITERATIONS: usize = 12;
 
 /// A step that is shown.
@@ -19,15 +19,16 @@ pub(super) struct Step {
     pub name: String,
     /// The same in words.
     pub what: String,
-    /// The body with the rows of the set held at their gaps, or at the penalty.
+    /// The body with the rows of the set held at their gaps, or by the penalty.
     pub answer: Answer,
 }
 
-/// The displacement and the multiplier that an iteration worked with; `None` where it had none.
+/// The displacement and the multiplier of an iteration; `None` if it has none.
 type Found = Option<(Vec<f64>, Vec<f64>)>;
 
-/// For each set of the history of a body in the plane or in space the displacement with the rows of the set held at their gaps; of a penalty loop
-/// one for each penalty, with its settled set. A set that does not hold the body by itself has no displacement to show.
+/// For each contact set of the history of a body in the plane or in space: the displacement with the rows of the set held at their
+/// gaps. For a penalty loop: one displacement for each penalty, with its settled set. A set that does not hold the body by itself has
+/// no displacement and is left out.
 ///
 /// # Errors
 /// [`Error::Length`] for the history of another model.
@@ -77,7 +78,7 @@ fn of_penalty(model: &Model, penalty: f64) -> Found {
     let settings = Settings { prove: false, ..Settings::with_method(Method::Penalty(ladder)) };
     let solution = match solve(model.problem(), &settings) {
         Ok(solution) => solution,
-        // Certified or not: no rung but the last is exact.
+        // Certified or not: only the last rung is exact.
         Err(Error::NotCertified { solution, .. }) => *solution,
         Err(_) => return None,
     };

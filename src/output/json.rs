@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::error::Error;
 
-/// One line, the fields in the order of their type: a file that this program reads again.
+/// One line, the fields in the order of their type, for a file that this program reads again.
 ///
 /// # Errors
 /// [`Error::Numerical`] for a value that JSON cannot hold.
@@ -12,8 +12,8 @@ pub(crate) fn compact_json(value: &impl Serialize) -> Result<String, Error> {
     serde_json::to_string(value).map_err(failed)
 }
 
-/// A report as the command line prints it: indented, the fields in alphabetical order, a number that is not finite as null,
-/// and a line end.
+/// The report that the command line prints: indented, fields in alphabetical order, `null` for a number that is not finite, and a line
+/// end.
 ///
 /// # Errors
 /// [`Error::Numerical`] for a value that JSON cannot hold.

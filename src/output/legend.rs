@@ -14,7 +14,7 @@ pub(crate) const ROW: f64 = SMALL * LINE + 4.0;
 /// Draws a key around a centre.
 pub(crate) type Key<'a> = Box<dyn Fn(&mut Drawing, [f64; 2]) + 'a>;
 
-/// One entry: its name and what draws its key around a centre.
+/// One entry: its name and its key, drawn around a centre.
 pub(crate) struct Entry<'a> {
     pub name: String,
     pub key: Key<'a>,

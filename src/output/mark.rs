@@ -1,4 +1,4 @@
-//! The mark of a candidate node: filled where it is closed, hollow where it is open.
+//! The mark of a candidate node: filled if it is closed, hollow if it is open.
 
 use super::{
     colour::{Colour, WHITE},

@@ -1,26 +1,26 @@
-//! What a picture is drawn for: a screen, or the page of a paper.
+//! The medium of a picture: a screen, or the page of a paper.
 
 use super::axes::MARGIN;
 
-/// What a picture is drawn for.
+/// The medium of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Medium {
     /// SVG and PNG with a title.
     #[default]
     Screen,
     /// PDF and SVG, as wide as one column of a journal (85 mm) or two (170 mm), with letters on the panels and without a title, which
-    /// belongs into the caption.
+    /// belongs in the caption.
     Paper,
 }
 
-/// Pixels of a millimetre of paper: the letters of an axis are then 8 points high.
+/// Pixels in a millimetre of paper: the letters of an axis are then 8 points high.
 const PIXELS: f64 = 5.67;
 
 /// Widths of one column of a journal and of two, in millimetres.
 const COLUMNS: [f64; 2] = [85.0, 170.0];
 
 impl Medium {
-    /// The width of paper in millimetres for so many panels side by side; none on a screen.
+    /// The width on paper in millimetres for this number of panels side by side; `None` on a screen.
     pub fn millimetres(self, panels: usize) -> Option<f64> {
         (self == Medium::Paper).then_some(COLUMNS[usize::from(panels > 1)])
     }
@@ -35,7 +35,7 @@ impl Medium {
         if self == Medium::Paper { 6.0 } else { MARGIN }
     }
 
-    /// The title of the panel of this index, with its letter where several stand on paper.
+    /// The title of the panel of this index, with its letter if several panels are on paper.
     pub fn panel_title(self, index: usize, panels: usize, title: &str) -> String {
         let letter = char::from(b'a' + (index % 26) as u8);
         match self {
@@ -44,7 +44,7 @@ impl Medium {
         }
     }
 
-    /// The lines of the title: none on paper.
+    /// The lines of the title; empty on paper.
     pub fn title(self, lines: Vec<String>) -> Vec<String> {
         if self == Medium::Paper { Vec::new() } else { lines }
     }

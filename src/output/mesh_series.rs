@@ -5,7 +5,7 @@ use super::colour::Colour;
 use super::drawing::{Anchor, Paint};
 use super::report::printable;
 
-/// Panels of the picture: the first mesh, the last, and some between.
+/// Number of panels: the first mesh, the last, and some between.
 const PANELS: usize = 4;
 /// Width of a panel, and the space around it.
 const PANEL: f64 = 520.0;
@@ -13,7 +13,7 @@ const SPACE: f64 = 24.0;
 const HEADING: f64 = 40.0;
 const LINE: Colour = Colour(0x2f, 0x4b, 0x6e);
 
-/// One mesh: what stands above it, and its cells as polygons.
+/// One mesh: its heading, and its cells as polygons.
 pub(super) struct MeshPanel {
     pub heading: String,
     pub cells: Vec<Vec<[f64; 2]>>,

@@ -1,4 +1,4 @@
-//! Answers shown: reports as text and JSON, pictures (SVG and PNG), `.vtu` files for ParaView, problem files.
+//! Output of answers: reports as text and JSON, pictures (SVG and PNG), `.vtu` files for ParaView, problem files.
 //!
 //! Pictures and `.vtu` files take plain data (nodes, elements, values, labels) and know nothing of scenes, meshes or
 //! methods; `gallery` alone fills them from a model and its answer. A picture is a [`Drawing`]: the
@@ -18,11 +18,11 @@ pub(crate) mod drawing;
 mod estimated_error;
 mod fields;
 pub(crate) mod file;
-// What the program leaves in its folders; of it a motion needs the fields and the scene of a picture only.
+// The output of the program in its folders; a motion needs only its fields and the scene of a picture.
 #[cfg_attr(not(feature = "cli"), allow(dead_code))]
 pub(crate) mod gallery;
 mod inset;
-// Only what the program leaves in its folders shows them.
+// Only the output in the folders shows them.
 #[cfg_attr(not(feature = "cli"), allow(dead_code))]
 mod iterations;
 mod json;

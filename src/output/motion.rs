@@ -1,8 +1,8 @@
-//! What a motion leaves in a folder, as it goes: its history, a series of fields for ParaView, and where it stands.
+//! The output of a motion in a folder while it runs: its history, a series of fields for ParaView, and a checkpoint.
 //!
-//! Everything is written at the end of a frame: the lines of the history since the last one, the fields, the list of the
-//! series, and last of all the checkpoint. Whenever a run is stopped, what is there can be read, and can be gone on from.
-//! Nothing that is kept grows with the number of steps.
+//! Everything is written at the end of a frame: the lines of the history since the last one, the fields, the list of the series, and
+//! finally the checkpoint. If a run is stopped at any time, its files can be read, and the run can be resumed. The memory does not grow
+//! with the number of steps.
 
 use std::fmt::Write as _;
 use std::io::{BufRead, BufReader};
@@ -40,10 +40,10 @@ const RESULTANTS: &str = "resultants.csv";
 const CHECKPOINT: &str = "checkpoint.json";
 const HEADING: &str = "time,force,closed,penetration,kinetic,strain,potential,energy\n";
 
-/// Points of a plot over time; of more steps some are left out.
+/// Largest number of points of a plot over time; if there are more steps, some are left out.
 const MOST_POINTS: usize = 4000;
 
-/// Pixels of the animation for one of the drawing, and how long one frame stands.
+/// Pixels of the animation for one pixel of the drawing, and the duration of one frame.
 const SCALE: f64 = 0.5;
 const MILLISECONDS: u16 = 80;
 
@@ -51,18 +51,18 @@ const MILLISECONDS: u16 = 80;
 #[derive(Debug)]
 pub struct MotionFolder {
     folder: PathBuf,
-    /// The scene in one line: a run goes on from its own checkpoint only.
+    /// The scene in one line: a run resumes only from its own checkpoint.
     scene: String,
     history: MotionTable,
     /// The resultant of each obstacle and support.
     resultants: MotionTable,
-    /// Points that are watched, with their table; none if the scene asks for none.
+    /// The watched points with their table; `None` if the scene names no points.
     watch: Option<(Vec<WatchedPoint>, MotionTable)>,
     /// Times of the frames so far.
     times: Vec<f64>,
 }
 
-/// A state that was written.
+/// A written state.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Frame {
     time: f64,
@@ -71,7 +71,7 @@ struct Frame {
     closed: Vec<usize>,
 }
 
-/// Where a run stands.
+/// The state of a run.
 #[derive(Debug, Serialize, Deserialize)]
 struct Checkpoint {
     scene: String,
@@ -86,8 +86,7 @@ struct Checkpoint {
 }
 
 impl MotionFolder {
-    /// A new run of `scene` (its text) in `folder`, with points of `model` that are watched; what an earlier one left there is
-    /// overwritten.
+    /// A new run of `scene` (its text) in `folder`, with the watched points of `model`; it overwrites the files of an earlier run.
     ///
     /// # Errors
     /// [`Error::File`].
@@ -110,11 +109,11 @@ impl MotionFolder {
         Ok(MotionFolder { folder: folder.into(), scene, history, resultants, watch, times: Vec::new() })
     }
 
-    /// The run of `scene` that stands in `folder`, with its state and its numbers; lines behind its checkpoint are cut off.
-    /// The scene may have another duration and other frames than it had then.
+    /// The run of `scene` in `folder`, with its state and its numbers; lines after its checkpoint are cut off. The duration and the
+    /// frames of the scene may differ from those of the earlier run.
     ///
     /// # Errors
-    /// [`Error::File`] where there is none, [`Error::Scene`] for the run of another scene or a checkpoint that cannot be
+    /// [`Error::File`] if there is no run, [`Error::Scene`] for the run of another scene or a checkpoint that cannot be
     /// read.
     pub fn resume(
         folder: &Path,
@@ -149,8 +148,8 @@ impl MotionFolder {
         Ok((run, state, found.summary))
     }
 
-    /// One more line of the history, of the resultants, and of the points that are watched: `seen`, the state of `integrator`
-    /// now, and the `resultants` of its last step, as [`Dynamics::resultants`](crate::scene::Dynamics::resultants).
+    /// Adds a line to the history, to the resultants, and to the watched points: `seen`, the current state of `integrator`, and the
+    /// `resultants` of its last step, as [`Dynamics::resultants`](crate::scene::Dynamics::resultants).
     ///
     /// # Errors
     /// [`Error::File`]; [`Error::Length`] for the state of another model.
@@ -184,7 +183,7 @@ impl MotionFolder {
         table.add(&line)
     }
 
-    /// Writes a frame of the series with the velocities, the lines of the tables up to it, and the checkpoint.
+    /// Writes a frame of the series with the velocities, the table lines up to this frame, and the checkpoint.
     ///
     /// # Errors
     /// [`Error::File`], and those of the recovery of stresses.
@@ -245,7 +244,7 @@ impl MotionFolder {
         serde_json::from_str(&text).map_err(|error| not_ours(&path, "frame of a motion", &error))
     }
 
-    /// Draws force and energies over time (`history`), and of a body in the plane an animation (`motion.png`).
+    /// Draws force and energies over time (`history`), and an animation of a body in the plane (`motion.png`).
     ///
     /// # Errors
     /// [`Error::File`], and those of the recovery of stresses and of the rasteriser.
@@ -253,7 +252,7 @@ impl MotionFolder {
         self.draw_for(model, Medium::Screen)
     }
 
-    /// The same for a screen or for paper, where the animation is as on a screen.
+    /// The same for a screen or for paper; the animation is the same for both.
     pub(crate) fn draw_for(&self, model: &Arc<Model>, medium: Medium) -> Result<(), Error> {
         let history = self.read_history()?;
         let line =
@@ -278,7 +277,7 @@ impl MotionFolder {
             let shown = Answer::new(model.clone(), &frame.displacement, &frame.multiplier, &set)?;
             Ok(PlaneScene::new(&shown, title)?.in_place())
         };
-        // First what all frames share, then one after another: no two are in memory together.
+        // First the limits that all frames share, then the frames: only one is in memory at a time.
         let (mut limits, mut window) = ([f64::INFINITY, f64::NEG_INFINITY], None);
         for number in 0..self.times.len() {
             let shown = scene(number)?;
@@ -300,7 +299,7 @@ impl MotionFolder {
         write_atomically(&self.folder.join("motion.png"), &animation)
     }
 
-    /// Writes `report.html`, with the object of the report as it stands in `report.json`.
+    /// Writes `report.html`, with the same report object as in `report.json`.
     ///
     /// # Errors
     /// [`Error::File`], and those of the recovery of stresses.
@@ -316,7 +315,7 @@ impl MotionFolder {
         write_motion_page(&self.folder, about, model, report, &frames)
     }
 
-    /// The rows of the history; of a long one only some, each with the largest force since the row before.
+    /// The rows of the history; if it is long, only some rows, each with the largest force since the previous one.
     fn read_history(&self) -> Result<Vec<[f64; 8]>, Error> {
         let path = self.folder.join(HISTORY);
         let fail = |source| Error::File { action: "read", path: path.clone(), source };
@@ -339,7 +338,7 @@ impl MotionFolder {
     }
 }
 
-/// The set of `rows` rows in which the rows of `closed` are closed; a row beyond the last is left out.
+/// The contact set of `rows` rows with the rows of `closed` closed; an index beyond the last row is ignored.
 fn closed_of(rows: usize, closed: &[usize]) -> ContactSet {
     let mut set = ContactSet::open(rows);
     closed.iter().for_each(|&row| set.insert(row));
@@ -365,11 +364,11 @@ fn resultants_heading(model: &Model) -> String {
     heading + "\n"
 }
 
-/// A line of the resultants at a time: of obstacles and then of supports, whose cells are empty where they are not given.
+/// A line of the resultants at one time: first the obstacles, then the supports; cells are empty for resultants that are not given.
 fn resultants_line(model: &Model, time: f64, resultants: &[Resultant]) -> String {
     let mut line = format!("{time:e}");
     for of in resultants {
-        // Without a force there is no centre.
+        // A zero force has no centre.
         let centre = (0..of.force.len()).map(|axis| of.centre.as_ref().map(|at| at[axis]));
         for value in of.force.iter().chain(&of.moment).copied().map(Some).chain(centre) {
             let _ = match value {

@@ -8,10 +8,10 @@ use crate::qp::Method;
 use crate::scene::{Dynamics, Model};
 use crate::study::{MotionSummary, RunSeconds, Status};
 
-/// What the force is averaged over.
+/// The interval over which the force is averaged.
 const WINDOW: &str = "a fifth of the time that a pressure wave takes through the body";
 
-/// What a run was asked for and what it has come to.
+/// The request and the result of a run.
 #[derive(Debug)]
 pub struct MotionReport<'a> {
     /// The scene at rest.
@@ -22,13 +22,13 @@ pub struct MotionReport<'a> {
     pub method: Method,
     /// The steps so far.
     pub summary: &'a MotionSummary,
-    /// What they cost.
+    /// Their cost in time.
     pub seconds: RunSeconds,
 }
 
 impl MotionReport<'_> {
-    /// Unstable if the energy grew more than its loads put in; certified if the contact problems of all steps are: not where
-    /// springs stand for closed rows, nor where the motion was cut short.
+    /// Unstable if the energy grew by more than the work of the loads. Certified if the contact problems of all steps are certified:
+    /// not if springs replace closed rows, and not if the motion was cut short.
     pub fn status(&self) -> Status {
         if !self.summary.warnings().is_empty() {
             return Status::Unstable;

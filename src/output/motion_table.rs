@@ -1,4 +1,4 @@
-//! Tables of a motion in its folder, which grow line by line and go on after a stop.
+//! Tables of a motion in its folder, which grow line by line and are continued after a stop.
 
 use std::fs::OpenOptions;
 use std::io::{Error as IoError, ErrorKind, Read, Write};
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::write_atomically;
 use crate::error::Error;
 
-/// Lines are written at every frame, and in between if they exceed this many bytes.
+/// Lines are written at every frame, and between frames if they exceed this number of bytes.
 const MOST_BYTES: usize = 1 << 16;
 
 /// A file of comma-separated values under a heading.
@@ -16,7 +16,7 @@ pub(super) struct MotionTable {
     path: PathBuf,
     /// Lines that are not written yet.
     lines: String,
-    /// Bytes of the file that are its own.
+    /// Number of bytes of the file that belong to this run.
     written: u64,
 }
 
@@ -27,7 +27,7 @@ impl MotionTable {
         Ok(MotionTable { path, lines: String::new(), written: heading.len() as u64 })
     }
 
-    /// The file of an earlier run, cut off behind its first bytes.
+    /// The file of an earlier run, cut off after its first `bytes`.
     pub fn resume(path: PathBuf, heading: &str, bytes: u64) -> Result<Self, Error> {
         match cut(&path, heading, bytes) {
             Ok(()) => Ok(MotionTable { path, lines: String::new(), written: bytes }),
@@ -35,12 +35,12 @@ impl MotionTable {
         }
     }
 
-    /// Bytes that are written.
+    /// Number of written bytes.
     pub fn bytes(&self) -> u64 {
         self.written
     }
 
-    /// One more line.
+    /// Adds a line.
     pub fn add(&mut self, line: &str) -> Result<(), Error> {
         self.lines.push_str(line);
         self.lines.push('\n');
@@ -60,10 +60,10 @@ impl MotionTable {
     }
 }
 
-/// Cuts a table off behind its first `bytes`; whatever is no table of a run in its own folder is left as it is.
+/// Cuts a table off after its first `bytes`; a file that is not a table of a run in its own folder is left unchanged.
 fn cut(path: &Path, expected: &str, bytes: u64) -> std::io::Result<()> {
     let wrong = |message: &str| Err(IoError::new(ErrorKind::InvalidData, message));
-    // To open a named pipe waits for a reader, and what is behind a link is not of this folder.
+    // Opening a named pipe waits for a reader, and the target of a link is outside this folder.
     if !path.symlink_metadata()?.is_file() {
         return wrong("it is no regular file");
     }

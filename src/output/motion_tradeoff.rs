@@ -1,4 +1,4 @@
-//! What each scheme of a motion costs, as a table, as comma-separated values, and as a picture of error over time.
+//! The cost of each scheme of a motion, as a table, as comma-separated values, and as a picture of error over time.
 
 use super::certificate::number;
 use super::medium::Medium;
@@ -10,7 +10,7 @@ use crate::study::{MotionPoint, MotionTradeoff};
 const HEADING: [&str; 8] =
     ["scheme", "step", "steps", "seconds", "displacement error", "impulse error", "energy change", "penetration"];
 
-/// The table; a star marks what no other way beats.
+/// The table; a star marks the Pareto front.
 pub fn motion_tradeoff_text(title: &str, tradeoff: &MotionTradeoff) -> String {
     let mut table = vec![HEADING.map(String::from).to_vec()];
     table.extend(tradeoff.points.iter().map(|point| {

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use crate::fem::Mesh;
 
-/// The file of a mesh whose bodies are these ranges of elements, each with its name; boundaries keep theirs.
+/// The file of a mesh with these bodies: a name and a range of elements each; boundaries keep their names.
 pub(super) fn msh(mesh: &Mesh, bodies: &[(&str, Range<usize>)]) -> String {
     let dimension = mesh.dimension();
     let mut text = String::from("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n");

@@ -1,4 +1,4 @@
-//! Obstacles in a picture: how much of them is worth showing, and how they are drawn.
+//! Obstacles in a picture: their visible part and their drawing.
 
 use super::{
     axes::Frame,
@@ -25,8 +25,8 @@ impl ObstacleLine<'_> {
         self.points.len() > 3 && self.points.first() == self.points.last()
     }
 
-    /// The unit vector into the obstacle, for a closed figure from the middle of the body to its own; zero where there
-    /// is none.
+    /// The unit vector into the obstacle; for a closed figure from the middle of the body to the middle of the figure. Zero if it is
+    /// not defined.
     fn direction(&self, body: [[f64; 2]; 2]) -> [f64; 2] {
         let into = if self.is_closed() {
             let share = 1.0 / self.points.len() as f64;
@@ -50,7 +50,7 @@ impl ObstacleLine<'_> {
     pub(crate) fn draw(&self, drawing: &mut Drawing, frame: &Frame) {
         let places: Vec<[f64; 2]> = self.points.iter().map(|&point| frame.place(point)).collect();
         let ([left, top], [width, height]) = (frame.corner, frame.size);
-        // What lies far outside the frame is cut off here: renderers compute in single precision.
+        // Points far outside the frame are cut off here: renderers compute in single precision.
         let far = 3.0 * (width + height);
         let pieces = visible(&places, [left - far, top - far], [left + width + far, top + height + far]);
         if self.is_closed() {
@@ -75,7 +75,7 @@ pub(crate) fn draw_key(drawing: &mut Drawing, [x, y]: [f64; 2]) {
 }
 
 fn inside_paint() -> Paint {
-    // Transparent, so that a body that reaches into the obstacle is seen to do so.
+    // Transparent, so that a body inside the obstacle is visible.
     Paint { transparency: 0.55, ..Paint::fill(INSIDE) }
 }
 
@@ -83,7 +83,7 @@ fn edge_paint() -> Paint {
     Paint::stroke(EDGE, 1.8)
 }
 
-/// The box of the picture: the body, a margin, and room for the obstacles on their side as far as they are near.
+/// The box of the picture: the body, a margin, and room on its side for each obstacle that is near.
 pub(crate) fn window(points: impl Iterator<Item = [f64; 2]> + Clone, obstacles: &[ObstacleLine]) -> [[f64; 2]; 2] {
     let body = [0, 1].map(|axis| Scale::Linear.range(points.clone().map(|point| point[axis]), 0.0));
     let side = (body[0][1] - body[0][0]).max(body[1][1] - body[1][0]);
@@ -109,7 +109,7 @@ pub(crate) fn window(points: impl Iterator<Item = [f64; 2]> + Clone, obstacles: 
     window
 }
 
-/// The pieces of a line within a box; broken where a coordinate is not finite.
+/// The pieces of a line within a box; broken if a coordinate is not finite.
 fn visible(points: &[[f64; 2]], low: [f64; 2], high: [f64; 2]) -> Vec<Vec<[f64; 2]>> {
     let mut pieces: Vec<Vec<[f64; 2]>> = Vec::new();
     let mut connected = false;

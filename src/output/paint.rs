@@ -1,10 +1,10 @@
-//! How shapes are painted and texts placed, and numbers as SVG writes them.
+//! The paint of shapes, the anchors of texts, and numbers in the form of SVG.
 
 use std::fmt::Write;
 
 use super::colour::Colour;
 
-/// How a shape is filled and stroked.
+/// The fill and the stroke of a shape.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Paint {
     /// Colour of the inside, if it has one.
@@ -59,7 +59,7 @@ impl Paint {
     }
 }
 
-/// Which point of a text stands at its position.
+/// The point of a text at its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
     /// The text begins there.
@@ -70,12 +70,12 @@ pub enum Anchor {
     End,
 }
 
-/// A coordinate in hundredths of a pixel, as short as it can be written.
+/// A coordinate to a hundredth of a pixel, in its shortest form.
 pub(crate) fn number(value: f64) -> String {
     hundredths((value * 100.0).round() as i64)
 }
 
-/// The same of a number of hundredths.
+/// The same for a number of hundredths.
 pub(crate) fn hundredths(value: i64) -> String {
     let (sign, value) = (if value < 0 { "-" } else { "" }, value.unsigned_abs());
     let (whole, rest) = (value / 100, value % 100);

@@ -1,4 +1,4 @@
-//! What the panels of a contact picture show: a field, and the displaced mesh with its candidates and forces.
+//! The panels of a contact picture: a field, and the displaced mesh with its candidates and forces.
 
 use super::{
     arrows,
@@ -21,7 +21,7 @@ const MESH: Colour = Colour(0x9a, 0xa4, 0xb2);
 const OUTLINE: Colour = Colour(0x3a, 0x42, 0x4e);
 
 impl ContactPicture<'_> {
-    /// Paints a field level over level; says whether some elements have no value.
+    /// Paints a field, level over level; returns `true` if some elements have no value.
     pub(crate) fn draw_field(&self, drawing: &mut Drawing, frame: &Frame, values: &[f64], range: &ColourRange) -> bool {
         let place = |node: usize| {
             let place = frame.place(self.nodes[node]);
@@ -78,7 +78,7 @@ impl ContactPicture<'_> {
         self.draw_candidates(drawing, frame, &places);
     }
 
-    /// Over the field of a plan view: cells and candidates.
+    /// Draws cells and candidates over the field of a plan view.
     pub(crate) fn draw_plan(&self, drawing: &mut Drawing, frame: &Frame) {
         let places: Vec<[f64; 2]> = self.nodes.iter().map(|&point| frame.place(point)).collect();
         drawing.clipped(frame.corner, frame.size, |drawing| {
@@ -92,7 +92,7 @@ impl ContactPicture<'_> {
         let seen =
             |place: [f64; 2]| (0..2).all(|axis| (0.0..=frame.size[axis]).contains(&(place[axis] - frame.corner[axis])));
         let radius = self.dot_radius(places, &seen);
-        // Closed nodes last, so that no open one covers them.
+        // Closed nodes last, so that no open node covers them.
         for (mark, shown) in [(Candidate::Open, false), (Candidate::Closed, true)] {
             for (&node, _) in self
                 .candidates
@@ -105,7 +105,7 @@ impl ContactPicture<'_> {
         }
     }
 
-    /// Dots as large as the distance of the candidates allows.
+    /// The largest radius of dots that the distance of the candidates allows.
     fn dot_radius(&self, places: &[[f64; 2]], seen: &impl Fn([f64; 2]) -> bool) -> f64 {
         let steps = self.candidates.windows(2).map(|pair| [places[pair[0]], places[pair[1]]]);
         let steps = steps.filter(|pair| pair.iter().all(|&place| seen(place)));
@@ -116,8 +116,8 @@ impl ContactPicture<'_> {
     }
 }
 
-/// Every edge of the mesh once that the frame may show, none where they would be too dense to be seen apart, and the mean size of
-/// an element there.
+/// The edges of the mesh in the frame, each once, and the mean size of an element there; no edges if they would be too dense to
+/// distinguish.
 fn mesh_lines(elements: &[Vec<usize>], places: &[[f64; 2]], frame: &Frame) -> (Vec<[[f64; 2]; 2]>, f64) {
     let far = [0, 1].map(|axis| frame.corner[axis] + frame.size[axis]);
     let is_seen = |element: &&Vec<usize>| {

@@ -12,13 +12,13 @@ use super::paint::{Anchor, Paint};
 use super::shape::{Line, Shape, Text};
 use super::typeface::{self, Weight};
 
-/// Points of a millimetre.
+/// Points in a millimetre.
 const POINTS: f64 = 72.0 / 25.4;
 
-/// How far the control points of a quarter circle lie from its ends, in radii.
+/// Distance of the control points of a quarter circle from its ends, in radii.
 const QUARTER: f64 = 0.552_284_75;
 
-/// What a compressed stream may cost: nothing is gained beyond the usual level.
+/// Level of compression: higher levels gain nothing.
 const LEVEL: u32 = 6;
 
 const WEIGHTS: [Weight; 2] = [Weight::Regular, Weight::Bold];
@@ -29,7 +29,7 @@ const INFO: SystemInfo<'static> = SystemInfo { registry: Str(b"Adobe"), ordering
 pub(super) fn written(sides: [f64; 2], shapes: &[Shape], millimetres: f64) -> Vec<u8> {
     let unit = POINTS * millimetres / sides[0];
     let mut page = Page { content: Content::new(), transparencies: Vec::new() };
-    // Pixels, downwards, on points, upwards.
+    // From pixels, downwards, to points, upwards.
     page.content.save_state().transform([unit as f32, 0.0, 0.0, -unit as f32, 0.0, (unit * sides[1]) as f32]);
     page.content.set_line_join(LineJoinStyle::RoundJoin);
     page.draw(shapes);
@@ -144,7 +144,7 @@ impl Page {
             Anchor::End => -whole,
         };
         let [x, y] = text.position;
-        // Letters stand upright although the page is turned over.
+        // Letters are upright although the page is mirrored.
         let matrix = match text.upward {
             false => [1.0, 0.0, 0.0, -1.0, x + start, y],
             true => [0.0, -1.0, -1.0, 0.0, x, y - start],
@@ -192,7 +192,7 @@ impl Page {
     }
 }
 
-/// Whether pieces of a path that overlap are holes.
+/// Fill rule for overlapping pieces of a path.
 #[derive(Clone, Copy)]
 enum Rule {
     NonZero,
@@ -236,10 +236,10 @@ fn write_font(pdf: &mut Pdf, weight: Weight, first: i32) {
     pdf.cmap(unicode, &map.finish());
 }
 
-/// `bytes` in the zlib format, as a PDF file holds them.
+/// `bytes` in the zlib format of PDF files.
 fn deflated(bytes: &[u8]) -> Vec<u8> {
     let mut encoder = ZlibEncoder::new(Vec::new(), Compression::new(LEVEL));
-    // Memory takes all that is written to it.
+    // Writing to memory cannot fail.
     match encoder.write_all(bytes) {
         Ok(()) => encoder.finish().unwrap_or_default(),
         Err(_) => Vec::new(),

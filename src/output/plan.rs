@@ -25,16 +25,16 @@ pub(super) struct Plan {
     /// Pressure at the nodes.
     pub pressure: Vec<f64>,
     pub unit: String,
-    /// Ends of the colours; where they are not finite, the pressure sets them.
+    /// Ends of the colours; if they are not finite, the range of the pressure.
     pub limits: [f64; 2],
     pub candidates: Vec<usize>,
     pub closed: Vec<bool>,
-    /// What is shown: the contact and a little around it.
+    /// The visible part: the contact with a margin.
     pub window: [[f64; 2]; 2],
 }
 
 impl Plan {
-    /// The frame of the plan view; its corner tells the room left of it.
+    /// The frame of the plan view; its corner gives the room left of the frame.
     pub fn frame(&self, length_unit: &str, medium: Medium) -> Frame {
         let [x, y] = self.window;
         let room = PLANS[medium as usize];

@@ -1,4 +1,4 @@
-//! What the picture of a body in the plane shows, as plain data that it owns.
+//! The content of the picture of a body in the plane, as owned plain data.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -16,10 +16,10 @@ use crate::scene::{Answer, Model};
 /// Pieces of the line of an obstacle.
 pub(super) const OUTLINE_SEGMENTS: usize = 200;
 
-/// The largest displacement is drawn about this share of the size of the body.
+/// The largest displacement is drawn at about this share of the size of the body.
 const SEEN: f64 = 0.05;
 
-/// What one picture shows.
+/// The content of one picture.
 pub(super) struct PlaneScene {
     title: String,
     axes: [&'static str; 2],
@@ -32,7 +32,7 @@ pub(super) struct PlaneScene {
     fields: [Vec<f64>; 2],
     /// The largest stress.
     largest: f64,
-    /// Another body is no obstacle that could be drawn nearer than it is: displacements between bodies are drawn as they are.
+    /// `true` if an obstacle is another body. It cannot be moved in the picture, so displacements are then not magnified.
     has_pairs: bool,
     obstacles: Vec<Outline>,
     candidates: Vec<usize>,
@@ -40,11 +40,11 @@ pub(super) struct PlaneScene {
     arrows: Vec<Arrow>,
 }
 
-/// The surface of a rigid obstacle: as it is, and as it stands over the candidates, from which it can be magnified.
+/// The surface of a rigid obstacle, and its distances from the candidates, from which a magnified surface is drawn.
 struct Outline {
     line: Vec<[f64; 2]>,
     inside: [f64; 2],
-    /// Places of the candidates in the order of the boundary, and the way from each to the obstacle.
+    /// Positions of the candidates in the order of the boundary, each with the vector to the obstacle.
     over: Vec<[[f64; 2]; 2]>,
 }
 
@@ -58,7 +58,7 @@ impl PlaneScene {
         set.iter().for_each(|row| is_closed[model.rows()[row].node] = true);
         let stress = &answer.stress()?.nodes;
         let largest = stress.iter().fold(0.0, |largest: f64, of| largest.max(of.sigma_1.abs()).max(of.sigma_2.abs()));
-        // What is that small beside the largest stress is rounding.
+        // Values this small beside the largest stress are rounding.
         let without_rounding = |value: f64| if value.abs() <= ROUNDING * largest { 0.0 } else { value };
         let stress_unit = model.units().pressure();
         let mut scene = PlaneScene {
@@ -85,8 +85,8 @@ impl PlaneScene {
         Ok(scene)
     }
 
-    /// The elements as polygons around them. The edges of quadratic elements are curves: each is cut at its mid-side and halfway to
-    /// it, where nodes are added with what the shape functions say there.
+    /// The outlines of the elements as polygons. The edges of quadratic elements are curves: each is divided at its mid-side node and
+    /// halfway to that node. The added nodes have the values of the shape functions there.
     fn polygons(&mut self, mesh: &Mesh) -> Vec<Vec<usize>> {
         let kind = mesh.kind();
         if !kind.is_quadratic() {
@@ -124,7 +124,7 @@ impl PlaneScene {
         self.nodes.len() - 1
     }
 
-    /// The same with the body where it has moved to in all panels: for one that flies.
+    /// The same with the displaced body in all panels, for a body in flight.
     pub(super) fn in_place(mut self) -> Self {
         for (node, moved) in self.nodes.iter_mut().zip(self.displacement.chunks_exact(2)) {
             *node = [node[0] + moved[0], node[1] + moved[1]];
@@ -133,7 +133,7 @@ impl PlaneScene {
         self
     }
 
-    /// By what the displacement is multiplied so that it is seen: 1, 2 or 5 times a power of ten, and never less than 1.
+    /// Magnification that makes the displacement visible: 1, 2 or 5 times a power of ten, at least 1.
     fn magnification(&self) -> f64 {
         if self.has_pairs {
             return 1.0;
@@ -146,7 +146,7 @@ impl PlaneScene {
         rounded_down(SEEN * extent(0).max(extent(1)) / moved.fold(0.0, f64::max))
     }
 
-    /// The fields, each with the ends of its colours: those of its own values.
+    /// The fields, each with the range of its own values as the ends of its colours.
     pub(super) fn fields(&self) -> Vec<FieldPanel<'_>> {
         let panels = self.fields.iter().zip(&self.quantities);
         panels
@@ -165,8 +165,8 @@ impl PlaneScene {
         self.picture(&fields, &lines(&outlines), magnification).draw()
     }
 
-    /// The obstacles beside a body whose displacement is magnified: each gap is magnified with it, so that body and obstacle touch
-    /// in the picture where they touch.
+    /// The obstacles beside a body with magnified displacement. Each gap is magnified too, so that body and obstacle touch in the
+    /// picture at their points of contact.
     pub(super) fn obstacles(&self, magnification: f64) -> Vec<(Vec<[f64; 2]>, [f64; 2])> {
         self.obstacles.iter().map(|outline| (outline.magnified(magnification), outline.inside)).collect()
     }
@@ -197,8 +197,8 @@ impl PlaneScene {
 }
 
 impl Outline {
-    /// The candidates around the nearest one, as far as the boundary goes on across the approach direction: those of a closed boundary
-    /// that turn away from the obstacle have no part of it before them.
+    /// The candidates around the nearest one, as long as the boundary continues across the approach direction. Candidates of a closed
+    /// boundary that face away from the obstacle have no part of the obstacle in front.
     fn facing(&self) -> &[[[f64; 2]; 2]] {
         let across = |[[x, y], _]: &[[f64; 2]; 2]| self.inside[0] * y - self.inside[1] * x;
         let distance = |[_, way]: &[[f64; 2]; 2]| way[0] * self.inside[0] + way[1] * self.inside[1];
@@ -227,7 +227,7 @@ impl Outline {
         if points.len() < 2 {
             return self.line.clone();
         }
-        // It goes on straight beyond the candidates.
+        // The line continues straight beyond the candidates.
         let beyond =
             |last: [f64; 2], before: [f64; 2]| [0, 1].map(|axis| last[axis] + 50.0 * (last[axis] - before[axis]));
         let (first, last) = (beyond(points[0], points[1]), beyond(points[points.len() - 1], points[points.len() - 2]));
@@ -237,7 +237,7 @@ impl Outline {
     }
 }
 
-/// 1, 2 or 5 times a power of ten, at most `value`; 1 where that is less, or is no number.
+/// 1, 2 or 5 times a power of ten, at most `value`; 1 if the result is less than 1 or not a number.
 pub(super) fn rounded_down(value: f64) -> f64 {
     if value.is_finite() && value >= 2.0 { rounded_length(value) } else { 1.0 }
 }
@@ -249,7 +249,7 @@ pub(super) fn rounded_length(value: f64) -> f64 {
     factor * power
 }
 
-/// The names of the coordinates: of a body of revolution the radius and the axis.
+/// The names of the coordinates; for a body of revolution the radius and the axis.
 pub(super) fn axes(model: &Model) -> [&'static str; 2] {
     if model.body().formulation().is_axisymmetric() { ["r", "z"] } else { ["x", "y"] }
 }
@@ -277,7 +277,7 @@ fn outlines(answer: &Answer) -> Vec<Outline> {
     rigid.map(outline).collect()
 }
 
-/// The nodes of the rows of an obstacle, each with the way from it, where the body has not moved, to the obstacle where it is now.
+/// The nodes of the rows of an obstacle, each with the vector from its undeformed position to the present position of the obstacle.
 pub(super) fn ways_to_obstacle(answer: &Answer, obstacle: usize) -> Vec<(usize, [f64; 3])> {
     let model = answer.model();
     let approach = model.obstacles()[obstacle].approach();
@@ -291,7 +291,7 @@ pub(super) fn ways_to_obstacle(answer: &Answer, obstacle: usize) -> Vec<(usize, 
     .collect()
 }
 
-/// Contact forces, reactions of supports and loads, each where it acts, with the displacement there.
+/// Contact forces, reactions of supports and loads, each with its point of application and the displacement of that point.
 fn arrows(answer: &Answer) -> Result<Vec<Arrow>, Error> {
     let model = answer.model();
     let unit = &model.units().force;
@@ -306,15 +306,15 @@ fn arrows(answer: &Answer) -> Result<Vec<Arrow>, Error> {
         let at = [centre[0], centre.get(1).copied().unwrap_or(0.0)];
         let node = model.mesh().nearest_node([at[0], at[1], 0.0]).map_or(0, |(node, _)| node);
         let moved = answer.displacement().get(2 * node..2 * node + 2).map_or([0.0; 2], |u| [u[0], u[1]]);
-        // Of a body of revolution the radial part cancels around the circle.
+        // In a body of revolution the radial component cancels around the circle.
         let force = if model.body().formulation().is_axisymmetric() { [0.0, y] } else { [x, y] };
         arrows.push(Arrow { kind, at, moved, force, unit: unit.clone() });
     }
     Ok(arrows)
 }
 
-/// Draws a series with common colours, a common window and a common magnification: those of its first `leading` pictures. What lies
-/// outside the colours is said to, by the ends of their bar.
+/// Draws a series with common colours, a common window and a common magnification: those of its first `leading` pictures. The ends of
+/// the colour bar mark values outside the colours.
 ///
 /// # Errors
 /// As [`ContactPicture::draw`] and [`write_picture`].
@@ -327,7 +327,7 @@ pub(super) fn draw_series(
     let leading_scenes = || series.iter().take(leading).map(|(_, scene)| scene);
     let magnification = leading_scenes().map(PlaneScene::magnification).fold(f64::INFINITY, f64::min);
     let limits = [0, 1].map(|field| match common_limits(leading_scenes().map(|scene| &scene.fields[field][..])) {
-        // Without any stress in this field the others tell what little would be.
+        // If this field is zero, the other fields give the scale of a small stress.
         [low, high] if low == 0.0 && high == 0.0 => {
             let largest = leading_scenes().map(|scene| scene.largest).fold(0.0, f64::max);
             [-largest, largest]
@@ -360,7 +360,7 @@ pub(super) fn lines(outlines: &[(Vec<[f64; 2]>, [f64; 2])]) -> Vec<ObstacleLine<
     outlines.iter().map(|(points, inside)| ObstacleLine { points, inside: *inside }).collect()
 }
 
-/// Where the scene stands: its gap, or the forces that press its obstacles.
+/// The state of the scene: its gap, or the forces that press its obstacles.
 pub(super) fn state(model: &Model) -> String {
     let amounts = pressing_amounts(model);
     match &amounts[..] {
@@ -393,7 +393,7 @@ mod tests {
         let facing = outline.facing();
         assert!(facing.iter().all(|[[_, y], _]| *y > -1e-12), "{facing:?}");
         assert_eq!(facing.len(), 9, "from one side to the other");
-        // As it is the obstacle keeps its own line.
+        // Without magnification the obstacle keeps its own line.
         assert_eq!(outline.magnified(1.0), line);
         let lowest = outline.magnified(3.0).into_iter().map(|[_, y]| y).fold(f64::INFINITY, f64::min);
         assert!((lowest - 4.0).abs() < 1e-12, "three times the smallest gap above the top: {lowest}");

@@ -25,7 +25,7 @@ const INSET: f64 = 14.0;
 pub struct Series {
     /// Its name in the legend.
     pub name: String,
-    /// Its points `[x, y]` in the order in which they are joined; the line is interrupted where a coordinate is not
+    /// Its points `[x, y]` in the order in which they are joined; the line is interrupted if a coordinate is not
     /// finite, or not positive on a logarithmic axis.
     pub points: Vec<[f64; 2]>,
 }
@@ -42,13 +42,13 @@ impl Series {
 pub struct Plot {
     /// A heading over the panel; empty for none.
     pub title: String,
-    /// What the horizontal axis shows.
+    /// Quantity of the horizontal axis.
     pub x: Quantity,
-    /// What the vertical axis shows.
+    /// Quantity of the vertical axis.
     pub y: Quantity,
     /// Scales of the horizontal and the vertical axis.
     pub scales: [Scale; 2],
-    /// The lines. A legend names them where there are several.
+    /// The lines. A legend names them if there are several.
     pub series: Vec<Series>,
     /// The linear vertical axis begins, or ends, at zero.
     pub y_from_zero: bool,
@@ -75,7 +75,7 @@ impl Plot {
         self.values(0).next().is_none()
     }
 
-    /// The legend: nothing for a single line, whose axis says what it is.
+    /// The entries of the legend; empty for a single line, which its axis names.
     fn entries(&self) -> Vec<Entry<'_>> {
         if self.series.len() < 2 {
             return Vec::new();
@@ -85,7 +85,7 @@ impl Plot {
             let style = self.style(index);
             let has_points = series.points.iter().any(|&point| self.shows(point));
             let name = if has_points { series.name.clone() } else { format!("{} (no data)", series.name) };
-            // Marks that nothing joins have no line in the legend either.
+            // Marks that no line joins have no line in the legend either.
             let joins = |pair: &[[f64; 2]]| pair.iter().all(|&point| self.shows(point));
             let key: Key = match series.points.windows(2).any(joins) {
                 true => Box::new(move |drawing, centre| style.key(drawing, centre)),
@@ -127,7 +127,7 @@ impl Plot {
         drawing.text([frame.corner[0] + 0.5 * frame.size[0], frame.corner[1] - 12.0], &title, size, Anchor::Middle);
     }
 
-    /// The upper left corner of a box of `size` within the frame that covers no line; none where there is no such place.
+    /// The upper left corner of a box of `size` within the frame that covers no line; `None` if there is no such box.
     fn free_place(&self, frame: &Frame, size: [f64; 2]) -> Option<[f64; 2]> {
         let room = [0, 1].map(|axis| frame.size[axis] - size[axis] - 2.0 * INSET);
         if room[0] < 0.0 || room[1] < 0.0 {
@@ -161,7 +161,7 @@ impl Plot {
 
 /// Draws the plots side by side under one title.
 ///
-/// A legend stands where it covers no line, below the axes where there is no such place. Values that cannot be shown
+/// The legend is placed so that it covers no line, or below the axes if that is not possible. Values that cannot be shown
 /// (not finite, or not positive on a logarithmic axis) interrupt their line; a plot without any says `no data`.
 ///
 /// ```
@@ -190,7 +190,7 @@ pub(crate) fn line_plots_for(medium: Medium, title: &str, plots: &[Plot]) -> Dra
         .iter()
         .enumerate()
         .map(|(k, plot)| {
-            // The room for the tick labels depends on the ticks, and those only on the height.
+            // The room for the tick labels depends on the ticks, and the ticks depend only on the height.
             let [x, y] = plot.axes([column, height]);
             let room = y.room_left() + if k > 0 { 26.0 } else { 0.0 };
             let across = (column - room - x.overhang().max(12.0)).max(120.0);

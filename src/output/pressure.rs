@@ -1,4 +1,4 @@
-//! The contact pressure over the arc length of a boundary, method beside method, with Hertz's where it holds.
+//! The contact pressure over the arc length of a boundary for each method, with Hertz's pressure if his theory applies.
 
 use std::collections::HashMap;
 
@@ -17,7 +17,7 @@ const SMALL_CONTACT: f64 = 0.08;
 /// The gap must be a parabola over the contact to this share of its depth.
 const PARABOLA: f64 = 0.02;
 
-/// A parabola is found from no fewer closed rows.
+/// Least number of closed rows for fitting a parabola.
 const FEWEST_ROWS: usize = 5;
 
 /// A plot for each obstacle that has rows: a line for each method.
@@ -54,7 +54,7 @@ pub(super) fn pressure_plots(answers: &[Answer; 3], summaries: &[Summary; 3]) ->
     plots
 }
 
-/// The rows under pressure and some beside them; all where there is no pressure.
+/// The rows under pressure and some beside them; all if there is no pressure.
 fn near_contact(along: &[(f64, usize)], answers: &[Answer; 3]) -> Vec<(f64, usize)> {
     let presses = |index: usize| answers.iter().any(|answer| answer.pressure()[index] > 0.0);
     let pressed = || along.iter().enumerate().filter(|(_, row)| presses(row.1)).map(|(place, _)| place);
@@ -68,14 +68,14 @@ fn near_contact(along: &[(f64, usize)], answers: &[Answer; 3]) -> Vec<(f64, usiz
     (0..along.len()).filter(|&place| is_near(place)).map(|place| along[place]).collect()
 }
 
-/// The arc length of the nodes of a boundary, on the undeformed body.
+/// Arc length of the nodes of a boundary on the undeformed body.
 struct Arc {
     at: HashMap<usize, f64>,
     is_closed: bool,
 }
 
 impl Arc {
-    /// From the first node of an open line; of a closed one from the node `peak`, both ways.
+    /// Measured from the first node of an open line; for a closed line from the node `peak`, in both directions.
     fn new(model: &Model, boundary: &Boundary, peak: usize) -> Self {
         let nodes = model.mesh().nodes();
         let mut neighbours: HashMap<usize, Vec<usize>> = HashMap::new();
@@ -88,7 +88,7 @@ impl Arc {
         let is_end = |node: &&usize| neighbours.get(node).is_none_or(|near| near.len() < 2);
         let first = order.iter().find(is_end).copied();
         let (mut at, mut length, is_closed) = (HashMap::new(), 0.0, first.is_none());
-        // Pieces follow each other; of a closed line the walk begins at the peak.
+        // Pieces follow each other; the walk along a closed line begins at the peak.
         for &begin in first.iter().chain([&peak]).chain(&order) {
             let mut here = begin;
             while !at.contains_key(&here) {
@@ -115,8 +115,8 @@ impl Arc {
     }
 }
 
-/// Hertz's pressure of the same force, where it holds: bodies of one isotropic material each that are large beside the contact, and a
-/// gap that is a parabola.
+/// Hertz's pressure of the same force, if his theory applies: bodies of one isotropic material each that are large beside the contact,
+/// and a parabolic gap.
 ///
 /// # Source
 /// K. L. Johnson, *Contact Mechanics*, Cambridge (1985), equations 4.45 and 3.39.
@@ -146,7 +146,7 @@ fn hertz(answer: &Answer, obstacle: usize, along: &[(f64, usize)]) -> Option<Ser
     if !(half > 0.0 && half <= SMALL_CONTACT * smallest) {
         return None;
     }
-    // Points lie closer where the pressure falls like a root; a body of revolution has one side of the contact.
+    // Points are denser at the edge, where the pressure falls like a square root; a body of revolution has one side of the contact.
     let place = |k: i32| (0.5 * std::f64::consts::PI * f64::from(k) / 60.0).sin();
     let points = (-60..=60).map(place).map(|x| [centre + half * x, peak * (1.0 - x * x).max(0.0).sqrt()]);
     let (slack, first, last) = (1e-9 * smallest, along.first()?.0, along.last()?.0);
@@ -154,7 +154,7 @@ fn hertz(answer: &Answer, obstacle: usize, along: &[(f64, usize)]) -> Option<Ser
     Some(Series::new("Hertz, same force", points))
 }
 
-/// The modulus of both sides together; `None` if a material is not isotropic, or a body has several.
+/// The combined modulus of both sides; `None` if a material is not isotropic, or a body has several.
 fn contact_modulus(model: &Model, obstacle: usize) -> Option<f64> {
     let rows = || model.rows().iter().filter(|row| row.obstacle == obstacle);
     let ends: Vec<usize> = rows().next()?.ends().map(|(node, _)| node).collect();
@@ -183,7 +183,7 @@ fn parabola(points: &[[f64; 2]]) -> Option<(f64, f64)> {
     }
     let (from, to) = (points[0][0], points[points.len() - 1][0]);
     let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-    // Least squares in the Legendre polynomials of the interval, which equations of order 3 solve.
+    // Least squares in the Legendre polynomials of the interval: three equations.
     let basis = |at: f64| {
         let x = (at - middle) / half;
         nalgebra::Vector3::new(1.0, x, 1.5 * x * x - 0.5)

@@ -1,4 +1,4 @@
-//! What a sweep of a problem directory leaves: its table, its answers, and its force over the way.
+//! The output of a sweep of a problem directory: its table, its answers, and its force along the sweep.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use crate::error::Error;
 use crate::qp::solution_files;
 use crate::study::{ProblemPoint, ProblemSweep};
 
-/// The table of a sweep, and what happens between its points.
+/// The table of a sweep, and the events between its points.
 pub(crate) fn problem_sweep_text(title: &str, sweep: &ProblemSweep) -> String {
     let header = ["t", "iterations", "contact", "-sum(lambda)", "energy error <=", "status"].map(String::from);
     let row = |point: &ProblemPoint| {
@@ -59,7 +59,7 @@ pub(crate) fn write_points(folder: &Path, sweep: &ProblemSweep) -> Result<(), Er
     Ok(())
 }
 
-/// Draws the sum of the multipliers and the number of closed rows over the way (`force`).
+/// Draws the sum of the multipliers and the number of closed rows along the sweep (`force`).
 ///
 /// # Errors
 /// [`Error::File`], [`Error::Numerical`].

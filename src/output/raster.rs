@@ -13,11 +13,11 @@ use crate::error::Error;
 /// Largest number of pixels of a PNG: 400 MB of memory while it is drawn.
 const MOST_PIXELS: f64 = 1e8;
 
-/// A picture of `sides` pixels on white, with `scale` pixels of the image for one of the picture.
+/// A picture of `sides` pixels on white, with `scale` pixels of the image for one pixel of the picture.
 ///
 /// # Errors
-/// [`Error::Setting`] where the scale is not positive or makes an image of more than 1e8 pixels,
-/// [`Error::Numerical`] where there is no memory for it.
+/// [`Error::Setting`] if the scale is not positive or makes an image of more than 1e8 pixels,
+/// [`Error::Numerical`] if there is no memory for it.
 pub(super) fn painted(sides: [f64; 2], shapes: &[Shape], scale: f64) -> Result<Pixmap, Error> {
     let [width, height] = sides.map(|side| (side * scale).round());
     if !(scale > 0.0 && width >= 1.0 && height >= 1.0 && width * height <= MOST_PIXELS) {
@@ -33,11 +33,11 @@ pub(super) fn painted(sides: [f64; 2], shapes: &[Shape], scale: f64) -> Result<P
     Ok(pixels)
 }
 
-/// Pixels, which are opaque, as a PNG file. Measured on the picture of 25,760 dofs: the fast compression takes 3 ms and 0.33 MB,
-/// the balanced one, that of the painter, 41 ms and 0.26 MB.
+/// Opaque pixels as a PNG file. Measured on the picture of 25,760 dofs: the fast compression takes 3 ms and 0.33 MB, the balanced
+/// compression of the painter 41 ms and 0.26 MB.
 ///
 /// # Errors
-/// [`Error::Numerical`] where the encoder fails.
+/// [`Error::Numerical`] if the encoder fails.
 pub(super) fn png(pixels: &Pixmap) -> Result<Vec<u8>, Error> {
     let colours: Vec<u8> = pixels.data().chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
     let mut bytes = Vec::new();
@@ -77,7 +77,7 @@ impl Canvas<'_> {
                 }
                 Shape::Clipped { corner, size, shapes } => {
                     let Some(inner) = self.cut(*corner, *size, mask) else { continue };
-                    // A mask costs more than the shape: what lies inside needs none.
+                    // A mask costs more than the shape; a shape inside the rectangle needs none.
                     for shape in shapes {
                         let cut = if lies_in(shape, *corner, *size) { mask } else { Some(&inner) };
                         self.draw(std::slice::from_ref(shape), cut);
@@ -87,7 +87,7 @@ impl Canvas<'_> {
         }
     }
 
-    /// What lies in `mask` and in a rectangle; `None` where that is nothing.
+    /// The intersection of `mask` and a rectangle; `None` if it is empty.
     fn cut(&self, corner: [f64; 2], size: [f64; 2], mask: Option<&Mask>) -> Option<Mask> {
         let [[x, y], [width, height]] = [corner, size].map(|pair| pair.map(|value| value as f32));
         let rectangle = PathBuilder::from_rect(Rect::from_xywh(x, y, width, height)?);
@@ -119,7 +119,7 @@ impl Canvas<'_> {
     }
 }
 
-/// Returns `true` if a shape, its line included, lies in a rectangle.
+/// Returns `true` if a shape, including its line, lies in a rectangle.
 fn lies_in(shape: &Shape, corner: [f64; 2], size: [f64; 2]) -> bool {
     let holds = |point: [f64; 2], margin: f64| {
         (0..2).all(|axis| (margin..=size[axis] - margin).contains(&(point[axis] - corner[axis])))

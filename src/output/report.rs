@@ -9,7 +9,7 @@ use crate::solution::Why;
 use crate::solution::{Certificate, Goal, ProvenSet};
 use crate::study::{Agreement, AnswerWarning, ContactSummary, Summary, Sweep, SweepEvent, SweepPoint, Verification};
 
-/// Text on one line, without characters that would steer a terminal.
+/// Text on one line, without control characters of a terminal.
 pub fn printable(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { c.escape_default().to_string() } else { c.to_string() }).collect()
 }
@@ -23,13 +23,13 @@ pub(crate) fn plural(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
-/// An algebraic error below this times that of the mesh does not show in the sum of both.
+/// An algebraic error below this share of the mesh error does not show in the sum of both.
 const FAR_BELOW: f64 = 1e-2;
 
-/// Characters of the reason of an attempt that are shown; the JSON report has all.
+/// Number of characters that are shown of the reason of an attempt; the JSON report has all.
 const LONGEST_REASON: usize = 50;
 
-/// Characters of a line beside its name.
+/// Length of a line beside its name, in characters.
 const LONGEST_LINE: usize = 84;
 
 /// The report of one answer, in lines of at most 100 characters.
@@ -87,7 +87,7 @@ pub fn solve_text(title: &str, summary: &Summary, units: &Units) -> String {
     text
 }
 
-/// What was weighed before a solve, and what decided, in lines of at most 100 characters.
+/// The estimates before a solve and the reason of the choice, in lines of at most 100 characters.
 #[cfg(feature = "cli")]
 pub fn why_text(why: &Why) -> String {
     let mut text = listed("why", vec![why.reason.clone()]);
@@ -100,12 +100,12 @@ pub fn why_text(why: &Why) -> String {
     text
 }
 
-/// A number with what it may be off by, and its unit.
+/// A number with its uncertainty and its unit.
 fn within(value: f64, uncertainty: f64, unit: &str) -> String {
     quantity(value, unit).replacen(' ', &format!(" ± {uncertainty:.1e} "), 1)
 }
 
-/// The largest pressure, and how far the contact reaches.
+/// The largest pressure, and the extent of the contact.
 fn extent_lines(contact: &ContactSummary, units: &Units) -> Vec<String> {
     let (Some(pressure), Some(area)) = (contact.pressure_max, contact.area) else { return Vec::new() };
     let square = format!("{}²", units.length);
@@ -130,7 +130,7 @@ const SHOWN: f64 = 1e-11;
 /// Resultants and segments that are shown; the JSON report has all.
 const MOST_LINES: usize = 12;
 
-/// The resultants, one in a line, and the contact segments where there are several.
+/// The resultants, one in a line, and the contact segments if there are several.
 fn resultants_text(summary: &Summary, units: &Units) -> String {
     let largest = |of: fn(&Resultant) -> &[f64]| {
         let values = summary.resultants.iter().flat_map(of);
@@ -138,7 +138,7 @@ fn resultants_text(summary: &Summary, units: &Units) -> String {
     };
     let force_scale = largest(|resultant| &resultant.force);
     let length_scale = largest(|resultant| resultant.centre.as_deref().unwrap_or_default());
-    // What is rounding beside the largest is shown as the zero that it stands for.
+    // Values that are rounding beside the largest are shown as zero.
     let rounded = |values: &[f64], scale: f64| {
         let part = |&value: &f64| if value.abs() <= SHOWN * scale { "0".into() } else { format!("{value:.4e}") };
         let parts: Vec<String> = values.iter().map(part).collect();
@@ -204,7 +204,7 @@ fn listed(name: &str, sentences: Vec<String>) -> String {
 /// Undecided rows that are named; the JSON report names all.
 const NAMED_ROWS: usize = 8;
 
-/// How much of the contact set is proven.
+/// The proven part of the contact set.
 pub(super) fn proven_text(proven: &ProvenSet) -> String {
     let (open, closed) = (proven.open.count(), proven.closed.count());
     let undecided: Vec<usize> = proven.undecided().collect();
@@ -221,7 +221,7 @@ pub(super) fn proven_text(proven: &ProvenSet) -> String {
     }
 }
 
-/// What may mislead, in full sentences.
+/// The warnings in full sentences.
 pub(super) fn warnings_text(warnings: &[AnswerWarning]) -> String {
     let lines = |message: &str| {
         let lines = wrapped(&printable(message)).into_iter().enumerate();
@@ -230,7 +230,7 @@ pub(super) fn warnings_text(warnings: &[AnswerWarning]) -> String {
     warnings.iter().map(|warning| lines(&warning.message)).collect()
 }
 
-/// What the mesh is worth, and whether the algebra is worth more.
+/// The mesh error, and a comparison with the algebraic error.
 fn mesh_text(summary: &Summary, units: &Units) -> String {
     let Some(of_mesh) = summary.discretisation_error else { return String::new() };
     let energy = summary.strain_energy.map_or_else(String::new, |energy| {
@@ -274,7 +274,7 @@ pub(super) fn entry(name: &str, content: &str) -> String {
     format!("  {name:<14}{content}\n")
 }
 
-/// What an answer was held against, and how it did.
+/// The conditions that an answer was checked against, and the result.
 fn certificate_text(certificate: &Certificate, goal: Goal) -> String {
     let CertificateWords { verdict, conditions, notes } = CertificateWords::of(certificate, goal);
     let condition = |(name, formula, value): &(&str, &str, String)| format!("{name:<18}{formula:<38}{value}");
@@ -295,7 +295,7 @@ pub fn verify_text(title: &str, verification: &Verification) -> String {
 /// Events of a sweep that its text shows; the rest is in the JSON form.
 pub(super) const MOST_EVENTS: usize = 40;
 
-/// The table of a sweep, and what happens between its gaps.
+/// The table of a sweep, and the events between its gaps.
 pub fn sweep_text(title: &str, sweep: &Sweep, units: &Units) -> String {
     let is_of_forces = sweep.points.first().is_some_and(|point| point.force.is_some());
     // Outside plane strain and plane stress a contact has an area.

@@ -1,4 +1,4 @@
-//! The picture of a scene before it is solved: body and mesh, what holds and loads it, the obstacles at their gap.
+//! The picture of a scene before it is solved: body, mesh, supports, loads, and the obstacles at their gap.
 
 use super::{
     ContactPicture, Quantity,
@@ -28,7 +28,7 @@ const ROOM: f64 = 0.09;
 const LONGEST: f64 = 52.0;
 /// Arrows below this share of the longest one are left out.
 const SHORTEST: f64 = 0.02;
-/// Nodes that share a square of this many pixels share their arrow, and symbols are no closer than this.
+/// Nodes in one square of this many pixels share an arrow, and symbols are at least this far apart.
 const APART: f64 = 22.0;
 /// Size of a symbol in pixels.
 const SYMBOL: f64 = 11.0;
@@ -78,7 +78,7 @@ pub(crate) fn set_up_picture(model: &Model) -> Result<Drawing, Error> {
     Ok(drawing)
 }
 
-/// What is drawn, as plain data.
+/// The content of the picture, as plain data.
 struct Shown {
     axes: [&'static str; 2],
     length_unit: String,
@@ -88,7 +88,7 @@ struct Shown {
     outlines: Vec<(Vec<[f64; 2]>, [f64; 2])>,
     candidates: Vec<usize>,
     open: Vec<bool>,
-    /// From the middle of the cells around each node to the node: out of the body where that lies on its boundary.
+    /// Vector from the middle of the cells around each node to the node; it points out of the body at nodes of the boundary.
     out: Vec<[f64; 2]>,
 }
 
@@ -119,7 +119,7 @@ impl Shown {
         }
     }
 
-    /// The mesh with its candidates under the obstacles; of a picture of an answer it is the moved mesh.
+    /// The mesh with its candidates under the obstacles, drawn by the panel of the displaced mesh of an answer.
     fn picture<'a>(&'a self, obstacles: &'a [ObstacleLine<'a>]) -> ContactPicture<'a> {
         ContactPicture {
             title: "",
@@ -167,7 +167,7 @@ fn framed(window: [[f64; 2]; 2], shown: &Shown, title: &str) -> (Frame, Vec<Stri
     }
     let size = [x, y].map(|range| scale * (range[1] - range[0]));
     let names = shown.axes.map(|name| Quantity::new(name, &shown.length_unit));
-    // One factor for both axes, or the same length would carry two different numbers.
+    // One factor for both axes; otherwise one length would have two different numbers.
     let exponent = common_exponent([x, y].as_flattened().iter().fold(0.0, |largest, end| end.abs().max(largest)));
     let horizontal = Axis::horizontal(&names[0], Scale::Linear, x, size[0]).in_powers_of(&names[0], exponent);
     let vertical = Axis::vertical(&names[1], Scale::Linear, y, size[1]).in_powers_of(&names[1], exponent);
@@ -177,9 +177,9 @@ fn framed(window: [[f64; 2]; 2], shown: &Shown, title: &str) -> (Frame, Vec<Stri
     (Frame { corner: [left, top], size, x: horizontal, y: vertical }, title)
 }
 
-/// The arrows of the loads in pixels, from tail to tip: those of nodes that share a square are one.
+/// The arrows of the loads in pixels, from tail to tip; the loads of nodes in one square share an arrow.
 ///
-/// A force that leaves the body begins at its place, one that presses on it ends there.
+/// A pulling force begins at its point of application; a pressing force ends there.
 fn arrows(model: &Model, shown: &Shown, frame: &Frame) -> Vec<[[f64; 2]; 2]> {
     let mut squares = std::collections::BTreeMap::<[i64; 2], Gathered>::new();
     for ((node, out), load) in shown.nodes.iter().zip(&shown.out).zip(model.nodal_load().chunks_exact(2)) {
@@ -195,13 +195,13 @@ fn arrows(model: &Model, shown: &Shown, frame: &Frame) -> Vec<[[f64; 2]; 2]> {
     shown.map(|gathered| gathered.arrow(LONGEST / longest)).collect()
 }
 
-/// Loads of several nodes as one.
+/// The sum of the loads of several nodes.
 #[derive(Default)]
 struct Gathered {
     force: [f64; 2],
     weight: f64,
     moment: [f64; 2],
-    /// Above zero where the forces lead out of the body.
+    /// Positive if the forces point out of the body.
     outwards: f64,
 }
 
@@ -244,7 +244,7 @@ fn draw_arrow(drawing: &mut Drawing, from: [f64; 2], to: [f64; 2]) {
     drawing.polygon(&corners, &Paint::fill(LOAD));
 }
 
-/// How a held node is shown.
+/// The kinds of symbols of held nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     /// Held in both directions.
@@ -260,11 +260,11 @@ enum Kind {
 struct Symbol {
     kind: Kind,
     place: [f64; 2],
-    /// Unit vector from the node to what holds it.
+    /// Unit vector from the node to its support.
     towards: [f64; 2],
 }
 
-/// One symbol for each held node, as long as they are apart.
+/// One symbol for each held node, unless another symbol is too close.
 fn symbols(held: Vec<HeldNode>, shown: &Shown, frame: &Frame) -> Vec<Symbol> {
     let mut symbols: Vec<Symbol> = Vec::new();
     for HeldNode { node, hold, directions } in held {
@@ -286,7 +286,7 @@ fn symbols(held: Vec<HeldNode>, shown: &Shown, frame: &Frame) -> Vec<Symbol> {
     symbols
 }
 
-/// From a node to what holds it, in pixels: along the direction, or, where both are held, out of the body.
+/// Direction from a node to its support, in pixels: along the held direction, or, if both are held, out of the body.
 fn towards(out: [f64; 2], direction: [f64; 3], kind: Kind) -> [f64; 2] {
     let along = match kind {
         Kind::Roller | Kind::Spring => [direction[0], direction[1]],
@@ -330,7 +330,7 @@ impl Symbol {
     }
 }
 
-/// The legend: what is shown, with its numbers.
+/// The entries of the legend, with their numbers.
 fn entries<'a>(
     model: &Model,
     symbols: &[Symbol],

@@ -1,10 +1,10 @@
-//! What a drawing consists of.
+//! The shapes of a drawing.
 
 use super::colour::Colour;
 use super::paint::{Anchor, Paint};
 use super::typeface::Weight;
 
-/// What a drawing consists of; each shape is drawn over those before it.
+/// A shape of a drawing; each shape is drawn over those before it.
 #[derive(Clone, Debug)]
 pub(super) enum Shape {
     /// Lines in hundredths of a pixel; closed ones are filled together by the even-odd rule.
@@ -27,7 +27,7 @@ pub(super) enum Shape {
     },
 }
 
-/// Whether a line returns to its first point.
+/// Open or closed line: a closed line returns to its first point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Line {
     Open,

@@ -1,4 +1,4 @@
-//! The picture of a body in space: its surface in colour, obstacles one can see through, and the contact in plan view.
+//! The picture of a body in space: its surface in colour, transparent obstacles, and the contact in plan view.
 
 use super::{
     axes::{LARGE, LINE, ROOM_BELOW, SMALL, TITLE, draw_heading},
@@ -22,7 +22,7 @@ const BETWEEN: f64 = 40.0;
 /// Room for the coordinate axes under the body.
 const TRIAD: f64 = 34.0;
 
-/// A face is cut into parts of one colour: so many along an edge, and about so many in all.
+/// A face is divided into parts of one colour. Largest number of parts along an edge, and approximate number in all.
 const MOST_PARTS: usize = 6;
 const ALL_PARTS: usize = 12_000;
 
@@ -30,7 +30,7 @@ const ALL_PARTS: usize = 12_000;
 const FINEST_MESH: f64 = 5.0;
 
 const EDGE: Colour = Colour(0x2c, 0x33, 0x3d);
-/// Of an obstacle: 1 would be invisible.
+/// Transparency of an obstacle: 1 would be invisible.
 const TRANSPARENCY: f64 = 0.72;
 const OBSTACLE: Colour = Colour(0x80, 0x86, 0x90);
 const OBSTACLE_EDGE: Colour = Colour(0x5c, 0x63, 0x6e);
@@ -44,21 +44,21 @@ pub(super) struct Face {
     pub cells: Vec<Vec<usize>>,
 }
 
-/// A part of an obstacle that is seen through.
+/// A transparent part of an obstacle.
 #[derive(Clone, Debug)]
 pub(super) struct Sheet {
     /// Polygons in space.
     pub polygons: Vec<Vec<[f64; 3]>>,
-    /// From the body to the obstacle.
+    /// Direction from the body to the obstacle.
     pub approach: [f64; 3],
 }
 
 /// The colours of a surface.
 #[derive(Clone, Debug)]
 pub(super) enum Colouring<'a> {
-    /// Those of a field, with their bar.
+    /// The colours of a field, with their bar.
     Field(FieldPanel<'a>),
-    /// One for each face, and what each of them stands for.
+    /// One colour for each face, and the names of the colours.
     #[cfg_attr(not(feature = "cli"), allow(dead_code))]
     Faces { colours: &'a [Colour], names: &'a [(&'static str, Colour)] },
 }
@@ -74,13 +74,13 @@ pub(super) struct SpacePicture<'a> {
     pub faces: &'a [Face],
     pub colouring: Colouring<'a>,
     pub sheets: &'a [Sheet],
-    /// From the body to the eye, of any length.
+    /// Vector from the body to the eye, of any length.
     pub eye: [f64; 3],
     pub plan: Option<&'a Plan>,
     pub medium: Medium,
 }
 
-/// A way to look: two directions of the picture and the one to the eye.
+/// A view: two directions in the picture and the direction to the eye.
 struct View {
     right: [f64; 3],
     up: [f64; 3],
@@ -100,7 +100,7 @@ impl View {
     }
 }
 
-/// From flat coordinates to pixels.
+/// Map from coordinates in the view to pixels.
 struct Place {
     scale: f64,
     low: [f64; 2],
@@ -191,7 +191,8 @@ impl SpacePicture<'_> {
         COLUMNS[self.medium as usize]
     }
 
-    /// The faces that are seen, from far to near, in the colours of the field or their own, darker where they turn away from the light.
+    /// Draws the visible faces from far to near, in the colours of the field or their own. Faces that turn away from the light are
+    /// darker.
     fn draw_body(&self, drawing: &mut Drawing, view: &View, place: &Place, range: Option<&ColourRange>) {
         let light = {
             let towards = [0, 1, 2].map(|axis| view.eye[axis] + 0.5 * view.up[axis] - 0.35 * view.right[axis]);
@@ -265,7 +266,7 @@ impl SpacePicture<'_> {
         seen.iter().map(|&(_, _, index)| area(&self.faces[index])).sum()
     }
 
-    /// A triangle or a quadrilateral cut into `parts` along each edge, each part with the value in its middle.
+    /// A triangle or a quadrilateral divided into `parts` along each edge, each part with the value at its centre.
     fn parts(&self, cell: &[usize], parts: usize, values: &[f64]) -> Vec<(Vec<[f64; 3]>, f64)> {
         let weights = |s: f64, t: f64| -> Vec<f64> {
             match cell.len() {
@@ -330,7 +331,7 @@ impl SpacePicture<'_> {
     }
 }
 
-/// What the colour of a face stands for.
+/// The entry of a colour of faces in the legend.
 fn face_entry(name: &str, colour: Colour) -> Entry<'static> {
     let key = Box::new(move |drawing: &mut Drawing, [x, y]: [f64; 2]| {
         drawing.rect([x - 14.0, y - 6.0], [28.0, 12.0], &Paint::fill(colour).with_stroke(EDGE, 0.6));
@@ -338,7 +339,7 @@ fn face_entry(name: &str, colour: Colour) -> Entry<'static> {
     Entry { name: name.to_owned(), key, key_width: 30.0 }
 }
 
-/// The key of an obstacle that is seen through.
+/// The key of a transparent obstacle.
 fn draw_obstacle_key(drawing: &mut Drawing, [x, y]: [f64; 2]) {
     let paint = Paint { transparency: TRANSPARENCY, ..Paint::fill(OBSTACLE) }.with_stroke(OBSTACLE_EDGE, 0.6);
     drawing.rect([x - 14.0, y - 6.0], [28.0, 12.0], &paint);
@@ -349,7 +350,7 @@ fn panel_title(drawing: &mut Drawing, title: &str, at: [f64; 2], room: f64) {
     drawing.text(at, &text, size, Anchor::Middle);
 }
 
-/// The three coordinate axes as they are seen, around `centre`.
+/// The three coordinate axes in the view, around `centre`.
 fn draw_triad(drawing: &mut Drawing, view: &View, [x, y]: [f64; 2]) {
     const LENGTH: f64 = 30.0;
     for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
@@ -363,7 +364,7 @@ fn draw_triad(drawing: &mut Drawing, view: &View, [x, y]: [f64; 2]) {
     }
 }
 
-/// The normal of a polygon, twice its area long.
+/// The normal of a polygon; its length is twice the area of the polygon.
 fn normal(corners: &[[f64; 3]]) -> [f64; 3] {
     let Some(&first) = corners.first() else { return [0.0; 3] };
     corners.windows(2).fold([0.0; 3], |sum, pair| {
@@ -373,7 +374,7 @@ fn normal(corners: &[[f64; 3]]) -> [f64; 3] {
 }
 
 fn shaded(Colour(red, green, blue): Colour, bright: f64) -> Colour {
-    // Few steps, so that parts of one face share their colour.
+    // Few levels of brightness, so that parts of one face share their colour.
     let part = |channel: u8| (f64::from(channel) * bright).round().clamp(0.0, 255.0) as u8;
     Colour(part(red), part(green), part(blue))
 }

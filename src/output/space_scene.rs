@@ -1,4 +1,4 @@
-//! What the picture of a body in space shows, from its answer.
+//! The content of the picture of a body in space, from its answer.
 
 use std::path::Path;
 
@@ -17,16 +17,16 @@ use crate::fem::body::Region;
 use crate::fem::element::FacetKind;
 use crate::scene::{Answer, Model, straight_cells};
 
-/// The largest displacement is drawn about this share of the size of the body.
+/// The largest displacement is drawn at about this share of the size of the body.
 const SEEN: f64 = 0.04;
-/// An obstacle is drawn where it is at most this share of the size of the body away.
+/// An obstacle is drawn if it is at most this share of the size of the body away.
 const NEAR: f64 = 0.25;
-/// The plan view reaches beyond the contact by this share of it.
+/// The plan view extends beyond the contact by this share of its size.
 const BEYOND: f64 = 0.35;
-/// The eye looks down on the body from the front and a little from the right; contact faces turn it to their side.
+/// The direction to the eye: from the front, above and a little from the right; contact faces turn it to their side.
 const EYE: [f64; 3] = [0.5, -0.8, 0.55];
 
-/// What the picture of an answer in space shows.
+/// The content of the picture of an answer in space.
 pub(super) struct SpaceScene<'a> {
     title: String,
     answer: &'a Answer,
@@ -43,7 +43,7 @@ impl<'a> SpaceScene<'a> {
         Ok(SpaceScene { title, answer, von_mises })
     }
 
-    /// By what the displacement is multiplied so that it is seen.
+    /// Magnification that makes the displacement visible.
     fn magnification(&self) -> f64 {
         let (model, displacement) = (self.answer.model(), self.answer.displacement());
         if has_pairs(model) {
@@ -92,13 +92,13 @@ impl<'a> SpaceScene<'a> {
     }
 }
 
-/// What all pictures of a series have in common.
+/// The common settings of all pictures of a series.
 #[derive(Clone, Copy)]
 struct Shared {
     magnification: f64,
     /// Ends of the colours of the von Mises stress.
     von_mises: [f64; 2],
-    /// The obstacle that is seen in plan view.
+    /// The obstacle in plan view.
     obstacle: Option<usize>,
 }
 
@@ -141,7 +141,7 @@ fn faces(model: &Model) -> Vec<Face> {
     model.body().regions().iter().flat_map(of_region).collect()
 }
 
-/// From the body to the eye: from the side of the obstacle that is looked at.
+/// Direction from the body to the eye: on the side of the obstacle in view.
 fn eye(model: &Model, obstacle: Option<usize>) -> [f64; 3] {
     let mut eye = EYE;
     if let Some(obstacle) = obstacle {
@@ -153,7 +153,7 @@ fn eye(model: &Model, obstacle: Option<usize>) -> [f64; 3] {
     eye
 }
 
-/// The picture of a body in space before it is solved: faces that are held, loaded or may touch, and the obstacles at their gap.
+/// The picture of a body in space before it is solved: the supported, loaded and candidate faces, and the obstacles at their gap.
 #[cfg(feature = "cli")]
 pub(super) fn space_set_up(model: &Model, title: &str) -> Drawing {
     let nodes = model.mesh().nodes();
@@ -163,7 +163,7 @@ pub(super) fn space_set_up(model: &Model, title: &str) -> Drawing {
     let mut candidate = vec![false; nodes.len()];
     model.rows().iter().for_each(|row| candidate[row.node] = true);
     let loaded: Vec<bool> = model.nodal_load().chunks_exact(3).map(|load| load.iter().any(|&f| f != 0.0)).collect();
-    // A volume force loads every node; faces of their own have what only some nodes have.
+    // A volume force loads every node; loaded faces are marked only if some nodes have no load.
     let is_on_faces = loaded.iter().any(|&is_loaded| !is_loaded);
     let all = |flags: &[bool], face: &Face| face.outline.iter().all(|&node| flags[node]);
     let kind = |face: &Face| match () {
@@ -199,7 +199,7 @@ pub(super) fn space_set_up(model: &Model, title: &str) -> Drawing {
     picture.draw()
 }
 
-/// What faces are in the picture of a set-up, with their colours.
+/// The kinds of faces in the picture of a set-up, with their colours.
 #[cfg(feature = "cli")]
 const KINDS: [(&str, Colour); 4] = [
     ("body", Colour(214, 220, 230)),
@@ -228,7 +228,8 @@ fn outline(kind: FacetKind, facet: &[usize]) -> Vec<usize> {
     sides.flat_map(|(place, ends)| [facet[ends[0]], facet[reference.corners + place]]).collect()
 }
 
-/// The obstacle over the facets whose nodes all have rows: each node goes the way to it, as many times as the body has moved.
+/// The obstacle over the facets with a row at every node. Each node is moved by its vector to the obstacle, with the magnification of
+/// the displacement.
 fn sheet(model: &Model, obstacle: usize, ways_of: &[(usize, [f64; 3])], (magnification, near): (f64, f64)) -> Sheet {
     let placed = &model.obstacles()[obstacle];
     let mut ways: Vec<Option<[f64; 3]>> = vec![None; model.mesh().nodes().len()];
@@ -284,7 +285,7 @@ fn plan(answer: &Answer, obstacle: usize) -> Plan {
     }
 }
 
-/// The cells at closed nodes and a little more, within the boundary; all of it where no node is closed.
+/// The window around the cells at closed nodes, with a margin, within the boundary; the whole boundary if no node is closed.
 fn plan_window(nodes: &[[f64; 2]], cells: &[Vec<usize>], is_closed: &[bool]) -> [[f64; 2]; 2] {
     let bounds = |chosen: &dyn Fn(&Vec<usize>) -> bool| {
         let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 2];

@@ -6,7 +6,7 @@ use super::paint::{Anchor, hex, hundredths, number};
 use super::shape::{Line, Shape, Text};
 use super::typeface::{self, Weight};
 
-/// The SVG text of a picture of `width` times `height` pixels, on white; on paper so many millimetres wide and with the typeface.
+/// The SVG text of a picture of `width` times `height` pixels, on white; on paper of this width in millimetres, with the typeface.
 pub(super) fn written([width, height]: [f64; 2], shapes: &[Shape], millimetres: Option<f64>) -> String {
     let mut body = String::new();
     write_shapes(&mut body, shapes, &mut 0);
@@ -47,14 +47,14 @@ fn base64(bytes: &[u8]) -> String {
     text
 }
 
-/// Writes the shapes; `clips` counts the clip paths, whose names must differ.
+/// Writes the shapes; `clips` counts the clip paths, because their names must differ.
 fn write_shapes(body: &mut String, shapes: &[Shape], clips: &mut usize) {
     for shape in shapes {
         match shape {
             Shape::Path { pieces, line, paint } => {
                 let data: String = pieces.iter().map(|piece| path_data(piece, *line)).collect();
                 let rule = if *line == Line::Closed && pieces.len() > 1 { " fill-rule=\"evenodd\"" } else { "" };
-                // Round joins: a mitre would make a spike of every sharp corner of a contour.
+                // Round joins: a mitre would make a spike at every sharp corner of a contour.
                 let join = if paint.stroke.is_some() { " stroke-linejoin=\"round\"" } else { "" };
                 let _ = writeln!(body, "<path d=\"{data}\"{rule}{join}{}/>", paint.attributes());
             }

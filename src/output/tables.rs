@@ -1,4 +1,4 @@
-//! Tables beside the numbers of an answer: what each unknown and each row is, and what happens at the contact.
+//! Tables beside the numbers of an answer: the meaning of each unknown and each row, and the state of the contact.
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -11,8 +11,8 @@ pub(crate) fn of_model(model: &Model) -> [Streamed<'_>; 2] {
     [Streamed::new("dofs.csv", |out| dofs(model, out)), Streamed::new("rows.csv", |out| rows(model, out))]
 }
 
-/// A line for each unknown. A rigid face has no node: its rotations are measured by the displacement of its farthest node, and `unit`
-/// times the value is in radians.
+/// A line for each unknown. A rigid face has no node: its rotations are given as the displacement of its farthest node; `unit` times
+/// the value is in radians.
 fn dofs(model: &Model, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "dof,quantity,of,x,y,z,direction_x,direction_y,direction_z,unit")?;
     for (dof, meaning) in model.meanings().enumerate() {
@@ -60,7 +60,7 @@ pub(crate) fn contact(answer: &Answer) -> String {
     text
 }
 
-/// Three cells; empty ones where there is no vector.
+/// Three cells; empty ones if there is no vector.
 fn vector(vector: Option<[f64; 3]>) -> String {
     vector.map_or_else(|| ",,".to_string(), |[x, y, z]| format!("{x:e},{y:e},{z:e}"))
 }

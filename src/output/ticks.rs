@@ -1,11 +1,11 @@
-//! Ranges of axes, their ticks at round numbers, and numbers as a reader wants them.
+//! Ranges of axes, their ticks at round numbers, and readable numbers.
 
-/// What an axis or a colour bar shows.
+/// Quantity of an axis or a colour bar.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Quantity {
     /// Its name, with the symbol: `contact pressure p`.
     pub name: String,
-    /// Its unit; empty where it has none.
+    /// Its unit; empty if it has none.
     pub unit: String,
 }
 
@@ -15,8 +15,8 @@ impl Quantity {
         Quantity { name: name.into(), unit: unit.into() }
     }
 
-    /// The label of an axis whose ticks count multiples of ten to the `exponent`: `contact pressure p (MPa)` of pascals and 6,
-    /// and with the power of ten where the unit takes no prefix.
+    /// The label of an axis with ticks in multiples of ten to the `exponent`: `contact pressure p (MPa)` for pascals and 6; with the
+    /// power of ten if the unit takes no prefix.
     pub fn label(&self, exponent: i32) -> String {
         if let Some(unit) = prefixed(&self.unit, exponent).filter(|_| exponent != 0) {
             return format!("{} ({unit})", self.name);
@@ -37,7 +37,7 @@ const PREFIXES: [(&str, i32); 8] = [("n", -9), ("µ", -6), ("m", -3), ("", 0), (
 /// Units that take prefixes, with the largest exponent in use: nobody writes megametres.
 const BASES: [(&str, i32); 5] = [("Pa", 12), ("N", 12), ("J", 12), ("m", 3), ("s", 0)];
 
-/// `unit` times ten to the `exponent` as a unit with a prefix: `Pa` and 6 are `MPa`, `kN/m` and 3 `MN/m`. `None` where the unit has no
+/// `unit` times ten to the `exponent` as a unit with a prefix: `Pa` and 6 are `MPa`, `kN/m` and 3 `MN/m`. `None` if the unit has no
 /// such prefix.
 fn prefixed(unit: &str, exponent: i32) -> Option<String> {
     let end = unit.find(['/', ' ', '·']).unwrap_or(unit.len());
@@ -48,7 +48,7 @@ fn prefixed(unit: &str, exponent: i32) -> Option<String> {
     Some(format!("{prefix}{base}{rest}"))
 }
 
-/// A value with its unit, as a reader wants it: `70.77 kN`.
+/// A value with its unit, rounded and with a prefix: `70.77 kN`.
 pub(crate) fn amount(value: f64, unit: &str) -> String {
     let exponent = common_exponent(value.abs());
     match prefixed(unit, exponent) {
@@ -57,7 +57,7 @@ pub(crate) fn amount(value: f64, unit: &str) -> String {
     }
 }
 
-/// How an axis maps numbers to length.
+/// The map from numbers to lengths on an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scale {
     /// Equal steps for equal differences.
@@ -73,12 +73,12 @@ impl Scale {
         value.abs() < 1e290 && (self == Scale::Linear || value > 1e-290)
     }
 
-    /// The value on the axis whose length is linear.
+    /// The value in the coordinate that is linear in length along the axis.
     fn along(self, value: f64) -> f64 {
         if self == Scale::Linear { value } else { value.log10() }
     }
 
-    /// Where `value` lies between the ends of `range`, 0 at its start and 1 at its end.
+    /// Position of `value` between the ends of `range`: 0 at its start and 1 at its end.
     pub fn fraction(self, value: f64, [from, to]: [f64; 2]) -> f64 {
         let [from, to] = [self.along(from), self.along(to)];
         (self.along(value) - from) / (to - from)
@@ -86,8 +86,8 @@ impl Scale {
 
     /// The range of the values that can be shown, widened by `margin` of itself at both ends.
     ///
-    /// Always an increasing range: `[0, 1]` (logarithmic: `[1, 10]`) where there is no value, and something around
-    /// the value where there is only one.
+    /// Always an increasing range: `[0, 1]` (logarithmic: `[1, 10]`) if there is no value, and something around
+    /// the value if there is only one.
     pub fn range(self, values: impl IntoIterator<Item = f64>, margin: f64) -> [f64; 2] {
         let values = values.into_iter().filter(|&value| self.shows(value));
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
@@ -120,7 +120,7 @@ pub struct Ticks {
     pub positions: Vec<f64>,
     /// One label for each position.
     pub labels: Vec<String>,
-    /// The labels count multiples of ten to this exponent; it belongs into the label of the axis.
+    /// The labels count multiples of ten to this exponent, which the label of the axis must name.
     pub exponent: i32,
     /// Positions of small ticks without labels.
     pub minor: Vec<f64>,
@@ -178,7 +178,7 @@ fn logarithmic([from, to]: [f64; 2], count: usize) -> Ticks {
         };
         let positions: Vec<f64> = multiples(&[1.0, 2.0, 5.0]).collect();
         if positions.len() < 2 {
-            // Within less than a factor of two a logarithmic axis is nearly a linear one.
+            // A logarithmic axis over less than a factor of two is nearly linear.
             return linear([from, to], count);
         }
         let labels = positions.iter().map(|&position| brief(position)).collect();
@@ -186,7 +186,7 @@ fn logarithmic([from, to]: [f64; 2], count: usize) -> Ticks {
         return Ticks { positions, labels, minor, ..Ticks::default() };
     }
     if decades.clone().count() < 2 {
-        // A single power of ten tells no scale.
+        // A single power of ten does not define a scale.
         let whole = low.floor() as i32..=high.floor() as i32;
         let multiples = |factors: &'static [f64]| -> Vec<f64> {
             let all = whole.clone().flat_map(|k| factors.iter().map(move |factor| factor * 10f64.powi(k)));

@@ -72,7 +72,7 @@ pub(super) fn percent(share: f64) -> String {
     format!("{:.2e} %", 100.0 * share)
 }
 
-/// Whether an error is as small as it should be.
+/// The statement that an error meets its goal or not.
 pub(super) fn verdict(error: f64, goal: f64) -> String {
     let is_met = if error <= goal { "as asked for" } else { "NOT as asked for" };
     format!("{is_met}: {}", percent(goal))
@@ -101,14 +101,14 @@ fn force_text(found: &TotalError, units: &Units) -> String {
     }
 }
 
-/// What the goal would take, from the rate of the last meshes.
+/// The unknowns that the goal would need, from the rate of the last meshes.
 fn needed(found: &TotalError) -> String {
     let [.., before, last] = &found.levels[..] else { return "a second mesh would tell what the goal takes".into() };
     let rate = (before.bound / last.bound).ln() / (last.dofs as f64 / before.dofs as f64).ln();
     unknowns_needed(rate, last.bound / found.goal.total_error, last.dofs)
 }
 
-/// The unknowns of an error so many times smaller, which falls with a power of the unknowns.
+/// The unknowns needed for an error smaller by the factor `times`, if the error falls with a power of the unknowns.
 pub(super) fn unknowns_needed(rate: f64, times: f64, dofs: usize) -> String {
     let more = times.powf(1.0 / rate);
     match rate > 0.0 && more.is_finite() {
@@ -117,7 +117,7 @@ pub(super) fn unknowns_needed(rate: f64, times: f64, dofs: usize) -> String {
     }
 }
 
-/// Leaves the fields, the last mesh, the table of meshes and two pictures in a folder.
+/// Writes the fields, the last mesh, the table of meshes and two pictures into a folder.
 pub(crate) fn write_total_error(
     folder: &Path,
     title: &str,

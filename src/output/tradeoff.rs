@@ -26,7 +26,7 @@ const HEADING: [&str; 12] = [
     "misclassified rows",
 ];
 
-/// The tables of a trade-off, mesh by mesh, and what to choose. A star marks the Pareto front.
+/// The tables of a trade-off, mesh by mesh, and the recommended choice. A star marks the Pareto front.
 pub fn tradeoff_text(title: &str, tradeoff: &Tradeoff) -> String {
     let mut text = format!("{}\n", printable(title));
     for (index, mesh) in tradeoff.meshes.iter().enumerate() {
@@ -83,7 +83,7 @@ fn precision(point: &TradeoffPoint) -> &'static str {
     if point.mixed { "mixed" } else { "double" }
 }
 
-/// A way in words.
+/// A method with its settings in words.
 fn way(point: &TradeoffPoint) -> String {
     let told = match (point.method, point.knob) {
         (_, None) => String::new(),
@@ -140,7 +140,7 @@ fn advice_of_meshes(tradeoff: &Tradeoff) -> String {
     text
 }
 
-/// What the cheapest answer of each method that is never exact loses, beside the active set.
+/// Time and force error of the cheapest loose answer of each method that is never exact, beside the exact active set.
 fn losses(points: &[TradeoffPoint]) -> String {
     let cheapest = |method: &str, good: &dyn Fn(&TradeoffPoint) -> bool| {
         let own = points.iter().filter(|point| point.mesh == 0 && point.method == method && good(point));

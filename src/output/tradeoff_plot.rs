@@ -1,4 +1,4 @@
-//! A trade-off as a picture: error over time, a curve for each way.
+//! A trade-off as a picture: error over time, a curve for each method with its settings (a way).
 
 use super::Drawing;
 use super::curves::{Curve, CurvePanel, EXACT, draw_curves};
@@ -8,10 +8,10 @@ use super::ticks::Quantity;
 use super::tradeoff::unknowns;
 use crate::study::{Tradeoff, TradeoffMesh, TradeoffPoint};
 
-/// Curves of one panel: more could not be told apart.
+/// Most curves in one panel: more could not be distinguished.
 const MOST_CURVES: usize = 6;
 
-/// An answer counts as one of its mesh if its total error is at most this times that of the mesh.
+/// An answer is as good as its mesh allows if its total error is at most this times the error of the mesh.
 #[cfg(feature = "cli")]
 const NEARLY: f64 = 1.05;
 
@@ -33,11 +33,11 @@ fn by_way<'a>(points: impl Iterator<Item = &'a TradeoffPoint>) -> Vec<(String, V
     ways
 }
 
-/// The ways that are worth a curve: those on the Pareto front, then the fastest; drawn with the best last, over all others.
+/// The ways that get a curve: those on the Pareto front, then the fastest; the best are drawn last, over all others.
 fn chosen(mut ways: Vec<(String, Vec<&TradeoffPoint>)>) -> Vec<(String, Vec<&TradeoffPoint>)> {
     let best = |points: &[&TradeoffPoint]| points.iter().filter(|point| point.best).count();
     let fastest = |points: &[&TradeoffPoint]| points.iter().map(|point| point.seconds).fold(f64::INFINITY, f64::min);
-    // The fastest way to the exact answer is told, whatever else there is.
+    // The fastest way to the exact answer is always shown.
     let exact = |points: &[&TradeoffPoint]| {
         let exact = points.iter().filter(|point| point.energy_error <= EXACT).map(|point| point.seconds);
         exact.fold(f64::INFINITY, f64::min)
@@ -50,8 +50,8 @@ fn chosen(mut ways: Vec<(String, Vec<&TradeoffPoint>)>) -> Vec<(String, Vec<&Tra
     ways
 }
 
-/// Error over time, a panel a mesh, a curve a way, and the Pareto front as a band. A line shows the error of the mesh: an error of
-/// the algebra far below it buys nothing.
+/// Error over time: a panel for each mesh, a curve for each way, and the Pareto front as a band. A line shows the error of the mesh: an
+/// algebraic error far below it gains nothing.
 pub fn tradeoff_plot(title: &str, tradeoff: &Tradeoff) -> Drawing {
     tradeoff_plot_for(Medium::Screen, title, tradeoff)
 }
@@ -84,7 +84,7 @@ pub(crate) fn tradeoff_plot_for(medium: Medium, title: &str, tradeoff: &Tradeoff
     draw_curves(medium, title, &panels)
 }
 
-/// Total error over time: a curve a way, a point a mesh, of each the cheapest answer that is hardly further off than its mesh.
+/// Total error over time: a curve for each way, a point for each mesh: the cheapest answer with hardly more error than the mesh.
 #[cfg(feature = "cli")]
 pub(crate) fn total_error_plot(medium: Medium, title: &str, tradeoff: &Tradeoff) -> Drawing {
     let near = |point: &&TradeoffPoint| {

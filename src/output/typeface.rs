@@ -1,11 +1,11 @@
-//! The embedded typeface: what a text measures, and how one is made to fit.
+//! The embedded typeface: the width of texts, and fitting them into a width.
 
 use std::sync::LazyLock;
 
 use tiny_skia::PathBuilder;
 use ttf_parser::{Face, GlyphId, OutlineBuilder};
 
-/// The family of the embedded fonts, then what a viewer of the SVG may take instead.
+/// The family of the embedded fonts, then the substitutes for a viewer of the SVG.
 pub(crate) const FAMILY: &str = "'Signorini Sans','DejaVu Sans',Verdana,sans-serif";
 
 /// The two faces.
@@ -20,7 +20,7 @@ static FACES: LazyLock<[Option<Face<'static>>; 2]> = LazyLock::new(|| FILES.map(
 
 static FILES: [&[u8]; 2] = [include_bytes!("font/signorini-sans.ttf"), include_bytes!("font/signorini-sans-bold.ttf")];
 
-/// What a document says of a face that it embeds; lengths in thousandths of the size.
+/// Metrics of an embedded face in a document; lengths in thousandths of the size.
 pub(crate) struct About {
     pub file: &'static [u8],
     /// The width of each glyph, from 0.
@@ -33,7 +33,7 @@ pub(crate) struct About {
     pub letters: Vec<(u16, char)>,
 }
 
-/// What a document says of a face; `None` where it cannot be read.
+/// Metrics of a face in a document; `None` if the face cannot be read.
 pub(crate) fn about(weight: Weight) -> Option<About> {
     let face = face(weight)?;
     let unit = 1000.0 / f32::from(face.units_per_em());
@@ -73,8 +73,7 @@ fn face(weight: Weight) -> Option<&'static Face<'static>> {
     FACES[weight as usize].as_ref()
 }
 
-/// The letters of a text, one after another, each with its width in units of the face; a letter that the face does not have
-/// is its box.
+/// The letters of a text, one after another, each with its width in units of the face; a missing letter is the box of the face.
 fn letters<'a>(face: &'a Face<'static>, text: &'a str) -> impl Iterator<Item = (GlyphId, f64)> + 'a {
     text.chars().map(|character| {
         let glyph = face.glyph_index(character).unwrap_or_default();
@@ -106,7 +105,7 @@ pub(crate) fn width(text: &str, size: f64, weight: Weight) -> f64 {
     letters(face, text).map(|letter| letter.1).sum::<f64>() * size / f64::from(face.units_per_em())
 }
 
-/// Adds the outlines of the letters of `text` to `path`; `place(along, above)` tells where a point of it stands, from the start
+/// Adds the outlines of the letters of `text` to `path`; `place(along, above)` gives the position of a point, measured from the start
 /// of the baseline.
 pub(crate) fn outline(
     text: &str,
@@ -125,7 +124,7 @@ pub(crate) fn outline(
     }
 }
 
-/// Takes the outline of one letter to its place.
+/// Moves the outline of one letter to its place.
 struct Outline<'a, F> {
     path: &'a mut PathBuilder,
     place: F,
@@ -204,6 +203,6 @@ pub(crate) fn wrapped(text: &str, size: f64, weight: Weight, available: f64) -> 
 
 /// `text` cut to `available` without changing its size.
 fn fitted_at(text: &str, size: f64, weight: Weight, available: f64) -> String {
-    // A size that shrinks to three quarters makes room for a third more; ask for what fits without shrinking.
+    // `fitted` may shrink a text to three quarters; a size larger by a third prevents that.
     fitted(text, size / 0.75, weight, available).0
 }

@@ -26,7 +26,7 @@ pub struct Unstructured<'a> {
     pub nodes: &'a [[f64; 3]],
     /// The nodes of every cell in the order of its type, indices from 0.
     pub elements: &'a [Vec<usize>],
-    /// What each cell is; as many as there are elements.
+    /// The type of each cell; one for each element.
     pub cell_types: &'a [ElementKind],
     /// Values at the nodes.
     pub point_data: &'a [Array<'a>],
@@ -38,7 +38,7 @@ impl Unstructured<'_> {
     /// The text of the `.vtu` file; every number reads back as the same number.
     ///
     /// # Errors
-    /// [`Error::Length`] where an array does not fit the nodes or the elements, [`Error::NotFinite`] for a coordinate
+    /// [`Error::Length`] if an array does not fit the nodes or the elements, [`Error::NotFinite`] for a coordinate
     /// or value that ASCII readers would stop at, [`Error::Setting`] for an element with a number of nodes that is not
     /// that of its type, or that names a node that does not exist.
     pub fn to_vtu(&self) -> Result<String, Error> {

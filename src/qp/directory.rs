@@ -1,4 +1,4 @@
-//! Problem directories, whichever files they are made of.
+//! Problem directories with files of Matrix Market or PETSc.
 
 use std::io;
 use std::path::Path;
@@ -7,8 +7,8 @@ use super::{matrix_market, petsc};
 use crate::error::Error;
 use crate::qp::problem::ContactProblem;
 
-/// Reads the problem of a directory: Matrix Market files, with `K.mtx`, or PETSc's, with `K.petsc`. One with both is refused: they
-/// may be of two problems.
+/// Reads the problem of a directory: Matrix Market files, with `K.mtx`, or PETSc's, with `K.petsc`. A directory with both is refused:
+/// they may belong to two problems.
 ///
 /// # Errors
 /// [`Error::File`] for a file that is missing and for a directory with both; [`Error::FileSyntax`] and [`Error::FileBytes`] for one
@@ -32,7 +32,7 @@ pub(crate) fn is_problem_directory(directory: &Path) -> bool {
     forms(directory).contains(&true)
 }
 
-/// Whether there is a stiffness of Matrix Market, and one of PETSc.
+/// Flags: `true` if there is a stiffness in Matrix Market format, and in PETSc's.
 fn forms(directory: &Path) -> [bool; 2] {
     [matrix_market::STIFFNESS, petsc::STIFFNESS].map(|name| directory.join(name).exists())
 }

@@ -1,4 +1,4 @@
-//! The certified quadratic program: minimise 1/2 u'K u - f'u subject to B u - g <= 0. It speaks no mechanics.
+//! The certified quadratic program: minimise 1/2 u'K u - f'u subject to B u - g <= 0. It knows no mechanics.
 //!
 //! From a problem to its answer:
 //!
@@ -64,20 +64,20 @@ use crate::solution::{ContactSet, Solution};
 /// # Errors
 /// * [`Error::Setting`] for a setting outside its range,
 /// * [`Error::Infeasible`] for contact rows that contradict each other,
-/// * [`Error::Unbounded`] for a load that drives a rigid-body mode which nothing stops,
+/// * [`Error::Unbounded`] for a load along a rigid-body mode that nothing stops,
 /// * [`Error::UnderHeld`] for a rigid-body mode that nothing resists: the answer would not be unique,
 /// * [`Error::NotConvex`] for a stiffness with a negative eigenvalue,
-/// * [`Error::NotCertified`] with the best answer, where it does not meet the tolerance,
-/// * [`Error::NoRoom`] where no way within `settings.memory` leads to a certified answer, [`Error::TooLarge`] where the one
-///   that was named does not fit,
-/// * [`Error::Interrupted`] where the watch was asked to stop before there was an answer,
-/// * [`Error::Numerical`] where memory does not suffice.
+/// * [`Error::NotCertified`] with the best answer, if it does not meet the tolerance,
+/// * [`Error::NoRoom`] if no way within `settings.memory` leads to a certified answer, [`Error::TooLarge`] if the named method does not
+///   fit,
+/// * [`Error::Interrupted`] if the watch was asked to stop before there was an answer,
+/// * [`Error::Numerical`] if memory does not suffice.
 pub fn solve(problem: &ContactProblem, settings: &Settings) -> Result<Solution, Error> {
     let settings = &settings.started()?;
     claims::rechecked(problem, settings, attempts::solved(problem, settings))
 }
 
-/// The same from what is known of the answer, as that of a problem nearby.
+/// The same from a start, for example the answer of a similar problem.
 ///
 /// # Errors
 /// As [`solve`]; [`Error::Length`] for a start that does not fit.
@@ -92,7 +92,7 @@ pub(crate) fn solve_from(problem: &ContactProblem, start: Start, settings: &Sett
 /// estimated to take at most `seconds`, else by multigrid.
 ///
 /// # Errors
-/// As [`ContactProblem::certify`]; [`Error::NoRoom`] where there is no room for either.
+/// As [`ContactProblem::certify`]; [`Error::NoRoom`] if there is no room for either.
 #[cfg(feature = "cli")]
 pub(crate) fn certify_within(
     problem: &ContactProblem,
@@ -114,11 +114,11 @@ pub fn solve_qp(problem: &ContactProblem) -> Result<Solution, Error> {
     solve(problem, &Settings::with_method(Method::qp()))
 }
 
-/// Factorises `problem` once for many sets of held rows: each call of the function returned is one iteration of the
-/// active-set loop, whose multiplier has either sign.
+/// Factorises `problem` once for many sets of held rows: each call of the returned function is one iteration of the active-set loop;
+/// its multiplier may have either sign.
 ///
 /// # Errors
-/// As [`solve`], without [`Error::NotCertified`]; [`Error::Infeasible`] where the rows of the set contradict each other.
+/// As [`solve`], without [`Error::NotCertified`]; [`Error::Infeasible`] if the rows of the set contradict each other.
 #[cfg_attr(not(feature = "pictures"), allow(dead_code))]
 pub(crate) fn with_contact_sets(problem: &ContactProblem) -> Result<impl Fn(&ContactSet) -> engine::Held, Error> {
     engine::with_contact_sets(problem)

@@ -1,19 +1,18 @@
-//! What is decided of a solve, all of it here.
+//! All decisions of a solve.
 //!
-//! What [`Method::Auto`] does, in this order:
+//! [`Method::Auto`] decides in this order:
 //!
-//! 0. **Pieces** ([`pieces_of`]): parts that nothing couples are solved each for itself, small ones several together.
-//! 1. **Factor or multigrid** (`Estimate::choose`; for many gaps [`method_for`]): multigrid if the direct path is estimated to take
-//!    [`CLEARLY`] times as long, or does not fit into the memory; else the direct path. If that turns out to be too large or
-//!    too slow, multigrid; if multigrid falls short, or takes as long as a factor would, the direct path if it fits.
-//! 2. **The layout of the factor** ([`Layout::within`]): condensed onto the contact dofs if that pays; else all dofs with the
-//!    contact boundary last, which makes bounds and proofs cheap; else all dofs. The first that fits into memory and time.
-//! 3. **The way on that layout** ([`Way::chosen`]): method and precision, by rules that were fitted to measured times.
-//! 4. **The first contact set** ([`starts_by_multigrid`]): from a few cycles of multigrid if contact is everywhere, else none.
-//! 5. **What follows an answer that falls short** ([`safer`]): a shortcut is left for the active set in double precision, a
-//!    condensed problem for all dofs.
+//! 0. **Pieces** ([`pieces_of`]): uncoupled parts are solved separately, several small ones together. 1. **Factor or multigrid**
+//! (`Estimate::choose`; for many gaps [`method_for`]): multigrid if the direct path is estimated to take [`CLEARLY`] times as long, or
+//! does not fit into the memory; else the direct path. If that turns out to be too large or too slow, multigrid; if multigrid falls
+//! short, or takes as long as a factor would, the direct path if it fits. 2. **The layout of the factor** ([`Layout::within`]):
+//! condensed onto the contact dofs if that pays; else all dofs with the contact boundary last, which makes bounds and proofs cheap;
+//! else all dofs. The first that fits into memory and time. 3. **The way on that layout** ([`Way::chosen`]): method and precision, by
+//! rules that were fitted to measured times. 4. **The first contact set** ([`starts_by_multigrid`]): from a few cycles of multigrid if
+//! contact is everywhere, else none. 5. **The retry after an answer that falls short** ([`safer`]): a shortcut is replaced by the
+//! active set in double precision, a condensed problem by all dofs.
 //!
-//! Within a method the fallbacks are fixed, and decide nothing by cost: sets that do not settle within [`PATIENCE`] go on from a
+//! Within a method the fallbacks are fixed and do not depend on cost: sets that do not settle within [`PATIENCE`] continue from a
 //! penalty ladder, then by the dual active-set method ([`takes_last_resort`]); an answer with a factor that falls short is corrected
 //! and repaired (`engine/answer`).
 
@@ -33,46 +32,46 @@ use super::transform::{Condensation, Pieces, Scaling};
 use crate::error::{Error, memory as written};
 use crate::solution::{Certificate, Expected, Why};
 
-/// The direct path is exact and its bound proven: it is left only if it takes this many times as long.
+/// The direct path is exact and its bound proven: multigrid replaces it only if the direct path takes this many times as long.
 const CLEARLY: f64 = 1.15;
 
-/// What the methods that factorise are called where they are weighed against multigrid.
+/// The name of the methods with a factor in the comparison with multigrid.
 const WITH_FACTOR: &str = "factor";
 
-/// Cycles beyond those that a factorisation is worth: an answer may be near.
+/// Cycles allowed beyond those that take the time of a factorisation: the answer may be near.
 const MARGIN: usize = 10;
 
-/// An estimate may be so many times too large.
+/// An estimate may be too large by this factor.
 const UNSURE: f64 = 2.0;
 
-/// The path that is taken, and why it is not the direct one.
+/// The chosen path, with the reason.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Choice {
     /// The direct path.
     Factor { reason: String },
-    /// Multigrid: it is much the faster, unless it takes more cycles than this.
+    /// Multigrid: it is much faster, unless it takes more cycles than this.
     Speed { reason: String, most_cycles: usize },
     /// Multigrid: nothing else fits into the memory.
     Room { reason: String },
 }
 
 impl Estimate {
-    /// Is the iterative path the better one: much the faster, or the only one within `most_bytes`?
+    /// Returns `true` if multigrid is chosen: much faster, or the only path within `most_bytes`.
     pub fn prefers_multigrid(&self, most_bytes: f64) -> bool {
         !matches!(self.choose(most_bytes), Ok(Choice::Factor { .. }) | Err(_))
     }
 
-    /// The path to take within `most_bytes`; whether a factor fits that is not clearly too large, its analysis tells.
+    /// The path to take within `most_bytes`. If a factor is not clearly too large, only its analysis decides whether it fits.
     ///
     /// # Errors
-    /// [`Error::NoRoom`] where neither fits.
+    /// [`Error::NoRoom`] if neither fits.
     pub(super) fn choose(&self, most_bytes: f64) -> Result<Choice, Error> {
         let ratio = self.direct_seconds / self.multigrid_seconds;
         let fits = self.direct_bytes <= most_bytes;
-        // Constants alone make a poor hierarchy of a body.
+        // For a body, constants alone give a poor hierarchy.
         if ratio > CLEARLY && self.smooth != Smooth::Unknown && self.multigrid_bytes <= most_bytes {
             let reason = format!("by multigrid: a factorisation would take about {ratio:.0} times as long");
-            // After so many cycles a factorisation would have been as fast.
+            // After this number of cycles a factorisation would have been as fast.
             let most_cycles = if fits { MARGIN + (self.cycles * ratio) as usize } else { usize::MAX };
             return Ok(Choice::Speed { reason, most_cycles });
         }
@@ -94,7 +93,7 @@ impl Estimate {
         Ok(Choice::Factor { reason })
     }
 
-    /// What was weighed for a choice, and what decided it.
+    /// The estimates behind a choice, and its reason.
     pub(super) fn why(&self, choice: &Choice) -> Why {
         let mprgp = Method::Mprgp.name();
         let (chosen, reason) = match choice {
@@ -109,7 +108,7 @@ impl Estimate {
         Why { chosen: chosen.to_string(), reason: reason.clone(), considered }
     }
 
-    /// The same for each of many gaps, which share the first factor, and the hierarchy.
+    /// The same for each of many gaps; all gaps share the first factor, and the hierarchy.
     fn of_many(self, gaps: usize) -> Self {
         let rest = 1.0 - 1.0 / gaps.max(1) as f64;
         Estimate {
@@ -119,10 +118,10 @@ impl Estimate {
         }
     }
 
-    /// Why multigrid is taken where a solve with a factor takes `factor` bytes, and that is too much.
+    /// The reason for multigrid if a solve with a factor takes `factor` bytes, which is too much.
     ///
     /// # Errors
-    /// [`Error::NoRoom`] where multigrid takes too much as well.
+    /// [`Error::NoRoom`] if multigrid takes too much as well.
     pub(super) fn without_factor(&self, factor: f64, most_bytes: f64) -> Result<String, Error> {
         let multigrid = self.multigrid_bytes;
         if multigrid > most_bytes {
@@ -135,13 +134,13 @@ impl Estimate {
     }
 }
 
-/// The method that so many gaps of `problem` are prepared for, where it is left to the program, and why.
+/// The method for this number of gaps of `problem`, if the choice is left to the program, and the reason.
 pub(super) fn method_for(problem: &ContactProblem, gaps: usize, settings: &Settings) -> (Method, Option<Why>) {
     if settings.method != Method::Auto {
         return (settings.method, Some(by_name(settings.method)));
     }
     let estimate = Estimate::of(problem).of_many(gaps);
-    // Where neither path fits, the preparation says so.
+    // If neither path fits, the preparation says so.
     let Ok(choice) = estimate.choose(settings.memory.unwrap_or(f64::INFINITY)) else { return (Method::Auto, None) };
     let why = Some(estimate.why(&choice));
     match choice {
@@ -150,11 +149,11 @@ pub(super) fn method_for(problem: &ContactProblem, gaps: usize, settings: &Setti
     }
 }
 
-/// Returns `true` if the energy bound of an answer from elsewhere comes from a factor of the stiffness, `false` if from multigrid:
-/// a factor, whose bound is proven, if it fits into the memory and is estimated to take at most so many seconds.
+/// Returns `true` if the energy bound of an answer from elsewhere comes from a factor of the stiffness, `false` if from multigrid. A
+/// factor gives a proven bound; it is taken if it fits into the memory and is estimated to take at most this number of seconds.
 ///
 /// # Errors
-/// [`Error::NoRoom`] where neither fits into the memory.
+/// [`Error::NoRoom`] if neither fits into the memory.
 #[cfg(feature = "cli")]
 pub(super) fn is_bounded_by_factor(problem: &ContactProblem, seconds: f64, settings: &Settings) -> Result<bool, Error> {
     let (estimate, memory) = (Estimate::of(problem), settings.memory.unwrap_or(f64::INFINITY));
@@ -164,17 +163,16 @@ pub(super) fn is_bounded_by_factor(problem: &ContactProblem, seconds: f64, setti
     Ok(estimate.shared_seconds <= seconds || estimate.multigrid_bytes > memory)
 }
 
-/// Why a method is taken that was asked for.
+/// The reason for a method that the user chose.
 pub(super) fn by_name(method: Method) -> Why {
     let reason = format!("by {}: it was asked for", method.name());
     Why { chosen: method.name().to_string(), reason, considered: Vec::new() }
 }
 
-/// A piece has at least this number of unknowns, if all parts together have twice as many: parts with fewer are solved sooner
-/// together.
+/// A piece has at least this number of unknowns, if all parts together have twice as many: smaller parts are solved faster together.
 const PIECE: usize = 2000;
 
-/// The pieces to solve each for itself; `None` if the problem is solved as one.
+/// The pieces to solve separately; `None` if the problem is solved as one.
 pub(super) fn pieces_of(problem: &ContactProblem, settings: &Settings) -> Option<Pieces> {
     let is_free = matches!(settings.method, Method::Auto | Method::ActiveSet);
     let parts = problem.parts();
@@ -203,13 +201,13 @@ pub(super) fn starts_by_multigrid(problem: &ContactProblem, settings: &Settings)
 static FITTED: LazyLock<Fitted> =
     LazyLock::new(|| serde_json::from_str(include_str!("fitted.json")).unwrap_or_default());
 
-/// What was fitted, without the costs.
+/// The fitted rules, without the costs.
 #[derive(Clone, Debug, Default, Deserialize)]
 struct Fitted {
     rules: Vec<Rule>,
 }
 
-/// A way to an answer.
+/// A method with its settings and precision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Way {
@@ -221,10 +219,10 @@ pub(super) enum Way {
     PenaltyRung,
 }
 
-/// For an accuracy, and all that are less: the ways by size.
+/// The ways by size, for an accuracy and all lower accuracies.
 ///
-/// The size of a condensed problem is the multiplications of its factor. That of an uncondensed one, where every
-/// iteration is a factorisation, is the multiplications for each row: it tells how wide a factor is beside its contact.
+/// The size of a condensed problem is the multiplications of its factor. That of an uncondensed one, with a factorisation in every
+/// iteration, is the multiplications for each row: a measure of the width of the factor relative to its contact.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Rule {
@@ -233,7 +231,7 @@ struct Rule {
     steps: Vec<Step>,
 }
 
-/// A way for all sizes up to one that the steps before do not cover; without a size, for all.
+/// A way for all sizes up to `up_to` that earlier steps do not cover; without `up_to`, for all sizes.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Step {
@@ -241,21 +239,21 @@ struct Step {
     way: Way,
 }
 
-/// The interior point is told this share of the accuracy that is asked for.
+/// The interior point aims at this share of the requested accuracy.
 const INTERIOR_POINT_SHARE: f64 = 0.1;
 
-/// With fewer multiplications for each row a factor is that of a chain. Along a chain of more than [`LONG`] rows a front of closed
+/// A factor with fewer multiplications for each row belongs to a chain. Along a chain of more than [`LONG`] rows a front of closed
 /// rows takes hundreds of sets; the interior point takes some twenty steps.
 const CHAIN: f64 = 200.0;
 
 /// Rows of a long chain.
 const LONG: usize = 1000;
 
-/// The one rung of a ladder that is expected to reach an accuracy is this over it.
+/// The penalty of the single rung that should reach an accuracy: this number divided by the accuracy.
 const PENALTY_OVER_ACCURACY: f64 = 100.0;
 
 impl Way {
-    /// The way for the method, accuracy and precision of `settings`; `None` where these leave no choice.
+    /// The way for the method, accuracy and precision of `settings`; `None` if these leave no choice.
     pub fn chosen(settings: &Settings, unknowns: Unknowns, multiplications: f64, rows: usize) -> Option<Way> {
         if settings.method != Method::Auto {
             return None;
@@ -299,7 +297,7 @@ impl Way {
     }
 }
 
-/// What the methods work on.
+/// The unknowns of the methods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Unknowns {
     /// The stiffness is condensed onto the contact dofs.
@@ -307,18 +305,19 @@ pub(super) enum Unknowns {
     AllDofs,
 }
 
-/// An order of elimination with its structure, and what is kept of it.
+/// An order of elimination with its structure, and its kept parts.
 pub(super) struct Layout {
     pub analysis: Analysis,
     /// The dofs that are eliminated last.
     pub last: Vec<usize>,
     pub unknowns: Unknowns,
     pub multiplications: f64,
-    /// What was chosen, where the choice was left to the program.
+    /// The chosen way, if the choice was left to the program.
     pub way: Option<Way>,
     /// The precision of the factor.
     pub width: Width,
-    /// Is the factor of the stiffness kept beside those of the contact sets? If not, it is made again for the certificate.
+    /// `true` if the factor of the stiffness is kept beside those of the contact sets; if not, it is computed again for the
+    /// certificate.
     pub keeps_norm: bool,
 }
 
@@ -326,7 +325,7 @@ impl Layout {
     /// The first layout that fits into the memory of `settings`.
     ///
     /// # Errors
-    /// [`Error::TooLarge`] with the least that one needs, [`Error::OutOfTime`], [`Error::Interrupted`].
+    /// [`Error::TooLarge`] with the least memory that a layout needs, [`Error::OutOfTime`], [`Error::Interrupted`].
     pub fn within(problem: &ContactProblem, scaling: &Scaling, settings: &Settings) -> Result<Self, Error> {
         check_room_to_order(problem, settings)?;
         let contact_dofs = Condensation::contact_dofs(scaling.contact());
@@ -347,7 +346,7 @@ impl Layout {
                 2 => (Vec::new(), Kept::Nothing),
                 _ => break,
             };
-            // What is dense on the boundary may be too large by itself: the analysis would take memory for nothing.
+            // The dense matrices on the boundary alone may be too large: the analysis would then waste memory.
             if let Err(error) = check_memory(problem, dense, settings) {
                 keep_least(&mut refused, error);
                 continue;
@@ -383,7 +382,7 @@ impl Layout {
         let is_last_free = last.is_empty();
         let mut layout = Layout { analysis, last, unknowns, multiplications, way, width, keeps_norm: true };
         let mut choices = vec![(way, width, true)];
-        // What the rules choose for its speed may take more memory, or time before its first step, than there is.
+        // The fastest way by the rules may take more memory than available, or too much time before its first step.
         if way.is_some() {
             choices.push((Some(Way::ActiveSet), Width::Double, true));
         }
@@ -434,7 +433,7 @@ impl Layout {
     }
 }
 
-/// Refuses a problem that is too large to be ordered, with what its factor would take, roughly.
+/// Refuses a problem that is too large to be ordered, with a rough estimate of its factor.
 fn check_room_to_order(problem: &ContactProblem, settings: &Settings) -> Result<(), Error> {
     match check_memory(problem, Kept::Nothing, settings) {
         Err(Error::TooLarge { dofs, stiffness_entries, bytes, allowed, .. }) => {
@@ -447,7 +446,7 @@ fn check_room_to_order(problem: &ContactProblem, settings: &Settings) -> Result<
     }
 }
 
-/// Keeps of the refusals so far and another one the refusal that asks for the least memory.
+/// Keeps the refusal with the least required memory, of the earlier ones and a new one.
 fn keep_least(refused: &mut Option<Error>, other: Error) {
     match (refused.as_ref(), &other) {
         (Some(Error::TooLarge { bytes: few, .. }), Error::TooLarge { bytes: many, .. }) if few > many => {}
@@ -457,7 +456,7 @@ fn keep_least(refused: &mut Option<Error>, other: Error) {
     *refused = Some(other);
 }
 
-/// Iterations of the active-set loop after which its start is taken for a poor one.
+/// Iterations of the active-set loop after which its start counts as poor.
 pub(super) const PATIENCE: usize = 16;
 
 /// Returns `true` if a method that has not settled is followed by the last resort.
@@ -465,17 +464,17 @@ pub(super) fn takes_last_resort(settings: &Settings) -> bool {
     settings.allows_last_resort(f64::INFINITY)
 }
 
-/// What was tried: a method, and the unknowns that it worked on if they were fewer than all.
+/// A tried method, with its number of unknowns if they were fewer than all.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tried {
     pub method: Method,
     pub condensed_dofs: Option<usize>,
-    /// May the answer fall short of its goal where a slower way would not?
+    /// `true` if the answer may fall short of a goal that a slower way would reach.
     pub is_shortcut: bool,
 }
 
 impl Tried {
-    /// Which of the methods with a factor is taken, in words, where the choice was left to the program.
+    /// The chosen method with a factor, in words, if the choice was left to the program.
     pub fn in_words(&self, multiplications: f64) -> String {
         let on = match self.condensed_dofs {
             Some(dofs) => format!("condensed to {dofs} dofs"),
@@ -487,14 +486,14 @@ impl Tried {
         )
     }
 
-    /// A method on all dofs that is no shortcut.
+    /// A method on all dofs that is not a shortcut.
     pub fn on_all_dofs(method: Method) -> Self {
         Tried { method, condensed_dofs: None, is_shortcut: false }
     }
 }
 
-/// Settings that may reach what was `tried` and fell short, and where they start: a shortcut is left first, then the
-/// condensation, which loses digits where the contact boundary feels little of the stiffness of the body.
+/// Settings and start that may reach the goal after `tried` fell short. First a shortcut is given up, then the condensation, which
+/// loses digits if the contact boundary feels little of the stiffness of the body.
 pub(super) fn safer(tried: &Tried, settings: &Settings, fell_short: &Error) -> Option<(Settings, Start)> {
     if settings.watch.is_over() {
         return None;
@@ -505,17 +504,18 @@ pub(super) fn safer(tried: &Tried, settings: &Settings, fell_short: &Error) -> O
         return Some((safe, Start::default()));
     }
     let (miss, start) = match fell_short {
-        // What rounding of the displacement explains is no loss of the condensation.
+        // An error explained by rounding of the displacement is not a loss of the condensation.
         Error::NotCertified { solution, .. } if is_exact(&solution.certificate, settings) => return None,
         Error::NotCertified { solution, value, .. } if !value.is_nan() => (*value, Start::from(&solution.contact_set)),
         _ => (f64::INFINITY, Start::default()),
     };
-    // What is asked for as it is, as a small penalty, falls short on all dofs too.
+    // A choice of the user without a last resort, as a small penalty, falls short on all dofs too.
     let may_gain = tried.condensed_dofs.is_some() && safe.condense == Condense::Auto && safe.allows_last_resort(miss);
     may_gain.then(|| (Settings { condense: Condense::Never, ..safe }, start))
 }
 
-/// Does an answer hold all that its displacement can, and fall short of an accuracy beyond that?
+/// Returns `true` if the conditions hold and no error bound exceeds the effect of rounding the displacement: the answer can only miss
+/// an accuracy beyond that.
 fn is_exact(certificate: &Certificate, settings: &Settings) -> bool {
     certificate.conditions_hold(settings.tolerance) && certificate.energy_error_excess == 0.0
 }

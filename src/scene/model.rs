@@ -1,4 +1,4 @@
-//! The model: a scene discretised, its contact problem, and what its rows and dofs mean.
+//! The model: a discretised scene, its contact problem, and the meaning of its rows and dofs.
 
 use std::sync::Arc;
 
@@ -25,11 +25,10 @@ use crate::solution::Solution;
 /// Tributary areas below this, relative to the largest, are rounding of zero; radii, relative to the size of the body.
 const NO_AREA: f64 = 1e-12;
 
-/// A discretised scene: mesh, contact problem, and what its rows and dofs mean.
+/// A discretised scene: mesh, contact problem, and the meaning of its rows and dofs.
 ///
-/// Nodal vectors have length `dim * n_nodes` and the order `[x_0, y_0, x_1, ...]` (with z in space). `displacement`
-/// arguments are those of a solution: one entry per free dof, and behind
-/// them the travel of each obstacle that a force presses.
+/// Nodal vectors have length `dim * n_nodes` and the order `[x_0, y_0, x_1, ...]` (with z in space). `displacement` arguments are those
+/// of a solution: one entry per free dof, then the travel of each obstacle that a force presses.
 ///
 /// ```
 /// use signorini::{Scene, solve_qp};
@@ -51,7 +50,7 @@ pub struct Model {
 }
 
 impl Model {
-    /// Rows first, since they tell whether the body is held, before anything expensive is built.
+    /// Rows first: they decide whether the body is held, before anything expensive is built.
     pub(super) fn new(parts: Parts, gap: f64) -> Result<Self, Error> {
         let built = rows::build(&parts, gap)?;
         if !parts.moves {
@@ -94,7 +93,7 @@ impl Model {
     ///
     /// # Errors
     /// [`Error::Scene`] for a gap that is not finite or puts a node so deep that it has no closest point,
-    /// [`Error::UnderHeld`] where the new rows leave a rigid-body mode free.
+    /// [`Error::UnderHeld`] if the new rows leave a rigid-body mode free.
     pub fn with_gap(&self, gap: f64) -> Result<Self, Error> {
         let built = rows::build(&self.parts, gap)?;
         if !self.parts.moves {
@@ -105,7 +104,7 @@ impl Model {
         Self::with_rows(self.parts.clone(), gap, built, (stiffness, load, near_null))
     }
 
-    /// The force on the one obstacle that a force presses; `None` where there is no such obstacle, or several.
+    /// The force on the one obstacle that a force presses; `None` if there is no such obstacle, or several.
     #[cfg(feature = "cli")]
     pub(crate) fn pressing_force(&self) -> Option<f64> {
         let &[force] = &self.pressing_forces()[..] else { return None };
@@ -125,7 +124,7 @@ impl Model {
     /// The same scene with another force on the one obstacle that a force presses.
     ///
     /// # Errors
-    /// [`Error::Scene`] where a force presses no obstacle or several, or for a force that is negative or not finite.
+    /// [`Error::Scene`] if a force presses no obstacle or several, or for a force that is negative or not finite.
     pub(crate) fn pressed_by(&self, force: f64) -> Result<Self, Error> {
         let parts = &self.parts;
         let &[obstacle] = parts.unknowns.pressed() else {
@@ -144,14 +143,14 @@ impl Model {
         Ok(Model { problem, ..self.clone() })
     }
 
-    /// The solution with pressed obstacles where they first touch the body, without a force.
+    /// The solution with pressed obstacles at their first contact with the body, without a force.
     ///
     /// # Errors
     /// As [`solve`].
     pub(crate) fn touched(&self, settings: &Settings) -> Result<Solution, Error> {
         let (parts, problem) = (&self.parts, &self.problem);
         let is_pressed = |row: usize| parts.unknowns.travel(self.rows[row].obstacle).is_some();
-        // Out of reach, on a spring that nothing stretches.
+        // The obstacles are out of reach, on springs that nothing stretches.
         let away = |(row, &gap): (usize, &f64)| if is_pressed(row) { f64::INFINITY } else { gap };
         let gap = problem.gap().iter().enumerate().map(away).collect();
         let load = parts.unknowns.pressed_by(problem.load().to_vec(), |_| 0.0);
@@ -161,21 +160,21 @@ impl Model {
         for &obstacle in parts.unknowns.pressed() {
             let Some(travel) = parts.unknowns.travel(obstacle) else { continue };
             let rows = problem.contact().column(travel);
-            // Adding zero takes the sign off a zero.
+            // Adding zero removes the sign of a zero.
             solution.displacement[travel] =
                 0.0 + rows.map(|(row, lean)| -left[row] / lean).fold(f64::INFINITY, f64::min);
         }
         Ok(solution)
     }
 
-    /// What each unknown of the problem is, in its order.
+    /// The meaning of each unknown of the problem, in order.
     #[cfg(feature = "pictures")]
     pub(crate) fn meanings(&self) -> impl Iterator<Item = Meaning> + '_ {
         let parts = &self.parts;
         parts.unknowns.meanings(&parts.dofs, parts.body.dimension(), &parts.rigid_faces)
     }
 
-    /// How many times the modelled part makes the whole, by planes of symmetry.
+    /// Number of copies of the modelled part in the whole, by planes of symmetry.
     pub(crate) fn parts_of_whole(&self) -> f64 {
         self.parts.symmetry.parts()
     }
@@ -184,7 +183,7 @@ impl Model {
         &self.parts
     }
 
-    /// What the scene shows.
+    /// The title of the scene.
     pub fn title(&self) -> &str {
         &self.parts.title
     }
@@ -199,7 +198,7 @@ impl Model {
         self.gap
     }
 
-    /// The body, or all of them in one: mesh, materials, thickness.
+    /// The body, or all bodies in one: mesh, materials, thickness.
     pub fn body(&self) -> &ElasticBody {
         &self.parts.body
     }
@@ -214,12 +213,12 @@ impl Model {
         &self.parts.dofs
     }
 
-    /// The obstacles in the order of the scene, those of a user behind them.
+    /// The obstacles in the order of the scene, then those of a user.
     pub fn obstacles(&self) -> &[PlacedObstacle] {
         &self.parts.obstacles
     }
 
-    /// The surface of obstacle `obstacle` at this model's gap, as [`PlacedObstacle::outline`]; empty where there is no such
+    /// The surface of obstacle `obstacle` at this model's gap, as [`PlacedObstacle::outline`]; empty if there is no such
     /// obstacle.
     pub fn obstacle_outline(&self, obstacle: usize, segments: usize) -> Vec<[f64; 2]> {
         self.parts
@@ -234,7 +233,7 @@ impl Model {
         &self.rows
     }
 
-    /// What a reader of the answer should know.
+    /// Warnings for the reader of the answer.
     pub fn warnings(&self) -> &[Warning] {
         &self.warnings
     }
@@ -252,13 +251,13 @@ impl Model {
     /// Nodal displacements, in length, from those of the free dofs; supports have their prescribed values.
     ///
     /// # Errors
-    /// [`Error::Length`] where `displacement` does not have one entry per free dof.
+    /// [`Error::Length`] if `displacement` does not have one entry per free dof.
     pub fn nodal_displacement(&self, displacement: &[f64]) -> Result<Vec<f64>, Error> {
         self.parts.dofs.expand(&self.parts.unknowns.displacement(displacement)?)
     }
 
-    /// How far an obstacle that a force presses has moved against its approach direction, in length, in a solution with these
-    /// `displacement`s; `None` for one that stands still.
+    /// Travel of an obstacle that a force presses, against its approach direction, in length, in a solution with these `displacement`s;
+    /// `None` for an obstacle at rest.
     ///
     /// # Errors
     /// As [`Model::nodal_displacement`].
@@ -267,14 +266,14 @@ impl Model {
         Ok(self.parts.unknowns.travel(obstacle).map(|unknown| displacement[unknown]))
     }
 
-    /// Contact pressure of each row, `-lambda` over the tributary area as it is seen along the row, in force per area, `>= 0` in
+    /// Contact pressure of each row, `-lambda` over the tributary area projected along the row, in force per area, `>= 0` in
     /// compression.
     ///
-    /// The end of a quadratic edge on an axis of revolution has no tributary area, or next to none where the edge is
+    /// The end of a quadratic edge on an axis of revolution has no tributary area, or next to none if the edge is
     /// curved; it shows the pressure of the candidate next to it.
     ///
     /// # Errors
-    /// [`Error::Length`] where `multiplier` does not have one entry per contact row.
+    /// [`Error::Length`] if `multiplier` does not have one entry per contact row.
     pub fn pressure(&self, multiplier: &[f64]) -> Result<Vec<f64>, Error> {
         self.check_multiplier(multiplier)?;
         let largest = self.rows.iter().fold(0.0, |largest: f64, row| largest.max(row.tributary_area));
@@ -297,8 +296,8 @@ impl Model {
         Ok(self.rows.iter().enumerate().map(pressure).collect())
     }
 
-    /// Nodal contact forces, `lambda n`, in force; with two bodies the opposite on the other one. On quadratic faces in space those
-    /// of the shape functions: under a uniform pressure zero or negative at corners.
+    /// Nodal contact forces, `lambda n`, in force; with two bodies the opposite forces on the other body. On quadratic faces in space
+    /// they are those of the shape functions: zero or negative at corners under a uniform pressure.
     ///
     /// # Errors
     /// As [`Model::pressure`].
@@ -321,7 +320,7 @@ impl Model {
         &self.parts.load
     }
 
-    /// The place at which the force of a row has its moment: the node, or, in the middle of a curved edge, its coefficient.
+    /// The point of application of the force of a row for moments: the node, or, in the middle of a curved edge, its coefficient.
     pub(super) fn place(&self, node: usize) -> [f64; 3] {
         self.parts.dofs.basis().place(self.mesh().nodes(), node)
     }

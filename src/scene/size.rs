@@ -1,4 +1,4 @@
-//! How large a scene will be, before anything of it is built: dofs, entries, factor, bytes.
+//! The size of a scene before it is built: dofs, entries, factor, bytes.
 
 use super::schema::Scene;
 use crate::error::Error;
@@ -6,7 +6,7 @@ use crate::fem::mesh::MAX_NODES;
 use crate::qp::cost::{assembly_seconds, bytes};
 use crate::qp::transform::FEW_VALUES;
 
-/// Where a dense matrix would have more than this share of the values of the factor, nothing is condensed.
+/// If a dense matrix would have more than this share of the values of the factor, nothing is condensed.
 const DENSE_SHARE: f64 = 0.4;
 
 /// The size of a scene, estimated from its divisions: within a factor of 2 of the memory that `solve` takes with a
@@ -21,9 +21,9 @@ pub struct Size {
     pub stiffness_entries: f64,
     /// Values of its Cholesky factor.
     pub factor_entries: f64,
-    /// Memory at the most, in bytes.
+    /// Upper bound of the memory, in bytes.
     pub bytes: f64,
-    /// Memory at the most without a factor, by multigrid, in bytes.
+    /// Upper bound of the memory without a factor, by multigrid, in bytes.
     pub multigrid_bytes: f64,
     /// Memory of the model alone, before it is solved, in bytes.
     pub model_bytes: f64,
@@ -37,7 +37,7 @@ impl Size {
 }
 
 impl Scene {
-    /// Estimates the size of the scene without building it; of a file that it names the length alone is read.
+    /// Estimates the size of the scene without building it; of a named file only the length is read.
     pub fn size(&self) -> Size {
         let mut size = Size {
             nodes: 0.0,
@@ -64,7 +64,7 @@ impl Scene {
             let entries = nodes * counts.neighbours * dimension * dimension;
             let across: Vec<f64> = block.cells.iter().map(|cells| cells * counts.line + 1.0).collect();
             let full: f64 = across.iter().product();
-            // The lattice of lines has places without a node, as in the middle of a Q8 cell.
+            // The lattice of lines has points without a node, for example in the middle of a Q8 cell.
             let factor = dimension * dimension * filled(&across, 0.0) * (nodes / full).min(1.0);
             let narrowest = across.iter().copied().fold(f64::INFINITY, f64::min);
             let share: f64 = block.lengths.iter().map(|length| (reach / length).min(1.0)).fold(1.0, f64::min);
@@ -84,8 +84,7 @@ impl Scene {
         size
     }
 
-    /// Refuses a scene that would take more than `most` bytes. One of too many nodes is left to [`Scene::build`], which
-    /// refuses it at its divisions.
+    /// Refuses a scene that would take more than `most` bytes. [`Scene::build`] refuses a scene with too many nodes at its divisions.
     ///
     /// # Errors
     /// [`Error::TooLarge`].
@@ -103,7 +102,7 @@ impl Scene {
         self.check_bytes(bytes.min(multigrid_bytes), 0.0, most)
     }
 
-    /// As [`Scene::check_size`], for what only builds the model and solves nothing.
+    /// As [`Scene::check_size`], for commands that only build the model and solve nothing.
     ///
     /// # Errors
     /// [`Error::TooLarge`].
@@ -122,16 +121,16 @@ impl Scene {
 }
 
 /// Pairs of nodes in the factor of a lattice with these numbers of nodes along its axes, by nested dissection across the longest
-/// axis: the separator meets itself and the nodes around the part that it divides, `around` of them.
+/// axis: the separator is coupled with itself and with the `around` nodes around the part that it divides.
 ///
 /// # Source
 /// A. George, *Nested dissection of a regular finite element mesh*, SIAM J. Numer. Anal. 10 (1973) 345-363.
 fn filled(lattice: &[f64], around: f64) -> f64 {
-    /// A part of so few nodes is dense.
+    /// A part with at most this number of nodes is dense.
     const DENSE: f64 = 8.0;
-    /// The share of the neighbours around a part that a node of it meets.
+    /// The share of the neighbours around a part with which a node of the part is coupled.
     const NEIGHBOURS_MET: f64 = 0.7;
-    /// Half a part has about this share of the neighbours of the whole.
+    /// Half a part has about this share of the neighbours of the whole part.
     const HALF: f64 = 0.55;
     let count: f64 = lattice.iter().product();
     let longest = lattice.iter().copied().fold(0.0, f64::max);

@@ -1,12 +1,12 @@
-//! The unknowns of a contact problem: the free dofs, but for those of rigid faces; the motions of these; and the travels of obstacles
-//! that a force presses.
+//! The unknowns of a contact problem: the free dofs except those of rigid faces, the motions of rigid faces, and the travels of
+//! obstacles that a force presses.
 //!
 //! The nodes of a rigid face follow its motions: u = R y + u_0 with the displacement u of the free dofs and the unknowns y, so that
 //! the stiffness is R' K R and the load R' (f - K u_0).
 //!
 //! A pressed obstacle moves along its approach direction `a` alone, by the travel `d` against it: one more unknown without stiffness,
-//! whose load is the force F. Each of its rows holds `n . u + (n . a) d <= gap`, so that the forces of its rows along `a` add up
-//! to F.
+//! with the force F as its load. Each of its rows holds `n . u + (n . a) d <= gap`, so that the forces of its rows along `a` add up to
+//! F.
 
 use std::borrow::Cow;
 #[cfg(feature = "pictures")]
@@ -20,7 +20,7 @@ use crate::error::Error;
 use crate::fem::assembly::DofMap;
 use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
 
-/// Which unknown is what.
+/// The meaning of the unknowns by their order.
 #[derive(Clone, Debug)]
 pub(super) struct Unknowns {
     /// Number of free dofs.
@@ -30,7 +30,7 @@ pub(super) struct Unknowns {
     pressed: Vec<usize>,
 }
 
-/// What an unknown is.
+/// The meaning of an unknown.
 #[cfg(feature = "pictures")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Meaning {
@@ -59,16 +59,16 @@ pub(crate) enum Meaning {
     },
 }
 
-/// How the free dofs follow the unknowns: u = R y + u_0.
+/// The map from the unknowns to the free dofs: u = R y + u_0.
 #[derive(Clone, Debug)]
 struct Ties {
-    /// R, a column for each free dof: its row of R.
+    /// Columns of the transpose of R: the row of R of each free dof.
     rows: SparseMatrix,
     /// u_0, for each free dof.
     offset: Vec<f64>,
-    /// The force or the moment along each unknown; zero but on faces.
+    /// The force or the moment along each unknown; zero except on faces.
     load: Vec<f64>,
-    /// The unknowns of each face, by its motions; `None` where one is prescribed.
+    /// The unknowns of each face, by its motions; `None` if one is prescribed.
     faces: Vec<Vec<Option<usize>>>,
 }
 
@@ -105,12 +105,12 @@ impl Unknowns {
         &self.pressed
     }
 
-    /// The unknown that is the travel of an obstacle; `None` for one that stands still.
+    /// The unknown that is the travel of an obstacle; `None` for an obstacle at rest.
     pub fn travel(&self, obstacle: usize) -> Option<usize> {
         self.pressed.iter().position(|&pressed| pressed == obstacle).map(|place| self.of_body() + place)
     }
 
-    /// The values of the motions of a rigid face that are unknowns, among values of the unknowns; `None` where one is prescribed.
+    /// The values of the motions of a rigid face that are unknowns, among values of the unknowns; `None` if one is prescribed.
     pub fn motions(&self, values: &[f64], face: usize) -> Vec<Option<f64>> {
         let unknowns = self.ties.as_ref().and_then(|ties| ties.faces.get(face));
         unknowns.into_iter().flatten().map(|unknown| unknown.and_then(|unknown| values.get(unknown).copied())).collect()
@@ -119,7 +119,7 @@ impl Unknowns {
     /// The displacement of the free dofs at values of the unknowns.
     ///
     /// # Errors
-    /// [`Error::Length`] where there is not one value for each unknown.
+    /// [`Error::Length`] if there is not one value for each unknown.
     pub fn displacement<'a>(&self, values: &'a [f64]) -> Result<Cow<'a, [f64]>, Error> {
         let mut moved = self.motion(values)?;
         if let Some(ties) = &self.ties {
@@ -188,7 +188,7 @@ impl Unknowns {
             };
             for (p, a) in ties.rows.column(i) {
                 for (q, b) in ties.rows.column(j) {
-                    // The entry (j, i) is its own on the diagonal alone.
+                    // Entries off the diagonal have a mirror image (j, i).
                     match (i == j, p >= q) {
                         (true, true) => entries.push((p, q, a * value * b)),
                         (true, false) => {}
@@ -202,14 +202,14 @@ impl Unknowns {
         SymmetricMatrix::from_lower(SparseMatrix::from_triplets(self.count(), self.count(), &entries)?)
     }
 
-    /// A combination of free dofs in the unknowns, and what is prescribed of it.
+    /// A combination of free dofs in the unknowns, and its prescribed part.
     pub fn combination(&self, of_free: &[(usize, f64)]) -> (Vec<(usize, f64)>, f64) {
         let Some(ties) = &self.ties else { return (of_free.to_vec(), 0.0) };
         let entries = of_free.iter().flat_map(|&(dof, part)| ties.rows.column(dof).map(move |(q, r)| (q, part * r)));
         (entries.collect(), of_free.iter().map(|&(dof, part)| part * ties.offset[dof]).sum())
     }
 
-    /// What each unknown is.
+    /// The meaning of each unknown.
     #[cfg(feature = "pictures")]
     pub fn meanings<'a>(
         &'a self,

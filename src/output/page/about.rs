@@ -1,18 +1,18 @@
-//! Where a page comes from: what was asked, of which input, by which version, where.
+//! The origin of a page: command, input, version and machine.
 
 use serde::Serialize;
 
-/// What a reader needs to make the same page again.
+/// The data that a reader needs to reproduce the page.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct About {
-    /// What the page shows.
+    /// The title of the page.
     pub title: String,
     /// The command, as `solve`.
     pub command: &'static str,
     /// The name of the scene file or problem directory, without its folder.
     pub input: String,
-    /// SHA-256 of the scene file, or of K.mtx, f.mtx, B.mtx and g.mtx one after another, in hexadecimal digits; none of
-    /// standard input.
+    /// SHA-256 of the scene file, or of K.mtx, f.mtx, B.mtx and g.mtx one after another, in hexadecimal digits; `None` for standard
+    /// input.
     pub sha256: Option<String>,
     /// Threads of the sparse factorisations and of multigrid.
     pub threads: usize,

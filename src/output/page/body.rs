@@ -1,4 +1,4 @@
-//! What is drawn of a body: its cells in the plane, its surface in space, a strip for a bar.
+//! The drawn shape of a body: its cells in the plane, its surface in space, a strip for a bar.
 
 use serde::Serialize;
 

@@ -1,6 +1,6 @@
-// Frames: what is shown at a place of a slider.
+// Frames: the states shown at the positions of a slider.
 
-/** Which frames set the colours of a series: more would take time and show nothing. */
+/** Number of frames that set the colours of a series: more would take time without a visible effect. */
 const MOST_FRAMES = 24;
 
 function evenly(list, most) {
@@ -8,7 +8,7 @@ function evenly(list, most) {
   return Array.from({ length: most }, (_, i) => list[Math.floor((i * (list.length - 1)) / (most - 1))]);
 }
 
-/** The closed rows of an answer, of all rows a flag each. */
+/** The closed rows of an answer: a flag for each row. */
 function flags(rows, count) {
   const closed = new Uint8Array(count);
   rows.forEach(row => {
@@ -17,7 +17,7 @@ function flags(rows, count) {
   return closed;
 }
 
-/** The two states around a place, and the share of the upper one. */
+/** The two states around a position, and the share of the upper one. */
 function around(states, at) {
   const sign = states.at(-1).at >= states[0].at ? 1 : -1;
   let upper = states.findIndex(state => sign * (state.at - at) >= 0);
@@ -49,7 +49,7 @@ function closedAt({ starts, rows, values }, index) {
   };
 }
 
-/** The exact answer at a gap: between two corners everything is linear. */
+/** The exact answer at a gap: it is linear between two corners. */
 function exactFrame(data, gap) {
   const { corners, closed } = data.sweep,
     pieces = corners.length / 2,

@@ -1,4 +1,4 @@
-//! The file: shell, style, data and scripts put together, all text escaped.
+//! The file, composed of shell, style, data and scripts, with all text escaped.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ use crate::output::{Drawing, write_atomically};
 const SHELL: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
 
-/// In the order in which they are read.
+/// In the order of loading.
 const SCRIPTS: [&str; 15] = [
     include_str!("unpack.js"),
     include_str!("numbers.js"),
@@ -36,7 +36,7 @@ const SCRIPTS: [&str; 15] = [
 /// Writes the page into `folder`, with a picture for browsers that cannot draw.
 ///
 /// # Errors
-/// [`Error::File`]; [`Error::Numerical`] where the picture or the data cannot be encoded.
+/// [`Error::File`]; [`Error::Numerical`] if the picture or the data cannot be encoded.
 pub(super) fn write_page(folder: &Path, page: &Page, packer: Packer, still: Option<&Drawing>) -> Result<(), Error> {
     let still = match still {
         Some(drawing) => image(drawing, page.title())?,
@@ -60,7 +60,7 @@ fn image(drawing: &Drawing, title: &str) -> Result<String, Error> {
     Ok(format!("<img id=\"still\" alt=\"{}\" src=\"data:image/png;base64,{png}\">", escaped(title)))
 }
 
-/// The shell with what stands for each `{{name}}` in it; what is put in is not looked at again.
+/// The shell with each `{{name}}` replaced by its content; names inside the content are not replaced.
 fn filled(shell: &str, content: impl Fn(&str) -> String) -> String {
     let mut text = String::new();
     for (index, piece) in shell.split("{{").enumerate() {
@@ -75,7 +75,7 @@ fn filled(shell: &str, content: impl Fn(&str) -> String) -> String {
     text
 }
 
-/// Text as it may stand between tags and in attributes; characters that HTML does not allow are left out.
+/// Text that is valid between tags and in attributes; characters that HTML does not allow are left out.
 fn escaped(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
     for character in text.chars().filter(|character| !character.is_control()) {
@@ -91,8 +91,8 @@ fn escaped(text: &str) -> String {
     safe
 }
 
-/// JSON that no parser of HTML takes for a tag or a comment: these characters stand in texts only, where their escapes
-/// mean the same.
+/// JSON that no parser of HTML takes for a tag or a comment: these characters occur only in texts, and there their escapes mean the
+/// same.
 fn safe_json(json: &str) -> String {
     let mut safe = String::with_capacity(json.len());
     for character in json.chars() {

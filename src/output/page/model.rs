@@ -1,4 +1,4 @@
-//! All that a page shows, as it is serialised into it.
+//! The whole content of a page, in the form that is serialised into it.
 
 use serde::Serialize;
 use serde_json::Value;
@@ -19,19 +19,18 @@ use crate::scene::{Model, Units};
 /// Colours of a field, from its lowest value to its highest.
 const FIELD_COLOURS: usize = 17;
 
-/// A page; what is left out does not belong to its command.
+/// A page; missing fields do not belong to its command.
 #[derive(Debug, Serialize)]
 pub(super) struct Page<'a> {
     pub about: &'a About,
     pub units: PageUnits,
     pub colours: Colours,
-    /// The object of `report.json`, without seconds but for a trade-off; none of a sweep, whose points stand in
-    /// `sweep`.
+    /// The object of `report.json`, without seconds except for a trade-off; null for a sweep, which has its points in `sweep`.
     #[serde(skip_serializing_if = "Value::is_null")]
     pub report: Value,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub certificate: Option<CertificateWords>,
-    /// How much of the contact set is proven, in words.
+    /// The proven part of the contact set, in words.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub proven: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -40,7 +39,7 @@ pub(super) struct Page<'a> {
     pub question: Option<Question>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rows: Option<Rows>,
-    /// The answer; the corners of a sweep; the frames of a motion.
+    /// The answer, the corners of a sweep, or the frames of a motion.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub states: Vec<State>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -99,7 +98,7 @@ impl<'a> Page<'a> {
         }
     }
 
-    /// The same with the body and what was asked of it.
+    /// The same with the body and its question (supports, loads, obstacles).
     pub fn of_model(about: &'a About, model: &Model, shape: &Shape, packer: &mut Packer) -> Self {
         Page {
             body: Some(shape.packed(model, packer)),
@@ -109,7 +108,7 @@ impl<'a> Page<'a> {
         }
     }
 
-    /// What the page is called.
+    /// The title of the page.
     pub fn title(&self) -> &str {
         &self.about.title
     }

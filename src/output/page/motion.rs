@@ -10,7 +10,7 @@ use super::sweep::MOST_BYTES;
 use crate::error::Error;
 use crate::scene::Answer;
 
-/// What a motion has left.
+/// The output of a motion.
 pub(crate) struct MotionFrames<'a> {
     /// Time, contact force, number of closed rows, penetration, kinetic, strain, potential and total energy, step after
     /// step.
@@ -26,12 +26,12 @@ pub(super) struct MotionShown {
     /// Eight columns, as in `history.csv`.
     history: Packed,
     times: Vec<f64>,
-    /// The closed rows of each frame that is kept, with their pressures.
+    /// The closed rows of each kept frame, with their pressures.
     closed: ClosedShown,
 }
 
 impl MotionShown {
-    /// The motion with the frames that are kept of it.
+    /// The motion with its kept frames.
     ///
     /// # Errors
     /// Those of reading frames, and of the recovery of stresses.

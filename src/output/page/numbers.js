@@ -1,6 +1,6 @@
 // Numbers as text, colours of values, stresses from their components.
 
-/** A number in so many digits, short where that loses nothing. */
+/** A number with this many digits, without trailing zeros. */
 function shown(value, digits = 6) {
   if (value === null || value === undefined || Number.isNaN(value)) return "-";
   if (!Number.isFinite(value)) return value > 0 ? "infinite" : "-infinite";
@@ -53,7 +53,7 @@ function ticks(low, high, most) {
   return values;
 }
 
-/** What a body is coloured by; each takes the values of a vertex from a state. */
+/** The fields for colouring a body; each takes the values of a vertex from a state. */
 const QUANTITIES = {
   "sigma-2": { name: "σ₂, second principal stress", unit: "pressure", value: (s, at, n) => secondPrincipal(s, at, n) },
   "von-mises": { name: "von Mises stress", unit: "pressure", value: (s, at, n) => vonMises(s, at, n) },
@@ -70,7 +70,7 @@ function vonMises(s, at, n) {
   return Math.sqrt(normal + 3 * (xy * xy + yz * yz + zx * zx));
 }
 
-/** In the plane the smaller principal stress there, in space the middle one. */
+/** The second principal stress: in the plane the smaller one, in space the middle one. */
 function secondPrincipal(s, at, n) {
   const [xx, yy, zz, xy] = [s[at], s[at + 1], s[at + 2], s[at + 3]];
   if (n !== 6) return (xx + yy) / 2 - Math.hypot((xx - yy) / 2, xy);

@@ -1,4 +1,4 @@
-// What is drawn over a body: obstacles in the plane, supports, loads, forces, gaps, a scale.
+// Drawings over a body: obstacles in the plane, supports, loads, forces, gaps, a scale.
 
 /** The outline of an obstacle in the plane, filled on its own side. */
 function paintOutline(view, brush, { outline, approach }, shift, dashed) {
@@ -60,13 +60,13 @@ function paintText(view, brush, text, x, y, colour) {
   brush.fillText(text, left, base);
 }
 
-/** Evenly chosen entries, at most so many. */
+/** Evenly chosen entries, at most `most`. */
 function some(count, most) {
   const every = Math.max(1, Math.ceil(count / most));
   return Array.from({ length: Math.ceil(count / every) }, (_, i) => i * every);
 }
 
-/** What holds the body: squares where all directions are held or a face is rigid, a plate across each other held direction, a zigzag along each spring. */
+/** Supports: squares if all directions are held or a face is rigid, a plate across each other held direction, a zigzag along each spring. */
 function paintHolds(view, brush, { fixed, guided, springs, rigid }, dimension) {
   // In space the surface hides those behind it: squares are marks of the view there.
   if (view.shape.flat) {
@@ -74,7 +74,7 @@ function paintHolds(view, brush, { fixed, guided, springs, rigid }, dimension) {
     paintSquares(view, brush, fixed, view.ink("held"), 3.2);
   }
   paintDirected(view, brush, guided, dimension, { colour: view.ink("held"), line: PLATE, most: 4000 });
-  // More would run into each other.
+  // More springs would overlap.
   paintDirected(view, brush, springs, dimension, { colour: view.ink("spring"), line: SPRING, most: 40 });
 }
 
@@ -126,7 +126,7 @@ function paintDirected(view, brush, { vertices, directions }, dimension, { colou
   }
 }
 
-/** Loads: an arrow at each loaded node of the boundary, or the resultant where the whole body is loaded. */
+/** Loads: an arrow at each loaded node of the boundary, or the resultant if the whole body is loaded. */
 function paintLoads(view, brush, loads, resultant, dimension) {
   const { vertices, forces, inside } = loads,
     colour = view.ink("load"),
@@ -154,7 +154,7 @@ function paintLoads(view, brush, loads, resultant, dimension) {
   } else paintForce(view, brush, resultant?.centre ? resultant : wholeLoad(view, loads, dimension), colour, 60);
 }
 
-/** The arrow of a resultant, so many pixels long, that ends at its centre. */
+/** The arrow of a resultant, of this length in pixels; it ends at the centre. */
 function paintForce(view, brush, { force, centre }, colour, pixels) {
   const full = values => [0, 1, 2].map(k => values[k] || 0),
     size = Math.hypot(...force);

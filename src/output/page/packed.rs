@@ -10,11 +10,11 @@ use serde::Serialize;
 
 use crate::error::Error;
 
-/// The largest of the whole numbers that stand for values; the next one stands for a value that is not finite.
+/// The largest integer code of a value; the next one is the code of a value that is not finite.
 const MOST: f64 = 65_534.0;
 const NO_VALUE: u16 = u16::MAX;
 
-/// How an array is packed.
+/// The form of a packed array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 enum Form {
@@ -28,11 +28,11 @@ enum Form {
     Bytes,
 }
 
-/// Where an array stands in the block, and how it is read.
+/// The position of an array in the block, and its form.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Packed {
     form: Form,
-    /// Its first byte.
+    /// Offset of its first byte.
     at: usize,
     /// Number of values.
     count: usize,
@@ -71,8 +71,8 @@ impl Packer {
         Packed { form: Form::Quantised, at, count: values.len(), stride, ranges }
     }
 
-    /// Numbers of nodes and the like, in items of `stride` components; what does not fit into 32 bits becomes the
-    /// largest that does.
+    /// Numbers of nodes and the like, in items of `stride` components; a number that does not fit into 32 bits becomes the largest that
+    /// does.
     pub fn whole(&mut self, values: &[usize], stride: usize) -> Packed {
         let (at, stride) = (self.bytes.len(), stride.max(1));
         for component in 0..stride {
@@ -106,7 +106,7 @@ impl Packer {
         Packed { form: Form::Bytes, at, count: self.bytes.len() - at, stride: 1, ranges: Vec::new() }
     }
 
-    /// The first bytes of all values, then the second ones, and so on: neighbours resemble each other.
+    /// The first bytes of all values, then the second bytes, and so on: neighbouring bytes are then similar.
     fn planes<T: Copy, const N: usize>(&mut self, values: &[T], bytes_of: fn(T) -> [u8; N]) {
         for plane in 0..N {
             self.bytes.extend(values.iter().map(|&value| bytes_of(value)[plane]));
@@ -116,7 +116,7 @@ impl Packer {
     /// The block, deflated without a header, in base64.
     ///
     /// # Errors
-    /// [`Error::Numerical`] where the encoder fails.
+    /// [`Error::Numerical`] if the encoder fails.
     pub fn finished(self) -> Result<String, Error> {
         let failed = |error: std::io::Error| Error::Numerical { step: "packing a page", reason: error.to_string() };
         let mut deflated = DeflateEncoder::new(Vec::new(), Compression::default());
@@ -125,7 +125,7 @@ impl Packer {
     }
 }
 
-/// The lowest and the highest finite value; zeros if there is none.
+/// The lowest and the highest finite value; zeros without a finite value.
 fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
     let finite = values.filter(|value| value.is_finite());
     let [low, high] =

@@ -22,7 +22,7 @@ async function assemble() {
     data = await unpackedData();
   const summary = data.report?.methods ? data.report.methods[0] : data.report,
     notes = data.body ? [EXACTNESS] : [];
-  // Black would not be seen where the page is dark.
+  // Black is invisible on a dark page.
   data.colours.lines = data.colours.lines.map(colour => (colour === "#000000" ? "var(--ink)" : colour));
   window.signorini = { data };
   document.getElementById("loading").remove();
@@ -57,7 +57,7 @@ function failed(error) {
   throw error;
 }
 
-// Paper is light, whatever the screen.
+// Paper is light, even if the screen is dark.
 function onPaper(prints) {
   document.documentElement.toggleAttribute("data-print", prints);
   View.all.forEach(view => view.drawNow());

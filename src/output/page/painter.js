@@ -1,6 +1,6 @@
 // The same picture without WebGL2: triangles painted from back to front, each in one colour.
 
-/** More triangles than these are painted in part. */
+/** If there are more triangles than this, only some are painted. */
 const MOST_PAINTED = 60000;
 
 class Painter {

@@ -1,12 +1,12 @@
-// A view of answers with its controls: what colours it, how far the displacement is magnified, what is marked.
+// A view of answers with its controls: colours, magnification of the displacement, marks.
 
-/** Rows beyond this number are marked where they are closed or undecided only, until all are asked for. */
+/** If there are more rows than this, only closed or undecided rows are marked, until the reader asks for all. */
 const MOST_OPEN_MARKS = 3000;
 
-/** More marks than these are small. */
+/** If there are more marks than this, they are small. */
 const MANY_MARKS = 300;
 
-/** Ends of the lines of a mesh beyond which it hides what it lies on, and is left out until it is asked for. */
+/** If the lines of a mesh have more ends than this, they would hide the colours: the mesh is left out until the reader asks for it. */
 const MOST_LINES = 200000;
 
 /** Displacement (three a vertex) and stress between two states. */
@@ -145,7 +145,7 @@ class Panel {
     [low, (low + high) / 2, high].forEach(value => element("span", ends, shown(value, 4)));
   }
 
-  /** How far an obstacle has moved from where the question shows it. */
+  /** Shift of an obstacle from its position in the question. */
   shiftOf(obstacle) {
     const [lower, upper, share] = this.frame.states,
       { shift, approach } = this.data.question.obstacles[obstacle];

@@ -1,4 +1,4 @@
-// Plots of lines and points as SVG, with the values of a point where the pointer or the focus is.
+// Plots of lines and points as SVG, with the values of the point under the pointer or the focus.
 
 const SVG = "http://www.w3.org/2000/svg";
 
@@ -165,12 +165,12 @@ function usable(value, { log }) {
   return Number.isFinite(value) && (!log || value > 0);
 }
 
-/** Where values stand on the screen, and which are named. */
+/** Positions of values on the screen, and the values with labels. */
 function axis(values, { log }, from, to, most) {
   const of = log ? Math.log10 : value => value;
   let low = values.length ? Math.min(...values.map(of)) : 0,
     high = values.length ? Math.max(...values.map(of)) : 1;
-  // What differs by rounding alone is one value.
+  // Values that differ by rounding alone count as one value.
   if (!(high - low > 1e-9 * Math.max(Math.abs(low), Math.abs(high))))
     [low, high] = log
       ? [low - 0.5, high + 0.5]

@@ -1,4 +1,4 @@
-// What was asked: the body with its supports, loads and obstacles.
+// The question: the body with its supports, loads and obstacles.
 
 function questionSection(page, data, shape, summary) {
   const own = section(page, "The question", "question"),

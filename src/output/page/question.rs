@@ -1,4 +1,4 @@
-//! What was asked: supports, loads, obstacles and gaps on the body before anything has moved.
+//! The question: supports, loads, obstacles and gaps on the undeformed body.
 
 use serde::Serialize;
 
@@ -50,13 +50,13 @@ struct Loads {
 /// A rigid obstacle.
 #[derive(Debug, Serialize)]
 struct ObstacleShown {
-    /// The boundary whose nodes are its candidates.
+    /// The boundary with its candidates.
     boundary: String,
-    /// From the body to the obstacle.
+    /// Direction from the body to the obstacle.
     approach: [f64; 3],
     /// Its shift along the approach direction in the outline or patch, in length.
     shift: f64,
-    /// What presses it, in force.
+    /// The force that presses it, in force.
     #[serde(skip_serializing_if = "Option::is_none")]
     force: Option<f64>,
     /// `true` if it is the surface of another body.
@@ -64,7 +64,7 @@ struct ObstacleShown {
     /// In the plane: points [x, y].
     #[serde(skip_serializing_if = "Option::is_none")]
     outline: Option<Packed>,
-    /// In space: where the rows of the candidates meet it.
+    /// In space: the facets at which the rows of the candidates meet it.
     #[serde(skip_serializing_if = "Option::is_none")]
     patch: Option<Patch>,
 }
@@ -93,7 +93,7 @@ impl Question {
     }
 }
 
-/// What holds vertices of the body.
+/// The supports at vertices of the body.
 #[derive(Default)]
 struct Holds {
     fixed: Vec<usize>,
@@ -177,7 +177,8 @@ fn obstacle(model: &Model, index: usize, packer: &mut Packer) -> ObstacleShown {
     }
 }
 
-/// The wall that a bar meets, a line across it where the row of its end meets the obstacle; empty for another body.
+/// The wall that a bar meets: a line across the bar at the point at which the row of its end meets the obstacle. Empty for another
+/// body.
 fn wall(model: &Model, index: usize) -> Vec<[f64; 2]> {
     let rigid = model.obstacles()[index].rigid();
     let row = model.rows().iter().find(|row| row.obstacle == index).filter(|_| rigid.is_some());
@@ -187,8 +188,8 @@ fn wall(model: &Model, index: usize) -> Vec<[f64; 2]> {
     })
 }
 
-/// The part of an obstacle in space that faces the candidates: each facet moved to where the rows of its nodes meet the
-/// obstacle.
+/// The part of an obstacle in space that faces the candidates: each facet is moved to the points at which the rows of its nodes meet
+/// the obstacle.
 fn patch(model: &Model, index: usize, packer: &mut Packer) -> Option<Patch> {
     if model.mesh().dimension() != 3 {
         return None;

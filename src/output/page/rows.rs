@@ -1,4 +1,4 @@
-//! The contact rows: where they stand, and what an answer says of each. All of it is exact.
+//! The contact rows: their positions, and their values in an answer. All values are exact.
 
 use serde::Serialize;
 
@@ -11,7 +11,7 @@ use crate::solution::{ContactSet, ProvenSet};
 #[derive(Debug, Serialize)]
 pub(super) struct Rows {
     count: usize,
-    /// The vertex of each.
+    /// The vertex of each row.
     vertices: Packed,
     obstacles: Packed,
     /// Into the obstacle, a component for each coordinate.
@@ -20,7 +20,7 @@ pub(super) struct Rows {
     gaps: Packed,
 }
 
-/// What an answer says of them.
+/// The values of an answer at the rows.
 #[derive(Debug, Serialize)]
 pub(super) struct Contact {
     /// 1 for a closed row, 0 for an open one.
@@ -29,9 +29,9 @@ pub(super) struct Contact {
     pressure: Packed,
     /// In force, `<= 0`.
     multiplier: Packed,
-    /// What is left of the gap, in length.
+    /// The remaining gap, in length.
     remaining: Packed,
-    /// 0 for an undecided row, 1 for one that is proven open, 2 for one that is proven closed; none without a proof.
+    /// 0 for an undecided row, 1 for a row proven open, 2 for a row proven closed; `None` without a proof.
     #[serde(skip_serializing_if = "Option::is_none")]
     proven: Option<Packed>,
 }
@@ -92,7 +92,7 @@ pub(super) struct Closed {
 /// The same as it stands in a page.
 #[derive(Debug, Serialize)]
 pub(super) struct ClosedShown {
-    /// Where the rows of each answer begin, and where those of the last one end.
+    /// Index of the first row of each answer, and the end of the rows of the last answer.
     starts: Packed,
     rows: Packed,
     /// Values at these rows.
@@ -100,7 +100,7 @@ pub(super) struct ClosedShown {
 }
 
 impl Closed {
-    /// Adds an answer: its closed rows, and of each of `values`, which have an entry for every row, what stands there.
+    /// Adds an answer: its closed rows, and the entries of `values` at these rows; each of `values` has an entry for every row.
     pub fn add(&mut self, set: &ContactSet, values: &[&[f64]]) {
         self.starts.push(self.rows.len());
         self.values.resize_with(values.len(), Vec::new);

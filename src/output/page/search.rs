@@ -11,7 +11,7 @@ use crate::output::iterations::iterations;
 use crate::scene::Answer;
 use crate::solution::Iteration;
 
-/// More steps than these are thinned out.
+/// Largest number of steps shown; more steps are thinned out.
 const MOST_STEPS: usize = 200;
 
 #[derive(Debug, Serialize)]
@@ -32,13 +32,13 @@ struct Step {
     penalty: Option<f64>,
     /// 1 for a closed row, 0 for an open one.
     set: Packed,
-    /// The body with these rows held at their gaps; none where that is not known.
+    /// The body with these rows held at their gaps; `None` if it is not known.
     #[serde(skip_serializing_if = "Option::is_none")]
     state: Option<State>,
 }
 
 impl Search {
-    /// The steps of `history`; those of which a body in the plane has a displacement to show are shown with it.
+    /// The steps of `history`; for a body in the plane with their displacements, if known.
     ///
     /// # Errors
     /// Those of the recovery of stresses.

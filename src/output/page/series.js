@@ -1,6 +1,6 @@
 // Answers in a series: sweeps, motions, the search for the contact set.
 
-/** A labelled range with what it says of its place. */
+/** A labelled range with a text about its position. */
 function slider(host, label, { min, max, step, value }, moved) {
   const line = element("div", host, null, "slider"),
     name = element("label", line, label);
@@ -13,7 +13,7 @@ function slider(host, label, { min, max, step, value }, moved) {
   return { line, range, told };
 }
 
-/** Pressure along each obstacle of a plane body; returns what shows another frame. */
+/** Pressure along each obstacle of a plane body; returns a function that shows another frame. */
 function profileSection(page, data, shape) {
   if (!data.rows?.count || shape.dimension !== 2) return () => {};
   const own = section(page, "Contact pressure along the boundary", "pressure"),
@@ -57,7 +57,7 @@ function profileSection(page, data, shape) {
   return frame => plots.forEach(show => show(frame));
 }
 
-/** A sweep: at every gap where the path is exact, at the points that were solved elsewhere. */
+/** A sweep: at every gap if the path is exact, else at the solved points. */
 function sweepSection(page, data, shape, notes) {
   const { sweep, units } = data,
     { points, events, corners } = sweep,
@@ -146,7 +146,7 @@ function sweepSection(page, data, shape, notes) {
   sweepTable(page, data);
 }
 
-/** Force, extent and peak pressure over the gap or force; returns what marks a place. */
+/** Force, extent and peak pressure over the gap or force; returns a function that marks a position. */
 function sweepPlots(page, data) {
   const { sweep, units, colours } = data,
     { points, corners } = sweep,

@@ -1,4 +1,4 @@
-//! A displaced body: what changes from one answer to the next.
+//! A displaced body: the data that change from one answer to the next.
 
 use serde::Serialize;
 
@@ -11,7 +11,7 @@ use crate::scene::Answer;
 /// Displacement and stress at the vertices. Both are linear in the answer, so that a page may mix two states.
 #[derive(Debug, Serialize)]
 pub(super) struct State {
-    /// Where on the path, at which gap, force or time.
+    /// Position on the path: gap, force or time.
     pub at: f64,
     displacement: Packed,
     /// The components xx, yy, zz, xy, and in space yz and zx.
@@ -52,7 +52,7 @@ fn tensor(stress: &Stress, components: usize) -> impl Iterator<Item = f64> + use
     [sigma_xx, sigma_yy, sigma_zz, sigma_xy, sigma_yz, sigma_zx].into_iter().take(components)
 }
 
-/// Which of `count` states are kept, of at most `most`: the first, the last, and others evenly between.
+/// Indices of the kept states among `count`, at most `most`: the first, the last, and others evenly between.
 pub(super) fn kept(count: usize, most: usize) -> Vec<usize> {
     let most = most.max(2);
     match count {

@@ -1,4 +1,4 @@
-//! A sweep: exact at every gap where the path is known, and at the gaps or forces that were solved elsewhere.
+//! A sweep: the exact path if it is known, else the solved gaps or forces.
 
 use serde::Serialize;
 
@@ -19,16 +19,16 @@ pub(super) struct SweepShown<'a> {
     points: Vec<Point<'a>>,
     events: &'a [SweepEvent],
     corners: &'a [SweepCorner],
-    /// Of each piece of the exact path the closed rows, with the pressures at both ends; of a sweep without a path
-    /// those of each point.
+    /// The closed rows of each piece of the exact path, with the pressures at both ends; for a sweep without a path those of each
+    /// point.
     closed: ClosedShown,
-    /// The multiplier of the contact force of the model that makes that of the whole.
+    /// Factor from the contact force of the model to that of the whole body.
     parts: f64,
-    /// How many states there are, kept or not.
+    /// Number of states, kept or not.
     state_count: usize,
 }
 
-/// One gap, or one force, that was solved.
+/// One solved gap or force.
 #[derive(Debug, Serialize)]
 struct Point<'a> {
     gap: f64,
@@ -43,7 +43,7 @@ struct Point<'a> {
 }
 
 impl<'a> SweepShown<'a> {
-    /// The sweep with the states that are kept of it.
+    /// The sweep with its kept states.
     ///
     /// # Errors
     /// Those of the solves at corners and of the recovery of stresses.

@@ -1,4 +1,4 @@
-// What a page says in words and tables. All text goes in as text.
+// The words and tables of a page. All text is inserted as text, not as HTML.
 
 function element(name, parent, text = null, className = "") {
   const made = document.createElement(name);
@@ -49,7 +49,7 @@ function badge(host, status) {
   if (status) element("span", host, STATUS[status] ?? status, `badge ${status === "certified" ? "good" : "bad"}`);
 }
 
-/** The first paragraph: what was done and how it ended. */
+/** The first paragraph: the command and its outcome. */
 function headline(page, data, summary) {
   const line = element("p", page),
     { about } = data;
@@ -223,7 +223,7 @@ function comparisonSection(page, data) {
   );
 }
 
-/** Version, input and machine, and how exact the page is. */
+/** Version, input and machine, and the accuracy of the page. */
 function aboutSection(page, data, notes) {
   const own = section(page, "About this page", "about"),
     { about } = data;

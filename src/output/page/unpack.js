@@ -1,7 +1,7 @@
 "use strict";
-// Reads what the page holds: JSON, in which packed arrays are named, and one deflated block with their bytes.
+// Reads the data of the page: JSON, in which packed arrays are named, and one deflated block with their bytes.
 
-/** The data of the page, every packed array in place of its name. */
+/** The data of the page; every packed array replaces its name. */
 async function unpackedData() {
   const data = JSON.parse(document.getElementById("data").textContent);
   return withArrays(data, await inflated(document.getElementById("arrays").textContent.trim()));

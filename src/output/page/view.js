@@ -1,4 +1,4 @@
-// A body in its frame: what is drawn of it, and how it is turned, moved and asked.
+// A body in its frame: drawing, turning, moving, and the values at a point.
 
 /** The shape that all views of a page share, from the packed body. */
 function shapeOf(body) {
@@ -90,7 +90,7 @@ class View {
   /** All views of the page. */
   static all = [];
 
-  /** A view in `host`, of a shape; `paint(view, brush)` draws over it what is no surface. */
+  /** A view in `host`, of a shape; `paint(view, brush)` draws over it everything that is not a surface. */
   constructor(host, shape, { table, label, paint, asked }) {
     Object.assign(this, {
       host,
@@ -144,7 +144,7 @@ class View {
     View.all.push(this);
   }
 
-  /** Displacements (three a vertex) and values (one a vertex) of what is shown. */
+  /** Displacements (three a vertex) and values (one a vertex) of the state shown. */
   state(moved, values) {
     this.moved = moved;
     this.surface.set("body", { moved, values });
@@ -167,7 +167,7 @@ class View {
   }
 
   home() {
-    // In space from the side of the contact; the third coordinate upwards.
+    // In space, seen from the side of the contact, with the third coordinate upwards.
     this.axes = this.shape.flat
       ? [
           [1, 0, 0],
@@ -270,7 +270,7 @@ class View {
     const brush = this.over.getContext("2d");
     brush.setTransform(dense, 0, 0, dense, 0, 0);
     brush.clearRect(0, 0, width, height);
-    // What WebGL has drawn does not reach the paper by itself.
+    // Drawings of WebGL are not printed by themselves.
     const prints = document.documentElement.hasAttribute("data-print");
     this.under.style.visibility = prints ? "hidden" : "";
     if (prints) brush.drawImage(this.under, 0, 0, width, height);
@@ -317,7 +317,7 @@ class View {
       this.tip.hidden = true;
     });
     over.addEventListener("contextmenu", event => event.preventDefault());
-    // The wheel belongs to the page until the view has the focus.
+    // The wheel scrolls the page unless the view has the focus.
     over.addEventListener(
       "wheel",
       event => {
@@ -366,7 +366,7 @@ class View {
     this.redraw();
   }
 
-  /** Tells what is known of the vertex at a place of the screen. */
+  /** Shows the values of the vertex at a position on the screen. */
   ask(x, y) {
     if (!this.asked) return;
     const at = this.measure();
@@ -389,7 +389,7 @@ class View {
   }
 }
 
-/** From the body to the eye that sees the side of the first rigid obstacle, as in the pictures. */
+/** Direction from the body to the eye, on the side of the first rigid obstacle, as in the pictures. */
 function eyeOf({ obstacles }) {
   const { approach } = obstacles.find(obstacle => !obstacle.is_body) ?? obstacles[0] ?? { approach: [0, 0, 0] };
   return [0.5, -0.8, 0.55].map((part, k) => (approach[k] < -0.3 ? -Math.abs(part) : approach[k] > 0.3 ? Math.abs(part) : part));

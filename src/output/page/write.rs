@@ -63,7 +63,7 @@ pub(crate) fn write_comparison_page(
     write_page(folder, &Page { report, pressures, ..page }, packer, still(&answers[0])?.as_ref())
 }
 
-/// The page of a sweep: where the exact path is known, of every gap between the first and the last.
+/// The page of a sweep; if the exact path is known, it shows every gap between the first and the last.
 ///
 /// # Errors
 /// As [`write_answer_page`], and those of the solves at the corners of the path.
@@ -75,7 +75,7 @@ pub(crate) fn write_sweep_page(folder: &Path, about: &About, sweep: &Sweep) -> R
     write_page(folder, &Page { sweep: Some(shown), states, ..page }, packer, still(&first.answer)?.as_ref())
 }
 
-/// The page of a motion, whose `report` is that of `report.json`.
+/// The page of a motion; `report` is the object of `report.json`.
 ///
 /// # Errors
 /// As [`write_answer_page`], and those of reading frames.
@@ -92,7 +92,7 @@ pub(crate) fn write_motion_page(
     write_page(folder, &Page { report: timeless(report), motion: Some(motion), states, ..page }, packer, None)
 }
 
-/// The page of a trade-off, whose picture is the `still`.
+/// The page of a trade-off with `still` as its picture.
 ///
 /// # Errors
 /// [`Error::File`].
@@ -106,8 +106,8 @@ pub(crate) fn write_tradeoff_page(
     write_page(folder, &page, Packer::default(), still)
 }
 
-/// The page of a guaranteed error against the continuum: what was asked, and how the error falls from mesh to mesh, whose picture is
-/// the `still`.
+/// The page of a guaranteed error against the continuum: the question, and the decrease of the error from mesh to mesh, with `still` as
+/// its picture.
 ///
 /// # Errors
 /// [`Error::File`].
@@ -123,7 +123,7 @@ pub(crate) fn write_total_error_page(
     write_page(folder, &Page { report: timeless(value(found)?), ..page }, packer, Some(still))
 }
 
-/// What all pages of one answer show.
+/// The common content of all pages of one answer.
 fn of_answer<'a>(
     about: &'a About,
     answer: &Answer,

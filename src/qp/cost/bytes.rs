@@ -1,12 +1,12 @@
-//! The memory that a solve takes: one model, for a scene that is not built yet and for a problem that is.
+//! The memory of a solve: one model for a scene that is not built yet and for a problem that is built.
 //!
-//! Every number is measured at the peak of the program (`tests/program/limits.rs`, `memory.rs`), and is meant to lie
-//! above it, by less than a factor of two.
+//! Every number is measured at the peak of the program (`tests/program/limits.rs`, `memory.rs`), and should exceed it by less than a
+//! factor of two.
 
 /// Bytes of a program that does nothing yet.
 pub const START: f64 = if cfg!(debug_assertions) { 20e6 } else { 11e6 };
 
-/// Bytes of a node: coordinates, displacements, loads, stresses, and what finds a node.
+/// Bytes of a node: coordinates, displacements, loads, stresses, and the index of nodes.
 const OF_NODE: f64 = 120.0;
 
 /// Bytes of a node of an element: the mesh, and its copies by node.
@@ -15,8 +15,8 @@ const OF_CONNECTION: f64 = 16.0;
 /// Bytes of an unknown: loads, displacements, residuals.
 const OF_DOF: f64 = 120.0;
 
-/// Bytes of an entry of the stiffness, both triangles: its file or mesh, itself, scaled, ordered, in the graph of the
-/// ordering.
+/// Bytes of an entry of the stiffness, both triangles: in its file or mesh, in the stiffness itself, scaled, ordered, and in the graph
+/// of the ordering.
 const OF_ENTRY: f64 = 32.0;
 
 /// Bytes of an unknown, and of an entry of the stiffness, both triangles, of a model that is assembled and not solved.
@@ -28,30 +28,29 @@ const OF_HIERARCHY: [f64; 2] = [190.0, 33.0];
 /// Workspace of a factorisation, beside its factor.
 const WORKSPACE: f64 = 1.15;
 
-/// Bytes of a value of a dense matrix on the contact dofs, of which a method keeps several.
+/// Bytes of a value of a dense matrix on the contact dofs; a method keeps several such matrices.
 const OF_DENSE: f64 = 64.0;
 
-/// Bytes of an entry of the stiffness in the matrices of the contact sets: their pattern, if that of the stiffness does not
-/// hold them, their values, the structure of their factors.
+/// Bytes of an entry of the stiffness in the matrices of the contact sets: their pattern, if it differs from that of the stiffness,
+/// their values, and the structure of their factors.
 const OF_SETS: f64 = 20.0;
 
-/// Bytes of an entry of the stiffness in the matrix of one contact set at a time: its values, and what the attempts before have
-/// not given back.
+/// Bytes of an entry of the stiffness in the matrix of one contact set at a time: its values, and memory that earlier attempts have not
+/// released.
 const OF_SET: f64 = 10.0;
 
 /// Bytes of a value of a dense triangle on the contact dofs that come last.
 const OF_BOUNDARY: f64 = 24.0;
 
-/// Bytes of a value of the factor of the interior point: with its index and workspace, in an order that fills in more
-/// than ours.
+/// Bytes of a value of the factor of the interior point, with its index and workspace; its ordering has more fill-in than ours.
 const OF_INTERIOR_POINT: f64 = 16.0;
 
-/// Bytes of a mesh with so many nodes, whose elements have so many `connections` together.
+/// Bytes of a mesh of `nodes` nodes; its elements have `connections` nodes together.
 pub fn of_mesh(nodes: f64, connections: f64) -> f64 {
     OF_NODE * nodes + OF_CONNECTION * connections
 }
 
-/// Bytes of a problem with so many unknowns and `entries` of its stiffness, both triangles, ready to be factorised.
+/// Bytes of a problem with `dofs` unknowns and `entries` of its stiffness, both triangles, before the factorisation.
 pub fn of_problem(dofs: f64, entries: f64) -> f64 {
     OF_DOF * dofs + OF_ENTRY * entries
 }
@@ -66,32 +65,32 @@ pub fn of_hierarchy(dofs: f64, entries: f64) -> f64 {
     OF_HIERARCHY[0] * dofs + OF_HIERARCHY[1] * entries
 }
 
-/// Bytes of a Cholesky factor with so many `values` of so many bytes, and of its workspace.
+/// Bytes of a Cholesky factor with this number of `values` of `size` bytes each, and of its workspace.
 pub fn of_factor(values: f64, size: usize) -> f64 {
     WORKSPACE * size as f64 * values
 }
 
-/// Bytes of what is dense on so many contact dofs.
+/// Bytes of the dense matrices on this number of contact dofs.
 pub fn of_dense(contact_dofs: f64) -> f64 {
     OF_DENSE * contact_dofs * contact_dofs
 }
 
-/// Bytes of the matrices K + w B'B of the contact sets, without their factors, for so many entries of K.
+/// Bytes of the matrices K + w B'B of the contact sets, without their factors, for this number of `entries` of K.
 pub fn of_sets(entries: f64) -> f64 {
     OF_SETS * entries
 }
 
-/// Bytes of the matrix K + w B'B of one contact set, without its factor, for so many entries of K.
+/// Bytes of the matrix K + w B'B of one contact set, without its factor, for this number of `entries` of K.
 pub fn of_set(entries: f64) -> f64 {
     OF_SET * entries
 }
 
-/// Bytes of what is dense on so many contact dofs that come last in a factor of all.
+/// Bytes of the dense triangle on this number of contact dofs that come last in a factor of all dofs.
 pub fn of_boundary(contact_dofs: f64) -> f64 {
     OF_BOUNDARY * contact_dofs * contact_dofs
 }
 
-/// Bytes of the interior point on a matrix whose own factor has so many `values`.
+/// Bytes of the interior point on a matrix with this number of `values` in its own factor.
 pub fn of_interior_point(values: f64) -> f64 {
     OF_INTERIOR_POINT * values
 }

@@ -1,5 +1,5 @@
-//! Engines: a problem prepared once, and solved for many gaps, loads and starts. One has a factor of the stiffness, the other a
-//! multigrid hierarchy; [`Prepared`] is the door to both, and knows of them only what `case::Engine` says.
+//! Engines: a problem prepared once, and solved for many gaps, loads and starts. One engine has a factor of the stiffness, the other a
+//! multigrid hierarchy; [`Prepared`] is the interface to both and uses only the trait `case::Engine`.
 
 mod answer;
 mod boundary;

@@ -1,4 +1,4 @@
-//! The way without a factorisation of the body: one multigrid hierarchy, MPRGP, the certificate.
+//! The method without a factorisation of the body: one multigrid hierarchy, MPRGP, the certificate.
 
 use std::time::Instant;
 
@@ -19,28 +19,28 @@ use crate::solution::Certificate;
 use crate::solution::{Seconds, Solution};
 use crate::watch::Watch;
 
-/// The method ends this much below the tolerance of the certificate, whose scales differ from its own.
+/// The method ends at this share of the tolerance of the certificate, because the scales of the two differ.
 const MARGIN: f64 = 0.1;
 
-/// Where the certificate is not met, the method goes on to this share of what it reached.
+/// If the certificate is not met, the method continues to this share of the residual that it reached.
 const NEXT: f64 = 0.01;
 
-/// Where an accuracy is named, the method first ends at this share of it: forces are less accurate than the energy.
+/// If an accuracy is given, the method first ends at this share of the accuracy: forces are less accurate than the energy.
 const FIRST: f64 = 0.1;
 
-/// Where the bound is above the accuracy, the next one is aimed at this share of it.
+/// If the bound exceeds the accuracy, the next attempt aims at this share of the accuracy.
 const AIM: f64 = 0.3;
 
-/// A start for another method ends at this imbalance of forces, relative.
+/// A start for another method ends at this relative imbalance of forces.
 const NEAR: f64 = 1e-4;
 
-/// Forces out of balance by less than this, relative, are rounding.
+/// A relative imbalance of forces below this is rounding.
 const IMBALANCE_ROUNDING: f64 = 1e-15;
 
 /// A contact problem with the multigrid hierarchy of its stiffness: built once, for all gaps, loads and starts.
 ///
-/// Nothing is scaled: the hierarchy brings itself to order one, and MPRGP compares only relative quantities. The bound on
-/// the energy error comes from a few cycles more; it rests on a measured eigenvalue, as its certificates say.
+/// Nothing is scaled: the hierarchy scales itself to order one, and MPRGP compares only relative quantities. The bound on the energy
+/// error takes a few more cycles; it rests on a measured eigenvalue, as its certificates say.
 #[derive(Debug)]
 pub(super) struct Hierarchical {
     problem: ContactProblem,
@@ -49,7 +49,7 @@ pub(super) struct Hierarchical {
 }
 
 impl Hierarchical {
-    /// Builds the hierarchy from the near-null space of `problem`, or from constants where it has none.
+    /// Builds the hierarchy from the near-null space of `problem`, or from constants if it has none.
     ///
     /// # Errors
     /// Those of [`Multigrid::new`]; before that [`Error::Interrupted`], [`Error::TooLarge`] and [`Error::OutOfTime`].
@@ -72,15 +72,15 @@ impl Hierarchical {
         Ok(Hierarchical { problem: problem.clone(), multigrid, seconds: clock.elapsed().as_secs_f64() })
     }
 
-    /// What was found for `problem`, examined, with the bound that there is time for.
+    /// The certificate of what was found for `problem`, with the bound that the time allows.
     fn examine(&self, problem: &ContactProblem, found: &Outcome, watch: &Watch) -> Result<Examined, Error> {
         watch.step("certificate", 0);
         problem.examine_by_cycles(&self.multigrid, &watch.finishing(), &found.displacement, &found.multiplier)
     }
 }
 
-/// The certificate of an answer from elsewhere, with the bound of the cycles; without one where the stiffness has no hierarchy, because
-/// a dof has no stiffness or a direction negative energy.
+/// The certificate of an answer from elsewhere, with the bound of the cycles. The bound is missing if the stiffness has no hierarchy,
+/// because a dof has no stiffness or a direction has negative energy.
 ///
 /// # Errors
 /// As [`Hierarchical::new`] and [`ContactProblem::certify`].
@@ -123,10 +123,10 @@ impl Engine for Hierarchical {
     /// # Errors
     /// * [`Error::Length`] and [`Error::NotFinite`] for gaps or a start that do not fit,
     /// * [`Error::Infeasible`] for contact rows that contradict each other,
-    /// * [`Error::Numerical`] for rows that no turning makes bounds of,
-    /// * [`Error::Unbounded`] and [`Error::UnderHeld`] for a mode that nothing stops, where the method meets one,
+    /// * [`Error::Numerical`] for rows that no rotation turns into bounds,
+    /// * [`Error::Unbounded`] and [`Error::UnderHeld`] for a mode that nothing stops, if the method finds one,
     /// * [`Error::NotConvex`] for a direction of negative energy,
-    /// * [`Error::NotCertified`] with the best answer, where the method stagnates above the tolerance.
+    /// * [`Error::NotCertified`] with the best answer, if the method stagnates above the tolerance.
     fn solve(&self, case: &Case) -> Result<Solution, Error> {
         let Case { gap, start, settings, .. } = *case;
         // Once the loop ends, its answer is still to be certified.
@@ -179,7 +179,7 @@ impl Engine for Hierarchical {
         judged(solution, goal)
     }
 
-    /// A contact set near that of the answer; `None` if the method meets something that another one must look at.
+    /// A contact set near that of the answer; `None` if the method meets a difficulty that another method must treat.
     fn near(&self, settings: &Settings) -> Option<Start> {
         let most_cycles = NEAR_CYCLES as usize;
         let limits = Limits { tolerance: NEAR, most_cycles, worth: usize::MAX, watch: &settings.watch };

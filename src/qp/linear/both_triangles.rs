@@ -1,17 +1,17 @@
-//! The lower triangle of a symmetric matrix that is given with both, in one pass.
+//! The lower triangle of a symmetric matrix given with both triangles, in one pass.
 //!
 //! The columns are walked from the first to the last. An entry (r, c) above the diagonal, r < c, has its mirror image in column r,
-//! which was walked before. As c grows, the mirror images of row r come in the order of column r: a cursor for each column is all
-//! that has to be kept.
+//! which was walked before. As c grows, the mirror images of row r come in the order of column r: only a cursor for each column must be
+//! kept.
 
 use super::SparseMatrix;
 use crate::error::Error;
 
-/// Two triangles count as alike when mirrored entries differ by no more than this times the largest entry of their
-/// row's or column's diagonal: assembly in another order differs by rounding, 1e-10 is far above it.
+/// Two triangles count as equal if mirrored entries differ by at most this times the larger diagonal entry of their row and column:
+/// assembly in another order differs by rounding, and 1e-10 is far above it.
 const SYMMETRY_TOLERANCE: f64 = 1e-10;
 
-/// Compressed columns with indices of any type, as they came.
+/// Compressed columns with indices of any type, as given.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Columns<'a, I> {
     pub starts: &'a [I],
@@ -19,24 +19,24 @@ pub(super) struct Columns<'a, I> {
     pub values: &'a [f64],
 }
 
-/// The triangle whose values are taken where mirrored entries differ by rounding: of columns the lower, of rows the upper.
+/// The triangle that gives the values if mirrored entries differ by rounding: the lower one for columns, the upper one for rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Taken {
     Lower,
     Upper,
 }
 
-/// A symmetric matrix while its rows are taken, both triangles of them, one after another.
+/// A symmetric matrix that takes its rows, with both triangles, one after another.
 pub struct SymmetricRows {
     dim: usize,
     lower: Lower,
 }
 
 impl SymmetricRows {
-    /// Before the first of `dim` rows with so many entries together.
+    /// Before the first of `dim` rows with this number of entries in all.
     ///
     /// # Errors
-    /// [`Error::Numerical`] for want of memory.
+    /// [`Error::Numerical`] if memory does not suffice.
     pub fn new(dim: usize, entries: usize) -> Result<Self, Error> {
         Ok(SymmetricRows { dim, lower: Lower::new(dim, entries, Taken::Upper)? })
     }
@@ -51,7 +51,7 @@ impl SymmetricRows {
         self.lower.take(self.dim, row, columns, values)
     }
 
-    /// The lower triangle; an entry that is as good as zero may stand in one triangle only.
+    /// The lower triangle; a negligible entry may be in one triangle only.
     ///
     /// # Errors
     /// [`Error::NotSymmetric`] for an entry of the upper triangle without a mirror image.
@@ -62,12 +62,12 @@ impl SymmetricRows {
     }
 }
 
-/// The lower triangle while it is found.
+/// The lower triangle under construction.
 struct Lower {
     starts: Vec<usize>,
     rows: Vec<usize>,
     values: Vec<f64>,
-    /// The entry of each column, below its diagonal, whose mirror image comes next.
+    /// For each column, the entry below the diagonal with the next mirror image.
     cursor: Vec<usize>,
     taken: Taken,
     /// An entry has no mirror image.
@@ -85,7 +85,7 @@ impl<I: Copy + TryInto<usize>> Columns<'_, I> {
         Ok(SparseMatrix::from_parts(lower.starts.len() - 1, lower.starts, lower.rows, lower.values))
     }
 
-    /// The transposed upper triangle; none if an entry, which is as good as zero, stands on one side of the diagonal only.
+    /// The transposed upper triangle; `None` if a negligible entry is on one side of the diagonal only.
     ///
     /// # Errors
     /// As [`Columns::lower`].
@@ -137,7 +137,7 @@ fn with_room<T>(entries: usize) -> Result<Vec<T>, Error> {
 }
 
 impl Lower {
-    /// Before the first of `dim` lines with so many entries together.
+    /// Before the first of `dim` lines with this number of entries in all.
     fn new(dim: usize, entries: usize, taken: Taken) -> Result<Self, Error> {
         let room = entries / 2 + dim;
         let mut starts = with_room(dim + 1)?;
@@ -146,7 +146,7 @@ impl Lower {
         Ok(Lower { starts, rows, values, cursor, taken, is_one_sided: false })
     }
 
-    /// Takes what `column` has on and below the diagonal, and compares what it has above.
+    /// Takes the entries of `column` on and below the diagonal, and compares those above.
     fn take<I: Copy + TryInto<usize>>(
         &mut self,
         dim: usize,
@@ -165,7 +165,7 @@ impl Lower {
             }
             (above, least) = (above + 1, row + 1);
         }
-        // All else goes at once, and is looked at afterwards.
+        // All other entries are taken at once, and checked afterwards.
         let of_rest = &values[above..];
         self.rows.extend(rows[above..].iter().map(|&row| row.try_into().unwrap_or(usize::MAX)));
         self.values.extend_from_slice(of_rest);
@@ -181,7 +181,7 @@ impl Lower {
         Ok(())
     }
 
-    /// Whether an entry above the diagonal has the very value of its mirror image, which then is passed.
+    /// Returns `true` if an entry above the diagonal equals its mirror image; the cursor then passes the mirror image.
     fn is_mirrored(&mut self, row: usize, column: usize, value: f64) -> bool {
         let place = self.cursor[row];
         let is_next = place < self.starts[row + 1] && self.rows[place] == column;
@@ -190,7 +190,7 @@ impl Lower {
         is_same
     }
 
-    /// What is wrong with a column whose rows do not increase or lie outside, or whose values are not finite.
+    /// The error of a column with rows that do not increase or lie outside, or with values that are not finite.
     #[cold]
     fn fault<I: Copy + TryInto<usize>>(&self, dim: usize, column: usize, rows: &[I], values: &[f64]) -> Error {
         let [line, entry] = self.taken.words();
@@ -238,7 +238,7 @@ impl Lower {
         }
     }
 
-    /// Entries whose mirror images did not come must be as good as zero.
+    /// Entries without a mirror image must be negligible.
     fn all_matched(&mut self) -> Result<(), Error> {
         for column in 0..self.cursor.len() {
             for place in self.cursor[column]..self.starts[column + 1] {
@@ -276,7 +276,7 @@ impl Lower {
 }
 
 impl Taken {
-    /// What a walked line of the matrix is, and what its entries are named by.
+    /// A walked line of the matrix is a row or a column; this names its entries in errors.
     fn words(self) -> [&'static str; 2] {
         match self {
             Taken::Lower => ["column", "row"],
@@ -284,7 +284,7 @@ impl Taken {
         }
     }
 
-    /// Row and column of an entry of a line that is walked as a column, or a pair of mirrored entries.
+    /// Row and column of an entry, or of a pair of mirrored entries, in a line that is walked as a column.
     fn place<T>(self, row: T, column: T) -> (T, T) {
         match self {
             Taken::Lower => (row, column),

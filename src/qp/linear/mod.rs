@@ -65,7 +65,7 @@ pub struct SparseMatrix {
     values: Arc<Vec<f64>>,
 }
 
-/// Where the entries are, column by column.
+/// The positions of the entries, column by column.
 #[derive(Debug, PartialEq, Eq)]
 struct Pattern {
     column_starts: Vec<usize>,
@@ -74,7 +74,7 @@ struct Pattern {
 
 impl SparseMatrix {
     /// The matrix of `rows` x `columns` with the given entries `(row, column, value)`, indices from 0, in any order;
-    /// entries of the same place are added.
+    /// entries with the same row and column are added.
     ///
     /// # Errors
     /// [`Error::IndexOutOfRange`] for an entry outside, [`Error::NotFinite`] for a value that is not finite.
@@ -179,7 +179,7 @@ impl SparseMatrix {
         Ok(Self::from_parts(rows, column_starts, row_indices, values))
     }
 
-    /// The matrix with given compressed columns, trusted to be sorted and in range.
+    /// The matrix with given compressed columns, which must be sorted and in range.
     pub(crate) fn from_parts(
         rows: usize,
         column_starts: Vec<usize>,
@@ -190,7 +190,7 @@ impl SparseMatrix {
         SparseMatrix { rows, pattern, values: Arc::new(values) }
     }
 
-    /// The matrix with other values in the same places.
+    /// The matrix with other values in the same pattern.
     pub(crate) fn with_values(&self, values: Vec<f64>) -> Self {
         SparseMatrix { rows: self.rows, pattern: self.pattern.clone(), values: Arc::new(values) }
     }

@@ -1,20 +1,20 @@
-//! The rows of a symmetric matrix, both triangles of them, from the one that is stored.
+//! The rows of a symmetric matrix, with both triangles, from the stored triangle.
 //!
-//! The lower triangle stands column by column: what a row has right of its diagonal is one column of it, what it has to the left is
-//! spread over the columns before. Some rows at a time are put together from all columns that reach them; a cursor for each column
-//! tells where it has come to, and the number of entries left of the diagonal of each row tells how much room it takes.
+//! The lower triangle is stored column by column: the entries of a row right of its diagonal are one column of the triangle, those on
+//! the left are spread over the previous columns. Some rows at a time are gathered from all columns that reach them. A cursor for each
+//! column gives its next entry, and the number of entries left of the diagonal of each row gives the room that the row needs.
 
 use super::SymmetricMatrix;
 
-/// Entries of the rows that are put together at a time, unless one row has more.
+/// Number of entries in the rows that are gathered at a time, unless one row has more.
 const GATHERED: usize = 1 << 19;
 
-/// Rows that follow each other, put together.
+/// Gathered consecutive rows.
 #[derive(Default)]
 struct Gathered {
-    /// The first of them.
+    /// The first row.
     first: usize,
-    /// The end of each of them, so far.
+    /// The present end of each row.
     ends: Vec<usize>,
     columns: Vec<u32>,
     values: Vec<f64>,
@@ -30,8 +30,8 @@ impl SymmetricMatrix {
         lengths
     }
 
-    /// Calls `take(columns, values)` for each row, from the first on, with its columns in their order. Beside the matrix a number
-    /// of 4 and one of 8 bytes stand in memory for each row, and 12 bytes for each of half a million entries.
+    /// Calls `take(columns, values)` for each row, from the first on, with its columns in their order. In addition to the matrix this
+    /// takes 4 + 8 bytes for each row, and 12 bytes for each of half a million entries.
     ///
     /// # Errors
     /// Those of `take`.
@@ -49,7 +49,7 @@ impl SymmetricMatrix {
                 last += 1;
             }
             gathered.make_room(first, (first..last).map(length));
-            // Columns that are done stay behind.
+            // Finished columns are skipped.
             while open < first && next[open] == starts[open + 1] {
                 open += 1;
             }
@@ -82,15 +82,15 @@ impl Gathered {
             self.ends.push(room);
             room += length;
         }
-        // Not more than is needed: a vector that grows by itself doubles.
+        // Exactly the room needed: a vector that grows doubles its capacity.
         self.columns.reserve_exact(room.max(GATHERED).saturating_sub(self.columns.len()));
         self.values.reserve_exact(room.max(GATHERED).saturating_sub(self.values.len()));
         self.columns.resize(room, 0);
         self.values.resize(room, 0.0);
     }
 
-    /// Adds what a column of the lower triangle has for these rows, which end before `last`, from its entry `next` on; and, where its
-    /// own row is one of them, what stands right of the diagonal there.
+    /// Adds the entries of a column of the lower triangle in these rows, which end before `last`, from its entry `next` on. If its own
+    /// row is one of these rows, adds also the entries right of the diagonal there.
     fn add(&mut self, matrix: &SymmetricMatrix, column: usize, last: usize, next: &mut usize) {
         let (rows, values) = (matrix.lower().row_indices(), matrix.lower().values());
         let end = matrix.lower().column_starts()[column + 1];
@@ -121,7 +121,7 @@ mod tests {
     use super::*;
     use crate::qp::linear::SparseMatrix;
 
-    /// A matrix with short and long rows, some without a diagonal, of so many rows that they are gathered several times.
+    /// A matrix with short and long rows, some without a diagonal, with enough rows to be gathered several times.
     fn matrix(dim: usize, reach: usize) -> SymmetricMatrix {
         let mut entries = Vec::new();
         for column in 0..dim {
@@ -136,7 +136,7 @@ mod tests {
 
     #[test]
     fn rows_are_those_of_both_triangles() {
-        // The last reaches over more than is gathered at a time.
+        // The last row has more entries than are gathered at a time.
         for (dim, reach) in [(0, 1), (1, 1), (9, 9), (40_000, 30), (1700, 1700)] {
             let matrix = matrix(dim, reach);
             let (lower, upper) = (matrix.lower().transposed(), matrix.lower());

@@ -1,4 +1,4 @@
-//! Problem directories: which file holds what.
+//! Problem directories: the content of each file.
 
 use std::path::{Path, PathBuf};
 #[cfg(feature = "cli")]
@@ -35,7 +35,7 @@ pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
     let load = read_vector(&directory.join("f.mtx"))?;
     let file = directory.join("B.mtx");
     let contact = read(&file, Values::Finite)?;
-    // A body has many dofs without a contact row: as many columns as the stiffness are right.
+    // A body has many dofs without a contact row: B must have as many columns as the stiffness.
     let empty = if contact.columns == load.len() { contact.rows } else { contact.rows.max(contact.columns) };
     check_filled(&file, &contact, empty)?;
     let contact = matrix(contact)?;
@@ -47,10 +47,11 @@ pub fn read_problem(directory: &Path) -> Result<ContactProblem, Error> {
     }
 }
 
-/// The other end of the problem of a directory: its gaps in `g1.mtx`, its load in `f1.mtx`; what has no file stays as it is.
+/// The other end of the problem of a directory: its gaps in `g1.mtx`, its load in `f1.mtx`; without a file the gaps or the load stay
+/// unchanged.
 ///
 /// # Errors
-/// As [`read_problem`]; [`Error::FileSyntax`] where there is neither file, for a vector of another length, and for gaps that are
+/// As [`read_problem`]; [`Error::FileSyntax`] if there is neither file, for a vector of another length, and for gaps that are
 /// infinite in other rows.
 #[cfg(feature = "cli")]
 pub fn read_other_end(directory: &Path, problem: &ContactProblem) -> Result<ContactProblem, Error> {
@@ -83,8 +84,8 @@ pub fn read_other_end(directory: &Path, problem: &ContactProblem) -> Result<Cont
     }
 }
 
-/// What `near_null.mtx` says of the body, one column for each vector, or `coordinates.mtx`, one row for each node whose dofs
-/// follow each other, all of them free.
+/// The near-null space of the body: from `near_null.mtx`, one column for each vector, or from `coordinates.mtx`, one row for each node.
+/// The dofs of a node then follow each other and are all free.
 fn near_null(directory: &Path, dofs: usize) -> Result<Option<NearNullSpace>, Error> {
     let file = directory.join("near_null.mtx");
     let (file, vectors) = if file.exists() {
@@ -128,7 +129,7 @@ fn columns(content: Content) -> Vec<Vec<f64>> {
     columns
 }
 
-/// The files of a problem, with its near-null space where it has one.
+/// The files of a problem, with its near-null space if it has one.
 #[cfg(feature = "cli")]
 pub fn streamed_files<'a>(problem: &'a ContactProblem) -> Vec<Streamed<'a>> {
     let mut files = vec![
@@ -161,7 +162,7 @@ fn vector(file: &Path, values: Values) -> Result<Vec<f64>, Error> {
     check_filled(file, &content, content.rows.saturating_mul(content.columns))?;
     let mut vector = vec![0.0; content.rows * content.columns];
     for (row, column, value) in content.entries {
-        // Entries of the same place are added, as in a matrix.
+        // Entries with the same row and column are added, as in a matrix.
         vector[row + column] += value;
     }
     Ok(vector)
@@ -186,7 +187,7 @@ fn read(file: &Path, values: Values) -> Result<Content, Error> {
     parse(file, open_capped(file, MOST_OF_MATRIX)?, values, quotes(file))
 }
 
-/// What a link leads to outside the folder of `file` is not repeated in errors.
+/// If `file` is a link out of its folder, errors do not quote the content.
 fn quotes(file: &Path) -> Quotes {
     let folder = match file.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
@@ -198,7 +199,7 @@ fn quotes(file: &Path) -> Quotes {
     }
 }
 
-/// Refuses more rows or columns (`lines` of them) than the entries of a file make credible.
+/// Refuses a number of rows or columns (`lines`) that is not credible for the entries of a file.
 fn check_filled(file: &Path, content: &Content, lines: usize) -> Result<(), Error> {
     if content.believes(lines) {
         return Ok(());

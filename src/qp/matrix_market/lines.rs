@@ -1,4 +1,4 @@
-//! The lines of a text that does not stand in memory.
+//! The lines of a text that is not held in memory.
 
 use std::io::{self, BufRead, BufReader};
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use crate::file::Capped;
 /// Bytes that are read at a time.
 const PIECE: usize = 1 << 20;
 
-/// What a line has beyond this many bytes is passed over: none that means something is as long.
+/// Bytes of a line beyond this number are skipped: no valid line is as long.
 const LONGEST: usize = 1 << 16;
 
 /// The lines of a file, one at a time.
@@ -81,7 +81,7 @@ impl Lines {
             return Ok(false);
         }
         self.number += 1;
-        // Comments of older collections hold names in other encodings; numbers are ASCII in all of them.
+        // Comments of older collections hold names in other encodings; the numbers are always ASCII.
         let text = String::from_utf8_lossy(&self.bytes);
         // Some editors put a byte order mark in front.
         let mark = if self.number == 1 { "\u{feff}" } else { "" };

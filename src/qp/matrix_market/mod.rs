@@ -35,15 +35,15 @@ pub fn format_vector(vector: &[f64]) -> String {
     text(|out| write_columns(out, &[vector]))
 }
 
-/// What is written by `write`.
+/// The text that `write` writes.
 fn text(write: impl Fn(&mut dyn Write) -> io::Result<()>) -> String {
     let mut text = Vec::new();
-    // Writing into memory cannot fail, and all that is written is ASCII.
+    // Writing into memory cannot fail, and the text is ASCII.
     let _ = write(&mut text);
     String::from_utf8_lossy(&text).into_owned()
 }
 
-/// Writes a sparse matrix, whose `symmetry` is `general`, or the lower triangle of one that is `symmetric`.
+/// Writes a sparse matrix with `symmetry` `general`, or the lower triangle of a matrix with `symmetry` `symmetric`.
 fn write_entries(out: &mut dyn Write, matrix: &SparseMatrix, symmetry: &str) -> io::Result<()> {
     writeln!(out, "%%MatrixMarket matrix coordinate real {symmetry}")?;
     writeln!(out, "{} {} {}", matrix.rows(), matrix.columns(), matrix.entries())?;

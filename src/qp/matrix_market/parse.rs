@@ -1,4 +1,4 @@
-//! Reading the text of a Matrix Market file, line by line; every fault has its line.
+//! Reading the text of a Matrix Market file, line by line; every error names its line.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use crate::file::Capped;
 /// More rows or columns than this are refused before anything is allocated.
 const LARGEST_DIMENSION: usize = 100_000_000;
 
-/// Rows or columns may be empty, but not more of them than this: nothing is allocated from an announcement alone.
+/// Largest number of empty rows or columns: nothing is allocated from an announced size alone.
 const MOST_EMPTY: usize = 1_000_000;
 
 /// The content of a file: shape, entries (indices from 0), and whether only one triangle is stored.
@@ -23,16 +23,16 @@ pub(super) struct Content {
     pub entries: Vec<(usize, usize, f64)>,
 }
 
-/// What the second line of a file of coordinates must be.
+/// The required content of the second line of a file of coordinates.
 const COORDINATE_SIZES: &str = "3 whole numbers (rows, columns and entries)";
 
-/// Bytes that an entry or a value takes at least, with the end of its line.
+/// Least bytes of an entry or a value, with the end of its line.
 const LEAST_OF_ENTRY: u64 = 2;
 
-/// Words of a file that an error repeats are cut to this many characters.
+/// Words of a file in an error are cut to this number of characters.
 const LONGEST_EXCERPT: usize = 80;
 
-/// Which values a file may hold.
+/// The values that a file may hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Values {
     Finite,
@@ -40,15 +40,15 @@ pub(super) enum Values {
     FiniteOrInfinite,
 }
 
-/// Whether an error may quote the content of a file.
+/// Permission for an error to quote the content of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quotes {
     Allowed,
-    /// A link leads out of the folder, perhaps to what the reader of the error may not see.
+    /// A link leads out of the folder, perhaps to a file that the reader of the error may not see.
     Withheld,
 }
 
-/// Parses an open file, whose path is named in errors.
+/// Parses an open file; errors name its path.
 pub(super) fn parse(file: &Path, text: Capped, values: Values, quotes: Quotes) -> Result<Content, Error> {
     let source = Source { file, length: text.length, values, quotes };
     let mut lines = Lines::of(file, text);
@@ -68,16 +68,16 @@ pub(super) fn parse(file: &Path, text: Capped, values: Values, quotes: Quotes) -
     }
 }
 
-/// A file, and what may be in it.
+/// A file and its permitted content.
 struct Source<'a> {
     file: &'a Path,
-    /// Bytes of the file, if it says.
+    /// Bytes of the file, if known.
     length: u64,
     values: Values,
     quotes: Quotes,
 }
 
-/// What the first line says.
+/// The content of the first line.
 struct Header {
     is_array: bool,
     symmetric: bool,
@@ -184,15 +184,15 @@ impl Source<'_> {
         Ok(content)
     }
 
-    /// Makes room for the entries that are announced, as far as the length of the file lets them be believed: entries that come
-    /// without room for them would take twice as much for a while.
+    /// Reserves room for the announced entries, as far as the length of the file makes their number credible: without it, a growing
+    /// vector would take twice the memory for a while.
     fn make_room(&self, content: &mut Content, announced: usize) {
         let credible = (self.length / LEAST_OF_ENTRY) as usize;
-        // Without room they are taken one by one.
+        // Without reserved room, entries are taken one by one.
         let _ = content.entries.try_reserve_exact(announced.min(credible));
     }
 
-    /// The entry of a line, indices from 0, or what is wrong with it.
+    /// The entry of a line, indices from 0, or its error.
     fn entry(&self, content: &Content, line: &str) -> Result<(usize, usize, f64), String> {
         let Content { rows, columns, symmetric, .. } = *content;
         let mut words = line.split_whitespace();
@@ -238,7 +238,7 @@ impl Values {
 }
 
 impl Quotes {
-    /// The beginning of what stands in a file, in quotation marks.
+    /// The beginning of a text from a file, in quotation marks.
     fn excerpt(self, words: &str) -> String {
         match (self, words.char_indices().nth(LONGEST_EXCERPT)) {
             (Quotes::Withheld, _) => {

@@ -1,4 +1,4 @@
-//! The problem of a directory of PETSc files: what is supported is left out again.
+//! The problem of a directory of PETSc files: supported components are left out again.
 
 use std::path::Path;
 
@@ -11,13 +11,13 @@ use crate::qp::linear::multigrid::NearNullSpace;
 use crate::qp::linear::{SparseMatrix, SymmetricMatrix, SymmetricRows};
 use crate::qp::problem::ContactProblem;
 
-/// Gaps from here on are none: PETSc knows no other infinity in bounds.
+/// Gaps from this value on mean no obstacle: PETSc has no other infinity for bounds.
 const NO_LIMIT: f64 = 1e20;
 
 /// Most bytes of a file of options.
 const MOST_OF_INFO: u64 = 1 << 16;
 
-/// Stands where a place belongs to a supported component.
+/// Mark of a place of a supported component.
 const SUPPORTED: u32 = u32::MAX;
 
 /// Reads the problem of a directory of PETSc files: the small ones first, then the stiffness row by row.
@@ -55,12 +55,12 @@ fn gap(file: &Path, rows: usize) -> Result<Vec<f64>, Error> {
     Ok(gap)
 }
 
-/// What is wrong with the size of a vector.
+/// The error of a vector of wrong size.
 fn fault(file: &Path, message: String) -> Error {
     Error::FileBytes { file: file.to_path_buf(), byte: INTEGER as usize, message }
 }
 
-/// Which places of the stiffness are those of free dofs.
+/// The places of the free dofs in the stiffness.
 struct Places {
     /// The place of each free dof, increasing.
     free: Vec<u32>,
@@ -154,8 +154,8 @@ impl Places {
         rows.fault(0, format!("the stiffness is not symmetric: {entries} (indices from 0); {allowed}"))
     }
 
-    /// What `near_null.petsc` says, a column for each vector; or else the rigid-body modes of the nodes in `coordinates.petsc`, which
-    /// is not quite right where components stand in a frame of their own.
+    /// The near-null space: `near_null.petsc`, a column for each vector, or else the rigid-body modes of the nodes in
+    /// `coordinates.petsc`. The latter are not exact if components are in a local frame.
     fn near_null(&self, directory: &Path) -> Result<Option<NearNullSpace>, Error> {
         let of_free = |vector: &Vec<f64>| self.free.iter().map(|&place| vector[place as usize]).collect();
         let file = directory.join(NEAR_NULL);

@@ -1,4 +1,4 @@
-//! Where the dofs of a problem stand in PETSc's files: in blocks, one for each node.
+//! The places of the dofs of a problem in PETSc's files: in blocks, one for each node.
 
 /// The nodes that have a free dof, in their order, with a place for each of their components.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,7 +32,7 @@ impl Layout {
         self.coordinates.len()
     }
 
-    /// Goes through all places: `visit` is told each, with the number of its free dof or `None`.
+    /// Calls `visit` for each place, with the number of its free dof or `None`.
     pub fn each_place<E>(&self, mut visit: impl FnMut(usize, Option<usize>) -> Result<(), E>) -> Result<(), E> {
         let mut dof = 0;
         for place in 0..self.len() {

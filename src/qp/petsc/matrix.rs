@@ -1,4 +1,4 @@
-//! The rows of a PETSc matrix, one after another: neither the file nor a second matrix stands in memory.
+//! The rows of a PETSc matrix, one after another: neither the file nor a second matrix is held in memory.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use crate::error::Error;
 /// Bytes before the lengths of the rows.
 const HEADER: u64 = 4 * INTEGER;
 
-/// A sparse matrix whose rows are read.
+/// A sparse matrix that is read row by row.
 pub(super) struct Rows {
     /// Rows and columns.
     pub shape: (usize, usize),
@@ -32,7 +32,7 @@ pub(super) struct Row {
 }
 
 impl Rows {
-    /// Opens a sparse matrix, and reads how long its rows are.
+    /// Opens a sparse matrix, and reads the lengths of its rows.
     ///
     /// # Errors
     /// [`Error::File`], [`Error::FileBytes`].
@@ -115,12 +115,12 @@ impl Rows {
         self.next - 1
     }
 
-    /// What is wrong with an entry of the row that was read last; `place` is its number in the row.
+    /// The error of an entry of the row that was read last; `place` is its number in the row.
     pub fn fault(&self, place: usize, message: impl Into<String>) -> Error {
         self.values.fault(self.byte + REAL * place as u64, message)
     }
 
-    /// What is wrong with the shape.
+    /// The error of a wrong shape.
     pub fn wrong_shape(&self, message: impl Into<String>) -> Error {
         self.values.fault(INTEGER, message)
     }

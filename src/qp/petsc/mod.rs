@@ -1,10 +1,10 @@
 //! PETSc's binary files: the form in which a body too large for one machine goes to a cluster and comes back.
 //!
 //! A problem directory holds `K.petsc` (D n x D n, both triangles, D dofs for each of n nodes), `K.petsc.info`, `f.petsc`,
-//! `coordinates.petsc`, `B.petsc`, `g.petsc`, `free.petsc`, and `near_null.petsc` where displacements are known that cost next to no
-//! energy. `free.petsc` is the place in 0..D n of each free dof: `u.mtx` has their order. All else that stands there is supported.
+//! `coordinates.petsc`, `B.petsc`, `g.petsc`, `free.petsc`, and `near_null.petsc` if displacements of almost no energy are known.
+//! `free.petsc` is the place in 0..D n of each free dof: `u.mtx` has their order. All other components are supported.
 //!
-//! Numbers are big-endian: integers of 32 bits, reals of 64. A file begins with the class of what it holds.
+//! Numbers are big-endian: integers of 32 bits, reals of 64. A file begins with the class of its object.
 //!
 //! | class | what follows |
 //! |---|---|
@@ -36,7 +36,7 @@ pub const STIFFNESS: &str = "K.petsc";
 /// Options that PETSc reads with the matrix.
 const INFO: &str = "K.petsc.info";
 
-/// The option that says how many dofs a node has.
+/// The option with the number of dofs of a node.
 const BLOCK_SIZE: &str = "-matload_block_size";
 
 const LOAD: &str = "f.petsc";
@@ -46,7 +46,7 @@ const FREE: &str = "free.petsc";
 const COORDINATES: &str = "coordinates.petsc";
 const NEAR_NULL: &str = "near_null.petsc";
 
-/// What a file holds.
+/// The class of the object in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Class {
     Matrix,
@@ -75,8 +75,8 @@ impl Class {
     }
 }
 
-/// Stands for the number of entries of a matrix that is stored with all of them.
+/// Takes the place of the number of entries of a matrix that is stored with all entries.
 const DENSE: i32 = -1;
 
-/// Stands for a number of entries that 32 bits do not hold: the lengths of the rows tell it.
+/// Takes the place of a number of entries that 32 bits do not hold: it is the sum of the lengths of the rows.
 const TOO_MANY: i32 = i32::MAX;

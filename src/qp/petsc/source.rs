@@ -1,4 +1,4 @@
-//! A PETSc file while it is read: every fault has its byte.
+//! A PETSc file while it is read: every error names its byte.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
@@ -77,7 +77,7 @@ impl Source {
         self.byte
     }
 
-    /// What is wrong with a byte of the file.
+    /// The error at a byte of the file.
     pub fn fault(&self, byte: u64, message: impl Into<String>) -> Error {
         Error::FileBytes { file: self.path.clone(), byte: byte as usize, message: message.into() }
     }
@@ -123,7 +123,7 @@ impl Source {
         self.length < bytes
     }
 
-    /// Refuses a file that does not end with the byte before `end`, where what `holds` says ends.
+    /// Refuses a file that does not end with the byte before `end`, the end of the object that `holds` names.
     ///
     /// # Errors
     /// [`Error::FileBytes`].
@@ -138,7 +138,7 @@ impl Source {
     }
 }
 
-/// Reads a vector whose values satisfy `is_allowed`, as in words: `allowed`.
+/// Reads a vector with values that satisfy `is_allowed`; `allowed` says the same in words.
 ///
 /// # Errors
 /// [`Error::File`], [`Error::FileBytes`].

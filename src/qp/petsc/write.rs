@@ -10,7 +10,7 @@ use crate::qp::linear::multigrid::NearNullSpace;
 use crate::qp::linear::{SparseMatrix, SymmetricMatrix};
 use crate::qp::problem::ContactProblem;
 
-/// The files of a problem whose dofs have this layout.
+/// The files of a problem with this layout of dofs.
 pub fn streamed_files<'a>(problem: &'a ContactProblem, layout: &'a Layout) -> Vec<Streamed<'a>> {
     let (stiffness, place) = (problem.stiffness(), &layout.place);
     let contact = problem.contact().transposed();
@@ -82,7 +82,7 @@ fn write_contact(out: &mut dyn Write, contact: &SparseMatrix, layout: &Layout) -
     write_reals(out, contact.values())
 }
 
-/// The stiffness; a supported component has the mean size of the diagonal on its own, and nothing beside it.
+/// The stiffness; a supported component has the mean size of the diagonal as its diagonal entry, and no other entry.
 fn write_stiffness(out: &mut dyn Write, stiffness: &SymmetricMatrix, layout: &Layout) -> io::Result<()> {
     let lengths = stiffness.row_lengths();
     let supported = layout.len() - stiffness.dim();
@@ -100,7 +100,7 @@ fn write_stiffness(out: &mut dyn Write, stiffness: &SymmetricMatrix, layout: &La
     write_rows(out, stiffness, layout, |_| mean.to_be_bytes(), |_, value| value.to_be_bytes())
 }
 
-/// The `bytes` of each entry of the stiffness, row by row, and those of `own` where a component is supported.
+/// The `bytes` of each entry of the stiffness, row by row, and those of `own` if a component is supported.
 fn write_rows<const COUNT: usize>(
     out: &mut dyn Write,
     stiffness: &SymmetricMatrix,

@@ -44,7 +44,7 @@ use json::{choice, choices, format, given, given_object, object, objects, word, 
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Scene {
-    /// Where the JSON Schema of scenes stands, for editors: a file that `signorini schema` printed. The program does not read it.
+    /// Path of the JSON Schema of scenes, for editors: a file that `signorini schema` printed. The program does not read it.
     #[serde(rename = "$schema", default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
     pub schema: Option<String>,
     /// Version of the format of scenes: 1, the only one so far. Later formats will have other numbers, and be refused by programs that do
@@ -52,7 +52,7 @@ pub struct Scene {
     #[serde(default, deserialize_with = "format", skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "cli", schemars(extend("const" = 1)))]
     pub format: Option<u32>,
-    /// What the scene shows.
+    /// Title: what the scene shows.
     #[serde(default)]
     pub title: String,
     /// Names of the units, for tables and pictures.
@@ -80,7 +80,7 @@ pub struct Scene {
     /// Stresses at zero strain.
     #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
     pub initial_stress: Vec<InitialStressSpec>,
-    /// Further elastic bodies, that only contact joins to the first and to each other.
+    /// Further elastic bodies, joined to the first and to each other by contact only.
     #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
     pub further_bodies: Vec<FurtherBodySpec>,
     /// Parts of boundaries, each with a name that is a boundary like any other.
@@ -105,16 +105,16 @@ pub struct Scene {
     /// Frictionless obstacles: rigid ones, or the surfaces of other bodies.
     #[serde(default, deserialize_with = "objects")]
     pub obstacles: Vec<ObstacleSpec>,
-    /// Shift of every obstacle along its own approach direction; negative moves it towards, and into, the body.
+    /// Shift of every obstacle along its own approach direction; a negative shift moves it towards, and into, the body.
     #[serde(default)]
     pub gap: f64,
-    /// What is to be found out: the equilibrium where it is left out.
+    /// The analysis: the equilibrium if this is left out.
     #[serde(default, deserialize_with = "analysis::given_choice", skip_serializing_if = "Option::is_none")]
     pub analysis: Option<AnalysisSpec>,
-    /// The folder of the file that the scene was read from: where relative file names start. Not part of the text.
+    /// The folder of the scene file: relative file names start there. Not part of the text.
     #[serde(skip)]
     pub folder: Option<PathBuf>,
-    /// Whether the scene may name files outside its folder. Not part of the text.
+    /// `true` if the scene may name files outside its folder. Not part of the text.
     #[serde(skip)]
     pub reads_outside: bool,
 }
@@ -146,7 +146,7 @@ impl Units {
         Units { length: String::new(), force: String::new() }
     }
 
-    /// The unit of time in which motions are told: `s` of newtons and metres or millimetres, with a mass that fits; else none.
+    /// The unit of time of motions: `s` for newtons and metres or millimetres, with a consistent mass; else none.
     #[cfg(feature = "pictures")]
     pub(crate) fn time(&self) -> &'static str {
         let is_metric = ["N", "kN", "MN"].contains(&self.force.as_str()) && ["m", "mm"].contains(&self.length.as_str());
