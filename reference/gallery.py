@@ -69,7 +69,7 @@ def run(program, command, folder):
 
 def gallery(program):
     """Writes docs/gallery.md and its pictures."""
-    lines = ["# Gallery", "", "This page answers: what can a scene look like, and which command draws it? All pictures are written by", "",
+    lines = ["# Gallery", "", "This page shows scenes of each kind, with the command that draws each picture. All pictures are written by", "",
              "```sh", "python3 reference/gallery.py target/release/signorini", "```", ""]
     for entry in ENTRIES:
         with tempfile.TemporaryDirectory() as folder:

@@ -2,15 +2,16 @@
 //!
 //! [`Method::Auto`] decides in this order:
 //!
-//! 0. **Pieces** ([`pieces_of`]): uncoupled parts are solved separately, several small ones together. 1. **Factor or multigrid**
-//! (`Estimate::choose`; for many gaps [`method_for`]): multigrid if the direct path is estimated to take [`CLEARLY`] times as long, or
-//! does not fit into the memory; else the direct path. If that turns out to be too large or too slow, multigrid; if multigrid falls
-//! short, or takes as long as a factor would, the direct path if it fits. 2. **The layout of the factor** ([`Layout::within`]):
-//! condensed onto the contact dofs if that pays; else all dofs with the contact boundary last, which makes bounds and proofs cheap;
-//! else all dofs. The first that fits into memory and time. 3. **The way on that layout** ([`Way::chosen`]): method and precision, by
-//! rules that were fitted to measured times. 4. **The first contact set** ([`starts_by_multigrid`]): from a few cycles of multigrid if
-//! contact is everywhere, else none. 5. **The retry after an answer that falls short** ([`safer`]): a shortcut is replaced by the
-//! active set in double precision, a condensed problem by all dofs.
+//! 0. **Pieces** ([`pieces_of`]): uncoupled parts are solved separately, several small ones together.
+//! 1. **Factor or multigrid** (`Estimate::choose`; for many gaps [`method_for`]): multigrid if the direct path is estimated to take
+//!    [`CLEARLY`] times as long, or does not fit into the memory; else the direct path. If that turns out to be too large or
+//!    too slow, multigrid; if multigrid falls short, or takes as long as a factor would, the direct path if it fits.
+//! 2. **The layout of the factor** ([`Layout::within`]): condensed onto the contact dofs if that pays; else all dofs with the
+//!    contact boundary last, which makes bounds and proofs cheap; else all dofs. The first that fits into memory and time.
+//! 3. **The way on that layout** ([`Way::chosen`]): method and precision, by rules that were fitted to measured times.
+//! 4. **The first contact set** ([`starts_by_multigrid`]): from a few cycles of multigrid if contact is everywhere, else none.
+//! 5. **The retry after an answer that falls short** ([`safer`]): a shortcut is replaced by the active set in double precision, a
+//!    condensed problem by all dofs.
 //!
 //! Within a method the fallbacks are fixed and do not depend on cost: sets that do not settle within [`PATIENCE`] continue from a
 //! penalty ladder, then by the dual active-set method ([`takes_last_resort`]); an answer with a factor that falls short is corrected
