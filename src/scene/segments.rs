@@ -19,7 +19,8 @@ const AHEAD: f64 = 0.5;
 /// The extent of a contact, estimated from the pressures next to its edge, with its uncertainty.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct ContactExtent {
-    /// Half of the difference of the largest pressure from the mean over its node and the closed nodes around.
+    /// Half of the difference of the largest pressure from the mean over its node and the closed nodes around; the pressure itself if
+    /// only open nodes are around.
     pub pressure_uncertainty: f64,
     /// Estimated area; thickness or circumference included.
     pub area: f64,
@@ -270,9 +271,14 @@ impl Patch<'_> {
         }
     }
 
-    /// Half of the difference of the pressure at a closed node from the mean over it and the closed nodes around.
+    /// Half of the difference of the pressure at a closed node from the mean over it and the closed nodes around. If only open nodes
+    /// are around, the area of the contact is unknown, and so is the pressure: all of it.
     fn spread(&self, node: usize) -> f64 {
-        let mut near: BTreeSet<usize> = self.around(node).filter(|&other| self.is_closed(other)).collect();
+        let around: BTreeSet<usize> = self.around(node).collect();
+        let mut near: BTreeSet<usize> = around.iter().copied().filter(|&other| self.is_closed(other)).collect();
+        if near.is_empty() && !around.is_empty() {
+            return self.pressure(node);
+        }
         near.insert(node);
         let mean = near.iter().map(|&other| self.pressure(other)).sum::<f64>() / near.len() as f64;
         0.5 * (self.pressure(node) - mean).abs()

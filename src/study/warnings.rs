@@ -276,7 +276,7 @@ fn mesh_dependent(model: &Model, segments: &[Segment]) -> Option<AnswerWarning> 
     }
     let peak = segments.iter().max_by(|a, b| a.pressure_max.total_cmp(&b.pressure_max))?;
     let spread = peak.extent.pressure_uncertainty / peak.pressure_max;
-    if spread > SCATTER {
+    if spread > SCATTER && !is_small(&peak) {
         let percent = 200.0 * spread;
         reasons.push(format!(
             "the peak pressure differs by {percent:.0} % from the mean of its node and the closed ones around"

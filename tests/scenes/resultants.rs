@@ -197,6 +197,18 @@ fn a_flat_contact_has_no_uncertainty() {
     assert_eq!(segments[0].nodes.len(), 9);
 }
 
+/// A closed node among open ones determines neither its area nor its pressure.
+#[test]
+fn the_pressure_of_a_single_closed_node_is_wholly_uncertain() {
+    let point = json!([{"boundary": "top", "approach": "+y",
+        "shape": {"table": {"points": [[1.9, 1.5], [2.0, 1.0], [2.1, 1.5]]}}}]);
+    let answer = answer(&block(point, json!([])));
+    let segments = answer.segments();
+    assert_eq!((segments.len(), segments[0].nodes.len()), (1, 1), "{segments:?}");
+    assert!(segments[0].pressure_max > 0.0);
+    assert_eq!(segments[0].extent.pressure_uncertainty, segments[0].pressure_max);
+}
+
 /// Half cylinders of Hertz, on meshes whose nodes stand differently to the edge: the width is within its uncertainty, and
 /// nearer than the sum of tributary lengths on the whole.
 #[test]
