@@ -10,6 +10,8 @@ use serde_json::{Map, Value};
 use signorini::Scene;
 use tempfile::TempDir;
 
+use crate::imports::rust_files;
+
 /// Commands that are shown and not run here: how their line begins, and why.
 const NOT_RUN: [(&str, &str); 6] = [
     ("cargo ", "builds, or measures for minutes; `test.sh` runs the short forms"),
@@ -323,18 +325,7 @@ fn long_documents_stay_within_their_limits() {
 
 /// The text of all tests.
 fn tests() -> String {
-    let (mut text, mut folders) = (String::new(), vec![root().join("tests")]);
-    while let Some(folder) = folders.pop() {
-        for entry in fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|extension| extension == "rs") {
-                text += &fs::read_to_string(path).unwrap();
-            }
-        }
-    }
-    text
+    rust_files(&root().join("tests")).iter().map(|file| fs::read_to_string(file).unwrap()).collect()
 }
 
 #[test]

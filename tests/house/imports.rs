@@ -27,22 +27,30 @@ pub struct House {
     pub files: BTreeMap<Module, Source>,
 }
 
+/// The files `*.rs` below a folder.
+pub fn rust_files(folder: &Path) -> Vec<PathBuf> {
+    let (mut files, mut folders) = (Vec::new(), vec![folder.to_path_buf()]);
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "rs") {
+                files.push(path);
+            }
+        }
+    }
+    files
+}
+
 impl House {
     /// Reads `src/`.
     pub fn read() -> Self {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
         let mut texts = BTreeMap::new();
-        let mut folders = vec![root.clone()];
-        while let Some(folder) = folders.pop() {
-            for entry in fs::read_dir(folder).unwrap() {
-                let path = entry.unwrap().path();
-                if path.is_dir() {
-                    folders.push(path);
-                } else if path.extension().is_some_and(|extension| extension == "rs") {
-                    let inside = path.strip_prefix(&root).unwrap().to_path_buf();
-                    texts.insert(module_of(&inside), (inside, fs::read_to_string(&path).unwrap()));
-                }
-            }
+        for path in rust_files(&root) {
+            let inside = path.strip_prefix(&root).unwrap().to_path_buf();
+            texts.insert(module_of(&inside), (inside, fs::read_to_string(&path).unwrap()));
         }
         let known: BTreeSet<Module> = texts.keys().cloned().collect();
         let read = |(module, (path, text)): (Module, (PathBuf, String))| {

@@ -58,6 +58,15 @@ fn block(cells: [usize; 3], element: &str) -> Value {
     clamped("space", body, "bottom", "top", "+z", shape)
 }
 
+fn bar(cells: usize) -> Value {
+    json!({
+        "model": "bar", "body": {"bar": {"x": {"points": [0, 1], "divisions": [cells]}}},
+        "material": {"young": 1000, "poisson": 0.3},
+        "supports": [{"on": {"boundary": "left"}, "x": 0}], "loads": [{"body-force": [1]}],
+        "obstacles": [{"boundary": "right", "approach": "+x", "shape": {"plane": {"point": [1], "normal": [1]}}}]
+    })
+}
+
 fn clamped(model: &str, body: Value, held: &str, pressed: &str, approach: &str, shape: Value) -> Value {
     let mut support = json!({"on": {"boundary": held}, "x": 0, "y": 0});
     if model == "space" {
@@ -80,7 +89,6 @@ fn the_estimate_of_memory_is_within_a_factor_of_two_of_the_peak_on_ten_scenes() 
     };
     let disc = json!({"half-disc": {"centre": [0, 1], "radius": 1, "zone": zone(0.1, 40, 1.05)}});
     let ball = json!({"half-ball": {"centre": [0, 0, 1], "radius": 1, "zone": zone(0.2, 4, 1.5)}});
-    let bar = json!({"bar": {"x": {"points": [0, 1], "divisions": [50_000]}}});
     let scenes = [
         rectangle([80, 80], "q4"),
         rectangle([600, 12], "q4"),
@@ -92,11 +100,7 @@ fn the_estimate_of_memory_is_within_a_factor_of_two_of_the_peak_on_ten_scenes() 
         block([10, 10, 10], "tet4"),
         clamped("plane-strain", disc, "cut", "arc", "-y", plane(2)),
         clamped("space", ball, "cut", "round", "-z", plane(3)),
-        json!({
-            "model": "bar", "body": bar, "material": {"young": 1000, "poisson": 0.3},
-            "supports": [{"on": {"boundary": "left"}, "x": 0}], "loads": [{"body-force": [1]}],
-            "obstacles": [{"boundary": "right", "approach": "+x", "shape": {"plane": {"point": [1], "normal": [1]}}}]
-        }),
+        bar(50_000),
     ];
     assert!(scenes.len() >= 10);
     let desk = Desk::new();
@@ -111,17 +115,12 @@ fn the_estimate_of_memory_is_within_a_factor_of_two_of_the_peak_on_ten_scenes() 
 
 #[test]
 fn an_export_takes_the_memory_of_the_model_alone_within_a_factor_of_two() {
-    let bar = json!({"bar": {"x": {"points": [0, 1], "divisions": [100_000]}}});
     let scenes = [
         rectangle([200, 200], "q4"),
         rectangle([100, 100], "q8"),
         block([20, 20, 20], "hex8"),
         block([10, 10, 10], "tet10"),
-        json!({
-            "model": "bar", "body": bar, "material": {"young": 1000, "poisson": 0.3},
-            "supports": [{"on": {"boundary": "left"}, "x": 0}], "loads": [{"body-force": [1]}],
-            "obstacles": [{"boundary": "right", "approach": "+x", "shape": {"plane": {"point": [1], "normal": [1]}}}]
-        }),
+        bar(100_000),
     ];
     let desk = Desk::new();
     for scene in scenes {
@@ -147,18 +146,13 @@ fn told(run: &Run) -> f64 {
 
 #[test]
 fn the_estimate_of_a_problem_directory_is_within_a_factor_of_two_of_the_peak() {
-    let bar = json!({"bar": {"x": {"points": [0, 1], "divisions": [50_000]}}});
     let scenes = [
         rectangle([80, 80], "q4"),
         rectangle([300, 12], "q4"),
         rectangle([50, 50], "q8"),
         block([10, 10, 10], "hex8"),
         block([10, 10, 10], "tet4"),
-        json!({
-            "model": "bar", "body": bar, "material": {"young": 1000, "poisson": 0.3},
-            "supports": [{"on": {"boundary": "left"}, "x": 0}], "loads": [{"body-force": [1]}],
-            "obstacles": [{"boundary": "right", "approach": "+x", "shape": {"plane": {"point": [1], "normal": [1]}}}]
-        }),
+        bar(50_000),
     ];
     let desk = Desk::new();
     for scene in scenes {

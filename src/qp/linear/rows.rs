@@ -136,7 +136,7 @@ mod tests {
 
     #[test]
     fn rows_are_those_of_both_triangles() {
-        // The last row has more entries than are gathered at a time.
+        // The last two matrices have more entries than are gathered at a time.
         for (dim, reach) in [(0, 1), (1, 1), (9, 9), (40_000, 30), (1700, 1700)] {
             let matrix = matrix(dim, reach);
             let (lower, upper) = (matrix.lower().transposed(), matrix.lower());
