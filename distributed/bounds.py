@@ -6,7 +6,7 @@ reflected; the next row of the same node must then be parallel or at right angle
 
 import numpy as np
 
-from problem import NO_LIMIT
+from problem import NO_LIMIT, in_rows
 from ranks import BAD_INPUT, NO_ANSWER, PETSC_INT, PETSc, Refused, fetch
 
 ROUNDING = 1e-12
@@ -131,7 +131,7 @@ class Bounds:
         back.setPreallocationCSR((starts, columns.ravel().astype(PETSC_INT), blocks.ravel()))
         back.assemble()
         self._back = back
-        self.stiffness = problem.stiffness.ptap(back)
+        self.stiffness = in_rows(problem.stiffness).ptap(back)
         self.stiffness.setBlockSize(size)
         self.load = self.turned(problem.load)
         self.modes = [self.turned(mode) for mode in problem.modes]

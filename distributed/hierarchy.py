@@ -14,7 +14,7 @@ Sources: R. Kornhuber, Numer. Math. 69 (1994) 167-184 (truncated basis functions
 
 import numpy as np
 
-from problem import orthonormal
+from problem import in_rows, orthonormal
 from ranks import PETSC_INT, PETSc
 
 DEGREE = 3
@@ -53,6 +53,10 @@ OF_KIND = {
                   "hmg_inner_pc_hypre_boomeramg_coarsen_type": "HMIS",
                   "hmg_inner_pc_hypre_boomeramg_interp_type": "ext+i"},
 }
+
+
+SAVING = {"matptap_via": "allatonce_merged"}
+"""Products P'KP row by row, without K P: without the prefix, and known to matrices of several ranks alone."""
 
 
 class Chebyshev:
@@ -101,6 +105,13 @@ class Level:
         self.smoother = Chebyshev(matrix, inverse.copy(), self.largest)
         self.x, self.rest, self.force = (inverse.duplicate() for _ in range(3))
         self.coarse = prolongator.createVecRight()
+
+
+def released(product):
+    """A copy of a product of matrices, which keeps hold of its factors: K in rows among them."""
+    copy = product.copy()
+    product.destroy()
+    return copy
 
 
 def own_columns(matrix):
@@ -184,19 +195,22 @@ class Coarsest:
 class Hierarchy:
     """The levels of K, and one cycle in the face that is set: at first all dofs but those of supports."""
 
-    def __init__(self, bounds, kind="gamg", petsc=""):
-        """`kind` builds the levels, gamg or boomeramg, with the options `petsc` more."""
+    def __init__(self, bounds, kind="gamg", petsc="", saves_memory=False):
+        """`kind` builds the levels, gamg or boomeramg, with the further options `petsc`."""
         self.stiffness = bounds.stiffness
         self.first = self.stiffness.getOwnershipRange()[0]
         self.never, self.candidates = np.flatnonzero(~bounds.problem.is_free), bounds.places
+        rows = in_rows(self.stiffness)
+        rows.setOption(PETSc.Mat.Option.SPD, True)
         modes = orthonormal(bounds.modes)
-        self.stiffness.setOption(PETSc.Mat.Option.SPD, True)
-        self.stiffness.setNearNullSpace(PETSc.NullSpace().create(vectors=modes, comm=self.stiffness.comm))
-        multigrid = built(self.stiffness, kind, petsc)
+        rows.setNearNullSpace(PETSc.NullSpace().create(vectors=modes, comm=rows.comm))
+        multigrid = built(rows, kind, petsc, SAVING if saves_memory and rows.comm.size > 1 else {})
         count = multigrid.getMGLevels()
-        matrices = [multigrid.getMGSmoother(level).getOperators()[0] for level in range(count - 1, -1, -1)]
+        matrices = [multigrid.getMGSmoother(level).getOperators()[0] for level in range(count - 2, -1, -1)]
         prolongators = [multigrid.getMGInterpolation(level) for level in range(count - 1, 0, -1)]
-        self._multigrid = multigrid
+        multigrid.destroy()
+        matrices = [self.stiffness] + [released(matrix) for matrix in matrices[::-1]][::-1]
+        prolongators = [released(prolongator) for prolongator in prolongators[::-1]][::-1]
         self.levels = [Level(matrix, prolongator) for matrix, prolongator in zip(matrices, prolongators)]
         self.coarsest = Coarsest(matrices[-1])
         self.is_singular = self.coarsest.is_singular
@@ -205,19 +219,19 @@ class Hierarchy:
         inverse.reciprocal()
         self.largest = self.levels[0].largest if self.levels else SAFETY * largest_eigenvalue(self.stiffness, inverse)
         if self.levels:
-            self._prepare_faces()
+            self._prepare_faces(rows)
         self.hold(np.zeros(len(self.candidates), dtype=bool))
 
     def unknowns(self):
         return [level.matrix.getSize()[0] for level in self.levels] + [self.coarsest.matrix.getSize()[0]]
 
-    def _prepare_faces(self):
-        rows = PETSc.IS().createGeneral(self.candidates.astype(PETSC_INT), comm=self.stiffness.comm)
+    def _prepare_faces(self, stiffness):
+        rows = PETSc.IS().createGeneral(self.candidates.astype(PETSC_INT), comm=stiffness.comm)
         prolongator = self.levels[0].prolongator
-        of_rows = self.stiffness.createSubMatrix(rows, own_columns(self.stiffness))
+        of_rows = stiffness.createSubMatrix(rows, own_columns(stiffness))
         self._pb = prolongator.createSubMatrix(rows, own_columns(prolongator))
         self._wb = of_rows.matMult(prolongator)
-        self._kbb = self.stiffness.createSubMatrix(rows, rows)
+        self._kbb = stiffness.createSubMatrix(rows, rows)
         self._share = self._kbb.createVecLeft()
 
     def hold(self, closed):
@@ -290,19 +304,29 @@ class Hierarchy:
         level.smoother.smooth(x, rest, updated=False)
 
 
-def built(stiffness, kind, petsc):
-    """PETSc's multigrid for K, set up: its prolongators and coarse matrices. Smoothers and coarse solve are our own."""
-    options = PETSc.Options(PREFIX)
-    for name, value in (OF_LEVELS | OF_KIND[kind]).items():
-        options[name] = stiffness.getBlockSize() if value == "D" else value
+def built(stiffness, kind, petsc, of_products):
+    """PETSc's multigrid for K, set up: its prolongators and coarse matrices. Smoothers and coarse solve are our own.
+
+    `of_products` are options of PETSc for its products of matrices.
+    """
+    own = {PREFIX + name: stiffness.getBlockSize() if value == "D" else value
+           for name, value in (OF_LEVELS | OF_KIND[kind]).items()} | of_products
+    every = PETSc.Options()
+    for name, value in own.items():
+        every[name] = value
     words = petsc.split()
     for at, word in enumerate(words):
         if word.startswith("-"):
             value = words[at + 1] if at + 1 < len(words) and not words[at + 1].startswith("-") else ""
-            options[word[1:]] = value
+            every[PREFIX + word[1:]] = value
     pc = PETSc.PC().create(comm=stiffness.comm)
     pc.setOptionsPrefix(PREFIX)
     pc.setOperators(stiffness)
-    pc.setFromOptions()
-    pc.setUp()
+    try:
+        pc.setFromOptions()
+        pc.setUp()
+    finally:
+        # PETSc complains at its end of options that nothing has asked for: those of the user alone may be misspelled.
+        for name in set(own) - {PREFIX + word[1:] for word in words}:
+            every.delValue(name)
     return pc

@@ -288,6 +288,7 @@ def solve(iterate, hierarchy, tolerance, most_cycles, told=None):
             if direction.energy < 0.0:
                 raise Refused(f"K is not convex: a direction that nothing holds has the energy {direction.energy:e}", NO_ANSWER)
             last = direction if iterate.advance(direction) else None
+        ranks.clean()
         if iterate.set_changed(before):
             is_old, last, changes = True, None, changes + 1
         progress.history.append((progress.cycles, residual))

@@ -1,7 +1,9 @@
 """PETSc, and what the ranks of a run tell each other: a few numbers at a time."""
 
+import ctypes
 import glob
 import os
+import resource
 import sys
 
 # A rank is one thread: more would take the processors of its neighbours.
@@ -34,13 +36,32 @@ class Refused(Exception):
 
 PETSC_INT = PETSc.IntType
 
+LARGE_BLOCK = 1024 * 1024
+"""Bytes. Blocks of memory from this size on go back to the system when they are freed."""
+
+M_MMAP_THRESHOLD, M_MMAP_MAX = -3, -4
+"""Of mallopt(3), the GNU C library."""
+
 BAD_INPUT, USAGE, NO_ANSWER, NOT_CERTIFIED = 1, 2, 3, 4
+
+
+def return_freed_memory():
+    """Makes freed large blocks go back to the system.
+
+    MPI libraries turn this off to keep pages registered with their networks. A rank would then hold the largest sum of
+    everything that it ever needed: 1.8 GB in place of 1.3 GB for 405,600 of its rows.
+    """
+    mallopt = getattr(ctypes.CDLL(None), "mallopt", None)
+    if mallopt is not None:
+        mallopt(M_MMAP_MAX, 1 << 16)
+        mallopt(M_MMAP_THRESHOLD, LARGE_BLOCK)
 
 
 class Ranks:
     """The ranks of a run. Every call is made by all of them, and gives all of them the same numbers, bit by bit."""
 
     def __init__(self):
+        return_freed_memory()
         self.comm = PETSc.COMM_WORLD
         self.rank, self.size = self.comm.rank, self.comm.size
         self._gathers = {}
@@ -76,6 +97,16 @@ class Ranks:
         table = self.gather((key, *values))
         row = table[int(np.argmin(table[:, 0]))]
         return row if np.isfinite(row[0]) else None
+
+    def peak_memory(self):
+        """Bytes of main memory that the largest rank has held at most, and the sum over all ranks."""
+        own = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
+        table = self.gather((own,))
+        return int(table.max()), int(table.sum())
+
+    def clean(self):
+        """Frees the objects of PETSc that Python has let go of. PETSc keeps them until all ranks ask."""
+        PETSc.garbage_cleanup(self.comm)
 
     def say(self, text):
         """Prints a line once."""

@@ -24,6 +24,9 @@ MARGIN = 0.5
 NEXT = 0.1
 """Where the certificate is not met, the method goes on to this share of what it reached."""
 
+SAVE_MEMORY = "build the levels in about a quarter less memory, and several times as slowly"
+"""The help for --save-memory."""
+
 OUT_OF_MEMORY = 55
 """PETSc's error code."""
 
@@ -41,6 +44,7 @@ def arguments():
     parser.add_argument("--multigrid", choices=("gamg", "boomeramg"), default="gamg", help="who builds the levels")
     parser.add_argument("--most-cycles", type=int, default=1000, help="cycles of multigrid, at most (default 1000)")
     parser.add_argument("--petsc", default="", help="options for PETSc's multigrid, as \"-pc_gamg_threshold 0.02\"")
+    parser.add_argument("--save-memory", action="store_true", help=SAVE_MEMORY)
     parser.add_argument("--progress", action="store_true", help="print each cycle")
     options = parser.parse_args()
     if not 0.0 < options.tolerance < 1.0 or options.most_cycles < 1:
@@ -48,13 +52,14 @@ def arguments():
     return options
 
 
-def prepared(ranks, folder, kind="gamg", petsc=""):
+def prepared(ranks, folder, kind="gamg", petsc="", saves_memory=False):
     """Problem, bounds and hierarchy, and the seconds that reading and building took."""
     clock = time.perf_counter()
     problem = problems.read(ranks, folder)
     bounds = Bounds(problem)
     read = time.perf_counter()
-    hierarchy = Hierarchy(bounds, kind, petsc)
+    hierarchy = Hierarchy(bounds, kind, petsc, saves_memory)
+    ranks.clean()
     return problem, bounds, hierarchy, {"read": read - clock, "set_up": time.perf_counter() - read}
 
 
@@ -68,7 +73,8 @@ def started(ranks, iterate, problem, bounds, folder):
 
 
 def run(ranks, options):
-    problem, bounds, hierarchy, seconds = prepared(ranks, options.problem, options.multigrid, options.petsc)
+    problem, bounds, hierarchy, seconds = \
+        prepared(ranks, options.problem, options.multigrid, options.petsc, options.save_memory)
     folder = Folder(ranks, options.out)
     clock = time.perf_counter()
     iterate = mprgp.Iterate(ranks, bounds, hierarchy.largest)
@@ -88,6 +94,7 @@ def run(ranks, options):
             break
     seconds |= {"solve": time.perf_counter() - clock - judging, "certificate": judging}
     closed = ranks.sum(float(np.count_nonzero(multiplier.array_r < 0.0)))
+    largest, memory = ranks.peak_memory()
     log = {
         "status": "certified" if is_certified else "not_certified", "method": "mprgp", "tolerance": options.tolerance,
         "iterations": cycles, "ranks": ranks.size,
@@ -96,6 +103,7 @@ def run(ranks, options):
         "model": {"dofs": problem.dofs, "contact_rows": problem.rows, "nodes": problem.load.getSize() // problem.dimension},
         "seconds": seconds | {"total": sum(seconds.values())},
         "cycles": {"contact": cycles, "certificate": looked, "faces": faces, "products": iterate.products},
+        "memory_bytes": {"largest_rank": largest, "all_ranks": memory},
         "levels": hierarchy.unknowns(), "petsc": ".".join(map(str, PETSc.Sys.getVersion())),
     }
     folder.vector("u.mtx", problem.on_free(u))
@@ -107,7 +115,8 @@ def run(ranks, options):
               f"rows, force {-multiplier.sum():.6e}")
     ranks.say(f"{certified}: stationarity {numbers['stationarity']:.1e}, penetration {numbers['penetration']:.1e}, duality gap "
               f"{numbers['duality_gap']:.1e}, energy error at most {numbers['energy_error_bound']:.1e}, measured")
-    ranks.say("seconds: " + ", ".join(f"{name} {value:.2f}" for name, value in seconds.items()))
+    ranks.say("seconds: " + ", ".join(f"{name} {value:.2f}" for name, value in seconds.items())
+              + f"; memory of all ranks: {memory / 1e9:.2f} GB")
     return 0 if is_certified else NOT_CERTIFIED
 
 

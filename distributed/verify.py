@@ -10,7 +10,7 @@ import numpy as np
 
 import certificate
 from answer import read_vector
-from solve import main, prepared
+from solve import SAVE_MEMORY, main, prepared
 
 
 def arguments():
@@ -20,6 +20,7 @@ def arguments():
     parser.add_argument("displacement", help="u.mtx: a number for each free dof")
     parser.add_argument("multiplier", help="lambda.mtx: a number for each contact row, <= 0")
     parser.add_argument("--tolerance", type=float, default=1e-9, help="of every number (default 1e-9)")
+    parser.add_argument("--save-memory", action="store_true", help=SAVE_MEMORY)
     options = parser.parse_args()
     if not 0.0 < options.tolerance < 1.0:
         parser.error("--tolerance must be between 0 and 1")
@@ -27,7 +28,7 @@ def arguments():
 
 
 def run(ranks, options):
-    problem, bounds, hierarchy, _ = prepared(ranks, options.problem)
+    problem, bounds, hierarchy, _ = prepared(ranks, options.problem, saves_memory=options.save_memory)
     u = problem.on_places(read_vector(ranks, options.displacement, problem.dofs, "dofs"))
     multiplier = problem.gap.duplicate()
     read_vector(ranks, options.multiplier, problem.rows, "contact rows").copy(multiplier)

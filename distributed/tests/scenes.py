@@ -39,6 +39,11 @@ def under_inclined_plane(divisions=6):
     return scene(box(divisions), ROLLERS + FLOOR, [inclined], gap=-0.01, loads=PRESSED)
 
 
+def on_an_inclined_support():
+    supports = ROLLERS + [{"on": {"boundary": "bottom"}, "normal": [0, 0.3, 1]}]
+    return scene(box(5), supports[:1] + supports[2:] + [{"on": {"point": [0, 0, 0]}, "y": 0}], [SPHERE], gap=-0.01)
+
+
 def held_by_contact():
     """No support at all: three walls and a load into their corner."""
     walls = [plane("bottom", "-z", [0, 0, -1]), plane("left", "-x", [-1, 0, 0]), plane("front", "-y", [0, -1, 0])]

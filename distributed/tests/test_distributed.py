@@ -14,6 +14,7 @@ import sys
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 
@@ -21,11 +22,13 @@ sys.path.insert(0, str(Path(__file__).parent))
 PROGRAMS = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(PROGRAMS))
 import scenes
-from ranks import Ranks
+from ranks import PETSc, Ranks
 
+import hierarchy as hierarchies
 import problem as problems
 from bounds import Bounds
-from hierarchy import Hierarchy
+from hierarchy import Hierarchy, built
+from problem import in_rows
 
 SIGNORINI = os.environ.get("SIGNORINI", "signorini")
 ENVIRONMENT = dict(os.environ)
@@ -44,6 +47,9 @@ ROUNDING = 1e-10
 
 LAST = 1e-17
 """Of a number that is itself rounding: what the order of a sum leaves beside terms of order one."""
+
+MORE = 1.2
+"""Times the memory of a short run: what a rank keeps of its iterations would be as much again and more."""
 
 MEASURED = 1.2
 """The bound takes no more than a tenth of the square of the dual norm from its Ritz value, and the repaired witness of
@@ -73,6 +79,14 @@ def array(file):
 
 def written(file, values):
     file.write_text(f"%%MatrixMarket matrix array real general\n{len(values)} 1\n" + "".join(f"{v!r}\n" for v in values))
+
+
+def has_hypre():
+    try:
+        PETSc.PC().create().setType("hypre")
+    except PETSc.Error:
+        return False
+    return True
 
 
 class Case(unittest.TestCase):
@@ -160,19 +174,27 @@ class AnswersOfTheDirectPath(Case):
     def test_triangles_in_the_plane(self):
         self.check(scenes.in_the_plane(), (2,))
 
+    @unittest.skipUnless(has_hypre(), "PETSc was built without hypre")
     def test_levels_of_boomeramg(self):
         self.check(scenes.pressed_by_sphere(6), (2,), "petsc", "--multigrid", "boomeramg")
 
+    def test_levels_built_in_less_memory(self):
+        self.check(scenes.pressed_by_sphere(8), (1, 2), "petsc", "--save-memory")
+
+    def test_a_box_on_an_inclined_support(self):
+        # Its dofs are no components of nodes along the axes: the near-null space is read, not made from coordinates.
+        self.check(scenes.on_an_inclined_support(), (1, 2))
+
     def test_more_ranks_than_nodes(self):
-        self.check(scenes.under_inclined_plane(1), (8,), most_cycles=3)
+        self.check(scenes.under_inclined_plane(1), (8,), most_cycles=5)
 
 
 class Cycles(Case):
-    def cycled(self, divisions):
+    def cycled(self, divisions, petsc=""):
         """A hierarchy in the face of one closed row, its stiffness, and the cycle as a function of arrays."""
         ranks = Ranks()
         problem = problems.read(ranks, str(self.exported(scenes.pressed_by_sphere(divisions))))
-        hierarchy = Hierarchy(Bounds(problem))
+        hierarchy = Hierarchy(Bounds(problem), petsc=petsc)
         hierarchy.hold(np.arange(len(hierarchy.candidates)) == 0)
 
         def cycle(force):
@@ -184,7 +206,8 @@ class Cycles(Case):
         return hierarchy, cycle
 
     def test_one_level_is_inverted_in_its_face(self):
-        hierarchy, cycle = self.cycled(1)
+        hierarchy, cycle = self.cycled(1, "-pc_mg_levels 1")
+        self.addCleanup(PETSc.Options().delValue, "signorini_pc_mg_levels")
         self.assertEqual(hierarchy.levels, [])
         force = np.linspace(1.0, 2.0, hierarchy.stiffness.getSize()[0])
         moved = cycle(force)
@@ -204,6 +227,42 @@ class Cycles(Case):
         there, back = other @ cycle(one), one @ cycle(other)
         self.assertLess(abs(there - back), ROUNDING * abs(there))
         self.assertGreater(one @ cycle(one), 0.0)
+
+
+class Memory(Case):
+    def test_options_of_products_reach_petsc_and_end_with_the_set_up(self):
+        problem = problems.read(Ranks(), str(self.exported(scenes.pressed_by_sphere(4))))
+        rows = in_rows(problem.stiffness)
+        rows.setNearNullSpace(PETSc.NullSpace().create(vectors=problems.orthonormal(problem.modes), comm=rows.comm))
+        with self.assertRaises(PETSc.Error):
+            built(rows, "gamg", "", {"matptap_via": "a-way-that-petsc-does-not-know"})
+        built(rows, "gamg", "", {})
+
+    def test_stiffness_in_rows_is_gone_after_the_set_up(self):
+        ranks = Ranks()
+        problem = problems.read(ranks, str(self.exported(scenes.pressed_by_sphere(8))))
+        self.assertEqual(problem.stiffness.getBlockSize(), 3)
+        self.assertIn("baij", problem.stiffness.getType())
+        kept = []
+
+        def remembered(matrix):
+            kept.append(in_rows(matrix))
+            return kept[-1]
+
+        with mock.patch.object(hierarchies, "in_rows", remembered):
+            hierarchy = Hierarchy(Bounds(problem))
+        ranks.clean()
+        self.assertGreater(len(hierarchy.levels), 0)
+        self.assertEqual([matrix.getRefCount() for matrix in kept], [1])
+
+    def test_a_long_run_holds_no_more_memory_than_a_short_one(self):
+        problem = self.exported(scenes.pressed_by_sphere(16))
+        held = []
+        for cycles in ("5", "400"):
+            out = self.folder / f"out{cycles}"
+            mpi(2, "solve.py", problem, "--out", out, "--most-cycles", cycles, "--tolerance", "1e-300", check=False)
+            held.append(json.loads((out / "log.json").read_text())["memory_bytes"]["all_ranks"])
+        self.assertLess(held[1], MORE * held[0])
 
 
 class Certificates(Case):
