@@ -81,6 +81,16 @@ def written(file, values):
     file.write_text(f"%%MatrixMarket matrix array real general\n{len(values)} 1\n" + "".join(f"{v!r}\n" for v in values))
 
 
+def one_level(stiffness, *_):
+    """PETSc's multigrid with one level; what GAMG makes of a problem this small depends on its version."""
+    multigrid = PETSc.PC().create(comm=stiffness.comm)
+    multigrid.setOperators(stiffness)
+    multigrid.setType("mg")
+    multigrid.setMGLevels(1)
+    multigrid.setUp()
+    return multigrid
+
+
 def has_hypre():
     try:
         PETSc.PC().create().setType("hypre")
@@ -190,11 +200,11 @@ class AnswersOfTheDirectPath(Case):
 
 
 class Cycles(Case):
-    def cycled(self, divisions, petsc=""):
+    def cycled(self, divisions):
         """A hierarchy in the face of one closed row, its stiffness, and the cycle as a function of arrays."""
         ranks = Ranks()
         problem = problems.read(ranks, str(self.exported(scenes.pressed_by_sphere(divisions))))
-        hierarchy = Hierarchy(Bounds(problem), petsc=petsc)
+        hierarchy = Hierarchy(Bounds(problem))
         hierarchy.hold(np.arange(len(hierarchy.candidates)) == 0)
 
         def cycle(force):
@@ -206,8 +216,8 @@ class Cycles(Case):
         return hierarchy, cycle
 
     def test_one_level_is_inverted_in_its_face(self):
-        hierarchy, cycle = self.cycled(1, "-pc_mg_levels 1")
-        self.addCleanup(PETSc.Options().delValue, "signorini_pc_mg_levels")
+        with mock.patch.object(hierarchies, "built", one_level):
+            hierarchy, cycle = self.cycled(1)
         self.assertEqual(hierarchy.levels, [])
         force = np.linspace(1.0, 2.0, hierarchy.stiffness.getSize()[0])
         moved = cycle(force)
