@@ -1,7 +1,7 @@
-"""Contact rows as bounds on single unknowns: x = Q u, Q a product of reflections within the components of each node.
+"""Writes contact rows as bounds on single unknowns: x = Q u, where Q reflects the components of each node.
 
-A row whose only entry is one component is a bound as it stands. A row along an inclined normal becomes one when its node is
-reflected; the next row of the same node must then be parallel or at right angles to it.
+A row with one entry is a bound already. A row along an inclined normal becomes a bound by a reflection of its node. Every
+further row of that node must be parallel or perpendicular to the first one.
 """
 
 import numpy as np
@@ -10,14 +10,14 @@ from problem import NO_LIMIT, in_rows
 from ranks import BAD_INPUT, NO_ANSWER, PETSC_INT, PETSc, Refused, fetch
 
 ROUNDING = 1e-12
-"""Parts of a unit vector below this are rounding of the turning."""
+"""Components of a unit vector below this value are rounding errors of the reflections."""
 
 FREE, LOWER, UPPER, FIXED = 0, 1, 2, 3
-"""Where an unknown with bounds is: between them, at one, at both."""
+"""The state of a bounded unknown: between its bounds, at one of them, at both (fixed)."""
 
 
 class Bounds:
-    """The bounds of this rank's unknowns, and the way from their forces to the multipliers of the rows."""
+    """The bounds of this rank's unknowns, and the map from forces on them to the multipliers of the contact rows."""
 
     def __init__(self, problem):
         self.problem = problem
@@ -28,7 +28,7 @@ class Bounds:
         self._rotation()
 
     def _collect(self):
-        """This rank's rows: those of its nodes, with a normal of D components each, sorted by node and row."""
+        """Collects the rows of this rank's nodes, each with a normal of D components, sorted by node and row."""
         problem, size = self.problem, self.problem.dimension
         starts, rows, values = problem.contact.transpose(PETSc.Mat()).getValuesCSR()
         places = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
@@ -45,7 +45,7 @@ class Bounds:
         self.node, self.row, self.normals, self.gap = node[near], row[near], normals[near], gap[near]
 
     def _turn(self):
-        """Reflects the nodes, one row of each at a time."""
+        """Finds the reflections of each node, one of its rows after the other."""
         size, problem = self.problem.dimension, self.problem
         nodes, self.of_row = np.unique(self.node, return_inverse=True)
         turning = np.tile(np.eye(size), (len(nodes), 1, 1))
@@ -80,12 +80,12 @@ class Bounds:
         found = problem.ranks.first(*clash)
         if found is not None:
             raise Refused(
-                f"contact rows {int(found[1])} and {int(found[0])} (from 0) are of one node and neither parallel nor at right "
-                "angles: no rotation makes bounds of them, signorini solve takes them by another method", BAD_INPUT)
+                f"contact rows {int(found[1])} and {int(found[0])} (from 0) belong to one node and are neither parallel nor "
+                "perpendicular: no rotation turns both into bounds; use signorini solve, which has other methods", BAD_INPUT)
         self.nodes, self.turning = nodes, turning
 
     def _bound(self):
-        """Bounds of each place that has any, and the row and coefficient on either side."""
+        """Finds the bounds of each bounded place, and the row and coefficient of its lower and upper side."""
         size = self.problem.dimension
         places = size * self.node + self.component
         self.local, which = np.unique(places, return_inverse=True)
@@ -96,7 +96,7 @@ class Bounds:
         for side, limit in ((0, self.lower), (1, self.upper)):
             sign = 1.0 if side else -1.0
             of_side = np.flatnonzero(self.coefficient * sign > 0.0)
-            # The tightest last, the first row of equal ones.
+            # Later entries overwrite earlier ones: the tightest bound comes last; of equal bounds, the first row.
             order = of_side[np.lexsort((-self.row[of_side], -sign * value[of_side]))]
             limit[which[order]] = value[order]
             self.side_row[side, which[order]] = self.row[order]
@@ -111,7 +111,7 @@ class Bounds:
         self.places = self.local + self.problem.first
 
     def _rotation(self):
-        """K, f and the modes in the turned unknowns."""
+        """Transforms K, f and the modes to the rotated unknowns."""
         problem, size = self.problem, self.problem.dimension
         is_turned = np.any(self.turning != np.eye(size), axis=(1, 2))
         self.is_plain = problem.ranks.sum(is_turned.sum()) == 0
@@ -155,7 +155,7 @@ class Bounds:
         return u
 
     def on_rows(self, rows, values):
-        """A vector of the contact rows with these values, zero elsewhere."""
+        """Returns a vector over the contact rows: `values` at `rows`, zero elsewhere."""
         vector = self.problem.gap.duplicate()
         vector.zeroEntries()
         vector.setValues(rows.astype(PETSC_INT), values)
@@ -163,7 +163,7 @@ class Bounds:
         return vector
 
     def multipliers(self, force):
-        """The multipliers, where the forces on the bounded unknowns are `force`: down is that of the upper bound."""
+        """Returns the multipliers for given forces on the bounded unknowns. A negative force comes from the upper bound."""
         side = (force < 0.0).astype(int)
         index = np.arange(len(force))
         rows, coefficients = self.side_row[side, index], self.side_coefficient[side, index]
@@ -171,12 +171,12 @@ class Bounds:
         return self.on_rows(rows[acting], force[acting] / coefficients[acting])
 
     def closed_sides(self, multiplier):
-        """Of multipliers on the contact rows: which bounded unknowns have one at the lower, which at the upper side."""
+        """Returns two masks over the bounded unknowns: the multiplier of the lower side is nonzero, that of the upper side is."""
         return [(fetch(multiplier, np.maximum(rows, 0)) < 0.0) & (rows >= 0) for rows in self.side_row]
 
 
 def _refuse_coupling_rows(problem):
-    """Rows with entries of several nodes, and rows without any that are not met."""
+    """Refuses rows that couple several nodes, and empty rows with a negative gap."""
     size = problem.dimension
     starts, columns, values = problem.contact.getValuesCSR()
     first = problem.gap.getOwnershipRange()[0]
@@ -193,7 +193,7 @@ def _refuse_coupling_rows(problem):
     if found is not None:
         row, one, other = (int(number) for number in found)
         raise Refused(f"contact row {row} (from 0) couples nodes {one} and {other}, as rows between two bodies do: no rotation "
-                      "of nodes makes a bound of it, signorini solve takes it by another method", BAD_INPUT)
+                      "of a node turns it into a bound; use signorini solve, which has other methods", BAD_INPUT)
     unmet = np.flatnonzero((most < 0) & (gap < 0.0))
     found = problem.ranks.first(*((first + unmet[0], gap[unmet[0]]) if len(unmet) else (np.inf, 0)))
     if found is not None:

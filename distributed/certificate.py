@@ -1,17 +1,17 @@
-"""Every condition of an answer recomputed from the problem as it was read, and a bound on its error in energy.
+"""Recomputes every optimality condition from the problem as it was read, and bounds the error in the energy norm.
 
-The same numbers as `signorini verify` prints, whose definitions are in src/qp/certificate. For a feasible v and multipliers
-mu <= 0 that push only where v touches,
+`signorini verify` prints the same numbers; src/qp/certificate defines them. For a feasible v and multipliers mu <= 0 that
+vanish on rows which v does not touch,
 
     |u - u*|_K <= |u - v|_K + |f + B' mu - K v|_{K^-1}
 
-v is the answer with each row that touches or penetrates moved to its gap. The dual norm comes from conjugate gradients with
-the cycle M of the hierarchy: for any z with the rest s = r - K z,
+v is the answer, moved so that each touching or penetrating row lies exactly at its gap. Conjugate gradients, preconditioned
+by the multigrid cycle M, give the dual norm: for any z with the residual s = r - K z,
 
     r' K^-1 r = z' (r + s) + s' K^-1 s,     s' K^-1 s <= s' M s / theta
 
-theta is half the least Ritz value of M K, so that the bound is measured, not proven. Where K is singular, springs on the rows
-that press stand for its missing supports.
+theta is half the smallest Ritz value of M K. It is an estimate, therefore the bound is called measured, not proven. If K is
+singular, springs on the pressing rows replace the missing supports.
 """
 
 import numpy as np
@@ -20,33 +20,33 @@ from problem import NO_LIMIT
 from ranks import PETSc, fetch, generic, larger
 
 ENTRY_ROUNDING = np.finfo(float).eps
-"""What rounding of u and lambda explains of a sum, as a share of its terms."""
+"""Rounding of u and lambda changes a sum by up to this share of its terms."""
 
 AT_REST = 1e-6
-"""A body whose energy norm is below this share of what its forces could do to one dof is at rest."""
+"""A body is at rest if its energy norm is below this share of the largest energy norm that its forces give to one dof."""
 
 ROUNDED_BOUND = 1.0 + 1e-6
-"""For the rounding of a bound itself."""
+"""Factor that covers the rounding of the bound itself."""
 
 SAFETY, REST_SHARE, SETTLED_RITZ, MOST_CYCLES = 0.5, 0.1, 0.15, 60
-"""Of the least Ritz value; the share of the dual norm that is bounded, not known; by how little a Ritz value may still fall;
-and when a hierarchy is none to bound by."""
+"""In order: the factor on the smallest Ritz value; the largest share of the squared dual norm that is only bounded, not
+computed; the largest relative decrease of the Ritz value in its last step; the cycles after which no bound is found."""
 
 PRESSING = 1e-8
-"""A row presses where its force could do more than this share of the energy norm."""
+"""A row presses if its force alone would give the body more than this share of its energy norm."""
 
 LOOKED = 25
-"""Cycles in which a direction of negative energy is met, if the hierarchy does not hide it."""
+"""Number of conjugate gradient steps that look for a direction of negative energy."""
 
 NEGATIVE = 1e-12
-"""Negative energy below this share of what the unknowns would cost one by one is rounding."""
+"""Negative energy below this share of the sum of K_ii x_i^2 is a rounding error."""
 
 CHUNK = 20_000
-"""Rows that are summed up at once with all digits."""
+"""Number of rows that are summed at once in extended precision."""
 
 
 def certify(problem, bounds, hierarchy, u, multiplier, tolerance):
-    """The conditions and the bound as a dictionary of numbers, and whether they all hold to `tolerance`."""
+    """Returns the conditions and the bound as a dictionary, whether all hold to `tolerance`, and the number of cycles."""
     answer = Answer(problem, u, multiplier)
     numbers = answer.conditions()
     bound, cycles = answer.bound(bounds, hierarchy)
@@ -57,7 +57,7 @@ def certify(problem, bounds, hierarchy, u, multiplier, tolerance):
 
 
 def accurate_product(ranks, matrix, vector):
-    """M v and |M| |v|, in extended precision where the machine has it, for this rank's rows."""
+    """Returns M v and |M| |v| for this rank's rows; the first in extended precision if the machine has it."""
     starts, columns, values = matrix.getValuesCSR()
     rows = len(starts) - 1
     sums, terms = np.zeros(rows, dtype=np.longdouble), np.zeros(rows)
@@ -74,7 +74,7 @@ def accurate_product(ranks, matrix, vector):
 
 
 def at_columns(vector, columns):
-    """The values of a vector at the columns of entries, most of them this rank's."""
+    """Returns the values of a vector at the given columns, most of which belong to this rank."""
     first, last = vector.getOwnershipRange()
     own = (columns >= first) & (columns < last)
     values = np.empty(len(columns))
@@ -89,7 +89,7 @@ def relative(value, scale):
 
 
 class Answer:
-    """An answer with what its forces and distances are."""
+    """An answer with its forces, distances and the scales of both."""
 
     def __init__(self, problem, u, multiplier):
         self.problem, self.ranks = problem, problem.ranks
@@ -99,7 +99,7 @@ class Answer:
         self.load, self.gap, force = problem.load.array_r, problem.gap.array_r, multiplier.array_r
         own_u = u.array_r.astype(np.longdouble)
 
-        # Magnitudes of the rows, of which every rank has its own.
+        # Magnitudes of the contact rows of this rank.
         starts, columns, values = rows.getValuesCSR()
         row_of = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
         root = problem.load.duplicate()
@@ -159,7 +159,7 @@ class Answer:
         }
 
     def bound(self, bounds, hierarchy):
-        """An upper bound on |u - u*|_K, infinite where none is found, and the cycles that it took."""
+        """Returns an upper bound on |u - u*|_K, infinite if none is found, and the number of cycles."""
         force = self.multiplier.array_r
         residual = self.problem.load.duplicate()
         residual.array[:] = self.residual
@@ -190,7 +190,7 @@ class Answer:
         return 2.0 * ROUNDED_BOUND * moved + left, looked + cycles
 
     def _springs(self):
-        """A spring on each row that presses, as stiff as the row is when all but its own dofs stand still."""
+        """Returns a spring for each pressing row: its stiffness when all dofs outside the row are fixed."""
         force = -self.multiplier.array_r
         stiffness = np.divide(1.0, self.compliance, out=np.zeros_like(self.compliance), where=self.compliance > 0.0)
         presses = (force > PRESSING * np.sqrt(stiffness) * self.norm) & (force * self.compliance >= -self.violation)
@@ -211,7 +211,7 @@ class Answer:
         return product
 
     def judged(self, bound):
-        """The bound relative to the energy norm; what rounding of u explains is no excess."""
+        """Returns the bound relative to the energy norm. A bound that rounding of u explains has no excess."""
         least = 1e-28 * np.sqrt(self.rounding)
         size = max(np.sqrt(max(self.strain - 1e-31 * self.rounding, 0.0)), AT_REST * self.force)
         error = bound + least
@@ -221,7 +221,7 @@ class Answer:
 
 
 def is_semidefinite(bounds, hierarchy):
-    """Do conjugate gradients from a generic force meet no direction of negative energy?"""
+    """Returns whether conjugate gradients from a generic force meet no direction of negative energy."""
     stiffness, rest = bounds.stiffness, generic(bounds.load)
     rest.array[hierarchy.never] = 0.0
     diagonal = stiffness.getDiagonal()
@@ -242,7 +242,7 @@ def is_semidefinite(bounds, hierarchy):
 
 
 def dual_norm(ranks, product, hierarchy, force):
-    """An upper bound on sqrt(r' K^-1 r) as the Ritz value has it, and the cycles that it took; infinite if they do not settle."""
+    """Returns an upper bound on sqrt(r' K^-1 r), infinite if the Ritz value does not converge, and the number of cycles."""
     rest, solution = force.copy(), force.duplicate()
     solution.zeroEntries()
     p, moved, step = None, force.duplicate(), force.duplicate()
@@ -274,7 +274,7 @@ def dual_norm(ranks, product, hierarchy, force):
 
 
 def least_eigenvalue(lengths, shares):
-    """Of the Lanczos matrix of conjugate gradients with these step lengths and shares of the direction before."""
+    """Returns that of the Lanczos matrix which belongs to these step lengths and direction updates of conjugate gradients."""
     lengths = np.array(lengths)
     shares = np.maximum(np.array(shares[: len(lengths) - 1]), 0.0)
     diagonal = 1.0 / lengths

@@ -1,12 +1,12 @@
-"""One cycle of multigrid in a face, from the levels that PETSc's GAMG or hypre's BoomerAMG has built once for K.
+"""A multigrid cycle in a face (the unknowns that no closed bound holds). GAMG or BoomerAMG builds its levels once, for K.
 
-With Q the projection onto the dofs that are held, the first prolongator P becomes (I - Q) P and the next matrix
+Let Q project onto the held dofs. Then the first prolongator P becomes (I - Q) P and the next matrix becomes
 
     P' (I - Q) K (I - Q) P = A_1 - C_1,    C_1 = Y + Y',    Y = P' Q (K P - 1/2 K Q P),    C_k+1 = P_k' C_k P_k
 
-C_1 reaches only as far as the held dofs do, and nothing is built again. Without C_1 the cycles would grow with the contact
-zone: a coarse displacement that is cut off at the held dofs costs far more energy than before. The smoothers are Chebyshev
-polynomials of the fourth kind in D^-1 A, D the diagonal, whose entries are zero at held dofs.
+C_1 has entries only near the held dofs, and no level is built again. Without C_1 the number of cycles would grow with the
+contact zone: a coarse displacement that is set to zero at the held dofs has far more energy than before. The smoothers are
+Chebyshev polynomials of the fourth kind in D^-1 A. D is the diagonal of A; D^-1 is zero at held dofs.
 
 Sources: R. Kornhuber, Numer. Math. 69 (1994) 167-184 (truncated basis functions); J. Lottes, Numer. Linear Algebra Appl. 30
 (2023) e2518 (the smoother).
@@ -18,32 +18,32 @@ from problem import in_rows, orthonormal
 from ranks import PETSC_INT, PETSc
 
 DEGREE = 3
-"""Of the smoothing polynomial, before and after the coarse correction."""
+"""Degree of the smoothing polynomial, before and after the coarse correction."""
 
 LANCZOS_STEPS = 10
-"""Products that estimate the largest eigenvalue of D^-1 A."""
+"""Number of products in the estimate of the largest eigenvalue of D^-1 A."""
 
 SAFETY = 1.1
-"""The estimate comes from below."""
+"""Factor on that estimate, which is a lower bound."""
 
 CHANGED = 1.15
-"""What a face may add to the largest eigenvalue of a coarse level."""
+"""Factor on the largest eigenvalue of a coarse level: a face may increase it."""
 
 LOST = 1e-10
-"""A diagonal entry of which a face leaves less than this share has lost its digits: that unknown does not move."""
+"""If a face leaves less than this share of a diagonal entry, the entry has lost its digits, and its unknown is held."""
 
 SHIFT = 1e-3
-"""What holds a coarsest matrix that is singular, on a diagonal of one: its contact will, about as stiffly."""
+"""Added to the diagonal of a singular coarsest matrix, scaled to a diagonal of one. Contact adds a similar stiffness."""
 
 SINGULAR = 1e-9
-"""A coarsest matrix with an eigenvalue below this, on a diagonal of one, is singular but for rounding."""
+"""A coarsest matrix, scaled to a diagonal of one, counts as singular if an eigenvalue is below this value."""
 
 
 PREFIX = "signorini_"
 
 OF_LEVELS = {"mg_levels_ksp_type": "richardson", "mg_levels_ksp_max_it": 1, "mg_levels_pc_type": "none",
              "mg_coarse_ksp_type": "preonly", "mg_coarse_pc_type": "none"}
-"""PETSc is to prepare nothing that is not used."""
+"""Keep PETSc from preparing smoothers and coarse solvers, which are not used."""
 
 OF_KIND = {
     "gamg": {"pc_type": "gamg", "pc_gamg_coarse_eq_limit": 400},
@@ -56,7 +56,7 @@ OF_KIND = {
 
 
 SAVING = {"matptap_via": "allatonce_merged"}
-"""Products P'KP row by row, without K P: without the prefix, and known to matrices of several ranks alone."""
+"""PETSc option for products P'KP without the intermediate product K P. It has no prefix and exists on several ranks only."""
 
 
 class Chebyshev:
@@ -77,7 +77,7 @@ class Chebyshev:
             rest.axpy(1.0, self._moved)
 
     def smooth(self, x, rest, updated):
-        """Improves x, whose residual is `rest`; this is that of the improved x afterwards only if `updated`."""
+        """Improves x. `rest` is its residual on entry; on return it is the residual of the improved x only if `updated`."""
         step = self._step
         for k in range(1, DEGREE + 1):
             keep, gain = (2 * k - 3) / (2 * k + 1), (8 * k - 4) / (2 * k + 1) / self.largest
@@ -93,7 +93,7 @@ class Chebyshev:
 
 
 class Level:
-    """A level but the coarsest: its matrix and smoother, the prolongator from the next one."""
+    """A level that is not the coarsest: its matrix, smoother, and prolongator from the next level."""
 
     def __init__(self, matrix, prolongator):
         self.matrix, self.prolongator = matrix, prolongator
@@ -108,14 +108,14 @@ class Level:
 
 
 def released(product):
-    """A copy of a product of matrices, which keeps hold of its factors: K in rows among them."""
+    """Returns a copy of a product of matrices and destroys the product, which would keep its factors alive (K in rows)."""
     copy = product.copy()
     product.destroy()
     return copy
 
 
 def own_columns(matrix):
-    """All columns, each rank its own: were they left out, PETSc would list them all on every rank."""
+    """Returns all columns, each rank its own part. Without this argument PETSc would list all columns on every rank."""
     first, last = matrix.getOwnershipRangeColumn()
     return PETSc.IS().createStride(last - first, first, 1, comm=matrix.comm)
 
@@ -125,7 +125,7 @@ def reciprocal(values):
 
 
 def largest_eigenvalue(matrix, inverse):
-    """Of D^-1 A from below, by Lanczos' method from a generic vector."""
+    """Returns a lower bound on the largest eigenvalue of D^-1 A, by Lanczos' method from a generic vector."""
     root = inverse.copy()
     root.sqrtabs()
     vector, moved, before = inverse.duplicate(), inverse.duplicate(), None
@@ -154,7 +154,7 @@ def largest_eigenvalue(matrix, inverse):
 
 
 class Coarsest:
-    """The inverse of the coarsest matrix, whole on every rank."""
+    """The inverse of the coarsest matrix; every rank holds all of it."""
 
     def __init__(self, matrix):
         self.matrix = matrix
@@ -166,7 +166,7 @@ class Coarsest:
         self.hold(None)
 
     def hold(self, change, held=None):
-        """Inverts A - C, or A where this rank's unknowns `held` do not move. What is singular is held by a shift."""
+        """Inverts A - C, or A with this rank's unknowns `held` fixed. A singular matrix gets a shift."""
         rest = self.whole
         if change is not None:
             rest = rest - change.createSubMatrices(self.every, self.every)[0][:, :]
@@ -193,7 +193,7 @@ class Coarsest:
 
 
 class Hierarchy:
-    """The levels of K, and one cycle in the face that is set: at first all dofs but those of supports."""
+    """The levels of K, and one cycle in the current face. The first face holds the supported dofs only."""
 
     def __init__(self, bounds, kind="gamg", petsc="", saves_memory=False):
         """`kind` builds the levels, gamg or boomeramg, with the further options `petsc`."""
@@ -214,7 +214,7 @@ class Hierarchy:
         self.levels = [Level(matrix, prolongator) for matrix, prolongator in zip(matrices, prolongators)]
         self.coarsest = Coarsest(matrices[-1])
         self.is_singular = self.coarsest.is_singular
-        """Is K singular, as that of a body without supports?"""
+        """`True` if K is singular, as for a body without supports."""
         inverse = self.stiffness.getDiagonal()
         inverse.reciprocal()
         self.largest = self.levels[0].largest if self.levels else SAFETY * largest_eigenvalue(self.stiffness, inverse)
@@ -235,7 +235,7 @@ class Hierarchy:
         self._share = self._kbb.createVecLeft()
 
     def hold(self, closed):
-        """Sets the face: `closed` tells which candidates are held."""
+        """Sets the face. `closed` is a mask over the bounded unknowns that are held."""
         held = np.r_[self.never, self.candidates[closed] - self.first].astype(int)
         self.held = held
         if not self.levels:
@@ -256,7 +256,7 @@ class Hierarchy:
         self.coarsest.hold(changes[-1])
 
     def _changes(self, closed):
-        """C of each level but the finest."""
+        """Returns the matrices C of all levels below the finest."""
         share = self._share
         share.array[:] = closed
         if share.sum() == 0.0:
@@ -277,7 +277,7 @@ class Hierarchy:
         return changes
 
     def cycle(self, force, x):
-        """x is approximately the displacement in the face under a force, of which held dofs take what is theirs."""
+        """Sets x to an approximate displacement in the face under a force. Entries of the force at held dofs have no effect."""
         self._descend(0, force, x)
 
     def _descend(self, depth, force, x):
@@ -305,9 +305,9 @@ class Hierarchy:
 
 
 def built(stiffness, kind, petsc, of_products):
-    """PETSc's multigrid for K, set up: its prolongators and coarse matrices. Smoothers and coarse solve are our own.
+    """Returns PETSc's multigrid for K after its set-up. Only its prolongators and coarse matrices are used.
 
-    `of_products` are options of PETSc for its products of matrices.
+    `of_products`: PETSc options for products of matrices, set during the set-up only.
     """
     own = {PREFIX + name: stiffness.getBlockSize() if value == "D" else value
            for name, value in (OF_LEVELS | OF_KIND[kind]).items()} | of_products
@@ -326,7 +326,7 @@ def built(stiffness, kind, petsc, of_products):
         pc.setFromOptions()
         pc.setUp()
     finally:
-        # PETSc complains at its end of options that nothing has asked for: those of the user alone may be misspelled.
+        # At its end PETSc warns about unused options. Only the options of the user may be misspelled.
         for name in set(own) - {PREFIX + word[1:] for word in words}:
             every.delValue(name)
     return pc

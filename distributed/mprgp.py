@@ -1,15 +1,15 @@
 """MPRGP: modified proportioning with reduced gradient projections, preconditioned in the free face.
 
-With the gradient g = K x - f, split into the free gradient, of unknowns that may move, and the chopped gradient, of those
-that want to leave their bound, an iteration is one of
+The gradient g = K x - f has two parts: the free gradient, on unknowns between their bounds, and the chopped gradient, on
+unknowns at a bound that would leave it. An iteration is one of
 
-    proportioning   where the chopped gradient outweighs the free one: a step along it, which opens rows
-    CG step         along conjugate directions of the free face, one cycle of the hierarchy each
-    expansion       where the CG step would cross bounds: its projection, which closes all rows on the way at once; should that
-                    raise the energy, the least energy on the way there or the step to the first bound, whichever is lower,
-                    and a projected gradient step of fixed length
+    proportioning   if the chopped gradient is larger than the free one: a step along it, which opens rows
+    CG step         along a conjugate direction of the face, with one multigrid cycle
+    expansion       if the CG step would cross bounds: its projection, which closes all rows on the way at once. If that
+                    raises the energy, the point of least energy on the way or the step to the first bound, whichever has
+                    less energy. Then a projected gradient step of fixed length.
 
-The energy falls in every one of them. It is the method of src/qp/method/mprgp, on vectors of PETSc.
+Each of them lowers the energy. src/qp/method/mprgp is the same method; this one works on PETSc vectors.
 
 Source: Z. Dostal, Optimal Quadratic Programming Algorithms, Springer (2009), algorithm 5.8 and section 5.10.
 """
@@ -20,35 +20,36 @@ from bounds import FIXED, FREE, LOWER, UPPER
 from ranks import NO_ANSWER, Refused, generic, larger
 
 INSIDE = 1e-3
-"""Rows that are open at the start although nothing has moved keep this share of their depth as distance."""
+"""At the start, an unknown outside a bound without multiplier is set inside it by this share of the bound's value."""
 
 NO_ENERGY = 1e-13
-"""Energy of a direction below this share of what its unknowns would cost one by one is rounding of zero."""
+"""The energy of a direction counts as zero below this share of the sum of K_ii p_i^2."""
 
 FIRST = 1e-12
-"""Bounds that are met within this share of the first are met with it."""
+"""Bounds within this relative distance of the first bound on the way are reached together with it."""
 
 PATIENCE = 60
-"""Iterations without a residual half as large as the best before, after which the loop has stagnated; those in which the face
-changes count only beyond one for each row."""
+"""The loop has stagnated after this number of iterations in which the best residual has not halved. Iterations that change
+the face do not count until there are more of them than contact rows."""
 
 NO_GAIN = 0.5
-"""A residual computed anew that is above this share of the one before will not come down any more."""
+"""If a recomputed residual is above this share of the one before, it has reached its rounding error."""
 
 
 SIGN_TOLERANCE = 1e-12
-"""Forces of closed rows below this share of the strongest are rounding."""
+"""Forces of closed rows below this share of the largest are rounding errors."""
 
 WORK_TOLERANCE, PLAY = 1e-9, 1e-9
-"""Work and speeds of a motion below this are rounding; a row this close, relative to the displacement, has no play."""
+"""Work and speeds of a motion below this value are rounding errors. A row this close, relative to the displacement, has no
+play."""
 
 MODE_CYCLES, GONE, LAST_FALL = 60, 1e-8, 0.25
-"""Cycles in which all that costs energy dies away; what is then left of a vector that had no motion without energy; and energy
-that falls by less than this in a cycle has come down to rounding."""
+"""In order: the cycles that damp every component with energy; the share of a vector without a null space component that they
+leave; the factor by which a cycle lowers the energy until rounding."""
 
 
 class Iterate:
-    """The unknowns, their gradient, and which of them are at bounds."""
+    """The unknowns, their gradient, and the state of each bounded unknown."""
 
     def __init__(self, ranks, bounds, largest_eigenvalue):
         self.ranks, self.bounds = ranks, bounds
@@ -65,7 +66,7 @@ class Iterate:
         self.products = 0
 
     def start(self, displacement=None, closed_lower=None, closed_upper=None):
-        """From a displacement, turned, with the closed sides at their bounds and the others off them; from zero without one."""
+        """Starts from a rotated displacement, or from zero. Closed sides start at their bounds, other sides inside."""
         if displacement is None:
             self.x.zeroEntries()
         else:
@@ -88,20 +89,20 @@ class Iterate:
         self.gradient.axpy(-1.0, self.load)
 
     def project(self):
-        """Moves the unknowns into their bounds, and sees which are at them."""
+        """Projects the unknowns onto their bounds and updates their states."""
         value = np.maximum(np.minimum(self.x.array_r[self.place], self.upper), self.lower)
         self.x.array[self.place] = value
         self.at = (LOWER * (value == self.lower) + UPPER * (value == self.upper)).astype(np.int8)
 
     def split(self):
-        """The gradient of the bounded unknowns: what their bounds take, and what wants to leave them."""
+        """Returns the gradient of the bounded unknowns in two parts: the force that the bounds take, and the chopped gradient."""
         gradient = self.gradient.array_r[self.place]
         held = np.select((self.at == LOWER, self.at == UPPER, self.at == FIXED),
                          (np.maximum(gradient, 0.0), np.minimum(gradient, 0.0), gradient), 0.0)
         return held, np.where(self.at == FREE, 0.0, gradient - held)
 
     def look(self):
-        """Of the gradient: its free part, kept, the relative imbalance of forces, and whether the chopped part outweighs it."""
+        """Stores the free gradient. Returns the relative imbalance of forces, and whether the chopped gradient is the larger part."""
         held, chopped = self.split()
         self.gradient.copy(self.free)
         self.keep_free(self.free)
@@ -117,7 +118,7 @@ class Iterate:
         vector.array[self.place[self.at != FREE]] = 0.0
 
     def longest_step(self, direction, way=1.0):
-        """The longest t of this rank's unknowns for which x - t way d keeps within the bounds."""
+        """Returns the largest t for which x - t way d stays within the bounds of this rank's unknowns."""
         speed = way * direction.array_r[self.place]
         value = self.x.array_r[self.place]
         room = np.full(len(value), np.inf)
@@ -131,7 +132,7 @@ class Iterate:
         self.gradient.axpy(-length, moved)
 
     def proportion(self):
-        """A step along the chopped gradient to the least energy, as far as the other bounds let it."""
+        """Steps along the chopped gradient to the least energy, or to the first other bound."""
         _, chopped = self.split()
         direction = self.free
         direction.zeroEntries()
@@ -144,7 +145,7 @@ class Iterate:
         self.project()
 
     def advance(self, direction):
-        """The CG step, or the expansion where it would cross bounds. Tells whether the next direction is conjugate to it."""
+        """Takes the CG step, or the expansion if it would cross bounds. Returns `True` if the next direction may be conjugate."""
         length, room = direction.length, direction.room
         if length <= room:
             self.step_along(direction.p, direction.moved, length)
@@ -179,7 +180,7 @@ class Iterate:
         return False
 
     def _least_energy_from(self, x, gradient):
-        """The share of the way from x that is to be gone, and by how much the energy falls; `None` if it rises at once."""
+        """Returns the share of the way from x with the least energy, and the decrease of energy; `None` if it rises at once."""
         way = self.x.array_r - x.array_r
         before = np.dot(way, gradient.array_r)
         slope, after = self.ranks.sum(before, np.dot(way, self.gradient.array_r))
@@ -190,7 +191,7 @@ class Iterate:
         return (1.0, -at_end) if at_end < 0.0 else (-slope / curvature, 0.5 * slope * slope / curvature)
 
     def _step_to_bounds(self, direction, room):
-        """The step that the first bounds end; rounding must not stop short of them, or it would for ever."""
+        """Steps to the first bound. Sets the unknowns that reach it exactly to it: rounding could leave them short every time."""
         speed = direction.p.array_r[self.place]
         met = np.where(speed > 0.0, self.lower, self.upper)
         value = self.x.array_r[self.place]
@@ -205,7 +206,7 @@ class Iterate:
 
 
 class Direction:
-    """A conjugate direction p with K p, its energy, and how far it goes."""
+    """A conjugate direction p with K p, its energy, the length of its CG step, and the distance to the first bound."""
 
     def __init__(self, iterate, step, last):
         ranks = iterate.ranks
@@ -222,7 +223,7 @@ class Direction:
         rooms = table[:, 3:].min(axis=0)
         self.room = rooms[0]
         if self.slope < 0.0:
-            # Rounding of the cycle may turn a direction uphill.
+            # Rounding in the cycle may reverse the direction.
             self.p.scale(-1.0)
             self.moved.scale(-1.0)
             self.slope, self.room = -self.slope, rooms[1]
@@ -234,7 +235,7 @@ class Direction:
 
 
 class Progress:
-    """What the loop has come to."""
+    """The state of the loop."""
 
     def __init__(self):
         self.cycles, self.faces = 0, 0
@@ -242,8 +243,8 @@ class Progress:
         self.history = []
 
 
-def solve(iterate, hierarchy, tolerance, most_cycles, told=None):
-    """Iterates until the largest imbalance of forces and wrong-signed multiplier is below `tolerance`, relative.
+def solve(iterate, hierarchy, tolerance, most_cycles, report=None):
+    """Iterates until the imbalance of forces and multipliers of wrong sign, both relative, are below `tolerance`.
 
     Raises `Refused` for a motion that nothing holds and a direction of negative energy.
     """
@@ -292,16 +293,16 @@ def solve(iterate, hierarchy, tolerance, most_cycles, told=None):
         if iterate.set_changed(before):
             is_old, last, changes = True, None, changes + 1
         progress.history.append((progress.cycles, residual))
-        if told is not None:
-            told(progress.cycles, residual)
+        if report is not None:
+            report(progress.cycles, residual)
     return progress
 
 
 def check_held(iterate, hierarchy, settled):
-    """Refuses an answer that is not the only one, and a load that drives a motion which nothing stops.
+    """Refuses an answer that is not unique, and a load along a motion that nothing stops. Does nothing if K is regular.
 
-    Asked only where K is singular. Of an answer that has not settled, the closed rows and none are looked at: a displacement
-    that has run away closes any.
+    If the loop has not converged, two sets of held rows are tried: none, and the closed ones. A displacement that grows
+    without bound may close any row.
     """
     if not hierarchy.is_singular:
         return
@@ -325,7 +326,10 @@ def check_held(iterate, hierarchy, settled):
 
 
 def without_energy(iterate, hierarchy, start, is_held):
-    """What cycles leave of a vector where nothing moves that is held: a motion without energy, largest entry one, or `None`."""
+    """Returns a motion without energy that keeps held unknowns at rest, with largest entry one, or `None`.
+
+    Multigrid cycles damp every component of a vector except the null space of K.
+    """
     hierarchy.hold(is_held)
     if not hierarchy.coarsest.is_singular:
         return None
@@ -333,7 +337,7 @@ def without_energy(iterate, hierarchy, start, is_held):
     mode, force, step = start.duplicate(), start.copy(), start.duplicate()
     scaled = start.duplicate()
     force.array[held] = 0.0
-    # The smoothest part first: what a load of that form moves.
+    # One cycle first: its result holds more of the smooth motions than the vector.
     hierarchy.cycle(force, mode)
     mode.array[held] = 0.0
     whole, before = iterate.ranks.max(larger(mode.array_r)), np.inf
@@ -354,7 +358,7 @@ def without_energy(iterate, hierarchy, start, is_held):
 
 
 def _is_stopped_both_ways(iterate, mode):
-    """Do open rows without play stop the motion one way and the other?"""
+    """Returns whether open rows without play stop the motion in both directions."""
     play = PLAY * iterate.ranks.max(larger(iterate.x.array_r))
     value, speed = iterate.x.array_r[iterate.place], mode.array_r[iterate.place]
     stopped = []
@@ -365,7 +369,7 @@ def _is_stopped_both_ways(iterate, mode):
 
 
 def under_held(iterate, mode):
-    """The refusal for a motion that costs no energy and that no row stops."""
+    """Returns the refusal for a motion without energy that no row stops."""
     u = iterate.bounds.turned_back(mode).array_r
     work = iterate.ranks.sum(np.dot(iterate.bounds.problem.load.array_r, u))
     largest = int(np.abs(u).argmax()) if len(u) else 0
@@ -374,5 +378,5 @@ def under_held(iterate, mode):
     node, component = divmod(int(found[1]), iterate.bounds.problem.dimension)
     size = -found[0] * max(iterate.largest_load, np.finfo(float).tiny)
     drives = "and the load drives it" if abs(work) > 1e-9 * size else "and neither does the load"
-    return Refused(f"under-held: a motion of the body costs no energy and neither supports nor closed rows stop it, {drives}; "
+    return Refused(f"not enough supports: the body can move without energy; neither supports nor closed rows stop it, {drives}; "
                    f"node {node} (from 0) moves most, along {'xyz'[component]}", NO_ANSWER)

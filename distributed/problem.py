@@ -1,7 +1,7 @@
 """The problem: minimise 1/2 u'Ku - f'u with B u - g <= 0, each rank its rows, read from a folder of `signorini export`.
 
-Every node has D places for its components; a component that a support takes keeps its place, with a diagonal and nothing
-beside it. The free dofs, in the order of the export, are places too: `free`.
+Every node has D places, one for each component. A supported component keeps its place: its row of K has a diagonal entry
+only. `free` lists the places of the free dofs, in the order of the export.
 """
 
 import csv
@@ -12,31 +12,31 @@ import numpy as np
 from ranks import BAD_INPUT, PETSC_INT, PETSc, Refused, generic
 
 NO_LIMIT = 1e20
-"""A gap of this or more is none."""
+"""A gap of this value or more is no limit."""
 
 MAT, VEC, INDEX_SET = 1211216, 1211214, 1211218
-"""What the binary files of PETSc begin with."""
+"""First number of PETSc's binary files, by kind."""
 
 DEPENDENT = 1e-8
-"""A near-null vector of which less than this share is left after those before it is none of its own."""
+"""A near-null vector depends on those before it if orthogonalisation leaves less than this share of it."""
 
 SYMMETRY = 1e-9
-"""Rounding of two products with K, as a share of their lengths."""
+"""Largest rounding error of v'Kw - w'Kv, relative to the lengths of the vectors."""
 
 LONGEST = 1e12
-"""Coordinates beyond this leave no digit for a rotation."""
+"""Coordinates beyond this value leave no digits for a rotation."""
 
 
 class Problem:
-    """K, f and B on the places of the nodes, whose rows the ranks share by nodes; g on the contact rows."""
+    """K, f and B on the places of the nodes, and g on the contact rows. Each rank owns a run of nodes and a run of rows."""
 
     def __init__(self, ranks, dimension, stiffness, load, contact, gap, free, modes):
         self.ranks, self.dimension = ranks, dimension
         self.stiffness, self.load, self.contact, self.gap = stiffness, load, contact, gap
         self.free = free
-        """Places of the free dofs, in the order of u.mtx; an index set."""
+        """Index set: the places of the free dofs, in the order of u.mtx."""
         self.modes = modes
-        """Displacements that cost next to no energy, vectors."""
+        """Vectors: displacements with next to no energy (rigid body modes)."""
         self.first, self.last = stiffness.getOwnershipRange()
         self.is_free = np.zeros(self.last - self.first, dtype=bool)
         mark = load.duplicate()
@@ -72,7 +72,7 @@ class Problem:
                 raise Refused(f"{name} has {found[1]:g} in place {int(found[0])} (from 0); it must be {allowed}", BAD_INPUT)
 
     def _check_symmetry(self):
-        """By two vectors, which an unsymmetric matrix tells apart."""
+        """Compares v'Kw with w'Kv for two generic vectors."""
         one, other, moved = generic(self.load), generic(self.load), self.load.duplicate()
         other.array[:] = np.cos(1e3 * one.array_r)
         self.stiffness.mult(one, moved)
@@ -83,13 +83,13 @@ class Problem:
             raise Refused("K is not symmetric, or has an entry that is no number", BAD_INPUT)
 
     def on_free(self, vector):
-        """The values of the free dofs, in the order of the export."""
+        """Returns the values of the free dofs, in the order of the export."""
         values = PETSc.Vec().createMPI((self.free.getLocalSize(), self.dofs), comm=self.ranks.comm)
         PETSc.Scatter().create(vector, self.free, values, None).scatter(vector, values)
         return values
 
     def on_places(self, values):
-        """The other way: zero where a support is."""
+        """The inverse of `on_free`: zero at supported components."""
         vector = self.load.duplicate()
         vector.zeroEntries()
         mode = PETSc.ScatterMode.REVERSE
@@ -98,12 +98,12 @@ class Problem:
 
 
 def in_rows(matrix):
-    """The matrix in rows of entries, as PETSc's multigrid and its products of matrices need it."""
+    """Returns the matrix in PETSc's format AIJ, which multigrid and products of matrices need."""
     return matrix.convert("aij", PETSc.Mat()) if "baij" in matrix.getType() else matrix
 
 
 def read(ranks, folder):
-    """The problem of a folder, in either format.
+    """Returns the problem of a folder, in either format.
 
     Raises `Refused` for files that are missing, cut off or do not fit each other.
     """
@@ -115,7 +115,7 @@ def read(ranks, folder):
 
 
 def _header(folder, name, classid, numbers):
-    """The integers after the class of a binary file, which is long enough for them and begins as it must."""
+    """Returns the integers after the class number of a binary file. Refuses a file of another kind or one that is cut off."""
     file = os.path.join(folder, name)
     try:
         with open(file, "rb") as stream:
@@ -130,7 +130,7 @@ def _header(folder, name, classid, numbers):
     if classid == MAT:
         rows, columns, entries = counts
         needed = 16 + 4 * rows + 12 * entries if entries < 2**31 - 1 else 0
-        # A dense matrix has no count of entries.
+        # A dense matrix has a negative number in place of its count of entries.
         needed = 16 + 8 * rows * columns if entries < 0 else needed
     else:
         needed = 8 + (8 if classid == VEC else 4) * counts[0]
@@ -167,7 +167,7 @@ def _read_binary(ranks, folder):
     def loaded(kind, name):
         return kind.load(PETSc.Viewer().createBinary(os.path.join(folder, name), "r", comm=ranks.comm))
 
-    # In blocks a product with K moves two thirds of the memory; each rank reads its own rows.
+    # Products with K in blocks take half the time of those in rows. By MPI-IO each rank reads its own rows.
     stiffness = PETSc.Mat().create(comm=ranks.comm)
     stiffness.setType("baij")
     stiffness.setBlockSize(dimension)
@@ -197,7 +197,7 @@ def _read_binary(ranks, folder):
 
 
 def _near_null(problem, folder, loaded):
-    """The columns of near_null.petsc, a dense matrix."""
+    """Returns the columns of near_null.petsc, a dense matrix."""
     places, count, _ = _header(folder, "near_null.petsc", MAT, 3)
     if places != problem.stiffness.getSize()[0] or count < 1:
         raise Refused(f"near_null.petsc is {places} x {count}, but K has {problem.stiffness.getSize()[0]} rows", BAD_INPUT)
@@ -219,7 +219,7 @@ def _check_places(ranks, free, places):
 
 
 def rigid_body_modes(problem, coordinates):
-    """Translations and rotations, zero at supported components."""
+    """Returns translations and rotations, zero at supported components."""
     ranks, size = problem.ranks, problem.dimension
     at = coordinates.array_r.reshape(-1, size)
     nodes = max(coordinates.getSize() // size, 1)
@@ -249,7 +249,7 @@ def _vector_like(like, values):
 
 
 def orthonormal(modes):
-    """The modes made orthonormal, without those that follow from others."""
+    """Returns an orthonormal basis of the modes."""
     kept = []
     for mode in modes:
         rest, whole = mode.copy(), mode.norm()
@@ -260,12 +260,12 @@ def orthonormal(modes):
             rest.normalize()
             kept.append(rest)
     if not kept:
-        raise Refused("the near-null space is zero: no displacement of the free dofs is told to cost little energy", BAD_INPUT)
+        raise Refused("the near-null space is zero: it must hold a displacement of the free dofs with little energy", BAD_INPUT)
     return kept
 
 
 def _text(folder, name, is_needed=True):
-    """Sizes and entries of a Matrix Market file; a matrix as triplets from 0, both triangles, an array as a table."""
+    """Returns sizes and entries of a Matrix Market file: triplets (from 0, both triangles) of a matrix, a table of an array."""
     file = os.path.join(folder, name)
     try:
         with open(file) as stream:
@@ -296,13 +296,13 @@ def _text(folder, name, is_needed=True):
 
 
 def _places(folder, dofs):
-    """The place of each dof, the number of components and the nodes' coordinates, from dofs.csv."""
+    """Returns the place of each dof, the number of components and the coordinates of the nodes, from dofs.csv."""
     file = os.path.join(folder, "dofs.csv")
     try:
         with open(file, newline="") as stream:
             lines = list(csv.DictReader(stream))
     except OSError as error:
-        raise Refused(f"{file}: {error.strerror}; it tells which dofs belong to which node", BAD_INPUT) from None
+        raise Refused(f"{file}: {error.strerror}; it lists the node of each dof", BAD_INPUT) from None
     if len(lines) != dofs:
         raise Refused(f"{file} has {len(lines)} dofs, but K.mtx has {dofs}", BAD_INPUT)
     directions = np.array([[float(line["direction_" + axis] or 0.0) for axis in "xyz"] for line in lines]).reshape(-1, 3)
@@ -325,7 +325,7 @@ def _places(folder, dofs):
 
 
 def _read_text(ranks, folder):
-    """Every rank reads all and keeps its rows: for small problems."""
+    """Reads Matrix Market files, for small problems: every rank reads all and keeps its rows."""
     (dofs, columns), (i, j, v) = _text(folder, "K.mtx")
     _, load = _text(folder, "f.mtx")
     (rows, of_contact), (row, dof, b) = _text(folder, "B.mtx")
@@ -340,7 +340,7 @@ def _read_text(ranks, folder):
     mean = v[i == j].mean() if len(v) else 1.0
     i, j, v = np.r_[places[i], held], np.r_[places[j], held], np.r_[v, np.full(len(held), mean)]
 
-    # Whole nodes to each rank, as many as PETSc would give it.
+    # Each rank gets whole nodes, as PETSc distributes them.
     layout = PETSc.Vec().create(comm=ranks.comm)
     layout.setSizes((None, total), bsize=dimension)
     layout.setUp()

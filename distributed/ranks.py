@@ -1,4 +1,4 @@
-"""PETSc, and what the ranks of a run tell each other: a few numbers at a time."""
+"""PETSc, and the exchange of a few numbers between the ranks of a run."""
 
 import ctypes
 import glob
@@ -6,13 +6,13 @@ import os
 import resource
 import sys
 
-# A rank is one thread: more would take the processors of its neighbours.
+# One thread for each rank: more threads would share the processors of other ranks.
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 try:
     import petsc4py
 except ImportError:
-    # Debian keeps petsc4py where only its development package, or PETSC_DIR, points to.
+    # Debian installs petsc4py in a folder that is not on the path of Python.
     sys.path += sorted(glob.glob("/usr/lib/petscdir/petsc*/*real/lib/python3/dist-packages"))
     try:
         import petsc4py
@@ -27,7 +27,7 @@ from petsc4py import PETSc  # noqa: E402
 
 
 class Refused(Exception):
-    """What cannot be solved or read: one sentence, the same on every rank, and the exit code of the program."""
+    """A problem that cannot be read or solved: one sentence, the same on every rank, and the exit code of the program."""
 
     def __init__(self, sentence, code):
         super().__init__(sentence)
@@ -37,10 +37,10 @@ class Refused(Exception):
 PETSC_INT = PETSc.IntType
 
 LARGE_BLOCK = 1024 * 1024
-"""Bytes. Blocks of memory from this size on go back to the system when they are freed."""
+"""Bytes. A block of at least this size goes back to the system when it is freed."""
 
 M_MMAP_THRESHOLD, M_MMAP_MAX = -3, -4
-"""Of mallopt(3), the GNU C library."""
+"""Parameters of mallopt(3) in the GNU C library."""
 
 BAD_INPUT, USAGE, NO_ANSWER, NOT_CERTIFIED = 1, 2, 3, 4
 
@@ -48,8 +48,7 @@ BAD_INPUT, USAGE, NO_ANSWER, NOT_CERTIFIED = 1, 2, 3, 4
 def return_freed_memory():
     """Makes freed large blocks go back to the system.
 
-    MPI libraries turn this off to keep pages registered with their networks. A rank would then hold the largest sum of
-    everything that it ever needed: 1.8 GB in place of 1.3 GB for 405,600 of its rows.
+    MPI libraries turn this off, so that a rank would keep all memory that it has ever used.
     """
     mallopt = getattr(ctypes.CDLL(None), "mallopt", None)
     if mallopt is not None:
@@ -58,7 +57,7 @@ def return_freed_memory():
 
 
 class Ranks:
-    """The ranks of a run. Every call is made by all of them, and gives all of them the same numbers, bit by bit."""
+    """The ranks of a run. All ranks make every call, and all get the same numbers, bit by bit."""
 
     def __init__(self):
         return_freed_memory()
@@ -67,7 +66,7 @@ class Ranks:
         self._gathers = {}
 
     def gather(self, values):
-        """The values of each rank, a row for each."""
+        """Returns a table with a row of values for each rank."""
         values = np.asarray(values, dtype=float).ravel()
         if self.size == 1:
             return values[None, :].copy()
@@ -81,31 +80,31 @@ class Ranks:
         return every.array_r.reshape(self.size, -1).copy()
 
     def sum(self, *values):
-        """The sum over the ranks of each of the values."""
+        """Returns the sum over all ranks, for each value."""
         return _unpacked(self.gather(values).sum(axis=0))
 
     def max(self, *values):
-        """The largest of each of the values; one that is no number counts as largest."""
+        """Returns the maximum over all ranks, for each value. NaN counts as the largest."""
         return _unpacked(self.gather(values).max(axis=0))
 
     def min(self, *values):
-        """The least of each of the values."""
+        """Returns the minimum over all ranks, for each value."""
         return _unpacked(self.gather(values).min(axis=0))
 
     def first(self, key, *values):
-        """The key and values of the rank whose key is least; `None` where no rank has a finite key."""
+        """Returns the key and values of the rank with the smallest key; `None` if no rank has a finite key."""
         table = self.gather((key, *values))
         row = table[int(np.argmin(table[:, 0]))]
         return row if np.isfinite(row[0]) else None
 
     def peak_memory(self):
-        """Bytes of main memory that the largest rank has held at most, and the sum over all ranks."""
+        """Returns the peak of main memory in bytes: of the largest rank, and the sum of the peaks of all ranks."""
         own = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
         table = self.gather((own,))
         return int(table.max()), int(table.sum())
 
     def clean(self):
-        """Frees the objects of PETSc that Python has let go of. PETSc keeps them until all ranks ask."""
+        """Frees PETSc objects that Python has released. PETSc keeps them until all ranks call this."""
         PETSc.garbage_cleanup(self.comm)
 
     def say(self, text):
@@ -119,12 +118,12 @@ def _unpacked(numbers):
 
 
 def larger(values):
-    """The largest magnitude of an array, 0 of an empty one, without a copy."""
+    """Returns the largest magnitude in an array, 0 if it is empty, without a copy."""
     return max(values.max(), -values.min(), 0.0) if len(values) else 0.0
 
 
 def fetch(vector, places):
-    """The values of a vector at places of any rank, which this rank names."""
+    """Returns the values of a vector at given places, which may belong to any rank."""
     wanted = PETSc.IS().createGeneral(np.asarray(places, dtype=PETSC_INT), comm=PETSc.COMM_SELF)
     values = PETSc.Vec().createSeq(len(places))
     PETSc.Scatter().create(vector, wanted, values, None).scatter(vector, values)
@@ -132,7 +131,7 @@ def fetch(vector, places):
 
 
 def generic(like):
-    """A vector without any order, the same for every number of ranks."""
+    """Returns a vector of irregular numbers, the same for every number of ranks."""
     vector = like.duplicate()
     first = like.getOwnershipRange()[0]
     vector.array[:] = ((first + np.arange(like.getLocalSize())) * 0.618033988749895) % 1.0 - 0.5

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """A model of seconds and memory per rank, printed as the tables of docs/scale.md: python3 distributed/scale.py
 
-It needs neither PETSc nor MPI: what it starts from was measured with peers.py and solve.py on the block of docs/scale.md.
+It needs neither PETSc nor MPI. Its constants were measured with peers.py and solve.py on the block of docs/scale.md.
 """
 
 import math
 
 CYCLES = (15, 17, 19)
-"""Of a contact solve of blocks with 16, 32 and 64 cells along a side, on one rank."""
+"""Cycles of a contact solve on one rank, for blocks with 16, 32 and 64 cells along a side."""
 
 MEASURED_DOFS = 811_200
 
@@ -29,13 +29,13 @@ LATENCY, BANDWIDTH = 2e-6, 1e9
 
 
 def cycles(dofs):
-    """What one more doubling of the cells along a side has cost, as far as it was measured."""
+    """Returns the cycles for a number of dofs: each doubling of the cells along a side adds as many as it did when measured."""
     doublings = math.log2((dofs / MEASURED_DOFS) ** (1 / 3))
     return CYCLES[-1] + (CYCLES[-1] - CYCLES[0]) / 2 * doublings
 
 
 def halo(dofs, ranks, shape):
-    """Dofs of other ranks that a rank's rows reach."""
+    """Returns the number of dofs of other ranks that the rows of a rank refer to."""
     own, plane = dofs / ranks, 3 * (dofs / 3) ** (2 / 3)
     if shape == "slices":
         return 2 * plane

@@ -19,10 +19,10 @@ from bounds import Bounds
 from hierarchy import Hierarchy
 
 MARGIN = 0.5
-"""The method ends at this share of the tolerance of the certificate, whose scales are wider than its own."""
+"""The method stops at this share of the certificate's tolerance: the certificate has larger scales."""
 
 NEXT = 0.1
-"""Where the certificate is not met, the method goes on to this share of what it reached."""
+"""If the certificate fails, the method continues to this share of its last tolerance."""
 
 SAVE_MEMORY = "build the levels in about a quarter less memory, and several times as slowly"
 """The help for --save-memory."""
@@ -31,12 +31,12 @@ OUT_OF_MEMORY = 55
 """PETSc's error code."""
 
 LEAST = 1e-15
-"""Forces out of balance by less than this, relative, are rounding."""
+"""A relative imbalance of forces below this value is a rounding error."""
 
 
 def arguments():
     parser = argparse.ArgumentParser(description="Solves a contact problem on many ranks.", epilog="Exit codes: 0 certified, "
-                                     "1 bad input or file, 2 usage, 3 infeasible or under-held, 4 not certified.")
+                                     "1 bad input or file, 2 usage, 3 infeasible or not enough supports, 4 not certified.")
     parser.add_argument("problem", help="folder that signorini export wrote, with --format petsc or as Matrix Market")
     parser.add_argument("--out", required=True, help="folder for u.mtx, lambda.mtx and log.json; made if missing")
     parser.add_argument("--tolerance", type=float, default=1e-9, help="of the certificate (default 1e-9)")
@@ -53,7 +53,7 @@ def arguments():
 
 
 def prepared(ranks, folder, kind="gamg", petsc="", saves_memory=False):
-    """Problem, bounds and hierarchy, and the seconds that reading and building took."""
+    """Returns problem, bounds and hierarchy, and the seconds of reading and set-up."""
     clock = time.perf_counter()
     problem = problems.read(ranks, folder)
     bounds = Bounds(problem)
@@ -64,7 +64,7 @@ def prepared(ranks, folder, kind="gamg", petsc="", saves_memory=False):
 
 
 def started(ranks, iterate, problem, bounds, folder):
-    """Starts from the answer of a folder, or from zero."""
+    """Starts the iteration from the answer in a folder, or from zero."""
     if folder is None:
         return iterate.start()
     u = read_vector(ranks, os.path.join(folder, "u.mtx"), problem.dofs, "dofs")
@@ -79,10 +79,10 @@ def run(ranks, options):
     clock = time.perf_counter()
     iterate = mprgp.Iterate(ranks, bounds, hierarchy.largest)
     started(ranks, iterate, problem, bounds, options.start)
-    told = (lambda cycles, rest: ranks.say(f"cycle {cycles}: imbalance {rest:.1e}")) if options.progress else None
+    report = (lambda cycles, rest: ranks.say(f"cycle {cycles}: imbalance {rest:.1e}")) if options.progress else None
     tolerance, cycles, faces, judging = MARGIN * options.tolerance, 0, 0, 0.0
     while True:
-        progress = mprgp.solve(iterate, hierarchy, tolerance, options.most_cycles - cycles, told)
+        progress = mprgp.solve(iterate, hierarchy, tolerance, options.most_cycles - cycles, report)
         cycles, faces = cycles + progress.cycles, faces + progress.faces
         mprgp.check_held(iterate, hierarchy, progress.settled)
         before = time.perf_counter()
@@ -121,7 +121,7 @@ def run(ranks, options):
 
 
 def main(run, options):
-    """Runs a program on all ranks and ends each with its exit code."""
+    """Runs a program on all ranks and ends each rank with its exit code."""
     ranks = Ranks()
     try:
         sys.exit(run(ranks, options))
@@ -137,7 +137,7 @@ def main(run, options):
     except MemoryError:
         print(f"rank {ranks.rank}: there is not enough memory", file=sys.stderr, flush=True)
         os._exit(BAD_INPUT)
-    except Exception:  # The other ranks wait for this one: mpirun must end them.
+    except Exception:  # The other ranks would wait for this one: mpirun ends them.
         traceback.print_exc()
         os._exit(BAD_INPUT)
 

@@ -336,7 +336,7 @@ class Refusals(Case):
         self.refused(2, self.exported(scenes.between_two_bodies()), "couples nodes", 1)
 
     def test_rows_of_one_node_that_are_neither_parallel_nor_at_right_angles(self):
-        self.refused(2, self.exported(scenes.under_two_inclined_planes()), "neither parallel nor at right angles", 1)
+        self.refused(2, self.exported(scenes.under_two_inclined_planes()), "neither parallel nor perpendicular", 1)
 
     def test_a_motion_that_nothing_holds(self):
         problem = self.exported(scenes.held_by_contact())
@@ -349,7 +349,7 @@ class Refusals(Case):
         for row in walls:
             content[8 + 8 * row : 16 + 8 * row] = struct.pack(">d", 1e20)
         gap.write_bytes(content)
-        self.refused(2, problem, "under-held", 3)
+        self.refused(2, problem, "not enough supports", 3)
 
     def test_files_that_are_missing_cut_off_or_do_not_fit(self):
         problem = self.exported(scenes.pressed_by_sphere(4))
