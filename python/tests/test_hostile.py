@@ -1,4 +1,4 @@
-"""Arguments that nobody should pass: each is refused with a sentence that names it, and nothing else happens."""
+"""Invalid arguments: each is refused with a message that names the argument, and nothing else happens."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def solved(**options: Any) -> Callable[[], Any]:
 
 
 def damaged(form: str, **arrays: Any) -> sparse.spmatrix:
-    """The stiffness with other arrays inside, which scipy has not looked at."""
+    """The stiffness with some of its arrays replaced, which scipy has not checked."""
     matrix = K.asformat(form).copy()
     for name, array in arrays.items():
         setattr(matrix, name, array)
