@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds the wheel of the Python package into target/wheels with the profile of the tests, installs it into environments below target/,
-# and runs all checks. Needs cargo and python3 >= 3.11 with venv.
+# Builds the wheel of the Python package into target/wheels with the profile of the tests, installs it into environments
+# below target/, and runs all checks. Needs cargo and python3 >= 3.11 with venv.
 set -euo pipefail
 cd "$(dirname "$0")"
 

@@ -32,7 +32,8 @@ def assembled() -> tuple[sg.Problem, np.ndarray, Basis]:
     rows = sparse.csr_array((np.ones(len(top)), (np.arange(len(top)), place)), shape=(len(top), len(free)))
     gap = (mesh.p[0, top] - 0.5) ** 2 / (2 * RADIUS) - DEPTH
     nodes = basis.doflocs[:, free]
-    # Rigid-body modes of the free dofs, for multigrid. The fixed dofs are missing, so that `coordinates` could not be used.
+    # Rigid-body modes of the free dofs, for multigrid. The fixed dofs are missing, so that `coordinates` could not be
+    # used.
     is_y = np.isin(free, basis.nodal_dofs[1])
     modes = np.stack([~is_y, is_y, np.where(is_y, nodes[0], -nodes[1])], axis=1).astype(float)
     return sg.Problem(stiffness, load, rows, gap, near_null=modes), free, basis

@@ -1,4 +1,5 @@
-//! Arrays from and to Python. Arrays of numpy are read in place; other objects are converted into arrays of numpy first.
+//! Arrays from and to Python. Arrays of numpy are read in place; other objects are converted into arrays of numpy
+//! first.
 
 use pyo3::buffer::{Element, PyBuffer};
 use pyo3::prelude::*;
@@ -33,8 +34,9 @@ pub fn slice<'a, T: Element>(buffer: &'a PyBuffer<T>, _attached: Python<'_>) -> 
     if buffer.item_count() == 0 {
         return Some(&[]);
     }
-    // SAFETY: the buffer holds `item_count` aligned values of this type, which `PyBuffer::get` has checked, and it stays alive and
-    // in place while it is borrowed. Nothing writes to it: only code of the interpreter could, and that waits for this thread.
+    // SAFETY: the buffer holds `item_count` aligned values of this type, which `PyBuffer::get` has checked, and it
+    // stays alive and in place while it is borrowed. Nothing writes to it: only code of the interpreter could, and that
+    // waits for this thread.
     buffer.as_slice_ptr().map(|values| unsafe { &*values.as_ptr() })
 }
 
@@ -43,7 +45,8 @@ pub fn kind_of(object: &Bound<'_, PyAny>) -> String {
     object.get_type().name().map_or_else(|_| "object".into(), |name| name.to_string())
 }
 
-/// Converts the argument `name` into an array of numpy whose dtype has one of the `kinds`; other objects are refused with a message.
+/// Converts the argument `name` into an array of numpy whose dtype has one of the `kinds`; other objects are refused
+/// with a message.
 fn array_of<'py>(name: &str, object: &Bound<'py, PyAny>, kinds: &str, wanted: &str) -> PyResult<Bound<'py, PyAny>> {
     let py = object.py();
     if object.is_none() {

@@ -57,7 +57,8 @@ pub fn interrupted(py: Python<'_>, best: Option<Py<PyAny>>) -> PyErr {
     }
 }
 
-/// Makes the exception for an error. `with_answer` converts the best answer that the error carries into a Python object.
+/// Makes the exception for an error. `with_answer` converts the best answer that the error carries into a Python
+/// object.
 pub fn exception(
     py: Python<'_>,
     error: Error,

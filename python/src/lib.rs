@@ -1,7 +1,7 @@
 //! The Python module `signorini._signorini`, the interface of the library to Python.
 //!
-//! `arrays` and `matrices` read arrays with at most one copy. `work` runs the library without the interpreter, answers interrupts
-//! and catches panics. `errors` turns errors into exceptions. Each class has a file of its own.
+//! `arrays` and `matrices` read arrays with at most one copy. `work` runs the library without the interpreter, answers
+//! interrupts and catches panics. `errors` turns errors into exceptions. Each class has a file of its own.
 
 mod arrays;
 mod errors;

@@ -35,7 +35,8 @@ impl<'py> Compressed<'py> {
     }
 }
 
-/// The form of a matrix and its shape. The shape is `None` for a dense array, which is converted before its shape is known.
+/// The form of a matrix and its shape. The shape is `None` for a dense array, which is converted before its shape is
+/// known.
 struct Seen<'py> {
     source: Source<'py>,
     shape: Option<[usize; 2]>,
@@ -49,7 +50,8 @@ fn shape_of(name: &str, matrix: &Bound<'_, PyAny>) -> PyResult<[usize; 2]> {
         .map_err(|_| bad_input(matrix.py(), format!("{name} has the shape {shape}; it must have two dimensions")))
 }
 
-/// Largest number of rows or columns that a matrix may have beyond its number of entries. More of them would waste memory.
+/// Largest number of rows or columns that a matrix may have beyond its number of entries. More of them would waste
+/// memory.
 const MOST_EMPTY: usize = 1_000_000;
 
 /// Determines the form of `matrix`. A matrix with `dofs` columns may have any number of empty ones.
@@ -141,7 +143,8 @@ fn with_lines<T>(
 }
 
 impl Lines<'_> {
-    /// Returns the entries `(line, index, value)` in any order, with duplicates. The starts of the lines must not decrease.
+    /// Returns the entries `(line, index, value)` in any order, with duplicates. The starts of the lines must not
+    /// decrease.
     fn entries(&self, py: Python<'_>, name: &str) -> PyResult<Vec<(usize, usize, f64)>> {
         let (starts, indices) = (self.starts.to_usize(py)?, self.indices.to_usize(py)?);
         if let Some(&first) = starts.first().filter(|&&first| first != 0) {

@@ -57,7 +57,8 @@ const PRECISIONS: [(&str, Precision); 3] =
     [("auto", Precision::Auto), ("double", Precision::Double), ("mixed", Precision::Mixed)];
 
 impl Options<'_> {
-    /// Returns the settings. The defaults are those of the program: rows are proven, and all available memory may be used.
+    /// Returns the settings. The defaults are those of the program: rows are proven, and all available memory may be
+    /// used.
     pub fn settings(&self, problem: Option<&ContactProblem>) -> PyResult<Settings> {
         let mut settings = Settings::default().with_proof();
         if let Some(method) = &self.method {

@@ -241,7 +241,8 @@ impl Certificate {
         self.inner.worst()
     }
 
-    /// Returns True if all conditions hold to `tolerance` and the error bound is at most `tolerance` or explained by rounding.
+    /// Returns True if all conditions hold to `tolerance` and the error bound is at most `tolerance` or explained by
+    /// rounding.
     fn meets(&self, tolerance: f64) -> bool {
         self.inner.meets(tolerance)
     }

@@ -87,7 +87,8 @@ pub fn answered(
     }
 }
 
-/// Returns the exception of a signal: an interrupt with the best solution, or the exception of the caller's own handler.
+/// Returns the exception of a signal: an interrupt with the best solution, or the exception of the caller's own
+/// handler.
 pub fn signalled(py: Python<'_>, signal: PyErr, best: Option<Py<PyAny>>) -> PyErr {
     match signal.is_instance_of::<pyo3::exceptions::PyKeyboardInterrupt>(py) {
         true => interrupted(py, best),
@@ -125,7 +126,8 @@ pub fn solve<'py>(
     answered(py, place, find, |solution| Solution::object(py, solution))
 }
 
-/// Solves a contact problem by an interior-point method, certified to 1e-9; the active-set method makes the contact set exact.
+/// Solves a contact problem by an interior-point method, certified to 1e-9; the active-set method makes the contact set
+/// exact.
 #[pyfunction]
 pub fn solve_qp(problem: &Bound<'_, Problem>) -> PyResult<Py<PyAny>> {
     let method = pyo3::types::PyString::new(problem.py(), "qp").into_any();

@@ -123,7 +123,8 @@ pub fn measured<'py>(
     }
 }
 
-/// Solves a scene for several `gaps` or `forces`, and returns its solutions and the events between them as a dictionary.
+/// Solves a scene for several `gaps` or `forces`, and returns its solutions and the events between them as a
+/// dictionary.
 #[pyfunction]
 #[pyo3(name = "_swept", signature = (scene, over, values, method, threads))]
 pub fn swept<'py>(

@@ -1,8 +1,8 @@
 //! Runs work without the interpreter: other threads of Python go on, interrupts are answered, and panics are caught.
 //!
-//! Short work runs on the calling thread and checks for signals when a step begins. Longer work, for example a factorisation, which
-//! cannot be interrupted, runs on a thread of its own. If it does not end soon after an interrupt, the caller no longer waits for
-//! it, and its result is dropped.
+//! Short work runs on the calling thread and checks for signals when a step begins. Longer work, for example a
+//! factorisation, which cannot be interrupted, runs on a thread of its own. If it does not end soon after an interrupt,
+//! the caller no longer waits for it, and its result is dropped.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};

@@ -65,8 +65,8 @@ def test_an_interrupt_is_answered_at_once(method: str, cells: int) -> None:
 
 
 def test_an_interrupt_carries_the_best_answer_until_then() -> None:
-    # A method has no answer before its first iteration ends. The iterations here are short, so that one ends in time even on a busy
-    # machine. The smaller body is solved on the calling thread, the larger one on a thread of its own.
+    # A method has no answer before its first iteration ends. The iterations here are short, so that one ends in time
+    # even on a busy machine. The smaller body is solved on the calling thread, the larger one on a thread of its own.
     for cells in (85, 100):
         tried = [(method, cells, after) for method in ("mprgp", "penalty") for after in (0.05, 0.1, 0.15)]
         assert any(interrupted(*attempt)[1] for attempt in tried), cells
@@ -159,7 +159,8 @@ def test_memory_is_flat_over_ten_thousand_solves() -> None:
     assert resident() - before < 1_000_000
 
 
-# The rest of a limited address space counts as available memory: a problem that needs more is refused, and the process goes on.
+# The rest of a limited address space counts as available memory: a problem that needs more is refused, and the process
+# goes on.
 LIMITED = """
 import resource, sys
 sys.path.insert(0, sys.argv[1])

@@ -1,8 +1,8 @@
-//! The measurements as tables: seconds and memory of every task, then the ratios that matter with what they must reach.
+//! The measurements as tables: seconds and memory of every task, and the ratios of tasks with their limits.
 
 use serde_json::Value;
 
-/// A ratio of two tasks of a case: what, case, task, divided by task, must reach, strive for.
+/// A ratio of two tasks of a case: name, case, first task, second task, required value, desired value.
 const RATIOS: [(&str, &str, &str, &str, f64, f64); 11] = [
     ("contact / linear solve", "Q4 256", "active set", "linear solve", 1.15, 1.0),
     ("contact / linear solve", "Q4 512", "active set", "linear solve", 1.0, 0.8),
@@ -17,7 +17,7 @@ const RATIOS: [(&str, &str, &str, &str, f64, f64); 11] = [
     ("two threads / one", "Hex8 28", "active set, two threads", "active set, wall clock", 1.0, 0.5),
 ];
 
-/// Peak memory of a contact solve over the values of its factor: case, must reach, strive for.
+/// Ratio of the peak memory of a contact solve to the bytes of its factor: case, required value, desired value.
 const MEMORY: (&str, f64, f64) = ("Q4 512", 2.0, 1.3);
 
 const MEGABYTE: f64 = 1e6;

@@ -23,8 +23,8 @@ __all__ = ["QPSolution", "solve_problem", "solve_qp"]
 # Largest number of proximal steps. For a quadratic program a few are enough.
 _MOST_STEPS = 200
 
-# Weights of the proximal term relative to the largest diagonal entry of P, in the order in which they are tried. A smaller weight needs
-# fewer steps; a larger one makes each step more accurate.
+# Weights of the proximal term relative to the largest diagonal entry of P, in the order in which they are tried. A
+# smaller weight needs fewer steps; a larger one makes each step more accurate.
 _PROXIMITIES = (1e-8, 1e-6, 1e-4)
 
 # Tolerance to which the conditions of a solution that is not unique are certified.
@@ -118,8 +118,8 @@ def solve_problem(
     except UnderHeld:
         return _one_of_many(problem, rows, start, options)
     except NotCertified as fell_short:
-        # Without an error bound only the conditions can be certified. If they fail as well, the minimum is almost not unique, and
-        # proximal steps are tried.
+        # Without an error bound only the conditions can be certified. If they fail as well, the minimum is almost not
+        # unique, and proximal steps are tried.
         best = fell_short.solution
         if best.certificate.conditions_hold(_TOLERANCE):
             return rows.answer(problem, best.u, best.multiplier, best.certificate, unique=False)
