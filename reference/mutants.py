@@ -269,8 +269,8 @@ def summary(outcomes: list[tuple[Mutant, str]], known: dict[tuple[str, str], str
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
-    parser.add_argument("--count", type=int, default=COUNT, metavar="N", help=f"mutants to draw; {COUNT} without it")
-    parser.add_argument("--seed", type=int, default=SEED, metavar="S", help=f"of the draw; {SEED} without it")
+    parser.add_argument("--count", type=int, default=COUNT, metavar="N", help=f"number of mutants to draw (default {COUNT})")
+    parser.add_argument("--seed", type=int, default=SEED, metavar="S", help=f"seed of the draw (default {SEED})")
     parser.add_argument("--again", action="store_true", help="try only what the last run did not kill")
     options = parser.parse_args()
     began, tree, kept = time.monotonic(), OWN / "tree", OWN / "outcomes.json"

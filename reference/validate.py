@@ -140,7 +140,7 @@ def main() -> int:
     parser.add_argument(
         "--cases", nargs="+", metavar="NAME", default=["*"], help="names or patterns of the cases to run"
     )
-    parser.add_argument("--without-program", action="store_true", help="only the problems made here, only the solvers")
+    parser.add_argument("--without-program", action="store_true", help="run only the problems made here and the independent solvers")
     parser.add_argument("--write-snapshot", action="store_true", help="write reference/results.json if all cases pass")
     options = parser.parse_args()
     if not options.without_program and not options.signorini.is_file():

@@ -60,7 +60,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     let sought = start.elapsed().as_secs_f64();
     println!("{} triangles read, checked and sorted into boxes: {read:.2} s", 2 * CELLS[0] * CELLS[1]);
-    println!("{PLACES} closest points, {inside} of them inside: {sought:.2} s");
-    println!("whole: {:.2} s; off the distance to the smooth torus by at most {off:.1e}", read + sought);
+    println!("{PLACES} closest points, {inside} inside: {sought:.2} s");
+    println!("total: {:.2} s; largest difference from the distance to the smooth torus: {off:.1e}", read + sought);
     Ok(())
 }

@@ -98,7 +98,7 @@ pub fn with_reals<T>(name: &str, object: &Bound<'_, PyAny>, take: impl FnOnce(&[
     {
         return take(values);
     }
-    let array = array_of(name, object, "fiub", "an array of real numbers in one dimension, float64 for the best")?;
+    let array = array_of(name, object, "fiub", "an array of real numbers in one dimension, preferably float64")?;
     let shape: Vec<usize> = array.getattr("shape")?.extract()?;
     if shape.len() != 1 {
         let shape = array.getattr("shape")?;

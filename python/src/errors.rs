@@ -40,7 +40,7 @@ pub fn no_memory(py: Python<'_>, sentence: impl AsRef<str>) -> PyErr {
 
 /// Makes the exception for a panic that was caught.
 pub fn panicked(py: Python<'_>, message: &str) -> PyErr {
-    let sentence = format!("the library failed where it must not: {message}; please report this with the problem");
+    let sentence = format!("the library failed unexpectedly: {message}; please report this with the problem");
     plain(py, "InternalError", &sentence)
 }
 
@@ -48,7 +48,7 @@ pub fn panicked(py: Python<'_>, message: &str) -> PyErr {
 pub fn interrupted(py: Python<'_>, best: Option<Py<PyAny>>) -> PyErr {
     let attributes = PyDict::new(py);
     let sentence = match &best {
-        Some(_) => "interrupted; the best answer until then is in `solution`",
+        Some(_) => "interrupted; the best answer so far is in `solution`",
         None => "interrupted before there was an answer",
     };
     match attributes.set_item("solution", best) {

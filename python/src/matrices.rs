@@ -81,9 +81,8 @@ fn look<'py>(name: &str, matrix: &Bound<'py, PyAny>, dofs: usize) -> PyResult<Se
         let entries = entries.map_err(|error| bad_input(py, format!("{name} is no matrix: {}", error.value(py))))?;
         let lines = if columns == dofs { rows } else { rows.max(columns) };
         if lines > entries.saturating_add(MOST_EMPTY) {
-            let sentence = format!(
-                "{name} is {rows} x {columns} with {entries} entries, almost empty; give it the size that it has"
-            );
+            let sentence =
+                format!("{name} is {rows} x {columns} with {entries} entries, almost empty; check its shape");
             return Err(bad_input(py, sentence));
         }
     }
@@ -102,8 +101,9 @@ fn look<'py>(name: &str, matrix: &Bound<'py, PyAny>, dofs: usize) -> PyResult<Se
                 checked.map_err(|error| bad_input(py, format!("{name} is no matrix: {}", error.value(py))))?;
             }
             let columns = matrix.call_method0("tocsc");
-            let columns = columns
-                .map_err(|error| bad_input(py, format!("{name} makes no compressed columns: {}", error.value(py))))?;
+            let columns = columns.map_err(|error| {
+                bad_input(py, format!("{name} cannot be converted to compressed columns: {}", error.value(py)))
+            })?;
             Source::Columns(Compressed::of(&columns)?)
         }
     };

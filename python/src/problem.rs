@@ -61,8 +61,8 @@ impl Problem {
                 if nodes * dimension != problem.dofs() {
                     let dofs = problem.dofs();
                     let sentence = format!(
-                        "coordinates is {nodes} x {dimension}, which makes {} dofs, but there are {dofs}; where supports have taken \
-                         dofs out, give near_null",
+                        "coordinates is {nodes} x {dimension}, which makes {} dofs, but there are {dofs}; if supports have \
+                         removed dofs, give near_null instead",
                         nodes * dimension
                     );
                     return Err(bad_input(py, sentence));

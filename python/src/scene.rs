@@ -50,7 +50,8 @@ impl Scene {
         if self.inner.analysis.is_none() {
             return Ok(());
         }
-        let message = "the scene moves; run `signorini solve` for its motion, or leave the analysis out for its rest";
+        let message =
+            "the scene moves; run `signorini solve` to compute its motion, or leave out `analysis` for a static solve";
         Err(plain_exception(py, Error::Scene { path: "analysis".into(), message: message.into() }))
     }
 }

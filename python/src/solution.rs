@@ -119,7 +119,7 @@ impl Solution {
             answer.attempts.iter().map(|attempt| format!("{} was tried before: {}", attempt.method, attempt.reason));
         let said: Vec<String> = reason.into_iter().chain(attempts).collect();
         match said.is_empty() {
-            true => format!("{}: as its estimate of seconds and memory, or the caller, chose", answer.method),
+            true => format!("{}: chosen by the estimate of seconds and memory, or by the caller", answer.method),
             false => said.join("; "),
         }
     }

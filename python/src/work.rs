@@ -131,7 +131,7 @@ fn apart<T: Send + 'static>(py: Python<'_>, work: impl FnOnce(&Watch) -> T + Sen
         // The receiver is gone if the result comes too late; that is no error.
         let _ = sender.send(guarded(work, &watched));
     });
-    worker.map_err(|error| no_memory(py, format!("no thread for the work: {error}")))?;
+    worker.map_err(|error| no_memory(py, format!("no thread could be started: {error}")))?;
     let whole = |done: Result<T, String>| done.map_err(|panic| panicked(py, &panic));
     // A receiver may be used by one thread at a time: by this one, attached to the interpreter or detached from it.
     let receiver = Mutex::new(receiver);

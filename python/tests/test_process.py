@@ -137,7 +137,7 @@ def resident() -> int:
     return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
 
-@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="the system does not say how much memory a process holds")
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="the system does not report the memory of a process")
 def test_memory_is_flat_over_ten_thousand_solves() -> None:
     problem = two_springs()
     prepared = sg.prepare(problem)
@@ -178,7 +178,7 @@ except sg.TooLarge as error:
 """
 
 
-@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="the system does not say how much memory a process holds")
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="the system does not report the memory of a process")
 @pytest.mark.parametrize(("cells", "megabytes", "said"), [(300, 150, "True, too large"), (200, 4000, "True")])
 def test_what_does_not_fit_into_a_limited_address_space_is_refused(cells: int, megabytes: int, said: str) -> None:
     program = [sys.executable, "-c", LIMITED, str(Path(__file__).parent), str(cells), str(megabytes)]

@@ -23,7 +23,9 @@ const MEMORY: (&str, f64, f64) = ("Q4 512", 2.0, 1.3);
 const MEGABYTE: f64 = 1e6;
 
 pub fn text(cases: &[Value], rounds: &str) -> String {
-    let mut text = format!("Least of {rounds} rounds, tasks in turn, in seconds of processor; `full` tasks once.\n\n");
+    let mut text = format!(
+        "Smallest processor seconds of {rounds} rounds, in which the tasks alternate; `full` tasks run once.\n\n"
+    );
     text += "| case | dofs | rows | task | seconds | over linear solve | peak MB |\n|---|---|---|---|---|---|---|\n";
     for case in cases {
         let linear = seconds(case, "linear solve");
@@ -40,7 +42,7 @@ pub fn text(cases: &[Value], rounds: &str) -> String {
             );
         }
     }
-    text += "\n| ratio | case | measured | must reach | strive for |\n|---|---|---|---|---|\n";
+    text += "\n| ratio | case | measured | required | desired |\n|---|---|---|---|---|\n";
     let mut line = |what: &str, case: &Value, measured: Option<f64>, must: f64, strive: f64| {
         let measured = measured.map_or("not run".into(), |value| format!("{value:.4}"));
         let name = case["case"].as_str().unwrap_or_default();

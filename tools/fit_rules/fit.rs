@@ -112,7 +112,7 @@ fn rule(points: &[&Point], condensed: bool, accuracy: f64) -> Value {
         .map(|step| json!({ "up_to": best.get(step + 1).map(|next| between(next.0)), "way": best[step].1 }))
         .collect();
     println!(
-        "condensed {condensed}, accuracy {accuracy:.0e}, {count} problems: {}; at most {:.2}, in the mean {:.2} times the best",
+        "condensed {condensed}, accuracy {accuracy:.0e}, {count} problems: {}; at most {:.2}, on average {:.2} times the best",
         steps.iter().map(Value::to_string).collect::<Vec<_>>().join(" "),
         worst / 100.0,
         mean / 100.0

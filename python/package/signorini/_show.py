@@ -35,7 +35,7 @@ def scene_text(scene: dict[str, Any]) -> str:
     except (TypeError, ValueError, RecursionError) as error:
         from signorini._errors import BadType
 
-        raise BadType(f"the dictionary makes no JSON: {error}") from None
+        raise BadType(f"the dictionary cannot be written as JSON: {error}") from None
 
 
 def _table(title: str, lines: list[tuple[str, str]]) -> str:

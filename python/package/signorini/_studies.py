@@ -146,8 +146,8 @@ def sweep(
     asked = [name for name, is_given in given.items() if is_given]
     allowed = ["gaps", "forces"] if is_scene else ["gaps", "g1, f1"]
     if len(asked) != 1 or asked[0] not in allowed:
-        told = " and ".join(asked) or "nothing"
-        raise BadInput(f"a sweep over {told}; a {'scene' if is_scene else 'problem'} is swept over {' or '.join(allowed)}")
+        named = " and ".join(asked) or "nothing"
+        raise BadInput(f"a sweep over {named}; a {'scene' if is_scene else 'problem'} is swept over {' or '.join(allowed)}")
     if isinstance(problem, Scene):
         found = _signorini._swept(problem, asked[0], gaps if forces is None else forces, method, threads)
         return Sweep(found["gaps"], found["solutions"], found["events"], found["corners"], found["forces"])
@@ -170,7 +170,7 @@ def _on_the_way(problem: Problem, end: Problem, points: int, method: str | None,
     if len(changed):
         row = changed[0]
         ends = f"goes from {problem.g[row]} to {end.g[row]}"
-        raise BadInput(f"the gap of row {row} {ends}; a row without an obstacle stays one on the way")
+        raise BadInput(f"the gap of row {row} {ends}; a sweep cannot add an obstacle to a row or remove it")
     same_load = np.array_equal(problem.f, end.f)
     # Rounded to fifteen digits, so that t is 0.3 and not 0.30000000000000004.
     t = [float(f"{place:.14e}") for place in np.linspace(0.0, 1.0, int(points))]
