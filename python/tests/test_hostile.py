@@ -202,7 +202,7 @@ def circle() -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("name", HOSTILE)
-def test_is_refused_with_a_sentence(name: str) -> None:
+def test_every_invalid_argument_is_refused_with_a_message(name: str) -> None:
     attempt, kind, words = HOSTILE[name]
     with pytest.raises(kind, match=words) as raised:
         attempt()
@@ -212,11 +212,11 @@ def test_is_refused_with_a_sentence(name: str) -> None:
         assert isinstance(raised.value, sg.SignoriniError) and raised.value.code
 
 
-def test_there_are_enough_of_them() -> None:
+def test_at_least_sixty_invalid_arguments_are_tested() -> None:
     assert len(HOSTILE) >= 60
 
 
-def test_a_matrix_of_a_million_rows_in_which_one_is_filled_is_a_matrix() -> None:
+def test_a_matrix_of_a_million_rows_with_one_entry_is_accepted() -> None:
     stiffness, load, _, _ = membrane(5)
     one = sparse.coo_matrix(([1.0], ([999_999], [0])), shape=(1_000_000, len(load)))
     assert sg.Problem(stiffness, load, one, np.ones(1_000_000)).row_count == 1_000_000
