@@ -24,7 +24,8 @@ class Scales:
 
 
 def scales_of(problem: Problem) -> Scales:
-    """Returns the scales: u0 is the largest finite gap or, if all gaps are zero, the free displacement; k0 is the largest diagonal of K."""
+    """Returns the scales. k0 is the largest diagonal entry of K; u0 is the largest finite gap or, if all gaps are zero, the largest free
+    displacement."""
     stiffness = power_of_two(largest(problem.stiffness.diagonal()))
     displacement = largest(problem.gap[problem.bound])
     if displacement == 0.0:

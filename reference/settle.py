@@ -21,7 +21,8 @@ SIGN_TOLERANCE = 1e-11
 """Relative size below which a slack or a multiplier counts as zero. Otherwise rounding would make weakly active rows cycle."""
 
 PATIENCE = 10
-"""Number of exchanges of all failing rows at once that may pass without a new minimum of their number; then rows are exchanged singly."""
+"""Number of exchanges of all failing rows at once that may pass without a new minimum of their number. After that, rows are exchanged
+one by one."""
 
 EXCHANGES = 2000
 """Largest number of linear solves; ten are usual."""
